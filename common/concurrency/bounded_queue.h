@@ -1,0 +1,73 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+#include "common/base/check.h"
+
+namespace isotherm {
+
+/// What Push does when the queue is full.
+enum class OverflowPolicy {
+  kDropOldest,  ///< Live data: the newest counts. Drops are counted.
+  kBlock,       ///< Recordings: nothing may be lost; the producer waits.
+};
+
+/// Joins two threads with bounded memory. Thread-safe.
+template <typename T>
+class BoundedQueue {
+ public:
+  BoundedQueue(std::size_t capacity, OverflowPolicy policy) : capacity_(capacity), policy_(policy) {
+    CHECK(capacity > 0);
+  }
+
+  /// Returns false if `value` was not taken because stop was requested while waiting for room.
+  bool Push(T value, std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    if (policy_ == OverflowPolicy::kBlock) {
+      if (!changed_.wait(lock, stop, [this] { return values_.size() < capacity_; })) return false;
+    } else if (values_.size() == capacity_) {
+      values_.pop_front();
+      ++dropped_;
+    }
+    values_.push_back(std::move(value));
+    changed_.notify_all();
+    return true;
+  }
+
+  /// Waits for a value. Returns nullopt if stop was requested and nothing is left.
+  std::optional<T> Pop(std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait(lock, stop, [this] { return !values_.empty(); })) return std::nullopt;
+    T value = std::move(values_.front());
+    values_.pop_front();
+    changed_.notify_all();
+    return value;
+  }
+
+  std::size_t size() const {
+    std::scoped_lock lock(mutex_);
+    return values_.size();
+  }
+  /// Values that made room for newer ones since construction.
+  std::uint64_t dropped() const {
+    std::scoped_lock lock(mutex_);
+    return dropped_;
+  }
+
+ private:
+  const std::size_t capacity_;
+  const OverflowPolicy policy_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::deque<T> values_;
+  std::uint64_t dropped_ = 0;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,75 @@
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <thread>
+#include <vector>
+
+#include "common/concurrency/bounded_queue.h"
+#include "common/concurrency/latest_value.h"
+#include "common/concurrency/thread_pool.h"
+
+namespace isotherm {
+namespace {
+
+TEST(BoundedQueueTest, DropOldestKeepsTheNewestAndCounts) {
+  BoundedQueue<int> queue(2, OverflowPolicy::kDropOldest);
+  const std::stop_source stop;
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(queue.Push(i, stop.get_token()));
+  EXPECT_EQ(queue.dropped(), 3U);
+  EXPECT_EQ(queue.Pop(stop.get_token()), 3);
+  EXPECT_EQ(queue.Pop(stop.get_token()), 4);
+}
+
+TEST(BoundedQueueTest, BlockingProducerLosesNothing) {
+  BoundedQueue<int> queue(3, OverflowPolicy::kBlock);
+  const std::stop_source stop;
+  constexpr int kCount = 1000;
+  std::jthread producer([&] {
+    for (int i = 0; i < kCount; ++i) queue.Push(i, stop.get_token());
+  });
+  for (int i = 0; i < kCount; ++i) EXPECT_EQ(queue.Pop(stop.get_token()), i);
+  EXPECT_EQ(queue.dropped(), 0U);
+}
+
+TEST(BoundedQueueTest, StopWakesTheConsumerButLeavesWhatIsQueued) {
+  BoundedQueue<int> queue(3, OverflowPolicy::kBlock);
+  std::stop_source stop;
+  queue.Push(7, stop.get_token());
+  stop.request_stop();
+  EXPECT_EQ(queue.Pop(stop.get_token()), 7);
+  EXPECT_EQ(queue.Pop(stop.get_token()), std::nullopt);
+}
+
+TEST(BoundedQueueTest, StopWakesABlockedProducer) {
+  BoundedQueue<int> queue(1, OverflowPolicy::kBlock);
+  std::stop_source stop;
+  queue.Push(1, stop.get_token());
+  std::jthread stopper([&] { stop.request_stop(); });
+  EXPECT_FALSE(queue.Push(2, stop.get_token()));
+}
+
+TEST(LatestValueTest, TakeEmptiesTheMailboxAndGetDoesNot) {
+  LatestValue<int> mailbox;
+  EXPECT_EQ(mailbox.Get(), std::nullopt);
+  mailbox.Set(1);
+  mailbox.Set(2);
+  EXPECT_EQ(mailbox.Get(), 2);
+  EXPECT_EQ(mailbox.Take(), 2);
+  EXPECT_EQ(mailbox.Get(), std::nullopt);
+}
+
+TEST(ThreadPoolTest, EachIndexIsVisitedOnceWhateverTheThreadCount) {
+  for (int threads = 1; threads <= 4; ++threads) {
+    ThreadPool pool(threads);
+    for (int round = 0; round < 200; ++round) {
+      std::vector<int> visits(97, 0);
+      pool.ParallelFor(97, [&](int i) { ++visits[i]; });
+      EXPECT_EQ(std::accumulate(visits.begin(), visits.end(), 0), 97);
+      EXPECT_EQ(*std::max_element(visits.begin(), visits.end()), 1);
+    }
+    pool.ParallelFor(0, [](int) { FAIL() << "no index to visit"; });
+  }
+}
+
+}  // namespace
+}  // namespace isotherm

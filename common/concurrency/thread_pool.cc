@@ -1,0 +1,61 @@
+#include "common/concurrency/thread_pool.h"
+
+#include "common/base/check.h"
+
+namespace isotherm {
+
+ThreadPool::ThreadPool(int threads) {
+  CHECK(threads >= 1);
+  for (int i = 1; i < threads; ++i) {
+    workers_.emplace_back([this](std::stop_token stop) { Work(stop); });
+  }
+}
+
+ThreadPool::~ThreadPool() = default;
+
+void ThreadPool::RunShare(const std::function<void(int)>& body, int count) {
+  for (int i = next_.fetch_add(1, std::memory_order_relaxed); i < count;
+       i = next_.fetch_add(1, std::memory_order_relaxed)) {
+    body(i);
+  }
+}
+
+void ThreadPool::ParallelFor(int count, const std::function<void(int)>& body) {
+  if (count <= 0) return;
+  if (workers_.empty() || count == 1) {
+    for (int i = 0; i < count; ++i) body(i);
+    return;
+  }
+  {
+    std::scoped_lock lock(mutex_);
+    body_ = &body;
+    count_ = count;
+    next_ = 0;
+    running_ = static_cast<int>(workers_.size());
+    ++generation_;
+  }
+  wake_.notify_all();
+  RunShare(body, count);
+  std::unique_lock lock(mutex_);
+  done_.wait(lock, [this] { return running_ == 0; });
+}
+
+void ThreadPool::Work(std::stop_token stop) {
+  long seen = 0;
+  while (true) {
+    const std::function<void(int)>* body = nullptr;
+    int count = 0;
+    {
+      std::unique_lock lock(mutex_);
+      if (!wake_.wait(lock, stop, [&] { return generation_ != seen; })) return;
+      seen = generation_;
+      body = body_;
+      count = count_;
+    }
+    RunShare(*body, count);
+    std::scoped_lock lock(mutex_);
+    if (--running_ == 0) done_.notify_one();
+  }
+}
+
+}  // namespace isotherm

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+namespace isotherm {
+
+/// A fixed set of threads for parallel loops over blocks or rows. The calling thread works too, so a pool of
+/// one has no thread of its own and runs everything inline. Thread-bound: one ParallelFor at a time.
+class ThreadPool {
+ public:
+  /// `threads` >= 1 counts the calling thread.
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  int threads() const { return static_cast<int>(workers_.size()) + 1; }
+
+  /// Calls `body(index)` once for each index in [0, count), in no particular order and from any thread of the
+  /// pool; returns when all are done. Bodies must not write to shared data.
+  void ParallelFor(int count, const std::function<void(int index)>& body);
+
+ private:
+  void Work(std::stop_token stop);
+  void RunShare(const std::function<void(int)>& body, int count);
+
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::condition_variable done_;
+  const std::function<void(int)>* body_ = nullptr;
+  int count_ = 0;
+  int running_ = 0;
+  long generation_ = 0;
+  std::atomic<int> next_{0};
+  std::vector<std::jthread> workers_;
+};
+
+}  // namespace isotherm

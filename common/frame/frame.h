@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/frame/image.h"
+#include "common/time/time_types.h"
+
+namespace isotherm {
+
+enum class Sensor : std::uint8_t { kDepth = 0, kThermal = 1 };
+
+/// Where the knowledge about the shutter comes from.
+enum class NucSource : std::uint8_t { kUnknown = 0, kInBand = 1, kPolled = 2, kCommanded = 3, kInferred = 4 };
+
+/// Non-uniformity correction of the thermal camera (thesis 3.2.3). A fresh camera is kUnknown.
+enum class NucState : std::uint8_t {
+  kUnknown = 0,
+  kIdle = 1,        ///< Corrected and settled: temperatures are valid.
+  kDesired = 2,     ///< Due by drift or interval, still valid.
+  kImminent = 3,    ///< About to start.
+  kInProgress = 4,  ///< Shutter closed.
+  kSettling = 5,    ///< Shutter open again, temperatures not yet trusted.
+  kBlocked = 6,
+  kError = 7,
+};
+
+inline constexpr float kUnknownCelsius = std::numeric_limits<float>::quiet_NaN();
+
+/// Camera temperatures, °C, NaN = the camera does not say.
+struct ThermalHousekeeping {
+  float fpa_celsius = kUnknownCelsius;
+  float housing_celsius = kUnknownCelsius;
+  float shutter_celsius = kUnknownCelsius;
+};
+
+/// What identifies and dates a frame, from the edge to the end.
+struct FrameHeader {
+  std::uint64_t session = 0;       ///< One per start of a scan on the edge.
+  std::uint64_t frame_number = 0;  ///< Counts frames of this sensor within the session, from 0, without holes at the source.
+  DeviceTicks device_ticks{};      ///< The camera's own stamp.
+  CaptureTime capture_time{};      ///< Middle of the exposure, edge wall clock.
+  Nanoseconds capture_sigma{0};    ///< One-sigma uncertainty of capture_time; 0 = not estimated.
+};
+
+/// Raw value of a depth pixel without a return; 65535 means the same (PrimeSense recorders write both).
+inline constexpr std::uint16_t kNoDepth = 0;
+inline constexpr std::uint16_t kNoDepthSaturated = 65535;
+
+struct DepthFrame {
+  FrameHeader header;
+  Image<std::uint16_t> depth_raw;  ///< height x width, row-major, `depth_scale` units per metre along z; 0 and 65535 = no return.
+  double depth_scale = 1000.0;     ///< Raw units per metre.
+};
+
+/// Zero of the thermal scale: raw centi-kelvin = 100 x kelvin.
+inline constexpr double kCentikelvinPerKelvin = 100.0;
+inline constexpr double kCelsiusZeroKelvin = 273.15;
+
+constexpr float CentikelvinToCelsius(double centikelvin) {
+  return static_cast<float>(centikelvin / kCentikelvinPerKelvin - kCelsiusZeroKelvin);
+}
+
+struct ThermalFrame {
+  FrameHeader header;
+  Image<std::uint16_t> centikelvin;  ///< height x width, row-major, apparent temperature, kelvin x 100; 0 = no value.
+  NucState nuc_state = NucState::kUnknown;
+  NucSource nuc_source = NucSource::kUnknown;
+  std::optional<double> seconds_since_nuc;  ///< Since the shutter opened; nullopt = none in this session.
+  ThermalHousekeeping housekeeping;
+  bool valid = false;  ///< Temperatures may reach the model.
+};
+
+/// What a FrameSource delivers: pixels and times as the device and the host gave them, not yet stamped.
+struct RawFrame {
+  Sensor sensor = Sensor::kDepth;
+  std::uint64_t frame_number = 0;  ///< Counted by the source; a hole is a frame that was lost before us.
+  DeviceTicks device_ticks{};
+  CaptureTime arrival_wall{};      ///< Edge wall clock when the first byte reached us.
+  Image<std::uint16_t> pixels;     ///< As DepthFrame::depth_raw or ThermalFrame::centikelvin.
+  double depth_scale = 1000.0;     ///< Raw depth units per metre (depth only).
+  bool shutter_closed = false;     ///< Thermal only: the camera says so (in band).
+  ThermalHousekeeping housekeeping;
+};
+
+/// How an encoded image is packed. Values are on the wire and in recordings: never reuse one.
+enum class Encoding : std::uint8_t {
+  kRaw16 = 0,      ///< Little-endian 16-bit samples, row-major.
+  kPng16 = 1,      ///< PNG, 16-bit grey.
+  kDepthRvl = 2,   ///< Run lengths and variable-length differences, then zstd (common/codec).
+  kThermalDelta = 3,  ///< Predicted differences, byte planes, zstd (common/codec).
+};
+
+struct EncodedImage {
+  Encoding encoding = Encoding::kRaw16;
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> payload;
+};
+
+/// A frame on its way between processes or into a file: everything but the pixels is as in the frame.
+struct EncodedDepthFrame {
+  FrameHeader header;
+  EncodedImage image;
+  double depth_scale = 1000.0;
+};
+
+struct EncodedThermalFrame {
+  FrameHeader header;
+  EncodedImage image;
+  NucState nuc_state = NucState::kUnknown;
+  NucSource nuc_source = NucSource::kUnknown;
+  std::optional<double> seconds_since_nuc;
+  ThermalHousekeeping housekeeping;
+  bool valid = false;
+};
+
+using DepthFramePtr = std::shared_ptr<const DepthFrame>;
+using ThermalFramePtr = std::shared_ptr<const ThermalFrame>;
+
+}  // namespace isotherm

@@ -1,0 +1,119 @@
+#include "common/geometry/camera.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace isotherm {
+namespace {
+
+constexpr int kMaxImageSide = 16384;
+
+}  // namespace
+
+CameraModel CameraModel::WithoutDistortion() const {
+  CameraModel result = *this;
+  result.k1 = result.k2 = result.p1 = result.p2 = result.k3 = 0.0;
+  return result;
+}
+
+CameraModel CameraModel::Downscaled(int levels) const {
+  CameraModel result = *this;
+  const double scale = 1.0 / static_cast<double>(1 << levels);
+  result.width = width >> levels;
+  result.height = height >> levels;
+  result.fx *= scale;
+  result.fy *= scale;
+  // Pixel centres are at integers: the centre of a 2x2 group of pixels (0, 1) is at 0.5.
+  result.cx = (cx + 0.5) * scale - 0.5;
+  result.cy = (cy + 0.5) * scale - 0.5;
+  return result;
+}
+
+Status Validate(const CameraModel& c, std::string_view name) {
+  if (c.width < 1 || c.height < 1 || c.width > kMaxImageSide || c.height > kMaxImageSide) {
+    return InvalidArgument(fmt::format("{}: width and height must be 1..{} pixels, got {} x {}", name,
+                                       kMaxImageSide, c.width, c.height));
+  }
+  if (!(std::isfinite(c.fx) && c.fx > 0.0 && std::isfinite(c.fy) && c.fy > 0.0)) {
+    return InvalidArgument(fmt::format(
+        "{}: fx and fy (focal lengths in pixels) must be given and positive, got {} and {}", name, c.fx, c.fy));
+  }
+  if (!(c.cx > -c.width && c.cx < 2 * c.width && c.cy > -c.height && c.cy < 2 * c.height)) {
+    return InvalidArgument(fmt::format(
+        "{}: principal point cx cy must be given and lie near the image of {} x {} pixels, got {} {}", name,
+        c.width, c.height, c.cx, c.cy));
+  }
+  for (const double k : {c.k1, c.k2, c.p1, c.p2, c.k3}) {
+    if (!std::isfinite(k)) {
+      return InvalidArgument(fmt::format("{}: distortion k1 k2 p1 p2 k3 must be finite", name));
+    }
+  }
+  return OkStatus();
+}
+
+Eigen::Vector2d ProjectNormalized(const CameraModel& camera, const Eigen::Vector2d& normalized) {
+  const double x = normalized.x();
+  const double y = normalized.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (camera.k1 + r2 * (camera.k2 + r2 * camera.k3));
+  const double xd = x * radial + 2.0 * camera.p1 * x * y + camera.p2 * (r2 + 2.0 * x * x);
+  const double yd = y * radial + camera.p1 * (r2 + 2.0 * y * y) + 2.0 * camera.p2 * x * y;
+  return {camera.fx * xd + camera.cx, camera.fy * yd + camera.cy};
+}
+
+std::optional<Eigen::Vector2d> Project(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
+  if (!(p_camera.z() > 0.0)) return std::nullopt;
+  return ProjectNormalized(camera, p_camera.head<2>() / p_camera.z());
+}
+
+Eigen::Vector2d Unproject(const CameraModel& camera, const Eigen::Vector2d& pixel) {
+  const Eigen::Vector2d distorted((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);
+  if (!camera.HasDistortion()) return distorted;
+  constexpr int kMaxIterations = 50;
+  constexpr double kConverged = 1e-12;
+  Eigen::Vector2d point = distorted;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const Eigen::Vector2d reprojected = ProjectNormalized(camera, point);
+    const Eigen::Vector2d error((reprojected.x() - pixel.x()) / camera.fx,
+                                (reprojected.y() - pixel.y()) / camera.fy);
+    point -= error;
+    if (error.squaredNorm() < kConverged * kConverged) break;
+  }
+  return point;
+}
+
+Status Validate(const Rig& rig) {
+  if (rig.depth) ISOTHERM_RETURN_IF_ERROR(Validate(*rig.depth, "depth"));
+  if (rig.thermal) ISOTHERM_RETURN_IF_ERROR(Validate(*rig.thermal, "thermal"));
+  if (!rig.depth && !rig.thermal) {
+    return InvalidArgument("neither depth nor thermal intrinsics are given");
+  }
+  if (!(std::isfinite(rig.depth_scale) && rig.depth_scale > 0.0)) {
+    return InvalidArgument(
+        fmt::format("depth_scale (raw units per metre) must be positive, got {}", rig.depth_scale));
+  }
+  if (rig.T_thermal_depth && !IsRigid(*rig.T_thermal_depth)) {
+    return InvalidArgument("T_thermal_depth is not a finite rigid transform");
+  }
+  if (!std::isfinite(rig.thermal_delay_s) || std::abs(rig.thermal_delay_s) > 10.0) {
+    return InvalidArgument(
+        fmt::format("thermal_delay_s must be within +-10 s, got {} s", rig.thermal_delay_s));
+  }
+  return OkStatus();
+}
+
+Status CheckThermalFusion(const Rig& rig) {
+  if (!rig.thermal) {
+    return FailedPrecondition("the rig calibration has no thermal intrinsics: temperatures are not fused");
+  }
+  if (!rig.depth) {
+    return FailedPrecondition("the rig calibration has no depth intrinsics: temperatures are not fused");
+  }
+  if (!rig.T_thermal_depth) {
+    return FailedPrecondition("the rig calibration has no T_thermal_depth: temperatures are not fused");
+  }
+  return OkStatus();
+}
+
+}  // namespace isotherm

@@ -1,0 +1,127 @@
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kExact = 1e-12;
+constexpr double kSubPixel = 1e-6;  // Iterative undistortion, pixels.
+
+RigidTransform Rotation(double angle_rad, const Eigen::Vector3d& axis, const Eigen::Vector3d& t) {
+  return MakeTransform(t, Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis)));
+}
+
+TEST(InterpolateTest, HalfWayIsHalfTheAngleAndHalfTheDistance) {
+  const RigidTransform a = Rotation(0.2, Eigen::Vector3d::UnitY(), {0, 0, 0});
+  const RigidTransform b = Rotation(0.6, Eigen::Vector3d::UnitY(), {0.1, 0.2, -0.4});
+  const RigidTransform middle = Interpolate(a, b, 0.5);
+  EXPECT_NEAR(RotationAngle(a, middle), 0.2, kExact);
+  EXPECT_NEAR(RotationAngle(middle, b), 0.2, kExact);
+  EXPECT_TRUE(middle.translation().isApprox(Eigen::Vector3d(0.05, 0.1, -0.2), kExact));
+}
+
+TEST(InterpolateTest, TakesTheShortWayRound) {
+  const RigidTransform a = Rotation(3.0, Eigen::Vector3d::UnitZ(), {0, 0, 0});
+  const RigidTransform b = Rotation(-3.0, Eigen::Vector3d::UnitZ(), {0, 0, 0});
+  const double gap = 2.0 * (std::numbers::pi - 3.0);
+  EXPECT_NEAR(RotationAngle(a, Interpolate(a, b, 0.5)), gap / 2.0, 1e-9);
+}
+
+TEST(TwistTest, SmallAnglesKeepFullPrecision) {
+  Eigen::Matrix<double, 6, 1> twist;
+  twist << 0.001, -0.002, 0.003, 0.0, 1e-9, 0.0;
+  const RigidTransform transform = TransformFromTwist(twist);
+  EXPECT_NEAR(RotationAngle(RigidTransform::Identity(), transform), 1e-9, 1e-15);
+  EXPECT_NEAR(TranslationDistance(RigidTransform::Identity(), transform), std::sqrt(14e-6), kExact);
+}
+
+TEST(IsRigidTest, RefusesScaleReflectionAndNan) {
+  EXPECT_TRUE(IsRigid(RigidTransform::Identity()));
+  RigidTransform bad = RigidTransform::Identity();
+  bad.linear() *= 1.01;
+  EXPECT_FALSE(IsRigid(bad));
+  bad.linear() = -Eigen::Matrix3d::Identity();
+  EXPECT_FALSE(IsRigid(bad));
+  bad = RigidTransform::Identity();
+  bad.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(IsRigid(bad));
+}
+
+CameraModel ThermalCameraModel() {
+  CameraModel camera;
+  camera.width = 382;
+  camera.height = 288;
+  camera.fx = 371.4;
+  camera.fy = 372.1;
+  camera.cx = 205.5;
+  camera.cy = 150.5;
+  camera.k1 = -0.439;
+  camera.k2 = 0.29;
+  camera.p1 = 0.000454;
+  camera.p2 = -0.000257;
+  camera.k3 = -0.114;
+  return camera;
+}
+
+TEST(CameraTest, UnprojectInvertsProjectOverTheWholeImage) {
+  const CameraModel camera = ThermalCameraModel();
+  for (int v = 0; v < camera.height; v += 7) {
+    for (int u = 0; u < camera.width; u += 7) {
+      const Eigen::Vector2d pixel(u, v);
+      const Eigen::Vector2d back = ProjectNormalized(camera, Unproject(camera, pixel));
+      EXPECT_NEAR((back - pixel).norm(), 0.0, kSubPixel) << "u=" << u << " v=" << v;
+    }
+  }
+}
+
+TEST(CameraTest, PointsBehindTheCameraDoNotProject) {
+  EXPECT_EQ(Project(ThermalCameraModel(), {0.0, 0.0, 0.0}), std::nullopt);
+  EXPECT_EQ(Project(ThermalCameraModel(), {0.1, 0.0, -1.0}), std::nullopt);
+}
+
+TEST(CameraTest, DownscaledCameraSeesTheSameDirections) {
+  CameraModel camera = ThermalCameraModel().WithoutDistortion();
+  const CameraModel half = camera.Downscaled(1);
+  EXPECT_EQ(half.width, 191);
+  // The centre between full-resolution pixels 10 and 11 is half-resolution pixel 5.
+  const Eigen::Vector2d full = Unproject(camera, {10.5, 20.5});
+  const Eigen::Vector2d coarse = Unproject(half, {5.0, 10.0});
+  EXPECT_NEAR((full - coarse).norm(), 0.0, kExact);
+}
+
+TEST(CameraTest, F57NonPhysicalIntrinsicsAreRejectedByName) {
+  CameraModel camera = ThermalCameraModel();
+  EXPECT_TRUE(Validate(camera, "thermal").ok());
+  camera.fx = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(Validate(camera, "thermal").message().find("thermal: fx"), std::string::npos);
+  camera = ThermalCameraModel();
+  camera.width = 0;
+  EXPECT_FALSE(Validate(camera, "thermal").ok());
+  camera = ThermalCameraModel();
+  camera.cx = 1e6;
+  EXPECT_FALSE(Validate(camera, "thermal").ok());
+  Rig rig;
+  EXPECT_FALSE(Validate(rig).ok());
+  rig.thermal = ThermalCameraModel();
+  EXPECT_TRUE(Validate(rig).ok());
+  rig.depth_scale = 0.0;
+  EXPECT_FALSE(Validate(rig).ok());
+}
+
+TEST(CameraTest, F56MissingCalibrationRefusesThermalFusionOnly) {
+  Rig rig;
+  rig.depth = ThermalCameraModel();
+  EXPECT_TRUE(Validate(rig).ok());
+  EXPECT_EQ(CheckThermalFusion(rig).code(), StatusCode::kFailedPrecondition);
+  rig.thermal = ThermalCameraModel();
+  EXPECT_EQ(CheckThermalFusion(rig).code(), StatusCode::kFailedPrecondition);
+  rig.T_thermal_depth = RigidTransform::Identity();
+  EXPECT_TRUE(CheckThermalFusion(rig).ok());
+}
+
+}  // namespace
+}  // namespace isotherm

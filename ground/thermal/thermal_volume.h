@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+
+#include "ground/tsdf/tsdf_volume.h"
+
+namespace isotherm {
+
+/// Class of a measurement condition (eq. 6.3a-b) as stored in a voxel and exported.
+enum class ConditionClass : std::uint8_t { kBad = 0, kGood = 1, kAcceptable = 2 };
+
+/// Exported where a point was never assigned a temperature.
+inline constexpr std::uint8_t kNeverMeasured = 255;
+
+/// One thermal voxel in 32 bits (thesis fig. 6.9):
+///   bits 31..16  temperature code: 0 = never measured, else 1 + (celsius + 100) / 0.025 (steps of 0.025 K
+///                from -100 to 1538 °C)
+///   bits 15..8   reserved (motion and disagreement classes)
+///   bits  7..4   distance class, bits 3..0 angle class (ConditionClass)
+struct ThermalVoxel {
+  static constexpr float kMinCelsius = -100.0F;
+  static constexpr float kStepKelvin = 0.025F;
+
+  std::uint32_t bits = 0;
+
+  static ThermalVoxel Make(float celsius, ConditionClass distance, ConditionClass angle);
+  bool measured() const { return (bits >> 16) != 0; }
+  /// °C; NaN = never measured.
+  float celsius() const {
+    const std::uint32_t code = bits >> 16;
+    return code == 0 ? NAN : kMinCelsius + kStepKelvin * static_cast<float>(code - 1);
+  }
+  ConditionClass distance_class() const { return static_cast<ConditionClass>((bits >> 4) & 0xFU); }
+  ConditionClass angle_class() const { return static_cast<ConditionClass>(bits & 0xFU); }
+};
+static_assert(sizeof(ThermalVoxel) == 4);
+
+/// Temperatures and their conditions, in a block parallel to each TSDF block (same index). Thread-compatible;
+/// different blocks may be written by different threads.
+class ThermalVolume {
+ public:
+  explicit ThermalVolume(std::int32_t max_blocks);
+
+  std::span<ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) {
+    return std::span<ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+  }
+  std::span<const ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) const {
+    return std::span<const ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+  }
+
+ private:
+  ThermalVoxel* base() const { return reinterpret_cast<ThermalVoxel*>(arena_.data()); }
+  GrowingArena arena_;
+};
+
+/// The thermal voxel that belongs to a surface point: of the voxel the point lies in, or, if that was never
+/// measured, of the nearest measured one among the 26 around it. Unmeasured if none.
+ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                            const Eigen::Vector3d& p_world);
+
+}  // namespace isotherm

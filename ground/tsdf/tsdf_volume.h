@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ground/tsdf/voxel_grid.h"
+
+namespace isotherm {
+
+/// One voxel in 32 bits: the upper 16 hold the truncated signed distance divided by the truncation distance
+/// (positive in front of the surface, signed, 32767 = 1), the lower 16 the weight in 1/64 observations.
+/// Weight 0 = never observed. Update rule: running weighted average (algorithm 2, line 10).
+struct TsdfVoxel {
+  static constexpr float kTsdfScale = 32767.0F;
+  static constexpr float kWeightScale = 64.0F;
+
+  std::uint32_t bits = 0;
+
+  float tsdf() const {
+    return static_cast<float>(static_cast<std::int32_t>(bits) >> 16) * (1.0F / kTsdfScale);
+  }
+  float weight() const { return static_cast<float>(bits & 0xFFFFU) * (1.0F / kWeightScale); }
+  bool observed() const { return (bits & 0xFFFFU) != 0; }
+  /// Averages `tsdf` in [-1, 1] with weight `observation_weight` into the voxel; the weight stops at `max_weight`.
+  void Update(float tsdf, float observation_weight, float max_weight);
+};
+static_assert(sizeof(TsdfVoxel) == 4);
+
+/// Anonymous memory that grows without moving: address space is reserved once, pages are taken as they are used.
+class GrowingArena {
+ public:
+  explicit GrowingArena(std::size_t reserve_bytes);
+  ~GrowingArena();
+  GrowingArena(const GrowingArena&) = delete;
+  GrowingArena& operator=(const GrowingArena&) = delete;
+  std::byte* data() const { return data_; }
+  std::size_t reserved_bytes() const { return bytes_; }
+
+ private:
+  std::byte* data_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+/// Truncated signed distances in sparse 8^3 blocks inside the scan volume. A direct table over the volume's
+/// blocks finds a block by its coordinates. Blocks never move, so `voxels` of a block stays valid.
+/// Thread-compatible; different blocks may be written by different threads.
+class TsdfVolume {
+ public:
+  static constexpr std::int32_t kNoBlock = -1;
+
+  /// `max_blocks` bounds memory; allocation beyond it fails and is counted.
+  TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std::int32_t max_blocks);
+
+  const VoxelGrid& grid() const { return grid_; }
+  double truncation_distance_m() const { return truncation_distance_m_; }
+
+  std::int32_t block_count() const { return static_cast<std::int32_t>(coordinates_.size()); }
+  std::int32_t max_blocks() const { return max_blocks_; }
+  std::uint64_t refused_blocks() const { return refused_blocks_; }
+  const GridIndex& block_coordinates(std::int32_t block) const { return coordinates_[block]; }
+  bool InGrid(const GridIndex& b) const {
+    return (b.array() >= 0).all() && (b.array() < grid_.blocks.array()).all();
+  }
+  /// kNoBlock outside the volume or where nothing was observed.
+  std::int32_t Find(const GridIndex& b) const { return InGrid(b) ? table_[TableIndex(b)] : kNoBlock; }
+  /// Finds or creates; kNoBlock if the block limit is reached. `b` must be in the grid.
+  std::int32_t FindOrAllocate(const GridIndex& b);
+
+  std::span<TsdfVoxel, kBlockVoxels> voxels(std::int32_t block) {
+    return std::span<TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+  }
+  std::span<const TsdfVoxel, kBlockVoxels> voxels(std::int32_t block) const {
+    return std::span<const TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+  }
+  /// The voxel at voxel coordinates; a never observed voxel where there is no block.
+  TsdfVoxel VoxelAt(const GridIndex& voxel) const;
+
+  /// For kernels: first voxel of block 0, and the block table (x fastest).
+  TsdfVoxel* base() const { return reinterpret_cast<TsdfVoxel*>(arena_.data()); }
+  std::span<const std::int32_t> table() const { return table_; }
+  std::size_t memory_bytes() const;
+
+ private:
+  std::size_t TableIndex(const GridIndex& b) const {
+    return static_cast<std::size_t>(b.x()) +
+           static_cast<std::size_t>(grid_.blocks.x()) *
+               (static_cast<std::size_t>(b.y()) +
+                static_cast<std::size_t>(grid_.blocks.y()) * static_cast<std::size_t>(b.z()));
+  }
+
+  const VoxelGrid grid_;
+  const double truncation_distance_m_;
+  const std::int32_t max_blocks_;
+  GrowingArena arena_;
+  std::vector<std::int32_t> table_;
+  std::vector<GridIndex> coordinates_;
+  std::uint64_t refused_blocks_ = 0;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "common/base/status.h"
+
+namespace isotherm {
+
+class VolumeOptions;
+
+/// Blocks have 8 x 8 x 8 voxels, x fastest: voxel (x, y, z) of a block is element x + 8 (y + 8 z).
+inline constexpr int kBlockSide = 8;
+inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
+
+/// Block coordinates, or voxel coordinates where said.
+using GridIndex = Eigen::Vector3i;
+
+/// Where the voxels of the scan volume are. Voxel (i, j, k) has its centre at
+/// min_m + (i + 0.5, j + 0.5, k + 0.5) * voxel_size_m in `world`.
+struct VoxelGrid {
+  Eigen::Vector3d min_m = Eigen::Vector3d::Zero();
+  double voxel_size_m = 0.0;
+  GridIndex blocks = GridIndex::Zero();  ///< Number of blocks along each axis.
+
+  double block_size_m() const { return voxel_size_m * kBlockSide; }
+  Eigen::Vector3d size_m() const { return blocks.cast<double>() * block_size_m(); }
+  Eigen::Vector3d max_m() const { return min_m + size_m(); }
+  std::int64_t block_count() const {
+    return std::int64_t{blocks.x()} * blocks.y() * blocks.z();
+  }
+  /// Continuous voxel coordinates of a point: voxel centres are at integers.
+  Eigen::Vector3d ToVoxel(const Eigen::Vector3d& p_world) const {
+    return (p_world - min_m) / voxel_size_m - Eigen::Vector3d::Constant(0.5);
+  }
+  Eigen::Vector3d VoxelCentre(const GridIndex& voxel) const {
+    return min_m + (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * voxel_size_m;
+  }
+};
+
+/// The grid that covers the volume in `options`, sizes rounded up to whole blocks. Refuses non-finite, empty or
+/// absurd volumes with the memory they would need and what would fit (overflow-safe).
+Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& options);
+
+}  // namespace isotherm
