@@ -42,4 +42,12 @@ struct VoxelGrid {
 /// absurd volumes with the memory they would need and what would fit (overflow-safe).
 Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& options);
 
+Status Validate(const VolumeOptions& options);
+
+/// Kernels address voxels with 31-bit indices.
+inline constexpr std::int32_t kMaxAddressableBlocks = 1 << 22;
+
+/// Blocks that fit into the options' memory limit beside the block table (TSDF and thermal voxels together).
+std::int32_t MaxBlocks(const VolumeOptions& options, const VoxelGrid& grid);
+
 }  // namespace isotherm
