@@ -1,0 +1,62 @@
+#!/bin/sh
+# Installs the Debian 12 packages that Isotherm is built from and tested with. Needs root or sudo only if
+# something is missing; run it as often as you like.
+#
+#   deploy/install-deps.sh            install what is missing
+#   deploy/install-deps.sh --list     print the packages, install nothing
+# Package lists are words on purpose:
+# shellcheck disable=SC2086
+set -eu
+
+# Compiler, build tools, and what the build reads.
+packages="build-essential cmake ninja-build ccache pkg-config git ca-certificates
+  cyclonedds-dev cyclonedds-tools
+  libeigen3-dev libhwy-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
+  libprotobuf-dev protobuf-compiler
+  libexpected-dev libfmt-dev libspdlog-dev libcli11-dev
+  libzstd-dev zlib1g-dev libsystemd-dev
+  libgtest-dev libgmock-dev libbenchmark-dev"
+
+# Node.js may come from elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).
+command -v node >/dev/null 2>&1 || packages="$packages nodejs"
+command -v npm >/dev/null 2>&1 || packages="$packages npm"
+
+case "${1-}" in
+  "") ;;
+  --list) for package in $packages; do echo "$package"; done; exit 0 ;;
+  *) echo "usage: deploy/install-deps.sh [--list]" >&2; exit 64 ;;
+esac
+
+if ! command -v apt-get >/dev/null 2>&1; then
+  echo "install-deps: this is not a Debian system (no apt-get). Install the equivalents of:" $packages >&2
+  exit 69
+fi
+
+missing=""
+for package in $packages; do
+  state=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$state" = installed ] || missing="$missing $package"
+done
+if [ -z "$missing" ]; then
+  echo "install-deps: all packages are installed"
+  exit 0
+fi
+
+sudo=""
+if [ "$(id -u)" -ne 0 ]; then
+  if ! command -v sudo >/dev/null 2>&1; then
+    echo "install-deps: missing:$missing" >&2
+    echo "install-deps: run it as root or install sudo" >&2
+    exit 69
+  fi
+  sudo="sudo"
+fi
+
+# Waits for another apt to finish instead of failing. Lists that cannot be refreshed (no network, a foreign
+# repository that is down) are no reason to stop: what is needed may be known already.
+apt="$sudo env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=500"
+echo "install-deps: installing$missing"
+$apt update || echo "install-deps: package lists could not be refreshed; going on with what is known"
+$apt install -y --no-install-recommends $missing
+echo "install-deps: done"

@@ -1,0 +1,220 @@
+#include "tests/lint/include_rules.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace isotherm::lint {
+namespace {
+
+using Folders = std::vector<std::string_view>;
+
+/// What each folder may include besides itself: folders, or single headers. `ground` and `edge`
+/// stand for the pipelines, mains and options.
+const std::map<std::string_view, Folders>& AllowedFolders() {
+  static const Folders kFrameParts = {"common/base", "common/time", "common/concurrency",
+                                      "common/geometry", "common/frame"};
+  static const auto with = [](Folders folders, const Folders& more) {
+    folders.insert(folders.end(), more.begin(), more.end());
+    return folders;
+  };
+  static const Folders kCommon =
+      with(kFrameParts, {"common/radiometry", "common/codec", "common/config", "common/recording",
+                         "common/simulation", "common/transport"});
+  static const std::map<std::string_view, Folders> kAllowed = {
+      {"common/base", {}},
+      {"common/time", {"common/base"}},
+      {"common/concurrency", {"common/base", "common/time"}},
+      {"common/geometry", {"common/base", "common/time", "common/concurrency"}},
+      {"common/radiometry", {"common/base", "common/geometry"}},
+      {"common/frame", kFrameParts},
+      {"common/codec", kFrameParts},
+      {"common/config", kFrameParts},
+      {"common/recording", with(kFrameParts, {"common/codec", "common/config"})},
+      {"common/simulation", with(kFrameParts, {"common/radiometry", "common/codec", "common/config",
+                                               "common/recording"})},
+      {"common/transport",
+       with(kFrameParts, {"common/codec", "common/config", "common/recording"})},
+      {"edge", with(kCommon, {"edge"})},
+      {"edge/source", with(kCommon, {"edge"})},
+      {"edge/timestamper", with(kCommon, {"edge"})},
+      {"edge/nuc", with(kCommon, {"edge"})},
+      {"edge/spool", with(kCommon, {"edge"})},
+      {"edge/publisher", with(kCommon, {"edge"})},
+      {"ground", with(kCommon, {"ground"})},
+      {"ground/subscriber", with(kCommon, {"ground"})},
+      {"ground/assembler", with(kCommon, {"ground"})},
+      // The tracker's maps are what the ray cast of the model returns; the volume bounds what it
+      // looks at.
+      {"ground/tracker", with(kCommon, {"ground", "ground/tsdf/voxel_grid.h"})},
+      {"ground/tsdf", with(kCommon, {"ground", "ground/tracker"})},
+      {"ground/thermal",
+       with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/assembler"})},
+      {"ground/renderer",
+       with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal"})},
+      {"ground/export", with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal",
+                                       "ground/renderer"})},
+      {"ground/feedback", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
+                                         "ground/thermal", "ground/renderer"})},
+  };
+  return kAllowed;
+}
+
+/// Files directly in these folders put the stages of their side together, so they may include all
+/// of it.
+bool JoinsStages(std::string_view folder) {
+  return folder == "edge" || folder == "ground" || folder == "ground/cli";
+}
+
+/// SDK header prefixes, each at home in one folder, in .cc files only.
+const std::map<std::string_view, std::string_view>& SdkHomes() {
+  static const std::map<std::string_view, std::string_view> kHomes = {
+      {"dds/", "common/transport"},
+      {"ddsi/", "common/transport"},
+      {"isotherm_idl.h", "common/transport"},
+      {"OpenNI", "edge/source"},
+      {"libusb", "edge/source"},
+      {"boost/beast", "ground/console"},
+      {"boost/asio", "ground/console"},
+      {"spdlog/", "common/base"},
+      {"systemd/", "common/base"},
+  };
+  return kHomes;
+}
+
+/// Heavy headers that would slow down everybody who includes one of ours.
+constexpr std::string_view kSourceOnly[] = {
+    "opencv2/", "google/protobuf/", "fmt/", "zstd.h", "zlib.h", "hwy/", "CLI/", "boost/"};
+
+/// Headers with no place in this code, and what to take instead.
+struct ForbiddenHeader {
+  std::string_view header;
+  std::string_view reason;
+};
+constexpr ForbiddenHeader kForbidden[] = {
+    {"bits/", "include the standard header"},
+    {"regex", "slow to compile and to run; parse by hand"},
+    {"codecvt", "deprecated"},
+    {"strstream", "deprecated"},
+    {"math.h", "include <cmath>"},
+    {"stdint.h", "include <cstdint>"},
+    {"stdio.h", "include <cstdio>"},
+    {"stdlib.h", "include <cstdlib>"},
+    {"string.h", "include <cstring>"},
+    {"assert.h", "use CHECK of common/base/check.h"},
+    {"cassert", "use CHECK of common/base/check.h"},
+};
+
+struct Include {
+  std::string header;
+  bool quoted = false;
+};
+
+std::optional<Include> ParseInclude(std::string_view line) {
+  const auto skip_blanks = [&line] {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  };
+  skip_blanks();
+  if (!line.starts_with("#")) return std::nullopt;
+  line.remove_prefix(1);
+  skip_blanks();
+  if (!line.starts_with("include")) return std::nullopt;
+  line.remove_prefix(std::string_view("include").size());
+  skip_blanks();
+  if (line.empty() || (line.front() != '"' && line.front() != '<')) return std::nullopt;
+  const bool quoted = line.front() == '"';
+  const std::size_t end = line.find(quoted ? '"' : '>', 1);
+  if (end == std::string_view::npos) return std::nullopt;
+  return Include{std::string(line.substr(1, end - 1)), quoted};
+}
+
+bool Contains(const Folders& folders, std::string_view folder) {
+  return std::find(folders.begin(), folders.end(), folder) != folders.end();
+}
+
+std::string_view TopFolder(std::string_view path) { return path.substr(0, path.find('/')); }
+
+/// Why `file` must not include our header `header`; empty if it may.
+std::string CheckOwn(const SourceFile& file, std::string_view header) {
+  if (header.starts_with(".")) return "include it by its path from the root";
+  const std::size_t slash = header.rfind('/');
+  if (slash == std::string_view::npos) return "include it by its path from the root";
+  const std::string folder = file.folder();
+  const std::string_view target = header.substr(0, slash);
+  const std::string_view from = TopFolder(folder);
+  const std::string_view to = TopFolder(target);
+  if (from == "tests") return {};
+  if (from == "edge" && to == "ground") return "edge must not include ground";
+  if (from == "ground" && to == "edge") return "ground must not include edge";
+  if (from == "common" && to != "common") return "common must not include " + std::string(to);
+  if (file.IsTest()) return {};
+  if (to == "tests" || target == "common/testing") return "test helpers are for tests only";
+  if (folder == target || (JoinsStages(folder) && to == from)) return {};
+  const auto rule = AllowedFolders().find(JoinsStages(folder) ? from : std::string_view(folder));
+  if (rule == AllowedFolders().end()) {
+    return "folder " + folder + " has no rule yet: add it to tests/lint/include_rules.cc";
+  }
+  if (Contains(rule->second, target) || Contains(rule->second, header)) return {};
+  return folder + " must not include " + std::string(target);
+}
+
+/// Why `file` must not include a library's header; empty if it may.
+std::string CheckLibrary(const SourceFile& file, std::string_view header) {
+  for (const ForbiddenHeader& forbidden : kForbidden) {
+    const bool is_folder = forbidden.header.ends_with('/');
+    if (is_folder ? header.starts_with(forbidden.header) : header == forbidden.header) {
+      return "<" + std::string(header) + "> is not used here: " + std::string(forbidden.reason);
+    }
+  }
+  for (const auto& [prefix, home] : SdkHomes()) {
+    if (!header.starts_with(prefix)) continue;
+    if (file.folder() != home)
+      return std::string(header) + " belongs to " + std::string(home) + " only";
+    if (!file.IsSource()) return std::string(header) + " may be included by .cc files only";
+  }
+  if (file.IsHeader() && !file.IsTest()) {
+    for (const std::string_view prefix : kSourceOnly) {
+      if (header.starts_with(prefix))
+        return std::string(header) + " may be included by .cc files only";
+    }
+    // Stages keep their options message; every other generated message stays in sources.
+    if (header.ends_with(".pb.h") && !header.ends_with("_options.pb.h")) {
+      return "generated messages may be included by .cc files only";
+    }
+  }
+  return {};
+}
+
+bool IsOurs(const Include& include) {
+  if (!include.quoted) return false;
+  const std::string_view top = TopFolder(include.header);
+  const bool has_folder = include.header.find('/') != std::string::npos;
+  return !has_folder || top == "common" || top == "edge" || top == "ground" || top == "tests" ||
+         include.header.starts_with(".");
+}
+
+}  // namespace
+
+std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files) {
+  std::vector<Violation> violations;
+  for (const SourceFile& file : files) {
+    if (!file.IsCode()) continue;
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      const std::optional<Include> include = ParseInclude(file.lines[i]);
+      if (!include) continue;
+      std::string message = CheckLibrary(file, include->header);
+      const bool sdk = std::any_of(SdkHomes().begin(), SdkHomes().end(), [&](const auto& home) {
+        return include->header.starts_with(home.first);
+      });
+      if (message.empty() && !sdk && IsOurs(*include)) message = CheckOwn(file, include->header);
+      if (!message.empty()) {
+        violations.push_back({file.path, static_cast<int>(i + 1), std::move(message)});
+      }
+    }
+  }
+  return violations;
+}
+
+}  // namespace isotherm::lint

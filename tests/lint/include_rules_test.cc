@@ -1,0 +1,96 @@
+#include "tests/lint/include_rules.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace isotherm::lint {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+std::vector<std::string> MessagesFor(const std::string& path, const std::string& line) {
+  std::vector<std::string> messages;
+  for (const Violation& violation : CheckIncludes({{path, {"// A comment.", line}}})) {
+    EXPECT_EQ(violation.path, path);
+    EXPECT_EQ(violation.line, 2);
+    messages.push_back(violation.message);
+  }
+  return messages;
+}
+
+TEST(IncludeRulesTest, TheRepositoryKeepsTheDependencyRule) {
+  const std::vector<SourceFile> files = ReadSourceTree(ISOTHERM_SOURCE_DIR);
+  ASSERT_GT(files.size(), 50U) << "nothing to check in " ISOTHERM_SOURCE_DIR;
+  const std::vector<Violation> violations = CheckIncludes(files);
+  EXPECT_TRUE(violations.empty()) << ToString(violations);
+}
+
+TEST(IncludeRulesTest, EdgeAndGroundNeverIncludeEachOther) {
+  EXPECT_THAT(MessagesFor("edge/nuc/nuc_supervisor.cc", "#include \"ground/tsdf/tsdf_volume.h\""),
+              ElementsAre(HasSubstr("edge must not include ground")));
+  EXPECT_THAT(MessagesFor("ground/ground_main.cc", "#  include \"edge/source/frame_source.h\""),
+              ElementsAre(HasSubstr("ground must not include edge")));
+  EXPECT_THAT(MessagesFor("edge/edge_pipeline_test.cc", "#include \"ground/cli/tool.h\""),
+              ElementsAre(HasSubstr("edge must not include ground")));
+}
+
+TEST(IncludeRulesTest, LowerFoldersDoNotKnowHigherOnes) {
+  EXPECT_THAT(MessagesFor("common/base/status.h", "#include \"common/time/clock.h\""),
+              ElementsAre(HasSubstr("common/base must not include common/time")));
+  EXPECT_THAT(MessagesFor("common/frame/frame.h", "#include \"common/codec/codec.h\""),
+              ElementsAre(HasSubstr("common/frame must not include common/codec")));
+  EXPECT_THAT(MessagesFor("common/recording/recording.h", "#include \"edge/spool/spool.h\""),
+              ElementsAre(HasSubstr("common must not include edge")));
+  EXPECT_THAT(MessagesFor("common/codec/codec.cc", "#include \"common/frame/frame.h\""), IsEmpty());
+}
+
+TEST(IncludeRulesTest, StagesDoNotIncludeTheirSiblings) {
+  EXPECT_THAT(MessagesFor("ground/tracker/icp.cc", "#include \"ground/renderer/palette.h\""),
+              ElementsAre(HasSubstr("ground/tracker must not include ground/renderer")));
+  EXPECT_THAT(MessagesFor("ground/thermal/fuser.h", "#include \"ground/tsdf/tsdf_volume.h\""),
+              IsEmpty());
+  EXPECT_THAT(MessagesFor("ground/ground_pipeline.cc", "#include \"ground/renderer/palette.h\""),
+              IsEmpty());
+}
+
+TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
+  EXPECT_THAT(MessagesFor("edge/publisher/publisher.cc", "#include <dds/dds.h>"),
+              ElementsAre(HasSubstr("belongs to common/transport only")));
+  EXPECT_THAT(MessagesFor("common/transport/participant.h", "#include \"dds/dds.h\""),
+              ElementsAre(HasSubstr(".cc files only")));
+  EXPECT_THAT(MessagesFor("ground/subscriber/subscriber.cc", "#include <libusb-1.0/libusb.h>"),
+              ElementsAre(HasSubstr("belongs to edge/source only")));
+  EXPECT_THAT(MessagesFor("common/transport/participant.cc", "#include \"dds/dds.h\""), IsEmpty());
+}
+
+TEST(IncludeRulesTest, HeavyHeadersStayOutOfOurHeaders) {
+  EXPECT_THAT(MessagesFor("ground/renderer/renderer.h", "#include <opencv2/core.hpp>"),
+              ElementsAre(HasSubstr(".cc files only")));
+  EXPECT_THAT(
+      MessagesFor("common/config/text_proto.h", "#include \"common/config/rig_calibration.pb.h\""),
+      ElementsAre(HasSubstr(".cc files only")));
+  EXPECT_THAT(MessagesFor("ground/renderer/renderer.cc", "#include <opencv2/core.hpp>"), IsEmpty());
+}
+
+TEST(IncludeRulesTest, TestHelpersStayOutOfPrograms) {
+  EXPECT_THAT(MessagesFor("ground/tsdf/integrator.cc", "#include \"common/testing/scene.h\""),
+              ElementsAre(HasSubstr("test helpers are for tests only")));
+  EXPECT_THAT(MessagesFor("ground/tsdf/integrator_test.cc", "#include \"common/testing/scene.h\""),
+              IsEmpty());
+}
+
+TEST(IncludeRulesTest, OddWaysToIncludeAreRefused) {
+  EXPECT_THAT(MessagesFor("ground/tsdf/a.cc", "#include \"../tracker/icp.h\""),
+              ElementsAre(HasSubstr("path from the root")));
+  EXPECT_THAT(MessagesFor("ground/tsdf/a.cc", "#include \"voxel_grid.h\""),
+              ElementsAre(HasSubstr("path from the root")));
+  EXPECT_THAT(MessagesFor("ground/tsdf/a.cc", "#include <bits/stdc++.h>"),
+              ElementsAre(HasSubstr("is not used here")));
+  EXPECT_THAT(MessagesFor("common/nowhere/a.cc", "#include \"common/base/status.h\""),
+              ElementsAre(HasSubstr("has no rule yet")));
+}
+
+}  // namespace
+}  // namespace isotherm::lint
