@@ -13,8 +13,8 @@ class Message;
 
 namespace isotherm {
 
-/// Reads protobuf text format strictly: an unknown field, a wrong type or a missing required field is an error
-/// that names file, line and column; all of them are listed, not only the first.
+/// Reads protobuf text format strictly: an unknown field, a wrong type or a missing required field
+/// is an error that names file, line and column; all of them are listed, not only the first.
 Status ParseTextProto(const std::string& text, std::string_view source_name,
                       google::protobuf::Message& message);
 Status LoadTextProto(const std::filesystem::path& path, google::protobuf::Message& message);
@@ -22,8 +22,8 @@ Status LoadTextProto(const std::filesystem::path& path, google::protobuf::Messag
 /// Text format of `message`, defaults included, as it goes into logs and recordings.
 std::string ToTextProto(const google::protobuf::Message& message);
 
-/// Applies `stage.field=value` (any depth: `a.b.c=value`). Repeated fields are not supported. Names the stage or
-/// field that does not exist and lists those that do.
+/// Applies `stage.field=value` (any depth: `a.b.c=value`). Repeated fields are not supported. Names
+/// the stage or field that does not exist and lists those that do.
 Status ApplyOverride(std::string_view assignment, google::protobuf::Message& message);
 
 /// rig.textproto, checked (Validate) and converted. Messages name the file and the field.

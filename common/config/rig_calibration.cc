@@ -1,0 +1,140 @@
+#include "common/config/rig_calibration.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/config/rig_calibration.pb.h"
+#include "common/config/text_proto.h"
+
+namespace isotherm {
+namespace {
+
+// Quaternions with fewer digits than a double are fine, anything else is a typing error.
+constexpr double kQuaternionNormTolerance = 1e-3;
+
+Status CheckQuaternion(const Transform& t) {
+  const double norm =
+      std::sqrt(t.qx() * t.qx() + t.qy() * t.qy() + t.qz() * t.qz() + t.qw() * t.qw());
+  if (std::abs(norm - 1.0) <= kQuaternionNormTolerance) return OkStatus();
+  return InvalidArgument(fmt::format(
+      "T_thermal_depth: qx qy qz qw must be a unit quaternion, but its length is {:.6g}", norm));
+}
+
+}  // namespace
+
+CameraModel FromProto(const CameraIntrinsics& intrinsics) {
+  CameraModel camera;
+  camera.width = intrinsics.width();
+  camera.height = intrinsics.height();
+  camera.fx = intrinsics.fx();
+  camera.fy = intrinsics.fy();
+  camera.cx = intrinsics.cx();
+  camera.cy = intrinsics.cy();
+  camera.k1 = intrinsics.k1();
+  camera.k2 = intrinsics.k2();
+  camera.p1 = intrinsics.p1();
+  camera.p2 = intrinsics.p2();
+  camera.k3 = intrinsics.k3();
+  return camera;
+}
+
+CameraIntrinsics ToProto(const CameraModel& camera) {
+  CameraIntrinsics intrinsics;
+  intrinsics.set_width(camera.width);
+  intrinsics.set_height(camera.height);
+  intrinsics.set_fx(camera.fx);
+  intrinsics.set_fy(camera.fy);
+  intrinsics.set_cx(camera.cx);
+  intrinsics.set_cy(camera.cy);
+  if (camera.HasDistortion()) {
+    intrinsics.set_k1(camera.k1);
+    intrinsics.set_k2(camera.k2);
+    intrinsics.set_p1(camera.p1);
+    intrinsics.set_p2(camera.p2);
+    intrinsics.set_k3(camera.k3);
+  }
+  return intrinsics;
+}
+
+RigidTransform FromProto(const Transform& t) {
+  return MakeTransform({t.tx(), t.ty(), t.tz()},
+                       Eigen::Quaterniond(t.qw(), t.qx(), t.qy(), t.qz()));
+}
+
+Transform ToProto(const RigidTransform& transform) {
+  const Eigen::Quaterniond q(Eigen::Matrix3d(transform.linear()));
+  Transform t;
+  t.set_tx(transform.translation().x());
+  t.set_ty(transform.translation().y());
+  t.set_tz(transform.translation().z());
+  t.set_qx(q.x());
+  t.set_qy(q.y());
+  t.set_qz(q.z());
+  t.set_qw(q.w());
+  return t;
+}
+
+Rig FromProto(const RigCalibration& calibration) {
+  Rig rig;
+  if (calibration.has_depth()) rig.depth = FromProto(calibration.depth());
+  if (calibration.has_thermal()) rig.thermal = FromProto(calibration.thermal());
+  rig.depth_scale = calibration.depth_scale();
+  if (calibration.has_t_thermal_depth())
+    rig.T_thermal_depth = FromProto(calibration.t_thermal_depth());
+  rig.thermal_delay_s = calibration.thermal_delay_s();
+  rig.serial = calibration.serial();
+  rig.date = calibration.date();
+  rig.method = calibration.method();
+  if (calibration.has_reprojection_error_px()) {
+    rig.reprojection_error_px = calibration.reprojection_error_px();
+  }
+  return rig;
+}
+
+RigCalibration ToProto(const Rig& rig) {
+  RigCalibration calibration;
+  if (rig.depth) *calibration.mutable_depth() = ToProto(*rig.depth);
+  if (rig.thermal) *calibration.mutable_thermal() = ToProto(*rig.thermal);
+  calibration.set_depth_scale(rig.depth_scale);
+  if (rig.T_thermal_depth) *calibration.mutable_t_thermal_depth() = ToProto(*rig.T_thermal_depth);
+  calibration.set_thermal_delay_s(rig.thermal_delay_s);
+  if (!rig.serial.empty()) calibration.set_serial(rig.serial);
+  if (!rig.date.empty()) calibration.set_date(rig.date);
+  if (!rig.method.empty()) calibration.set_method(rig.method);
+  if (rig.reprojection_error_px) calibration.set_reprojection_error_px(*rig.reprojection_error_px);
+  return calibration;
+}
+
+namespace {
+
+Result<Rig> CheckedRig(const RigCalibration& calibration, std::string_view source_name) {
+  if (calibration.has_t_thermal_depth()) {
+    if (Status status = CheckQuaternion(calibration.t_thermal_depth()); !status.ok()) {
+      return Err(status.WithContext(source_name));
+    }
+  }
+  Rig rig = FromProto(calibration);
+  if (Status status = Validate(rig); !status.ok()) return Err(status.WithContext(source_name));
+  return rig;
+}
+
+}  // namespace
+
+Result<Rig> LoadRigCalibration(const std::filesystem::path& path) {
+  RigCalibration calibration;
+  if (Status status = LoadTextProto(path, calibration); !status.ok()) return Err(std::move(status));
+  return CheckedRig(calibration, path.string());
+}
+
+Result<Rig> ParseRigCalibration(const std::string& text, std::string_view source_name) {
+  RigCalibration calibration;
+  if (Status status = ParseTextProto(text, source_name, calibration); !status.ok()) {
+    return Err(std::move(status));
+  }
+  return CheckedRig(calibration, source_name);
+}
+
+std::string ToText(const Rig& rig) { return ToTextProto(ToProto(rig)); }
+
+}  // namespace isotherm

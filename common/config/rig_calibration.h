@@ -1,0 +1,21 @@
+#pragma once
+
+#include "common/geometry/camera.h"
+
+namespace isotherm {
+
+class CameraIntrinsics;
+class RigCalibration;
+class Transform;
+
+/// Conversions between the calibration message and the types that the stages use. No checks:
+/// Validate(Rig) says whether the result makes sense; a quaternion of any length but zero is
+/// normalised.
+CameraModel FromProto(const CameraIntrinsics& intrinsics);
+CameraIntrinsics ToProto(const CameraModel& camera);
+RigidTransform FromProto(const Transform& transform);
+Transform ToProto(const RigidTransform& transform);
+Rig FromProto(const RigCalibration& calibration);
+RigCalibration ToProto(const Rig& rig);
+
+}  // namespace isotherm
