@@ -1,0 +1,71 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "common/base/status.h"
+#include "common/frame/frame.h"
+#include "common/transport/messages.h"
+#include "common/transport/participant.h"
+#include "common/transport/refusal.h"
+
+/// Typed ends of the topics of the link. Message is one of EncodedDepthFrame, EncodedThermalFrame,
+/// RigDescription, EdgeStatus, Command, CommandResult, Receipt, Feedback, Hello; the topic and its
+/// QoS follow from it (qos.cc).
+namespace isotherm {
+
+/// Writes one topic. Thread-safe.
+template <typename Message>
+class Writer {
+ public:
+  /// `participant` must outlive the writer.
+  static Result<Writer> Create(const Participant& participant);
+
+  /// Hands `message` of the rig `edge_id` to the middleware: a copy, and at most the topic's
+  /// blocking time (see qos.cc). kUnavailable if the middleware's buffer stayed full;
+  /// kInvalidArgument if the message is too large.
+  Status Write(std::string_view edge_id, const Message& message);
+  /// Readers of this topic that are there now.
+  int matched_readers() const;
+  /// Waits until all readers have acknowledged everything written. False after `timeout`.
+  bool WaitForAcknowledgments(Nanoseconds timeout) const;
+
+ private:
+  explicit Writer(DdsHandle handle) : handle_(std::move(handle)) {}
+  DdsHandle handle_;
+};
+
+template <typename Message>
+struct Received {
+  std::string edge_id;
+  Message message;
+};
+
+/// Reads one topic. What cannot be right is refused before anything is allocated for it, and
+/// counted. Thread-bound to the thread that takes, except matched_writers().
+template <typename Message>
+class Reader {
+ public:
+  /// `participant` and `refusals` must outlive the reader.
+  static Result<Reader> Create(const Participant& participant, RefusalCounter* refusals);
+  Reader(Reader&&) noexcept;
+  Reader& operator=(Reader&&) noexcept;
+  ~Reader();
+
+  /// Calls `handle` for each sample that has arrived, in the writer's order, at most `max_samples`
+  /// of them, and returns how many samples were taken (refused ones included).
+  int Take(const std::function<void(Received<Message>&&)>& handle, int max_samples = 64);
+  /// Living writers of this topic.
+  int matched_writers() const;
+  /// For WaitSet.
+  std::int32_t read_condition() const;
+
+ private:
+  struct Impl;
+  explicit Reader(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,212 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/time/time_types.h"
+
+/// What crosses the link besides frames, in the program's own types. idl/ says how it is packed,
+/// qos.cc how it is carried. Sender and receiver of each message are in docs and in Publisher and
+/// Subscriber. Bounds that the link enforces are named constants here: writers cut strings and
+/// lists that are longer, and count nothing silently.
+namespace isotherm {
+
+/// Version of the wire types. Minor: members were added, both sides still understand each other.
+/// Major: they do not, and say so (CheckCompatible()).
+inline constexpr std::uint16_t kWireMajor = 1;
+inline constexpr std::uint16_t kWireMinor = 0;
+
+inline constexpr std::size_t kMaxIdBytes = 32;     ///< edge_id, serial numbers, names of stages.
+inline constexpr std::size_t kMaxTextBytes = 256;  ///< Sentences.
+inline constexpr std::size_t kMaxPayloadBytes = 8U << 20;  ///< Of one encoded frame.
+inline constexpr std::size_t kMaxFramePixels = 1U << 22;   ///< Of one frame: 2048 x 2048.
+inline constexpr std::size_t kMaxHoles = 64;               ///< Ranges in one receipt.
+inline constexpr std::size_t kMaxDropReasons = 16;
+inline constexpr std::size_t kMaxAdvice = 8;
+inline constexpr std::size_t kMaxStageLatencies = 16;
+inline constexpr std::size_t kMaxPictureBytes = 20'000;  ///< Confidence picture.
+
+enum class Role : std::uint8_t { kEdge = 0, kGround = 1 };
+
+/// Who a process is and what it speaks. Its own wire type is frozen. Written once at start, kept
+/// for late joiners.
+struct Hello {
+  Role role = Role::kEdge;
+  std::uint16_t wire_major = kWireMajor;
+  std::uint16_t wire_minor = kWireMinor;
+  std::string software_version;
+  std::string host;
+};
+
+/// One sentence that says which side is old, or ok.
+Status CheckCompatible(const Hello& own, const Hello& peer);
+
+/// What one camera of the rig delivers.
+struct StreamMode {
+  int width = 0;  ///< Pixels; 0 = the rig has no such camera.
+  int height = 0;
+  double rate_hz = 0.0;  ///< Nominal.
+  Encoding encoding = Encoding::kRaw16;
+  std::string serial;  ///< Of the camera; empty = unknown.
+};
+
+/// Calibration and active modes. Written at the start of each scan, kept for late joiners.
+struct RigDescription {
+  std::uint64_t session = 0;
+  Rig rig;
+  StreamMode depth;
+  StreamMode thermal;
+};
+
+enum class ScanState : std::uint8_t {
+  kIdle = 0,      ///< No session yet.
+  kScanning = 1,  ///< Frames are being published.
+  kEnded = 2,     ///< The counts in the status are final: the ground can close its account.
+};
+
+/// What happens when the link or the ground is slower than the cameras.
+enum class PublishPolicy : std::uint8_t {
+  kLive = 0,      ///< Never wait: latency is bounded and what is left behind is counted.
+  kLossless = 1,  ///< Wait for receipts, so that every frame arrives.
+};
+
+enum class NucPolicy : std::uint8_t {
+  kAutomatic = 0,  ///< By drift and interval.
+  kManual = 1,     ///< Only by command.
+};
+
+struct DropCount {
+  std::string reason;
+  std::uint64_t frames = 0;
+};
+
+/// Account of one stream on the edge: captured = published + dropped (all reasons) + in the queues.
+struct StreamStatus {
+  std::uint64_t captured = 0;
+  std::uint64_t published = 0;
+  std::uint64_t next_frame_number =
+      0;                 ///< One above the highest published; at the end, no higher one will come.
+  double rate_hz = 0.0;  ///< Measured over the last seconds.
+  std::uint32_t queue_frames = 0;  ///< Waiting to be published.
+  std::vector<DropCount> dropped;  ///< At most kMaxDropReasons.
+};
+
+/// State of the edge at 1 Hz and at each change of scan_state; the last one is kept for late
+/// joiners. NaN = not known.
+struct EdgeStatus {
+  std::uint64_t session = 0;
+  CaptureTime time{};
+  ScanState scan_state = ScanState::kIdle;
+  PublishPolicy publish_policy = PublishPolicy::kLive;
+  StreamStatus depth;
+  StreamStatus thermal;
+  NucState nuc_state = NucState::kUnknown;
+  double spool_fill_ratio = std::numeric_limits<double>::quiet_NaN();  ///< 0..1.
+  std::uint64_t spool_frames = 0;  ///< Recorded but not yet published.
+  double clock_offset_s = std::numeric_limits<double>::quiet_NaN();  ///< Local minus reference.
+  double clock_error_s =
+      std::numeric_limits<double>::quiet_NaN();  ///< Bound of the offset's error.
+  std::uint64_t disk_free_bytes = 0;
+  double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
+};
+
+enum class CommandKind : std::uint8_t {
+  kStartScan = 0,
+  kStopScan = 1,
+  kTriggerNuc = 2,
+  kSetNucPolicy = 3,
+  kSetPublishPolicy = 4,
+};
+
+/// An order from the ground. Every command is answered by a CommandResult with the same number.
+struct Command {
+  std::uint64_t number = 0;  ///< Chosen by the sender, unique within its run.
+  CaptureTime time{};        ///< When it was given, ground wall clock.
+  CommandKind kind = CommandKind::kStartScan;
+  NucPolicy nuc_policy = NucPolicy::kAutomatic;         ///< For kSetNucPolicy.
+  PublishPolicy publish_policy = PublishPolicy::kLive;  ///< For kSetPublishPolicy.
+};
+
+enum class CommandOutcome : std::uint8_t { kDone = 0, kRefused = 1, kFailed = 2 };
+
+struct CommandResult {
+  std::uint64_t number = 0;
+  CommandOutcome outcome = CommandOutcome::kDone;
+  std::string text;  ///< Why it was refused or failed.
+};
+
+/// Frame numbers first..last, both included.
+struct FrameRange {
+  std::uint64_t first = 0;
+  std::uint64_t last = 0;
+  friend bool operator==(const FrameRange&, const FrameRange&) = default;
+};
+
+/// What the ground has of one stream. received + missing = next (with `missing` the sum of all
+/// holes).
+struct StreamReceipt {
+  std::uint64_t next = 0;  ///< One above the highest number received.
+  std::uint64_t handled =
+      0;  ///< All numbers below are delivered or given up by the reorder window.
+  std::uint64_t received = 0;     ///< Distinct frames.
+  std::vector<FrameRange> holes;  ///< Newest kMaxHoles ranges that are missing, ascending.
+};
+
+struct Receipt {
+  std::uint64_t session = 0;
+  StreamReceipt depth;
+  StreamReceipt thermal;
+};
+
+enum class TrackingState : std::uint8_t { kWaiting = 0, kTracked = 1, kDegraded = 2, kLost = 3 };
+
+enum class Advice : std::uint8_t {
+  kMoveCloser = 0,
+  kMoveFarther = 1,
+  kLessOblique = 2,
+  kMoreOblique = 3,  ///< The operator is reflected.
+  kSlower = 4,
+  kHoldForNuc = 5,
+  kGoBackToRelocalise = 6,
+  kDone = 7,
+};
+
+/// Parts of a surface by the best conditions under which it was measured; they add up to 1. NaN =
+/// no surface yet.
+struct CoverageShares {
+  float good = std::numeric_limits<float>::quiet_NaN();
+  float acceptable = std::numeric_limits<float>::quiet_NaN();
+  float bad = std::numeric_limits<float>::quiet_NaN();
+  float never_measured = std::numeric_limits<float>::quiet_NaN();
+};
+
+struct StageLatency {
+  std::string stage;
+  float p50_s = 0.0F;
+  float p99_s = 0.0F;
+};
+
+/// What the ground thinks of the scan, for the operator or the vehicle. Only the newest counts.
+struct Feedback {
+  std::uint64_t session = 0;
+  std::uint64_t frame_number = 0;  ///< Depth frame this is about, ...
+  CaptureTime capture_time{};  ///< ... and its capture time: the age of the feedback on the edge.
+  TrackingState tracking_state = TrackingState::kWaiting;
+  std::optional<RigidTransform> T_world_depth;       ///< Absent while lost.
+  double covered_area_m2 = 0.0;                      ///< Surface in the model.
+  CoverageShares model;                              ///< Of the whole surface.
+  CoverageShares view;                               ///< Of the surface in view.
+  std::vector<Advice> advice;                        ///< Most urgent first; at most kMaxAdvice.
+  std::optional<RigidTransform> T_world_depth_next;  ///< Where to go next.
+  std::vector<std::uint8_t>
+      picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
+  std::vector<StageLatency> latencies;  ///< Optional; at most kMaxStageLatencies.
+};
+
+}  // namespace isotherm

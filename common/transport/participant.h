@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "common/base/status.h"
+#include "common/transport/transport_environment.h"
+
+namespace isotherm {
+
+/// Handle of a DDS entity, deleted at the end of its life. Move-only. Thread-compatible.
+class DdsHandle {
+ public:
+  DdsHandle() = default;
+  explicit DdsHandle(std::int32_t value) : value_(value) {}
+  DdsHandle(DdsHandle&& other) noexcept;
+  DdsHandle& operator=(DdsHandle&& other) noexcept;
+  ~DdsHandle();
+  std::int32_t value() const { return value_; }
+
+ private:
+  std::int32_t value_ = 0;
+};
+
+/// Largest domain whose ports fit below 65536.
+inline constexpr int kMaxDomainId = 230;
+
+/// Membership in one DDS domain. Its destruction tells the peers at once that this side has left.
+/// Thread-safe.
+class Participant {
+ public:
+  /// kInvalidArgument for a domain outside 0..kMaxDomainId; kUnavailable if the middleware cannot
+  /// start, e.g. because of a wrong profile in CYCLONEDDS_URI (the middleware's reason is in the
+  /// log).
+  static Result<std::unique_ptr<Participant>> Create(const TransportEnvironment& environment,
+                                                     int domain_id);
+  std::int32_t handle() const { return handle_.value(); }
+
+ private:
+  explicit Participant(DdsHandle handle) : handle_(std::move(handle)) {}
+  DdsHandle handle_;
+};
+
+}  // namespace isotherm

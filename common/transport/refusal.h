@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <string_view>
+
+namespace isotherm {
+
+/// Why a sample from the link is not used.
+enum class RefusalCause : std::uint8_t {
+  kOversizePayload,  ///< More bytes than such an image can need.
+  kEmptyPayload,
+  kImpossibleSize,  ///< Width or height zero or absurd.
+  kUnknownEncoding,
+  kUnknownValue,  ///< An enumeration holds a value that this version does not know.
+  kNotFinite,     ///< NaN or infinity where a number is needed.
+  kOutOfRange,    ///< A number that cannot be (below absolute zero, a depth scale of 0, ...).
+  kNegativeTime,
+  kImpossibleNumber,  ///< Frame number that cannot be next in its session.
+  kOtherSession,      ///< Of a session that is over.
+  kUndecodable,       ///< The payload does not decode.
+  kOtherVersion,      ///< The peer speaks another major version.
+  kCount
+};
+
+/// One or two words, e.g. "oversize payload".
+std::string_view ToString(RefusalCause cause);
+
+/// Counts what was refused, per cause, and logs the first of each cause. Thread-safe.
+class RefusalCounter {
+ public:
+  /// `detail` says which sample: it goes into the log line.
+  void Add(RefusalCause cause, std::string_view detail);
+  std::uint64_t count(RefusalCause cause) const;
+  std::uint64_t total() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::array<std::uint64_t, static_cast<std::size_t>(RefusalCause::kCount)> counts_{};
+};
+
+}  // namespace isotherm

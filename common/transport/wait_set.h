@@ -1,0 +1,36 @@
+#pragma once
+
+#include <memory>
+
+#include "common/base/status.h"
+#include "common/transport/endpoints.h"
+
+namespace isotherm {
+
+/// Lets one thread sleep until any of several readers has data or somebody wakes it. Wait is
+/// thread-bound, Wake is thread-safe.
+class WaitSet {
+ public:
+  /// `participant` must outlive the wait set.
+  static Result<WaitSet> Create(const Participant& participant);
+
+  /// `reader` must outlive the wait set.
+  template <typename Message>
+  Status Attach(const Reader<Message>& reader) {
+    return AttachCondition(reader.read_condition());
+  }
+  /// Returns when a reader has data, when woken, or after `timeout`, whichever is first.
+  void Wait(Nanoseconds timeout);
+  /// Ends the current Wait, or the next one if none is running.
+  void Wake();
+
+ private:
+  WaitSet(DdsHandle wait_set, DdsHandle guard)
+      : guard_(std::move(guard)), wait_set_(std::move(wait_set)) {}
+  Status AttachCondition(std::int32_t condition);
+
+  DdsHandle guard_;
+  DdsHandle wait_set_;
+};
+
+}  // namespace isotherm

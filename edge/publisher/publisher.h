@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "common/base/status.h"
+#include "common/concurrency/latest_value.h"
+#include "common/frame/frame.h"
+#include "common/time/clock.h"
+#include "common/transport/messages.h"
+#include "common/transport/participant.h"
+
+namespace isotherm {
+
+struct PublisherOptions {
+  std::string edge_id = "edge";  ///< Key of everything this rig writes; 1..32 bytes.
+  std::string software_version;  ///< Goes into the hello.
+  PublishPolicy policy = PublishPolicy::kLive;
+  /// With kLossless: frames of one stream that may be under way beyond what the ground has handled.
+  /// Larger: faster replay, more memory on both sides. 1..kMaxFlowWindowFrames (qos.h), so that no
+  /// history overflows.
+  int flow_window_frames = 24;
+  /// With kLossless: the ground may be silent for so long before a frame is published all the same
+  /// (and counted).
+  Nanoseconds flow_timeout = std::chrono::seconds(10);
+};
+
+Status Validate(const PublisherOptions& options);
+
+struct StreamPublished {
+  std::uint64_t published = 0;
+  std::uint64_t failed = 0;             ///< Refused by the middleware (too large, buffer full).
+  std::uint64_t next_frame_number = 0;  ///< One above the highest published.
+};
+
+/// Counts of the current session.
+struct PublisherStats {
+  StreamPublished depth;
+  StreamPublished thermal;
+  std::uint64_t flow_waits = 0;     ///< Frames that waited for a receipt.
+  std::uint64_t flow_timeouts = 0;  ///< Frames that were published although no receipt came.
+  std::uint64_t refused = 0;        ///< Malformed samples from the ground.
+  bool ground_present = false;
+};
+
+/// The edge's end of the link. Publish() and Drain() belong to the publish thread, Run() to the
+/// receive thread; the rest is thread-safe. Nothing here is called by capture.
+class Publisher {
+ public:
+  /// `participant` and `clock` must outlive the publisher.
+  static Result<std::unique_ptr<Publisher>> Create(const Participant& participant,
+                                                   const Clock& clock,
+                                                   const PublisherOptions& options);
+  virtual ~Publisher() = default;
+
+  /// Receives commands, receipts and feedback until stop is requested; `on_command` is called on
+  /// this thread and must only enqueue. Needed for WaitForGround() and for
+  /// PublishPolicy::kLossless.
+  virtual void Run(std::stop_token stop, std::function<void(const Command&)> on_command) = 0;
+
+  /// Waits until a compatible ground station reads our frames; true if it is there. Returns at once
+  /// with what is known when `timeout` is zero.
+  virtual bool WaitForGround(Nanoseconds timeout, std::stop_token stop) = 0;
+
+  /// Starts the counts of a session and announces its rig. Frames of other sessions must not
+  /// follow.
+  virtual Status BeginSession(const RigDescription& rig) = 0;
+  /// Writes a frame. With kLossless it first waits for room in the flow window. kUnavailable: not
+  /// sent, counted.
+  virtual Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) = 0;
+  virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
+  /// Writes the status; session, policy and the counts that the publisher knows are filled in here.
+  virtual Status Publish(EdgeStatus status) = 0;
+  virtual Status Answer(const CommandResult& result) = 0;
+
+  /// Waits until every reader has acknowledged all frames, so that nothing is lost when the process
+  /// ends. False after `timeout` (also if the ground vanished); true at once if nobody listens.
+  virtual bool Drain(Nanoseconds timeout) = 0;
+
+  virtual void SetPolicy(PublishPolicy policy) = 0;
+  virtual PublisherStats stats() const = 0;
+  /// Newest feedback and receipt from the ground.
+  virtual LatestValue<Feedback>& feedback() = 0;
+  virtual std::optional<Receipt> receipt() const = 0;
+};
+
+}  // namespace isotherm

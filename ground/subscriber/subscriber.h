@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "common/base/status.h"
+#include "common/frame/frame.h"
+#include "common/time/clock.h"
+#include "common/transport/messages.h"
+#include "common/transport/participant.h"
+#include "common/transport/refusal.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+struct SubscriberOptions {
+  std::string edge_id = "edge";  ///< The rig to follow; empty follows the first one seen.
+  std::string ground_id = "ground";
+  std::string software_version;  ///< Goes into the hello.
+  /// Frames may arrive out of order by this much; later ones are counted as late. 0..200 ms.
+  Nanoseconds reorder_window = std::chrono::milliseconds(200);
+  /// A receipt goes out this often, and after every eighth frame.
+  Nanoseconds receipt_interval = std::chrono::milliseconds(200);
+  /// After the edge has ended its session, missing frames are given up when nothing has come for
+  /// this long.
+  Nanoseconds end_grace = std::chrono::seconds(2);
+};
+
+Status Validate(const SubscriberOptions& options);
+
+/// A frame as it arrived (for the recording) and unpacked (for the reconstruction).
+struct ReceivedDepth {
+  DepthFramePtr frame;
+  std::shared_ptr<const EncodedDepthFrame> encoded;
+  CaptureTime arrival;  ///< Ground wall clock.
+};
+struct ReceivedThermal {
+  ThermalFramePtr frame;
+  std::shared_ptr<const EncodedThermalFrame> encoded;
+  CaptureTime arrival;
+};
+
+/// Called on the thread that runs the subscriber. A handler may block (a bounded queue with
+/// kBlock): receipts then stop, and an edge with the lossless policy waits. Empty handlers are
+/// skipped.
+struct SubscriberHandlers {
+  std::function<void(ReceivedDepth)> depth;      ///< In order of frame number, no duplicates.
+  std::function<void(ReceivedThermal)> thermal;  ///< In order of frame number, no duplicates.
+  /// Arrived behind the reorder window: not for the reconstruction, good for the recording.
+  std::function<void(ReceivedDepth)> late_depth;
+  std::function<void(ReceivedThermal)> late_thermal;
+  std::function<void(const RigDescription&)> rig;
+  std::function<void(const EdgeStatus&)> status;
+  std::function<void(const CommandResult&)> command_result;
+  /// Once per session, when its account is closed: the edge ended it and all is here or given up.
+  std::function<void(const SessionAccount&)> session_end;
+};
+
+struct SubscriberStats {
+  SessionAccount account;        ///< Of the newest session.
+  std::uint64_t refused = 0;     ///< All causes.
+  std::uint64_t other_edge = 0;  ///< Samples of rigs that are not followed.
+  bool edge_present = false;
+};
+
+/// The ground's end of the link: samples in, checked frames in order out; receipts, feedback and
+/// commands back. Run() belongs to the receive thread; the rest is thread-safe.
+class Subscriber {
+ public:
+  /// `participant` and `clock` must outlive the subscriber.
+  static Result<std::unique_ptr<Subscriber>> Create(const Participant& participant,
+                                                    const Clock& clock,
+                                                    const SubscriberOptions& options,
+                                                    SubscriberHandlers handlers);
+  virtual ~Subscriber() = default;
+
+  /// Receives until stop is requested; then delivers what waits in the reorder window and sends a
+  /// last receipt.
+  virtual void Run(std::stop_token stop) = 0;
+
+  virtual Status Publish(const Feedback& feedback) = 0;
+  /// Sends a command and returns its number, under which the result comes back.
+  virtual Result<std::uint64_t> Send(Command command) = 0;
+
+  virtual SubscriberStats stats() const = 0;
+  virtual const RefusalCounter& refusals() const = 0;
+};
+
+}  // namespace isotherm
