@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/geometry/camera.h"
+#include "ground/ground_options.pb.h"
+#include "ground/tracker/depth_preprocessor.h"
+#include "ground/tracker/surface_maps.h"
+#include "ground/tsdf/voxel_grid.h"
+
+namespace isotherm {
+
+/// Why a frame could not be tracked.
+enum class LostReason { kNone, kTooFewPixels, kTooFewInliers, kResidual, kStep, kSingular };
+std::string_view ToString(LostReason reason);
+
+/// What the model looks like from a pose: the tracker's reference. Maps in `world`.
+struct ModelView {
+  SurfaceMaps maps;
+  CameraModel camera;  ///< Of the maps; may be smaller than the depth image.
+  RigidTransform T_world_depth;
+};
+
+struct TrackingResult {
+  LostReason lost = LostReason::kNone;
+  RigidTransform T_world_depth;  ///< The best estimate, meaningful only if not lost.
+  double inlier_ratio = 0.0;     ///< Correspondences / valid pixels inside the volume, finest level.
+  double residual_m = 0.0;       ///< RMS point-to-plane distance of the inliers.
+  double step_m = 0.0;           ///< Motion since the model view's pose.
+  double step_rad = 0.0;
+  int iterations = 0;
+
+  bool tracked() const { return lost == LostReason::kNone; }
+};
+
+Status Validate(const TrackerOptions& options);
+
+/// Pyramid ICP with projective data association and the point-to-plane metric (algorithm 1, line 9; Newcombe et
+/// al., KinectFusion, 2011). Stateless between calls. Thread-compatible.
+class IcpTracker {
+ public:
+  explicit IcpTracker(const TrackerOptions& options) : options_(options) {}
+
+  /// Finds T_world_depth of `depth` near `guess`. Residuals are weighted by the sensor's depth noise (variance
+  /// grows with the fourth power of the depth).
+  TrackingResult Track(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
+                       const RigidTransform& guess, ThreadPool& pool) const;
+
+ private:
+  TrackingResult Judge(TrackingResult result) const;
+
+  const TrackerOptions options_;
+};
+
+/// Sums of one ICP iteration. H x = -g in the twist (translation, rotation) applied from the left in `world`,
+/// about `centre`.
+struct IcpSums {
+  Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+  double squared_residuals_m2 = 0.0;  ///< Unweighted.
+  std::int64_t inliers = 0;
+  std::int64_t candidates = 0;  ///< Valid pixels inside the volume.
+
+  IcpSums& operator+=(const IcpSums& other);
+};
+
+struct IcpLimits {
+  float max_distance_m;
+  float min_normal_cosine;
+};
+
+/// One pass over the current maps (camera coordinates): associates, rejects, accumulates.
+IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth, const ModelView& model,
+                      const VoxelGrid& grid, const IcpLimits& limits, const Eigen::Vector3d& centre,
+                      ThreadPool& pool);
+
+}  // namespace isotherm
