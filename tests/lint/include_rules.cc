@@ -86,7 +86,7 @@ const std::map<std::string_view, std::string_view>& SdkHomes() {
 
 /// Heavy headers that would slow down everybody who includes one of ours.
 constexpr std::string_view kSourceOnly[] = {
-    "opencv2/", "google/protobuf/", "fmt/", "zstd.h", "zlib.h", "hwy/", "CLI/", "boost/"};
+    "opencv2/", "google/protobuf/", "zstd.h", "zlib.h", "hwy/", "CLI/", "boost/"};
 
 /// Headers with no place in this code, and what to take instead.
 struct ForbiddenHeader {

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and scans a simulated furnace door: the edge daemon and the ground service run
+# as two processes over DDS on loopback, and the results land in out/demo. Works from a fresh clone.
+#
+#   deploy/demo.sh              scan, then say where the results are and how to look at them
+#   deploy/demo.sh --headless   scan, print a summary, end with exit status 0
+#
+# Further arguments go to `isotherm demo` (see `isotherm demo --help`).
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+headless=0
+arguments=()
+for argument in "$@"; do
+  case "$argument" in
+    --headless) headless=1 ;;
+    -h | --help) sed -n '2,8s/^# \{0,1\}//p' "${BASH_SOURCE[0]}"; exit 0 ;;
+    *) arguments+=("$argument") ;;
+  esac
+done
+
+say() { printf '== %s\n' "$*"; }
+
+say "packages"
+deploy/install-deps.sh
+
+say "build"
+[ -f build/release/build.ninja ] || cmake --preset release >/dev/null
+NINJA_STATUS="[%f/%t %es] " cmake --build --preset release --target programs
+
+say "scan of a simulated furnace door, edge and ground over DDS on loopback"
+build/release/bin/isotherm demo --output out/demo "${arguments[@]}"
+
+if [ "$headless" = 0 ]; then
+  say "results in out/demo"
+  cat <<TEXT
+  cloud.ply   points with temperature and measurement classes: open in CloudCompare or MeshLab
+  mesh.ply    the same as a triangle mesh
+  renders/    pictures: thermal, distance, angle
+  stats.json  what was measured and how long it took
+The web console is not part of this version.
+TEXT
+fi

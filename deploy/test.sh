@@ -1,0 +1,61 @@
+#!/usr/bin/env bash
+# Installs what is missing, builds, and runs every test that needs no hardware. Works from a fresh clone.
+#
+#   deploy/test.sh                 release build, all tests
+#   deploy/test.sh -L unit         the same build, ctest arguments passed on
+#   PRESET=asan deploy/test.sh     another preset of CMakePresets.json (dev, asan, tsan)
+#
+# Tests on real data look for it in $ISOTHERM_DATA_DIR (or ../shared/data) and say so when they skip.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+preset=${PRESET:-release}
+
+say() { printf '== %s\n' "$*"; }
+
+say "packages"
+deploy/install-deps.sh
+
+# Formatting of the files being worked on. Other versions of clang-format decide differently, so only the one
+# of Debian 12 has a say.
+check_format() {
+  command -v clang-format >/dev/null || { echo "clang-format is not installed: not checked"; return 0; }
+  case "$(clang-format --version)" in
+    *"version 14."*) ;;
+    *) echo "not clang-format 14: not checked"; return 0 ;;
+  esac
+  git rev-parse HEAD >/dev/null 2>&1 || { echo "not a git repository: not checked"; return 0; }
+  local files
+  files=$({ git diff --name-only --diff-filter=d HEAD
+            git show --name-only --diff-filter=d --pretty=format: HEAD
+            git ls-files --others --exclude-standard; } |
+          sort -u | grep -E '\.(h|cc)$' || true)
+  [ -z "$files" ] && { echo "no changed source files"; return 0; }
+  # shellcheck disable=SC2086
+  clang-format --dry-run -Werror $files || { echo "run: clang-format -i" $files >&2; return 1; }
+  echo "$(echo "$files" | wc -l) changed files are formatted"
+}
+say "formatting"
+check_format
+
+say "build ($preset)"
+cmake --preset "$preset" >/dev/null
+NINJA_STATUS="[%f/%t %es] " cmake --build --preset "$preset"
+
+say "tests ($preset)"
+log=build/$preset/Testing/ctest.log
+mkdir -p "$(dirname "$log")"
+status=0
+# The summary is held back until the skipped cases have been named.
+ctest --preset "$preset" --parallel "$(nproc)" "$@" 2>&1 | tee "$log" |
+  awk '/% tests passed/ { held = 1 } !held { print; fflush() }' || status=$?
+details=build/$preset/Testing/Temporary/LastTest.log
+if [ -f "$details" ]; then
+  skipped=$(grep -aE '^\[  SKIPPED \] [A-Za-z0-9_]+\.[A-Za-z0-9_/]+ \(' "$details" | sed 's/ (.*//' | sort -u || true)
+  if [ -n "$skipped" ]; then
+    say "skipped cases (reasons in $details)"
+    echo "$skipped"
+  fi
+fi
+say "result"
+sed -n '/% tests passed/,$p' "$log"
+exit "$status"
