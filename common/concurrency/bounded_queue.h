@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -23,7 +24,11 @@ enum class OverflowPolicy {
 template <typename T>
 class BoundedQueue {
  public:
-  BoundedQueue(std::size_t capacity, OverflowPolicy policy) : capacity_(capacity), policy_(policy) {
+  /// `on_drop` is called for each value that makes room for a newer one, with the queue locked: it
+  /// may count, no more.
+  BoundedQueue(std::size_t capacity, OverflowPolicy policy,
+               std::function<void(const T&)> on_drop = nullptr)
+      : capacity_(capacity), policy_(policy), on_drop_(std::move(on_drop)) {
     CHECK(capacity > 0);
   }
 
@@ -33,6 +38,7 @@ class BoundedQueue {
     if (policy_ == OverflowPolicy::kBlock) {
       if (!changed_.wait(lock, stop, [this] { return values_.size() < capacity_; })) return false;
     } else if (values_.size() == capacity_) {
+      if (on_drop_) on_drop_(values_.front());
       values_.pop_front();
       ++dropped_;
     }
@@ -64,6 +70,7 @@ class BoundedQueue {
  private:
   const std::size_t capacity_;
   const OverflowPolicy policy_;
+  const std::function<void(const T&)> on_drop_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::deque<T> values_;

@@ -1,0 +1,61 @@
+#include "common/base/service.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <systemd/sd-daemon.h>
+
+#include <cstdint>
+#include <string>
+
+#include "common/base/check.h"
+#include "common/base/log.h"
+
+namespace isotherm {
+namespace {
+
+sigset_t StopSignals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  return signals;
+}
+
+void Notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_str())); }
+
+}  // namespace
+
+void NotifyReady(std::string_view status) { Notify("READY=1\nSTATUS=" + std::string(status)); }
+void NotifyStatus(std::string_view status) { Notify("STATUS=" + std::string(status)); }
+void NotifyWatchdog() { Notify("WATCHDOG=1"); }
+void NotifyStopping() { Notify("STOPPING=1"); }
+
+std::optional<std::chrono::microseconds> WatchdogInterval() {
+  std::uint64_t microseconds = 0;
+  if (sd_watchdog_enabled(0, &microseconds) <= 0) return std::nullopt;
+  return std::chrono::microseconds(microseconds / 2);
+}
+
+StopSignal::StopSignal() {
+  const sigset_t signals = StopSignals();
+  CHECK(pthread_sigmask(SIG_BLOCK, &signals, nullptr) == 0);
+  waiter_ = std::jthread([this](const std::stop_token& end) { Wait(end); });
+}
+
+StopSignal::~StopSignal() {
+  waiter_.request_stop();
+  // Wakes sigwait. The signal is sent to that thread alone, where it is blocked.
+  pthread_kill(waiter_.native_handle(), SIGTERM);
+}
+
+void StopSignal::Wait(const std::stop_token& end) {
+  const sigset_t signals = StopSignals();
+  while (true) {
+    int signal = 0;
+    if (sigwait(&signals, &signal) != 0 || end.stop_requested()) return;
+    if (!stop_.request_stop()) continue;
+    LOG(Service, Info) << (signal == SIGINT ? "interrupted" : "asked to stop") << ", leaving";
+  }
+}
+
+}  // namespace isotherm

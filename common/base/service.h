@@ -1,0 +1,44 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <stop_token>
+#include <string_view>
+#include <thread>
+
+namespace isotherm {
+
+/// What a daemon says to the service manager. Without one (NOTIFY_SOCKET unset) each call does
+/// nothing. Thread-safe.
+void NotifyReady(std::string_view status);
+void NotifyStatus(std::string_view status);
+void NotifyWatchdog();
+void NotifyStopping();
+
+/// How often NotifyWatchdog should be called (half of WatchdogSec); nullopt if the unit has no
+/// watchdog.
+std::optional<std::chrono::microseconds> WatchdogInterval();
+
+/// Turns SIGTERM and SIGINT into a stop token. Create it in main before any other thread, so that
+/// all threads inherit the blocked signals. The first signal requests stop; later ones change
+/// nothing: the program is already leaving and must not be torn down while it flushes. The signals
+/// stay blocked to the end of the process.
+class StopSignal {
+ public:
+  StopSignal();
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  std::stop_token token() const { return stop_.get_token(); }
+  /// Requests stop from inside the program.
+  void Request() { stop_.request_stop(); }
+
+ private:
+  void Wait(const std::stop_token& end);
+
+  std::stop_source stop_;
+  std::jthread waiter_;
+};
+
+}  // namespace isotherm
