@@ -33,8 +33,10 @@ class Writer {
   bool WaitForAcknowledgments(Nanoseconds timeout) const;
 
  private:
-  explicit Writer(DdsHandle handle) : handle_(std::move(handle)) {}
-  DdsHandle handle_;
+  Writer(DdsHandle topic, DdsHandle writer)
+      : topic_(std::move(topic)), writer_(std::move(writer)) {}
+  DdsHandle topic_;
+  DdsHandle writer_;
 };
 
 template <typename Message>

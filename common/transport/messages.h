@@ -155,7 +155,7 @@ struct StreamReceipt {
   std::uint64_t handled =
       0;  ///< All numbers below are delivered or given up by the reorder window.
   std::uint64_t received = 0;     ///< Distinct frames.
-  std::vector<FrameRange> holes;  ///< Newest kMaxHoles ranges that are missing, ascending.
+  std::vector<FrameRange> holes{};  ///< Newest kMaxHoles ranges that are missing, ascending.
 };
 
 struct Receipt {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "common/base/status.h"
 #include "common/transport/transport_environment.h"

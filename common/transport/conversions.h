@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "common/transport/refusal.h"
+#include "common/transport/topics.h"
+
+/// Between our messages and what idlc generated, field by field. The key edge_id is handled by the
+/// endpoints.
+namespace isotherm {
+
+/// Fills `to`, which must be all zero. Payloads are borrowed from `from`; short lists are allocated
+/// and released with the wire struct (dds_sample_free).
+void ToWire(const EncodedDepthFrame& from, isotherm_wire_DepthFrame* to);
+void ToWire(const EncodedThermalFrame& from, isotherm_wire_ThermalFrame* to);
+void ToWire(const RigDescription& from, isotherm_wire_Rig* to);
+void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to);
+void ToWire(const Command& from, isotherm_wire_Command* to);
+void ToWire(const CommandResult& from, isotherm_wire_CommandResult* to);
+void ToWire(const Receipt& from, isotherm_wire_Receipt* to);
+void ToWire(const Feedback& from, isotherm_wire_Feedback* to);
+void ToWire(const Hello& from, isotherm_wire_Hello* to);
+
+/// Fills `to`, or says why `from` cannot be used. Frames are checked before their payload is
+/// copied.
+std::optional<RefusalCause> FromWire(const isotherm_wire_DepthFrame& from, EncodedDepthFrame* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_ThermalFrame& from,
+                                     EncodedThermalFrame* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_Command& from, Command* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_CommandResult& from, CommandResult* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_Receipt& from, Receipt* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to);
+std::optional<RefusalCause> FromWire(const isotherm_wire_Hello& from, Hello* to);
+
+}  // namespace isotherm

@@ -1,0 +1,126 @@
+#include <isotherm_frames.h>
+
+#include <cmath>
+
+#include "common/transport/bounded_text.h"
+#include "common/transport/conversions.h"
+#include "common/transport/sample_validator.h"
+#include "common/transport/wire_pose.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kQuaternionTolerance = 1e-3;  // Float rounding of a sender is far below.
+
+isotherm_wire_Camera ToWireCamera(const CameraModel& camera) {
+  return {.width = static_cast<std::uint32_t>(camera.width),
+          .height = static_cast<std::uint32_t>(camera.height),
+          .fx = camera.fx,
+          .fy = camera.fy,
+          .cx = camera.cx,
+          .cy = camera.cy,
+          .k1 = camera.k1,
+          .k2 = camera.k2,
+          .p1 = camera.p1,
+          .p2 = camera.p2,
+          .k3 = camera.k3};
+}
+
+CameraModel FromWireCamera(const isotherm_wire_Camera& camera) {
+  CameraModel model;
+  model.width = static_cast<int>(camera.width);
+  model.height = static_cast<int>(camera.height);
+  model.fx = camera.fx;
+  model.fy = camera.fy;
+  model.cx = camera.cx;
+  model.cy = camera.cy;
+  model.k1 = camera.k1;
+  model.k2 = camera.k2;
+  model.p1 = camera.p1;
+  model.p2 = camera.p2;
+  model.k3 = camera.k3;
+  return model;
+}
+
+void ToWireMode(const StreamMode& from, isotherm_wire_StreamMode* to) {
+  to->width = static_cast<std::uint32_t>(from.width);
+  to->height = static_cast<std::uint32_t>(from.height);
+  to->rate_hz = from.rate_hz;
+  to->encoding = static_cast<std::uint8_t>(from.encoding);
+  CopyText(from.serial, to->serial);
+}
+
+std::optional<RefusalCause> FromWireMode(const isotherm_wire_StreamMode& from, StreamMode* to) {
+  if (std::size_t{from.width} * from.height > kMaxFramePixels) {
+    return RefusalCause::kImpossibleSize;
+  }
+  if (const auto cause = CheckFinite({from.rate_hz})) return cause;
+  if (CheckEnum(from.encoding, Encoding::kThermalDelta)) return RefusalCause::kUnknownEncoding;
+  to->width = static_cast<int>(from.width);
+  to->height = static_cast<int>(from.height);
+  to->rate_hz = from.rate_hz;
+  to->encoding = static_cast<Encoding>(from.encoding);
+  to->serial = ReadText(from.serial);
+  return std::nullopt;
+}
+
+std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, Rig* rig) {
+  if (from.has_depth) rig->depth = FromWireCamera(from.depth);
+  if (from.has_thermal) rig->thermal = FromWireCamera(from.thermal);
+  rig->depth_scale = from.depth_scale;
+  if (from.has_t_thermal_depth) {
+    rig->T_thermal_depth = FromWirePose(from.t_thermal_depth);
+    if (!rig->T_thermal_depth) return RefusalCause::kOutOfRange;
+  }
+  rig->thermal_delay_s = from.thermal_delay_s;
+  if (from.has_reprojection_error) rig->reprojection_error_px = from.reprojection_error_px;
+  rig->serial = ReadText(from.serial);
+  rig->date = ReadText(from.date);
+  rig->method = ReadText(from.method);
+  return CheckRig(*rig);
+}
+
+}  // namespace
+
+isotherm_wire_Pose ToWirePose(const RigidTransform& pose) {
+  const Eigen::Quaterniond q(pose.linear());
+  const Eigen::Vector3d t = pose.translation();
+  return {
+      .tx = t.x(), .ty = t.y(), .tz = t.z(), .qx = q.x(), .qy = q.y(), .qz = q.z(), .qw = q.w()};
+}
+
+std::optional<RigidTransform> FromWirePose(const isotherm_wire_Pose& pose) {
+  const Eigen::Vector3d t(pose.tx, pose.ty, pose.tz);
+  const Eigen::Quaterniond q(pose.qw, pose.qx, pose.qy, pose.qz);
+  if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < kQuaternionTolerance)) return std::nullopt;
+  return MakeTransform(t, q);
+}
+
+void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
+  const Rig& rig = from.rig;
+  to->session = from.session;
+  to->has_depth = rig.depth.has_value();
+  if (rig.depth) to->depth = ToWireCamera(*rig.depth);
+  to->has_thermal = rig.thermal.has_value();
+  if (rig.thermal) to->thermal = ToWireCamera(*rig.thermal);
+  to->depth_scale = rig.depth_scale;
+  to->has_t_thermal_depth = rig.T_thermal_depth.has_value();
+  if (rig.T_thermal_depth) to->t_thermal_depth = ToWirePose(*rig.T_thermal_depth);
+  to->thermal_delay_s = rig.thermal_delay_s;
+  to->has_reprojection_error = rig.reprojection_error_px.has_value();
+  to->reprojection_error_px = rig.reprojection_error_px.value_or(0.0);
+  CopyText(rig.serial, to->serial);
+  CopyText(rig.date, to->date);
+  CopyText(rig.method, to->method);
+  ToWireMode(from.depth, &to->depth_mode);
+  ToWireMode(from.thermal, &to->thermal_mode);
+}
+
+std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to) {
+  to->session = from.session;
+  if (const auto cause = FromWireCalibration(from, &to->rig)) return cause;
+  if (const auto cause = FromWireMode(from.depth_mode, &to->depth)) return cause;
+  return FromWireMode(from.thermal_mode, &to->thermal);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,205 @@
+#include "common/transport/endpoints.h"
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+#include <isotherm_control.h>
+#include <isotherm_frames.h>
+
+#include <cstring>
+
+#include "common/transport/bounded_text.h"
+#include "common/transport/conversions.h"
+#include "common/transport/qos.h"
+
+namespace isotherm {
+namespace {
+
+const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
+  switch (topic) {
+    case TopicId::kDepth:
+      return &isotherm_wire_DepthFrame_desc;
+    case TopicId::kThermal:
+      return &isotherm_wire_ThermalFrame_desc;
+    case TopicId::kRig:
+      return &isotherm_wire_Rig_desc;
+    case TopicId::kEdgeStatus:
+      return &isotherm_wire_EdgeStatus_desc;
+    case TopicId::kCommand:
+      return &isotherm_wire_Command_desc;
+    case TopicId::kCommandResult:
+      return &isotherm_wire_CommandResult_desc;
+    case TopicId::kReceipt:
+      return &isotherm_wire_Receipt_desc;
+    case TopicId::kFeedback:
+      return &isotherm_wire_Feedback_desc;
+    case TopicId::kHello:
+      return &isotherm_wire_Hello_desc;
+  }
+  return nullptr;
+}
+
+Result<DdsHandle> CreateTopic(const Participant& participant, TopicId topic) {
+  const QosPtr qos = MakeQos(topic);
+  DdsHandle handle(dds_create_topic(participant.handle(), DescriptorOf(topic), TopicName(topic),
+                                    qos.get(), nullptr));
+  if (handle.value() > 0) return handle;
+  return Err(Internal(fmt::format("cannot create the topic {}: {}", TopicName(topic),
+                                  dds_strretcode(handle.value()))));
+}
+
+Status EndpointFailed(std::string_view kind, TopicId topic, std::int32_t code) {
+  return Internal(
+      fmt::format("cannot create a {} of {}: {}", kind, TopicName(topic), dds_strretcode(code)));
+}
+
+/// A wire struct with the lists that ToWire allocated.
+template <typename Message>
+struct WireSample {
+  using Wire = typename TopicOf<Message>::Wire;
+  WireSample() = default;
+  WireSample(const WireSample&) = delete;
+  WireSample& operator=(const WireSample&) = delete;
+  ~WireSample() { dds_sample_free(&wire, DescriptorOf(TopicOf<Message>::kId), DDS_FREE_CONTENTS); }
+  Wire wire{};
+};
+
+}  // namespace
+
+template <typename Message>
+Result<Writer<Message>> Writer<Message>::Create(const Participant& participant) {
+  constexpr TopicId kTopic = TopicOf<Message>::kId;
+  Result<DdsHandle> topic = CreateTopic(participant, kTopic);
+  if (!topic) return Err(topic.error());
+  const QosPtr qos = MakeQos(kTopic);
+  DdsHandle writer(dds_create_writer(participant.handle(), topic->value(), qos.get(), nullptr));
+  if (writer.value() < 0) return Err(EndpointFailed("writer", kTopic, writer.value()));
+  return Writer(std::move(*topic), std::move(writer));
+}
+
+template <typename Message>
+Status Writer<Message>::Write(std::string_view edge_id, const Message& message) {
+  constexpr TopicId kTopic = TopicOf<Message>::kId;
+  if (edge_id.empty() || edge_id.size() > kMaxIdBytes) {
+    return InvalidArgument(
+        fmt::format("edge_id \"{}\" must have 1 to {} bytes", edge_id, kMaxIdBytes));
+  }
+  WireSample<Message> sample;
+  CopyText(edge_id, sample.wire.edge_id);
+  ToWire(message, &sample.wire);
+  const dds_return_t code = dds_write(writer_.value(), &sample.wire);
+  if (code == DDS_RETCODE_OK) return OkStatus();
+  const std::string text = fmt::format("{}: {}", TopicName(kTopic), dds_strretcode(code));
+  if (code == DDS_RETCODE_TIMEOUT) return Unavailable(text + " (readers too slow)");
+  if (code == DDS_RETCODE_BAD_PARAMETER) return InvalidArgument(text + " (message too large)");
+  return Internal(text);
+}
+
+template <typename Message>
+int Writer<Message>::matched_readers() const {
+  dds_publication_matched_status_t status{};
+  if (dds_get_publication_matched_status(writer_.value(), &status) != DDS_RETCODE_OK) return 0;
+  return static_cast<int>(status.current_count);
+}
+
+template <typename Message>
+bool Writer<Message>::WaitForAcknowledgments(Nanoseconds timeout) const {
+  return dds_wait_for_acks(writer_.value(), timeout.count()) == DDS_RETCODE_OK;
+}
+
+template <typename Message>
+struct Reader<Message>::Impl {
+  DdsHandle topic;
+  DdsHandle reader;
+  DdsHandle condition;
+  RefusalCounter* refusals = nullptr;
+  WireSample<Message> sample;  // Reused, so that its payload buffer is allocated once.
+
+  void Accept(const std::function<void(Received<Message>&&)>& handle) {
+    Received<Message> received;
+    received.edge_id = ReadText(sample.wire.edge_id);
+    if (const auto cause = FromWire(sample.wire, &received.message)) {
+      refusals->Add(*cause, fmt::format("topic={} edge_id={}", TopicName(TopicOf<Message>::kId),
+                                        received.edge_id));
+      return;
+    }
+    handle(std::move(received));
+  }
+};
+
+template <typename Message>
+Reader<Message>::Reader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+template <typename Message>
+Reader<Message>::Reader(Reader&&) noexcept = default;
+template <typename Message>
+Reader<Message>& Reader<Message>::operator=(Reader&&) noexcept = default;
+template <typename Message>
+Reader<Message>::~Reader() = default;
+
+template <typename Message>
+Result<Reader<Message>> Reader<Message>::Create(const Participant& participant,
+                                                RefusalCounter* refusals) {
+  constexpr TopicId kTopic = TopicOf<Message>::kId;
+  auto impl = std::make_unique<Impl>();
+  impl->refusals = refusals;
+  Result<DdsHandle> topic = CreateTopic(participant, kTopic);
+  if (!topic) return Err(topic.error());
+  impl->topic = std::move(*topic);
+  const QosPtr qos = MakeQos(kTopic);
+  impl->reader =
+      DdsHandle(dds_create_reader(participant.handle(), impl->topic.value(), qos.get(), nullptr));
+  if (impl->reader.value() < 0) {
+    return Err(EndpointFailed("reader", kTopic, impl->reader.value()));
+  }
+  impl->condition = DdsHandle(dds_create_readcondition(impl->reader.value(), DDS_ANY_STATE));
+  if (impl->condition.value() < 0) {
+    return Err(EndpointFailed("read condition", kTopic, impl->condition.value()));
+  }
+  return Reader(std::move(impl));
+}
+
+template <typename Message>
+int Reader<Message>::Take(const std::function<void(Received<Message>&&)>& handle, int max_samples) {
+  int taken = 0;
+  while (taken < max_samples) {
+    void* samples[1] = {&impl_->sample.wire};
+    dds_sample_info_t info{};
+    if (dds_take(impl_->reader.value(), samples, &info, 1, 1) <= 0) break;
+    ++taken;
+    if (info.valid_data) impl_->Accept(handle);  // Otherwise a writer came or left.
+  }
+  return taken;
+}
+
+template <typename Message>
+int Reader<Message>::matched_writers() const {
+  dds_liveliness_changed_status_t status{};
+  if (dds_get_liveliness_changed_status(impl_->reader.value(), &status) != DDS_RETCODE_OK) return 0;
+  return static_cast<int>(status.alive_count);
+}
+
+template <typename Message>
+std::int32_t Reader<Message>::read_condition() const {
+  return impl_->condition.value();
+}
+
+template class Writer<EncodedDepthFrame>;
+template class Writer<EncodedThermalFrame>;
+template class Writer<RigDescription>;
+template class Writer<EdgeStatus>;
+template class Writer<Command>;
+template class Writer<CommandResult>;
+template class Writer<Receipt>;
+template class Writer<Feedback>;
+template class Writer<Hello>;
+
+template class Reader<EncodedDepthFrame>;
+template class Reader<EncodedThermalFrame>;
+template class Reader<RigDescription>;
+template class Reader<EdgeStatus>;
+template class Reader<Command>;
+template class Reader<CommandResult>;
+template class Reader<Receipt>;
+template class Reader<Feedback>;
+template class Reader<Hello>;
+
+}  // namespace isotherm

@@ -1,0 +1,304 @@
+#include "common/transport/endpoints.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "common/transport/qos.h"
+#include "common/transport/test_domain.h"
+#include "common/transport/wait_set.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+
+constexpr auto kPatience = 10s;  // Far above anything measured; only a failure waits so long.
+
+EncodedDepthFrame MakeDepth(std::uint64_t number, std::size_t pixels_wide = 64) {
+  EncodedDepthFrame frame;
+  frame.header = {.session = 7,
+                  .frame_number = number,
+                  .device_ticks = DeviceTicks(std::chrono::microseconds(33'333 * number)),
+                  .capture_time = CaptureTimeFromNanoseconds(1'700'000'000'123'456'789),
+                  .capture_sigma = 250us};
+  frame.depth_scale = 5000.0;
+  frame.image.width = static_cast<int>(pixels_wide);
+  frame.image.height = 48;
+  frame.image.payload.resize(pixels_wide * 48 * 2);
+  for (std::size_t i = 0; i < frame.image.payload.size(); ++i) {
+    frame.image.payload[i] = static_cast<std::uint8_t>(i * 31 + number);
+  }
+  return frame;
+}
+
+EncodedThermalFrame MakeThermal() {
+  EncodedThermalFrame frame;
+  frame.header = MakeDepth(3).header;
+  frame.image = MakeDepth(3).image;
+  frame.image.encoding = Encoding::kThermalDelta;
+  frame.nuc_state = NucState::kSettling;
+  frame.nuc_source = NucSource::kPolled;
+  frame.seconds_since_nuc = 12.5;
+  frame.housekeeping.fpa_celsius = 31.25F;
+  frame.valid = true;
+  return frame;
+}
+
+Rig MakeRig() {
+  CameraModel camera;
+  camera.width = 640;
+  camera.height = 480;
+  camera.fx = camera.fy = 525.0;
+  camera.cx = 319.5;
+  camera.cy = 239.5;
+  camera.k1 = -0.1;
+  Rig rig;
+  rig.depth = camera;
+  rig.thermal = camera;
+  rig.T_thermal_depth = MakeTransform({0.05, -0.01, 0.002}, Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3));
+  rig.thermal_delay_s = 0.012;
+  rig.serial = "RIG-1";
+  rig.reprojection_error_px = 0.31;
+  return rig;
+}
+
+/// Two participants in one process, which the middleware joins without the network; two processes
+/// are tested by edge_ground_test.
+class EndpointsTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<Participant> Join() {
+    auto participant = Participant::Create(environment_, domain_.number());
+    EXPECT_TRUE(participant.has_value());
+    return std::move(*participant);
+  }
+
+  /// Writes `message` and returns what arrives at the other side.
+  template <typename Message>
+  std::optional<Received<Message>> RoundTrip(const Message& message) {
+    auto reader = *Reader<Message>::Create(*ground_, &refusals_);
+    auto writer = *Writer<Message>::Create(*edge_);
+    AwaitMatch(writer, 1);
+    EXPECT_TRUE(writer.Write("edge-1", message).ok());
+    return TakeOne(reader);
+  }
+
+  template <typename Message>
+  void AwaitMatch(const Writer<Message>& writer, int readers) {
+    // Waiting for discovery has no event in this interface: tests only, and bounded.
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (writer.matched_readers() < readers && std::chrono::steady_clock::now() < deadline) {
+      std::this_thread::yield();
+    }
+    ASSERT_EQ(writer.matched_readers(), readers);
+  }
+
+  template <typename Message>
+  std::optional<Received<Message>> TakeOne(Reader<Message>& reader) {
+    auto waiter = *WaitSet::Create(*ground_);
+    EXPECT_TRUE(waiter.Attach(reader).ok());
+    std::optional<Received<Message>> result;
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!result && std::chrono::steady_clock::now() < deadline) {
+      waiter.Wait(100ms);
+      reader.Take([&](Received<Message>&& received) { result = std::move(received); }, 1);
+    }
+    return result;
+  }
+
+  SystemClock clock_;
+  TransportEnvironment environment_{clock_};
+  TestDomain domain_;
+  RefusalCounter refusals_;
+  std::unique_ptr<Participant> edge_ = Join();
+  std::unique_ptr<Participant> ground_ = Join();
+};
+
+TEST_F(EndpointsTest, DepthFrameArrivesAsItWasWritten) {
+  const EncodedDepthFrame sent = MakeDepth(42);
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  EXPECT_EQ(received->edge_id, "edge-1");
+  const EncodedDepthFrame& frame = received->message;
+  EXPECT_EQ(frame.header.session, sent.header.session);
+  EXPECT_EQ(frame.header.frame_number, 42U);
+  EXPECT_EQ(frame.header.device_ticks, sent.header.device_ticks);
+  EXPECT_EQ(frame.header.capture_time, sent.header.capture_time);
+  EXPECT_EQ(frame.header.capture_sigma, sent.header.capture_sigma);
+  EXPECT_EQ(frame.depth_scale, 5000.0);
+  EXPECT_EQ(frame.image.width, 64);
+  EXPECT_EQ(frame.image.height, 48);
+  EXPECT_EQ(frame.image.payload, sent.image.payload);
+}
+
+TEST_F(EndpointsTest, ThermalFrameArrivesAsItWasWritten) {
+  const EncodedThermalFrame sent = MakeThermal();
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  const EncodedThermalFrame& frame = received->message;
+  EXPECT_EQ(frame.image.encoding, Encoding::kThermalDelta);
+  EXPECT_EQ(frame.image.payload, sent.image.payload);
+  EXPECT_EQ(frame.nuc_state, NucState::kSettling);
+  EXPECT_EQ(frame.nuc_source, NucSource::kPolled);
+  EXPECT_EQ(frame.seconds_since_nuc, 12.5);
+  EXPECT_EQ(frame.housekeeping.fpa_celsius, 31.25F);
+  EXPECT_TRUE(std::isnan(frame.housekeeping.housing_celsius));
+  EXPECT_TRUE(frame.valid);
+}
+
+TEST_F(EndpointsTest, RigArrivesAsItWasWritten) {
+  RigDescription sent;
+  sent.session = 9;
+  sent.rig = MakeRig();
+  sent.depth = {.width = 640, .height = 480, .rate_hz = 30.0, .serial = "D1"};
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  const RigDescription& rig = received->message;
+  EXPECT_EQ(rig.session, 9U);
+  ASSERT_TRUE(rig.rig.T_thermal_depth.has_value());
+  EXPECT_TRUE(rig.rig.T_thermal_depth->isApprox(*sent.rig.T_thermal_depth, 1e-12));
+  ASSERT_TRUE(rig.rig.thermal.has_value());
+  EXPECT_EQ(rig.rig.thermal->k1, -0.1);
+  EXPECT_EQ(rig.rig.serial, "RIG-1");
+  EXPECT_EQ(rig.rig.thermal_delay_s, 0.012);
+  EXPECT_EQ(rig.rig.reprojection_error_px, 0.31);
+  EXPECT_EQ(rig.depth.serial, "D1");
+  EXPECT_EQ(rig.depth.rate_hz, 30.0);
+}
+
+TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
+  EdgeStatus sent;
+  sent.session = 5;
+  sent.scan_state = ScanState::kEnded;
+  sent.depth.published = 100;
+  sent.depth.next_frame_number = 103;
+  sent.depth.dropped = {{"queue full", 2}, {"clock model warming up", 1}};
+  sent.clock_error_s = 0.002;
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  const EdgeStatus& status = received->message;
+  EXPECT_EQ(status.scan_state, ScanState::kEnded);
+  EXPECT_EQ(status.depth.next_frame_number, 103U);
+  ASSERT_EQ(status.depth.dropped.size(), 2U);
+  EXPECT_EQ(status.depth.dropped[1].reason, "clock model warming up");
+  EXPECT_EQ(status.depth.dropped[0].frames, 2U);
+  EXPECT_EQ(status.clock_error_s, 0.002);
+  EXPECT_TRUE(std::isnan(status.cpu_temperature_celsius));
+}
+
+TEST_F(EndpointsTest, CommandAndItsResultArrive) {
+  const auto command = RoundTrip(
+      Command{.number = 3, .kind = CommandKind::kSetNucPolicy, .nuc_policy = NucPolicy::kManual});
+  ASSERT_TRUE(command.has_value());
+  EXPECT_EQ(command->message.number, 3U);
+  EXPECT_EQ(command->message.kind, CommandKind::kSetNucPolicy);
+  EXPECT_EQ(command->message.nuc_policy, NucPolicy::kManual);
+  const auto result = RoundTrip(
+      CommandResult{.number = 3, .outcome = CommandOutcome::kRefused, .text = "scan is running"});
+  ASSERT_TRUE(result.has_value());
+  EXPECT_EQ(result->message.outcome, CommandOutcome::kRefused);
+  EXPECT_EQ(result->message.text, "scan is running");
+}
+
+TEST_F(EndpointsTest, ReceiptCarriesTheNewestHoles) {
+  Receipt sent;
+  sent.session = 4;
+  sent.depth = {.next = 1000, .handled = 990, .received = 800};
+  for (std::uint64_t i = 0; i < 100; ++i) sent.depth.holes.push_back({i * 10, i * 10 + 1});
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  ASSERT_EQ(received->message.depth.holes.size(), kMaxHoles);
+  EXPECT_EQ(received->message.depth.holes.back(), (FrameRange{990, 991}));
+  EXPECT_EQ(received->message.depth.handled, 990U);
+}
+
+TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
+  Feedback sent;
+  sent.session = 1;
+  sent.frame_number = 77;
+  sent.tracking_state = TrackingState::kTracked;
+  sent.T_world_depth = MakeTransform({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
+  sent.model = {.good = 0.5F, .acceptable = 0.25F, .bad = 0.125F, .never_measured = 0.125F};
+  sent.advice = {Advice::kSlower, Advice::kMoveCloser};
+  sent.picture.assign(kMaxPictureBytes, 0xAB);
+  sent.latencies = {{"track", 0.006F, 0.012F}};
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  const Feedback& feedback = received->message;
+  ASSERT_TRUE(feedback.T_world_depth.has_value());
+  EXPECT_TRUE(feedback.T_world_depth->isApprox(*sent.T_world_depth, 1e-12));
+  EXPECT_FALSE(feedback.T_world_depth_next.has_value());
+  EXPECT_EQ(feedback.model.good, 0.5F);
+  EXPECT_TRUE(std::isnan(feedback.view.good));
+  EXPECT_THAT(feedback.advice, ElementsAre(Advice::kSlower, Advice::kMoveCloser));
+  EXPECT_EQ(feedback.picture, sent.picture);
+  ASSERT_EQ(feedback.latencies.size(), 1U);
+  EXPECT_EQ(feedback.latencies[0].stage, "track");
+}
+
+TEST_F(EndpointsTest, LateJoinerGetsTheRigAndTheNewestFrames) {
+  auto rig_writer = *Writer<RigDescription>::Create(*edge_);
+  auto depth_writer = *Writer<EncodedDepthFrame>::Create(*edge_);
+  RigDescription rig;
+  rig.rig = MakeRig();
+  ASSERT_TRUE(rig_writer.Write("edge-1", rig).ok());
+  for (std::uint64_t i = 0; i < 100; ++i)
+    ASSERT_TRUE(depth_writer.Write("edge-1", MakeDepth(i)).ok());
+
+  auto rig_reader = *Reader<RigDescription>::Create(*ground_, &refusals_);
+  ASSERT_TRUE(TakeOne(rig_reader).has_value());
+  auto depth_reader = *Reader<EncodedDepthFrame>::Create(*ground_, &refusals_);
+  const auto first = TakeOne(depth_reader);
+  ASSERT_TRUE(first.has_value());
+  EXPECT_EQ(first->message.header.frame_number, 100U - kFrameHistory);
+}
+
+TEST_F(EndpointsTest, WakeEndsTheWaitAtOnce) {
+  auto waiter = *WaitSet::Create(*ground_);
+  std::jthread waker([&] { waiter.Wake(); });
+  const auto start = std::chrono::steady_clock::now();
+  waiter.Wait(60s);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 30s);
+}
+
+TEST_F(EndpointsTest, LeavingIsSeenByTheOtherSide) {
+  auto reader = *Reader<Hello>::Create(*ground_, &refusals_);
+  {
+    const auto peer = Join();
+    auto writer = *Writer<Hello>::Create(*peer);
+    ASSERT_TRUE(writer.Write("edge-1", Hello{}).ok());
+    ASSERT_TRUE(TakeOne(reader).has_value());
+    EXPECT_EQ(reader.matched_writers(), 1);
+  }
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (reader.matched_writers() > 0 && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  EXPECT_EQ(reader.matched_writers(), 0);
+}
+
+TEST_F(EndpointsTest, F60OversizePayloadIsNotWritten) {
+  auto writer = *Writer<EncodedDepthFrame>::Create(*edge_);
+  EncodedDepthFrame frame = MakeDepth(0);
+  frame.image.payload.resize(kMaxPayloadBytes + 1);
+  EXPECT_EQ(writer.Write("edge-1", frame).code(), StatusCode::kInvalidArgument);
+}
+
+TEST_F(EndpointsTest, EdgeIdMustFit) {
+  auto writer = *Writer<Hello>::Create(*edge_);
+  EXPECT_EQ(writer.Write("", Hello{}).code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(writer.Write(std::string(kMaxIdBytes + 1, 'x'), Hello{}).code(),
+            StatusCode::kInvalidArgument);
+  EXPECT_TRUE(writer.Write(std::string(kMaxIdBytes, 'x'), Hello{}).ok());
+}
+
+TEST_F(EndpointsTest, DomainMustExist) {
+  EXPECT_EQ(Participant::Create(environment_, -1).error().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(Participant::Create(environment_, kMaxDomainId + 1).error().code(),
+            StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace isotherm

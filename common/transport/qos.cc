@@ -1,0 +1,68 @@
+#include "common/transport/qos.h"
+
+#include <dds/dds.h>
+
+#include <array>
+
+namespace isotherm {
+namespace {
+
+/// How one topic is carried. All are reliable and keep-last: keep-all would let an outage block the
+/// writer.
+struct Profile {
+  const char* name;
+  /// Samples kept per rig, on both sides.
+  int history;
+  /// Kept for readers that come later (transient-local). Frames too: what is written between the
+  /// moment the writer sees the reader and the moment the reader sees the writer would be lost
+  /// otherwise.
+  bool keep_for_late_joiners;
+  /// Longest time that a write may wait for room in the middleware's buffers.
+  dds_duration_t max_blocking;
+  /// A writer that is silent for so long counts as gone. The middleware keeps it alive by itself.
+  dds_duration_t liveliness;
+};
+
+constexpr dds_duration_t kFrameBlocking = DDS_MSECS(100);
+constexpr dds_duration_t kSmallBlocking = DDS_MSECS(50);
+constexpr dds_duration_t kLease = DDS_SECS(1);
+
+constexpr std::array<Profile, 9> kProfiles = {{
+    {"isotherm/depth", kFrameHistory, true, kFrameBlocking, kLease},
+    {"isotherm/thermal", kFrameHistory, true, kFrameBlocking, kLease},
+    {"isotherm/rig", 1, true, kSmallBlocking, kLease},
+    {"isotherm/edge_status", 1, true, kSmallBlocking, kLease},
+    // No order may be overwritten by the next one, and none may reach an edge that starts later.
+    {"isotherm/command", 16, false, kSmallBlocking, kLease},
+    {"isotherm/command_result", 16, false, kSmallBlocking, kLease},
+    {"isotherm/receipt", 1, false, kSmallBlocking, kLease},
+    {"isotherm/feedback", 1, false, kSmallBlocking, kLease},
+    {"isotherm/hello", 1, true, kSmallBlocking, kLease},
+}};
+
+const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }
+
+}  // namespace
+
+void DdsQosDeleter::operator()(dds_qos* qos) const { dds_delete_qos(qos); }
+
+const char* TopicName(TopicId topic) { return ProfileOf(topic).name; }
+
+QosPtr MakeQos(TopicId topic) {
+  const Profile& profile = ProfileOf(topic);
+  QosPtr qos(dds_create_qos());
+  dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, profile.max_blocking);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, profile.history);
+  dds_qset_durability(qos.get(), profile.keep_for_late_joiners ? DDS_DURABILITY_TRANSIENT_LOCAL
+                                                               : DDS_DURABILITY_VOLATILE);
+  dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, profile.history,
+                              DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, profile.liveliness);
+  dds_qset_destination_order(qos.get(), DDS_DESTINATIONORDER_BY_RECEPTION_TIMESTAMP);
+  // A writer that leaves does not take its last samples with it.
+  dds_qset_writer_data_lifecycle(qos.get(), false);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  return qos;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "common/transport/topics.h"
+
+struct dds_qos;
+
+namespace isotherm {
+
+/// Frames of one stream that writer and reader keep: about a second at 30 Hz, so that repeating
+/// what a link lost has time to succeed.
+inline constexpr int kFrameHistory = 32;
+/// A flow window below the history cannot overflow it, neither in the writer nor in the reader.
+inline constexpr int kMaxFlowWindowFrames = kFrameHistory - 4;
+
+struct DdsQosDeleter {
+  void operator()(dds_qos* qos) const;
+};
+using QosPtr = std::unique_ptr<dds_qos, DdsQosDeleter>;
+
+const char* TopicName(TopicId topic);
+/// The same for topic, writer and reader, so that both sides cannot disagree.
+QosPtr MakeQos(TopicId topic);
+
+}  // namespace isotherm

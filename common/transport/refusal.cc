@@ -1,0 +1,62 @@
+#include "common/transport/refusal.h"
+
+#include <numeric>
+
+#include "common/base/log.h"
+
+namespace isotherm {
+
+std::string_view ToString(RefusalCause cause) {
+  switch (cause) {
+    case RefusalCause::kOversizePayload:
+      return "oversize payload";
+    case RefusalCause::kEmptyPayload:
+      return "empty payload";
+    case RefusalCause::kImpossibleSize:
+      return "impossible image size";
+    case RefusalCause::kUnknownEncoding:
+      return "unknown encoding";
+    case RefusalCause::kUnknownValue:
+      return "unknown enumeration value";
+    case RefusalCause::kNotFinite:
+      return "number is not finite";
+    case RefusalCause::kOutOfRange:
+      return "number out of range";
+    case RefusalCause::kNegativeTime:
+      return "negative time";
+    case RefusalCause::kImpossibleNumber:
+      return "impossible frame number";
+    case RefusalCause::kOtherSession:
+      return "session is over";
+    case RefusalCause::kUndecodable:
+      return "payload does not decode";
+    case RefusalCause::kOtherVersion:
+      return "other wire version";
+    case RefusalCause::kCount:
+      break;
+  }
+  return "unknown cause";
+}
+
+void RefusalCounter::Add(RefusalCause cause, std::string_view detail) {
+  std::uint64_t count = 0;
+  {
+    std::scoped_lock lock(mutex_);
+    count = ++counts_.at(static_cast<std::size_t>(cause));
+  }
+  if (count > 1) return;
+  LOG(Transport, Warning) << "sample refused: " << ToString(cause) << " (" << detail
+                          << "); further ones are only counted";
+}
+
+std::uint64_t RefusalCounter::count(RefusalCause cause) const {
+  std::scoped_lock lock(mutex_);
+  return counts_.at(static_cast<std::size_t>(cause));
+}
+
+std::uint64_t RefusalCounter::total() const {
+  std::scoped_lock lock(mutex_);
+  return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
+}
+
+}  // namespace isotherm

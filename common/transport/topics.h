@@ -1,0 +1,81 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/transport/messages.h"
+
+// Generated from idl/; complete only in the .cc files of this folder.
+struct isotherm_wire_DepthFrame;
+struct isotherm_wire_ThermalFrame;
+struct isotherm_wire_Rig;
+struct isotherm_wire_EdgeStatus;
+struct isotherm_wire_Command;
+struct isotherm_wire_CommandResult;
+struct isotherm_wire_Receipt;
+struct isotherm_wire_Feedback;
+struct isotherm_wire_Hello;
+
+namespace isotherm {
+
+enum class TopicId : std::uint8_t {
+  kDepth,
+  kThermal,
+  kRig,
+  kEdgeStatus,
+  kCommand,
+  kCommandResult,
+  kReceipt,
+  kFeedback,
+  kHello,
+};
+
+/// Relates a message to its topic and to the type that idlc generated for it.
+template <typename Message>
+struct TopicOf;
+template <>
+struct TopicOf<EncodedDepthFrame> {
+  using Wire = ::isotherm_wire_DepthFrame;
+  static constexpr TopicId kId = TopicId::kDepth;
+};
+template <>
+struct TopicOf<EncodedThermalFrame> {
+  using Wire = ::isotherm_wire_ThermalFrame;
+  static constexpr TopicId kId = TopicId::kThermal;
+};
+template <>
+struct TopicOf<RigDescription> {
+  using Wire = ::isotherm_wire_Rig;
+  static constexpr TopicId kId = TopicId::kRig;
+};
+template <>
+struct TopicOf<EdgeStatus> {
+  using Wire = ::isotherm_wire_EdgeStatus;
+  static constexpr TopicId kId = TopicId::kEdgeStatus;
+};
+template <>
+struct TopicOf<Command> {
+  using Wire = ::isotherm_wire_Command;
+  static constexpr TopicId kId = TopicId::kCommand;
+};
+template <>
+struct TopicOf<CommandResult> {
+  using Wire = ::isotherm_wire_CommandResult;
+  static constexpr TopicId kId = TopicId::kCommandResult;
+};
+template <>
+struct TopicOf<Receipt> {
+  using Wire = ::isotherm_wire_Receipt;
+  static constexpr TopicId kId = TopicId::kReceipt;
+};
+template <>
+struct TopicOf<Feedback> {
+  using Wire = ::isotherm_wire_Feedback;
+  static constexpr TopicId kId = TopicId::kFeedback;
+};
+template <>
+struct TopicOf<Hello> {
+  using Wire = ::isotherm_wire_Hello;
+  static constexpr TopicId kId = TopicId::kHello;
+};
+
+}  // namespace isotherm

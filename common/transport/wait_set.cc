@@ -1,0 +1,35 @@
+#include "common/transport/wait_set.h"
+
+#include <dds/dds.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isotherm {
+
+Result<WaitSet> WaitSet::Create(const Participant& participant) {
+  DdsHandle wait_set(dds_create_waitset(participant.handle()));
+  DdsHandle guard(dds_create_guardcondition(participant.handle()));
+  if (wait_set.value() < 0 || guard.value() < 0 ||
+      dds_waitset_attach(wait_set.value(), guard.value(), 0) != DDS_RETCODE_OK) {
+    return Err(Internal("cannot create a DDS wait set"));
+  }
+  return WaitSet(std::move(wait_set), std::move(guard));
+}
+
+Status WaitSet::AttachCondition(std::int32_t condition) {
+  const dds_return_t code = dds_waitset_attach(wait_set_.value(), condition, 0);
+  if (code == DDS_RETCODE_OK) return OkStatus();
+  return Internal(fmt::format("cannot attach to a DDS wait set: {}", dds_strretcode(code)));
+}
+
+void WaitSet::Wait(Nanoseconds timeout) {
+  static_cast<void>(dds_waitset_wait(wait_set_.value(), nullptr, 0,
+                                     std::max<dds_duration_t>(0, timeout.count())));
+  bool woken = false;
+  static_cast<void>(dds_take_guardcondition(guard_.value(), &woken));
+}
+
+void WaitSet::Wake() { static_cast<void>(dds_set_guardcondition(guard_.value(), true)); }
+
+}  // namespace isotherm
