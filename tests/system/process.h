@@ -1,0 +1,95 @@
+#pragma once
+
+#include <sys/types.h>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+namespace isotherm::system_test {
+
+using Seconds = std::chrono::duration<double>;
+
+/// What a child process is started with.
+struct Command {
+  std::filesystem::path program;
+  std::vector<std::string> arguments;
+  std::vector<std::string> environment;  ///< "NAME=value", on top of this process's own.
+  std::filesystem::path output_file =
+      {};  ///< Standard output goes here instead of being collected.
+};
+
+/// How a child ended: exit status, or 128 + signal number as a shell would say.
+using ExitStatus = int;
+
+/// A running program whose standard output and error are collected. Killed at the end of its life
+/// if it still runs. Thread-compatible.
+class Process {
+ public:
+  /// Aborts the test program if `command.program` cannot be started at all.
+  explicit Process(const Command& command);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void Signal(int signal) const;
+  /// The exit status, or nullopt if the program still runs after `timeout`.
+  std::optional<ExitStatus> WaitForExit(Seconds timeout);
+  /// True as soon as `text` has appeared in the output, false if it has not within `timeout` or
+  /// never will.
+  bool WaitForOutput(std::string_view text, Seconds timeout);
+  /// Everything written so far; everything at all once WaitForExit has returned a status.
+  std::string output() const;
+  pid_t pid() const { return pid_; }
+
+ private:
+  void Drain(int pipe);
+
+  pid_t pid_ = -1;
+  int pidfd_ = -1;
+  std::optional<ExitStatus> exit_status_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::string output_;
+  bool output_ended_ = false;
+  std::jthread reader_;
+};
+
+/// A program that has ended.
+struct Finished {
+  ExitStatus status = -1;
+  std::string output;
+};
+
+/// Runs a program to its end; a status of -1 says that it was still running after `timeout` and was
+/// killed.
+Finished RunToEnd(const Command& command, Seconds timeout);
+
+/// What the service manager would see of a daemon: the messages of its notify socket.
+/// Thread-compatible.
+class NotifySocket {
+ public:
+  /// Creates the socket inside `folder`.
+  explicit NotifySocket(const std::filesystem::path& folder);
+  ~NotifySocket();
+  NotifySocket(const NotifySocket&) = delete;
+  NotifySocket& operator=(const NotifySocket&) = delete;
+
+  /// "NOTIFY_SOCKET=..." for Command::environment.
+  std::string environment() const { return "NOTIFY_SOCKET=" + path_.string(); }
+  /// True as soon as a message with the line `line` (e.g. "READY=1") has come, false after
+  /// `timeout`.
+  bool WaitFor(std::string_view line, Seconds timeout);
+
+ private:
+  std::filesystem::path path_;
+  int socket_ = -1;
+  std::string received_ = "\n";
+};
+
+}  // namespace isotherm::system_test
