@@ -12,14 +12,9 @@
 #include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/stamped_pose.h"
 
 namespace isotherm {
-
-/// A pose on the time line. `T_world_depth` unless said otherwise where it is used.
-struct StampedPose {
-  CaptureTime time;
-  RigidTransform T_world_depth;
-};
 
 /// The shutter closed or opened (from the camera, the supervisor or a data set).
 struct NucEvent {
@@ -28,15 +23,17 @@ struct NucEvent {
   NucSource source = NucSource::kUnknown;
 };
 
-/// How images are stored. kViewable: foxglove.RawImage, so that any MCAP viewer shows the scan. kCompact: our
-/// lossless codes in messages that are field-compatible with foxglove.CompressedImage (about a third smaller).
+/// How images are stored. kViewable: foxglove.RawImage, so that any MCAP viewer shows the scan.
+/// kCompact: our lossless codes in messages that are field-compatible with foxglove.CompressedImage
+/// (about a third smaller).
 enum class ImageStorage { kViewable, kCompact };
 
 struct RecordingOptions {
   ImageStorage image_storage = ImageStorage::kCompact;
-  std::size_t chunk_bytes = 4U << 20;             ///< A chunk is closed when it holds this much.
-  Nanoseconds flush_interval = std::chrono::milliseconds(500);  ///< ... or is this old (capture time); at most 1 s.
-  bool sync = true;                                ///< fdatasync after each chunk, so that a power cut costs at most the last.
+  std::size_t chunk_bytes = 4U << 20;  ///< A chunk is closed when it holds this much.
+  Nanoseconds flush_interval =
+      std::chrono::milliseconds(500);  ///< ... or is this old (capture time); at most 1 s.
+  bool sync = true;  ///< fdatasync after each chunk, so that a power cut costs at most the last.
 };
 
 /// Counts for the account: written + failed = offered.
@@ -47,9 +44,10 @@ struct RecordingStats {
   std::uint64_t bytes = 0;
 };
 
-/// Writes a scan as MCAP: chunks with zstd and CRC, message indexes, a summary at the end. The file grows under
-/// its final name and is readable up to the last flushed chunk at any time. After an I/O error (disk full) the
-/// writer keeps what is good, reports the error once per call and writes nothing more. Thread-compatible.
+/// Writes a scan as MCAP: chunks with zstd and CRC, message indexes, a summary at the end. The file
+/// grows under its final name and is readable up to the last flushed chunk at any time. After an
+/// I/O error (disk full) the writer keeps what is good, reports the error once per call and writes
+/// nothing more. Thread-compatible.
 class RecordingWriter {
  public:
   /// Creates `path` (parent directories too); refuses to overwrite an existing file.
@@ -58,17 +56,22 @@ class RecordingWriter {
   virtual ~RecordingWriter() = default;
 
   virtual Status Write(const Rig& rig) = 0;
-  virtual Status Write(const EncodedDepthFrame& frame, const std::optional<CaptureTime>& arrival) = 0;
-  virtual Status Write(const EncodedThermalFrame& frame, const std::optional<CaptureTime>& arrival) = 0;
+  virtual Status Write(const EncodedDepthFrame& frame,
+                       const std::optional<CaptureTime>& arrival) = 0;
+  virtual Status Write(const EncodedThermalFrame& frame,
+                       const std::optional<CaptureTime>& arrival) = 0;
   virtual Status Write(const NucEvent& event) = 0;
   /// `stream`: "groundtruth" or "trajectory"; written as foxglove.FrameTransform world -> depth.
   virtual Status WritePose(std::string_view stream, const StampedPose& pose) = 0;
   /// Free text kept as MCAP metadata: `configuration`, `software`, `origin`, ...
-  virtual Status WriteMetadata(std::string_view name, const std::map<std::string, std::string>& values) = 0;
+  virtual Status WriteMetadata(std::string_view name,
+                               const std::map<std::string, std::string>& values) = 0;
   virtual Status WriteLog(CaptureTime time, std::string_view level, std::string_view text) = 0;
-  /// Any further protobuf message under its own topic (feedback, status): `schema` is the FileDescriptorSet.
-  virtual Status WriteMessage(std::string_view topic, std::string_view schema_name, std::string_view schema,
-                              CaptureTime time, std::string_view payload) = 0;
+  /// Any further protobuf message under its own topic (feedback, status): `schema` is the
+  /// FileDescriptorSet.
+  virtual Status WriteMessage(std::string_view topic, std::string_view schema_name,
+                              std::string_view schema, CaptureTime time,
+                              std::string_view payload) = 0;
   /// Closes the current chunk and hands it to the operating system.
   virtual Status Flush() = 0;
   /// Writes index, summary and footer. Idempotent; the destructor calls it.
@@ -90,8 +93,8 @@ struct RecordedPose {
 };
 using RecordedItem = std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose>;
 
-/// What is known about a recording without reading its frames (from the summary, or rebuilt by one pass over the
-/// chunk headers if the file has none).
+/// What is known about a recording without reading its frames (from the summary, or rebuilt by one
+/// pass over the chunk headers if the file has none).
 struct RecordingInfo {
   bool complete = false;            ///< Has footer and summary.
   std::uint64_t bytes_ignored = 0;  ///< Damaged or unfinished tail that is not read.
@@ -100,8 +103,8 @@ struct RecordingInfo {
   std::map<std::string, std::map<std::string, std::string>> metadata;
 };
 
-/// Reads scans back in the order of log time within bounded memory (a chunk or two at a time). A truncated or
-/// damaged file is read up to its last good chunk. Thread-compatible.
+/// Reads scans back in the order of log time within bounded memory (a chunk or two at a time). A
+/// truncated or damaged file is read up to its last good chunk. Thread-compatible.
 class RecordingReader {
  public:
   static Result<std::unique_ptr<RecordingReader>> Open(const std::filesystem::path& path);
@@ -110,8 +113,8 @@ class RecordingReader {
   virtual const RecordingInfo& info() const = 0;
   /// The rig calibration in the file; kNotFound if it has none.
   virtual Result<Rig> ReadRig() = 0;
-  /// Next item in log-time order; nullopt at the end. kDataLoss for a message that cannot be read: the next call
-  /// goes on behind it.
+  /// Next item in log-time order; nullopt at the end. kDataLoss for a message that cannot be read:
+  /// the next call goes on behind it.
   virtual Result<std::optional<RecordedItem>> Next() = 0;
   /// Starts again at the first item at or after `time`.
   virtual Status Seek(CaptureTime time) = 0;

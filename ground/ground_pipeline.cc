@@ -1,0 +1,217 @@
+#include "ground/ground_pipeline.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "common/base/log.h"
+#include "ground/initial_pose.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+/// Adds the time from construction to destruction to a stage.
+class StageTimer {
+ public:
+  explicit StageTimer(StageStats& stats) : stats_(stats) {}
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+  ~StageTimer() {
+    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start_;
+    stats_.Add(elapsed.count());
+  }
+
+ private:
+  StageStats& stats_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+int ThreadCount(const GroundOptions& options) {
+  if (options.threads() > 0) return options.threads();
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+}  // namespace
+
+std::vector<Status> ValidateAll(const GroundOptions& options) {
+  std::vector<Status> problems;
+  const auto check = [&](Status status) {
+    if (!status.ok()) problems.push_back(std::move(status));
+  };
+  check(Validate(options.volume()));
+  check(Validate(options.preprocessor()));
+  check(Validate(options.tracker()));
+  check(Validate(options.tsdf(), options.volume()));
+  check(Validate(options.thermal()));
+  if (options.threads() < 0 || options.threads() > 256) {
+    check(InvalidArgument(fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));
+  }
+  if (!options.volume().initial_pose().empty()) {
+    if (const auto pose = ParsePose(options.volume().initial_pose()); !pose) {
+      check(pose.error().WithContext("volume.initial_pose"));
+    }
+  }
+  return problems;
+}
+
+Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(const GroundOptions& options, const Rig& rig,
+                                                               std::optional<RigidTransform> initial_pose) {
+  if (const std::vector<Status> problems = ValidateAll(options); !problems.empty()) return Err(problems.front());
+  if (Status status = Validate(rig); !status.ok()) return Err(status.WithContext("rig calibration"));
+  if (!rig.depth) {
+    return Err(FailedPrecondition(
+        "the rig calibration has no depth intrinsics: nothing can be reconstructed without a depth camera"));
+  }
+  if (!initial_pose && !options.volume().initial_pose().empty()) {
+    initial_pose = ParsePose(options.volume().initial_pose()).value();
+  }
+  const Result<VoxelGrid> grid = MakeVoxelGrid(options.volume());
+  if (!grid) return Err(grid.error());
+  return std::unique_ptr<GroundPipeline>(new GroundPipeline(options, rig, *grid, initial_pose));
+}
+
+GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
+                               std::optional<RigidTransform> initial_pose)
+    : options_(options),
+      rig_(rig),
+      initial_pose_(initial_pose),
+      thermal_status_(CheckThermalFusion(rig)),
+      pool_(ThreadCount(options)),
+      preprocessor_(options.preprocessor(), *rig.depth),
+      tracker_(options.tracker()),
+      integrator_(options.tsdf()),
+      gate_(options.tsdf()) {
+  const std::int32_t max_blocks = MaxBlocks(options.volume(), grid);
+  tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
+  thermal_ = std::make_unique<ThermalVolume>(max_blocks);
+  if (thermal_status_.ok()) fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal);
+  view_.camera = rig.depth->WithoutDistortion();
+}
+
+RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
+  if (initial_pose_) return *initial_pose_;
+  return PoseFacingCentre(tsdf_->grid(), depth.depth_m);
+}
+
+RigidTransform GroundPipeline::Predict(CaptureTime time) const {
+  const RigidTransform& last = view_.T_world_depth;
+  if (!options_.tracker().predict_motion() || !last_ || !before_last_) return last;
+  const double alpha = ToSeconds(time - before_last_->time) / ToSeconds(last_->time - before_last_->time);
+  constexpr double kMaxExtrapolation = 3.0;  // Two missing frames; beyond that velocity says little.
+  if (!(alpha >= 1.0 && alpha <= kMaxExtrapolation)) return last;
+  return Interpolate(before_last_->T_world_depth, last_->T_world_depth, alpha);
+}
+
+TrackingResult GroundPipeline::Track(const PreparedDepth& depth, CaptureTime time) {
+  if (trajectory_.empty()) {
+    TrackingResult first;
+    constexpr int kMinPixels = 1000;
+    if (depth.valid_pixels < kMinPixels) first.lost = LostReason::kTooFewPixels;
+    first.T_world_depth = InitialPose(depth);
+    return first;
+  }
+  const StageTimer timer(stage_stats_["track"]);
+  return tracker_.Track(depth, view_, tsdf_->grid(), Predict(time), pool_);
+}
+
+void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
+  const StageTimer timer(stage_stats_["raycast"]);
+  view_.T_world_depth = T_world_depth;
+  Raycast(*tsdf_, view_.camera, T_world_depth, static_cast<float>(options_.raycast().min_weight()), pool_,
+          view_.maps);
+}
+
+DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
+  ++counts_.depth_in;
+  DepthReport report;
+  if (frame.depth_raw.width() != rig_.depth->width || frame.depth_raw.height() != rig_.depth->height) {
+    ++counts_.depth_refused;
+    LOG(Ground, Warning) << "depth frame of another size than the calibration's, frame="
+                         << frame.header.frame_number << " width_px=" << frame.depth_raw.width()
+                         << " height_px=" << frame.depth_raw.height();
+    return report;
+  }
+  const StageTimer timer(stage_stats_["depth_frame"]);
+  const PreparedDepth* depth = nullptr;
+  {
+    const StageTimer preprocess_timer(stage_stats_["preprocess"]);
+    depth = &preprocessor_.Process(frame, pool_);
+  }
+  const CaptureTime time = frame.header.capture_time;
+  report.tracking = Track(*depth, time);
+  report.tracked = report.tracking.tracked();
+  if (!report.tracked) {
+    ++counts_.depth_lost[std::string(ToString(report.tracking.lost))];
+    last_.reset();
+    before_last_.reset();
+    return report;
+  }
+  ++counts_.depth_tracked;
+  const RigidTransform& T_world_depth = report.tracking.T_world_depth;
+  report.integrated = gate_.Accepts(last_ ? std::optional(last_->T_world_depth) : std::nullopt, T_world_depth);
+  if (report.integrated) {
+    const StageTimer integrate_timer(stage_stats_["integrate"]);
+    integrator_.Integrate(*depth, T_world_depth, pool_, *tsdf_);
+    ++counts_.depth_integrated;
+  }
+  UpdateView(T_world_depth);
+  before_last_ = last_;
+  last_ = StampedPose{time, T_world_depth};
+  trajectory_.push_back(*last_);
+  FuseWaitingThermal(time);
+  return report;
+}
+
+void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
+  ++counts_.thermal_in;
+  if (!fuser_) {
+    LeaveOut("no_calibration");
+  } else if (!frame->valid) {
+    LeaveOut("nuc");
+  } else if (frame->centikelvin.width() != rig_.thermal->width ||
+             frame->centikelvin.height() != rig_.thermal->height) {
+    LeaveOut("wrong_size");
+  } else {
+    waiting_thermal_.push_back(std::move(frame));
+    // A depth stream that stopped must not make the buffer grow.
+    constexpr std::size_t kMaxWaiting = 64;
+    if (waiting_thermal_.size() > kMaxWaiting) {
+      waiting_thermal_.pop_front();
+      LeaveOut("no_depth");
+    }
+  }
+}
+
+void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
+  while (!waiting_thermal_.empty() && waiting_thermal_.front()->header.capture_time <= now) {
+    const ThermalFramePtr frame = waiting_thermal_.front();
+    waiting_thermal_.pop_front();
+    const CaptureTime time = frame->header.capture_time;
+    if (!before_last_ || time < before_last_->time) {
+      LeaveOut("pose_unknown");
+      continue;
+    }
+    const double interval_s = ToSeconds(last_->time - before_last_->time);
+    if (interval_s > options_.thermal().max_wait_s()) {
+      LeaveOut("depth_gap");
+      continue;
+    }
+    const StageTimer timer(stage_stats_["thermal_frame"]);
+    const double alpha = interval_s > 0.0 ? ToSeconds(time - before_last_->time) / interval_s : 1.0;
+    const RigidTransform T_world_depth_at_capture =
+        Interpolate(before_last_->T_world_depth, last_->T_world_depth, alpha);
+    const RigidTransform T_world_thermal = T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
+    fuser_->Fuse(*frame, T_world_thermal, view_.maps, view_.camera, view_.T_world_depth, *tsdf_, pool_, *thermal_);
+    ++counts_.thermal_fused;
+  }
+}
+
+void GroundPipeline::Finish() {
+  for (std::size_t i = 0; i < waiting_thermal_.size(); ++i) LeaveOut("no_depth_after");
+  waiting_thermal_.clear();
+}
+
+}  // namespace isotherm

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/stage_stats.h"
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/stamped_pose.h"
+#include "ground/ground_options.pb.h"
+#include "ground/thermal/thermal_fuser.h"
+#include "ground/tracker/depth_preprocessor.h"
+#include "ground/tracker/icp_tracker.h"
+#include "ground/tsdf/tsdf_integrator.h"
+
+namespace isotherm {
+
+/// Checks every stage's options; returns all problems, not only the first.
+std::vector<Status> ValidateAll(const GroundOptions& options);
+
+/// What the pipeline did with the frames it was given: in = sum of the outcomes.
+struct PipelineCounts {
+  std::uint64_t depth_in = 0;
+  std::uint64_t depth_tracked = 0;
+  std::uint64_t depth_integrated = 0;  ///< Of the tracked ones.
+  std::uint64_t depth_refused = 0;     ///< Wrong size or nothing in it.
+  std::map<std::string, std::uint64_t> depth_lost;  ///< By reason.
+  std::uint64_t thermal_in = 0;
+  std::uint64_t thermal_fused = 0;
+  std::map<std::string, std::uint64_t> thermal_left_out;  ///< By reason.
+};
+
+struct DepthReport {
+  bool tracked = false;
+  bool integrated = false;
+  TrackingResult tracking;
+};
+
+/// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame at a time, in
+/// capture-time order. Both drivers, live and inline, call it; it owns no thread but its pool, no device and no
+/// clock that matters to the result (stage times are measured for statistics only). Thread-bound.
+class GroundPipeline {
+ public:
+  /// `rig` must have depth intrinsics. `initial_pose` is T_world_depth of the first depth frame; without one it
+  /// comes from options.volume.initial_pose, and without that the volume's centre is put on the first frame's
+  /// optical axis at its median depth.
+  static Result<std::unique_ptr<GroundPipeline>> Create(const GroundOptions& options, const Rig& rig,
+                                                        std::optional<RigidTransform> initial_pose);
+
+  DepthReport ProcessDepth(const DepthFrame& frame);
+  /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).
+  void ProcessThermal(ThermalFramePtr frame);
+  /// Thermal frames still waiting are counted as left out.
+  void Finish();
+
+  const TsdfVolume& tsdf() const { return *tsdf_; }
+  const ThermalVolume& thermal() const { return *thermal_; }
+  /// The model as seen from the last tracked pose; empty maps before the first frame.
+  const ModelView& view() const { return view_; }
+  const std::vector<StampedPose>& trajectory() const { return trajectory_; }
+  const PipelineCounts& counts() const { return counts_; }
+  /// Milliseconds per call by stage, in the order of the line.
+  const std::map<std::string, StageStats>& stage_stats() const { return stage_stats_; }
+  /// Why thermal frames are not fused at all, or ok.
+  const Status& thermal_status() const { return thermal_status_; }
+  int threads() const { return pool_.threads(); }
+
+ private:
+  GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
+                 std::optional<RigidTransform> initial_pose);
+
+  RigidTransform InitialPose(const PreparedDepth& depth) const;
+  TrackingResult Track(const PreparedDepth& depth, CaptureTime time);
+  RigidTransform Predict(CaptureTime time) const;
+  void UpdateView(const RigidTransform& T_world_depth);
+  void FuseWaitingThermal(CaptureTime now);
+  void LeaveOut(const char* reason) { ++counts_.thermal_left_out[reason]; }
+
+  const GroundOptions options_;
+  const Rig rig_;
+  const std::optional<RigidTransform> initial_pose_;
+  Status thermal_status_;
+  ThreadPool pool_;
+  DepthPreprocessor preprocessor_;
+  IcpTracker tracker_;
+  TsdfIntegrator integrator_;
+  IntegrationGate gate_;
+  std::unique_ptr<TsdfVolume> tsdf_;
+  std::unique_ptr<ThermalVolume> thermal_;
+  std::unique_ptr<ThermalFuser> fuser_;
+  ModelView view_;
+  std::vector<StampedPose> trajectory_;
+  std::optional<StampedPose> last_, before_last_;  ///< Consecutive tracked poses; empty after a lost frame.
+  std::deque<ThermalFramePtr> waiting_thermal_;
+  PipelineCounts counts_;
+  std::map<std::string, StageStats> stage_stats_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/image.h"
+#include "common/geometry/rigid_transform.h"
+#include "ground/ground_options.pb.h"
+#include "ground/tsdf/tsdf_volume.h"
+
+namespace isotherm {
+
+struct PreparedDepth;
+
+Status Validate(const TsdfOptions& options, const VolumeOptions& volume);
+
+/// What one depth pixel says about the surface: the plane n . p = offset (camera coordinates, metres, n towards
+/// the camera) and the weight of the observation (0 = nothing was seen).
+struct SurfaceSample {
+  float nx, ny, nz, offset;
+  float depth_m;
+  float weight;
+};
+
+/// Fuses depth images into the volume (algorithm 2). Distances are measured from the voxel to the plane through
+/// the observed point along its normal, so that they do not depend on the direction of view (thesis 8.2); where
+/// there is no normal, along the viewing ray as in the thesis. Keeps scratch memory. Thread-compatible.
+class TsdfIntegrator {
+ public:
+  explicit TsdfIntegrator(const TsdfOptions& options) : options_(options) {}
+
+  /// Allocates the blocks within the truncation distance of the measured surface, then updates these and all
+  /// that lie in front of it.
+  void Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth, ThreadPool& pool,
+                 TsdfVolume& volume);
+
+  /// Blocks that the last call updated.
+  const std::vector<std::int32_t>& updated_blocks() const { return updated_blocks_; }
+
+ private:
+  void MakeSamples(const PreparedDepth& depth, ThreadPool& pool);
+  void AllocateBand(const PreparedDepth& depth, const RigidTransform& T_world_depth, ThreadPool& pool,
+                    TsdfVolume& volume);
+  void SelectBlocks(const PreparedDepth& depth, const RigidTransform& T_depth_world, const TsdfVolume& volume);
+
+  const TsdfOptions options_;
+  Image<SurfaceSample> samples_;
+  std::vector<std::vector<GridIndex>> touched_by_strip_;
+  std::vector<std::int32_t> updated_blocks_;
+};
+
+/// Decides which tracked frames are integrated (thesis 6.1.3). Thread-compatible.
+class IntegrationGate {
+ public:
+  explicit IntegrationGate(const TsdfOptions& options) : options_(options) {}
+
+  /// `previous` is the pose of the frame before, if that was tracked.
+  bool Accepts(const std::optional<RigidTransform>& previous, const RigidTransform& T_world_depth);
+  std::uint64_t accepted() const { return accepted_; }
+
+ private:
+  const TsdfOptions options_;
+  std::optional<RigidTransform> last_integrated_;
+  std::uint64_t accepted_ = 0;
+};
+
+}  // namespace isotherm
