@@ -1,0 +1,141 @@
+#include "common/recording/byte_stream.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace isotherm {
+namespace {
+
+Status FromErrno(int error, std::string_view action, const std::filesystem::path& path) {
+  std::string message = fmt::format("cannot {} {}: {}", action, path.string(),
+                                    std::generic_category().message(error));
+  if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
+    return ResourceExhausted(message + "; free some space or record to another disk");
+  }
+  if (error == ENOENT) return NotFound(std::move(message));
+  return IoError(std::move(message));
+}
+
+class FileDescriptor {
+ public:
+  explicit FileDescriptor(int fd) : fd_(fd) {}
+  FileDescriptor(const FileDescriptor&) = delete;
+  FileDescriptor& operator=(const FileDescriptor&) = delete;
+  FileDescriptor(FileDescriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+  FileDescriptor& operator=(FileDescriptor&&) = delete;
+  ~FileDescriptor() { Close(); }
+
+  int get() const { return fd_; }
+  /// 0 or errno.
+  int Close() { return fd_ >= 0 && ::close(std::exchange(fd_, -1)) != 0 ? errno : 0; }
+
+ private:
+  int fd_;
+};
+
+class FileSink final : public ByteSink {
+ public:
+  FileSink(FileDescriptor fd, std::filesystem::path path)
+      : fd_(std::move(fd)), path_(std::move(path)) {}
+
+  Status Write(std::span<const std::uint8_t> bytes) override {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(fd_.get(), bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return FromErrno(errno, "write", path_);
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+    return OkStatus();
+  }
+
+  Status Sync() override {
+    if (::fdatasync(fd_.get()) == 0) return OkStatus();
+    // Devices and pipes have nothing to sync.
+    if (errno == EINVAL || errno == EROFS || errno == ENOTSUP) return OkStatus();
+    return FromErrno(errno, "sync", path_);
+  }
+
+  Status Close() override {
+    const int error = fd_.Close();
+    return error == 0 ? OkStatus() : FromErrno(error, "close", path_);
+  }
+
+ private:
+  FileDescriptor fd_;
+  const std::filesystem::path path_;
+};
+
+class FileSource final : public ByteSource {
+ public:
+  FileSource(FileDescriptor fd, std::filesystem::path path, std::uint64_t size)
+      : fd_(std::move(fd)), path_(std::move(path)), size_(size) {}
+
+  std::uint64_t size() const override { return size_; }
+
+  Status Read(std::uint64_t offset, std::span<std::uint8_t> bytes) const override {
+    while (!bytes.empty()) {
+      const ssize_t count =
+          ::pread(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+      if (count < 0 && errno == EINTR) continue;
+      if (count < 0) return FromErrno(errno, "read", path_);
+      if (count == 0)
+        return DataLoss(fmt::format("{} became shorter while it was read", path_.string()));
+      bytes = bytes.subspan(static_cast<std::size_t>(count));
+      offset += static_cast<std::uint64_t>(count);
+    }
+    return OkStatus();
+  }
+
+ private:
+  FileDescriptor fd_;
+  const std::filesystem::path path_;
+  const std::uint64_t size_;
+};
+
+/// The new directory entry must survive a power cut as well. Best effort: some file systems refuse.
+void SyncDirectory(const std::filesystem::path& directory) {
+  const FileDescriptor fd(::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (fd.get() >= 0) static_cast<void>(::fsync(fd.get()));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const bool device =
+      std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status);
+  if (std::filesystem::exists(status) && !device) {
+    return Err(InvalidArgument(
+        fmt::format("{} exists already; choose another name or remove it", path.string())));
+  }
+  const std::filesystem::path directory = path.has_parent_path() ? path.parent_path() : ".";
+  std::filesystem::create_directories(directory, error);
+  if (error) return Err(FromErrno(error.value(), "create folder", directory));
+  const int flags = O_WRONLY | O_CLOEXEC | (device ? 0 : O_CREAT | O_EXCL);
+  FileDescriptor fd(::open(path.c_str(), flags, 0644));
+  if (fd.get() < 0) return Err(FromErrno(errno, "create", path));
+  if (!device) SyncDirectory(directory);
+  return std::make_unique<FileSink>(std::move(fd), path);
+}
+
+Result<std::unique_ptr<ByteSource>> OpenFileSource(const std::filesystem::path& path) {
+  FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (fd.get() < 0) return Err(FromErrno(errno, "open", path));
+  struct stat info {};
+  if (::fstat(fd.get(), &info) != 0) return Err(FromErrno(errno, "open", path));
+  if (!S_ISREG(info.st_mode)) {
+    return Err(InvalidArgument(fmt::format("{} is not a file", path.string())));
+  }
+  return std::make_unique<FileSource>(std::move(fd), path,
+                                      static_cast<std::uint64_t>(info.st_size));
+}
+
+}  // namespace isotherm

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "common/base/status.h"
+
+namespace isotherm {
+
+/// Where a recording is written. Thread-compatible.
+class ByteSink {
+ public:
+  virtual ~ByteSink() = default;
+  /// Appends all of `bytes` or fails; after a failure any part of them may have been written.
+  virtual Status Write(std::span<const std::uint8_t> bytes) = 0;
+  /// Returns when everything written so far survives a power cut.
+  virtual Status Sync() = 0;
+  virtual Status Close() = 0;
+};
+
+/// Where a recording is read from. Thread-compatible.
+class ByteSource {
+ public:
+  virtual ~ByteSource() = default;
+  virtual std::uint64_t size() const = 0;
+  /// Fills `bytes` from `offset` or fails; the caller has checked that they lie within size().
+  virtual Status Read(std::uint64_t offset, std::span<std::uint8_t> bytes) const = 0;
+};
+
+/// A new file (parent directories are created, an existing file is refused) or an existing device
+/// or pipe.
+Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& path);
+
+/// A regular file, read in pieces. Its size is taken when it is opened.
+Result<std::unique_ptr<ByteSource>> OpenFileSource(const std::filesystem::path& path);
+
+}  // namespace isotherm

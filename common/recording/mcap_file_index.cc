@@ -1,0 +1,150 @@
+#include "common/recording/mcap_file_index.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "common/recording/mcap_scan.h"
+
+namespace isotherm::mcap {
+namespace {
+
+/// Two hours of recording have a summary of about 3 MB.
+constexpr std::uint64_t kMaxSummaryBytes = 64U << 20;
+
+Status CheckMagic(const ByteSource& source) {
+  std::array<std::uint8_t, kMagic.size()> magic{};
+  if (source.size() < magic.size()) {
+    return DataLoss(fmt::format("not an MCAP file: it has only {} bytes", source.size()));
+  }
+  ISOTHERM_RETURN_IF_ERROR(source.Read(0, magic));
+  if (magic == kMagic) return OkStatus();
+  constexpr std::size_t kVersionPosition = 5;
+  const char version = static_cast<char>(magic[kVersionPosition]);
+  magic[kVersionPosition] = kMagic[kVersionPosition];
+  if (magic != kMagic) return DataLoss("not an MCAP file: it starts with other bytes");
+  return FailedPrecondition(fmt::format(
+      "MCAP version '{}' is newer than this program, which reads version '0': update Isotherm",
+      version));
+}
+
+/// Offset of the footer record if the file ends with one.
+std::optional<Footer> ReadFooter(const ByteSource& source) {
+  constexpr std::size_t kEndBytes = kFooterRecordBytes + kMagic.size();
+  if (source.size() < kMagic.size() + kEndBytes) return std::nullopt;
+  std::array<std::uint8_t, kEndBytes> end{};
+  if (!source.Read(source.size() - kEndBytes, end).ok()) return std::nullopt;
+  if (!std::equal(kMagic.begin(), kMagic.end(), end.end() - kMagic.size())) return std::nullopt;
+  const auto [opcode, length] = ParseRecordPrefix(end);
+  Footer footer;
+  if (opcode != Opcode::kFooter || length != kFooterRecordBytes - kRecordPrefixBytes ||
+      !Parse(std::span(end).subspan(kRecordPrefixBytes), footer)) {
+    return std::nullopt;
+  }
+  return footer;
+}
+
+/// The summary with its footer; empty if there is none or its checksum is wrong.
+Bytes ReadSummaryBytes(const ByteSource& source) {
+  const std::optional<Footer> footer = ReadFooter(source);
+  const std::uint64_t end = source.size() - kMagic.size();
+  if (!footer || footer->summary_start < kMagic.size() || footer->summary_start >= end ||
+      end - footer->summary_start > kMaxSummaryBytes) {
+    return {};
+  }
+  Bytes bytes(static_cast<std::size_t>(end - footer->summary_start));
+  if (bytes.size() < kFooterRecordBytes || !source.Read(footer->summary_start, bytes).ok())
+    return {};
+  const auto checked = std::span(bytes).first(bytes.size() - sizeof(footer->summary_crc));
+  if (footer->summary_crc != 0 && Crc32(checked) != footer->summary_crc) return {};
+  return bytes;
+}
+
+bool AddMetadata(const ByteSource& source, const MetadataIndex& index, FileIndex& file) {
+  if (index.length < kRecordPrefixBytes || index.length > kMaxSummaryBytes ||
+      index.offset > source.size() || index.length > source.size() - index.offset) {
+    return false;
+  }
+  Bytes bytes(static_cast<std::size_t>(index.length));
+  if (!source.Read(index.offset, bytes).ok()) return false;
+  RecordWalker walker(bytes);
+  const auto record = walker.Next();
+  Metadata metadata;
+  if (!record || record->opcode != Opcode::kMetadata || !Parse(record->content, metadata))
+    return false;
+  file.metadata.push_back(std::move(metadata));
+  return true;
+}
+
+bool AddSummaryRecord(const ByteSource& source, const RecordWalker::Record& record, FileIndex& file,
+                      std::optional<Statistics>& statistics) {
+  switch (record.opcode) {
+    case Opcode::kChunkIndex: {
+      ChunkIndex chunk;
+      if (!Parse(record.content, chunk)) return false;
+      file.segments.push_back({.is_chunk = true,
+                               .offset = chunk.chunk_offset,
+                               .length = chunk.chunk_length,
+                               .start = chunk.start,
+                               .end = chunk.end});
+      file.compressions.insert(chunk.compression);
+      return chunk.chunk_offset <= source.size() &&
+             chunk.chunk_length <= source.size() - chunk.chunk_offset;
+    }
+    case Opcode::kStatistics:
+      return Parse(record.content, statistics.emplace());
+    case Opcode::kMetadataIndex: {
+      MetadataIndex index;
+      return Parse(record.content, index) && AddMetadata(source, index, file);
+    }
+    default:
+      file.definitions.Add(record);
+      return true;
+  }
+}
+
+/// True if the summary lists everything that the statistics count.
+bool CoversEverything(const FileIndex& file, const Statistics& statistics) {
+  return statistics.chunk_count == file.segments.size() &&
+         statistics.metadata_count == file.metadata.size() &&
+         statistics.channel_count <= file.definitions.channels.size() &&
+         statistics.schema_count <= file.definitions.schemas.size() &&
+         (statistics.message_count == 0 || statistics.chunk_count > 0);
+}
+
+std::optional<FileIndex> ReadSummary(const ByteSource& source) {
+  const Bytes summary = ReadSummaryBytes(source);
+  if (summary.empty()) return std::nullopt;
+  FileIndex file;
+  file.complete = true;
+  std::optional<Statistics> statistics;
+  RecordWalker walker(summary);
+  while (const auto record = walker.Next()) {
+    if (!AddSummaryRecord(source, *record, file, statistics)) return std::nullopt;
+  }
+  if (!walker.AtEnd() || !statistics || !CoversEverything(file, *statistics)) return std::nullopt;
+  file.message_counts = std::move(statistics->channel_message_counts);
+  std::sort(file.segments.begin(), file.segments.end(),
+            [](const Segment& a, const Segment& b) { return a.offset < b.offset; });
+  return file;
+}
+
+}  // namespace
+
+Result<FileIndex> ReadFileIndex(const ByteSource& source) {
+  if (Status status = CheckMagic(source); !status.ok()) return Err(std::move(status));
+  Result<Header> header = ReadHeader(source);
+  if (!header) return Err(std::move(header.error()));
+  std::optional<FileIndex> file = ReadSummary(source);
+  if (!file) file = ScanFile(source);
+  file->header = std::move(*header);
+  for (const std::string& compression : file->compressions) {
+    if (IsSupportedCompression(compression)) continue;
+    return Err(FailedPrecondition(fmt::format(
+        "compression \"{}\" is not supported: write the file with zstd or none", compression)));
+  }
+  return std::move(*file);
+}
+
+}  // namespace isotherm::mcap

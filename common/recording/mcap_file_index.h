@@ -1,0 +1,27 @@
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "common/recording/mcap_segment.h"
+
+namespace isotherm::mcap {
+
+/// What a file contains and where, without its messages.
+struct FileIndex {
+  Header header;
+  bool complete = false;            ///< Ends with a summary that is whole.
+  std::uint64_t bytes_ignored = 0;  ///< Damaged or unfinished parts that are not read.
+  Definitions definitions;
+  std::vector<Segment> segments;       ///< In file order.
+  std::set<std::string> compressions;  ///< Of the chunks.
+  std::vector<Metadata> metadata;
+  std::map<ChannelId, std::uint64_t> message_counts;
+};
+
+/// Reads the index from the summary or, if that is missing, damaged or does not cover everything,
+/// rebuilds it by a pass over the record headers. kDataLoss if this is not an MCAP file at all,
+/// kFailedPrecondition if it has another major version or a compression that is not supported.
+Result<FileIndex> ReadFileIndex(const ByteSource& source);
+
+}  // namespace isotherm::mcap

@@ -1,0 +1,99 @@
+#include "common/recording/mcap_message_stream.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace isotherm::mcap {
+
+MessageStream::MessageStream(const ByteSource& source, const FileIndex& index,
+                             std::size_t cache_bytes)
+    : source_(source), index_(index), cache_bytes_(cache_bytes), order_(index.segments.size()) {
+  std::iota(order_.begin(), order_.end(), std::size_t{0});
+  std::stable_sort(order_.begin(), order_.end(), [this](std::size_t a, std::size_t b) {
+    return index_.segments[a].start < index_.segments[b].start;
+  });
+}
+
+bool MessageStream::IsLater(const Cursor& a, const Cursor& b) {
+  return std::pair(a.log_time(), a.segment) > std::pair(b.log_time(), b.segment);
+}
+
+void MessageStream::Seek(std::uint64_t log_time) {
+  begin_ = log_time;
+  next_in_order_ = 0;
+  cursors_.clear();
+  current_.reset();
+}
+
+Result<std::optional<Message>> MessageStream::Next() {
+  while (next_in_order_ < order_.size()) {
+    const std::size_t segment = order_[next_in_order_];
+    if (!cursors_.empty() && index_.segments[segment].start > cursors_.front().log_time()) break;
+    ++next_in_order_;
+    if (index_.segments[segment].end < begin_) continue;
+    if (Status status = OpenSegment(segment); !status.ok()) return Err(std::move(status));
+  }
+  current_.reset();
+  if (cursors_.empty()) return std::nullopt;
+
+  std::pop_heap(cursors_.begin(), cursors_.end(), IsLater);
+  Cursor& cursor = cursors_.back();
+  auto content = Content(cursor.segment);
+  if (!content) {  // It was readable when it was opened: the file is changing or failing.
+    cursors_.pop_back();
+    return Err(std::move(content.error()));
+  }
+  current_ = std::move(*content);
+  const std::optional<Message> message = MessageAt(*current_, cursor.entries[cursor.position]);
+  if (!message) {
+    cursors_.pop_back();
+    return Err(DataLoss("the file changed while it was read"));
+  }
+  if (++cursor.position < cursor.entries.size()) {
+    std::push_heap(cursors_.begin(), cursors_.end(), IsLater);
+  } else {
+    cache_.remove_if([&cursor](const Cached& cached) { return cached.segment == cursor.segment; });
+    cursors_.pop_back();
+  }
+  return message;
+}
+
+Status MessageStream::OpenSegment(std::size_t segment) {
+  auto content = Content(segment);
+  if (!content) return content.error();
+  Cursor cursor{.segment = segment, .entries = (*content)->entries};
+  const auto first = std::find_if(cursor.entries.begin(), cursor.entries.end(),
+                                  [this](const auto& entry) { return entry.log_time >= begin_; });
+  cursor.position = static_cast<std::size_t>(first - cursor.entries.begin());
+  if (first == cursor.entries.end()) return OkStatus();
+  cursors_.push_back(std::move(cursor));
+  std::push_heap(cursors_.begin(), cursors_.end(), IsLater);
+  return OkStatus();
+}
+
+Result<std::shared_ptr<const SegmentContent>> MessageStream::Content(std::size_t segment) {
+  const auto found = std::find_if(cache_.begin(), cache_.end(), [segment](const Cached& cached) {
+    return cached.segment == segment;
+  });
+  if (found != cache_.end()) {
+    cache_.splice(cache_.begin(), cache_, found);
+    return cache_.front().content;
+  }
+  Result<SegmentContent> content = ReadSegment(source_, index_.segments[segment]);
+  if (!content) return Err(std::move(content.error()));
+  cache_.push_front({segment, std::make_shared<const SegmentContent>(std::move(*content))});
+  TrimCache();
+  return cache_.front().content;
+}
+
+void MessageStream::TrimCache() {
+  std::size_t bytes = 0;
+  for (auto cached = cache_.begin(); cached != cache_.end();) {
+    bytes += cached->content->records.size();
+    cached =
+        bytes > cache_bytes_ && cached != cache_.begin() ? cache_.erase(cached) : std::next(cached);
+  }
+}
+
+}  // namespace isotherm::mcap

@@ -1,0 +1,255 @@
+#include "common/recording/mcap_writer.h"
+
+#include <fmt/format.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/check.h"
+
+namespace isotherm::mcap {
+
+void Writer::ZstdDeleter::operator()(ZSTD_CCtx_s* context) const { ZSTD_freeCCtx(context); }
+
+Writer::Writer(std::unique_ptr<ByteSink> sink, WriterOptions options)
+    : sink_(std::move(sink)), options_(std::move(options)), zstd_(ZSTD_createCCtx()) {
+  CHECK(zstd_ != nullptr);
+  ZSTD_CCtx_setParameter(zstd_.get(), ZSTD_c_compressionLevel, options_.zstd_level);
+}
+
+Writer::~Writer() { static_cast<void>(Close()); }
+
+Result<std::unique_ptr<Writer>> Writer::Create(std::unique_ptr<ByteSink> sink,
+                                               WriterOptions options) {
+  std::unique_ptr<Writer> writer(new Writer(std::move(sink), std::move(options)));
+  Bytes start(kMagic.begin(), kMagic.end());
+  Append(Header{.profile = "", .library = writer->options_.library}, start);
+  if (Status status = writer->WriteBytes(start); !status.ok()) return Err(std::move(status));
+  return writer;
+}
+
+SchemaId Writer::AddSchema(std::string_view name, std::string_view encoding,
+                           std::string_view data) {
+  const auto id = static_cast<SchemaId>(schemas_.size() + 1);
+  schemas_.push_back({.id = id,
+                      .name = std::string(name),
+                      .encoding = std::string(encoding),
+                      .data = std::string(data)});
+  return id;
+}
+
+ChannelId Writer::AddChannel(SchemaId schema, std::string_view topic,
+                             std::string_view message_encoding) {
+  CHECK(schema <= schemas_.size());
+  const auto id = static_cast<ChannelId>(channels_.size() + 1);
+  channels_.push_back({.id = id,
+                       .schema_id = schema,
+                       .topic = std::string(topic),
+                       .message_encoding = std::string(message_encoding),
+                       .metadata = {}});
+  sequences_.push_back(0);
+  return id;
+}
+
+Status Writer::WriteMessage(ChannelId channel, std::uint64_t log_time, std::uint64_t publish_time,
+                            std::span<const std::uint8_t> data) {
+  CHECK(channel >= 1 && channel <= channels_.size() && !closed_);
+  if (!failure_.ok()) return failure_;
+  if (data.size() > kMaxMessageBytes) {
+    return InvalidArgument(fmt::format("message of {} bytes on {} exceeds the limit of {}",
+                                       data.size(), channels_[channel - 1U].topic,
+                                       kMaxMessageBytes));
+  }
+  if (!chunk_.records.empty()) {
+    const std::uint64_t start = std::min(chunk_.start, log_time);
+    const std::uint64_t end = std::max(chunk_.end, log_time);
+    if (end - start > options_.chunk_duration_ns) ISOTHERM_RETURN_IF_ERROR(Flush());
+  }
+  if (chunk_.records.empty()) chunk_.start = chunk_.end = log_time;
+  chunk_.start = std::min(chunk_.start, log_time);
+  chunk_.end = std::max(chunk_.end, log_time);
+
+  MessageIndex& index = IndexFor(channel);
+  index.entries.emplace_back(log_time, chunk_.records.size());
+  Append(Message{.channel_id = channel,
+                 .sequence = sequences_[channel - 1U]++,
+                 .log_time = log_time,
+                 .publish_time = publish_time,
+                 .data = data},
+         chunk_.records);
+  return chunk_.records.size() >= options_.chunk_bytes ? Flush() : OkStatus();
+}
+
+MessageIndex& Writer::IndexFor(ChannelId channel) {
+  const auto found =
+      std::find_if(chunk_.indexes.begin(), chunk_.indexes.end(),
+                   [channel](const auto& index) { return index.channel_id == channel; });
+  if (found != chunk_.indexes.end()) return *found;
+  const Channel& definition = channels_[channel - 1U];
+  if (definition.schema_id != 0 && chunk_.schemas.insert(definition.schema_id).second) {
+    Append(schemas_[definition.schema_id - 1U], chunk_.records);
+  }
+  Append(definition, chunk_.records);
+  return chunk_.indexes.emplace_back(MessageIndex{.channel_id = channel, .entries = {}});
+}
+
+Status Writer::WriteMetadata(const Metadata& metadata) {
+  CHECK(!closed_);
+  if (!failure_.ok()) return failure_;
+  out_.clear();
+  Append(metadata, out_);
+  const MetadataIndex index{.offset = offset_, .length = out_.size(), .name = metadata.name};
+  ISOTHERM_RETURN_IF_ERROR(WriteBytes(out_));
+  metadata_indexes_.push_back(index);
+  ++statistics_.metadata_count;
+  return OkStatus();
+}
+
+Status Writer::Flush() {
+  if (!failure_.ok()) return failure_;
+  if (chunk_.records.empty()) return OkStatus();
+  ISOTHERM_RETURN_IF_ERROR(AppendChunk());
+  Account(chunk_);
+  chunk_ = OpenChunk{.records = std::move(chunk_.records), .indexes = {}, .schemas = {}};
+  chunk_.records.clear();
+  if (!options_.sync) return OkStatus();
+  failure_ = sink_->Sync();
+  return failure_;
+}
+
+Status Writer::AppendChunk() {
+  compressed_.resize(ZSTD_compressBound(chunk_.records.size()));
+  const std::size_t compressed_size =
+      ZSTD_compress2(zstd_.get(), compressed_.data(), compressed_.size(), chunk_.records.data(),
+                     chunk_.records.size());
+  if (ZSTD_isError(compressed_size)) {
+    failure_ = Internal(fmt::format("zstd: {}", ZSTD_getErrorName(compressed_size)));
+    return failure_;
+  }
+  const ChunkHeader header{.start = chunk_.start,
+                           .end = chunk_.end,
+                           .uncompressed_size = chunk_.records.size(),
+                           .uncompressed_crc = Crc32(chunk_.records),
+                           .compression = "zstd",
+                           .compressed_size = compressed_size};
+  out_.clear();
+  Append(header, std::span(compressed_).first(compressed_size), out_);
+  ChunkIndex index{.start = header.start,
+                   .end = header.end,
+                   .chunk_offset = offset_,
+                   .chunk_length = out_.size(),
+                   .message_index_offsets = {},
+                   .message_index_length = 0,
+                   .compression = header.compression,
+                   .compressed_size = header.compressed_size,
+                   .uncompressed_size = header.uncompressed_size};
+  for (const MessageIndex& messages : chunk_.indexes) {
+    index.message_index_offsets[messages.channel_id] = offset_ + out_.size();
+    Append(messages, out_);
+  }
+  index.message_index_length = out_.size() - index.chunk_length;
+  ISOTHERM_RETURN_IF_ERROR(WriteBytes(out_));
+  chunk_indexes_.push_back(std::move(index));
+  return OkStatus();
+}
+
+void Writer::Account(const OpenChunk& chunk) {
+  statistics_.start =
+      statistics_.message_count == 0 ? chunk.start : std::min(statistics_.start, chunk.start);
+  statistics_.end = std::max(statistics_.end, chunk.end);
+  ++statistics_.chunk_count;
+  for (const MessageIndex& index : chunk.indexes) {
+    statistics_.message_count += index.entries.size();
+    statistics_.channel_message_counts[index.channel_id] += index.entries.size();
+  }
+}
+
+std::uint64_t Writer::message_count(ChannelId channel) const {
+  std::uint64_t count = 0;
+  if (const auto found = statistics_.channel_message_counts.find(channel);
+      found != statistics_.channel_message_counts.end()) {
+    count = found->second;
+  }
+  if (!failure_.ok()) return count;  // What was still open is lost.
+  for (const MessageIndex& index : chunk_.indexes) {
+    if (index.channel_id == channel) count += index.entries.size();
+  }
+  return count;
+}
+
+Status Writer::Close() {
+  if (closed_) return failure_;
+  const Status flushed = Flush();
+  closed_ = true;
+  if (flushed.ok()) {
+    Bytes end;
+    Append(DataEnd{.data_section_crc = data_crc_}, end);
+    AppendSummary(end);
+    end.insert(end.end(), kMagic.begin(), kMagic.end());
+    if (WriteBytes(end).ok() && options_.sync) failure_ = sink_->Sync();
+  }
+  const Status closed = sink_->Close();
+  if (failure_.ok()) failure_ = closed;
+  return failure_;
+}
+
+void Writer::AppendSummary(Bytes& out) const {
+  const std::size_t summary_begin = out.size();
+  const std::uint64_t summary_start = offset_ + summary_begin;
+  std::vector<SummaryOffset> offsets;
+  for (const Opcode group : {Opcode::kSchema, Opcode::kChannel, Opcode::kStatistics,
+                             Opcode::kMetadataIndex, Opcode::kChunkIndex}) {
+    AppendSummaryGroup(group, out, offsets);
+  }
+  Footer footer{.summary_start = summary_start,
+                .summary_offset_start = offset_ + out.size(),
+                .summary_crc = 0};
+  for (const SummaryOffset& offset : offsets) Append(offset, out);
+  // The checksum covers the summary and the footer up to, not including, the checksum itself.
+  Bytes footer_record;
+  Append(footer, footer_record);
+  const std::uint32_t summary_crc = Crc32(std::span(out).subspan(summary_begin));
+  footer.summary_crc = Crc32(
+      std::span(footer_record).first(kFooterRecordBytes - sizeof(footer.summary_crc)), summary_crc);
+  Append(footer, out);
+}
+
+void Writer::AppendSummaryGroup(Opcode group, Bytes& out,
+                                std::vector<SummaryOffset>& offsets) const {
+  const std::size_t begin = out.size();
+  switch (group) {
+    case Opcode::kSchema:
+      for (const Schema& schema : schemas_) Append(schema, out);
+      break;
+    case Opcode::kChannel:
+      for (const Channel& channel : channels_) Append(channel, out);
+      break;
+    case Opcode::kStatistics: {
+      Statistics statistics = statistics_;
+      statistics.schema_count = static_cast<std::uint16_t>(schemas_.size());
+      statistics.channel_count = static_cast<std::uint32_t>(channels_.size());
+      Append(statistics, out);
+      break;
+    }
+    case Opcode::kMetadataIndex:
+      for (const MetadataIndex& index : metadata_indexes_) Append(index, out);
+      break;
+    default:
+      for (const ChunkIndex& index : chunk_indexes_) Append(index, out);
+  }
+  if (out.size() == begin) return;
+  offsets.push_back({.group = group, .start = offset_ + begin, .length = out.size() - begin});
+}
+
+Status Writer::WriteBytes(std::span<const std::uint8_t> bytes) {
+  if (Status status = sink_->Write(bytes); !status.ok()) {
+    failure_ = std::move(status);
+    return failure_;
+  }
+  offset_ += bytes.size();
+  data_crc_ = Crc32(bytes, data_crc_);
+  return OkStatus();
+}
+
+}  // namespace isotherm::mcap

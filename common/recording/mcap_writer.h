@@ -1,0 +1,98 @@
+#pragma once
+
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "common/recording/byte_stream.h"
+#include "common/recording/mcap_records.h"
+
+struct ZSTD_CCtx_s;
+
+namespace isotherm::mcap {
+
+struct WriterOptions {
+  std::string library;                 ///< Who wrote the file.
+  std::size_t chunk_bytes = 4U << 20;  ///< A chunk is closed when its records reach this size.
+  std::uint64_t chunk_duration_ns =
+      500'000'000;   ///< ... or before it would span more log time than this.
+  bool sync = true;  ///< Sync the sink after each chunk.
+  int zstd_level = 1;
+};
+
+/// Writes an MCAP container: records are collected in chunks (zstd, CRC); each chunk goes out with
+/// its message indexes in one write and repeats the schemas and channels it needs, so that every
+/// chunk can be read without any other. Close() adds the summary. After the first failure of the
+/// sink nothing more is written and every call returns that failure. Thread-compatible.
+class Writer {
+ public:
+  static Result<std::unique_ptr<Writer>> Create(std::unique_ptr<ByteSink> sink,
+                                                WriterOptions options);
+  ~Writer();
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  SchemaId AddSchema(std::string_view name, std::string_view encoding, std::string_view data);
+  ChannelId AddChannel(SchemaId schema, std::string_view topic, std::string_view message_encoding);
+
+  /// kInvalidArgument for a message larger than kMaxMessageBytes; the file stays as it was.
+  Status WriteMessage(ChannelId channel, std::uint64_t log_time, std::uint64_t publish_time,
+                      std::span<const std::uint8_t> data);
+  Status WriteMetadata(const Metadata& metadata);
+  /// Closes the current chunk and hands it to the sink.
+  Status Flush();
+  /// Idempotent: the second call returns what the first did.
+  Status Close();
+
+  /// Messages of `channel` that are in the file or still may get there.
+  std::uint64_t message_count(ChannelId channel) const;
+  /// Bytes handed to the sink.
+  std::uint64_t bytes() const { return offset_; }
+
+  static constexpr std::size_t kMaxMessageBytes = 64U << 20;
+
+ private:
+  struct ZstdDeleter {
+    void operator()(ZSTD_CCtx_s* context) const;
+  };
+  /// Messages since the last flush.
+  struct OpenChunk {
+    Bytes records;
+    std::vector<MessageIndex> indexes;  ///< By order of first use.
+    std::set<SchemaId> schemas;
+    std::uint64_t start = 0;
+    std::uint64_t end = 0;
+  };
+
+  Writer(std::unique_ptr<ByteSink> sink, WriterOptions options);
+
+  MessageIndex& IndexFor(ChannelId channel);
+  Status AppendChunk();
+  void AppendSummary(Bytes& out) const;
+  void AppendSummaryGroup(Opcode group, Bytes& out, std::vector<SummaryOffset>& offsets) const;
+  /// Writes and counts; remembers the first failure.
+  Status WriteBytes(std::span<const std::uint8_t> bytes);
+  void Account(const OpenChunk& chunk);
+
+  const std::unique_ptr<ByteSink> sink_;
+  const WriterOptions options_;
+  const std::unique_ptr<ZSTD_CCtx_s, ZstdDeleter> zstd_;
+
+  std::vector<Schema> schemas_;           ///< Id = position + 1.
+  std::vector<Channel> channels_;         ///< Id = position + 1.
+  std::vector<std::uint32_t> sequences_;  ///< Next sequence number, by channel.
+  OpenChunk chunk_;
+  Bytes compressed_;
+  Bytes out_;
+
+  Statistics statistics_;  ///< Of what is in the file.
+  std::vector<ChunkIndex> chunk_indexes_;
+  std::vector<MetadataIndex> metadata_indexes_;
+  std::uint64_t offset_ = 0;
+  std::uint32_t data_crc_ = 0;
+  Status failure_;
+  bool closed_ = false;
+};
+
+}  // namespace isotherm::mcap

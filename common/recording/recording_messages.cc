@@ -1,0 +1,333 @@
+#include "common/recording/recording_messages.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/descriptor.pb.h>
+
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "common/base/check.h"
+#include "common/config/rig_calibration.h"
+
+namespace isotherm::recording {
+namespace {
+
+using google::protobuf::Timestamp;
+
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+constexpr std::string_view kWorldFrame = "world";
+constexpr std::string_view kDepthFrame = "depth";
+constexpr std::string_view kThermalFrame = "thermal";
+
+void SetTime(CaptureTime time, Timestamp& message) {
+  const std::int64_t ns = ToNanoseconds(time);
+  message.set_seconds(ns / kNanosecondsPerSecond);
+  message.set_nanos(static_cast<std::int32_t>(ns % kNanosecondsPerSecond));
+}
+
+/// nullopt if the time does not fit into ours.
+std::optional<CaptureTime> ToTime(const Timestamp& message) {
+  constexpr std::int64_t kMaxSeconds =
+      std::numeric_limits<std::int64_t>::max() / kNanosecondsPerSecond;
+  if (message.seconds() < 0 || message.seconds() >= kMaxSeconds || message.nanos() < 0 ||
+      message.nanos() >= kNanosecondsPerSecond) {
+    return std::nullopt;
+  }
+  return CaptureTimeFromNanoseconds(message.seconds() * kNanosecondsPerSecond + message.nanos());
+}
+
+/// The number as the enumerator, or `kUnknown` for one that this program does not know.
+template <typename Enum>
+Enum KnownOr(std::uint32_t value, Enum last, Enum unknown) {
+  return value <= static_cast<std::uint32_t>(last) ? static_cast<Enum>(value) : unknown;
+}
+
+template <typename Message>
+void SetFrame(const FrameHeader& header, const EncodedImage& image,
+              const std::optional<CaptureTime>& arrival, Message& message) {
+  SetTime(header.capture_time, *message.mutable_timestamp());
+  FrameInfo& frame = *message.mutable_frame();
+  frame.set_session(header.session);
+  frame.set_frame_number(header.frame_number);
+  frame.set_device_ticks(header.device_ticks.time_since_epoch().count());
+  frame.set_capture_sigma_ns(header.capture_sigma.count());
+  if (arrival) SetTime(*arrival, *frame.mutable_arrival());
+  frame.set_encoding(static_cast<std::uint32_t>(image.encoding));
+  frame.set_width(static_cast<std::uint32_t>(image.width));
+  frame.set_height(static_cast<std::uint32_t>(image.height));
+}
+
+template <typename Message>
+Result<FrameHeader> GetHeader(const Message& message, CaptureTime log_time,
+                              std::uint32_t sequence) {
+  FrameHeader header;
+  header.capture_time = log_time;
+  header.frame_number = sequence;
+  if (message.has_timestamp()) {
+    const std::optional<CaptureTime> time = ToTime(message.timestamp());
+    if (!time) return Err(DataLoss("its timestamp is out of range"));
+    header.capture_time = *time;
+  }
+  if (!message.has_frame()) return header;
+  const FrameInfo& frame = message.frame();
+  header.session = frame.session();
+  header.frame_number = frame.frame_number();
+  header.device_ticks = DeviceTicks(std::chrono::microseconds(frame.device_ticks()));
+  header.capture_sigma = Nanoseconds(frame.capture_sigma_ns());
+  return header;
+}
+
+template <typename Message>
+std::optional<CaptureTime> GetArrival(const Message& message) {
+  return message.frame().has_arrival() ? ToTime(message.frame().arrival()) : std::nullopt;
+}
+
+std::vector<std::uint8_t> TakeBytes(std::string* data) { return {data->begin(), data->end()}; }
+
+constexpr std::uint32_t kMaxImageSide = 1U << 16;
+
+Result<EncodedImage> TakeImage(foxglove::CompressedImage& message) {
+  const FrameInfo& frame = message.frame();
+  if (frame.width() == 0 || frame.height() == 0 || frame.width() > kMaxImageSide ||
+      frame.height() > kMaxImageSide ||
+      frame.encoding() > std::numeric_limits<std::uint8_t>::max()) {
+    return Err(DataLoss(fmt::format("image of {} x {} in encoding {} is not one of Isotherm's",
+                                    frame.width(), frame.height(), frame.encoding())));
+  }
+  return EncodedImage{.encoding = static_cast<Encoding>(frame.encoding()),
+                      .width = static_cast<int>(frame.width()),
+                      .height = static_cast<int>(frame.height()),
+                      .payload = TakeBytes(message.mutable_data())};
+}
+
+Result<EncodedImage> TakeImage(foxglove::RawImage& message) {
+  const std::uint64_t row_bytes = std::uint64_t{message.width()} * sizeof(std::uint16_t);
+  const std::uint64_t expected = std::uint64_t{message.step()} * message.height();
+  if (message.encoding() != "16UC1" && message.encoding() != "mono16") {
+    return Err(
+        DataLoss(fmt::format("image encoding \"{}\" is not 16-bit grey", message.encoding())));
+  }
+  if (message.width() == 0 || message.height() == 0 || message.width() > kMaxImageSide ||
+      message.height() > kMaxImageSide || message.step() < row_bytes ||
+      message.data().size() != expected) {
+    return Err(DataLoss(fmt::format("image of {} x {}, step {}, has {} bytes", message.width(),
+                                    message.height(), message.step(), message.data().size())));
+  }
+  EncodedImage image{.encoding = Encoding::kRaw16,
+                     .width = static_cast<int>(message.width()),
+                     .height = static_cast<int>(message.height()),
+                     .payload = TakeBytes(message.mutable_data())};
+  if (message.step() == row_bytes) return image;
+  for (std::uint64_t y = 0; y < message.height(); ++y) {  // Rows are padded: close the gaps.
+    const auto row = image.payload.begin() + static_cast<std::ptrdiff_t>(y * message.step());
+    std::copy(row, row + static_cast<std::ptrdiff_t>(row_bytes),
+              image.payload.begin() + static_cast<std::ptrdiff_t>(y * row_bytes));
+  }
+  image.payload.resize(static_cast<std::size_t>(row_bytes * message.height()));
+  return image;
+}
+
+void AddFileWithImports(const google::protobuf::FileDescriptor& file, std::set<std::string>& done,
+                        google::protobuf::FileDescriptorSet& files) {
+  if (!done.insert(file.name()).second) return;
+  for (int i = 0; i < file.dependency_count(); ++i) {
+    AddFileWithImports(*file.dependency(i), done, files);
+  }
+  file.CopyTo(files.add_file());
+}
+
+}  // namespace
+
+std::string SerializedSchema(const google::protobuf::Descriptor& descriptor) {
+  google::protobuf::FileDescriptorSet files;
+  std::set<std::string> done;
+  AddFileWithImports(*descriptor.file(), done, files);
+  return files.SerializeAsString();
+}
+
+template <typename Image>
+Image ToMessage(const EncodedDepthFrame& frame, const std::optional<CaptureTime>& arrival) {
+  Image message;
+  message.set_frame_id(std::string(kDepthFrame));
+  SetFrame(frame.header, frame.image, arrival, message);
+  message.mutable_depth()->set_depth_scale(frame.depth_scale);
+  return message;
+}
+
+template <typename Image>
+Image ToMessage(const EncodedThermalFrame& frame, const std::optional<CaptureTime>& arrival) {
+  Image message;
+  message.set_frame_id(std::string(kThermalFrame));
+  SetFrame(frame.header, frame.image, arrival, message);
+  ThermalInfo& thermal = *message.mutable_thermal();
+  thermal.set_nuc_state(static_cast<std::uint32_t>(frame.nuc_state));
+  thermal.set_nuc_source(static_cast<std::uint32_t>(frame.nuc_source));
+  if (frame.seconds_since_nuc) thermal.set_seconds_since_nuc(*frame.seconds_since_nuc);
+  const ThermalHousekeeping& housekeeping = frame.housekeeping;
+  if (!std::isnan(housekeeping.fpa_celsius)) thermal.set_fpa_celsius(housekeeping.fpa_celsius);
+  if (!std::isnan(housekeeping.housing_celsius)) {
+    thermal.set_housing_celsius(housekeeping.housing_celsius);
+  }
+  if (!std::isnan(housekeeping.shutter_celsius)) {
+    thermal.set_shutter_celsius(housekeeping.shutter_celsius);
+  }
+  thermal.set_valid(frame.valid);
+  return message;
+}
+
+void SetImageData(EncodedImage&& image, foxglove::CompressedImage& message) {
+  message.set_format(image.encoding == Encoding::kPng16
+                         ? "png"
+                         : fmt::format("isotherm-{}", static_cast<int>(image.encoding)));
+  message.set_data(image.payload.data(), image.payload.size());
+}
+
+void SetImageData(EncodedImage&& image, foxglove::RawImage& message) {
+  CHECK(image.encoding == Encoding::kRaw16);
+  message.mutable_frame()->set_encoding(static_cast<std::uint32_t>(Encoding::kRaw16));
+  message.set_width(static_cast<std::uint32_t>(image.width));
+  message.set_height(static_cast<std::uint32_t>(image.height));
+  message.set_step(static_cast<std::uint32_t>(image.width) * sizeof(std::uint16_t));
+  message.set_encoding("16UC1");
+  message.set_data(image.payload.data(), image.payload.size());
+}
+
+foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_id,
+                                      const CameraModel& camera) {
+  foxglove::CameraCalibration message;
+  SetTime(time, *message.mutable_timestamp());
+  message.set_frame_id(std::string(frame_id));
+  message.set_width(static_cast<std::uint32_t>(camera.width));
+  message.set_height(static_cast<std::uint32_t>(camera.height));
+  message.set_distortion_model("plumb_bob");
+  for (const double d : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}) message.add_d(d);
+  for (const double k : {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0}) {
+    message.add_k(k);
+  }
+  for (const double r : {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}) message.add_r(r);
+  for (const double p :
+       {camera.fx, 0.0, camera.cx, 0.0, 0.0, camera.fy, camera.cy, 0.0, 0.0, 0.0, 1.0, 0.0}) {
+    message.add_p(p);
+  }
+  return message;
+}
+
+foxglove::FrameTransform ToMessage(const StampedPose& pose) {
+  foxglove::FrameTransform message;
+  SetTime(pose.time, *message.mutable_timestamp());
+  message.set_parent_frame_id(std::string(kWorldFrame));
+  message.set_child_frame_id(std::string(kDepthFrame));
+  const Eigen::Vector3d translation = pose.T_world_depth.translation();
+  const Eigen::Quaterniond rotation(pose.T_world_depth.linear());
+  message.mutable_translation()->set_x(translation.x());
+  message.mutable_translation()->set_y(translation.y());
+  message.mutable_translation()->set_z(translation.z());
+  message.mutable_rotation()->set_x(rotation.x());
+  message.mutable_rotation()->set_y(rotation.y());
+  message.mutable_rotation()->set_z(rotation.z());
+  message.mutable_rotation()->set_w(rotation.w());
+  return message;
+}
+
+NucRecord ToMessage(const NucEvent& event) {
+  NucRecord message;
+  SetTime(event.start, *message.mutable_start());
+  SetTime(event.end, *message.mutable_end());
+  message.set_source(static_cast<std::uint32_t>(event.source));
+  return message;
+}
+
+RigRecord ToMessage(CaptureTime time, const Rig& rig) {
+  RigRecord message;
+  SetTime(time, *message.mutable_timestamp());
+  *message.mutable_calibration() = ToProto(rig);
+  return message;
+}
+
+foxglove::Log ToLogMessage(CaptureTime time, std::string_view level, std::string_view text) {
+  foxglove::Log message;
+  SetTime(time, *message.mutable_timestamp());
+  std::string name(level);
+  for (char& c : name) c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+  foxglove::Log::Level parsed = foxglove::Log::UNKNOWN;
+  foxglove::Log::Level_Parse(name, &parsed);
+  message.set_level(parsed);
+  message.set_message(std::string(text));
+  message.set_name("isotherm");
+  return message;
+}
+
+template <typename Image>
+Result<RecordedDepth> ToDepth(Image& message, CaptureTime log_time, std::uint32_t sequence) {
+  RecordedDepth depth;
+  Result<FrameHeader> header = GetHeader(message, log_time, sequence);
+  if (!header) return Err(std::move(header.error()));
+  depth.frame.header = *header;
+  depth.arrival = GetArrival(message);
+  if (message.has_depth()) depth.frame.depth_scale = message.depth().depth_scale();
+  Result<EncodedImage> image = TakeImage(message);
+  if (!image) return Err(std::move(image.error()));
+  depth.frame.image = std::move(*image);
+  return depth;
+}
+
+template <typename Image>
+Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uint32_t sequence) {
+  RecordedThermal thermal;
+  Result<FrameHeader> header = GetHeader(message, log_time, sequence);
+  if (!header) return Err(std::move(header.error()));
+  EncodedThermalFrame& frame = thermal.frame;
+  frame.header = *header;
+  thermal.arrival = GetArrival(message);
+  const ThermalInfo& info = message.thermal();
+  frame.nuc_state = KnownOr(info.nuc_state(), NucState::kError, NucState::kUnknown);
+  frame.nuc_source = KnownOr(info.nuc_source(), NucSource::kInferred, NucSource::kUnknown);
+  if (info.has_seconds_since_nuc()) frame.seconds_since_nuc = info.seconds_since_nuc();
+  if (info.has_fpa_celsius()) frame.housekeeping.fpa_celsius = info.fpa_celsius();
+  if (info.has_housing_celsius()) frame.housekeeping.housing_celsius = info.housing_celsius();
+  if (info.has_shutter_celsius()) frame.housekeeping.shutter_celsius = info.shutter_celsius();
+  frame.valid = info.valid();
+  Result<EncodedImage> image = TakeImage(message);
+  if (!image) return Err(std::move(image.error()));
+  frame.image = std::move(*image);
+  return thermal;
+}
+
+Result<StampedPose> FromMessage(const foxglove::FrameTransform& message) {
+  const std::optional<CaptureTime> time = ToTime(message.timestamp());
+  if (!time) return Err(DataLoss("its timestamp is out of range"));
+  const foxglove::Vector3& t = message.translation();
+  const foxglove::Quaternion& q = message.rotation();
+  const Eigen::Vector3d translation(t.x(), t.y(), t.z());
+  const Eigen::Quaterniond rotation(q.w(), q.x(), q.y(), q.z());
+  constexpr double kLeastNorm = 1e-6;
+  if (!translation.allFinite() || !(rotation.norm() > kLeastNorm) ||
+      !std::isfinite(rotation.norm())) {
+    return Err(DataLoss("its pose is not finite"));
+  }
+  return StampedPose{.time = *time, .T_world_depth = MakeTransform(translation, rotation)};
+}
+
+Result<NucEvent> FromMessage(const NucRecord& message) {
+  const std::optional<CaptureTime> start = ToTime(message.start());
+  const std::optional<CaptureTime> end = ToTime(message.end());
+  if (!start || !end) return Err(DataLoss("its times are out of range"));
+  return NucEvent{.start = *start,
+                  .end = *end,
+                  .source = KnownOr(message.source(), NucSource::kInferred, NucSource::kUnknown)};
+}
+
+template foxglove::RawImage ToMessage(const EncodedDepthFrame&, const std::optional<CaptureTime>&);
+template foxglove::RawImage ToMessage(const EncodedThermalFrame&,
+                                      const std::optional<CaptureTime>&);
+template foxglove::CompressedImage ToMessage(const EncodedDepthFrame&,
+                                             const std::optional<CaptureTime>&);
+template foxglove::CompressedImage ToMessage(const EncodedThermalFrame&,
+                                             const std::optional<CaptureTime>&);
+template Result<RecordedDepth> ToDepth(foxglove::RawImage&, CaptureTime, std::uint32_t);
+template Result<RecordedDepth> ToDepth(foxglove::CompressedImage&, CaptureTime, std::uint32_t);
+template Result<RecordedThermal> ToThermal(foxglove::RawImage&, CaptureTime, std::uint32_t);
+template Result<RecordedThermal> ToThermal(foxglove::CompressedImage&, CaptureTime, std::uint32_t);
+
+}  // namespace isotherm::recording

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <google/protobuf/descriptor.h>
+
+#include <string>
+
+#include "common/recording/foxglove.pb.h"
+#include "common/recording/recording.h"
+#include "common/recording/recording.pb.h"
+
+/// Between the types of a scan and the messages in its recording.
+namespace isotherm::recording {
+
+inline constexpr std::string_view kDepthTopic = "/depth";
+inline constexpr std::string_view kThermalTopic = "/thermal";
+inline constexpr std::string_view kRigTopic = "/rig";
+inline constexpr std::string_view kDepthInfoTopic = "/depth/camera_info";
+inline constexpr std::string_view kThermalInfoTopic = "/thermal/camera_info";
+inline constexpr std::string_view kNucTopic = "/nuc";
+inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
+inline constexpr std::string_view kTrajectoryTopic = "/trajectory";
+inline constexpr std::string_view kLogTopic = "/log";
+
+/// FileDescriptorSet of the message's file and all that it imports, as MCAP wants schemas.
+std::string SerializedSchema(const google::protobuf::Descriptor& descriptor);
+
+/// Raw is a foxglove::RawImage or foxglove::CompressedImage without image data.
+template <typename Image>
+Image ToMessage(const EncodedDepthFrame& frame, const std::optional<CaptureTime>& arrival);
+template <typename Image>
+Image ToMessage(const EncodedThermalFrame& frame, const std::optional<CaptureTime>& arrival);
+void SetImageData(EncodedImage&& image, foxglove::CompressedImage& message);
+/// `image` must be kRaw16.
+void SetImageData(EncodedImage&& image, foxglove::RawImage& message);
+
+foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_id,
+                                      const CameraModel& camera);
+foxglove::FrameTransform ToMessage(const StampedPose& pose);
+NucRecord ToMessage(const NucEvent& event);
+RigRecord ToMessage(CaptureTime time, const Rig& rig);
+foxglove::Log ToLogMessage(CaptureTime time, std::string_view level, std::string_view text);
+
+/// `log_time` and `sequence` of the container stand in for what a foreign writer left out. Takes
+/// the image data out of `message`.
+template <typename Image>
+Result<RecordedDepth> ToDepth(Image& message, CaptureTime log_time, std::uint32_t sequence);
+template <typename Image>
+Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uint32_t sequence);
+Result<StampedPose> FromMessage(const foxglove::FrameTransform& message);
+Result<NucEvent> FromMessage(const NucRecord& message);
+
+}  // namespace isotherm::recording

@@ -1,0 +1,242 @@
+#include "common/recording/recording.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include "common/recording/recording_test_data.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using testing::kScanStart;
+using testing::MakeDepth;
+using testing::MakeScan;
+using testing::MakeThermal;
+using testing::ReadAll;
+using testing::ReadBack;
+using testing::ReaderOf;
+using testing::TimeOf;
+using testing::WriterTo;
+using testing::WriteScan;
+
+Rig MakeRig() {
+  Rig rig;
+  rig.depth = CameraModel{.width = 640, .height = 480, .fx = 580, .fy = 581, .cx = 319, .cy = 239};
+  rig.thermal = CameraModel{.width = 382,
+                            .height = 288,
+                            .fx = 600,
+                            .fy = 601,
+                            .cx = 190,
+                            .cy = 143,
+                            .k1 = -0.25,
+                            .k2 = 0.1,
+                            .p1 = 1e-3,
+                            .p2 = -2e-3,
+                            .k3 = 0.01};
+  rig.depth_scale = 5000;
+  rig.T_thermal_depth =
+      MakeTransform({0.05, -0.01, 0.002}, Eigen::Quaterniond(0.99, 0.01, -0.1, 0.02));
+  rig.thermal_delay_s = -0.0427;
+  rig.serial = "A-7";
+  return rig;
+}
+
+void ExpectSame(const FrameHeader& a, const FrameHeader& b) {
+  EXPECT_EQ(a.session, b.session);
+  EXPECT_EQ(a.frame_number, b.frame_number);
+  EXPECT_EQ(a.device_ticks, b.device_ticks);
+  EXPECT_EQ(a.capture_time, b.capture_time);
+  EXPECT_EQ(a.capture_sigma, b.capture_sigma);
+}
+
+void ExpectSame(const EncodedImage& a, const EncodedImage& b) {
+  EXPECT_EQ(a.encoding, b.encoding);
+  EXPECT_EQ(a.width, b.width);
+  EXPECT_EQ(a.height, b.height);
+  EXPECT_EQ(a.payload, b.payload);
+}
+
+class RecordingTest : public ::testing::TestWithParam<ImageStorage> {
+ protected:
+  std::shared_ptr<MemorySink::Disk> disk_ = std::make_shared<MemorySink::Disk>();
+  RecordingOptions options_{.image_storage = GetParam()};
+
+  std::unique_ptr<RecordingReader> Reader() {
+    auto reader = ReaderOf(disk_->bytes);
+    EXPECT_TRUE(reader) << reader.error().message();
+    return reader ? std::move(*reader) : nullptr;
+  }
+};
+
+TEST_P(RecordingTest, FramesComeBackAsTheyWere) {
+  const EncodedDepthFrame depth = MakeDepth(7, kScanStart);
+  EncodedThermalFrame thermal = MakeThermal(8, kScanStart + 1ms);
+  {
+    auto writer = WriterTo(disk_, options_);
+    ASSERT_TRUE(writer->Write(depth, kScanStart + 5ms).ok());
+    ASSERT_TRUE(writer->Write(thermal, std::nullopt).ok());
+    ASSERT_TRUE(writer->Close().ok());
+  }
+  const auto reader = Reader();
+  const ReadBack read = ReadAll(*reader);
+  EXPECT_TRUE(reader->info().complete);
+  ASSERT_EQ(read.items.size(), 2U);
+  const auto recorded_depth = read.All<RecordedDepth>().at(0);
+  ExpectSame(recorded_depth.frame.header, depth.header);
+  ExpectSame(recorded_depth.frame.image, depth.image);
+  EXPECT_EQ(recorded_depth.frame.depth_scale, depth.depth_scale);
+  EXPECT_EQ(recorded_depth.arrival, kScanStart + 5ms);
+  const auto recorded_thermal = read.All<RecordedThermal>().at(0);
+  ExpectSame(recorded_thermal.frame.header, thermal.header);
+  ExpectSame(recorded_thermal.frame.image, thermal.image);
+  EXPECT_EQ(recorded_thermal.frame.nuc_state, thermal.nuc_state);
+  EXPECT_EQ(recorded_thermal.frame.nuc_source, thermal.nuc_source);
+  EXPECT_EQ(recorded_thermal.frame.seconds_since_nuc, thermal.seconds_since_nuc);
+  EXPECT_EQ(recorded_thermal.frame.housekeeping.fpa_celsius, 31.25F);
+  EXPECT_TRUE(std::isnan(recorded_thermal.frame.housekeeping.housing_celsius));
+  EXPECT_TRUE(recorded_thermal.frame.valid);
+  EXPECT_EQ(recorded_thermal.arrival, std::nullopt);
+}
+
+TEST_P(RecordingTest, RigEventsPosesAndMetadataComeBack) {
+  const StampedPose pose{
+      .time = kScanStart + 2ms,
+      .T_world_depth = MakeTransform({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5))};
+  {
+    auto writer = WriterTo(disk_, options_);
+    ASSERT_TRUE(writer->Write(MakeRig()).ok());
+    ASSERT_TRUE(writer->WriteMetadata("origin", {{"folder", "scan"}}).ok());
+    ASSERT_TRUE(writer->Write(MakeDepth(0, kScanStart), std::nullopt).ok());
+    ASSERT_TRUE(writer
+                    ->Write(NucEvent{.start = kScanStart + 1ms,
+                                     .end = kScanStart + 1600ms,
+                                     .source = NucSource::kPolled})
+                    .ok());
+    ASSERT_TRUE(writer->WritePose("groundtruth", pose).ok());
+    ASSERT_TRUE(writer->WriteLog(kScanStart + 3ms, "warning", "closer").ok());
+  }
+  const auto reader = Reader();
+  const auto rig = reader->ReadRig();
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_EQ(rig->depth->fx, 580);
+  EXPECT_EQ(rig->thermal->p2, -2e-3);
+  EXPECT_TRUE(rig->T_thermal_depth->isApprox(*MakeRig().T_thermal_depth, 1e-12));
+  EXPECT_EQ(rig->thermal_delay_s, -0.0427);
+  EXPECT_EQ(rig->serial, "A-7");
+
+  const ReadBack read = ReadAll(*reader);
+  const auto nuc = read.All<NucEvent>().at(0);
+  EXPECT_EQ(nuc.start, kScanStart + 1ms);
+  EXPECT_EQ(nuc.end, kScanStart + 1600ms);
+  EXPECT_EQ(nuc.source, NucSource::kPolled);
+  const auto recorded = read.All<RecordedPose>().at(0);
+  EXPECT_EQ(recorded.stream, "groundtruth");
+  EXPECT_EQ(recorded.pose.time, pose.time);
+  EXPECT_TRUE(recorded.pose.T_world_depth.isApprox(pose.T_world_depth, 1e-12));
+  const RecordingInfo& info = reader->info();
+  EXPECT_EQ(info.metadata.at("origin").at("folder"), "scan");
+  EXPECT_EQ(info.messages_by_topic.at("/depth"), 1U);
+  EXPECT_EQ(info.messages_by_topic.at("/log"), 1U);
+  EXPECT_EQ(info.messages_by_topic.at("/depth/camera_info"), 1U);
+  EXPECT_EQ(info.start, kScanStart);
+  EXPECT_EQ(info.end, kScanStart + 3ms);
+}
+
+TEST_P(RecordingTest, ItemsComeInTheOrderOfTimeAndCanBeSought) {
+  options_.flush_interval = 100ms;
+  const auto scan = MakeScan(3000);
+  {
+    auto writer = WriterTo(disk_, options_);
+    // Depth runs 40 ms behind thermal, as with a slow camera: chunks overlap.
+    auto depth = scan.depth.begin();
+    for (const auto& thermal : scan.thermal) {
+      ASSERT_TRUE(writer->Write(thermal, std::nullopt).ok());
+      while (depth != scan.depth.end() &&
+             depth->header.capture_time + 40ms < thermal.header.capture_time) {
+        ASSERT_TRUE(writer->Write(*depth++, std::nullopt).ok());
+      }
+    }
+    while (depth != scan.depth.end()) ASSERT_TRUE(writer->Write(*depth++, std::nullopt).ok());
+  }
+  const auto reader = Reader();
+  const ReadBack read = ReadAll(*reader);
+  ASSERT_EQ(read.items.size(), scan.depth.size() + scan.thermal.size());
+  EXPECT_TRUE(std::is_sorted(read.items.begin(), read.items.end(),
+                             [](const auto& a, const auto& b) { return TimeOf(a) < TimeOf(b); }));
+  const CaptureTime middle = kScanStart + 1510ms;
+  ASSERT_TRUE(reader->Seek(middle).ok());
+  const ReadBack later = ReadAll(*reader);
+  const auto expected =
+      std::count_if(read.items.begin(), read.items.end(),
+                    [middle](const auto& item) { return TimeOf(item) >= middle; });
+  EXPECT_EQ(later.items.size(), static_cast<std::size_t>(expected));
+  EXPECT_GE(TimeOf(later.items.front()), middle);
+}
+
+INSTANTIATE_TEST_SUITE_P(Storage, RecordingTest,
+                         ::testing::Values(ImageStorage::kViewable, ImageStorage::kCompact),
+                         [](const auto& test) {
+                           return test.param == ImageStorage::kViewable ? "Viewable" : "Compact";
+                         });
+
+class RecordingFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "recording_test_XXXXXX").string();
+    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(RecordingFileTest, CreatesFoldersAndRefusesToOverwrite) {
+  const auto path = folder_ / "a" / "b" / "scan.mcap";
+  {
+    auto writer = RecordingWriter::Create(path, {});
+    ASSERT_TRUE(writer) << writer.error().message();
+    ASSERT_TRUE((*writer)->Write(MakeDepth(0, kScanStart), std::nullopt).ok());
+  }
+  const auto reader = RecordingReader::Open(path);
+  ASSERT_TRUE(reader) << reader.error().message();
+  EXPECT_EQ(ReadAll(**reader).items.size(), 1U);
+  const auto again = RecordingWriter::Create(path, {});
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(again.error().message(), HasSubstr(path.string()));
+}
+
+TEST_F(RecordingFileTest, MissingFilesAndFoldersAreNamed) {
+  const auto missing = RecordingReader::Open(folder_ / "none.mcap");
+  ASSERT_FALSE(missing);
+  EXPECT_EQ(missing.error().code(), StatusCode::kNotFound);
+  EXPECT_THAT(missing.error().message(), HasSubstr("none.mcap"));
+  EXPECT_FALSE(RecordingReader::Open(folder_));
+}
+
+TEST_F(RecordingFileTest, FullDiskIsReportedAtOnceOnTheFirstWrite) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  const auto writer = RecordingWriter::Create("/dev/full", {});
+  ASSERT_FALSE(writer);
+  EXPECT_EQ(writer.error().code(), StatusCode::kResourceExhausted);
+  EXPECT_THAT(writer.error().message(), HasSubstr("/dev/full"));
+}
+
+TEST(RecordingOptionsTest, ImpossibleOptionsAreRefused) {
+  const auto disk = std::make_shared<MemorySink::Disk>();
+  EXPECT_EQ(WriterTo(disk, {.flush_interval = 1001ms}), nullptr);
+  EXPECT_EQ(WriterTo(disk, {.flush_interval = 0ms}), nullptr);
+  EXPECT_EQ(WriterTo(disk, {.chunk_bytes = 100}), nullptr);
+  EXPECT_NE(WriterTo(disk, {.flush_interval = 1000ms}), nullptr);
+}
+
+}  // namespace
+}  // namespace isotherm

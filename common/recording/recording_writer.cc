@@ -1,0 +1,248 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/codec/codec.h"
+#include "common/recording/mcap_writer.h"
+#include "common/recording/recording_messages.h"
+#include "common/recording/recording_streams.h"
+
+namespace isotherm {
+namespace {
+
+namespace rec = recording;
+using foxglove::CompressedImage;
+using foxglove::RawImage;
+
+class McapRecordingWriter final : public RecordingWriter {
+ public:
+  McapRecordingWriter(std::unique_ptr<mcap::Writer> writer, const RecordingOptions& options)
+      : writer_(std::move(writer)), storage_(options.image_storage) {}
+  ~McapRecordingWriter() override { static_cast<void>(Close()); }
+
+  Status Write(const Rig& rig) override {
+    // Before the first frame nothing says what time it is.
+    if (!last_time_) {
+      waiting_rig_ = rig;
+      return OkStatus();
+    }
+    return WriteRig(*last_time_, rig);
+  }
+
+  Status Write(const EncodedDepthFrame& frame, const std::optional<CaptureTime>& arrival) override {
+    ++offered_;
+    return WriteFrame(rec::kDepthTopic, frame, arrival);
+  }
+  Status Write(const EncodedThermalFrame& frame,
+               const std::optional<CaptureTime>& arrival) override {
+    ++offered_;
+    return WriteFrame(rec::kThermalTopic, frame, arrival);
+  }
+
+  Status Write(const NucEvent& event) override {
+    return Append(rec::kNucTopic, event.start, event.start, rec::ToMessage(event));
+  }
+
+  Status WritePose(std::string_view stream, const StampedPose& pose) override {
+    const std::string topic = fmt::format("/{}", stream);
+    if (topic != rec::kGroundtruthTopic && topic != rec::kTrajectoryTopic) {
+      return InvalidArgument(
+          fmt::format("unknown pose stream \"{}\" (groundtruth, trajectory)", stream));
+    }
+    return Append(topic, pose.time, pose.time, rec::ToMessage(pose));
+  }
+
+  Status WriteMetadata(std::string_view name,
+                       const std::map<std::string, std::string>& values) override {
+    if (closed_) return AlreadyClosed();
+    return writer_->WriteMetadata({.name = std::string(name), .values = values});
+  }
+
+  Status WriteLog(CaptureTime time, std::string_view level, std::string_view text) override {
+    return Append(rec::kLogTopic, time, time, rec::ToLogMessage(time, level, text));
+  }
+
+  Status WriteMessage(std::string_view topic, std::string_view schema_name, std::string_view schema,
+                      CaptureTime time, std::string_view payload) override {
+    const auto channel = ChannelFor(topic, schema_name, [schema] { return std::string(schema); });
+    if (!channel) return channel.error();
+    return AppendBytes(*channel, time, time, payload);
+  }
+
+  Status Flush() override { return closed_ ? AlreadyClosed() : writer_->Flush(); }
+
+  Status Close() override {
+    if (!closed_ && waiting_rig_) static_cast<void>(Announce(CaptureTime{}));
+    closed_ = true;
+    return writer_->Close();
+  }
+
+  RecordingStats stats() const override {
+    RecordingStats stats;
+    stats.depth_frames = MessageCount(rec::kDepthTopic);
+    stats.thermal_frames = MessageCount(rec::kThermalTopic);
+    stats.failed = offered_ - stats.depth_frames - stats.thermal_frames;
+    stats.bytes = writer_->bytes();
+    return stats;
+  }
+
+ private:
+  struct TopicChannel {
+    mcap::ChannelId id = 0;
+    std::string schema_name;
+  };
+
+  static Status AlreadyClosed() { return FailedPrecondition("the recording is closed"); }
+
+  template <typename Frame>
+  Status WriteFrame(std::string_view topic, const Frame& frame,
+                    const std::optional<CaptureTime>& arrival) {
+    const CaptureTime time = frame.header.capture_time;
+    EncodedImage image = frame.image;
+    if (storage_ == ImageStorage::kCompact) {
+      auto message = rec::ToMessage<CompressedImage>(frame, arrival);
+      rec::SetImageData(std::move(image), message);
+      return Append(topic, time, arrival.value_or(time), message);
+    }
+    ISOTHERM_RETURN_IF_ERROR(MakeRaw(image));
+    auto message = rec::ToMessage<RawImage>(frame, arrival);
+    rec::SetImageData(std::move(image), message);
+    return Append(topic, time, arrival.value_or(time), message);
+  }
+
+  static Status MakeRaw(EncodedImage& image) {
+    Result<Image<std::uint16_t>> pixels = Decode(image);  // Checks the size of raw images as well.
+    if (!pixels) return pixels.error().WithContext("frame is not recorded");
+    if (image.encoding == Encoding::kRaw16) return OkStatus();
+    image.encoding = Encoding::kRaw16;
+    image.payload.clear();
+    image.payload.reserve(pixels->size() * sizeof(std::uint16_t));
+    for (const std::uint16_t pixel : pixels->pixels()) {
+      image.payload.push_back(static_cast<std::uint8_t>(pixel));
+      image.payload.push_back(static_cast<std::uint8_t>(pixel >> 8));
+    }
+    return OkStatus();
+  }
+
+  Status WriteRig(CaptureTime time, const Rig& rig) {
+    ISOTHERM_RETURN_IF_ERROR(Append(rec::kRigTopic, time, time, rec::ToMessage(time, rig)));
+    if (rig.depth) {
+      ISOTHERM_RETURN_IF_ERROR(
+          Append(rec::kDepthInfoTopic, time, time, rec::ToMessage(time, "depth", *rig.depth)));
+    }
+    if (!rig.thermal) return OkStatus();
+    return Append(rec::kThermalInfoTopic, time, time,
+                  rec::ToMessage(time, "thermal", *rig.thermal));
+  }
+
+  /// Writes what waited for the first time stamp.
+  Status Announce(CaptureTime time) {
+    last_time_ = time;
+    const std::optional<Rig> rig = std::exchange(waiting_rig_, std::nullopt);
+    return rig ? WriteRig(time, *rig) : OkStatus();
+  }
+
+  template <typename Message>
+  Status Append(std::string_view topic, CaptureTime time, CaptureTime publish_time,
+                const Message& message) {
+    const auto channel = ChannelFor(topic, Message::descriptor()->full_name(),
+                                    [] { return rec::SerializedSchema(*Message::descriptor()); });
+    if (!channel) return channel.error();
+    return AppendBytes(*channel, time, publish_time, message.SerializeAsString());
+  }
+
+  Status AppendBytes(mcap::ChannelId channel, CaptureTime time, CaptureTime publish_time,
+                     std::string_view bytes) {
+    if (closed_) return AlreadyClosed();
+    const std::int64_t log_ns = ToNanoseconds(time);
+    if (log_ns < 0) {
+      return InvalidArgument(fmt::format("time {} ns lies before the Unix epoch", log_ns));
+    }
+    if (!last_time_) ISOTHERM_RETURN_IF_ERROR(Announce(time));
+    last_time_ = std::max(*last_time_, time);
+    const std::int64_t publish_ns = std::max<std::int64_t>(ToNanoseconds(publish_time), 0);
+    return writer_->WriteMessage(
+        channel, static_cast<std::uint64_t>(log_ns), static_cast<std::uint64_t>(publish_ns),
+        std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
+  }
+
+  template <typename MakeSchema>
+  Result<mcap::ChannelId> ChannelFor(std::string_view topic, std::string_view schema_name,
+                                     MakeSchema make_schema) {
+    const auto found = channels_.find(topic);
+    if (found != channels_.end()) {
+      if (found->second.schema_name == schema_name) return found->second.id;
+      return Err(InvalidArgument(
+          fmt::format("{} carries {}, not {}", topic, found->second.schema_name, schema_name)));
+    }
+    auto schema = schemas_.find(schema_name);
+    if (schema == schemas_.end()) {
+      const mcap::SchemaId id = writer_->AddSchema(schema_name, "protobuf", make_schema());
+      schema = schemas_.emplace(schema_name, id).first;
+    }
+    const mcap::ChannelId id = writer_->AddChannel(schema->second, topic, "protobuf");
+    channels_.emplace(topic, TopicChannel{.id = id, .schema_name = std::string(schema_name)});
+    return id;
+  }
+
+  std::uint64_t MessageCount(std::string_view topic) const {
+    const auto found = channels_.find(topic);
+    return found == channels_.end() ? 0 : writer_->message_count(found->second.id);
+  }
+
+  const std::unique_ptr<mcap::Writer> writer_;
+  const ImageStorage storage_;
+  std::map<std::string, TopicChannel, std::less<>> channels_;
+  std::map<std::string, mcap::SchemaId, std::less<>> schemas_;
+  std::optional<CaptureTime> last_time_;
+  std::optional<Rig> waiting_rig_;
+  std::uint64_t offered_ = 0;
+  bool closed_ = false;
+};
+
+Status Validate(const RecordingOptions& options) {
+  constexpr std::size_t kLeastChunkBytes = 4096;
+  constexpr Nanoseconds kLongestFlushInterval = std::chrono::seconds(1);
+  if (options.chunk_bytes < kLeastChunkBytes ||
+      options.chunk_bytes > mcap::Writer::kMaxMessageBytes) {
+    return InvalidArgument(fmt::format("chunk_bytes must be {} to {}, not {}", kLeastChunkBytes,
+                                       mcap::Writer::kMaxMessageBytes, options.chunk_bytes));
+  }
+  if (options.flush_interval <= Nanoseconds(0) || options.flush_interval > kLongestFlushInterval) {
+    return InvalidArgument(
+        fmt::format("flush_interval must be more than 0 and at most 1 s, not {} s",
+                    ToSeconds(options.flush_interval)));
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RecordingWriter>> MakeRecordingWriter(std::unique_ptr<ByteSink> sink,
+                                                             const RecordingOptions& options) {
+  if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
+  auto writer = mcap::Writer::Create(
+      std::move(sink),
+      {.library = "isotherm " ISOTHERM_VERSION,
+       .chunk_bytes = options.chunk_bytes,
+       .chunk_duration_ns = static_cast<std::uint64_t>(options.flush_interval.count()),
+       .sync = options.sync});
+  if (!writer) return Err(std::move(writer.error()));
+  const mcap::Metadata version{.name = std::string(kRecordingMetadataName),
+                               .values = {{"version", fmt::format("{}.{}", kRecordingMajorVersion,
+                                                                  kRecordingMinorVersion)}}};
+  if (Status status = (*writer)->WriteMetadata(version); !status.ok())
+    return Err(std::move(status));
+  return std::make_unique<McapRecordingWriter>(std::move(*writer), options);
+}
+
+Result<std::unique_ptr<RecordingWriter>> RecordingWriter::Create(const std::filesystem::path& path,
+                                                                 const RecordingOptions& options) {
+  if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
+  auto sink = CreateFileSink(path);
+  if (!sink) return Err(std::move(sink.error()));
+  return MakeRecordingWriter(std::move(*sink), options);
+}
+
+}  // namespace isotherm
