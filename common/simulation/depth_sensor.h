@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/frame/image.h"
+#include "common/geometry/camera.h"
+#include "common/simulation/ray_caster.h"
+
+namespace isotherm {
+
+class DepthCameraOptions;
+
+/// A structured-light depth camera (PrimeSense Carmine): noise and quantisation in disparity, so
+/// that both grow with the square of the distance; no return at grazing angles, beside depth edges,
+/// in the projector's shadow and out of range. The projector is to the right of the camera.
+/// Thread-safe (immutable); scratch memory is the caller's.
+class DepthSensor {
+ public:
+  DepthSensor(const CameraModel& camera, const DepthCameraOptions& options);
+
+  struct Scratch {
+    HitImage hits;
+    Image<float> white;       ///< Independent noise.
+    Image<float> rows;        ///< ... smoothed along rows.
+    Image<std::uint8_t> lit;  ///< 1 = the projector reaches it.
+  };
+
+  /// One picture, `depth_scale` units per metre, 0 = no return. The same `noise_stream` gives the
+  /// same noise.
+  Image<std::uint16_t> Render(const Scene& scene, const RigidTransform& T_world_depth,
+                              std::uint64_t noise_stream, Scratch& scratch) const;
+
+ private:
+  void FindShadow(const HitImage& hits, Image<std::uint8_t>& lit) const;
+  bool IsDropped(const HitImage& hits, const CameraView& view, int x, int y,
+                 std::uint64_t drop_stream) const;
+  std::uint16_t Measure(float z_m, float noise) const;
+
+  const RayGrid grid_;
+  const float disparity_metres_px_;  ///< Focal length x baseline: disparity = this / depth.
+  const float step_px_;
+  const float sigma_px_;
+  const float min_depth_m_;
+  const float max_depth_m_;
+  const float grazing_start_cos_;
+  const float grazing_end_cos_;
+  const float edge_dropout_;
+  const float depth_scale_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,203 @@
+#include "common/simulation/ray_caster.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "common/simulation/intersection.h"
+
+namespace isotherm {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A primitive as one camera sees it, with the bounds that spare most intersections.
+struct SeenPrimitive {
+  int index = 0;
+  Shape shape = Shape::kBox;
+  Eigen::Matrix3f R_primitive_camera;
+  Eigen::Vector3f camera_in_primitive;
+  LocalSize<float> size{};
+  float min_z = 0.0F;  ///< Nearest depth of the bounding box.
+  float min_x = -kInfinity, max_x = kInfinity, min_y = -kInfinity, max_y = kInfinity;
+};
+
+/// Bounds in normalised image coordinates; unbounded if the box reaches behind the camera.
+void SetBounds(const Primitive& primitive, const RigidTransform& T_camera_primitive,
+               SeenPrimitive& seen) {
+  const Eigen::Vector3d half = HalfExtents(primitive);
+  double min_z = HUGE_VAL;
+  Eigen::Vector2d low(HUGE_VAL, HUGE_VAL), high(-HUGE_VAL, -HUGE_VAL);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d sign((corner & 1) ? 1 : -1, (corner & 2) ? 1 : -1, (corner & 4) ? 1 : -1);
+    const Eigen::Vector3d p_camera = T_camera_primitive * half.cwiseProduct(sign);
+    min_z = std::min(min_z, p_camera.z());
+    const Eigen::Vector2d normalized = p_camera.head<2>() / p_camera.z();
+    low = low.cwiseMin(normalized);
+    high = high.cwiseMax(normalized);
+  }
+  constexpr double kNearM = 0.01;
+  constexpr double kMargin = 1e-5;  // Float rounding.
+  seen.min_z = static_cast<float>(std::max(0.0, min_z - kMargin));
+  if (min_z < kNearM) return;
+  seen.min_x = static_cast<float>(low.x() - kMargin);
+  seen.min_y = static_cast<float>(low.y() - kMargin);
+  seen.max_x = static_cast<float>(high.x() + kMargin);
+  seen.max_y = static_cast<float>(high.y() + kMargin);
+}
+
+/// All primitives, nearest first.
+std::vector<SeenPrimitive> LookAt(const Scene& scene, const RigidTransform& T_world_camera) {
+  std::vector<SeenPrimitive> seen;
+  for (std::size_t i = 0; i < scene.primitives().size(); ++i) {
+    const Primitive& primitive = scene.primitives()[i];
+    const RigidTransform T_camera_primitive =
+        T_world_camera.inverse() * primitive.T_world_primitive;
+    const RigidTransform T_primitive_camera = T_camera_primitive.inverse();
+    SeenPrimitive one;
+    one.index = static_cast<int>(i);
+    one.shape = primitive.shape;
+    one.R_primitive_camera = T_primitive_camera.linear().cast<float>();
+    one.camera_in_primitive = T_primitive_camera.translation().cast<float>();
+    const Eigen::Vector3f size = primitive.size.cast<float>();
+    one.size = {size.x(), size.y(), size.z()};
+    SetBounds(primitive, T_camera_primitive, one);
+    seen.push_back(one);
+  }
+  std::stable_sort(seen.begin(), seen.end(),
+                   [](const auto& a, const auto& b) { return a.min_z < b.min_z; });
+  return seen;
+}
+
+bool Overlap(const SeenPrimitive& primitive, const RayGrid::Tile& tile) {
+  return primitive.min_x <= tile.max_x && primitive.max_x >= tile.min_x &&
+         primitive.min_y <= tile.max_y && primitive.max_y >= tile.min_y;
+}
+
+struct TileHits {
+  std::array<float, RayGrid::kTilePixels> z;
+  std::array<std::int32_t, RayGrid::kTilePixels> index;
+};
+
+template <Shape shape>
+void TraceTile(const SeenPrimitive& p, const RayGrid::Tile& tile, TileHits& hits) {
+  const Eigen::Matrix3f& R = p.R_primitive_camera;
+  const float r00 = R(0, 0), r01 = R(0, 1), r02 = R(0, 2);
+  const float r10 = R(1, 0), r11 = R(1, 1), r12 = R(1, 2);
+  const float r20 = R(2, 0), r21 = R(2, 1), r22 = R(2, 2);
+  const float ox = p.camera_in_primitive.x(), oy = p.camera_in_primitive.y(),
+              oz = p.camera_in_primitive.z();
+  const LocalSize<float> size = p.size;
+  const std::int32_t index = p.index;
+  float* const z = hits.z.data();
+  std::int32_t* const indices = hits.index.data();
+  for (int i = 0; i < RayGrid::kTilePixels; ++i) {
+    const float x = tile.ray_x[i], y = tile.ray_y[i];
+    const LocalRay<float> ray{
+        ox, oy, oz, r00 * x + r01 * y + r02, r10 * x + r11 * y + r12, r20 * x + r21 * y + r22};
+    const float t = IntersectShape<shape, float>(ray, size);
+    const float before = z[i];
+    z[i] = t < before ? t : before;
+    indices[i] = t < before ? index : indices[i];
+  }
+}
+
+void StoreTile(const RayGrid::Tile& tile, const TileHits& hits, HitImage& image) {
+  const int columns = std::min(RayGrid::kTileWidth, image.z_m.width() - tile.x0);
+  const int rows = std::min(RayGrid::kTileHeight, image.z_m.height() - tile.y0);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const auto i = static_cast<std::size_t>(row * RayGrid::kTileWidth + column);
+      image.z_m.At(tile.x0 + column, tile.y0 + row) = hits.z[i];
+      image.primitive.At(tile.x0 + column, tile.y0 + row) =
+          static_cast<std::int16_t>(hits.index[i]);
+    }
+  }
+}
+
+}  // namespace
+
+RayGrid::RayGrid(const CameraModel& camera)
+    : width_(camera.width),
+      height_(camera.height),
+      rays_x_(camera.width, camera.height),
+      rays_y_(camera.width, camera.height) {
+  for (int y = 0; y < height_; ++y) {
+    for (int x = 0; x < width_; ++x) {
+      const Eigen::Vector2d ray = Unproject(camera, Eigen::Vector2d(x, y));
+      rays_x_.At(x, y) = static_cast<float>(ray.x());
+      rays_y_.At(x, y) = static_cast<float>(ray.y());
+    }
+  }
+  for (int y0 = 0; y0 < height_; y0 += kTileHeight) {
+    for (int x0 = 0; x0 < width_; x0 += kTileWidth) {
+      Tile& tile = tiles_.emplace_back();
+      tile.x0 = x0;
+      tile.y0 = y0;
+      for (int i = 0; i < kTilePixels; ++i) {
+        const int x = std::min(x0 + i % kTileWidth, width_ - 1);
+        const int y = std::min(y0 + i / kTileWidth, height_ - 1);
+        tile.ray_x[i] = rays_x_.At(x, y);
+        tile.ray_y[i] = rays_y_.At(x, y);
+      }
+      const auto x_range = std::minmax_element(tile.ray_x, tile.ray_x + kTilePixels);
+      const auto y_range = std::minmax_element(tile.ray_y, tile.ray_y + kTilePixels);
+      tile.min_x = *x_range.first;
+      tile.max_x = *x_range.second;
+      tile.min_y = *y_range.first;
+      tile.max_y = *y_range.second;
+    }
+  }
+}
+
+void CastRays(const Scene& scene, const RayGrid& grid, const RigidTransform& T_world_camera,
+              HitImage& hits) {
+  hits.z_m.Resize(grid.width(), grid.height());
+  hits.primitive.Resize(grid.width(), grid.height());
+  const std::vector<SeenPrimitive> seen = LookAt(scene, T_world_camera);
+  TileHits tile_hits;
+  for (const RayGrid::Tile& tile : grid.tiles()) {
+    tile_hits.z.fill(kInfinity);
+    tile_hits.index.fill(-1);
+    float farthest = kInfinity;
+    for (const SeenPrimitive& primitive : seen) {
+      if (primitive.min_z > farthest) break;  // Sorted: all that follow are hidden.
+      if (!Overlap(primitive, tile)) continue;
+      VisitShape(primitive.shape,
+                 [&]<Shape shape>() { TraceTile<shape>(primitive, tile, tile_hits); });
+      farthest = *std::max_element(tile_hits.z.begin(), tile_hits.z.end());
+    }
+    StoreTile(tile, tile_hits, hits);
+  }
+}
+
+CameraView::CameraView(const Scene& scene, const RigidTransform& T_world_camera) {
+  for (const Primitive& primitive : scene.primitives()) {
+    const RigidTransform T_primitive_camera =
+        primitive.T_world_primitive.inverse() * T_world_camera;
+    locals_.push_back({&primitive, T_primitive_camera.linear().cast<float>(),
+                       T_primitive_camera.translation().cast<float>(),
+                       primitive.size.cast<float>()});
+  }
+}
+
+CameraView::Surface CameraView::At(int primitive, const Eigen::Vector2f& ray, float z_m) const {
+  const Local& local = locals_[static_cast<std::size_t>(primitive)];
+  const Eigen::Vector3f direction = local.R_primitive_camera * Eigen::Vector3f(ray.x(), ray.y(), 1);
+  const Eigen::Vector3d p_primitive = (local.camera_in_primitive + z_m * direction).cast<double>();
+  const Eigen::Vector3f normal = NormalAt(*local.primitive, p_primitive).cast<float>();
+  const float cosine = std::abs(normal.dot(direction)) / direction.norm();
+  return {std::min(cosine, 1.0F),
+          static_cast<float>(local.primitive->temperature.CelsiusAt(p_primitive))};
+}
+
+float CameraView::CosineAt(int primitive, const Eigen::Vector2f& ray, float z_m) const {
+  const Local& local = locals_[static_cast<std::size_t>(primitive)];
+  const Eigen::Vector3f direction = local.R_primitive_camera * Eigen::Vector3f(ray.x(), ray.y(), 1);
+  const Eigen::Vector3d p_primitive = (local.camera_in_primitive + z_m * direction).cast<double>();
+  const Eigen::Vector3f normal = NormalAt(*local.primitive, p_primitive).cast<float>();
+  return std::min(std::abs(normal.dot(direction)) / direction.norm(), 1.0F);
+}
+
+}  // namespace isotherm

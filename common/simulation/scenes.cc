@@ -1,0 +1,57 @@
+#include "common/simulation/scenes.h"
+
+#include "common/simulation/scene_builder.h"
+#include "common/simulation/simulation_options.pb.h"
+
+namespace isotherm {
+
+StagedScene MakeScene(const SceneOptions& options) {
+  switch (options.scene()) {
+    case CALIBRATOR:
+      return MakeCalibratorScene(options);
+    case PLANE:
+      return MakePlaneScene(options);
+    case CORNER_SPHERE:
+      return MakeCornerSphereScene(options);
+    case FURNACE_DOOR:
+      break;
+  }
+  return MakeFurnaceDoorScene(options);
+}
+
+StagedScene MakePlaneScene(const SceneOptions& options) {
+  constexpr double kDefaultCelsius = 30.0;
+  SceneBuilder scene(options.surround_celsius());
+  scene.UseMaterial({1.0, 1.0, 0.0, false});  // Black.
+  scene.Box("wall", {0.0, 0.0, 0.6}, {kSceneCubeM, kSceneCubeM, 0.7}).temperature =
+      Uniform(options.has_hot_celsius() ? options.hot_celsius() : kDefaultCelsius);
+  ScanPath path;
+  path.target_x_m = {kSceneCubeM / 2.0};
+  path.target_y_m = {kSceneCubeM / 2.0};
+  path.target_z_m = {0.6};
+  path.distance_m = {0.6};
+  return {scene.Build("plane"), path};
+}
+
+StagedScene MakeCornerSphereScene(const SceneOptions& options) {
+  constexpr double kDefaultCelsius = 80.0;
+  const double hot_celsius = options.has_hot_celsius() ? options.hot_celsius() : kDefaultCelsius;
+  SceneBuilder scene(options.surround_celsius());
+  scene.UseMaterial({});
+  scene.Box("back wall", {0.02, 0.02, 0.86}, {0.94, 0.94, 0.92}).temperature = Uniform(24.0);
+  scene.Box("side wall", {0.02, 0.02, 0.40}, {0.08, 0.94, 0.86}).temperature = Uniform(28.0);
+  scene.Box("floor", {0.08, 0.80, 0.40}, {0.94, 0.86, 0.86}).temperature = Uniform(26.0);
+  Primitive& sphere = scene.Sphere("sphere", {0.48, 0.64, 0.66}, 0.14);
+  sphere.temperature =
+      Linear(sphere, {0.48, 0.50, 0.66}, hot_celsius, {0.48, 0.78, 0.66}, hot_celsius - 20.0);
+  ScanPath path;
+  path.target_x_m = {0.44, 0.04, 17.0, 0.3};
+  path.target_y_m = {0.56, 0.04, 13.0, 2.2};
+  path.target_z_m = {0.72};
+  path.azimuth_rad = {0.25, 0.35, 15.0, -0.9};
+  path.elevation_rad = {0.35, 0.18, 11.0, 0.8};
+  path.distance_m = {0.60, 0.08, 13.0, 1.0};
+  return {scene.Build("corner-sphere"), path};
+}
+
+}  // namespace isotherm

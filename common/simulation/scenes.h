@@ -1,0 +1,30 @@
+#pragma once
+
+#include "common/base/status.h"
+#include "common/simulation/scan_path.h"
+#include "common/simulation/scene.h"
+
+namespace isotherm {
+
+class SceneOptions;
+
+/// Edge length of the cube that holds every scene; `world` has its origin in the cube's corner, x
+/// to the right, y down, z away from the operator.
+inline constexpr double kSceneCubeM = 0.96;
+
+/// A scene and how to scan it.
+struct StagedScene {
+  Scene scene;
+  ScanPath path;
+};
+
+/// The scene that the options name.
+StagedScene MakeScene(const SceneOptions& options);
+
+// One function per scene, in a file of the same name.
+StagedScene MakeFurnaceDoorScene(const SceneOptions& options);
+StagedScene MakeCalibratorScene(const SceneOptions& options);
+StagedScene MakePlaneScene(const SceneOptions& options);
+StagedScene MakeCornerSphereScene(const SceneOptions& options);
+
+}  // namespace isotherm

@@ -1,0 +1,150 @@
+#include "common/simulation/thermal_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/frame/frame.h"
+#include "common/simulation/noise.h"
+#include "common/simulation/simulation_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+constexpr int kEmissivityIntervals = 1024;
+constexpr double kNetdCelsius = 30.0;  // Temperature at which makers state the NETD.
+
+std::vector<float> GaussianWeights(double sigma_px) {
+  constexpr double kCutOffSigmas = 3.0;
+  const int radius = sigma_px > 0.0 ? static_cast<int>(std::ceil(kCutOffSigmas * sigma_px)) : 0;
+  std::vector<double> weights;
+  double sum = 0.0;
+  for (int i = 0; i <= radius; ++i) {
+    weights.push_back(radius == 0 ? 1.0 : std::exp(-0.5 * i * i / (sigma_px * sigma_px)));
+    sum += weights.back() * (i == 0 ? 1.0 : 2.0);
+  }
+  std::vector<float> normalized;
+  for (const double weight : weights) normalized.push_back(static_cast<float>(weight / sum));
+  return normalized;
+}
+
+}  // namespace
+
+ThermalSensor::ThermalSensor(const CameraModel& camera, const ThermalCameraOptions& options)
+    : grid_(camera),
+      band_(SpectralBand{options.band_min_um(), options.band_max_um()}),
+      noise_radiance_(options.netd_kelvin() * PlanckBandRadianceSlope(kNetdCelsius, band_.band())),
+      blur_weights_(GaussianWeights(options.blur_px())) {}
+
+Image<std::uint16_t> ThermalSensor::Render(const Scene& scene,
+                                           const RigidTransform& T_world_thermal,
+                                           std::uint64_t noise_stream, Scratch& scratch) const {
+  CastRays(scene, grid_, T_world_thermal, scratch.hits);
+  FillRadiance(scene, T_world_thermal, scratch);
+  Blur(scratch);
+  return Detect(noise_stream, scratch);
+}
+
+Image<std::uint16_t> ThermalSensor::RenderShutter(double shutter_celsius,
+                                                  std::uint64_t noise_stream,
+                                                  Scratch& scratch) const {
+  scratch.radiance.Resize(grid_.width(), grid_.height());
+  scratch.radiance.Fill(static_cast<float>(band_.RadianceFromCelsius(shutter_celsius)));
+  return Detect(noise_stream, scratch);
+}
+
+ThermalSensor::EmissivityTable ThermalSensor::MakeTable(const Material& material) {
+  EmissivityTable table;
+  for (int i = 0; i <= kEmissivityIntervals; ++i) {
+    const double angle_rad = std::acos(static_cast<double>(i) / kEmissivityIntervals);
+    table.push_back(static_cast<float>(
+        DirectionalEmissivity(angle_rad, material.normal_emissivity, material.n, material.kappa)));
+  }
+  return table;
+}
+
+double ThermalSensor::LookUp(const EmissivityTable& table, float cosine) {
+  const float position = cosine * kEmissivityIntervals;
+  const auto index =
+      static_cast<std::size_t>(std::clamp(static_cast<int>(position), 0, kEmissivityIntervals - 1));
+  const float share = position - static_cast<float>(index);
+  return static_cast<double>(table[index] + share * (table[index + 1] - table[index]));
+}
+
+void ThermalSensor::FillRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
+                                 Scratch& scratch) const {
+  std::vector<EmissivityTable> tables;
+  for (const Material& material : scene.materials()) tables.push_back(MakeTable(material));
+  const CameraView view(scene, T_world_thermal);
+  const double surround = band_.RadianceFromCelsius(scene.surround_celsius());
+  scratch.radiance.Resize(grid_.width(), grid_.height());
+  const auto radiance_at = [&](int x, int y) {
+    const int primitive = scratch.hits.primitive.At(x, y);
+    if (primitive < 0) return surround;
+    const Eigen::Vector2f ray = grid_.Ray(x, y);
+    const CameraView::Surface surface = view.At(primitive, ray, scratch.hits.z_m.At(x, y));
+    const int material = scene.primitives()[static_cast<std::size_t>(primitive)].material;
+    const double emissivity = LookUp(tables[static_cast<std::size_t>(material)], surface.cosine);
+    if (scene.MaterialOf(primitive).mirror) {
+      return MirrorRadiance(scene, T_world_thermal, ray, emissivity);
+    }
+    return emissivity * band_.RadianceFromCelsius(static_cast<double>(surface.celsius)) +
+           (1.0 - emissivity) * surround;
+  };
+  for (int y = 0; y < grid_.height(); ++y) {
+    for (int x = 0; x < grid_.width(); ++x) {
+      scratch.radiance.At(x, y) = static_cast<float>(radiance_at(x, y));
+    }
+  }
+}
+
+double ThermalSensor::MirrorRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
+                                     const Eigen::Vector2f& ray, double emissivity) const {
+  const Eigen::Vector3d viewer_world = T_world_thermal.translation();
+  const Eigen::Vector3d direction_world =
+      T_world_thermal.linear() * ray.cast<double>().homogeneous();
+  const auto hit = scene.Intersect(viewer_world, direction_world);
+  if (!hit) return band_.RadianceFromCelsius(scene.surround_celsius());
+  return TrueRadiance(scene, band_, hit->point, viewer_world, emissivity);
+}
+
+void ThermalSensor::Blur(Scratch& scratch) const {
+  const int radius = static_cast<int>(blur_weights_.size()) - 1;
+  if (radius == 0) return;
+  const int width = grid_.width(), height = grid_.height();
+  scratch.rows.Resize(width, height);
+  const auto convolve = [&](const Image<float>& in, Image<float>& out, int step_x, int step_y) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        float sum = blur_weights_[0] * in.At(x, y);
+        for (int i = 1; i <= radius; ++i) {
+          const float before = in.At(std::max(0, x - i * step_x), std::max(0, y - i * step_y));
+          const float after =
+              in.At(std::min(width - 1, x + i * step_x), std::min(height - 1, y + i * step_y));
+          sum += blur_weights_[static_cast<std::size_t>(i)] * (before + after);
+        }
+        out.At(x, y) = sum;
+      }
+    }
+  };
+  convolve(scratch.radiance, scratch.rows, 1, 0);
+  convolve(scratch.rows, scratch.radiance, 0, 1);
+}
+
+Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream,
+                                           const Scratch& scratch) const {
+  constexpr double kRange = 65535.0;
+  Image<std::uint16_t> centikelvin(grid_.width(), grid_.height());
+  const auto radiance = scratch.radiance.pixels();
+  const auto out = centikelvin.pixels();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const double measured = static_cast<double>(radiance[i]) +
+                            noise_radiance_ * static_cast<double>(NormalNoise(noise_stream, i));
+    const double value =
+        (band_.CelsiusFromRadiance(measured) + kCelsiusZeroKelvin) * kCentikelvinPerKelvin;
+    // NaN (out of the radiometric range) and what 16 bits cannot say become 0 = no value.
+    out[i] = value >= 0.5 && value <= kRange ? static_cast<std::uint16_t>(std::lround(value)) : 0;
+  }
+  return centikelvin;
+}
+
+}  // namespace isotherm
