@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+
+#include "common/frame/frame.h"
+
+namespace isotherm {
+
+/// What becomes of a captured frame. Each frame has one fate on the way to the disk and one on the
+/// way to the ground; a rejected frame goes neither way.
+enum class FrameFate : std::uint8_t {
+  kCaptured,
+  kRejected,  ///< Garbage, short, wrong size.
+  kRecorded,
+  kRecordQueueFull,  ///< The disk was slower than the cameras.
+  kRecordFailed,     ///< The disk refused it (full, broken).
+  kPublished,
+  kPublishQueueFull,  ///< The link was slower than the cameras.
+  kPublishFailed,     ///< The link refused it.
+  kCount
+};
+
+/// Counts of one sensor.
+struct SensorAccount {
+  std::uint64_t captured = 0;
+  std::uint64_t rejected = 0;
+  std::uint64_t recorded = 0;
+  std::uint64_t record_queue_full = 0;
+  std::uint64_t record_failed = 0;
+  std::uint64_t published = 0;
+  std::uint64_t publish_queue_full = 0;
+  std::uint64_t publish_failed = 0;
+
+  /// Frames that are still on their way. The account is closed when both are 0:
+  /// captured = recorded + dropped by reason, captured = published + dropped by reason.
+  std::int64_t OnTheWayToDisk() const;
+  std::int64_t OnTheWayToGround() const;
+};
+
+/// The account of all frames of a session. Thread-safe.
+class FrameAccount {
+ public:
+  void Count(Sensor sensor, FrameFate fate) { At(sensor, fate).fetch_add(1); }
+  /// For counts that somebody else keeps.
+  void Set(Sensor sensor, FrameFate fate, std::uint64_t count) { At(sensor, fate) = count; }
+  SensorAccount Get(Sensor sensor) const;
+
+ private:
+  static constexpr std::size_t kFates = static_cast<std::size_t>(FrameFate::kCount);
+  std::atomic<std::uint64_t>& At(Sensor sensor, FrameFate fate) {
+    return counts_[static_cast<std::size_t>(sensor)][static_cast<std::size_t>(fate)];
+  }
+
+  std::array<std::array<std::atomic<std::uint64_t>, kFates>, 2> counts_{};
+};
+
+}  // namespace isotherm

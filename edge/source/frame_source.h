@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string_view>
+#include <variant>
+
+#include "common/base/status.h"
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+
+namespace isotherm {
+
+/// No frame within the time a Read may take; try again.
+struct NothingYet {};
+/// The source has delivered all it has.
+struct EndOfStream {};
+
+using SourceItem = std::variant<RawFrame, NothingYet, EndOfStream>;
+
+/// Delivers frames of one or more sensors as the device and the host gave them. Thread-bound: one
+/// thread opens, reads and closes.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  virtual std::string_view name() const = 0;
+  virtual Status Open() = 0;
+  /// Waits a bounded time (at most 0.1 s) for the next frame; returns at once when stop is
+  /// requested. A failure means that the source must be closed and opened again.
+  virtual Result<SourceItem> Read(std::stop_token stop) = 0;
+  virtual void Close() = 0;
+  /// Calibration that comes with the frames, known after Open; nullopt if the source has none (a
+  /// bare camera).
+  virtual std::optional<Rig> rig() const { return std::nullopt; }
+};
+
+}  // namespace isotherm

@@ -1,0 +1,160 @@
+#include "edge/source/replay_source.h"
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+#include <variant>
+
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+#include "edge/edge_options.pb.h"
+#include "edge/source/pause.h"
+
+namespace isotherm {
+namespace {
+
+// Between the last frame of a loop and the first of the next; about one frame period.
+constexpr Nanoseconds kLoopGap = std::chrono::milliseconds(33);
+
+}  // namespace
+
+Result<Rig> ReadRigForReplay(RecordingReader& reader) {
+  Result<Rig> rig = reader.ReadRig();
+  if (!rig) return rig;
+  const auto& metadata = reader.info().metadata;
+  const auto timing = metadata.find("timing");
+  if (timing == metadata.end()) return rig;
+  const auto delay = timing->second.find("rig_thermal_delay_s");
+  if (delay == timing->second.end()) return rig;
+  const std::string& text = delay->second;
+  std::from_chars(text.data(), text.data() + text.size(), rig->thermal_delay_s);
+  return rig;
+}
+
+ReplaySource::ReplaySource(const SourceOptions& options, std::filesystem::path recording,
+                           const Clock& clock, Nanoseconds longest_pause)
+    : name_("replay of " + recording.string()),
+      path_(std::move(recording)),
+      clock_(clock),
+      rate_(options.rate()),
+      loops_(options.loops()),
+      rebase_(options.rebase() && options.rate() > 0.0),
+      longest_pause_(longest_pause) {}
+
+Status ReplaySource::Open() {
+  if (reader_) return OkStatus();
+  Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(path_);
+  if (!reader) return reader.error();
+  reader_ = std::move(*reader);
+  if (Result<Rig> rig = ReadRigForReplay(*reader_)) {
+    rig_ = std::move(*rig);
+  } else if (rig.error().code() != StatusCode::kNotFound) {
+    return rig.error();
+  }
+  return OkStatus();
+}
+
+Result<SourceItem> ReplaySource::Read(std::stop_token stop) {
+  if (!pending_) {
+    Result<std::optional<RawFrame>> frame = NextFrame();
+    if (!frame) return Err(frame.error());
+    if (!*frame) return SourceItem(StartNextLoop() ? SourceItem(NothingYet{}) : EndOfStream{});
+    PlaceInTime(**frame);
+    pending_ = std::move(*frame);
+  }
+  if (rate_ > 0.0) {
+    const Nanoseconds early = DueTime(*pending_) - clock_.SteadyNow();
+    Pause(stop, std::min(early, longest_pause_));
+    if (clock_.SteadyNow() < DueTime(*pending_)) return NothingYet{};
+  }
+  RawFrame frame = std::move(*pending_);
+  pending_.reset();
+  return frame;
+}
+
+Result<std::optional<RawFrame>> ReplaySource::NextFrame() {
+  while (true) {
+    Result<std::optional<RecordedItem>> item = reader_->Next();
+    if (!item && item.error().code() == StatusCode::kDataLoss) {
+      if (unreadable_++ == 0) {
+        LOG(Source, Warning) << "skipped: " << item.error().message();
+      }
+      continue;
+    }
+    if (!item) return Err(item.error());
+    if (!*item) return std::nullopt;
+    if (auto* depth = std::get_if<RecordedDepth>(&**item)) return ToRawFrame(std::move(*depth));
+    if (auto* thermal = std::get_if<RecordedThermal>(&**item))
+      return ToRawFrame(std::move(*thermal));
+    if (const auto* nuc = std::get_if<NucEvent>(&**item)) last_nuc_event_ = *nuc;
+  }
+}
+
+RawFrame ReplaySource::ToRawFrame(RecordedDepth recorded) {
+  RawFrame frame =
+      Prepare(Sensor::kDepth, recorded.frame.header, recorded.frame.image, recorded.arrival);
+  frame.depth_scale = recorded.frame.depth_scale;
+  return frame;
+}
+
+RawFrame ReplaySource::ToRawFrame(RecordedThermal recorded) {
+  const EncodedThermalFrame& thermal = recorded.frame;
+  RawFrame frame = Prepare(Sensor::kThermal, thermal.header, thermal.image, recorded.arrival);
+  frame.housekeeping = thermal.housekeeping;
+  const CaptureTime time = thermal.header.capture_time;
+  frame.shutter_closed =
+      thermal.nuc_state == NucState::kInProgress ||
+      (last_nuc_event_ && time >= last_nuc_event_->start && time < last_nuc_event_->end);
+  return frame;
+}
+
+RawFrame ReplaySource::Prepare(Sensor sensor, const FrameHeader& header, const EncodedImage& image,
+                               const std::optional<CaptureTime>& arrival) {
+  RawFrame frame;
+  frame.sensor = sensor;
+  frame.frame_number = frames_[static_cast<std::size_t>(sensor)]++;
+  if (arrival) {
+    frame.device_ticks = header.device_ticks;
+    frame.arrival_wall = *arrival;
+  } else {
+    const auto time =
+        std::chrono::floor<std::chrono::microseconds>(header.capture_time.time_since_epoch());
+    frame.device_ticks = DeviceTicks(time);
+    frame.arrival_wall = CaptureTime(time);
+  }
+  // An image that cannot be decoded stays empty: the frame check refuses and counts it.
+  if (Result<Image<std::uint16_t>> pixels = Decode(image)) frame.pixels = std::move(*pixels);
+  return frame;
+}
+
+bool ReplaySource::StartNextLoop() {
+  ++loops_played_;
+  if (!first_arrival_ || (loops_ != 0 && loops_played_ >= loops_)) return false;
+  const Status sought = reader_->Seek(reader_->info().start.value_or(CaptureTime{}));
+  if (!sought.ok()) {
+    LOG(Source, Error) << name_ << ": cannot play it again: " << sought.message();
+    return false;
+  }
+  last_nuc_event_.reset();
+  loop_offset_ = last_arrival_ - *first_arrival_ + kLoopGap;
+  return true;
+}
+
+void ReplaySource::PlaceInTime(RawFrame& frame) {
+  if (!first_arrival_) {
+    first_arrival_ = frame.arrival_wall;
+    started_at_ = clock_.SteadyNow();
+    if (rebase_) rebase_offset_ = clock_.Now() - frame.arrival_wall;
+  }
+  frame.device_ticks += std::chrono::floor<std::chrono::microseconds>(loop_offset_);
+  frame.arrival_wall += loop_offset_;
+  last_arrival_ = std::max(last_arrival_, frame.arrival_wall);
+  frame.arrival_wall += rebase_offset_;
+}
+
+SteadyTime ReplaySource::DueTime(const RawFrame& frame) const {
+  const Nanoseconds since_start = frame.arrival_wall - rebase_offset_ - *first_arrival_;
+  return started_at_ + FromSeconds(ToSeconds(since_start) / rate_);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/recording/recording.h"
+#include "common/time/clock.h"
+#include "edge/source/frame_source.h"
+
+namespace isotherm {
+
+class SourceOptions;
+
+/// Plays a recording: the frames of both sensors, in the order of their stamps in the file.
+///
+/// Times: device ticks and arrival are those recorded, so that the Timestamper has the same work as
+/// live. Frames without a recorded arrival (imported data sets) get ticks and arrival equal to
+/// their capture time, rounded down to a microsecond, which makes the Timestamper an identity. With
+/// `rebase` in paced playback, all arrivals move by one constant so that the first is now. Each
+/// loop continues the time line of the one before.
+///
+/// Reopening goes on behind the last frame, as a camera does. Thread-bound.
+class ReplaySource final : public FrameSource {
+ public:
+  /// `clock` must outlive the source. `longest_pause` bounds one Read while the next frame is not
+  /// due.
+  ReplaySource(const SourceOptions& options, std::filesystem::path recording, const Clock& clock,
+               Nanoseconds longest_pause = std::chrono::milliseconds(50));
+
+  std::string_view name() const override { return name_; }
+  Status Open() override;
+  Result<SourceItem> Read(std::stop_token stop) override;
+  void Close() override {}
+  std::optional<Rig> rig() const override { return rig_; }
+
+ private:
+  Result<std::optional<RawFrame>> NextFrame();
+  RawFrame ToRawFrame(RecordedDepth recorded);
+  RawFrame ToRawFrame(RecordedThermal recorded);
+  RawFrame Prepare(Sensor sensor, const FrameHeader& header, const EncodedImage& image,
+                   const std::optional<CaptureTime>& arrival);
+  bool StartNextLoop();
+  void PlaceInTime(RawFrame& frame);
+  SteadyTime DueTime(const RawFrame& frame) const;
+
+  const std::string name_;
+  const std::filesystem::path path_;
+  const Clock& clock_;
+  const double rate_;
+  const int loops_;
+  const bool rebase_;
+  const Nanoseconds longest_pause_;
+
+  std::unique_ptr<RecordingReader> reader_;
+  std::optional<Rig> rig_;
+  std::optional<NucEvent> last_nuc_event_;
+  std::array<std::uint64_t, 2> frames_{};  ///< Delivered so far, by Sensor.
+  std::uint64_t unreadable_ = 0;
+  int loops_played_ = 0;
+
+  std::optional<RawFrame> pending_;           ///< Read ahead, not due yet.
+  std::optional<CaptureTime> first_arrival_;  ///< As recorded.
+  CaptureTime last_arrival_{};                ///< As recorded, with the loops before.
+  Nanoseconds loop_offset_{0};
+  Nanoseconds rebase_offset_{0};
+  SteadyTime started_at_{};
+};
+
+/// The rig in a recording as it was before the edge that recorded it applied (and zeroed) the
+/// thermal delay.
+Result<Rig> ReadRigForReplay(RecordingReader& reader);
+
+}  // namespace isotherm

@@ -1,0 +1,261 @@
+#include "edge/source/replay_source.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <vector>
+
+#include "common/codec/codec.h"
+#include "edge/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr CaptureTime kRecordedStart{seconds(1'600'000'000)};
+constexpr CaptureTime kNow{seconds(1'700'000'000)};
+constexpr Nanoseconds kNoPause{0};
+/// What a camera's counter said at kRecordedStart, and how long a frame took to arrive.
+constexpr microseconds kTicksAtStart{5'000'000};
+constexpr milliseconds kTransport{40};
+
+std::filesystem::path NewPath() {
+  static int count = 0;
+  const std::string name =
+      "isotherm_replay_" + std::to_string(getpid()) + "_" + std::to_string(count++);
+  return std::filesystem::path(testing::TempDir()) / (name + ".mcap");
+}
+
+class ReplaySourceTest : public testing::Test {
+ protected:
+  ReplaySourceTest() {
+    options_.set_rate(0);
+    auto writer = RecordingWriter::Create(path_, {});
+    EXPECT_TRUE(writer.has_value());
+    writer_ = std::move(*writer);
+  }
+  ~ReplaySourceTest() override { std::filesystem::remove(path_); }
+
+  FrameHeader Header(Nanoseconds time, bool stamped_by_edge) {
+    FrameHeader header;
+    header.capture_time = kRecordedStart + time;
+    if (stamped_by_edge) {
+      header.device_ticks = DeviceTicks(kTicksAtStart + std::chrono::floor<microseconds>(time));
+    }
+    return header;
+  }
+  std::optional<CaptureTime> Arrival(Nanoseconds time, bool stamped_by_edge) {
+    if (!stamped_by_edge) return std::nullopt;
+    return kRecordedStart + time + kTransport;
+  }
+  void WriteDepth(Nanoseconds time, bool stamped_by_edge = true) {
+    EncodedDepthFrame frame;
+    frame.header = Header(time, stamped_by_edge);
+    frame.image = DepthEncoder().Encode(Image<std::uint16_t>(8, 6, 700));
+    frame.depth_scale = 5000.0;
+    ASSERT_TRUE(writer_->Write(frame, Arrival(time, stamped_by_edge)).ok());
+  }
+  void WriteThermal(Nanoseconds time, NucState state = NucState::kUnknown) {
+    EncodedThermalFrame frame;
+    frame.header = Header(time, true);
+    frame.image = ThermalEncoder().Encode(Image<std::uint16_t>(6, 4, 29'815));
+    frame.nuc_state = state;
+    frame.housekeeping.housing_celsius = 31.5F;
+    ASSERT_TRUE(writer_->Write(frame, Arrival(time, true)).ok());
+  }
+
+  /// Opens the finished recording.
+  ReplaySource& Open() {
+    EXPECT_TRUE(writer_->Close().ok());
+    source_ = std::make_unique<ReplaySource>(options_, path_, clock_, kNoPause);
+    const Status opened = source_->Open();
+    EXPECT_TRUE(opened.ok()) << opened.message();
+    return *source_;
+  }
+  /// All frames to the end, without pacing.
+  std::vector<RawFrame> ReadAll() {
+    std::vector<RawFrame> frames;
+    while (true) {
+      Result<SourceItem> item = source_->Read({});
+      EXPECT_TRUE(item.has_value());
+      if (!item || std::holds_alternative<EndOfStream>(*item)) return frames;
+      if (auto* frame = std::get_if<RawFrame>(&*item)) frames.push_back(std::move(*frame));
+    }
+  }
+  bool FrameIsDue() {
+    const Result<SourceItem> item = source_->Read({});
+    return item && std::holds_alternative<RawFrame>(*item);
+  }
+
+  const std::filesystem::path path_ = NewPath();
+  SourceOptions options_;
+  FakeClock clock_{kNow};
+  std::unique_ptr<RecordingWriter> writer_;
+  std::unique_ptr<ReplaySource> source_;
+};
+
+TEST_F(ReplaySourceTest, DeliversBothSensorsInOrderAsTheyWereRecorded) {
+  WriteDepth(milliseconds(0));
+  WriteThermal(milliseconds(7));
+  WriteDepth(milliseconds(33));
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[0].sensor, Sensor::kDepth);
+  EXPECT_EQ(frames[0].pixels, Image<std::uint16_t>(8, 6, 700));
+  EXPECT_EQ(frames[0].depth_scale, 5000.0);
+  EXPECT_EQ(frames[1].sensor, Sensor::kThermal);
+  EXPECT_EQ(frames[1].pixels, Image<std::uint16_t>(6, 4, 29'815));
+  EXPECT_EQ(frames[1].housekeeping.housing_celsius, 31.5F);
+  EXPECT_EQ(frames[1].frame_number, 0U) << "each sensor counts its own frames";
+  EXPECT_EQ(frames[2].frame_number, 1U);
+}
+
+TEST_F(ReplaySourceTest, TicksAndArrivalAreThoseRecorded) {
+  WriteDepth(milliseconds(0));
+  WriteDepth(milliseconds(33));
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[1].device_ticks, DeviceTicks(kTicksAtStart + milliseconds(33)));
+  EXPECT_EQ(frames[1].arrival_wall, kRecordedStart + milliseconds(33) + kTransport);
+}
+
+TEST_F(ReplaySourceTest, FramesWithoutArrivalGetTicksAndArrivalEqualToTheirCaptureTime) {
+  constexpr bool kImported = false;
+  WriteDepth(Nanoseconds(33'333'777), kImported);
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].arrival_wall, kRecordedStart + microseconds(33'333));
+  EXPECT_EQ(frames[0].arrival_wall.time_since_epoch(), frames[0].device_ticks.time_since_epoch());
+}
+
+TEST_F(ReplaySourceTest, RealTimeWaitsForTheClock) {
+  options_.set_rate(1);
+  WriteDepth(milliseconds(0));
+  WriteDepth(milliseconds(33));
+  Open();
+  EXPECT_TRUE(FrameIsDue());
+  EXPECT_FALSE(FrameIsDue());
+  clock_.Advance(milliseconds(32));
+  EXPECT_FALSE(FrameIsDue());
+  clock_.Advance(milliseconds(1));
+  EXPECT_TRUE(FrameIsDue());
+}
+
+TEST_F(ReplaySourceTest, TwiceTheRateWaitsHalfAsLong) {
+  options_.set_rate(2);
+  WriteDepth(milliseconds(0));
+  WriteDepth(milliseconds(40));
+  Open();
+  EXPECT_TRUE(FrameIsDue());
+  clock_.Advance(milliseconds(19));
+  EXPECT_FALSE(FrameIsDue());
+  clock_.Advance(milliseconds(1));
+  EXPECT_TRUE(FrameIsDue());
+}
+
+TEST_F(ReplaySourceTest, RebasedArrivalsStartNow) {
+  options_.set_rate(1);
+  WriteDepth(milliseconds(0));
+  WriteThermal(milliseconds(7));
+  Open();
+  clock_.Advance(seconds(1));
+  const Result<SourceItem> first = source_->Read({});
+  EXPECT_EQ(std::get<RawFrame>(*first).arrival_wall, kNow + seconds(1));
+  EXPECT_EQ(std::get<RawFrame>(*first).device_ticks, DeviceTicks(kTicksAtStart))
+      << "the camera's own";
+  clock_.Advance(milliseconds(7));
+  const Result<SourceItem> second = source_->Read({});
+  EXPECT_EQ(std::get<RawFrame>(*second).arrival_wall, kNow + seconds(1) + milliseconds(7));
+}
+
+TEST_F(ReplaySourceTest, WithoutRebaseTheRecordingsTimeBaseIsKept) {
+  options_.set_rate(1);
+  options_.set_rebase(false);
+  WriteDepth(milliseconds(0));
+  Open();
+  const Result<SourceItem> first = source_->Read({});
+  EXPECT_EQ(std::get<RawFrame>(*first).arrival_wall, kRecordedStart + kTransport);
+}
+
+TEST_F(ReplaySourceTest, LoopsContinueTimesAndNumbers) {
+  options_.set_loops(3);
+  for (int i = 0; i < 4; ++i) WriteDepth(i * milliseconds(33));
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 12U);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    EXPECT_EQ(frames[i].frame_number, i);
+    EXPECT_EQ(frames[i].arrival_wall - frames[i - 1].arrival_wall, milliseconds(33)) << i;
+    EXPECT_EQ(frames[i].device_ticks - frames[i - 1].device_ticks, milliseconds(33)) << i;
+  }
+}
+
+TEST_F(ReplaySourceTest, AnEmptyRecordingEndsEvenWhenLoopedForever) {
+  options_.set_loops(0);
+  Open();
+  EXPECT_TRUE(ReadAll().empty());
+}
+
+TEST_F(ReplaySourceTest, ShutterFlagComesFromTheFramesState) {
+  WriteThermal(milliseconds(0), NucState::kIdle);
+  WriteThermal(milliseconds(25), NucState::kInProgress);
+  WriteThermal(milliseconds(50), NucState::kSettling);
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_FALSE(frames[0].shutter_closed);
+  EXPECT_TRUE(frames[1].shutter_closed);
+  EXPECT_FALSE(frames[2].shutter_closed);
+}
+
+TEST_F(ReplaySourceTest, F11AFrameThatCannotBeDecodedIsDeliveredWithoutPixels) {
+  EncodedDepthFrame garbage;
+  garbage.header = Header(milliseconds(0), true);
+  garbage.image = DepthEncoder().Encode(Image<std::uint16_t>(8, 6, 700));
+  garbage.image.payload.resize(garbage.image.payload.size() / 2);
+  ASSERT_TRUE(writer_->Write(garbage, kRecordedStart).ok());
+  WriteDepth(milliseconds(33));
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_TRUE(frames[0].pixels.empty());
+  EXPECT_FALSE(frames[1].pixels.empty());
+}
+
+TEST_F(ReplaySourceTest, OpeningAgainGoesOnBehindTheLastFrame) {
+  WriteDepth(milliseconds(0));
+  WriteDepth(milliseconds(33));
+  Open();
+  EXPECT_TRUE(FrameIsDue());
+  source_->Close();
+  ASSERT_TRUE(source_->Open().ok());
+  const std::vector<RawFrame> rest = ReadAll();
+  ASSERT_EQ(rest.size(), 1U);
+  EXPECT_EQ(rest[0].frame_number, 1U);
+}
+
+TEST_F(ReplaySourceTest, TheThermalDelayThatTheEdgeAppliedIsRestored) {
+  Rig rig;
+  rig.depth = CameraModel{.width = 8, .height = 6, .fx = 7.0, .fy = 7.0, .cx = 3.5, .cy = 2.5};
+  ASSERT_TRUE(writer_->Write(rig).ok());
+  ASSERT_TRUE(writer_->WriteMetadata("timing", {{"rig_thermal_delay_s", "0.0427"}}).ok());
+  ASSERT_TRUE(Open().rig().has_value());
+  EXPECT_DOUBLE_EQ(source_->rig()->thermal_delay_s, 0.0427);
+}
+
+TEST(ReplaySourceOpenTest, AMissingRecordingIsNamed) {
+  FakeClock clock;
+  ReplaySource source(SourceOptions(), "/nowhere/scan.mcap", clock, kNoPause);
+  const Status status = source.Open();
+  EXPECT_EQ(status.code(), StatusCode::kNotFound);
+  EXPECT_NE(status.message().find("/nowhere/scan.mcap"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,85 @@
+#include "edge/source/supervised_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/edge_options.pb.h"
+#include "edge/source/pause.h"
+
+namespace isotherm {
+
+SupervisedSource::SupervisedSource(std::unique_ptr<FrameSource> source,
+                                   const FrameCheckOptions& options, const Clock& clock,
+                                   FrameCallback on_frame, FrameCallback on_rejected,
+                                   Nanoseconds longest_pause)
+    : source_(std::move(source)),
+      clock_(clock),
+      on_frame_(std::move(on_frame)),
+      on_rejected_(std::move(on_rejected)),
+      max_bad_in_a_row_(options.max_bad_in_a_row()),
+      retry_min_(FromSeconds(options.retry_min_s())),
+      retry_max_(FromSeconds(options.retry_max_s())),
+      longest_pause_(longest_pause),
+      check_(options),
+      next_wait_(retry_min_) {}
+
+Status SupervisedSource::Open() {
+  ISOTHERM_RETURN_IF_ERROR(source_->Open());
+  if (const std::optional<Rig> rig = source_->rig()) check_.Expect(*rig);
+  return OkStatus();
+}
+
+Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
+  if (reopen_at_) return ReopenWhenDue(stop);
+  Result<SourceItem> item = source_->Read(stop);
+  if (!item) {
+    ScheduleReopen(item.error());
+    return NothingYet{};
+  }
+  if (RawFrame* frame = std::get_if<RawFrame>(&*item)) return Judge(std::move(*frame));
+  return item;
+}
+
+SourceItem SupervisedSource::Judge(RawFrame frame) {
+  on_frame_(frame.sensor);
+  const Status verdict = check_.Process(frame);
+  if (verdict.ok()) {
+    bad_in_a_row_ = 0;
+    next_wait_ = retry_min_;
+    return frame;
+  }
+  on_rejected_(frame.sensor);
+  if (bad_in_a_row_ == 0) {
+    LOG(Source, Warning) << "dropped: " << verdict.message();
+  }
+  if (++bad_in_a_row_ >= max_bad_in_a_row_) {
+    ScheduleReopen(verdict.WithContext(fmt::format("{} bad frames in a row", bad_in_a_row_)));
+  }
+  return NothingYet{};
+}
+
+void SupervisedSource::ScheduleReopen(const Status& reason) {
+  LOG(Source, Error) << name() << ": " << reason.message()
+                     << "; opening it again, wait_s=" << ToSeconds(next_wait_);
+  source_->Close();
+  reopen_at_ = clock_.SteadyNow() + next_wait_;
+  next_wait_ = std::min(2 * next_wait_, retry_max_);
+  bad_in_a_row_ = 0;
+}
+
+SourceItem SupervisedSource::ReopenWhenDue(const std::stop_token& stop) {
+  const SteadyTime now = clock_.SteadyNow();
+  if (now < *reopen_at_) {
+    Pause(stop, std::min(*reopen_at_ - now, longest_pause_));
+    return NothingYet{};
+  }
+  reopen_at_.reset();
+  ++reopened_;
+  if (const Status opened = source_->Open(); !opened.ok()) ScheduleReopen(opened);
+  return NothingYet{};
+}
+
+}  // namespace isotherm

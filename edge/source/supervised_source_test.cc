@@ -1,0 +1,111 @@
+#include "edge/source/supervised_source.h"
+
+#include <gtest/gtest.h>
+
+#include "edge/edge_options.pb.h"
+#include "edge/testing/fake_source.h"
+
+namespace isotherm {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr Nanoseconds kNoPause{0};
+
+class SupervisedSourceTest : public testing::Test {
+ protected:
+  void Start(std::string_view script) {
+    auto fake = std::make_unique<FakeSource>(script);
+    fake_ = fake.get();
+    source_ = std::make_unique<SupervisedSource>(
+        std::move(fake), options_, clock_, [this](Sensor) { ++captured_; },
+        [this](Sensor) { ++rejected_; }, kNoPause);
+    ASSERT_TRUE(source_->Open().ok());
+  }
+
+  /// Reads so many times; returns how many frames came.
+  int Read(int times) {
+    int frames = 0;
+    for (int i = 0; i < times; ++i) {
+      const Result<SourceItem> item = source_->Read({});
+      frames += item && std::holds_alternative<RawFrame>(*item) ? 1 : 0;
+    }
+    return frames;
+  }
+
+  FrameCheckOptions options_;
+  FakeClock clock_;
+  FakeSource* fake_ = nullptr;
+  std::unique_ptr<SupervisedSource> source_;
+  int captured_ = 0;
+  int rejected_ = 0;
+};
+
+TEST_F(SupervisedSourceTest, GoodFramesPass) {
+  Start("3*d - 2*t");
+  EXPECT_EQ(Read(6), 5);
+  EXPECT_EQ(captured_, 5);
+  EXPECT_EQ(rejected_, 0);
+  const Result<SourceItem> end = source_->Read({});
+  ASSERT_TRUE(end.has_value());
+  EXPECT_TRUE(std::holds_alternative<EndOfStream>(*end));
+}
+
+TEST_F(SupervisedSourceTest, F11BadFramesAreDroppedAndCounted) {
+  Start("d 3*d:empty 2*d:size d");
+  EXPECT_EQ(Read(7), 2);
+  EXPECT_EQ(captured_, 7);
+  EXPECT_EQ(rejected_, 5);
+  EXPECT_EQ(source_->reopened(), 0U);
+}
+
+TEST_F(SupervisedSourceTest, F11TenBadFramesInARowReopenTheSource) {
+  Start("d 10*d:size d");
+  EXPECT_EQ(Read(12), 1);
+  EXPECT_EQ(fake_->opened(), 1) << "not before the wait is over";
+  clock_.Advance(milliseconds(500));
+  EXPECT_EQ(Read(2), 1) << "one call to open, one frame";
+  EXPECT_EQ(fake_->opened(), 2);
+  EXPECT_EQ(source_->reopened(), 1U);
+}
+
+TEST_F(SupervisedSourceTest, F11NineBadFramesAndAGoodOneStartTheCountAgain) {
+  Start("d 9*d:size d 9*d:size d");
+  EXPECT_EQ(Read(21), 3);
+  EXPECT_EQ(source_->reopened(), 0U);
+}
+
+TEST_F(SupervisedSourceTest, AFailedReadReopensTheSource) {
+  Start("d ! d");
+  EXPECT_EQ(Read(2), 1);
+  clock_.Advance(milliseconds(500));
+  EXPECT_EQ(Read(2), 1);
+  EXPECT_EQ(fake_->opened(), 2);
+}
+
+TEST_F(SupervisedSourceTest, TheWaitDoublesUpToItsLimit) {
+  Start("! d");
+  Read(1);
+  fake_->FailToOpen(100);
+  milliseconds expected(500);
+  for (int attempt = 1; attempt <= 8; ++attempt) {
+    clock_.Advance(expected - milliseconds(1));
+    Read(1);
+    EXPECT_EQ(fake_->opened(), attempt) << "opened too early after " << expected.count() << " ms";
+    clock_.Advance(milliseconds(1));
+    Read(1);
+    EXPECT_EQ(fake_->opened(), attempt + 1);
+    expected = std::min(2 * expected, milliseconds(5000));
+  }
+}
+
+TEST_F(SupervisedSourceTest, AFailureToOpenAtStartIsReported) {
+  auto fake = std::make_unique<FakeSource>("d");
+  fake->FailToOpen(1);
+  SupervisedSource source(
+      std::move(fake), options_, clock_, [](Sensor) {}, [](Sensor) {}, kNoPause);
+  EXPECT_EQ(source.Open().code(), StatusCode::kUnavailable);
+}
+
+}  // namespace
+}  // namespace isotherm

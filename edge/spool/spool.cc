@@ -1,0 +1,93 @@
+#include "edge/spool/spool.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/edge_options.pb.h"
+
+namespace isotherm {
+
+std::optional<std::filesystem::path> SpoolPath(const std::string& record, CaptureTime now) {
+  if (record == "off") return std::nullopt;
+  const std::filesystem::path path = record;
+  std::error_code ignored;
+  if (path.has_filename() && !std::filesystem::is_directory(path, ignored)) return path;
+  const std::time_t seconds =
+      std::chrono::floor<std::chrono::seconds>(now.time_since_epoch()).count();
+  return path / fmt::format("edge-{:%Y%m%d-%H%M%S}.mcap", fmt::gmtime(seconds));
+}
+
+Result<std::unique_ptr<Spool>> Spool::Create(const std::filesystem::path& path,
+                                             const SpoolOptions& options,
+                                             const std::optional<Rig>& rig,
+                                             const Metadata& metadata, FrameAccount& account) {
+  RecordingOptions recording;
+  recording.flush_interval = FromSeconds(options.flush_interval_s());
+  Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, recording);
+  if (!writer) return Err(writer.error());
+  if (rig) {
+    if (const Status written = (*writer)->Write(*rig); !written.ok()) return Err(written);
+  }
+  for (const auto& [name, values] : metadata) {
+    const Status written = (*writer)->WriteMetadata(name, values);
+    if (!written.ok()) return Err(written);
+  }
+  return std::make_unique<Spool>(path, std::move(*writer), account);
+}
+
+Spool::Spool(std::filesystem::path path, std::unique_ptr<RecordingWriter> writer,
+             FrameAccount& account)
+    : path_(std::move(path)), writer_(std::move(writer)), account_(account) {}
+
+void Spool::Add(const EncodedFrame& frame) {
+  ++offered_[static_cast<std::size_t>(frame.sensor())];
+  if (first_error_.ok()) NoteError(WriteFrame(frame));
+  UpdateAccount();
+}
+
+Status Spool::WriteFrame(const EncodedFrame& frame) {
+  if (const auto* depth = std::get_if<EncodedDepthFrame>(&frame.content)) {
+    return writer_->Write(*depth, frame.arrival);
+  }
+  const auto& thermal = std::get<EncodedThermalFrame>(frame.content);
+  NoteShutter(thermal);
+  return writer_->Write(thermal, frame.arrival);
+}
+
+void Spool::NoteShutter(const EncodedThermalFrame& frame) {
+  const CaptureTime time = frame.header.capture_time;
+  const bool closed = frame.nuc_state == NucState::kInProgress;
+  if (closed && !shutter_closed_at_) shutter_closed_at_ = time;
+  if (closed || !shutter_closed_at_) return;
+  NoteError(writer_->Write(NucEvent{*shutter_closed_at_, time, frame.nuc_source}));
+  shutter_closed_at_.reset();
+}
+
+Status Spool::Close() {
+  NoteError(writer_->Close());
+  UpdateAccount();
+  return first_error_;
+}
+
+void Spool::NoteError(const Status& status) {
+  if (status.ok() || !first_error_.ok()) return;
+  first_error_ = status;
+  LOG(Spool, Error) << "recording ended early, publishing goes on: " << status.message();
+}
+
+void Spool::UpdateAccount() {
+  const RecordingStats written = writer_->stats();
+  const auto set = [this](Sensor sensor, std::uint64_t recorded) {
+    account_.Set(sensor, FrameFate::kRecorded, recorded);
+    account_.Set(sensor, FrameFate::kRecordFailed,
+                 offered_[static_cast<std::size_t>(sensor)] - recorded);
+  };
+  set(Sensor::kDepth, written.depth_frames);
+  set(Sensor::kThermal, written.thermal_frames);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "edge/publisher/publisher.h"
+
+namespace isotherm {
+
+/// A link that keeps what is published. Can be broken, and can hold frames back until released.
+/// Thread-safe.
+class FakePublisher final : public Publisher {
+ public:
+  void Run(std::stop_token stop, std::function<void(const Command&)> on_command) override {
+    for (const Command& command : commands) on_command(command);
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, stop, [] { return false; });
+  }
+  bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
+  Status BeginSession(const RigDescription&) override { return OkStatus(); }
+  Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
+    return Take(frame, depth_, stop);
+  }
+  Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
+    return Take(frame, thermal_, stop);
+  }
+  Status Publish(EdgeStatus) override { return OkStatus(); }
+  Status Answer(const CommandResult& result) override {
+    std::scoped_lock lock(mutex_);
+    answers_.push_back(result);
+    return OkStatus();
+  }
+  bool Drain(Nanoseconds) override { return true; }
+  void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
+  PublisherStats stats() const override { return {}; }
+  LatestValue<Feedback>& feedback() override { return feedback_; }
+  std::optional<Receipt> receipt() const override { return std::nullopt; }
+
+  /// Commands that the ground sends at the start of Run.
+  std::vector<Command> commands;
+
+  void Break() { broken_ = true; }
+  /// Publish waits from now on until it is released or stop is requested.
+  void Hold() {
+    std::scoped_lock lock(mutex_);
+    held_ = true;
+  }
+  void Release() {
+    std::scoped_lock lock(mutex_);
+    held_ = false;
+    changed_.notify_all();
+  }
+  std::vector<EncodedDepthFrame> depth() const {
+    std::scoped_lock lock(mutex_);
+    return depth_;
+  }
+  std::vector<EncodedThermalFrame> thermal() const {
+    std::scoped_lock lock(mutex_);
+    return thermal_;
+  }
+  std::vector<CommandResult> answers() const {
+    std::scoped_lock lock(mutex_);
+    return answers_;
+  }
+  std::optional<PublishPolicy> policy() const { return policy_; }
+
+ private:
+  template <typename Frame>
+  Status Take(const Frame& frame, std::vector<Frame>& frames, const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    if (broken_) return Unavailable("no link");
+    changed_.wait(lock, stop, [this] { return !held_; });
+    frames.push_back(frame);
+    return OkStatus();
+  }
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  bool held_ = false;
+  std::atomic<bool> broken_{false};
+  std::optional<PublishPolicy> policy_;
+  std::vector<EncodedDepthFrame> depth_;
+  std::vector<EncodedThermalFrame> thermal_;
+  std::vector<CommandResult> answers_;
+  LatestValue<Feedback> feedback_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "common/recording/recording.h"
+
+namespace isotherm {
+
+/// What a FakeRecordingWriter was given; outlives the writer.
+struct FakeRecording {
+  std::vector<std::uint64_t> depth_frames;
+  std::vector<std::uint64_t> thermal_frames;
+  std::vector<NucEvent> nuc_events;
+  int writes_after_failure = 0;
+  bool closed = false;
+};
+
+/// A disk with room for so many frames. Thread-compatible.
+class FakeRecordingWriter final : public RecordingWriter {
+ public:
+  explicit FakeRecordingWriter(FakeRecording& recording, std::uint64_t room = UINT64_MAX)
+      : recording_(recording), room_(room) {}
+
+  Status Write(const Rig&) override { return OkStatus(); }
+  Status Write(const EncodedDepthFrame& frame, const std::optional<CaptureTime>&) override {
+    return Take(frame.header.frame_number, recording_.depth_frames);
+  }
+  Status Write(const EncodedThermalFrame& frame, const std::optional<CaptureTime>&) override {
+    return Take(frame.header.frame_number, recording_.thermal_frames);
+  }
+  Status Write(const NucEvent& event) override {
+    recording_.nuc_events.push_back(event);
+    return OkStatus();
+  }
+  Status WritePose(std::string_view, const StampedPose&) override { return OkStatus(); }
+  Status WriteMetadata(std::string_view, const std::map<std::string, std::string>&) override {
+    return OkStatus();
+  }
+  Status WriteLog(CaptureTime, std::string_view, std::string_view) override { return OkStatus(); }
+  Status WriteMessage(std::string_view, std::string_view, std::string_view, CaptureTime,
+                      std::string_view) override {
+    return OkStatus();
+  }
+  Status Flush() override { return OkStatus(); }
+  Status Close() override {
+    recording_.closed = true;
+    return OkStatus();
+  }
+  RecordingStats stats() const override {
+    return {recording_.depth_frames.size(), recording_.thermal_frames.size(), failed_, 0};
+  }
+
+ private:
+  Status Take(std::uint64_t frame_number, std::vector<std::uint64_t>& frames) {
+    if (room_ == 0) {
+      if (failed_++ > 0) ++recording_.writes_after_failure;
+      return IoError("no space left on device");
+    }
+    --room_;
+    frames.push_back(frame_number);
+    return OkStatus();
+  }
+
+  FakeRecording& recording_;
+  std::uint64_t room_;
+  std::uint64_t failed_ = 0;
+};
+
+}  // namespace isotherm

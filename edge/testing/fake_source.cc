@@ -1,0 +1,73 @@
+#include "edge/testing/fake_source.h"
+
+#include <cstdlib>
+#include <sstream>
+
+#include "common/base/check.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::chrono::microseconds kPeriod[] = {std::chrono::microseconds(33'333),
+                                                 std::chrono::microseconds(25'000)};
+
+}  // namespace
+
+FakeSource::FakeSource(std::string_view script) {
+  std::istringstream words{std::string(script)};
+  for (std::string word; words >> word;) {
+    int count = 1;
+    if (const std::size_t star = word.find('*'); star != std::string::npos) {
+      count = std::atoi(word.c_str());
+      word = word.substr(star + 1);
+    }
+    CHECK(word.size() == 1 || (word.size() > 2 && word[1] == ':'));
+    const Step step{word[0], word.size() > 2 ? word.substr(2) : ""};
+    steps_.insert(steps_.end(), static_cast<std::size_t>(count), step);
+  }
+}
+
+Status FakeSource::Open() {
+  ++opened_;
+  if (failures_to_open_ > 0) {
+    --failures_to_open_;
+    return Unavailable("the camera is not there");
+  }
+  open_ = true;
+  return OkStatus();
+}
+
+Result<SourceItem> FakeSource::Read(std::stop_token) {
+  CHECK(open_);
+  if (next_ == steps_.size()) return EndOfStream{};
+  const Step& step = steps_[next_++];
+  if (step.what == '-') return NothingYet{};
+  if (step.what == '!') return Err(Unavailable("the cable came off"));
+  return MakeFrame(step);
+}
+
+RawFrame FakeSource::MakeFrame(const Step& step) {
+  CHECK(step.what == 'd' || step.what == 't');
+  RawFrame frame;
+  frame.sensor = step.what == 'd' ? Sensor::kDepth : Sensor::kThermal;
+  const bool depth = frame.sensor == Sensor::kDepth;
+  const auto index = static_cast<std::size_t>(frame.sensor);
+  frame.frame_number = frames_[index]++;
+  const auto time = static_cast<int>(frame.frame_number) * kPeriod[index];
+  if (step.fault == "reset") device_zero_[index] = time;
+  frame.device_ticks = DeviceTicks(time - device_zero_[index]);
+  frame.arrival_wall = kFakeEpoch + time;
+  frame.shutter_closed = step.fault == "shut";
+
+  frame.pixels =
+      depth ? Image<std::uint16_t>(8, 6, kDepthRaw) : Image<std::uint16_t>(6, 4, kCentikelvin);
+  if (step.fault == "empty") frame.pixels = {};
+  if (step.fault == "size") frame.pixels = Image<std::uint16_t>(7, 6, kDepthRaw);
+  for (std::size_t i = 0; i < frame.pixels.size(); i += 2) {
+    if (step.fault == "holes") frame.pixels.data()[i] = i % 4 == 0 ? kNoDepth : kNoDepthSaturated;
+    if (step.fault == "hot") frame.pixels.data()[i] = i % 4 == 0 ? 65'535 : 100;
+  }
+  return frame;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "edge/source/frame_source.h"
+
+namespace isotherm {
+
+/// A camera pair that does what a script says. Steps are separated by blanks:
+/// `[count*]what[:fault]`.
+///
+///   d  t      a depth or thermal frame (8x6 and 6x4 pixels; 30 and 40 Hz; arrival = kFakeEpoch +
+///   device time)
+///   -         nothing yet
+///   !         Read fails (the cable came off)
+///   d:empty   the frame has no pixels             d:size    ... the wrong size
+///   d:reset   the camera's counter starts again   t:shut    the shutter is closed
+///   t:hot     every other pixel is out of range   d:holes   every other pixel is 0 or 65535
+///
+/// At the end of the script the stream ends. Opening again goes on with the script. Thread-bound.
+class FakeSource final : public FrameSource {
+ public:
+  static constexpr CaptureTime kFakeEpoch{std::chrono::seconds(1'700'000'000)};
+  static constexpr std::uint16_t kDepthRaw = 700;
+  static constexpr std::uint16_t kCentikelvin = 29'815;
+
+  explicit FakeSource(std::string_view script);
+
+  std::string_view name() const override { return "fake"; }
+  Status Open() override;
+  Result<SourceItem> Read(std::stop_token stop) override;
+  void Close() override { open_ = false; }
+
+  /// Later calls of Open fail so many times.
+  void FailToOpen(int times) { failures_to_open_ = times; }
+  int opened() const { return opened_; }
+
+ private:
+  struct Step {
+    char what = '-';
+    std::string fault;
+  };
+  RawFrame MakeFrame(const Step& step);
+
+  std::vector<Step> steps_;
+  std::size_t next_ = 0;
+  bool open_ = false;
+  int opened_ = 0;
+  int failures_to_open_ = 0;
+  std::uint64_t frames_[2] = {};
+  std::chrono::microseconds device_zero_[2] = {};
+};
+
+}  // namespace isotherm
