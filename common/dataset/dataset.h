@@ -45,7 +45,7 @@ struct Dataset {
   std::vector<ImageEntry> depth;
   std::vector<ImageEntry> thermal;
   std::vector<NucInterval> nuc;
-  std::vector<TrajectoryPose> groundtruth;
+  std::vector<StampedPose> groundtruth;
   std::vector<std::string>
       notes;  ///< What a user should know although it is no error, a sentence each.
 };

@@ -83,9 +83,9 @@ class Importer {
   }
 
   Status WritePose() {
-    const TrajectoryPose& pose = dataset_.groundtruth[pose_++];
+    const StampedPose& pose = dataset_.groundtruth[pose_++];
     ++summary_.groundtruth_poses;
-    return writer_.WritePose("groundtruth", {pose.time, pose.T_world_depth});
+    return writer_.WritePose("groundtruth", pose);
   }
 
   FrameHeader Header(const ImageEntry& entry, std::size_t index) const {

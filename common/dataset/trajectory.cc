@@ -35,9 +35,9 @@ Result<RigidTransform> ParsePose(std::string_view rest) {
 
 }  // namespace
 
-Result<std::vector<TrajectoryPose>> ParseTrajectory(std::string_view text,
+Result<std::vector<StampedPose>> ParseTrajectory(std::string_view text,
                                                     std::string_view source_name) {
-  std::vector<TrajectoryPose> poses;
+  std::vector<StampedPose> poses;
   for (const TextLine& line : ContentLines(text)) {
     std::string_view rest = line.text;
     const Result<CaptureTime> time = ParseStamp(NextWord(rest));
@@ -55,10 +55,10 @@ Result<std::vector<TrajectoryPose>> ParseTrajectory(std::string_view text,
   return poses;
 }
 
-Result<std::vector<TrajectoryPose>> ReadTrajectory(const std::filesystem::path& path) {
+Result<std::vector<StampedPose>> ReadTrajectory(const std::filesystem::path& path) {
   const Result<std::string> text = ReadTextFile(path);
   if (!text) return Err(text.error());
-  Result<std::vector<TrajectoryPose>> poses = ParseTrajectory(*text, path.string());
+  Result<std::vector<StampedPose>> poses = ParseTrajectory(*text, path.string());
   if (poses && poses->empty()) {
     return Err(DataLoss(
         fmt::format("{}: has no poses (timestamp tx ty tz qx qy qz qw per line)", path.string())));

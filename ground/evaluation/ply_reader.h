@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/status.h"
+
+namespace isotherm {
+
+/// The vertices of a PLY file: one column of numbers per property.
+struct PlyVertices {
+  std::size_t count = 0;
+  std::vector<std::string> names;
+  std::vector<std::vector<float>> columns;
+
+  /// nullptr if there is no such property.
+  const std::vector<float>* Find(std::string_view name) const;
+};
+
+/// Reads the element `vertex` (which must come first and have no lists) of an ASCII or binary PLY
+/// file; what follows it is ignored. kDataLoss says what is wrong: not a PLY file, truncated,
+/// unknown types.
+Result<PlyVertices> ReadPly(const std::filesystem::path& path);
+Result<PlyVertices> ParsePly(std::string_view bytes);
+
+}  // namespace isotherm

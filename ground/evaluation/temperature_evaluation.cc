@@ -1,0 +1,116 @@
+#include "ground/evaluation/temperature_evaluation.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/base/check.h"
+#include "common/radiometry/radiometry.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::uint8_t kBad = 0;
+constexpr std::uint8_t kGood = 1;
+
+enum Class { kClassGood, kClassAcceptable, kClassBad, kClassCount };
+
+Class ClassOf(std::uint8_t distance, std::uint8_t angle) {
+  if (distance == kBad || angle == kBad) return kClassBad;
+  return distance == kGood && angle == kGood ? kClassGood : kClassAcceptable;
+}
+
+struct Errors {
+  std::vector<double> all;
+  std::vector<double> away_from_edges;
+
+  void Append(const Errors& other) {
+    all.insert(all.end(), other.all.begin(), other.all.end());
+    away_from_edges.insert(away_from_edges.end(), other.away_from_edges.begin(),
+                           other.away_from_edges.end());
+  }
+};
+
+TemperatureErrors Describe(std::vector<double> errors, double gross_kelvin) {
+  TemperatureErrors result;
+  double sum = 0.0;
+  std::size_t gross = 0;
+  for (double& error : errors) {
+    sum += error;
+    error = std::abs(error);
+    if (error > gross_kelvin) ++gross;
+  }
+  const auto count = static_cast<double>(errors.size());
+  result.mean = errors.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / count;
+  result.gross_share = errors.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                      : static_cast<double>(gross) / count;
+  result.magnitude = Summarize(std::move(errors));
+  return result;
+}
+
+ClassErrors Describe(const Errors& errors, double gross_kelvin) {
+  return {Describe(errors.all, gross_kelvin), Describe(errors.away_from_edges, gross_kelvin)};
+}
+
+Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
+                  const TemperatureEvaluationOptions& options) {
+  if (!(options.emissivity > 0.0 && options.emissivity <= 1.0)) {
+    return InvalidArgument(
+        fmt::format("emissivity must be above 0 and at most 1, got {}", options.emissivity));
+  }
+  if (!(options.ambient_celsius >= kMinRadiometricCelsius &&
+        options.ambient_celsius <= kMaxRadiometricCelsius)) {
+    return InvalidArgument(fmt::format("ambient temperature must be {}..{} degrees Celsius, got {}",
+                                       kMinRadiometricCelsius, kMaxRadiometricCelsius,
+                                       options.ambient_celsius));
+  }
+  if (truth.points().celsius.empty()) {
+    return FailedPrecondition("the true surface has no temperatures (scalar_temperature)");
+  }
+  if (cloud.celsius.empty() || cloud.distance_class.empty() || cloud.angle_class.empty()) {
+    return FailedPrecondition(
+        "the cloud has no temperatures (scalar_temperature distance_class angle_class)");
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
+                                               const std::vector<Eigen::Vector3f>& positions,
+                                               const TrueSurface& truth,
+                                               const TemperatureEvaluationOptions& options) {
+  if (Status status = CheckInput(cloud, truth, options); !status.ok())
+    return Err(std::move(status));
+  CHECK(positions.size() == cloud.celsius.size());
+  const BandRadiance band;
+  TemperatureReport report;
+  Errors by_class[kClassCount];
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const auto foot = truth.Project(positions[i]);
+    if (!std::isfinite(cloud.celsius[i]) || !foot) {
+      ++report.never_measured;
+      continue;
+    }
+    const double true_celsius = truth.CelsiusAt(positions[i], foot->nearest);
+    const double expected =
+        ApparentCelsius(band, true_celsius, options.emissivity, options.ambient_celsius);
+    const double error = cloud.celsius[i] - expected;
+    if (!std::isfinite(error)) continue;
+    Errors& errors = by_class[ClassOf(cloud.distance_class[i], cloud.angle_class[i])];
+    errors.all.push_back(error);
+    const Eigen::Vector3f& q = truth.points().positions_m[foot->nearest];
+    if (truth.CelsiusSpread(q, options.edge_radius_m) <= options.edge_kelvin)
+      errors.away_from_edges.push_back(error);
+  }
+  Errors any;
+  for (const Errors& errors : by_class) any.Append(errors);
+  report.good = Describe(by_class[kClassGood], options.gross_kelvin);
+  report.acceptable = Describe(by_class[kClassAcceptable], options.gross_kelvin);
+  report.bad = Describe(by_class[kClassBad], options.gross_kelvin);
+  report.any = Describe(any, options.gross_kelvin);
+  return report;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,50 @@
+#pragma once
+
+#include "common/base/status.h"
+#include "ground/evaluation/error_statistics.h"
+#include "ground/evaluation/true_surface.h"
+
+namespace isotherm {
+
+struct TemperatureEvaluationOptions {
+  double emissivity = 1.0;        ///< At normal incidence, (0, 1].
+  double ambient_celsius = 23.0;  ///< Of the surroundings that the surface reflects.
+  /// Points are near a temperature edge if true temperatures differ by more than `edge_kelvin`
+  /// within this radius.
+  float edge_radius_m = 0.005F;
+  float edge_kelvin = 5.0F;
+  /// An error above this counts as gross.
+  double gross_kelvin = 5.0;
+};
+
+/// Errors of one class of points: measured minus expected apparent temperature, kelvin.
+struct TemperatureErrors {
+  ErrorStatistics magnitude;
+  double mean = 0.0;         ///< With sign: a bias.
+  double gross_share = 0.0;  ///< Share above TemperatureEvaluationOptions::gross_kelvin.
+};
+
+struct ClassErrors {
+  TemperatureErrors all;
+  TemperatureErrors away_from_edges;
+};
+
+/// The three classes have no point in common; `any` is all of them together.
+struct TemperatureReport {
+  std::size_t never_measured = 0;
+  ClassErrors good;        ///< Good in distance and angle.
+  ClassErrors acceptable;  ///< Not bad in either, not good in both.
+  ClassErrors bad;         ///< Bad in distance or angle.
+  ClassErrors any;
+};
+
+/// Compares temperatures of the cloud with the apparent temperature that the true temperature of
+/// the nearest surface implies for a black-body camera (thesis eq. 3.1 with the emissivity at
+/// normal incidence, whatever the angle it was measured at). `positions`: the cloud's points in the
+/// truth's world.
+Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
+                                               const std::vector<Eigen::Vector3f>& positions,
+                                               const TrueSurface& truth,
+                                               const TemperatureEvaluationOptions& options);
+
+}  // namespace isotherm
