@@ -69,8 +69,9 @@ class Publisher {
   /// Starts the counts of a session and announces its rig. Frames of other sessions must not
   /// follow.
   virtual Status BeginSession(const RigDescription& rig) = 0;
-  /// Writes a frame. With kLossless it first waits for room in the flow window. kUnavailable: not
-  /// sent, counted.
+  /// Writes a frame. With kLossless it first waits for room in the flow window; once
+  /// stop is requested, no longer than half a second over all frames that follow. An error: the
+  /// frame was not sent and is counted.
   virtual Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) = 0;
   virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
   /// Writes the status; session, policy and the counts that the publisher knows are filled in here.

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "edge/edge_options.pb.h"
-#include "edge/testing/fake_source.h"
+#include "edge/source/fake_source.h"
 
 namespace isotherm {
 namespace {

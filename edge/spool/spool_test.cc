@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edge/testing/fake_recording_writer.h"
+#include "edge/spool/fake_recording_writer.h"
 
 namespace isotherm {
 namespace {

@@ -1,4 +1,4 @@
-#include "edge/testing/fake_source.h"
+#include "edge/source/fake_source.h"
 
 #include <cstdlib>
 #include <sstream>
