@@ -8,7 +8,6 @@
 
 #include "common/base/log.h"
 #include "ground/initial_pose.h"
-#include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
 namespace {
@@ -88,7 +87,7 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
   tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
   thermal_ = std::make_unique<ThermalVolume>(max_blocks);
   if (thermal_status_.ok()) fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal);
-  view_.camera = rig.depth->WithoutDistortion();
+  view_.camera = rig.depth->WithoutDistortion().Downscaled(options.raycast().halvings());
 }
 
 RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
@@ -120,8 +119,8 @@ TrackingResult GroundPipeline::Track(const PreparedDepth& depth, CaptureTime tim
 void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
   const StageTimer timer(stage_stats_["raycast"]);
   view_.T_world_depth = T_world_depth;
-  Raycast(*tsdf_, view_.camera, T_world_depth, static_cast<float>(options_.raycast().min_weight()), pool_,
-          view_.maps);
+  raycaster_.Cast(*tsdf_, view_.camera, T_world_depth, static_cast<float>(options_.raycast().min_weight()),
+                  pool_, view_.maps);
 }
 
 DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {

@@ -17,6 +17,7 @@
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/tracker/depth_preprocessor.h"
 #include "ground/tracker/icp_tracker.h"
+#include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
@@ -91,6 +92,7 @@ class GroundPipeline {
   IcpTracker tracker_;
   TsdfIntegrator integrator_;
   IntegrationGate gate_;
+  Raycaster raycaster_;
   std::unique_ptr<TsdfVolume> tsdf_;
   std::unique_ptr<ThermalVolume> thermal_;
   std::unique_ptr<ThermalFuser> fuser_;

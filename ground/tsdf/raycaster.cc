@@ -5,17 +5,18 @@
 #include <cmath>
 #include <limits>
 
+#include "ground/tsdf/raycast_kernel.h"
+
 namespace isotherm {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr int kRowsPerTask = 8;
 
 /// Looks voxels up with the block of the last look-up at hand.
 class VoxelCursor {
  public:
-  VoxelCursor(const TsdfVolume& volume, float min_weight)
-      : volume_(volume), min_weight_(static_cast<std::uint32_t>(min_weight * TsdfVoxel::kWeightScale)) {}
+  VoxelCursor(const TsdfVolume& volume, std::int32_t min_weight_code)
+      : volume_(volume), min_weight_(static_cast<std::uint32_t>(min_weight_code)) {}
 
   /// First voxel of the block that holds `voxel`; null if there is none.
   const TsdfVoxel* Block(const GridIndex& voxel) {
@@ -33,7 +34,7 @@ class VoxelCursor {
   }
 
   bool Observed(TsdfVoxel voxel) const {
-    return voxel.observed() && (voxel.bits & 0xFFFFU) >= min_weight_;
+    return (voxel.bits & 0xFFFFU) >= min_weight_;
   }
 
   /// NaN where nothing was observed.
@@ -71,16 +72,6 @@ class VoxelCursor {
     return y0 + f.z() * (y1 - y0);
   }
 
-  Eigen::Vector3f Gradient(const Eigen::Vector3f& p) {
-    Eigen::Vector3f gradient;
-    for (int axis = 0; axis < 3; ++axis) {
-      Eigen::Vector3f offset = Eigen::Vector3f::Zero();
-      offset[axis] = 1.0F;
-      gradient[axis] = Interpolate(p + offset) - Interpolate(p - offset);
-    }
-    return gradient;
-  }
-
  private:
   const TsdfVolume& volume_;
   const std::uint32_t min_weight_;
@@ -88,126 +79,104 @@ class VoxelCursor {
   const TsdfVoxel* voxels_ = nullptr;
 };
 
-/// A ray in voxel coordinates: origin + t * direction, t in voxels.
-struct Ray {
-  Eigen::Vector3f origin, direction, inverse_direction;
-  Eigen::Vector3f At(float t) const { return origin + t * direction; }
-};
-
-/// Where the ray is inside the box between `low` and `high`.
-std::pair<float, float> Clip(const Ray& ray, const Eigen::Vector3f& low, const Eigen::Vector3f& high) {
-  const Eigen::Array3f a = (low - ray.origin).array() * ray.inverse_direction.array();
-  const Eigen::Array3f b = (high - ray.origin).array() * ray.inverse_direction.array();
-  return {a.min(b).maxCoeff(), a.max(b).minCoeff()};
-}
-
-struct March {
-  float truncation_vox;
-  Eigen::Vector3f low, high;  ///< Of the volume, voxel coordinates.
-};
-
-/// Distance along the ray to the surface in voxels, NaN if none.
-float FindSurface(const Ray& ray, const March& march, VoxelCursor& cursor) {
-  auto [t, end] = Clip(ray, march.low, march.high);
-  t = std::max(t, 0.0F);
-  float previous_t = kNan;
-  float previous = kNan;
-  while (t < end) {
-    const Eigen::Vector3f p = ray.At(t);
-    const GridIndex voxel = (p.array() + 0.5F).floor().cast<int>();
-    if (cursor.Block(voxel) == nullptr) {
-      const GridIndex block(voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3);
-      const Eigen::Vector3f block_low =
-          (block * kBlockSide).cast<float>() - Eigen::Vector3f::Constant(0.5F);
-      const float exit =
-          Clip(ray, block_low, block_low + Eigen::Vector3f::Constant(static_cast<float>(kBlockSide))).second;
-      t = std::max(exit, t) + 1e-3F;
-      previous = kNan;
-      continue;
-    }
-    const float value = cursor.Tsdf(voxel);
-    if (value <= 0.0F) {
-      if (!(previous > 0.0F)) {
-        if (std::isnan(previous)) return kNan;  // Seen from behind, or an edge that was never observed in front.
-      }
-      float t0 = previous_t;
-      float t1 = t;
-      float f0 = cursor.Interpolate(ray.At(t0));
-      float f1 = cursor.Interpolate(ray.At(t1));
-      // The nearest voxel can be a little ahead of the interpolated surface.
-      if (f1 > 0.0F) {
-        t0 = t1;
-        f0 = f1;
-        t1 = t + 1.0F;
-        f1 = cursor.Interpolate(ray.At(t1));
-      } else if (f0 <= 0.0F) {
-        t1 = t0;
-        f1 = f0;
-        t0 -= 1.0F;
-        f0 = cursor.Interpolate(ray.At(t0));
-      }
-      if (!(f0 > 0.0F && f1 <= 0.0F)) return kNan;
-      const float crossing = t0 + (t1 - t0) * f0 / (f0 - f1);
-      // One secant step more: distances are not linear along the ray over a whole step.
-      const float f = cursor.Interpolate(ray.At(crossing));
-      if (std::isnan(f)) return crossing;
-      return f > 0.0F ? crossing + (t1 - crossing) * f / (f - f1) : t0 + (crossing - t0) * f0 / (f0 - f);
-    }
-    previous = value;
-    previous_t = t;
-    t += std::isnan(value) ? 1.0F : std::max(1.0F, 0.8F * value * march.truncation_vox);
-  }
-  return kNan;
+/// Rounds up, and never to nothing: weight 0 means never observed.
+std::int32_t MinWeightCode(float min_weight) {
+  return std::max(1, static_cast<std::int32_t>(std::ceil(min_weight * TsdfVoxel::kWeightScale)));
 }
 
 }  // namespace
 
 std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vector3f& p_voxel, float min_weight) {
-  VoxelCursor cursor(volume, min_weight);
+  VoxelCursor cursor(volume, MinWeightCode(min_weight));
   const float value = cursor.Interpolate(p_voxel);
   return std::isnan(value) ? std::nullopt : std::optional<float>(value);
 }
 
-void Raycast(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera,
-             float min_weight, ThreadPool& pool, SurfaceMaps& maps) {
-  maps.Resize(camera.width, camera.height);
+void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera) {
+  tiles_x_ = (camera.width + kRaycastTile - 1) / kRaycastTile;
+  tiles_y_ = (camera.height + kRaycastTile - 1) / kRaycastTile;
+  const auto count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
+  near_vox_.assign(count, std::numeric_limits<float>::max());
+  far_vox_.assign(count, 0.0F);
+  const RigidTransform T_camera_world = T_world_camera.inverse();
   const VoxelGrid& grid = volume.grid();
-  const auto voxel_m = static_cast<float>(grid.voxel_size_m);
-  const Eigen::Vector3f origin = grid.ToVoxel(T_world_camera.translation()).cast<float>();
-  const Eigen::Matrix3f R = T_world_camera.linear().cast<float>();
-  const Eigen::Vector3f world_origin = T_world_camera.translation().cast<float>();
-  const March march{static_cast<float>(volume.truncation_distance_m()) / voxel_m, Eigen::Vector3f::Constant(-0.5F),
-                    (grid.blocks * kBlockSide).cast<float>() - Eigen::Vector3f::Constant(0.5F)};
+  // Block coordinates to camera coordinates in voxels: p = A b + t.
+  const Eigen::Matrix3f A = (T_camera_world.linear() * kBlockSide).cast<float>();
+  const Eigen::Vector3f t =
+      (T_camera_world * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m())) / grid.voxel_size_m)
+          .cast<float>();
+  constexpr float kRadius = 0.5F * 1.7320508F * kBlockSide;
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
-  const auto cx = static_cast<float>(camera.cx);
-  const auto cy = static_cast<float>(camera.cy);
-
-  pool.ParallelFor((camera.height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
-    VoxelCursor cursor(volume, min_weight);
-    const int end = std::min(camera.height, (task + 1) * kRowsPerTask);
-    for (int y = task * kRowsPerTask; y < end; ++y) {
-      for (int x = 0; x < camera.width; ++x) {
-        Ray ray;
-        ray.origin = origin;
-        ray.direction = (R * Eigen::Vector3f((static_cast<float>(x) - cx) / fx, (static_cast<float>(y) - cy) / fy,
-                                             1.0F)).normalized();
-        ray.inverse_direction = ray.direction.cwiseInverse();
-        const float t = FindSurface(ray, march, cursor);
-        Eigen::Vector3f n = Eigen::Vector3f::Constant(kNan);
-        Eigen::Vector3f p = n;
-        if (!std::isnan(t)) {
-          n = cursor.Gradient(ray.At(t)).normalized();
-          if (n.allFinite()) p = world_origin + ray.direction * (t * voxel_m);
-        }
-        maps.vx.At(x, y) = p.x();
-        maps.vy.At(x, y) = p.y();
-        maps.vz.At(x, y) = p.z();
-        maps.nx.At(x, y) = n.x();
-        maps.ny.At(x, y) = n.y();
-        maps.nz.At(x, y) = n.z();
+  const auto cx = static_cast<float>(camera.cx) + 0.5F;
+  const auto cy = static_cast<float>(camera.cy) + 0.5F;
+  for (std::int32_t block = 0; block < volume.block_count(); ++block) {
+    const Eigen::Vector3f p = A * volume.block_coordinates(block).cast<float>() + t;
+    const float near = std::max(p.z() - kRadius, 0.0F);
+    const float far = p.z() + kRadius;
+    if (far <= 0.0F) continue;
+    int x0 = 0, y0 = 0, x1 = tiles_x_ - 1, y1 = tiles_y_ - 1;
+    if (near > kRadius) {
+      // The sphere around the block projects into this rectangle (the nearest depth gives the largest extent).
+      const float inverse = 1.0F / near;
+      const float extent = kRadius * 1.5F * inverse;
+      const float u = fx * p.x() / p.z() + cx;
+      const float v = fy * p.y() / p.z() + cy;
+      const float du = fx * extent;
+      const float dv = fy * extent;
+      if (u + du < 0.0F || v + dv < 0.0F || u - du >= static_cast<float>(camera.width) ||
+          v - dv >= static_cast<float>(camera.height)) {
+        continue;
+      }
+      x0 = std::max(0, static_cast<int>(u - du) / kRaycastTile);
+      y0 = std::max(0, static_cast<int>(v - dv) / kRaycastTile);
+      x1 = std::min(x1, static_cast<int>(u + du) / kRaycastTile);
+      y1 = std::min(y1, static_cast<int>(v + dv) / kRaycastTile);
+    }
+    for (int y = y0; y <= y1; ++y) {
+      for (int x = x0; x <= x1; ++x) {
+        const auto tile = static_cast<std::size_t>(y * tiles_x_ + x);
+        near_vox_[tile] = std::min(near_vox_[tile], near);
+        far_vox_[tile] = std::max(far_vox_[tile], far);
       }
     }
+  }
+}
+
+void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera,
+                     float min_weight, ThreadPool& pool, SurfaceMaps& maps) {
+  maps.Resize(camera.width, camera.height);
+  if (volume.block_count() == 0) {
+    for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz}) plane->Fill(kNan);
+    return;
+  }
+  range_.Compute(volume, camera, T_world_camera);
+  const VoxelGrid& grid = volume.grid();
+  RaycastKernelArgs args{};
+  args.table = volume.table().data();
+  args.voxels = reinterpret_cast<const std::int32_t*>(volume.base());
+  args.blocks_x = grid.blocks.x();
+  args.blocks_y = grid.blocks.y();
+  args.blocks_z = grid.blocks.z();
+  args.min_weight_code = MinWeightCode(min_weight);
+  args.truncation_vox = static_cast<float>(volume.truncation_distance_m() / grid.voxel_size_m);
+  const Eigen::Vector3f origin = grid.ToVoxel(T_world_camera.translation()).cast<float>();
+  const Eigen::Vector3f world_origin = T_world_camera.translation().cast<float>();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_world_camera.linear().cast<float>();
+  std::copy_n(origin.data(), 3, args.origin);
+  std::copy_n(world_origin.data(), 3, args.world_origin);
+  std::copy_n(R.data(), 9, args.R);
+  args.fx = static_cast<float>(camera.fx);
+  args.fy = static_cast<float>(camera.fy);
+  args.cx = static_cast<float>(camera.cx);
+  args.cy = static_cast<float>(camera.cy);
+  args.voxel_m = static_cast<float>(grid.voxel_size_m);
+  args.near_vox = range_.near_vox();
+  args.far_vox = range_.far_vox();
+  args.tiles_per_row = range_.tiles_x();
+  pool.ParallelFor(range_.tiles_y(), [&](int task) {
+    const int end = std::min(camera.height, (task + 1) * kRaycastTile);
+    for (int y = task * kRaycastTile; y < end; ++y) RaycastRow(args, y, maps);
   });
 }
 

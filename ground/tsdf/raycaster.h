@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
@@ -9,11 +10,36 @@
 
 namespace isotherm {
 
-/// Vertex and normal maps of the model in `world`, seen by `camera` (its distortion is ignored) from
-/// `T_world_camera` (algorithm 3). The zero crossing is found between trilinearly interpolated distances and the
-/// normal is their interpolated gradient. Voxels lighter than `min_weight` do not count as observed.
-void Raycast(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera,
-             float min_weight, ThreadPool& pool, SurfaceMaps& maps);
+/// Bounds of the depth at which rays can meet a block, per tile of the image: blocks are projected as spheres.
+/// Thread-compatible.
+class RangeMap {
+ public:
+  void Compute(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera);
+
+  int tiles_x() const { return tiles_x_; }
+  int tiles_y() const { return tiles_y_; }
+  /// Depth along z in voxels, row-major; far <= near where no block projects.
+  const float* near_vox() const { return near_vox_.data(); }
+  const float* far_vox() const { return far_vox_.data(); }
+
+ private:
+  int tiles_x_ = 0;
+  int tiles_y_ = 0;
+  std::vector<float> near_vox_, far_vox_;
+};
+
+/// Vertex and normal maps of the model (algorithm 3). The zero crossing is found between trilinearly interpolated
+/// distances and the normal is their interpolated gradient. Keeps scratch memory. Thread-compatible.
+class Raycaster {
+ public:
+  /// Maps in `world`, seen by `camera` (its distortion is ignored) from `T_world_camera`. Voxels lighter than
+  /// `min_weight` do not count as observed.
+  void Cast(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera,
+            float min_weight, ThreadPool& pool, SurfaceMaps& maps);
+
+ private:
+  RangeMap range_;
+};
 
 /// Truncated distance (in truncation distances) interpolated at voxel coordinates; nullopt unless all eight
 /// voxels around were observed.
