@@ -22,7 +22,7 @@ done
 say() { printf '== %s\n' "$*"; }
 
 say "packages"
-deploy/install-deps.sh
+deploy/install-deps.sh --build
 
 say "build"
 [ -f build/release/build.ninja ] || cmake --preset release >/dev/null

@@ -2,7 +2,8 @@
 # Installs the Debian 12 packages that Isotherm is built from and tested with. Needs root or sudo only if
 # something is missing; run it as often as you like.
 #
-#   deploy/install-deps.sh            install what is missing
+#   deploy/install-deps.sh            install what is missing for build and tests
+#   deploy/install-deps.sh --build    only what the build and the demo need (Node.js is for tests only)
 #   deploy/install-deps.sh --list     print the packages, install nothing
 # Package lists are words on purpose:
 # shellcheck disable=SC2086
@@ -18,14 +19,18 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
   libzstd-dev zlib1g-dev libsystemd-dev
   libgtest-dev libgmock-dev libbenchmark-dev"
 
-# Node.js may come from elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).
-command -v node >/dev/null 2>&1 || packages="$packages nodejs"
-command -v npm >/dev/null 2>&1 || packages="$packages npm"
+# Recordings are checked against the format's reference implementation, which is JavaScript. Node.js may come from
+# elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).
+add_test_packages() {
+  command -v node >/dev/null 2>&1 || packages="$packages nodejs"
+  command -v npm >/dev/null 2>&1 || packages="$packages npm"
+}
 
 case "${1-}" in
-  "") ;;
-  --list) for package in $packages; do echo "$package"; done; exit 0 ;;
-  *) echo "usage: deploy/install-deps.sh [--list]" >&2; exit 64 ;;
+  "") add_test_packages ;;
+  --build) ;;
+  --list) add_test_packages; for package in $packages; do echo "$package"; done; exit 0 ;;
+  *) echo "usage: deploy/install-deps.sh [--build | --list]" >&2; exit 64 ;;
 esac
 
 if ! command -v apt-get >/dev/null 2>&1; then
