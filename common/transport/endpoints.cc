@@ -38,18 +38,16 @@ const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
   return nullptr;
 }
 
-Result<DdsHandle> CreateTopic(const Participant& participant, TopicId topic) {
-  const QosPtr qos = MakeQos(topic);
-  DdsHandle handle(dds_create_topic(participant.handle(), DescriptorOf(topic), TopicName(topic),
-                                    qos.get(), nullptr));
-  if (handle.value() > 0) return handle;
-  return Err(Internal(fmt::format("cannot create the topic {}: {}", TopicName(topic),
-                                  dds_strretcode(handle.value()))));
-}
-
-Status EndpointFailed(std::string_view kind, TopicId topic, std::int32_t code) {
+Status CreationFailed(std::string_view kind, TopicId topic, std::int32_t code) {
   return Internal(
       fmt::format("cannot create a {} of {}: {}", kind, TopicName(topic), dds_strretcode(code)));
+}
+
+Status CreateTopic(const Participant& participant, TopicId topic, DdsHandle* handle) {
+  const QosPtr qos = MakeQos(topic);
+  *handle = DdsHandle(dds_create_topic(participant.handle(), DescriptorOf(topic), TopicName(topic),
+                                       qos.get(), nullptr));
+  return handle->value() > 0 ? OkStatus() : CreationFailed("topic", topic, handle->value());
 }
 
 /// A wire struct with the lists that ToWire allocated.
@@ -66,14 +64,12 @@ struct WireSample {
 }  // namespace
 
 template <typename Message>
-Result<Writer<Message>> Writer<Message>::Create(const Participant& participant) {
+Status Writer<Message>::Open(const Participant& participant) {
   constexpr TopicId kTopic = TopicOf<Message>::kId;
-  Result<DdsHandle> topic = CreateTopic(participant, kTopic);
-  if (!topic) return Err(topic.error());
+  ISOTHERM_RETURN_IF_ERROR(CreateTopic(participant, kTopic, &topic_));
   const QosPtr qos = MakeQos(kTopic);
-  DdsHandle writer(dds_create_writer(participant.handle(), topic->value(), qos.get(), nullptr));
-  if (writer.value() < 0) return Err(EndpointFailed("writer", kTopic, writer.value()));
-  return Writer(std::move(*topic), std::move(writer));
+  writer_ = DdsHandle(dds_create_writer(participant.handle(), topic_.value(), qos.get(), nullptr));
+  return writer_.value() > 0 ? OkStatus() : CreationFailed("writer", kTopic, writer_.value());
 }
 
 template <typename Message>
@@ -127,7 +123,7 @@ struct Reader<Message>::Impl {
 };
 
 template <typename Message>
-Reader<Message>::Reader(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Reader<Message>::Reader() = default;
 template <typename Message>
 Reader<Message>::Reader(Reader&&) noexcept = default;
 template <typename Message>
@@ -136,25 +132,21 @@ template <typename Message>
 Reader<Message>::~Reader() = default;
 
 template <typename Message>
-Result<Reader<Message>> Reader<Message>::Create(const Participant& participant,
-                                                RefusalCounter* refusals) {
+Status Reader<Message>::Open(const Participant& participant, RefusalCounter* refusals) {
   constexpr TopicId kTopic = TopicOf<Message>::kId;
   auto impl = std::make_unique<Impl>();
   impl->refusals = refusals;
-  Result<DdsHandle> topic = CreateTopic(participant, kTopic);
-  if (!topic) return Err(topic.error());
-  impl->topic = std::move(*topic);
+  ISOTHERM_RETURN_IF_ERROR(CreateTopic(participant, kTopic, &impl->topic));
   const QosPtr qos = MakeQos(kTopic);
   impl->reader =
       DdsHandle(dds_create_reader(participant.handle(), impl->topic.value(), qos.get(), nullptr));
-  if (impl->reader.value() < 0) {
-    return Err(EndpointFailed("reader", kTopic, impl->reader.value()));
-  }
+  if (impl->reader.value() < 0) return CreationFailed("reader", kTopic, impl->reader.value());
   impl->condition = DdsHandle(dds_create_readcondition(impl->reader.value(), DDS_ANY_STATE));
   if (impl->condition.value() < 0) {
-    return Err(EndpointFailed("read condition", kTopic, impl->condition.value()));
+    return CreationFailed("read condition", kTopic, impl->condition.value());
   }
-  return Reader(std::move(impl));
+  impl_ = std::move(impl);
+  return OkStatus();
 }
 
 template <typename Message>

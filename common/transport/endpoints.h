@@ -20,8 +20,8 @@ namespace isotherm {
 template <typename Message>
 class Writer {
  public:
-  /// `participant` must outlive the writer.
-  static Result<Writer> Create(const Participant& participant);
+  /// To be called once before anything else. `participant` must outlive the writer.
+  Status Open(const Participant& participant);
 
   /// Hands `message` of the rig `edge_id` to the middleware: a copy, and at most the topic's
   /// blocking time (see qos.cc). kUnavailable if the middleware's buffer stayed full;
@@ -33,8 +33,6 @@ class Writer {
   bool WaitForAcknowledgments(Nanoseconds timeout) const;
 
  private:
-  Writer(DdsHandle topic, DdsHandle writer)
-      : topic_(std::move(topic)), writer_(std::move(writer)) {}
   DdsHandle topic_;
   DdsHandle writer_;
 };
@@ -50,11 +48,13 @@ struct Received {
 template <typename Message>
 class Reader {
  public:
-  /// `participant` and `refusals` must outlive the reader.
-  static Result<Reader> Create(const Participant& participant, RefusalCounter* refusals);
+  Reader();
+  ~Reader();
   Reader(Reader&&) noexcept;
   Reader& operator=(Reader&&) noexcept;
-  ~Reader();
+
+  /// To be called once before anything else. `participant` and `refusals` must outlive the reader.
+  Status Open(const Participant& participant, RefusalCounter* refusals);
 
   /// Calls `handle` for each sample that has arrived, in the writer's order, at most `max_samples`
   /// of them, and returns how many samples were taken (refused ones included).
@@ -66,7 +66,6 @@ class Reader {
 
  private:
   struct Impl;
-  explicit Reader(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -78,8 +78,10 @@ class EndpointsTest : public ::testing::Test {
   /// Writes `message` and returns what arrives at the other side.
   template <typename Message>
   std::optional<Received<Message>> RoundTrip(const Message& message) {
-    auto reader = *Reader<Message>::Create(*ground_, &refusals_);
-    auto writer = *Writer<Message>::Create(*edge_);
+    Reader<Message> reader;
+    EXPECT_TRUE(reader.Open(*ground_, &refusals_).ok());
+    Writer<Message> writer;
+    EXPECT_TRUE(writer.Open(*edge_).ok());
     AwaitMatch(writer, 1);
     EXPECT_TRUE(writer.Write("edge-1", message).ok());
     return TakeOne(reader);
@@ -97,7 +99,8 @@ class EndpointsTest : public ::testing::Test {
 
   template <typename Message>
   std::optional<Received<Message>> TakeOne(Reader<Message>& reader) {
-    auto waiter = *WaitSet::Create(*ground_);
+    WaitSet waiter;
+    EXPECT_TRUE(waiter.Open(*ground_).ok());
     EXPECT_TRUE(waiter.Attach(reader).ok());
     std::optional<Received<Message>> result;
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
@@ -239,24 +242,29 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
 }
 
 TEST_F(EndpointsTest, LateJoinerGetsTheRigAndTheNewestFrames) {
-  auto rig_writer = *Writer<RigDescription>::Create(*edge_);
-  auto depth_writer = *Writer<EncodedDepthFrame>::Create(*edge_);
+  Writer<RigDescription> rig_writer;
+  ASSERT_TRUE(rig_writer.Open(*edge_).ok());
+  Writer<EncodedDepthFrame> depth_writer;
+  ASSERT_TRUE(depth_writer.Open(*edge_).ok());
   RigDescription rig;
   rig.rig = MakeRig();
   ASSERT_TRUE(rig_writer.Write("edge-1", rig).ok());
   for (std::uint64_t i = 0; i < 100; ++i)
     ASSERT_TRUE(depth_writer.Write("edge-1", MakeDepth(i)).ok());
 
-  auto rig_reader = *Reader<RigDescription>::Create(*ground_, &refusals_);
+  Reader<RigDescription> rig_reader;
+  ASSERT_TRUE(rig_reader.Open(*ground_, &refusals_).ok());
   ASSERT_TRUE(TakeOne(rig_reader).has_value());
-  auto depth_reader = *Reader<EncodedDepthFrame>::Create(*ground_, &refusals_);
+  Reader<EncodedDepthFrame> depth_reader;
+  ASSERT_TRUE(depth_reader.Open(*ground_, &refusals_).ok());
   const auto first = TakeOne(depth_reader);
   ASSERT_TRUE(first.has_value());
   EXPECT_EQ(first->message.header.frame_number, 100U - kFrameHistory);
 }
 
 TEST_F(EndpointsTest, WakeEndsTheWaitAtOnce) {
-  auto waiter = *WaitSet::Create(*ground_);
+  WaitSet waiter;
+  ASSERT_TRUE(waiter.Open(*ground_).ok());
   std::jthread waker([&] { waiter.Wake(); });
   const auto start = std::chrono::steady_clock::now();
   waiter.Wait(60s);
@@ -264,10 +272,12 @@ TEST_F(EndpointsTest, WakeEndsTheWaitAtOnce) {
 }
 
 TEST_F(EndpointsTest, LeavingIsSeenByTheOtherSide) {
-  auto reader = *Reader<Hello>::Create(*ground_, &refusals_);
+  Reader<Hello> reader;
+  ASSERT_TRUE(reader.Open(*ground_, &refusals_).ok());
   {
     const auto peer = Join();
-    auto writer = *Writer<Hello>::Create(*peer);
+    Writer<Hello> writer;
+    ASSERT_TRUE(writer.Open(*peer).ok());
     ASSERT_TRUE(writer.Write("edge-1", Hello{}).ok());
     ASSERT_TRUE(TakeOne(reader).has_value());
     EXPECT_EQ(reader.matched_writers(), 1);
@@ -280,14 +290,16 @@ TEST_F(EndpointsTest, LeavingIsSeenByTheOtherSide) {
 }
 
 TEST_F(EndpointsTest, F60OversizePayloadIsNotWritten) {
-  auto writer = *Writer<EncodedDepthFrame>::Create(*edge_);
+  Writer<EncodedDepthFrame> writer;
+  ASSERT_TRUE(writer.Open(*edge_).ok());
   EncodedDepthFrame frame = MakeDepth(0);
   frame.image.payload.resize(kMaxPayloadBytes + 1);
   EXPECT_EQ(writer.Write("edge-1", frame).code(), StatusCode::kInvalidArgument);
 }
 
 TEST_F(EndpointsTest, EdgeIdMustFit) {
-  auto writer = *Writer<Hello>::Create(*edge_);
+  Writer<Hello> writer;
+  ASSERT_TRUE(writer.Open(*edge_).ok());
   EXPECT_EQ(writer.Write("", Hello{}).code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(writer.Write(std::string(kMaxIdBytes + 1, 'x'), Hello{}).code(),
             StatusCode::kInvalidArgument);

@@ -154,7 +154,7 @@ struct StreamReceipt {
   std::uint64_t next = 0;  ///< One above the highest number received.
   std::uint64_t handled =
       0;  ///< All numbers below are delivered or given up by the reorder window.
-  std::uint64_t received = 0;     ///< Distinct frames.
+  std::uint64_t received = 0;       ///< Distinct frames.
   std::vector<FrameRange> holes{};  ///< Newest kMaxHoles ranges that are missing, ascending.
 };
 

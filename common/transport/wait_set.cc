@@ -7,14 +7,11 @@
 
 namespace isotherm {
 
-Result<WaitSet> WaitSet::Create(const Participant& participant) {
-  DdsHandle wait_set(dds_create_waitset(participant.handle()));
-  DdsHandle guard(dds_create_guardcondition(participant.handle()));
-  if (wait_set.value() < 0 || guard.value() < 0 ||
-      dds_waitset_attach(wait_set.value(), guard.value(), 0) != DDS_RETCODE_OK) {
-    return Err(Internal("cannot create a DDS wait set"));
-  }
-  return WaitSet(std::move(wait_set), std::move(guard));
+Status WaitSet::Open(const Participant& participant) {
+  wait_set_ = DdsHandle(dds_create_waitset(participant.handle()));
+  guard_ = DdsHandle(dds_create_guardcondition(participant.handle()));
+  if (wait_set_.value() < 0 || guard_.value() < 0) return Internal("cannot create a DDS wait set");
+  return AttachCondition(guard_.value());
 }
 
 Status WaitSet::AttachCondition(std::int32_t condition) {

@@ -11,8 +11,8 @@ namespace isotherm {
 /// thread-bound, Wake is thread-safe.
 class WaitSet {
  public:
-  /// `participant` must outlive the wait set.
-  static Result<WaitSet> Create(const Participant& participant);
+  /// To be called once before anything else. `participant` must outlive the wait set.
+  Status Open(const Participant& participant);
 
   /// `reader` must outlive the wait set.
   template <typename Message>
@@ -25,8 +25,6 @@ class WaitSet {
   void Wake();
 
  private:
-  WaitSet(DdsHandle wait_set, DdsHandle guard)
-      : guard_(std::move(guard)), wait_set_(std::move(wait_set)) {}
   Status AttachCondition(std::int32_t condition);
 
   DdsHandle guard_;

@@ -13,6 +13,7 @@
 #include "common/transport/messages.h"
 #include "common/transport/participant.h"
 #include "common/transport/refusal.h"
+#include "ground/subscriber/received_frame.h"
 #include "ground/subscriber/session_account.h"
 
 namespace isotherm {
@@ -31,18 +32,6 @@ struct SubscriberOptions {
 };
 
 Status Validate(const SubscriberOptions& options);
-
-/// A frame as it arrived (for the recording) and unpacked (for the reconstruction).
-struct ReceivedDepth {
-  DepthFramePtr frame;
-  std::shared_ptr<const EncodedDepthFrame> encoded;
-  CaptureTime arrival;  ///< Ground wall clock.
-};
-struct ReceivedThermal {
-  ThermalFramePtr frame;
-  std::shared_ptr<const EncodedThermalFrame> encoded;
-  CaptureTime arrival;
-};
 
 /// Called on the thread that runs the subscriber. A handler may block (a bounded queue with
 /// kBlock): receipts then stop, and an edge with the lossless policy waits. Empty handlers are

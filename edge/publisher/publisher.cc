@@ -1,0 +1,348 @@
+#include "edge/publisher/publisher.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <mutex>
+
+#include "common/base/log.h"
+#include "common/transport/endpoints.h"
+#include "common/transport/qos.h"
+#include "common/transport/wait_set.h"
+#include "edge/publisher/flow_window.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kPresenceInterval =
+    100ms;                                    // How often Run looks whether the ground is there.
+constexpr Nanoseconds kPollInterval = 20ms;   // For what the middleware does not signal.
+constexpr Nanoseconds kStopPatience = 500ms;  // Waiting for the ground after stop, in all.
+
+std::string HostName() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) return "";
+  return name.data();
+}
+
+/// The ends of all topics of an edge.
+struct EdgeEndpoints {
+  Writer<EncodedDepthFrame> depth;
+  Writer<EncodedThermalFrame> thermal;
+  Writer<RigDescription> rig;
+  Writer<EdgeStatus> status;
+  Writer<CommandResult> result;
+  Writer<Hello> hello;
+  Reader<Command> commands;
+  Reader<Receipt> receipts;
+  Reader<Feedback> feedback;
+  Reader<Hello> peers;
+  WaitSet wait_set;
+};
+
+class DdsPublisher final : public Publisher {
+ public:
+  DdsPublisher(const Clock& clock, const PublisherOptions& options)
+      : clock_(clock),
+        options_(options),
+        own_hello_{
+            .role = Role::kEdge, .software_version = options.software_version, .host = HostName()},
+        policy_(options.policy),
+        depth_{.counts = {}, .window = MakeWindow(options)},
+        thermal_{.counts = {}, .window = MakeWindow(options)} {}
+
+  Status Open(const Participant& participant);
+
+  void Run(std::stop_token stop, std::function<void(const Command&)> on_command) override;
+  bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
+  Status BeginSession(const RigDescription& rig) override;
+  Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
+    return PublishFrame(frame, &ends_.depth, &depth_, stop);
+  }
+  Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
+    return PublishFrame(frame, &ends_.thermal, &thermal_, stop);
+  }
+  Status Publish(EdgeStatus status) override;
+  Status Answer(const CommandResult& result) override {
+    return ends_.result.Write(options_.edge_id, result);
+  }
+  bool Drain(Nanoseconds timeout) override;
+  void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
+  PublisherStats stats() const override;
+  LatestValue<Feedback>& feedback() override { return feedback_; }
+  std::optional<Receipt> receipt() const override { return receipt_.Get(); }
+
+ private:
+  struct Stream {
+    StreamPublished counts;
+    FlowWindow window;
+  };
+
+  static FlowWindow MakeWindow(const PublisherOptions& options) {
+    return {static_cast<std::uint64_t>(options.flow_window_frames), options.flow_timeout};
+  }
+
+  template <typename Frame>
+  Status PublishFrame(const Frame& frame, Writer<Frame>* writer, Stream* stream,
+                      const std::stop_token& stop);
+  template <typename Frame>
+  void WaitForRoom(std::uint64_t number, const Writer<Frame>& writer, Stream* stream,
+                   const std::stop_token& stop);
+  void OnReceipt(const Receipt& receipt);
+  void OnPeer(const Received<Hello>& peer);
+  void LookForGround();
+  std::optional<std::uint64_t> session() const {
+    std::scoped_lock lock(mutex_);
+    return session_;
+  }
+  bool IsGroundReady() const;
+  bool IsHandled() const;
+
+  const Clock& clock_;
+  const PublisherOptions options_;
+  const Hello own_hello_;
+  RefusalCounter refusals_;
+  EdgeEndpoints ends_;
+  LatestValue<Feedback> feedback_;
+  LatestValue<Receipt> receipt_;
+  std::atomic<PublishPolicy> policy_;
+
+  mutable std::mutex mutex_;  // Guards what follows.
+  std::condition_variable changed_;
+  std::optional<std::uint64_t> session_;
+  Stream depth_;
+  Stream thermal_;
+  std::uint64_t flow_waits_ = 0;
+  std::uint64_t flow_timeouts_ = 0;
+  bool ground_present_ = false;
+  bool ground_compatible_ = false;
+  std::optional<SteadyTime> stop_deadline_;
+};
+
+Status DdsPublisher::Open(const Participant& participant) {
+  ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.result.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.hello.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.commands.Open(participant, &refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.receipts.Open(participant, &refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.feedback.Open(participant, &refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.peers.Open(participant, &refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.commands));
+  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.receipts));
+  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.feedback));
+  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.peers));
+  return ends_.hello.Write(options_.edge_id, own_hello_);
+}
+
+void DdsPublisher::Run(std::stop_token stop, std::function<void(const Command&)> on_command) {
+  const std::stop_callback wake(stop, [this] { ends_.wait_set.Wake(); });
+  // Messages for other rigs share the topics.
+  const auto is_ours = [this](const auto& received) {
+    return received.edge_id == options_.edge_id;
+  };
+  while (!stop.stop_requested()) {
+    ends_.wait_set.Wait(kPresenceInterval);
+    ends_.peers.Take([&](Received<Hello>&& peer) { OnPeer(peer); });
+    ends_.receipts.Take([&](Received<Receipt>&& receipt) {
+      if (is_ours(receipt)) OnReceipt(receipt.message);
+    });
+    ends_.feedback.Take([&](Received<Feedback>&& feedback) {
+      if (is_ours(feedback)) feedback_.Set(std::move(feedback.message));
+    });
+    ends_.commands.Take([&](Received<Command>&& command) {
+      if (is_ours(command)) on_command(command.message);
+    });
+    LookForGround();
+  }
+}
+
+void DdsPublisher::OnPeer(const Received<Hello>& peer) {
+  if (peer.message.role != Role::kGround) return;
+  const Status compatible = CheckCompatible(own_hello_, peer.message);
+  if (!compatible.ok()) {
+    refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
+    return;
+  }
+  std::scoped_lock lock(mutex_);
+  ground_compatible_ = true;
+  changed_.notify_all();
+}
+
+void DdsPublisher::OnReceipt(const Receipt& receipt) {
+  receipt_.Set(receipt);
+  const SteadyTime now = clock_.SteadyNow();
+  std::scoped_lock lock(mutex_);
+  if (session_ != receipt.session) return;
+  depth_.window.OnReceipt(receipt.depth.handled, now);
+  thermal_.window.OnReceipt(receipt.thermal.handled, now);
+  changed_.notify_all();
+}
+
+void DdsPublisher::LookForGround() {
+  const bool present = ends_.receipts.matched_writers() > 0;  // Only a ground station writes them.
+  std::scoped_lock lock(mutex_);
+  if (present == ground_present_) return;
+  ground_present_ = present;
+  if (!present) ground_compatible_ = false;  // The next one may be another version.
+  LOG(Publisher, Info) << (present ? "ground station found" : "ground station lost");
+}
+
+bool DdsPublisher::IsGroundReady() const {
+  std::scoped_lock lock(mutex_);
+  return ground_compatible_ && ends_.depth.matched_readers() > 0 &&
+         ends_.thermal.matched_readers() > 0;
+}
+
+bool DdsPublisher::WaitForGround(Nanoseconds timeout, std::stop_token stop) {
+  const SteadyTime deadline = clock_.SteadyNow() + timeout;
+  while (!IsGroundReady()) {
+    if (stop.stop_requested() || clock_.SteadyNow() >= deadline) return false;
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kPollInterval);
+  }
+  return true;
+}
+
+Status DdsPublisher::BeginSession(const RigDescription& rig) {
+  {
+    std::scoped_lock lock(mutex_);
+    session_ = rig.session;
+    for (Stream* stream : {&depth_, &thermal_}) {
+      stream->counts = {};
+      stream->window.BeginSession();
+    }
+    flow_waits_ = 0;
+    flow_timeouts_ = 0;
+  }
+  return ends_.rig.Write(options_.edge_id, rig);
+}
+
+template <typename Frame>
+void DdsPublisher::WaitForRoom(std::uint64_t number, const Writer<Frame>& writer, Stream* stream,
+                               const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  bool waited = false;
+  while (!stream->window.HasRoom(number) && writer.matched_readers() > 0) {
+    const SteadyTime now = clock_.SteadyNow();
+    if (stop.stop_requested()) {
+      if (!stop_deadline_) stop_deadline_ = now + kStopPatience;
+      if (now >= *stop_deadline_) break;
+    }
+    if (stream->window.GiveUp(now)) {
+      ++flow_timeouts_;
+      LOG(Publisher, Warning) << "no receipt from the ground, publishing without, timeout_s="
+                              << ToSeconds(options_.flow_timeout);
+    }
+    waited = true;
+    changed_.wait_for(lock, kPollInterval);
+  }
+  if (waited) ++flow_waits_;
+}
+
+template <typename Frame>
+Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Stream* stream,
+                                  const std::stop_token& stop) {
+  const std::uint64_t number = frame.header.frame_number;
+  if (session() != frame.header.session) {
+    return FailedPrecondition(
+        fmt::format("frame of session {} without BeginSession", frame.header.session));
+  }
+  if (policy_ == PublishPolicy::kLossless) WaitForRoom(number, *writer, stream, stop);
+  const Status written = writer->Write(options_.edge_id, frame);
+  std::scoped_lock lock(mutex_);
+  if (!written.ok()) {
+    ++stream->counts.failed;
+    return written;
+  }
+  ++stream->counts.published;
+  stream->counts.next_frame_number = std::max(stream->counts.next_frame_number, number + 1);
+  return OkStatus();
+}
+
+Status DdsPublisher::Publish(EdgeStatus status) {
+  {
+    std::scoped_lock lock(mutex_);
+    if (session_) status.session = *session_;
+    status.depth.published = depth_.counts.published;
+    status.depth.next_frame_number = depth_.counts.next_frame_number;
+    status.thermal.published = thermal_.counts.published;
+    status.thermal.next_frame_number = thermal_.counts.next_frame_number;
+  }
+  status.publish_policy = policy_;
+  return ends_.status.Write(options_.edge_id, status);
+}
+
+bool DdsPublisher::IsHandled() const {
+  std::scoped_lock lock(mutex_);
+  const std::optional<Receipt> receipt = receipt_.Get();
+  if (depth_.counts.published + thermal_.counts.published == 0) return true;
+  return receipt && receipt->session == session_ &&
+         receipt->depth.handled >= depth_.counts.next_frame_number &&
+         receipt->thermal.handled >= thermal_.counts.next_frame_number;
+}
+
+bool DdsPublisher::Drain(Nanoseconds timeout) {
+  const SteadyTime deadline = clock_.SteadyNow() + timeout;
+  const auto left = [&] {
+    return std::max(Nanoseconds(0), Nanoseconds(deadline - clock_.SteadyNow()));
+  };
+  // The middleware has delivered; ...
+  if (!ends_.depth.WaitForAcknowledgments(left())) return false;
+  if (!ends_.thermal.WaitForAcknowledgments(left())) return false;
+  if (!ends_.status.WaitForAcknowledgments(left())) return false;
+  // ... and the ground has taken it.
+  while (!IsHandled()) {
+    if (ends_.depth.matched_readers() == 0 && ends_.thermal.matched_readers() == 0) return true;
+    if (left() == Nanoseconds(0)) return false;
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kPollInterval);
+  }
+  return true;
+}
+
+PublisherStats DdsPublisher::stats() const {
+  std::scoped_lock lock(mutex_);
+  return {.depth = depth_.counts,
+          .thermal = thermal_.counts,
+          .flow_waits = flow_waits_,
+          .flow_timeouts = flow_timeouts_,
+          .refused = refusals_.total(),
+          .ground_present = ground_present_};
+}
+
+}  // namespace
+
+Status Validate(const PublisherOptions& options) {
+  if (options.edge_id.empty() || options.edge_id.size() > kMaxIdBytes) {
+    return InvalidArgument(fmt::format("edge_id must have 1 to {} bytes", kMaxIdBytes));
+  }
+  if (options.flow_window_frames < 1 || options.flow_window_frames > kMaxFlowWindowFrames) {
+    return InvalidArgument(fmt::format("flow_window_frames = {} is outside 1..{}",
+                                       options.flow_window_frames, kMaxFlowWindowFrames));
+  }
+  if (options.flow_timeout <= Nanoseconds(0)) {
+    return InvalidArgument("flow_timeout must be positive");
+  }
+  return OkStatus();
+}
+
+Result<std::unique_ptr<Publisher>> Publisher::Create(const Participant& participant,
+                                                     const Clock& clock,
+                                                     const PublisherOptions& options) {
+  if (const Status valid = Validate(options); !valid.ok()) return Err(valid);
+  auto publisher = std::make_unique<DdsPublisher>(clock, options);
+  if (const Status opened = publisher->Open(participant); !opened.ok()) return Err(opened);
+  return publisher;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,115 @@
+#include "ground/subscriber/frame_lane.h"
+
+#include <fmt/format.h>
+
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+
+namespace isotherm {
+namespace {
+
+ReceivedDepth Unpacked(EncodedDepthFrame&& encoded, Image<std::uint16_t>&& pixels,
+                       CaptureTime arrival) {
+  auto frame = std::make_shared<DepthFrame>();
+  frame->header = encoded.header;
+  frame->depth_raw = std::move(pixels);
+  frame->depth_scale = encoded.depth_scale;
+  return {.frame = std::move(frame),
+          .encoded = std::make_shared<const EncodedDepthFrame>(std::move(encoded)),
+          .arrival = arrival};
+}
+
+ReceivedThermal Unpacked(EncodedThermalFrame&& encoded, Image<std::uint16_t>&& pixels,
+                         CaptureTime arrival) {
+  auto frame = std::make_shared<ThermalFrame>();
+  frame->header = encoded.header;
+  frame->centikelvin = std::move(pixels);
+  frame->nuc_state = encoded.nuc_state;
+  frame->nuc_source = encoded.nuc_source;
+  frame->seconds_since_nuc = encoded.seconds_since_nuc;
+  frame->housekeeping = encoded.housekeeping;
+  frame->valid = encoded.valid;
+  return {.frame = std::move(frame),
+          .encoded = std::make_shared<const EncodedThermalFrame>(std::move(encoded)),
+          .arrival = arrival};
+}
+
+}  // namespace
+
+template <typename Item>
+FrameLane<Item>::FrameLane(std::string_view name, Nanoseconds reorder_window,
+                           RefusalCounter* refusals, Consumer deliver, Consumer deliver_late)
+    : name_(name),
+      refusals_(refusals),
+      deliver_(std::move(deliver)),
+      deliver_late_(std::move(deliver_late)),
+      stream_(reorder_window) {}
+
+template <typename Item>
+bool FrameLane<Item>::IsWanted(const FrameHeader& header, typename Stream::Session session) {
+  if (session == Stream::Session::kNew) return true;
+  if (session == Stream::Session::kOver) {
+    Refuse(RefusalCause::kOtherSession, header);
+    return false;
+  }
+  switch (stream_.Check(header.frame_number)) {
+    case Stream::Verdict::kDuplicate:
+      stream_.CountDuplicate();
+      return false;
+    case Stream::Verdict::kImpossible:
+      Refuse(RefusalCause::kImpossibleNumber, header);
+      return false;
+    case Stream::Verdict::kInOrder:
+    case Stream::Verdict::kLate:
+      break;
+  }
+  return true;
+}
+
+template <typename Item>
+bool FrameLane<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now) {
+  const FrameHeader header = encoded.header;
+  const typename Stream::Session session = stream_.Classify(header.session);
+  if (!IsWanted(header, session)) return false;
+  Result<Image<std::uint16_t>> pixels = Decode(encoded.image, kMaxFramePixels);
+  if (!pixels) {
+    Refuse(RefusalCause::kUndecodable, header);
+    return false;
+  }
+  if (session == Stream::Session::kNew) {
+    DeliverAll();
+    stream_.BeginSession(header.session);
+    LOG(Subscriber, Info) << "first " << name_ << " frame, session=" << header.session
+                          << " frame_number=" << header.frame_number;
+  }
+  Item item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
+  const auto verdict = stream_.Add(header.frame_number, std::move(item), now);
+  // Add leaves a late item where it is.
+  if (verdict == Stream::Verdict::kLate && deliver_late_) deliver_late_(std::move(item));
+  return true;
+}
+
+template <typename Item>
+void FrameLane<Item>::DeliverDue(SteadyTime now) {
+  while (std::optional<Item> item = stream_.Next(now)) {
+    if (deliver_) deliver_(std::move(*item));
+  }
+}
+
+template <typename Item>
+void FrameLane<Item>::DeliverAll() {
+  while (std::optional<Item> item = stream_.Flush()) {
+    if (deliver_) deliver_(std::move(*item));
+  }
+}
+
+template <typename Item>
+void FrameLane<Item>::Refuse(RefusalCause cause, const FrameHeader& header) {
+  refusals_->Add(cause, fmt::format("stream={} session={} frame_number={}", name_, header.session,
+                                    header.frame_number));
+}
+
+template class FrameLane<ReceivedDepth>;
+template class FrameLane<ReceivedThermal>;
+
+}  // namespace isotherm

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "common/time/time_types.h"
+#include "ground/subscriber/frame_ledger.h"
+
+namespace isotherm {
+
+/// Puts the frames of one stream of one session into the order of their numbers, drops duplicates
+/// and waits for a missing frame no longer than the reorder window. Pure: time enters through
+/// arguments. Memory is bounded by kMaxWaiting. Thread-compatible.
+template <typename T>
+class FrameSequencer {
+ public:
+  enum class Verdict {
+    kInOrder,     ///< Goes (or went) into the line.
+    kLate,        ///< New, but the line has passed its place.
+    kDuplicate,   ///< Was here before.
+    kImpossible,  ///< Too far ahead of what came before.
+  };
+
+  /// Frames that may wait for a missing one; beyond, the missing one is given up at once.
+  static constexpr std::size_t kMaxWaiting = 64;
+  /// Nine hours at 30 Hz: no outage that a session survives is longer.
+  static constexpr std::uint64_t kMaxJump = 1'000'000;
+
+  explicit FrameSequencer(Nanoseconds window) : window_(window) {}
+
+  /// What would become of `number`.
+  Verdict Check(std::uint64_t number) const {
+    if (!ledger_.IsNew(number)) return Verdict::kDuplicate;
+    if (number < handled_) return Verdict::kLate;
+    if (ledger_.received() > 0 && number > ledger_.next() + kMaxJump) return Verdict::kImpossible;
+    return Verdict::kInOrder;
+  }
+
+  /// Takes `item` if the verdict is kInOrder; leaves it to the caller otherwise.
+  Verdict Add(std::uint64_t number, T&& item, SteadyTime now) {
+    const Verdict verdict = Check(number);
+    if (verdict == Verdict::kInOrder || verdict == Verdict::kLate) ledger_.Add(number);
+    if (verdict == Verdict::kInOrder) waiting_.emplace(number, Waiting{std::move(item), now});
+    return verdict;
+  }
+
+  /// The next frame in line, if it is time for it. Call until nullopt.
+  std::optional<T> Next(SteadyTime now) {
+    if (waiting_.empty()) return std::nullopt;
+    const bool is_next = waiting_.begin()->first == handled_;
+    if (!is_next && waiting_.size() <= kMaxWaiting && now < *deadline()) return std::nullopt;
+    return Pop();
+  }
+  /// The next frame in line, whatever is missing before it.
+  std::optional<T> Flush() {
+    if (waiting_.empty()) return std::nullopt;
+    return Pop();
+  }
+
+  /// When the first missing frame is given up; nullopt if nothing waits.
+  std::optional<SteadyTime> deadline() const {
+    if (waiting_.empty()) return std::nullopt;
+    const auto first = std::ranges::min_element(
+        waiting_, {}, [](const auto& item) { return item.second.arrival; });
+    return first->second.arrival + window_;
+  }
+  /// All numbers below are delivered or given up.
+  std::uint64_t handled() const { return handled_; }
+  const FrameLedger& ledger() const { return ledger_; }
+
+ private:
+  struct Waiting {
+    T item;
+    SteadyTime arrival;
+  };
+
+  T Pop() {
+    auto first = waiting_.begin();
+    handled_ = first->first + 1;
+    T item = std::move(first->second.item);
+    waiting_.erase(first);
+    return item;
+  }
+
+  const Nanoseconds window_;
+  FrameLedger ledger_;
+  std::map<std::uint64_t, Waiting> waiting_;
+  std::uint64_t handled_ = 0;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+
+#include "common/frame/frame.h"
+
+namespace isotherm {
+
+/// A frame as it arrived (for the recording) and unpacked (for the reconstruction).
+struct ReceivedDepth {
+  DepthFramePtr frame;
+  std::shared_ptr<const EncodedDepthFrame> encoded;
+  CaptureTime arrival;  ///< Ground wall clock.
+};
+struct ReceivedThermal {
+  ThermalFramePtr frame;
+  std::shared_ptr<const EncodedThermalFrame> encoded;
+  CaptureTime arrival;  ///< Ground wall clock.
+};
+
+}  // namespace isotherm

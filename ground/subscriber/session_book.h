@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "common/time/time_types.h"
+#include "common/transport/messages.h"
+#include "ground/subscriber/frame_stream.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+/// Brings together what the edge says it published and what arrived, and decides when a session's
+/// account is closed:
+///   - the edge ended the session and everything has arrived, or
+///   - the edge ended it (or began another) and nothing has arrived for the grace time: the rest is
+///   missing.
+/// Pure. Thread-compatible.
+class SessionBook {
+ public:
+  explicit SessionBook(Nanoseconds grace) : grace_(grace) {}
+
+  void OnStatus(const EdgeStatus& status, SteadyTime now);
+  /// A good frame of `session` has arrived.
+  void OnFrame(std::uint64_t session, SteadyTime now);
+
+  /// The session that was seen last; nullopt before the first.
+  std::optional<std::uint64_t> newest() const;
+  SessionAccount Account(const StreamTally& depth, const StreamTally& thermal) const;
+
+  /// The oldest session that is not closed; the caller looks up its tallies for TryClose. nullopt
+  /// if none.
+  std::optional<std::uint64_t> oldest_open() const;
+  /// Closes the oldest open session if it is time; returns its final account.
+  std::optional<SessionAccount> TryClose(const StreamTally& depth, const StreamTally& thermal,
+                                         SteadyTime now);
+  /// When the grace time of the oldest open session ends, if it is running.
+  std::optional<SteadyTime> deadline() const;
+
+ private:
+  struct Entry {
+    std::uint64_t session = 0;
+    std::uint64_t depth_published = 0;
+    std::uint64_t thermal_published = 0;
+    bool ended = false;
+    bool closed = false;
+    SteadyTime last_activity{};
+  };
+
+  Entry* Find(std::uint64_t session);
+  const Entry* Find(std::uint64_t session) const;
+  Entry& Touch(std::uint64_t session, SteadyTime now);
+
+  const Nanoseconds grace_;
+  std::deque<Entry> entries_;  ///< Oldest first; at most kMaxEntries.
+};
+
+}  // namespace isotherm
