@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string_view>
+
+#include "ground/renderer/rgb.h"
+
+namespace isotherm {
+
+enum class TextAlign { kLeft, kCentre, kRight };
+
+/// Draws text and shapes into a picture, anti-aliased. Coordinates are pixels, x right, y down;
+/// everything is clipped to the picture. Text is UTF-8, of which ASCII and the degree sign are
+/// drawn. Thread-compatible.
+class Canvas {
+ public:
+  /// `picture` must outlive the canvas.
+  explicit Canvas(RgbImage& picture) : picture_(picture) {}
+
+  void FillRectangle(int x, int y, int width, int height, Rgb8 colour);
+  /// One pixel wide, inside the rectangle.
+  void Frame(int x, int y, int width, int height, Rgb8 colour);
+  void FillTriangle(double x0, double y0, double x1, double y1, double x2, double y2, Rgb8 colour);
+  /// `x` is the anchor chosen by `align`, `y_middle` the middle of a capital letter, `height_px`
+  /// its height.
+  void Text(double x, double y_middle, std::string_view text, double height_px, Rgb8 colour,
+            TextAlign align = TextAlign::kLeft);
+
+ private:
+  RgbImage& picture_;
+};
+
+/// Width of `text` as Canvas::Text draws it, pixels.
+double TextWidth(std::string_view text, double height_px);
+
+}  // namespace isotherm

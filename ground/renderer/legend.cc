@@ -1,0 +1,146 @@
+#include "ground/renderer/legend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "ground/renderer/canvas.h"
+#include "ground/renderer/ticks.h"
+
+namespace isotherm {
+namespace {
+
+constexpr Rgb8 kText{232, 234, 238};
+constexpr Rgb8 kDimText{158, 164, 174};
+constexpr Rgb8 kOutline{110, 116, 126};
+// Sizes at a picture height of 480 pixels; they grow with the picture, but never below what can be
+// read.
+constexpr double kReferenceHeight = 480.0;
+constexpr double kLetterPx = 9.0;
+constexpr double kPanelPx = 150.0;
+constexpr int kLeastHeight = 240;
+
+/// A picture with room for a panel, and the panel's measures in pixels.
+struct Panel {
+  Panel(const RgbImage& picture)
+      : factor(std::clamp(picture.height() / kReferenceHeight, 0.9, 4.0)),
+        left(picture.width()),
+        image(picture.width() + Px(kPanelPx), std::max(picture.height(), kLeastHeight),
+              kBackground) {
+    const int top = (image.height() - picture.height()) / 2;
+    for (int y = 0; y < picture.height(); ++y) {
+      std::ranges::copy(picture.Row(y), image.Row(top + y).begin());
+    }
+  }
+  int Px(double reference_px) const { return static_cast<int>(std::lround(reference_px * factor)); }
+  double letter() const { return kLetterPx * factor; }
+
+  const double factor;
+  const int left;
+  RgbImage image;
+};
+
+/// Draws the words of `title`, one per line; returns the y below them.
+int DrawTitle(Panel& panel, Canvas& canvas, const std::string& title) {
+  int y = panel.Px(20);
+  std::istringstream words(title);
+  for (std::string word; words >> word; y += panel.Px(18)) {
+    canvas.Text(panel.left + panel.Px(16), y, word, panel.letter(), kText);
+  }
+  return y;
+}
+
+void DrawScaleBar(Panel& panel, Canvas& canvas, const TemperatureScale& scale,
+                  const ColourTable& colours, int top, int bottom) {
+  const int x = panel.left + panel.Px(18);
+  const int width = panel.Px(22);
+  for (int y = top; y < bottom; ++y) {
+    const double share = (bottom - 0.5 - y) / (bottom - top);
+    canvas.FillRectangle(x, y, width, 1, colours.At(share));
+  }
+  canvas.Frame(x - 1, top - 1, width + 2, bottom - top + 2, kOutline);
+  const double tip = panel.Px(11);
+  if (scale.values_above) {
+    canvas.FillTriangle(x, top - 3, x + width - 1, top - 3, x + width / 2.0, top - 3 - tip,
+                        colours.At(1.0));
+  }
+  if (scale.values_below) {
+    canvas.FillTriangle(x, bottom + 2, x + width - 1, bottom + 2, x + width / 2.0, bottom + 2 + tip,
+                        colours.At(0.0));
+  }
+  const int max_ticks = std::clamp((bottom - top) / panel.Px(26), 2, 12);
+  for (const Tick& tick : RoundTicks(scale.min_celsius, scale.max_celsius, max_ticks)) {
+    const double y = bottom - scale.Share(tick.value) * (bottom - top);
+    canvas.FillRectangle(x + width + 1, static_cast<int>(std::min(y, bottom - 1.0)), panel.Px(6), 1,
+                         kText);
+    canvas.Text(x + width + panel.Px(12), y, tick.label, panel.letter(), kText);
+  }
+}
+
+void DrawNeverMeasuredKey(Panel& panel, Canvas& canvas, int y_middle) {
+  const int x = panel.left + panel.Px(18);
+  const int side = panel.Px(14);
+  const int top = y_middle - side / 2;
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) {
+      canvas.FillRectangle(x + u, top + v, 1, 1, NeverMeasuredColour(x + u, top + v, 1.0));
+    }
+  }
+  canvas.Frame(x - 1, top - 1, side + 2, side + 2, kOutline);
+  canvas.Text(x + panel.Px(22), y_middle, "not measured", panel.letter() * 0.95, kDimText);
+}
+
+}  // namespace
+
+Rgb8 NeverMeasuredColour(int x, int y, double cos_view) {
+  constexpr int kLineDistancePx = 7;
+  const bool line = (x + y) % kLineDistancePx == 0;
+  const double brightness = std::clamp(0.35 + 0.65 * cos_view, 0.0, 1.0);
+  const auto value = static_cast<std::uint8_t>(std::lround((line ? 132.0 : 92.0) * brightness));
+  return {value, value, value};
+}
+
+RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend,
+                    const ColourTable& colours) {
+  Panel panel(picture);
+  Canvas canvas(panel.image);
+  const int below_title = DrawTitle(panel, canvas, legend.title);
+  canvas.Text(panel.left + panel.Px(16), below_title, legend.scale ? "in \u00B0C" : "none measured",
+              panel.letter(), kDimText);
+  int bottom = panel.image.height() - panel.Px(22);
+  if (legend.never_measured) {
+    DrawNeverMeasuredKey(panel, canvas, bottom);
+    bottom -= panel.Px(24);
+  }
+  if (legend.scale) {
+    canvas.Text(panel.left + panel.Px(16), bottom, legend.rule, panel.letter() * 0.9, kDimText);
+    DrawScaleBar(panel, canvas, *legend.scale, colours, below_title + panel.Px(32),
+                 bottom - panel.Px(28));
+  }
+  return std::move(panel.image);
+}
+
+RgbImage WithLegend(const RgbImage& picture, const ClassLegend& legend) {
+  Panel panel(picture);
+  Canvas canvas(panel.image);
+  const int x = panel.left + panel.Px(18);
+  const int side = panel.Px(14);
+  int y = DrawTitle(panel, canvas, legend.title) + panel.Px(16);
+  for (const LegendRow& row : legend.rows) {
+    canvas.FillRectangle(x, y - side / 2, side, side, row.colour);
+    canvas.Frame(x - 1, y - side / 2 - 1, side + 2, side + 2, kOutline);
+    const double text_x = x + panel.Px(22);
+    canvas.Text(text_x, y, row.name, panel.letter(), kText);
+    for (const std::string& line : {row.detail, row.share}) {
+      if (line.empty()) continue;
+      y += panel.Px(17);
+      canvas.Text(text_x, y, line, panel.letter() * 0.9, kDimText);
+    }
+    y += panel.Px(28);
+  }
+  return std::move(panel.image);
+}
+
+}  // namespace isotherm

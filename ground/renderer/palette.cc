@@ -1,0 +1,112 @@
+#include "ground/renderer/palette.h"
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ground/ground_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+/// Polar form of CIELAB: magnitude, saturation angle, hue angle (Moreland 2009, section 4.2).
+struct Msh {
+  double m, s, h;
+};
+
+// CIE 1931 white point D65, Y = 1, which sRGB refers to.
+const Eigen::Vector3d kWhiteXyz(0.9505, 1.0, 1.0890);
+// Least magnitude of the point in the middle: near white, but not white.
+constexpr double kMiddleMagnitude = 88.0;
+
+/// Linear sRGB -> XYZ (IEC 61966-2-1).
+Eigen::Matrix3d XyzFromLinear() {
+  return (Eigen::Matrix3d() << 0.4124, 0.3576, 0.1805, 0.2126, 0.7152, 0.0722, 0.0193, 0.1192,
+          0.9505)
+      .finished();
+}
+
+double Linear(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+double Srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+double LabForward(double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 16.0 / 116.0; }
+
+double LabInverse(double f) { return f > 0.20689 ? f * f * f : (f - 16.0 / 116.0) / 7.787; }
+
+Msh MshFromRgb(const Rgb8& rgb) {
+  const Eigen::Vector3d linear(Linear(rgb.r / 255.0), Linear(rgb.g / 255.0), Linear(rgb.b / 255.0));
+  const Eigen::Vector3d xyz = XyzFromLinear() * linear;
+  const Eigen::Vector3d f = xyz.cwiseQuotient(kWhiteXyz).unaryExpr(&LabForward);
+  const Eigen::Vector3d lab(116.0 * f.y() - 16.0, 500.0 * (f.x() - f.y()), 200.0 * (f.y() - f.z()));
+  const double m = lab.norm();
+  return {m, std::acos(lab.x() / m), std::atan2(lab.z(), lab.y())};
+}
+
+Rgb8 RgbFromMsh(const Msh& msh) {
+  const double lightness = msh.m * std::cos(msh.s);
+  const double a = msh.m * std::sin(msh.s) * std::cos(msh.h);
+  const double b = msh.m * std::sin(msh.s) * std::sin(msh.h);
+  const double fy = (lightness + 16.0) / 116.0;
+  const Eigen::Vector3d f(fy + a / 500.0, fy, fy - b / 200.0);
+  const Eigen::Vector3d xyz = f.unaryExpr(&LabInverse).cwiseProduct(kWhiteXyz);
+  const Eigen::Vector3d linear = XyzFromLinear().inverse() * xyz;
+  const auto channel = [](double value) {
+    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(Srgb(value), 0.0, 1.0)));
+  };
+  return {channel(linear.x()), channel(linear.y()), channel(linear.z())};
+}
+
+/// The hue an unsaturated colour gets, so that the path to `saturated` bends least (Moreland 2009,
+/// AdjustHue).
+double AdjustedHue(const Msh& saturated, double unsaturated_m) {
+  if (saturated.m >= unsaturated_m) return saturated.h;
+  const double spin = saturated.s *
+                      std::sqrt(unsaturated_m * unsaturated_m - saturated.m * saturated.m) /
+                      (saturated.m * std::sin(saturated.s));
+  return saturated.h > -std::numbers::pi / 3.0 ? saturated.h + spin : saturated.h - spin;
+}
+
+}  // namespace
+
+Rgb8 CoolwarmColour(double share) {
+  // The two ends are further apart in hue than pi/3, so the path leads through a near-white middle.
+  const Msh cool = MshFromRgb({59, 76, 192});
+  const Msh warm = MshFromRgb({180, 4, 38});
+  const double middle_m = std::max({cool.m, warm.m, kMiddleMagnitude});
+  const bool lower = share < 0.5;
+  const Msh& end = lower ? cool : warm;
+  const Msh middle{middle_m, 0.0, AdjustedHue(end, middle_m)};
+  const double from_end = lower ? 2.0 * share : 2.0 - 2.0 * share;
+  const auto mix = [from_end](double a, double b) { return a + from_end * (b - a); };
+  return RgbFromMsh({mix(end.m, middle.m), mix(end.s, middle.s), mix(end.h, middle.h)});
+}
+
+Rgb8 GreyColour(double share) {
+  const auto value = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
+  return {value, value, value};
+}
+
+ColourTable::ColourTable(const RendererOptions& options) {
+  constexpr int kEntries = 1025;  // Odd, so that the middle of the palette is an entry.
+  colours_.reserve(kEntries);
+  for (int i = 0; i < kEntries; ++i) {
+    const double share = static_cast<double>(i) / (kEntries - 1);
+    colours_.push_back(options.palette() == GREY ? GreyColour(share) : CoolwarmColour(share));
+  }
+}
+
+Rgb8 ColourTable::At(double share) const {
+  const double last = static_cast<double>(colours_.size() - 1);
+  // The negated comparison also sends NaN to the first entry instead of out of the table.
+  if (!(share > 0.0)) return colours_.front();
+  return colours_[static_cast<std::size_t>(std::min(share, 1.0) * last + 0.5)];
+}
+
+}  // namespace isotherm

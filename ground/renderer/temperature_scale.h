@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+namespace isotherm {
+
+class RendererOptions;
+
+/// Count, extremes, mean and standard deviation of temperatures, °C. NaN is left out.
+struct TemperatureStatistics {
+  std::uint64_t count = 0;
+  double min_celsius = 0.0;
+  double max_celsius = 0.0;
+  double mean_celsius = 0.0;
+  double sigma_kelvin = 0.0;  ///< Of the population: divided by count.
+};
+TemperatureStatistics Summarize(std::span<const float> celsius);
+
+/// The temperatures that the first and last colour of the palette stand for (algorithm 7, line 2).
+struct TemperatureScale {
+  double min_celsius = 0.0;
+  double max_celsius = 0.0;
+  bool values_below = false;  ///< Some temperatures are outside and get an end colour.
+  bool values_above = false;
+
+  /// 0 at the first colour, 1 at the last, not limited.
+  double Share(double celsius) const {
+    return (celsius - min_celsius) / (max_celsius - min_celsius);
+  }
+};
+
+/// Applies the scale rule: the extremes, or mean +- 1 or 3 standard deviations but never wider than
+/// the extremes, or the fixed limits. At least 0.1 K wide. nullopt: no temperature to derive it
+/// from.
+std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
+                                            const TemperatureStatistics& statistics);
+
+/// The scale rule in words for a legend or a header, e.g. "mean +- 3 sigma".
+std::string ScaleRuleName(const RendererOptions& options);
+
+}  // namespace isotherm

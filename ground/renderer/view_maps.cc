@@ -1,0 +1,54 @@
+#include "ground/renderer/view_maps.h"
+
+#include <cmath>
+
+#include "common/concurrency/thread_pool.h"
+
+namespace isotherm {
+namespace {
+
+void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
+                 const TsdfVolume& tsdf, const ThermalVolume& thermal, int x, int y,
+                 ViewMaps& view) {
+  const Eigen::Vector3d p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
+  const Eigen::Vector3d n_world(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y));
+  const Eigen::Vector3d ray = p_world - viewer_world;
+  const double distance_m = ray.norm();
+  const double cosine = std::abs(ray.dot(n_world)) / (distance_m * n_world.norm());
+  view.celsius.At(x, y) = NAN;
+  view.distance_class.At(x, y) = kNeverMeasured;
+  view.angle_class.At(x, y) = kNeverMeasured;
+  view.cos_view.At(x, y) = NAN;
+  view.distance_m.At(x, y) = NAN;
+  if (!std::isfinite(cosine)) return;
+  view.cos_view.At(x, y) = static_cast<float>(std::min(cosine, 1.0));
+  view.distance_m.At(x, y) = static_cast<float>(distance_m);
+  const ThermalVoxel voxel = ThermalVoxelAt(tsdf, thermal, p_world);
+  if (!voxel.measured()) return;
+  view.celsius.At(x, y) = voxel.celsius();
+  view.distance_class.At(x, y) = static_cast<std::uint8_t>(voxel.distance_class());
+  view.angle_class.At(x, y) = static_cast<std::uint8_t>(voxel.angle_class());
+}
+
+}  // namespace
+
+void ViewMaps::Resize(int width, int height) {
+  celsius.Resize(width, height);
+  distance_class.Resize(width, height);
+  angle_class.Resize(width, height);
+  cos_view.Resize(width, height);
+  distance_m.Resize(width, height);
+}
+
+void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
+                const TsdfVolume& tsdf, const ThermalVolume& thermal, ThreadPool& threads,
+                ViewMaps& view) {
+  view.Resize(maps.width(), maps.height());
+  threads.ParallelFor(maps.height(), [&](int y) {
+    for (int x = 0; x < maps.width(); ++x) {
+      SamplePixel(maps, viewer_world, tsdf, thermal, x, y, view);
+    }
+  });
+}
+
+}  // namespace isotherm

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+#include "common/frame/image.h"
+#include "ground/thermal/thermal_volume.h"
+#include "ground/tracker/surface_maps.h"
+
+namespace isotherm {
+
+class ThreadPool;
+
+/// What the model knows about the surface in one view, as numbers, height x width, row-major. The
+/// pictures, the coverage summary and the console start from here.
+struct ViewMaps {
+  Image<float> celsius;  ///< Apparent temperature; NaN = never measured or no surface.
+  Image<std::uint8_t>
+      distance_class;  ///< ConditionClass; kNeverMeasured = never measured or no surface.
+  Image<std::uint8_t> angle_class;  ///< The same for the emission angle.
+  Image<float>
+      cos_view;  ///< |cos| of the angle between normal and line of sight; NaN = no surface.
+  Image<float> distance_m;  ///< From the viewer to the surface; NaN = no surface.
+
+  int width() const { return celsius.width(); }
+  int height() const { return celsius.height(); }
+  void Resize(int width, int height);
+  bool HasSurface(int x, int y) const { return cos_view.At(x, y) == cos_view.At(x, y); }
+};
+
+/// Looks up the surface in the thermal volume (algorithms 7-9, lines 4-7 and 9-10). `maps` in
+/// `world`; `viewer_world` is where the ray-casting camera stood, metres. Rows in parallel; the
+/// result does not depend on the number of threads.
+void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
+                const TsdfVolume& tsdf, const ThermalVolume& thermal, ThreadPool& threads,
+                ViewMaps& view);
+
+}  // namespace isotherm
