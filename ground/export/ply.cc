@@ -1,0 +1,118 @@
+#include "ground/export/ply.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "ground/export/output_file.h"
+
+namespace isotherm {
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "PLY records are written as they are in memory");
+
+constexpr std::size_t kChunkBytes = 1U << 20;
+
+/// Packs records without gaps and hands them on in chunks.
+class RecordWriter {
+ public:
+  explicit RecordWriter(OutputFile& file) : file_(file) { bytes_.reserve(kChunkBytes + 64); }
+  template <typename T>
+  void Add(T value) {
+    const auto* begin = reinterpret_cast<const std::byte*>(&value);
+    bytes_.insert(bytes_.end(), begin, begin + sizeof(T));
+  }
+  void EndRecord() {
+    if (bytes_.size() >= kChunkBytes) Flush();
+  }
+  void Flush() {
+    file_.Write(bytes_);
+    bytes_.clear();
+  }
+
+ private:
+  OutputFile& file_;
+  std::vector<std::byte> bytes_;
+};
+
+std::string Header(const PlyStyle& style, std::string_view what, std::size_t vertices,
+                   std::optional<std::size_t> faces) {
+  std::string text = "ply\nformat binary_little_endian 1.0\n";
+  text += fmt::format("comment {}: {} of a 3D thermogram\n", style.software, what);
+  text +=
+      "comment coordinate frame: world (edges of the scan volume), metres; unit normals towards "
+      "the observed side\n"
+      "comment scalar_temperature and quality: apparent temperature in degrees Celsius, emissivity "
+      "1 assumed; "
+      "nan = never measured\n"
+      "comment distance_class and angle_class: 0 bad, 1 good, 2 acceptable, 255 never measured\n";
+  const std::string never = fmt::format("{} {} {} = never measured", kNeverMeasuredPoint.r,
+                                        kNeverMeasuredPoint.g, kNeverMeasuredPoint.b);
+  if (style.scale) {
+    text +=
+        fmt::format("comment palette: {} from {:.3f} to {:.3f} degrees Celsius; {}\n",
+                    style.palette_name, style.scale->min_celsius, style.scale->max_celsius, never);
+  } else {
+    text += fmt::format("comment palette: none, no temperature was measured; {}\n", never);
+  }
+  text += fmt::format("element vertex {}\n", vertices);
+  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"})
+    text += fmt::format("property float {}\n", name);
+  text +=
+      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+      "property float scalar_temperature\n"
+      "property uchar distance_class\nproperty uchar angle_class\n"
+      "property float quality\n";
+  if (faces)
+    text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", *faces);
+  return text + "end_header\n";
+}
+
+void AddPoint(const SurfacePoint& point, const PlyStyle& style, RecordWriter& records) {
+  for (const float value : point.position_m) records.Add(value);
+  for (const float value : point.normal) records.Add(value);
+  const bool measured = !std::isnan(point.celsius) && style.scale.has_value();
+  records.Add(measured ? style.colours.At(style.scale->Share(static_cast<double>(point.celsius)))
+                       : kNeverMeasuredPoint);
+  records.Add(point.celsius);
+  records.Add(point.distance_class);
+  records.Add(point.angle_class);
+  records.Add(point.celsius);
+  records.EndRecord();
+}
+
+void AddTriangle(const Eigen::Vector3i& triangle, RecordWriter& records) {
+  records.Add(std::uint8_t{3});
+  for (const std::int32_t index : triangle) records.Add(index);
+  records.EndRecord();
+}
+
+}  // namespace
+
+Status WriteCloudPly(const Surface& surface, const PlyStyle& style,
+                     const std::filesystem::path& path) {
+  OutputFile file(path);
+  file.Write(Header(style, "extended point cloud", surface.points.size(), std::nullopt));
+  RecordWriter records(file);
+  for (const SurfacePoint& point : surface.points) AddPoint(point, style, records);
+  records.Flush();
+  return file.Commit();
+}
+
+Status WriteMeshPly(const Surface& surface, const PlyStyle& style,
+                    const std::filesystem::path& path) {
+  const Surface mesh = surface.MeshOnly();
+  OutputFile file(path);
+  file.Write(Header(style, "mesh", mesh.points.size(), mesh.triangles.size()));
+  RecordWriter records(file);
+  for (const SurfacePoint& point : mesh.points) AddPoint(point, style, records);
+  for (const Eigen::Vector3i& triangle : mesh.triangles) AddTriangle(triangle, records);
+  records.Flush();
+  return file.Commit();
+}
+
+}  // namespace isotherm

@@ -1,0 +1,170 @@
+#include "ground/export/results.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <system_error>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "ground/export/output_file.h"
+#include "ground/export/ply.h"
+#include "ground/export/surface.h"
+#include "ground/export/trajectory.h"
+#include "ground/ground_options.pb.h"
+#include "ground/renderer/png.h"
+#include "ground/renderer/renderer.h"
+
+namespace isotherm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSoftware = "Isotherm " ISOTHERM_VERSION;
+
+Status WritePng(const RgbImage& picture, const fs::path& path) {
+  const Result<std::vector<std::uint8_t>> png = EncodePng(picture);
+  if (!png) return png.error().WithContext(path.string());
+  return WriteFile(path, std::as_bytes(std::span(*png)));
+}
+
+/// Keeps the first failure and lets the rest go on.
+class FirstFailure {
+ public:
+  void Add(Status status) {
+    if (first_.ok()) first_ = std::move(status);
+  }
+  const Status& status() const { return first_; }
+
+ private:
+  Status first_;
+};
+
+ResultSummary SummarizeSurface(const Surface& surface, const RendererOptions& options) {
+  constexpr auto kGood = static_cast<std::uint8_t>(ConditionClass::kGood);
+  ResultSummary summary;
+  summary.points = surface.points.size();
+  summary.triangles = surface.triangles.size();
+  std::vector<float> celsius;
+  celsius.reserve(surface.points.size());
+  for (const SurfacePoint& point : surface.points) {
+    celsius.push_back(point.celsius);
+    if (std::isnan(point.celsius)) continue;
+    ++summary.measured_points;
+    if (point.distance_class == kGood && point.angle_class == kGood) ++summary.good_points;
+  }
+  summary.temperatures = Summarize(celsius);
+  summary.scale = ChooseScale(options, summary.temperatures);
+  return summary;
+}
+
+Json SurfaceStats(const ResultSummary& summary) {
+  const auto share = [&](std::size_t part) {
+    return summary.points == 0
+               ? Json()
+               : Json(static_cast<double>(part) / static_cast<double>(summary.points));
+  };
+  Json stats;
+  stats["points"] = summary.points;
+  stats["triangles"] = summary.triangles;
+  stats["measured_share"] = share(summary.measured_points);
+  stats["good_share"] = share(summary.good_points);
+  if (summary.temperatures.count > 0) {
+    stats["min_celsius"] = summary.temperatures.min_celsius;
+    stats["mean_celsius"] = summary.temperatures.mean_celsius;
+    stats["max_celsius"] = summary.temperatures.max_celsius;
+  }
+  if (summary.scale) {
+    stats["palette_min_celsius"] = summary.scale->min_celsius;
+    stats["palette_max_celsius"] = summary.scale->max_celsius;
+  }
+  return stats;
+}
+
+void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureScale>& scale,
+                  const fs::path& folder, ThreadPool& threads, FirstFailure& failure) {
+  ViewMaps view;
+  SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
+  const Renderer renderer(inputs.renderer_options, inputs.thermal_options);
+  failure.Add(WritePng(renderer.Thermal(view, scale), folder / "thermal.png"));
+  failure.Add(WritePng(renderer.Distance(view), folder / "distance.png"));
+  failure.Add(WritePng(renderer.Angle(view), folder / "angle.png"));
+  failure.Add(WritePng(renderer.Geometry(view), folder / "geometry.png"));
+}
+
+Json CompleteStats(const ResultInputs& inputs, const ResultSummary& summary) {
+  Json stats = inputs.stats;
+  stats["software"] = kSoftware;
+  stats["surface"] = SurfaceStats(summary);
+  return stats;
+}
+
+}  // namespace
+
+Status Validate(const ExportOptions& options) {
+  constexpr double kMost = 1000.0;  // As tsdf.max_weight.
+  if (!(options.min_weight() > 0.0 && options.min_weight() <= kMost)) {
+    return InvalidArgument(fmt::format("export.min_weight is {}, must be above 0 and at most {}",
+                                       options.min_weight(), kMost));
+  }
+  return OkStatus();
+}
+
+Status PrepareOutputDir(const fs::path& dir) {
+  std::error_code error;
+  fs::create_directories(dir / "renders", error);
+  if (error) {
+    return IoError("creating the output folder " + dir.string() + ": " + error.message() +
+                   "; choose a folder that can be written with -o");
+  }
+  for (const fs::path& folder : {dir, dir / "renders"}) {
+    const fs::path probe = folder / ".isotherm-write-test";
+    if (Status status = WriteFile(probe, "x"); !status.ok()) {
+      return status.WithContext("the output folder cannot be written");
+    }
+    fs::remove(probe, error);
+  }
+  return OkStatus();
+}
+
+Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& dir,
+                                   ThreadPool& threads, const ResultProgress& progress) {
+  const auto announce = [&](std::string_view what, double share) {
+    if (progress) progress(what, share);
+  };
+  const ExportOptions& options = inputs.export_options;
+  FirstFailure failure;
+  announce("trajectory.txt", 0.0);
+  failure.Add(WriteTrajectory(inputs.trajectory, dir / "trajectory.txt"));
+  announce("surface", 0.05);
+  const Surface surface = ExtractSurface(
+      inputs.tsdf, inputs.thermal,
+      {.min_weight = static_cast<float>(options.min_weight()), .triangles = options.mesh()},
+      threads);
+  const ResultSummary summary = SummarizeSurface(surface, inputs.renderer_options);
+  announce("stats.json", 0.4);
+  failure.Add(WriteFile(dir / "stats.json", CompleteStats(inputs, summary).ToText()));
+  if (options.renders() && inputs.view != nullptr) {
+    announce("renders", 0.4);
+    WriteRenders(inputs, summary.scale, dir / "renders", threads, failure);
+  }
+  const ColourTable colours(inputs.renderer_options);
+  const PlyStyle style{
+      .colours = colours,
+      .scale = summary.scale,
+      .palette_name = inputs.renderer_options.palette() == GREY ? "grey" : "coolwarm",
+      .software = kSoftware};
+  if (options.cloud()) {
+    announce("cloud.ply", 0.5);
+    failure.Add(WriteCloudPly(surface, style, dir / "cloud.ply"));
+  }
+  if (options.mesh()) {
+    announce("mesh.ply", 0.75);
+    failure.Add(WriteMeshPly(surface, style, dir / "mesh.ply"));
+  }
+  announce("done", 1.0);
+  if (!failure.status().ok()) return Err(failure.status());
+  return summary;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "common/base/status.h"
+#include "common/recording/recording.h"
+#include "ground/export/json.h"
+#include "ground/renderer/temperature_scale.h"
+#include "ground/thermal/thermal_volume.h"
+#include "ground/tracker/surface_maps.h"
+#include "ground/tsdf/tsdf_volume.h"
+
+namespace isotherm {
+
+class ExportOptions;
+class RendererOptions;
+class ThermalOptions;
+class ThreadPool;
+
+Status Validate(const ExportOptions& options);
+
+/// Creates the folder and `renders` in it and proves, by writing and removing a small file, that
+/// results can be written there. To be called before a scan, so that no scan is lost for want of a
+/// place.
+Status PrepareOutputDir(const std::filesystem::path& dir);
+
+/// All that a finished scan leaves behind.
+struct ResultInputs {
+  const TsdfVolume& tsdf;
+  const ThermalVolume& thermal;
+  std::span<const StampedPose> trajectory;
+  /// What the model looks like from `viewer_world`, ray-cast, in `world`; nullptr: no pictures.
+  const SurfaceMaps* view = nullptr;
+  Eigen::Vector3d viewer_world = Eigen::Vector3d::Zero();
+  const RendererOptions& renderer_options;
+  const ThermalOptions& thermal_options;
+  const ExportOptions& export_options;
+  Json stats;  ///< Becomes stats.json, with `software` and `surface` added.
+};
+
+/// What was written, for a summary on the screen.
+struct ResultSummary {
+  std::size_t points = 0;
+  std::size_t measured_points = 0;  ///< Points with a temperature.
+  std::size_t good_points = 0;      ///< ... of class good in distance and angle.
+  std::size_t triangles = 0;
+  std::optional<TemperatureScale> scale;  ///< Of pictures and colours alike.
+  TemperatureStatistics temperatures;
+};
+
+/// Called before each step with what is about to be written and the share done, 0..1.
+using ResultProgress = std::function<void(std::string_view what, double share)>;
+
+/// Writes trajectory.txt, renders/*.png, stats.json, cloud.ply and mesh.ply into `dir` (which must
+/// exist), small and irreplaceable ones first. Colours use one scale, derived from the whole
+/// surface. A file that fails does not stop the others; the first failure is returned. The same
+/// inputs give the same bytes.
+Result<ResultSummary> WriteResults(const ResultInputs& inputs, const std::filesystem::path& dir,
+                                   ThreadPool& threads, const ResultProgress& progress = {});
+
+}  // namespace isotherm

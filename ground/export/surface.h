@@ -1,0 +1,52 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "ground/thermal/thermal_volume.h"
+#include "ground/tsdf/tsdf_volume.h"
+
+namespace isotherm {
+
+class ThreadPool;
+
+/// One point of the extended point cloud (algorithm 10).
+struct SurfacePoint {
+  Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< In `world`.
+  Eigen::Vector3f normal =
+      Eigen::Vector3f::Zero();  ///< Unit, in `world`, towards the side it was observed from.
+  float celsius = NAN;          ///< Apparent temperature; NaN = never measured.
+  std::uint8_t distance_class = kNeverMeasured;
+  std::uint8_t angle_class = kNeverMeasured;
+};
+
+/// The zero crossings of the model, and triangles between them. Points that no triangle uses are
+/// surface that lacks observed neighbours; they belong to the cloud, not to the mesh.
+struct Surface {
+  std::vector<SurfacePoint> points;
+  std::vector<Eigen::Vector3i>
+      triangles;  ///< Indices of points, counter-clockwise seen from outside.
+
+  /// The triangles with only the points that they use, in the same order.
+  Surface MeshOnly() const;
+};
+
+struct SurfaceOptions {
+  /// Least weight of a voxel that becomes part of the surface.
+  float min_weight = 2.0F;
+  /// Neighbouring voxels whose distances differ by more than this many voxel sizes are not on one
+  /// surface: free space touches what lies unseen behind an edge. A distance field without noise
+  /// has slope 1.
+  float max_slope = 3.0F;
+  bool triangles = true;
+};
+
+/// Finds every edge between neighbouring voxels on which the distance changes sign, and joins them
+/// to triangles (marching cubes) that share points across blocks. Blocks in parallel; order and
+/// values depend neither on the number of threads nor on the order in which blocks were allocated.
+Surface ExtractSurface(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                       const SurfaceOptions& options, ThreadPool& threads);
+
+}  // namespace isotherm
