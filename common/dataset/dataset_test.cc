@@ -178,7 +178,7 @@ TEST(StampTest, IsExactToTheNanosecondForAnyEpoch) {
   EXPECT_EQ(ToNanoseconds(ParseStamp("3").value()), 3'000'000'000);
   EXPECT_EQ(ToNanoseconds(ParseStamp("0.0000000019").value()), 2);
   EXPECT_EQ(ToNanoseconds(ParseStamp("1e-3").value()), 1'000'000);
-  EXPECT_EQ(ToNanoseconds(ParseStamp("-0.5").value()), -500'000'000);
+  EXPECT_THAT(ParseStamp("-0.5").error().message(), HasSubstr("is negative"));
   EXPECT_EQ(FormatStamp(CaptureTimeFromNanoseconds(1'700'000'000'000'000'001)),
             "1700000000.000000001");
   EXPECT_EQ(FormatStamp(CaptureTimeFromNanoseconds(-500'000'000)), "-0.500000000");

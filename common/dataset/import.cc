@@ -16,16 +16,6 @@ namespace fs = std::filesystem;
 // Recordings of a dataset have one session; 0 would mean "none".
 constexpr std::uint64_t kSession = 1;
 
-EncodedImage Raw(const Image<std::uint16_t>& image) {
-  EncodedImage encoded{Encoding::kRaw16, image.width(), image.height(), {}};
-  encoded.payload.reserve(image.size() * 2);
-  for (const std::uint16_t value : image.pixels()) {
-    encoded.payload.push_back(static_cast<std::uint8_t>(value & 0xFFU));
-    encoded.payload.push_back(static_cast<std::uint8_t>(value >> 8));
-  }
-  return encoded;
-}
-
 /// Writes one dataset into an open recording.
 class Importer {
  public:
@@ -128,8 +118,7 @@ class Importer {
     EncodedDepthFrame frame;
     frame.header = Header(entry, index);
     frame.depth_scale = dataset_.rig.depth_scale;
-    frame.image =
-        request_.storage == ImageStorage::kViewable ? Raw(**image) : depth_encoder_.Encode(**image);
+    frame.image = depth_encoder_.Encode(**image);
     ++summary_.depth_frames;
     return writer_.Write(frame, std::nullopt);
   }
@@ -150,9 +139,7 @@ class Importer {
     frame.nuc_source = marked.nuc_source;
     frame.seconds_since_nuc = marked.seconds_since_nuc;
     frame.valid = marked.valid;
-    frame.image = request_.storage == ImageStorage::kViewable
-                      ? Raw(marked.centikelvin)
-                      : thermal_encoder_.Encode(marked.centikelvin);
+    frame.image = thermal_encoder_.Encode(marked.centikelvin);
     ++summary_.thermal_frames;
     if (!marked.valid) ++summary_.thermal_frames_in_nuc;
     return writer_.Write(frame, std::nullopt);
@@ -212,7 +199,7 @@ Result<ImportSummary> ImportDataset(const ImportRequest& request) {
   std::error_code error;
   if (!summary) {
     fs::remove(partial, error);
-    return Err(Status(summary.error().code(), summary.error().message()));
+    return summary;
   }
   fs::rename(partial, request.recording, error);
   if (error) {

@@ -1,0 +1,211 @@
+#include "common/dataset/import.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <opencv2/core.hpp>
+
+#include "common/codec/codec.h"
+#include "common/dataset/dataset_folder_for_test.h"
+#include "common/dataset/image_file.h"
+
+namespace isotherm {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+struct Content {
+  std::vector<RecordedDepth> depth;
+  std::vector<RecordedThermal> thermal;
+  std::vector<NucEvent> events;
+  std::vector<RecordedPose> poses;
+  std::vector<CaptureTime> order;
+};
+
+Content ReadBack(RecordingReader& reader) {
+  Content content;
+  for (;;) {
+    auto item = reader.Next();
+    EXPECT_TRUE(item) << item.error().message();
+    if (!item || !*item) return content;
+    if (auto* depth = std::get_if<RecordedDepth>(&**item)) {
+      content.order.push_back(depth->frame.header.capture_time);
+      content.depth.push_back(std::move(*depth));
+    } else if (auto* thermal = std::get_if<RecordedThermal>(&**item)) {
+      content.order.push_back(thermal->frame.header.capture_time);
+      content.thermal.push_back(std::move(*thermal));
+    } else if (auto* event = std::get_if<NucEvent>(&**item)) {
+      content.events.push_back(*event);
+    } else {
+      content.poses.push_back(std::get<RecordedPose>(**item));
+    }
+  }
+}
+
+class ImportTest : public testing::Test {
+ protected:
+  ImportTest() {
+    request_.dataset.folder = folder_.path();
+    request_.recording = folder_.root() / "scan.mcap";
+    request_.software = "test";
+  }
+  std::string Error() {
+    const auto summary = ImportDataset(request_);
+    return summary ? std::string("accepted") : summary.error().message();
+  }
+  // Everything beside the dataset folder.
+  std::vector<std::string> Outputs() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.root())) {
+      if (entry.path() != folder_.path()) names.push_back(entry.path().filename().string());
+    }
+    return names;
+  }
+  DatasetFolder folder_;
+  ImportRequest request_;
+};
+
+TEST_F(ImportTest, RecordingHasWhatTheFolderHad) {
+  for (const ImageStorage storage : {ImageStorage::kCompact, ImageStorage::kViewable}) {
+    request_.storage = storage;
+    request_.overwrite = true;
+    const auto summary = ImportDataset(request_);
+    ASSERT_TRUE(summary) << summary.error().message();
+    EXPECT_EQ(summary->depth_frames, 4U);
+    EXPECT_EQ(summary->thermal_frames, 6U);
+    EXPECT_EQ(summary->thermal_frames_in_nuc, 2U);
+    EXPECT_EQ(summary->groundtruth_poses, 2U);
+    auto reader = RecordingReader::Open(request_.recording);
+    ASSERT_TRUE(reader) << reader.error().message();
+    EXPECT_TRUE((*reader)->info().complete);
+    const Result<Rig> rig = (*reader)->ReadRig();
+    ASSERT_TRUE(rig) << rig.error().message();
+    EXPECT_EQ(rig->thermal_delay_s, -0.02);
+    const Content content = ReadBack(**reader);
+    EXPECT_TRUE(std::is_sorted(content.order.begin(), content.order.end()));
+    ASSERT_EQ(content.depth.size(), 4U);
+    EXPECT_EQ(content.depth[2].frame.header.frame_number, 2U);
+    EXPECT_EQ(ToNanoseconds(content.depth[2].frame.header.capture_time), 100'166'000'000);
+    EXPECT_EQ(content.depth[2].frame.depth_scale, 1000.0);
+    const auto picture = Decode(content.depth[2].frame.image);
+    ASSERT_TRUE(picture) << picture.error().message();
+    EXPECT_EQ(*picture, *ReadGrey16(folder_.path() / "depth/2.png", 32, 24));
+    EXPECT_EQ(Decode(content.thermal[5].frame.image)->At(0, 0), 30005);
+    ASSERT_EQ(content.poses.size(), 2U);
+    EXPECT_EQ(content.poses[1].stream, "groundtruth");
+    EXPECT_NEAR(content.poses[1].pose.T_world_depth.translation().x(), 0.01, 1e-12);
+    EXPECT_EQ(content.events.size(), 1U);
+  }
+}
+
+TEST_F(ImportTest, FramesInsideNucIntervalsStayButAreInvalid) {
+  ASSERT_TRUE(ImportDataset(request_));
+  const Content content = ReadBack(**RecordingReader::Open(request_.recording));
+  std::vector<bool> valid;
+  for (const RecordedThermal& thermal : content.thermal) {
+    valid.push_back(thermal.frame.valid);
+    EXPECT_EQ(thermal.frame.nuc_state == NucState::kInProgress, !thermal.frame.valid);
+  }
+  EXPECT_THAT(valid, testing::ElementsAre(true, true, false, false, true, true));
+  EXPECT_FALSE(content.thermal[0].frame.seconds_since_nuc);
+  EXPECT_NEAR(content.thermal[5].frame.seconds_since_nuc.value(), 0.050, 1e-9);
+}
+
+TEST(NucMarkerTest, RepeatsOfAFrozenPictureBehindTheIntervalAreInvalidToo) {
+  const auto time = [](int ms) { return CaptureTime(std::chrono::milliseconds(ms)); };
+  NucMarker marker({{time(100), time(150)}});
+  const auto valid = [&](int ms, std::uint16_t value) {
+    ThermalFrame frame;
+    frame.header.capture_time = time(ms);
+    frame.centikelvin = Image<std::uint16_t>(2, 2, value);
+    marker.Mark(frame);
+    return frame.valid;
+  };
+  EXPECT_TRUE(valid(80, 7));
+  EXPECT_TRUE(valid(90, 7));    // A repeat before the interval is no shutter.
+  EXPECT_FALSE(valid(100, 7));  // Both ends are inside.
+  EXPECT_FALSE(valid(150, 7));
+  EXPECT_FALSE(valid(160, 7));
+  EXPECT_FALSE(valid(170, 7));
+  EXPECT_TRUE(valid(180, 8));
+  EXPECT_TRUE(valid(190, 8));
+}
+
+TEST_F(ImportTest, BadImageEndsItWithItsPlaceAndLeavesNothing) {
+  folder_.WriteImage("depth/2.png", cv::Mat(24, 32, CV_8U, 1.0));
+  EXPECT_THAT(Error(), AllOf(HasSubstr("depth.txt:4"), HasSubstr("2.png"), HasSubstr("8 bits"),
+                             HasSubstr("--skip-bad")));
+  EXPECT_TRUE(Outputs().empty());
+}
+
+TEST_F(ImportTest, SkipBadLeavesBadImagesOutAndCountsThem) {
+  folder_.WriteImage("depth/2.png", cv::Mat(24, 32, CV_8U, 1.0));
+  folder_.Write("thermal/0.png", "no picture");
+  request_.skip_bad = true;
+  const auto summary = ImportDataset(request_);
+  ASSERT_TRUE(summary) << summary.error().message();
+  EXPECT_EQ(summary->skipped_images, 2U);
+  EXPECT_EQ(summary->depth_frames, 3U);
+  EXPECT_EQ(summary->notes.size(), 2U);
+  const Content content = ReadBack(**RecordingReader::Open(request_.recording));
+  ASSERT_EQ(content.depth.size(), 3U);
+  EXPECT_EQ(content.depth[2].frame.header.frame_number, 3U);  // The hole stays visible.
+}
+
+TEST_F(ImportTest, AnExistingFileIsKeptUnlessForcedAndEvenThenUntilTheNewOneIsComplete) {
+  std::ofstream(request_.recording) << "precious";
+  EXPECT_THAT(Error(), AllOf(HasSubstr("exists already"), HasSubstr("--force")));
+  request_.overwrite = true;
+  folder_.Write("depth/3.png", "broken");
+  EXPECT_THAT(Error(), HasSubstr("3.png"));
+  std::ifstream file(request_.recording);
+  std::string text;
+  std::getline(file, text);
+  EXPECT_EQ(text, "precious");
+  EXPECT_EQ(Outputs().size(), 1U);
+  request_.skip_bad = true;
+  EXPECT_TRUE(ImportDataset(request_));
+  EXPECT_EQ(Outputs().size(), 1U);
+  EXPECT_TRUE(RecordingReader::Open(request_.recording));
+}
+
+TEST_F(ImportTest, DevicesAndFoldersAreNoPlaceForARecording) {
+  request_.overwrite = true;
+  request_.recording = "/dev/full";
+  EXPECT_THAT(Error(), HasSubstr("not a regular file"));
+  request_.recording = folder_.root();
+  EXPECT_THAT(Error(), HasSubstr("not a regular file"));
+  request_.recording = folder_.path() / "depth.txt" / "scan.mcap";
+  EXPECT_NE(Error(), "accepted");
+}
+
+TEST_F(ImportTest, FullDiskIsSaidAndLeavesNothing) {
+  cv::Mat noise(24, 32, CV_16U);
+  cv::randu(noise, 0, 65535);
+  for (int i = 0; i < 4; ++i) folder_.WriteImage("depth/" + std::to_string(i) + ".png", noise);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit old_limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &old_limit), 0);
+  const rlimit small{.rlim_cur = 4096, .rlim_max = old_limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const auto summary = ImportDataset(request_);
+  setrlimit(RLIMIT_FSIZE, &old_limit);
+  std::signal(SIGXFSZ, old_handler);
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code(), StatusCode::kResourceExhausted) << summary.error().message();
+  EXPECT_TRUE(Outputs().empty());
+}
+
+TEST_F(ImportTest, ProgressRisesToTheEnd) {
+  std::vector<double> fractions;
+  request_.progress = [&](double fraction) { fractions.push_back(fraction); };
+  ASSERT_TRUE(ImportDataset(request_));
+  EXPECT_EQ(fractions.size(), 10U);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -114,7 +114,11 @@ Result<CaptureTime> ParseStamp(std::string_view word) {
   if (!seconds) {
     return Err(DataLoss(fmt::format("timestamp {}, expected seconds", seconds.error().message())));
   }
-  if (std::abs(*seconds) > kMaxStampSeconds) {
+  if (*seconds < 0.0) {
+    return Err(
+        DataLoss(fmt::format("timestamp '{}' is negative; add a constant to all stamps", word)));
+  }
+  if (*seconds > kMaxStampSeconds) {
     return Err(
         DataLoss(fmt::format("timestamp '{}' is beyond year 2261; stamps are in seconds", word)));
   }

@@ -30,7 +30,7 @@ std::string_view NextWord(std::string_view& rest);
 /// Finite number, whole word, independent of the locale.
 Result<double> ParseNumber(std::string_view word);
 
-/// Seconds as a decimal number, exact to the nanosecond.
+/// Seconds as a decimal number, not negative, exact to the nanosecond.
 Result<CaptureTime> ParseStamp(std::string_view word);
 
 /// Seconds with the nine decimals of `time`.

@@ -36,7 +36,7 @@ Result<RigidTransform> ParsePose(std::string_view rest) {
 }  // namespace
 
 Result<std::vector<StampedPose>> ParseTrajectory(std::string_view text,
-                                                    std::string_view source_name) {
+                                                 std::string_view source_name) {
   std::vector<StampedPose> poses;
   for (const TextLine& line : ContentLines(text)) {
     std::string_view rest = line.text;

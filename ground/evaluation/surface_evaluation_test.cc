@@ -65,8 +65,9 @@ TEST(PointIndexTest, AgreesWithExhaustiveSearch) {
   points[5].x() = NAN;
   points[7] = points[6];
   const PointIndex index(points);
-  for (int trial = 0; trial < 300; ++trial) {
-    const Eigen::Vector3f p = 1.5F * Eigen::Vector3f(place(random), place(random), place(random));
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Eigen::Vector3f p = (trial % 2 == 0 ? 1.5F : 0.5F) *
+                              Eigen::Vector3f(place(random), place(random), place(random));
     std::size_t nearest = 0, within = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
       if ((points[i] - p).norm() < (points[nearest] - p).norm()) nearest = i;
