@@ -71,6 +71,8 @@ class GroundPipeline {
   /// Why thermal frames are not fused at all, or ok.
   const Status& thermal_status() const { return thermal_status_; }
   int threads() const { return pool_.threads(); }
+  /// For work between frames (views, results).
+  ThreadPool& pool() { return pool_; }
 
  private:
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,

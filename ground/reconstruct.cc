@@ -1,0 +1,171 @@
+#include "ground/reconstruct.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+#include "common/recording/recording.h"
+#include "ground/assembler/assembler.h"
+#include "ground/export/results.h"
+#include "ground/scan_result.h"
+
+namespace isotherm {
+namespace {
+
+/// Share of the progress that the frames take; the rest is writing results.
+constexpr double kFramesShare = 0.9;
+
+/// Frames of a recording, decoded and fed through the assembler into the pipeline.
+class InlineDriver {
+ public:
+  InlineDriver(const ReconstructRequest& request, RecordingReader& reader, const Rig& rig, GroundPipeline& pipeline)
+      : request_(request),
+        reader_(reader),
+        thermal_delay_(FromSeconds(rig.thermal_delay_s)),
+        pipeline_(pipeline),
+        assembler_(FromSeconds(request.options.thermal().max_wait_s())) {
+    for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
+  }
+
+  Status Run() {
+    while (true) {
+      Result<std::optional<RecordedItem>> item = reader_.Next();
+      ++read_;
+      if (!item) {
+        ++bad_messages_;
+        LOG(Reconstruct, Warning) << item.error().message();
+        continue;
+      }
+      if (!*item) break;
+      std::visit([this](auto& recorded) { Take(recorded); }, **item);
+      while (const auto frame = assembler_.Pop()) Process(*frame);
+      Report();
+    }
+    while (const auto frame = assembler_.Flush()) Process(*frame);
+    pipeline_.Finish();
+    return OkStatus();
+  }
+
+  std::uint64_t bad_messages() const { return bad_messages_; }
+  std::uint64_t undecodable() const { return undecodable_; }
+  std::uint64_t out_of_order() const { return assembler_.refused_late(); }
+
+ private:
+  void Take(RecordedDepth& recorded) {
+    auto frame = std::make_shared<DepthFrame>();
+    frame->header = recorded.frame.header;
+    frame->depth_scale = recorded.frame.depth_scale;
+    if (DecodeInto(recorded.frame.image, "depth", frame->header, frame->depth_raw)) assembler_.Add(std::move(frame));
+  }
+
+  void Take(RecordedThermal& recorded) {
+    auto frame = std::make_shared<ThermalFrame>();
+    const EncodedThermalFrame& encoded = recorded.frame;
+    frame->header = encoded.header;
+    frame->header.capture_time += thermal_delay_;
+    frame->nuc_state = encoded.nuc_state;
+    frame->nuc_source = encoded.nuc_source;
+    frame->seconds_since_nuc = encoded.seconds_since_nuc;
+    frame->housekeeping = encoded.housekeeping;
+    frame->valid = encoded.valid;
+    if (DecodeInto(encoded.image, "thermal", frame->header, frame->centikelvin)) assembler_.Add(std::move(frame));
+  }
+
+  void Take(const NucEvent& /*event*/) {}  // Each frame carries its NUC state.
+  void Take(const RecordedPose& /*pose*/) {}
+
+  bool DecodeInto(const EncodedImage& encoded, const char* stream, const FrameHeader& header,
+                  Image<std::uint16_t>& image) {
+    Result<Image<std::uint16_t>> decoded = Decode(encoded);
+    if (decoded) {
+      image = std::move(*decoded);
+      return true;
+    }
+    ++undecodable_;
+    LOG(Reconstruct, Warning) << stream << " frame " << header.frame_number
+                              << " left out: " << decoded.error().message();
+    return false;
+  }
+
+  void Process(const Assembler::Frame& frame) {
+    if (const auto* depth = std::get_if<DepthFramePtr>(&frame)) {
+      pipeline_.ProcessDepth(**depth);
+    } else {
+      pipeline_.ProcessThermal(std::get<ThermalFramePtr>(frame));
+    }
+  }
+
+  void Report() const {
+    if (!request_.progress || total_ == 0) return;
+    const double share = std::min(1.0, static_cast<double>(read_) / static_cast<double>(total_));
+    request_.progress(kFramesShare * share, "reconstructing");
+  }
+
+  const ReconstructRequest& request_;
+  RecordingReader& reader_;
+  const Nanoseconds thermal_delay_;
+  GroundPipeline& pipeline_;
+  Assembler assembler_;
+  std::uint64_t total_ = 0;
+  std::uint64_t read_ = 0;
+  std::uint64_t bad_messages_ = 0;
+  std::uint64_t undecodable_ = 0;
+};
+
+/// A recording without depth cannot give a surface: say so before any work.
+Status CheckHasDepth(const RecordingInfo& info, const std::filesystem::path& path) {
+  const auto depth = info.messages_by_topic.find("/depth");
+  if (depth != info.messages_by_topic.end() && depth->second > 0) return OkStatus();
+  return FailedPrecondition(fmt::format(
+      "{}: the recording has no depth frames, so there is no surface to reconstruct "
+      "(`isotherm inspect --render` shows thermal frames as pictures)",
+      path.string()));
+}
+
+}  // namespace
+
+Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
+  Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(request.recording);
+  if (!reader) return Err(reader.error());
+  const RecordingInfo& info = (*reader)->info();
+  if (Status status = CheckHasDepth(info, request.recording); !status.ok()) return Err(status);
+  const Result<Rig> rig = (*reader)->ReadRig();
+  if (!rig) return Err(rig.error().WithContext(request.recording.string()));
+  Result<std::unique_ptr<GroundPipeline>> pipeline =
+      GroundPipeline::Create(request.options, *rig, request.initial_pose);
+  if (!pipeline) return Err(pipeline.error());
+  if (Status status = PrepareOutputDir(request.output_dir); !status.ok()) return Err(status);
+
+  if (info.bytes_ignored > 0) {
+    LOG(Reconstruct, Warning) << request.recording.string()
+                              << ": damaged or unfinished end is left out, bytes=" << info.bytes_ignored;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  InlineDriver driver(request, **reader, *rig, **pipeline);
+  if (Status status = driver.Run(); !status.ok()) return Err(status);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+
+  Json stats = DescribeScan(**pipeline, request.options, *rig);
+  stats["source"]["recording"] = request.recording.filename().string();
+  stats["source"]["complete"] = info.complete;
+  stats["source"]["bytes_ignored"] = info.bytes_ignored;
+  stats["source"]["bad_messages"] = driver.bad_messages();
+  stats["source"]["undecodable_frames"] = driver.undecodable();
+  stats["source"]["out_of_order_frames"] = driver.out_of_order();
+  stats["elapsed_s"] = elapsed.count();
+  const auto progress = [&](std::string_view what, double share) {
+    if (request.progress) request.progress(kFramesShare + (1.0 - kFramesShare) * share, what);
+  };
+  const Result<std::string> text =
+      WriteScan(**pipeline, request.options, std::move(stats), request.output_dir, progress);
+  if (!text) return Err(text.error());
+  const PipelineCounts& counts = (*pipeline)->counts();
+  return ReconstructSummary{counts.depth_in, counts.depth_tracked, counts.thermal_in, counts.thermal_fused, *text};
+}
+
+}  // namespace isotherm

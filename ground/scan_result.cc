@@ -1,0 +1,123 @@
+#include "ground/scan_result.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "common/config/text_proto.h"
+#include "ground/export/results.h"
+
+namespace isotherm {
+namespace {
+
+Json DescribeStages(const GroundPipeline& pipeline) {
+  Json stages;
+  for (const auto& [name, stats] : pipeline.stage_stats()) {
+    Json& stage = stages[name];
+    stage["calls"] = stats.count();
+    stage["p50_ms"] = stats.Percentile(50);
+    stage["p95_ms"] = stats.Percentile(95);
+    stage["p99_ms"] = stats.Percentile(99);
+    stage["total_s"] = stats.total_ms() * 1e-3;
+  }
+  return stages;
+}
+
+std::uint64_t Sum(const std::map<std::string, std::uint64_t>& counts) {
+  std::uint64_t sum = 0;
+  for (const auto& [reason, count] : counts) sum += count;
+  return sum;
+}
+
+std::string List(const std::map<std::string, std::uint64_t>& counts) {
+  std::string text;
+  for (const auto& [reason, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, reason);
+  return text;
+}
+
+}  // namespace
+
+Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig) {
+  const PipelineCounts& counts = pipeline.counts();
+  Json json;
+  Json& depth = json["frames"]["depth"];
+  depth["in"] = counts.depth_in;
+  depth["tracked"] = counts.depth_tracked;
+  depth["integrated"] = counts.depth_integrated;
+  depth["refused"] = counts.depth_refused;
+  depth["lost"] = Sum(counts.depth_lost);
+  for (const auto& [reason, count] : counts.depth_lost) depth["lost_by_reason"][reason] = count;
+  Json& thermal = json["frames"]["thermal"];
+  thermal["in"] = counts.thermal_in;
+  thermal["fused"] = counts.thermal_fused;
+  for (const auto& [reason, count] : counts.thermal_left_out) thermal["left_out_by_reason"][reason] = count;
+  json["stages"] = DescribeStages(pipeline);
+  json["threads"] = pipeline.threads();
+
+  const VoxelGrid& grid = pipeline.tsdf().grid();
+  Json& volume = json["volume"];
+  for (int axis = 0; axis < 3; ++axis) {
+    volume["min_m"].Append(grid.min_m[axis]);
+    volume["size_m"].Append(grid.size_m()[axis]);
+  }
+  volume["voxel_size_m"] = grid.voxel_size_m;
+  volume["blocks"] = pipeline.tsdf().block_count();
+  volume["blocks_refused_for_memory"] = pipeline.tsdf().refused_blocks();
+  volume["memory_bytes"] = pipeline.tsdf().memory_bytes() +
+                           static_cast<std::size_t>(pipeline.tsdf().block_count()) * kBlockVoxels * sizeof(ThermalVoxel);
+  json["calibration"] = ToText(rig);
+  json["configuration"] = ToTextProto(options);
+  if (!pipeline.thermal_status().ok()) json["thermal_not_fused_because"] = pipeline.thermal_status().message();
+  return json;
+}
+
+Result<std::string> WriteScan(GroundPipeline& pipeline, const GroundOptions& options, Json stats,
+                              const std::filesystem::path& dir,
+                              const std::function<void(std::string_view what, double share)>& progress) {
+  const bool has_view = pipeline.view().maps.width() > 0;
+  const ResultInputs inputs{pipeline.tsdf(),
+                            pipeline.thermal(),
+                            pipeline.trajectory(),
+                            has_view ? &pipeline.view().maps : nullptr,
+                            pipeline.view().T_world_depth.translation(),
+                            options.renderer(),
+                            options.thermal(),
+                            options.export_(),
+                            std::move(stats)};
+  const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
+  if (!summary) return Err(summary.error());
+
+  const PipelineCounts& counts = pipeline.counts();
+  std::string text = fmt::format("depth    {} frames: {} tracked, {} integrated{}{}\n", counts.depth_in,
+                                 counts.depth_tracked, counts.depth_integrated,
+                                 counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
+  text += fmt::format("thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
+                      counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));
+  if (!pipeline.thermal_status().ok()) text += fmt::format("         {}\n", pipeline.thermal_status().message());
+  const auto share = [&](std::size_t part) {
+    return summary->points == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(summary->points);
+  };
+  text += fmt::format("surface  {} points, {:.1f} % with a temperature, {:.1f} % measured well; {} triangles\n",
+                      summary->points, share(summary->measured_points), share(summary->good_points),
+                      summary->triangles);
+  if (summary->measured_points > 0) {
+    text += fmt::format("         {:.1f} to {:.1f} °C, mean {:.1f} °C (apparent temperature)\n",
+                        summary->temperatures.min_celsius, summary->temperatures.max_celsius,
+                        summary->temperatures.mean_celsius);
+  }
+  if (pipeline.tsdf().refused_blocks() > 0) {
+    text += "         volume.max_memory_bytes was reached: parts of the surface are missing\n";
+  }
+  const auto median = [&](const char* stage) {
+    const auto found = pipeline.stage_stats().find(stage);
+    return found == pipeline.stage_stats().end() ? 0.0 : found->second.Percentile(50);
+  };
+  text += fmt::format("time     {:.1f} ms per depth frame, {:.1f} ms per thermal frame (medians, {} threads)\n",
+                      median("depth_frame"), median("thermal_frame"), pipeline.threads());
+  text += fmt::format("results  {}\n", dir.string());
+  return text;
+}
+
+}  // namespace isotherm
