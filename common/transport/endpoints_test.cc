@@ -38,7 +38,7 @@ EncodedThermalFrame MakeThermal() {
   EncodedThermalFrame frame;
   frame.header = MakeDepth(3).header;
   frame.image = MakeDepth(3).image;
-  frame.image.encoding = Encoding::kThermalDelta;
+  frame.image.encoding = Encoding::kThermalRans;
   frame.nuc_state = NucState::kSettling;
   frame.nuc_source = NucSource::kPolled;
   frame.seconds_since_nuc = 12.5;
@@ -141,7 +141,7 @@ TEST_F(EndpointsTest, ThermalFrameArrivesAsItWasWritten) {
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
   const EncodedThermalFrame& frame = received->message;
-  EXPECT_EQ(frame.image.encoding, Encoding::kThermalDelta);
+  EXPECT_EQ(frame.image.encoding, Encoding::kThermalRans);
   EXPECT_EQ(frame.image.payload, sent.image.payload);
   EXPECT_EQ(frame.nuc_state, NucState::kSettling);
   EXPECT_EQ(frame.nuc_source, NucSource::kPolled);

@@ -40,8 +40,8 @@ struct Hello {
   Role role = Role::kEdge;
   std::uint16_t wire_major = kWireMajor;
   std::uint16_t wire_minor = kWireMinor;
-  std::string software_version;
-  std::string host;
+  std::string software_version{};
+  std::string host{};
 };
 
 /// One sentence that says which side is old, or ok.
@@ -53,7 +53,7 @@ struct StreamMode {
   int height = 0;
   double rate_hz = 0.0;  ///< Nominal.
   Encoding encoding = Encoding::kRaw16;
-  std::string serial;  ///< Of the camera; empty = unknown.
+  std::string serial{};  ///< Of the camera; empty = unknown.
 };
 
 /// Calibration and active modes. Written at the start of each scan, kept for late joiners.
@@ -82,7 +82,7 @@ enum class NucPolicy : std::uint8_t {
 };
 
 struct DropCount {
-  std::string reason;
+  std::string reason{};
   std::uint64_t frames = 0;
 };
 
@@ -94,7 +94,7 @@ struct StreamStatus {
       0;                 ///< One above the highest published; at the end, no higher one will come.
   double rate_hz = 0.0;  ///< Measured over the last seconds.
   std::uint32_t queue_frames = 0;  ///< Waiting to be published.
-  std::vector<DropCount> dropped;  ///< At most kMaxDropReasons.
+  std::vector<DropCount> dropped{};  ///< At most kMaxDropReasons.
 };
 
 /// State of the edge at 1 Hz and at each change of scan_state; the last one is kept for late
@@ -138,7 +138,7 @@ enum class CommandOutcome : std::uint8_t { kDone = 0, kRefused = 1, kFailed = 2 
 struct CommandResult {
   std::uint64_t number = 0;
   CommandOutcome outcome = CommandOutcome::kDone;
-  std::string text;  ///< Why it was refused or failed.
+  std::string text{};  ///< Why it was refused or failed.
 };
 
 /// Frame numbers first..last, both included.
@@ -187,7 +187,7 @@ struct CoverageShares {
 };
 
 struct StageLatency {
-  std::string stage;
+  std::string stage{};
   float p50_s = 0.0F;
   float p99_s = 0.0F;
 };
@@ -202,11 +202,11 @@ struct Feedback {
   double covered_area_m2 = 0.0;                      ///< Surface in the model.
   CoverageShares model;                              ///< Of the whole surface.
   CoverageShares view;                               ///< Of the surface in view.
-  std::vector<Advice> advice;                        ///< Most urgent first; at most kMaxAdvice.
+  std::vector<Advice> advice{};                        ///< Most urgent first; at most kMaxAdvice.
   std::optional<RigidTransform> T_world_depth_next;  ///< Where to go next.
   std::vector<std::uint8_t>
       picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
-  std::vector<StageLatency> latencies;  ///< Optional; at most kMaxStageLatencies.
+  std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
 };
 
 }  // namespace isotherm

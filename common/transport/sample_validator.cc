@@ -59,7 +59,7 @@ std::optional<RefusalCause> CheckFrame(const FrameFields& fields) {
       fields.payload_bytes > pixels * kMaxBytesPerPixel + kMaxCodeOverheadBytes) {
     return RefusalCause::kOversizePayload;
   }
-  if (CheckEnum(fields.encoding, Encoding::kThermalDelta)) return RefusalCause::kUnknownEncoding;
+  if (CheckEnum(fields.encoding, Encoding::kThermalRans)) return RefusalCause::kUnknownEncoding;
   if (fields.capture_time_ns < 0 || fields.capture_sigma_ns < 0) {
     return RefusalCause::kNegativeTime;
   }

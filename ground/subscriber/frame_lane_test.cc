@@ -1,0 +1,127 @@
+#include "ground/subscriber/frame_lane.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr CaptureTime kArrival = CaptureTimeFromNanoseconds(1'000);
+
+EncodedThermalFrame MakeFrame(std::uint64_t session, std::uint64_t number) {
+  EncodedThermalFrame frame;
+  frame.header.session = session;
+  frame.header.frame_number = number;
+  frame.image = {.encoding = Encoding::kRaw16, .width = 2, .height = 1, .payload = {1, 2, 3, 4}};
+  frame.nuc_state = NucState::kIdle;
+  frame.seconds_since_nuc = 4.5;
+  frame.housekeeping.housing_celsius = 33.0F;
+  frame.valid = true;
+  return frame;
+}
+
+class FrameLaneTest : public ::testing::Test {
+ protected:
+  bool Add(EncodedThermalFrame frame) {
+    const bool good = lane_.Add(std::move(frame), kArrival, now_);
+    lane_.DeliverDue(now_);
+    return good;
+  }
+  static std::vector<std::uint64_t> Numbers(const std::vector<ReceivedThermal>& items) {
+    std::vector<std::uint64_t> numbers;
+    for (const auto& item : items) numbers.push_back(item.frame->header.frame_number);
+    return numbers;
+  }
+
+  RefusalCounter refusals_;
+  std::vector<ReceivedThermal> delivered_;
+  std::vector<ReceivedThermal> late_;
+  FrameLane<ReceivedThermal> lane_{
+      "thermal", 200ms, &refusals_,
+      [this](ReceivedThermal item) { delivered_.push_back(std::move(item)); },
+      [this](ReceivedThermal item) { late_.push_back(std::move(item)); }};
+  SteadyTime now_{1h};
+};
+
+TEST_F(FrameLaneTest, FrameIsUnpackedWithAllThatBelongsToIt) {
+  EXPECT_TRUE(Add(MakeFrame(1, 0)));
+  ASSERT_EQ(delivered_.size(), 1U);
+  const ThermalFrame& frame = *delivered_[0].frame;
+  EXPECT_THAT(frame.centikelvin.pixels(), ElementsAre(0x0201, 0x0403));
+  EXPECT_EQ(frame.nuc_state, NucState::kIdle);
+  EXPECT_EQ(frame.seconds_since_nuc, 4.5);
+  EXPECT_EQ(frame.housekeeping.housing_celsius, 33.0F);
+  EXPECT_TRUE(frame.valid);
+  EXPECT_EQ(delivered_[0].encoded->image.payload.size(), 4U);
+  EXPECT_EQ(delivered_[0].arrival, kArrival);
+}
+
+TEST_F(FrameLaneTest, F20DuplicateIsDeliveredOnce) {
+  EXPECT_TRUE(Add(MakeFrame(1, 0)));
+  EXPECT_FALSE(Add(MakeFrame(1, 0)));
+  EXPECT_EQ(delivered_.size(), 1U);
+  EXPECT_EQ(lane_.stream().tally().duplicates, 1U);
+  EXPECT_EQ(refusals_.total(), 0U);
+}
+
+TEST_F(FrameLaneTest, F21LateFrameGoesTheOtherWay) {
+  Add(MakeFrame(1, 1));
+  now_ += 200ms;
+  lane_.DeliverDue(now_);
+  EXPECT_TRUE(Add(MakeFrame(1, 0)));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(1));
+  EXPECT_THAT(Numbers(late_), ElementsAre(0));
+  EXPECT_EQ(lane_.stream().tally().late, 1U);
+  EXPECT_EQ(lane_.stream().tally().received, 2U);
+}
+
+TEST_F(FrameLaneTest, F60UndecodablePayloadIsRefusedAndItsNumberStaysFree) {
+  EncodedThermalFrame broken = MakeFrame(1, 0);
+  broken.image.payload.pop_back();
+  EXPECT_FALSE(Add(broken));
+  EXPECT_EQ(refusals_.count(RefusalCause::kUndecodable), 1U);
+  EXPECT_TRUE(Add(MakeFrame(1, 0)));
+  EXPECT_EQ(delivered_.size(), 1U);
+}
+
+TEST_F(FrameLaneTest, F60UndecodableFrameDoesNotStartASession) {
+  Add(MakeFrame(1, 0));
+  EncodedThermalFrame broken = MakeFrame(2, 0);
+  broken.image.payload.clear();
+  EXPECT_FALSE(Add(broken));
+  EXPECT_TRUE(Add(MakeFrame(1, 1)));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 1));
+}
+
+TEST_F(FrameLaneTest, F60FrameOfASessionThatIsOverIsRefused) {
+  Add(MakeFrame(1, 0));
+  Add(MakeFrame(2, 0));
+  EXPECT_FALSE(Add(MakeFrame(1, 1)));
+  EXPECT_EQ(refusals_.count(RefusalCause::kOtherSession), 1U);
+  EXPECT_EQ(lane_.stream().tally().session, 2U);
+}
+
+TEST_F(FrameLaneTest, F60ImpossibleNumberIsRefused) {
+  Add(MakeFrame(1, 0));
+  EXPECT_FALSE(Add(MakeFrame(1, 1ULL << 39U)));
+  EXPECT_EQ(refusals_.count(RefusalCause::kImpossibleNumber), 1U);
+  EXPECT_EQ(lane_.stream().tally().next, 1U);
+}
+
+TEST_F(FrameLaneTest, ANewSessionFirstDeliversWhatWaitedInTheOldOne) {
+  Add(MakeFrame(1, 0));
+  Add(MakeFrame(1, 2));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0));
+  Add(MakeFrame(2, 0));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 2, 0));
+  EXPECT_EQ(delivered_.back().frame->header.session, 2U);
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,193 @@
+#include "ground/subscriber/frame_sequencer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "ground/subscriber/frame_stream.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::IsEmpty;
+using Verdict = FrameSequencer<int>::Verdict;
+
+constexpr Nanoseconds kWindow = 200ms;
+
+class FrameSequencerTest : public ::testing::Test {
+ protected:
+  Verdict Add(std::uint64_t number) {
+    return sequencer_.Add(number, static_cast<int>(number), now_);
+  }
+  std::vector<int> TakeAll() {
+    std::vector<int> taken;
+    while (const auto item = sequencer_.Next(now_)) taken.push_back(*item);
+    return taken;
+  }
+
+  FrameSequencer<int> sequencer_{kWindow};
+  SteadyTime now_{1h};
+};
+
+TEST_F(FrameSequencerTest, FramesInOrderPassAtOnce) {
+  for (const std::uint64_t number : {0, 1, 2}) EXPECT_EQ(Add(number), Verdict::kInOrder);
+  EXPECT_THAT(TakeAll(), ElementsAre(0, 1, 2));
+  EXPECT_EQ(sequencer_.handled(), 3U);
+  EXPECT_EQ(sequencer_.deadline(), std::nullopt);
+}
+
+TEST_F(FrameSequencerTest, F20DuplicateIsDroppedWhetherItWaitsOrHasPassed) {
+  EXPECT_EQ(Add(0), Verdict::kInOrder);
+  EXPECT_EQ(Add(0), Verdict::kDuplicate);
+  EXPECT_THAT(TakeAll(), ElementsAre(0));
+  EXPECT_EQ(Add(0), Verdict::kDuplicate);
+  EXPECT_EQ(Add(2), Verdict::kInOrder);
+  EXPECT_EQ(Add(2), Verdict::kDuplicate);
+  EXPECT_EQ(sequencer_.ledger().received(), 2U);
+}
+
+TEST_F(FrameSequencerTest, F21FramesOutOfOrderAreSortedWithinTheWindow) {
+  Add(0);
+  Add(2);
+  EXPECT_THAT(TakeAll(), ElementsAre(0));
+  now_ += kWindow - 1ns;
+  EXPECT_THAT(TakeAll(), IsEmpty());
+  EXPECT_EQ(Add(1), Verdict::kInOrder);
+  EXPECT_THAT(TakeAll(), ElementsAre(1, 2));
+}
+
+TEST_F(FrameSequencerTest, F21AfterTheWindowTheMissingFrameIsLate) {
+  Add(0);
+  Add(2);
+  TakeAll();
+  ASSERT_EQ(sequencer_.deadline(), now_ + kWindow);
+  now_ += kWindow;
+  EXPECT_THAT(TakeAll(), ElementsAre(2));
+  EXPECT_EQ(Add(1), Verdict::kLate);
+  EXPECT_THAT(TakeAll(), IsEmpty());
+  EXPECT_EQ(sequencer_.ledger().missing(), 0U);  // Late, but here.
+  EXPECT_EQ(Add(1), Verdict::kDuplicate);
+}
+
+TEST_F(FrameSequencerTest, F19LostFramesAreCountedAndNamed) {
+  for (const std::uint64_t number : {0, 1, 4, 5, 9}) Add(number);
+  EXPECT_EQ(sequencer_.ledger().missing(), 5U);
+  EXPECT_THAT(sequencer_.ledger().NewestHoles(10), ElementsAre(FrameRange{2, 3}, FrameRange{6, 8}));
+  EXPECT_THAT(sequencer_.ledger().NewestHoles(1), ElementsAre(FrameRange{6, 8}));
+}
+
+TEST_F(FrameSequencerTest, WaitingFramesAreBounded) {
+  constexpr auto kMax = FrameSequencer<int>::kMaxWaiting;
+  for (std::uint64_t number = 1; number <= kMax; ++number) Add(number);
+  EXPECT_THAT(TakeAll(), IsEmpty());
+  Add(kMax + 1);
+  EXPECT_EQ(TakeAll().size(), kMax + 1);
+}
+
+TEST_F(FrameSequencerTest, F60AnImpossibleJumpIsRefused) {
+  Add(0);
+  constexpr auto kJump = FrameSequencer<int>::kMaxJump;
+  EXPECT_EQ(Add(1 + kJump + 1), Verdict::kImpossible);
+  EXPECT_EQ(Add(1 + kJump), Verdict::kInOrder);
+}
+
+TEST_F(FrameSequencerTest, FlushDeliversWhatWaits) {
+  Add(3);
+  Add(7);
+  EXPECT_EQ(sequencer_.Flush(), 3);
+  EXPECT_EQ(sequencer_.Flush(), 7);
+  EXPECT_EQ(sequencer_.Flush(), std::nullopt);
+}
+
+TEST_F(FrameSequencerTest, AnyMixtureIsDeliveredInOrderOnceAndAddsUp) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  std::vector<std::uint64_t> sent;
+  std::set<std::uint64_t> distinct;
+  for (std::uint64_t number = 0; number < 5000; ++number) {
+    if (random() % 10 == 0) continue;  // Lost.
+    sent.push_back(number);
+    distinct.insert(number);
+    if (random() % 10 == 0) sent.push_back(number);  // Duplicated.
+  }
+  for (std::size_t i = 0; i + 5 < sent.size(); ++i) std::swap(sent[i], sent[i + random() % 5]);
+
+  std::vector<int> delivered;
+  std::uint64_t late = 0;
+  for (const std::uint64_t number : sent) {
+    now_ += 1ms * (random() % 60);
+    late += Add(number) == Verdict::kLate ? 1 : 0;
+    for (const int item : TakeAll()) delivered.push_back(item);
+  }
+  while (const auto item = sequencer_.Flush()) delivered.push_back(*item);
+
+  EXPECT_TRUE(std::ranges::is_sorted(delivered, std::less_equal<>{}));  // Strictly ascending.
+  EXPECT_EQ(delivered.size() + late, distinct.size());
+  const FrameLedger& ledger = sequencer_.ledger();
+  EXPECT_EQ(ledger.received(), distinct.size());
+  EXPECT_EQ(ledger.received() + ledger.missing(), ledger.next());
+  std::uint64_t in_holes = 0;
+  for (const FrameRange& hole : ledger.NewestHoles(5000)) {
+    in_holes += hole.last - hole.first + 1;
+    EXPECT_FALSE(distinct.contains(hole.first));
+    EXPECT_FALSE(distinct.contains(hole.last));
+  }
+  EXPECT_EQ(in_holes, ledger.missing());
+}
+
+TEST(FrameLedgerTest, HolesAreFilledFromBothEndsAndFromTheMiddle) {
+  FrameLedger ledger;
+  ledger.Add(0);
+  ledger.Add(10);
+  for (const std::uint64_t number : {1, 9, 5}) EXPECT_TRUE(ledger.Add(number));
+  EXPECT_THAT(ledger.NewestHoles(9), ElementsAre(FrameRange{2, 4}, FrameRange{6, 8}));
+  for (const std::uint64_t number : {2, 3, 4, 6, 7, 8}) EXPECT_TRUE(ledger.Add(number));
+  EXPECT_EQ(ledger.missing(), 0U);
+  EXPECT_THAT(ledger.NewestHoles(9), IsEmpty());
+}
+
+TEST(FrameLedgerTest, TheOldestHoleIsGivenUpWhenThereAreTooMany) {
+  FrameLedger ledger(3);
+  for (std::uint64_t number = 1; number <= 9; number += 2) ledger.Add(number);
+  EXPECT_THAT(ledger.NewestHoles(9),
+              ElementsAre(FrameRange{4, 4}, FrameRange{6, 6}, FrameRange{8, 8}));
+  EXPECT_FALSE(ledger.Add(0));
+  EXPECT_EQ(ledger.received() + ledger.missing(), ledger.next());
+  EXPECT_EQ(ledger.missing(), 5U);
+}
+
+TEST(FrameStreamTest, ANewSessionStartsFromZeroAndTheOldOneStaysOver) {
+  using Stream = FrameStream<int>;
+  Stream stream(kWindow);
+  EXPECT_EQ(stream.Classify(11), Stream::Session::kNew);
+  stream.BeginSession(11);
+  stream.Add(0, 100, {});
+  stream.Add(1, 101, {});
+  stream.BeginSession(7);  // Numbers of sessions need not grow.
+  EXPECT_EQ(stream.Classify(11), Stream::Session::kOver);
+  EXPECT_EQ(stream.Classify(7), Stream::Session::kCurrent);
+  EXPECT_EQ(stream.Add(0, 200, {}), Stream::Verdict::kInOrder);
+  EXPECT_EQ(stream.Next({}), 200);
+  EXPECT_EQ(stream.tally().received, 1U);
+  EXPECT_EQ(stream.tally(11).received, 2U);
+  EXPECT_EQ(stream.receipt(7).handled, 1U);
+  EXPECT_EQ(stream.receipt(11).handled, 0U);
+}
+
+TEST(FrameStreamTest, MemoryOfSessionsIsBounded) {
+  FrameStream<int> stream(kWindow);
+  for (std::uint64_t session = 0; session < 1000; ++session) stream.BeginSession(session);
+  EXPECT_EQ(stream.Classify(998), FrameStream<int>::Session::kOver);
+  EXPECT_EQ(stream.Classify(0), FrameStream<int>::Session::kNew);  // Forgotten.
+}
+
+}  // namespace
+}  // namespace isotherm
