@@ -2,67 +2,96 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
+
+#include "common/codec/image_codecs.h"
 
 namespace isotherm {
 namespace {
 
-Result<Image<std::uint16_t>> DecodeRaw(const EncodedImage& encoded) {
-  Image<std::uint16_t> image(encoded.width, encoded.height);
-  if (encoded.payload.size() != image.size() * sizeof(std::uint16_t)) {
-    return Err(DataLoss(fmt::format("raw image of {} x {} has {} bytes", encoded.width,
-                                    encoded.height, encoded.payload.size())));
-  }
-  const std::uint8_t* bytes = encoded.payload.data();
+Status DecodeRaw(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image) {
+  const std::uint8_t* byte = payload.data();
   for (std::uint16_t& pixel : image.pixels()) {
-    pixel = static_cast<std::uint16_t>(bytes[0] | bytes[1] << 8);
-    bytes += sizeof(std::uint16_t);
+    pixel = static_cast<std::uint16_t>(byte[0] | byte[1] << 8);
+    byte += sizeof(pixel);
   }
-  return image;
+  return OkStatus();
 }
 
-EncodedImage EncodeRaw(const Image<std::uint16_t>& image) {
-  EncodedImage encoded{.encoding = Encoding::kRaw16,
-                       .width = image.width(),
-                       .height = image.height(),
-                       .payload = {}};
-  encoded.payload.reserve(image.size() * sizeof(std::uint16_t));
-  for (const std::uint16_t pixel : image.pixels()) {
-    encoded.payload.push_back(static_cast<std::uint8_t>(pixel));
-    encoded.payload.push_back(static_cast<std::uint8_t>(pixel >> 8));
+/// An image cannot be larger than its payload allows: a guard against allocating much for a few
+/// bytes. The codes need no bits for a pixel that is certain, so the bound is loose for them.
+Status CheckSizes(const EncodedImage& encoded, std::size_t max_pixels) {
+  if (encoded.width <= 0 || encoded.height <= 0 ||
+      static_cast<std::size_t>(encoded.width) >
+          max_pixels / static_cast<std::size_t>(encoded.height)) {
+    return DataLoss(fmt::format("image of {} x {} pixels is impossible or exceeds the limit of {}",
+                                encoded.width, encoded.height, max_pixels));
   }
-  return encoded;
+  const std::size_t raw_bytes = static_cast<std::size_t>(encoded.width) *
+                                static_cast<std::size_t>(encoded.height) * sizeof(std::uint16_t);
+  if (encoded.encoding == Encoding::kRaw16 && encoded.payload.size() != raw_bytes) {
+    return DataLoss(fmt::format("raw image of {} x {} has {} bytes instead of {}", encoded.width,
+                                encoded.height, encoded.payload.size(), raw_bytes));
+  }
+  return OkStatus();
+}
+
+Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
+  switch (encoded.encoding) {
+    case Encoding::kRaw16:
+      return DecodeRaw(encoded.payload, image);
+    case Encoding::kPng16:
+      return codec::DecodePng(encoded.payload, image);
+    case Encoding::kDepthRans: {
+      thread_local codec::DepthCodec decoder;
+      return decoder.Decode(encoded.payload, image);
+    }
+    case Encoding::kThermalRans: {
+      thread_local codec::ThermalCodec decoder;
+      return decoder.Decode(encoded.payload, image);
+    }
+  }
+  return DataLoss(
+      fmt::format("encoding {} is unknown: update Isotherm", static_cast<int>(encoded.encoding)));
 }
 
 }  // namespace
 
-struct DepthEncoder::Scratch {};
-struct ThermalEncoder::Scratch {};
+struct DepthEncoder::Scratch {
+  codec::DepthCodec codec;
+};
+struct ThermalEncoder::Scratch {
+  codec::ThermalCodec codec;
+};
+
 DepthEncoder::DepthEncoder() : scratch_(std::make_unique<Scratch>()) {}
 DepthEncoder::~DepthEncoder() = default;
 ThermalEncoder::ThermalEncoder() : scratch_(std::make_unique<Scratch>()) {}
 ThermalEncoder::~ThermalEncoder() = default;
 
 EncodedImage DepthEncoder::Encode(const Image<std::uint16_t>& depth_raw) {
-  return EncodeRaw(depth_raw);
+  EncodedImage encoded{.encoding = Encoding::kDepthRans,
+                       .width = depth_raw.width(),
+                       .height = depth_raw.height(),
+                       .payload = {}};
+  scratch_->codec.Encode(depth_raw, encoded.payload);
+  return encoded;
 }
+
 EncodedImage ThermalEncoder::Encode(const Image<std::uint16_t>& centikelvin) {
-  return EncodeRaw(centikelvin);
+  EncodedImage encoded{.encoding = Encoding::kThermalRans,
+                       .width = centikelvin.width(),
+                       .height = centikelvin.height(),
+                       .payload = {}};
+  scratch_->codec.Encode(centikelvin, encoded.payload);
+  return encoded;
 }
 
 Result<Image<std::uint16_t>> Decode(const EncodedImage& encoded, std::size_t max_pixels) {
-  if (encoded.width <= 0 || encoded.height <= 0 ||
-      static_cast<std::size_t>(encoded.width) >
-          max_pixels / static_cast<std::size_t>(encoded.height)) {
-    return Err(
-        DataLoss(fmt::format("image of {} x {} is impossible", encoded.width, encoded.height)));
-  }
-  if (encoded.encoding == Encoding::kRaw16) return DecodeRaw(encoded);
-  return Err(DataLoss(fmt::format("encoding {} is unknown", static_cast<int>(encoded.encoding))));
+  if (Status status = CheckSizes(encoded, max_pixels); !status.ok()) return Err(std::move(status));
+  Image<std::uint16_t> image(encoded.width, encoded.height);
+  if (Status status = DecodePixels(encoded, image); !status.ok()) return Err(std::move(status));
+  return image;
 }
 
 }  // namespace isotherm

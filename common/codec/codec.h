@@ -5,8 +5,8 @@
 
 namespace isotherm {
 
-/// Lossless packing of 16-bit images. Each encoder keeps its scratch memory, so that a stream allocates only
-/// its payloads. Thread-compatible: one per stream.
+/// Lossless packing of 16-bit images. Each encoder keeps its scratch memory, so that a stream
+/// allocates only its payloads. Thread-compatible: one per stream.
 class DepthEncoder {
  public:
   DepthEncoder();
@@ -29,8 +29,9 @@ class ThermalEncoder {
   std::unique_ptr<Scratch> scratch_;
 };
 
-/// Unpacks any Encoding. Sizes are checked before anything is allocated; a payload that is truncated, too long
-/// or inconsistent is kDataLoss and never read out of bounds. `max_pixels` bounds width x height.
+/// Unpacks any Encoding. Sizes are checked before anything is allocated; a payload that is
+/// truncated, too long or inconsistent is kDataLoss and never read out of bounds. `max_pixels`
+/// bounds width x height.
 Result<Image<std::uint16_t>> Decode(const EncodedImage& encoded, std::size_t max_pixels = 1U << 24);
 
 }  // namespace isotherm

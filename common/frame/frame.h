@@ -90,8 +90,8 @@ struct RawFrame {
 enum class Encoding : std::uint8_t {
   kRaw16 = 0,      ///< Little-endian 16-bit samples, row-major.
   kPng16 = 1,      ///< PNG, 16-bit grey.
-  kDepthRvl = 2,   ///< Run lengths and variable-length differences, then zstd (common/codec).
-  kThermalDelta = 3,  ///< Predicted differences, byte planes, zstd (common/codec).
+  kDepthRans = 2,    ///< Ranks of the values that occur, predicted, entropy coded (common/codec).
+  kThermalRans = 3,  ///< Values predicted by the median edge detector, entropy coded (common/codec).
 };
 
 struct EncodedImage {

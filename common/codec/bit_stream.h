@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+/// Raw bits, lowest first.
+namespace isotherm::codec {
+
+/// Appends to its own buffer. Thread-compatible.
+class BitWriter {
+ public:
+  void Clear() {
+    bytes_.clear();
+    pending_ = 0;
+    pending_bits_ = 0;
+  }
+
+  /// `value` must be below 2^count, `count` at most 16.
+  void Put(std::uint32_t value, unsigned count) {
+    pending_ |= static_cast<std::uint64_t>(value) << pending_bits_;
+    pending_bits_ += count;
+    if (pending_bits_ < 32) return;
+    PutBytes(4);
+    pending_ >>= 32;
+    pending_bits_ -= 32;
+  }
+
+  /// Writes what is pending; nothing may be put afterwards.
+  std::span<const std::uint8_t> Finish() {
+    PutBytes((pending_bits_ + 7) / 8);
+    pending_bits_ = 0;
+    return bytes_;
+  }
+
+ private:
+  void PutBytes(unsigned count) {
+    for (unsigned i = 0; i < count; ++i) {
+      bytes_.push_back(static_cast<std::uint8_t>(pending_ >> (8 * i)));
+    }
+  }
+
+  std::vector<std::uint8_t> bytes_;
+  std::uint64_t pending_ = 0;
+  unsigned pending_bits_ = 0;
+};
+
+/// Behind its end everything reads as zero and ok() is false. Thread-compatible.
+class BitReader {
+ public:
+  explicit BitReader(std::span<const std::uint8_t> bytes)
+      : next_(bytes.data()), end_(bytes.data() + bytes.size()) {}
+
+  /// `count` at most 16.
+  std::uint32_t Get(unsigned count) {
+    if (pending_bits_ < count) Refill(count);
+    const auto value = static_cast<std::uint32_t>(pending_ & ((std::uint64_t{1} << count) - 1));
+    pending_ >>= count;
+    pending_bits_ -= count;
+    return value;
+  }
+
+  bool ok() const { return ok_; }
+  /// True if all bytes were used and the bits that fill up the last one are zero.
+  bool AtEnd() const { return next_ == end_ && pending_bits_ < 8 && pending_ == 0; }
+
+ private:
+  void Refill(unsigned needed) {
+    while (pending_bits_ <= 56 && next_ != end_) {
+      pending_ |= static_cast<std::uint64_t>(*next_++) << pending_bits_;
+      pending_bits_ += 8;
+    }
+    if (pending_bits_ >= needed) return;
+    ok_ = false;
+    pending_bits_ = needed;
+  }
+
+  const std::uint8_t* next_;
+  const std::uint8_t* end_;
+  std::uint64_t pending_ = 0;
+  unsigned pending_bits_ = 0;
+  bool ok_ = true;
+};
+
+}  // namespace isotherm::codec

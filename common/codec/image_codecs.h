@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/base/status.h"
+#include "common/frame/image.h"
+
+/// The codes behind codec.h, each without its envelope.
+namespace isotherm::codec {
+
+/// Depth. Its values are few (a camera that measures disparity can tell only some 300 depths
+/// between 0.4 and 1.4 m apart), so pixels become their rank among the values that occur. Keeps its
+/// memory. Thread-compatible.
+class DepthCodec {
+ public:
+  DepthCodec();
+  ~DepthCodec();
+  void Encode(const Image<std::uint16_t>& image, std::vector<std::uint8_t>& payload);
+  /// `image` has the size that the payload must have.
+  Status Decode(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image);
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+/// Temperature: smooth up to the camera's noise. Keeps its memory. Thread-compatible.
+class ThermalCodec {
+ public:
+  ThermalCodec();
+  ~ThermalCodec();
+  void Encode(const Image<std::uint16_t>& image, std::vector<std::uint8_t>& payload);
+  /// `image` has the size that the payload must have.
+  Status Decode(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image);
+
+ private:
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
+};
+
+/// PNG as other programs write it: 16-bit grey.
+Status DecodePng(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image);
+
+}  // namespace isotherm::codec
