@@ -72,7 +72,7 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
   return text + "end_header\n";
 }
 
-void AddPoint(const SurfacePoint& point, const PlyStyle& style, RecordWriter& records) {
+void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& records) {
   for (const float value : point.position_m) records.Add(value);
   for (const float value : point.normal) records.Add(value);
   const bool measured = !std::isnan(point.celsius) && style.scale.has_value();
@@ -98,7 +98,7 @@ Status WriteCloudPly(const Surface& surface, const PlyStyle& style,
   OutputFile file(path);
   file.Write(Header(style, "extended point cloud", surface.points.size(), std::nullopt));
   RecordWriter records(file);
-  for (const SurfacePoint& point : surface.points) AddPoint(point, style, records);
+  for (const CloudPoint& point : surface.points) AddPoint(point, style, records);
   records.Flush();
   return file.Commit();
 }
@@ -109,7 +109,7 @@ Status WriteMeshPly(const Surface& surface, const PlyStyle& style,
   OutputFile file(path);
   file.Write(Header(style, "mesh", mesh.points.size(), mesh.triangles.size()));
   RecordWriter records(file);
-  for (const SurfacePoint& point : mesh.points) AddPoint(point, style, records);
+  for (const CloudPoint& point : mesh.points) AddPoint(point, style, records);
   for (const Eigen::Vector3i& triangle : mesh.triangles) AddTriangle(triangle, records);
   records.Flush();
   return file.Commit();

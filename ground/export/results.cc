@@ -47,7 +47,7 @@ ResultSummary SummarizeSurface(const Surface& surface, const RendererOptions& op
   summary.triangles = surface.triangles.size();
   std::vector<float> celsius;
   celsius.reserve(surface.points.size());
-  for (const SurfacePoint& point : surface.points) {
+  for (const CloudPoint& point : surface.points) {
     celsius.push_back(point.celsius);
     if (std::isnan(point.celsius)) continue;
     ++summary.measured_points;

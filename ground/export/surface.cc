@@ -43,7 +43,7 @@ std::uint16_t EdgeKey(const GridIndex& local, int axis) {
 /// The crossings that start in one block. `keys` is ascending and parallel to `points`.
 struct BlockCrossings {
   std::vector<std::uint16_t> keys;
-  std::vector<SurfacePoint> points;
+  std::vector<CloudPoint> points;
   std::uint32_t first = 0;  ///< Index of points[0] among all points.
 };
 
@@ -158,7 +158,7 @@ class Extractor {
   }
 
   /// The point `along` (0..1) the edge from `voxel` along `axis`.
-  SurfacePoint MakePoint(const GridIndex& voxel, int axis, float along) const {
+  CloudPoint MakePoint(const GridIndex& voxel, int axis, float along) const {
     const VoxelGrid& grid = tsdf_.grid();
     const GridIndex next = voxel + GridIndex::Unit(axis);
     Eigen::Vector3d p_world = grid.VoxelCentre(voxel);
@@ -168,7 +168,7 @@ class Extractor {
     if (gradient.squaredNorm() == 0.0F) {
       gradient[axis] = SampleAt(next) - SampleAt(voxel);
     }
-    SurfacePoint point;
+    CloudPoint point;
     point.position_m = p_world.cast<float>();
     point.normal = gradient.normalized();
     const ThermalVoxel measured = ThermalVoxelAt(tsdf_, thermal_, p_world);

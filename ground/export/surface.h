@@ -13,7 +13,7 @@ namespace isotherm {
 class ThreadPool;
 
 /// One point of the extended point cloud (algorithm 10).
-struct SurfacePoint {
+struct CloudPoint {
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< In `world`.
   Eigen::Vector3f normal =
       Eigen::Vector3f::Zero();  ///< Unit, in `world`, towards the side it was observed from.
@@ -25,7 +25,7 @@ struct SurfacePoint {
 /// The zero crossings of the model, and triangles between them. Points that no triangle uses are
 /// surface that lacks observed neighbours; they belong to the cloud, not to the mesh.
 struct Surface {
-  std::vector<SurfacePoint> points;
+  std::vector<CloudPoint> points;
   std::vector<Eigen::Vector3i>
       triangles;  ///< Indices of points, counter-clockwise seen from outside.
 

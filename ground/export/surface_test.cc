@@ -69,14 +69,14 @@ TEST_F(SphereTest, PointsLieOnTheSphere) {
   constexpr double kTolerance_m = 60e-6;
   const Surface surface = Extract();
   ASSERT_GT(surface.points.size(), 3000U);
-  for (const SurfacePoint& point : surface.points) {
+  for (const CloudPoint& point : surface.points) {
     ASSERT_NEAR((point.position_m.cast<double>() - kCentre).norm(), kRadius, kTolerance_m);
   }
 }
 
 TEST_F(SphereTest, NormalsPointOutwardAlongTheRadius) {
   constexpr double kCosTolerance = 0.9998;  // 1.1 deg: central differences over 2 h at R = 15 h.
-  for (const SurfacePoint& point : Extract().points) {
+  for (const CloudPoint& point : Extract().points) {
     const Eigen::Vector3d radial = (point.position_m.cast<double>() - kCentre).normalized();
     ASSERT_NEAR(point.normal.norm(), 1.0F, 1e-5F);
     ASSERT_GT(point.normal.cast<double>().dot(radial), kCosTolerance);
@@ -112,7 +112,7 @@ TEST_F(SphereTest, AreaAndVolumeAreThoseOfTheSphere) {
 
 TEST_F(SphereTest, PointsCarryTemperatureAndClassesOfTheirVoxel) {
   int cold = 0, hot = 0, never = 0;
-  for (const SurfacePoint& point : Extract().points) {
+  for (const CloudPoint& point : Extract().points) {
     const Eigen::Vector3d p = point.position_m.cast<double>() - kCentre;
     if (p.z() < -2.0 * kVoxel) {
       EXPECT_TRUE(std::isnan(point.celsius));
@@ -227,7 +227,7 @@ TEST(SurfaceTest, MeshOfNoiseIsClosed) {
 TEST(SurfaceTest, MeshOnlyDropsUnusedPointsAndKeepsTheShape) {
   Surface surface;
   for (int i = 0; i < 5; ++i) {
-    SurfacePoint point;
+    CloudPoint point;
     point.position_m = Eigen::Vector3f(static_cast<float>(i), 0, 0);
     surface.points.push_back(point);
   }

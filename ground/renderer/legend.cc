@@ -107,7 +107,7 @@ RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend,
   Panel panel(picture);
   Canvas canvas(panel.image);
   const int below_title = DrawTitle(panel, canvas, legend.title);
-  canvas.Text(panel.left + panel.Px(16), below_title, legend.scale ? "in \u00B0C" : "none measured",
+  canvas.Text(panel.left + panel.Px(16), below_title, legend.scale ? "in " + legend.unit : "none measured",
               panel.letter(), kDimText);
   int bottom = panel.image.height() - panel.Px(22);
   if (legend.never_measured) {
