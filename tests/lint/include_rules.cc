@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -22,7 +23,7 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
   };
   static const Folders kCommon =
       with(kFrameParts, {"common/radiometry", "common/codec", "common/config", "common/recording",
-                         "common/simulation", "common/transport"});
+                         "common/dataset", "common/simulation", "common/transport"});
   static const std::map<std::string_view, Folders> kAllowed = {
       {"common/base", {}},
       {"common/time", {"common/base"}},
@@ -33,6 +34,7 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
       {"common/codec", kFrameParts},
       {"common/config", kFrameParts},
       {"common/recording", with(kFrameParts, {"common/codec", "common/config"})},
+      {"common/dataset", with(kFrameParts, {"common/codec", "common/config", "common/recording"})},
       {"common/simulation", with(kFrameParts, {"common/radiometry", "common/codec", "common/config",
                                                "common/recording"})},
       {"common/transport",
@@ -56,6 +58,7 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
        with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal"})},
       {"ground/export", with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal",
                                        "ground/renderer"})},
+      {"ground/evaluation", with(kCommon, {"ground", "ground/export"})},
       {"ground/feedback", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
                                          "ground/thermal", "ground/renderer"})},
   };
@@ -84,7 +87,7 @@ const std::map<std::string_view, std::string_view>& SdkHomes() {
   return kHomes;
 }
 
-/// Heavy headers that would slow down everybody who includes one of ours.
+/// Heavy headers that would slow down everybody who includes one of our shared headers.
 constexpr std::string_view kSourceOnly[] = {
     "opencv2/", "google/protobuf/", "zstd.h", "zlib.h", "hwy/", "CLI/", "boost/"};
 
@@ -174,17 +177,35 @@ std::string CheckLibrary(const SourceFile& file, std::string_view header) {
       return std::string(header) + " belongs to " + std::string(home) + " only";
     if (!file.IsSource()) return std::string(header) + " may be included by .cc files only";
   }
-  if (file.IsHeader() && !file.IsTest()) {
-    for (const std::string_view prefix : kSourceOnly) {
-      if (header.starts_with(prefix))
-        return std::string(header) + " may be included by .cc files only";
-    }
-    // Stages keep their options message; every other generated message stays in sources.
-    if (header.ends_with(".pb.h") && !header.ends_with("_options.pb.h")) {
-      return "generated messages may be included by .cc files only";
-    }
+  return {};
+}
+
+/// Why `header` is too heavy for a header that other folders include; empty if it is not.
+std::string CheckWeight(std::string_view header) {
+  for (const std::string_view prefix : kSourceOnly) {
+    if (header.starts_with(prefix))
+      return std::string(header) + " reaches other folders through this header";
+  }
+  // Stages keep their options message; every other generated message stays inside its folder.
+  if (header.ends_with(".pb.h") && !header.ends_with("_options.pb.h")) {
+    return "generated messages reach other folders through this header";
   }
   return {};
+}
+
+/// Headers of ours that files of another folder include.
+std::set<std::string> SharedHeaders(const std::vector<SourceFile>& files) {
+  std::set<std::string> shared;
+  for (const SourceFile& file : files) {
+    if (!file.IsCode()) continue;
+    for (const std::string& line : file.lines) {
+      const std::optional<Include> include = ParseInclude(line);
+      if (include && include->header.substr(0, include->header.rfind('/')) != file.folder()) {
+        shared.insert(include->header);
+      }
+    }
+  }
+  return shared;
 }
 
 bool IsOurs(const Include& include) {
@@ -199,12 +220,16 @@ bool IsOurs(const Include& include) {
 
 std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files) {
   std::vector<Violation> violations;
+  const std::set<std::string> shared = SharedHeaders(files);
   for (const SourceFile& file : files) {
     if (!file.IsCode()) continue;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
       const std::optional<Include> include = ParseInclude(file.lines[i]);
       if (!include) continue;
       std::string message = CheckLibrary(file, include->header);
+      if (message.empty() && shared.contains(file.path) && !file.IsTest()) {
+        message = CheckWeight(include->header);
+      }
       const bool sdk = std::any_of(SdkHomes().begin(), SdkHomes().end(), [&](const auto& home) {
         return include->header.starts_with(home.first);
       });

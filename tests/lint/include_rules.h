@@ -10,7 +10,7 @@ namespace isotherm::lint {
 ///   - a folder includes only folders below it; `edge` and `ground` never each other;
 ///   - a stage includes only the stages it is listed with;
 ///   - a third-party SDK header appears in exactly one folder and only in .cc files;
-///   - heavy library headers (OpenCV, Protobuf, spdlog, ...) appear only in .cc files;
+///   - heavy library headers (OpenCV, Protobuf, ...) do not leave a folder through its headers;
 ///   - our own headers are included by their path from the root, never relatively.
 /// Tests may look across stages, but not across the edge-ground border unless they live in tests/.
 std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files);

@@ -65,13 +65,21 @@ TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
   EXPECT_THAT(MessagesFor("common/transport/participant.cc", "#include \"dds/dds.h\""), IsEmpty());
 }
 
-TEST(IncludeRulesTest, HeavyHeadersStayOutOfOurHeaders) {
-  EXPECT_THAT(MessagesFor("ground/renderer/renderer.h", "#include <opencv2/core.hpp>"),
-              ElementsAre(HasSubstr(".cc files only")));
-  EXPECT_THAT(
-      MessagesFor("common/config/text_proto.h", "#include \"common/config/rig_calibration.pb.h\""),
-      ElementsAre(HasSubstr(".cc files only")));
-  EXPECT_THAT(MessagesFor("ground/renderer/renderer.cc", "#include <opencv2/core.hpp>"), IsEmpty());
+TEST(IncludeRulesTest, HeavyHeadersDoNotLeaveTheirFolder) {
+  const SourceFile picture = {"ground/renderer/picture.h", {"#include <opencv2/core.hpp>"}};
+  const SourceFile message = {"common/config/rig.h", {"#include \"common/config/rig.pb.h\""}};
+  const SourceFile neighbour = {"ground/renderer/picture.cc",
+                                {"#include \"ground/renderer/picture.h\""}};
+  EXPECT_THAT(CheckIncludes({picture, message, neighbour}), IsEmpty());
+
+  const SourceFile pipeline = {
+      "ground/ground_pipeline.cc",
+      {"#include \"ground/renderer/picture.h\"", "#include \"common/config/rig.h\""}};
+  const std::vector<Violation> violations = CheckIncludes({picture, message, neighbour, pipeline});
+  ASSERT_EQ(violations.size(), 2U) << ToString(violations);
+  EXPECT_EQ(violations[0].path, picture.path);
+  EXPECT_THAT(violations[0].message, HasSubstr("reaches other folders"));
+  EXPECT_EQ(violations[1].path, message.path);
 }
 
 TEST(IncludeRulesTest, TestHelpersStayOutOfPrograms) {
