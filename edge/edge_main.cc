@@ -1,0 +1,193 @@
+// isotherm-edge: the command line. What it does is in edge_daemon.cc, how in edge_pipeline.cc.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/log.h"
+#include "common/base/service.h"
+#include "common/base/status.h"
+#include "common/config/text_proto.h"
+#include "common/time/clock.h"
+#include "common/transport/transport_environment.h"
+#include "edge/edge_daemon.h"
+#include "edge/edge_options.pb.h"
+#include "edge/validate_options.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kDescription =
+    "Captures depth and thermal frames, dates them, follows the thermal camera's shutter, records "
+    "them and\n"
+    "publishes them over DDS to isotherm-ground. Without cameras it replays a recording or "
+    "simulates a scan.";
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  isotherm-edge                                       a simulated furnace door, in real time\n"
+    "  isotherm-edge --recording scan.mcap --exit-at-end   a recording, once\n"
+    "  isotherm-edge --recording scan.mcap --rate 0 --wait-for-ground --exit-at-end\n"
+    "                                                      ... as fast as the ground takes it, "
+    "nothing dropped\n"
+    "  isotherm-edge --config /etc/isotherm/edge.textproto --set timestamper.depth_window=31\n"
+    "\n"
+    "SIGTERM and Ctrl-C end it within two seconds with everything flushed. At the end it prints "
+    "what became of\n"
+    "each frame: captured = recorded + dropped by reason, captured = published + dropped by "
+    "reason.\n"
+    "\n"
+    "Options come from the defaults, the configuration file, --set and the other options, the "
+    "later ones winning.\n"
+    "The network is chosen by CYCLONEDDS_URI (default: loopback only).\n"
+    "\n"
+    "Exit status:\n"
+    "   0  ended by a signal or at the end of the source\n"
+    "  64  wrong command line\n"
+    "  65  the recording or calibration is damaged\n"
+    "  66  a file does not exist\n"
+    "  69  the network or the source is not available\n"
+    "  73  the recording cannot be written, or ended early because the disk is full\n"
+    "  74  reading or writing failed\n"
+    "  78  wrong configuration (all problems are listed)";
+
+struct CommandLine {
+  std::optional<std::string> config;
+  std::vector<std::string> overrides;
+  std::optional<std::string> source, recording, scene, record, edge_id;
+  std::optional<double> rate;
+  std::optional<int> domain;
+  bool exit_at_end = false;
+  bool wait_for_ground = false;
+  bool list_sources = false;
+  LogLevel log_level = LogLevel::kInfo;
+};
+
+void Declare(CLI::App& app, CommandLine& line) {
+  app.description(kDescription);
+  app.footer(kFooter);
+  app.set_version_flag("--version", "isotherm-edge " ISOTHERM_VERSION);
+  app.add_option("--config", line.config, "Configuration file (protobuf text format)")
+      ->type_name("FILE");
+  app.add_option("--set", line.overrides, "Override an option of the configuration; repeatable")
+      ->type_name("STAGE.FIELD=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--source", line.source, "Where frames come from: replay or synthetic")
+      ->check(CLI::IsMember({"replay", "synthetic"}))
+      ->type_name("KIND");
+  app.add_option("--recording", line.recording, "Recording to replay (implies --source replay)")
+      ->type_name("FILE");
+  app.add_option("--scene", line.scene,
+                 "Scene to simulate (implies --source synthetic), see --list-sources")
+      ->type_name("NAME");
+  app.add_option("--rate", line.rate, "Speed: 1 = real time, 0 = as fast as the rest can follow")
+      ->type_name("FACTOR");
+  app.add_option("--record", line.record,
+                 "Record into FILE, or into a new file in folder FILE; \"off\" = do not")
+      ->type_name("FILE");
+  app.add_option("--edge-id", line.edge_id, "Name of this rig on the link")->type_name("NAME");
+  app.add_option("--domain", line.domain, "DDS domain, 0..230")->type_name("N");
+  app.add_flag("--exit-at-end", line.exit_at_end, "Leave when the source has ended");
+  app.add_flag("--wait-for-ground", line.wait_for_ground,
+               "Hold back the first frame until a ground station is there");
+  const std::map<std::string, LogLevel> levels = {{"debug", LogLevel::kDebug},
+                                                  {"info", LogLevel::kInfo},
+                                                  {"warning", LogLevel::kWarning},
+                                                  {"error", LogLevel::kError}};
+  app.add_option("--log-level", line.log_level, "debug, info, warning or error")
+      ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case).description(""))
+      ->type_name("LEVEL");
+  app.add_flag("--list-sources", line.list_sources, "List sources and scenes, then leave");
+}
+
+std::string ToCase(std::string text, int (*convert)(int)) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [convert](unsigned char c) { return static_cast<char>(convert(c)); });
+  return text;
+}
+
+void ListSources() {
+  std::puts("replay      a recording (--recording FILE)");
+  std::puts(
+      "synthetic   a simulated scan (--scene NAME), rendered once and kept in the cache. Scenes:");
+  const auto* scenes = SimulatedScene_descriptor();
+  for (int i = 0; i < scenes->value_count(); ++i) {
+    std::printf("              %s\n", ToCase(scenes->value(i)->name(), std::tolower).c_str());
+  }
+}
+
+Status ApplyScene(const std::string& name, SourceOptions& options) {
+  SimulatedScene scene{};
+  if (!SimulatedScene_Parse(ToCase(name, std::toupper), &scene)) {
+    return InvalidArgument("--scene " + name + ": no such scene; --list-sources names them");
+  }
+  options.set_kind(SYNTHETIC);
+  options.mutable_simulation()->mutable_scene()->set_scene(scene);
+  return OkStatus();
+}
+
+Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
+  if (line.config) ISOTHERM_RETURN_IF_ERROR(LoadTextProto(*line.config, options));
+  for (const std::string& assignment : line.overrides) {
+    ISOTHERM_RETURN_IF_ERROR(ApplyOverride(assignment, options));
+  }
+  SourceOptions& source = *options.mutable_source();
+  if (line.scene) ISOTHERM_RETURN_IF_ERROR(ApplyScene(*line.scene, source));
+  if (line.recording) {
+    source.set_kind(REPLAY);
+    source.set_recording(*line.recording);
+  }
+  if (line.source) source.set_kind(*line.source == "replay" ? REPLAY : SYNTHETIC);
+  if (line.rate) source.set_rate(*line.rate);
+  if (line.record) options.mutable_spool()->set_record(*line.record);
+  if (line.edge_id) options.mutable_link()->set_edge_id(*line.edge_id);
+  if (line.domain) options.mutable_link()->set_domain(*line.domain);
+  if (line.wait_for_ground) options.mutable_link()->set_wait_for_ground(true);
+  if (line.exit_at_end) options.set_exit_at_end(true);
+  return OkStatus();
+}
+
+/// A missing file keeps its own exit status; anything else about options is a configuration error.
+int FailConfiguration(const Status& status) {
+  LOG(Edge, Error) << status.message();
+  return status.code() == StatusCode::kNotFound ? ExitCode(status) : kExitConfiguration;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app;
+  CommandLine line;
+  Declare(app, line);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitUsage;
+  }
+  SetLogLevel(line.log_level);
+  if (line.list_sources) {
+    ListSources();
+    return 0;
+  }
+  EdgeOptions options;
+  if (const Status applied = ApplyCommandLine(line, options); !applied.ok()) {
+    return FailConfiguration(applied);
+  }
+  if (const Status valid = Validate(options); !valid.ok()) {
+    return FailConfiguration(valid.WithContext("wrong configuration:\n"));
+  }
+  LOG(Edge, Debug) << "effective configuration:\n" << ToTextProto(options);
+
+  const SystemClock clock;
+  const TransportEnvironment environment(clock);
+  const StopSignal signal;
+  return RunEdge(options, environment, clock, signal);
+}
+
+}  // namespace
+}  // namespace isotherm
+
+int main(int argc, char** argv) { return isotherm::Main(argc, argv); }

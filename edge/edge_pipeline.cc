@@ -1,0 +1,174 @@
+#include "edge/edge_pipeline.h"
+
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+OverflowPolicy PolicyFor(const EdgeOptions& options) {
+  return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
+}
+
+auto CountDropsAs(FrameFate fate, FrameAccount& account) {
+  return [fate, &account](const EncodedFramePtr& frame) { account.Count(frame->sensor(), fate); };
+}
+
+}  // namespace
+
+EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
+    : source_(parts.source),
+      publisher_(parts.publisher),
+      account_(parts.account),
+      spool_(std::move(parts.spool)),
+      session_(parts.session),
+      depth_timestamper_(options.timestamper().depth_window(),
+                         FromSeconds(options.timestamper().depth_delay_s())),
+      thermal_timestamper_(
+          options.timestamper().thermal_window(),
+          FromSeconds(options.timestamper().thermal_delay_s() + parts.rig_thermal_delay_s)),
+      nuc_supervisor_(options.nuc()),
+      spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
+      spool_queue_(spool_capacity_, PolicyFor(options),
+                   CountDropsAs(FrameFate::kRecordQueueFull, account_)),
+      publish_queue_(static_cast<std::size_t>(options.link().queue_frames()), PolicyFor(options),
+                     CountDropsAs(FrameFate::kPublishQueueFull, account_)) {}
+
+EdgePipeline::~EdgePipeline() { static_cast<void>(Stop()); }
+
+void EdgePipeline::StartReceiving() {
+  receive_thread_ = std::jthread([this](const std::stop_token& stop) {
+    publisher_.Run(stop, [this, &stop](const Command& command) { commands_.Push(command, stop); });
+  });
+}
+
+void EdgePipeline::StartCapture() {
+  if (spool_) spool_thread_ = std::jthread([this](const std::stop_token& stop) { Record(stop); });
+  publish_thread_ = std::jthread([this](const std::stop_token& stop) { Publish(stop); });
+  capture_thread_ = std::jthread([this](const std::stop_token& stop) { Capture(stop); });
+}
+
+Status EdgePipeline::Stop() {
+  if (std::exchange(stopped_, true)) return recording_status_;
+  // Along the line, so that each stage can still hand on what it has.
+  for (std::jthread* thread :
+       {&capture_thread_, &spool_thread_, &publish_thread_, &receive_thread_}) {
+    thread->request_stop();
+    if (thread->joinable()) thread->join();
+  }
+  if (spool_) recording_status_ = spool_->Close();
+  return recording_status_;
+}
+
+bool EdgePipeline::finished() const {
+  if (!source_ended_) return false;
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const SensorAccount account = account_.Get(sensor);
+    if (account.OnTheWayToGround() != 0) return false;
+    if (spool_ && account.OnTheWayToDisk() != 0) return false;
+  }
+  return true;
+}
+
+double EdgePipeline::spool_fill_ratio() const {
+  return static_cast<double>(spool_queue_.size()) / static_cast<double>(spool_capacity_);
+}
+
+void EdgePipeline::Capture(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    Result<SourceItem> item = source_.Read(stop);
+    if (!item || std::holds_alternative<EndOfStream>(*item)) break;
+    if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
+  }
+  source_.Close();
+  source_ended_ = true;
+}
+
+void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
+  if (raw.sensor == Sensor::kDepth) {
+    ProcessDepth(std::move(raw), stop);
+  } else {
+    ProcessThermal(std::move(raw), stop);
+  }
+}
+
+void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
+  const Stamp stamp = depth_timestamper_.Process(raw.device_ticks, raw.arrival_wall);
+  EncodedDepthFrame frame;
+  frame.header = Header(raw, stamp);
+  frame.depth_scale = raw.depth_scale;
+  frame.image = depth_encoder_.Encode(raw.pixels);
+  Emit({std::move(frame), raw.arrival_wall}, stop);
+}
+
+void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
+  const Stamp stamp = thermal_timestamper_.Process(raw.device_ticks, raw.arrival_wall);
+  const NucStatus nuc = nuc_supervisor_.Update(stamp.time, raw.shutter_closed);
+  EncodedThermalFrame frame;
+  frame.header = Header(raw, stamp);
+  frame.nuc_state = nuc.state;
+  frame.nuc_source = nuc.source;
+  frame.seconds_since_nuc = nuc.seconds_since_nuc;
+  frame.valid = nuc.valid;
+  frame.housekeeping = raw.housekeeping;
+  frame.image = thermal_encoder_.Encode(raw.pixels);
+  nuc_state_ = nuc.state;
+  Emit({std::move(frame), raw.arrival_wall}, stop);
+}
+
+FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const {
+  return {session_, raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
+}
+
+void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
+  const auto frame = std::make_shared<const EncodedFrame>(std::move(encoded));
+  if (spool_ && !spool_queue_.Push(frame, stop)) {
+    account_.Count(frame->sensor(), FrameFate::kRecordQueueFull);
+  }
+  if (!publish_queue_.Push(frame, stop)) {
+    account_.Count(frame->sensor(), FrameFate::kPublishQueueFull);
+  }
+}
+
+void EdgePipeline::Record(const std::stop_token& stop) {
+  while (const std::optional<EncodedFramePtr> frame = spool_queue_.Pop(stop)) spool_->Add(**frame);
+}
+
+void EdgePipeline::Publish(const std::stop_token& stop) {
+  while (const std::optional<EncodedFramePtr> frame = publish_queue_.Pop(stop)) {
+    const Status published =
+        std::visit([this, &stop](const auto& content) { return publisher_.Publish(content, stop); },
+                   (*frame)->content);
+    account_.Count((*frame)->sensor(),
+                   published.ok() ? FrameFate::kPublished : FrameFate::kPublishFailed);
+  }
+}
+
+void EdgePipeline::AnswerCommands() {
+  while (commands_.size() > 0) {
+    const Status answered = publisher_.Answer(Obey(*commands_.Pop({})));
+    if (!answered.ok()) {
+      LOG(Edge, Warning) << "command not answered: " << answered.message();
+    }
+  }
+}
+
+CommandResult EdgePipeline::Obey(const Command& command) {
+  switch (command.kind) {
+    case CommandKind::kSetPublishPolicy:
+      publisher_.SetPolicy(command.publish_policy);
+      return {command.number, CommandOutcome::kDone, ""};
+    case CommandKind::kTriggerNuc:
+    case CommandKind::kSetNucPolicy:
+      return {command.number, CommandOutcome::kRefused, "the source has no shutter to command"};
+    case CommandKind::kStartScan:
+    case CommandKind::kStopScan:
+      break;
+  }
+  return {command.number, CommandOutcome::kRefused,
+          "a scan lasts from the start to the end of isotherm-edge"};
+}
+
+}  // namespace isotherm

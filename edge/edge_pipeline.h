@@ -1,0 +1,104 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+#include "common/codec/codec.h"
+#include "common/concurrency/bounded_queue.h"
+#include "common/transport/messages.h"
+#include "edge/encoded_frame.h"
+#include "edge/frame_account.h"
+#include "edge/nuc/nuc_supervisor.h"
+#include "edge/publisher/publisher.h"
+#include "edge/source/frame_source.h"
+#include "edge/spool/spool.h"
+#include "edge/timestamper/timestamper.h"
+
+namespace isotherm {
+
+class EdgeOptions;
+
+/// What the pipeline is put together from. All but the spool must outlive it.
+struct EdgeParts {
+  FrameSource& source;  ///< Opened; bad frames are already out (SupervisedSource).
+  Publisher& publisher;
+  FrameAccount& account;
+  std::unique_ptr<Spool> spool;  ///< Null: no recording.
+  std::uint64_t session = 0;
+  double rig_thermal_delay_s = 0.0;
+};
+
+/// The straight line of the edge and its threads:
+///
+///   FrameSource -> Timestamper -> NucSupervisor -> Codec -+-> queue -> Spool
+///    (supervised)                 (thermal only)          +-> queue -> Publisher
+///   |---------------- capture thread --------------------|   spool and publish threads
+///
+/// Capture waits for neither disk nor network: full queues drop the oldest frame and count it. Only
+/// unpaced playback (rate 0) waits, because there is nothing to miss. A receive thread serves the
+/// ground's messages. Thread-bound to the thread that starts and stops it, except where noted.
+class EdgePipeline {
+ public:
+  EdgePipeline(const EdgeOptions& options, EdgeParts parts);
+  ~EdgePipeline();
+
+  /// Starts listening to the ground; frames flow from StartCapture on.
+  void StartReceiving();
+  void StartCapture();
+  /// Ends capture, empties the queues, closes the recording. Idempotent. The recording's first
+  /// error, or ok.
+  Status Stop();
+
+  /// Answers what the ground has asked for since the last call.
+  void AnswerCommands();
+
+  /// The source has ended and each of its frames has met its fate. Thread-safe.
+  bool finished() const;
+  /// The newest thermal frame's NUC state. Thread-safe.
+  NucState nuc_state() const { return nuc_state_; }
+  /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
+  double spool_fill_ratio() const;
+
+ private:
+  void Capture(const std::stop_token& stop);
+  void Process(RawFrame raw, const std::stop_token& stop);
+  void ProcessDepth(RawFrame raw, const std::stop_token& stop);
+  void ProcessThermal(RawFrame raw, const std::stop_token& stop);
+  void Emit(EncodedFrame encoded, const std::stop_token& stop);
+  FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
+  void Record(const std::stop_token& stop);
+  void Publish(const std::stop_token& stop);
+  CommandResult Obey(const Command& command);
+
+  FrameSource& source_;
+  Publisher& publisher_;
+  FrameAccount& account_;
+  const std::unique_ptr<Spool> spool_;
+  const std::uint64_t session_;
+
+  Timestamper depth_timestamper_;
+  Timestamper thermal_timestamper_;
+  NucSupervisor nuc_supervisor_;
+  DepthEncoder depth_encoder_;
+  ThermalEncoder thermal_encoder_;
+
+  std::atomic<bool> source_ended_{false};
+  std::atomic<NucState> nuc_state_{NucState::kUnknown};
+  bool stopped_ = false;
+  Status recording_status_;
+
+  BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest};
+  const std::size_t spool_capacity_;
+  BoundedQueue<EncodedFramePtr> spool_queue_;
+  BoundedQueue<EncodedFramePtr> publish_queue_;
+  std::jthread receive_thread_;
+  std::jthread spool_thread_;
+  std::jthread publish_thread_;
+  std::jthread capture_thread_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,239 @@
+#include "edge/edge_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "edge/edge_options.pb.h"
+#include "edge/fake_publisher.h"
+#include "edge/source/fake_source.h"
+#include "edge/source/supervised_source.h"
+#include "edge/spool/fake_recording_writer.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::uint64_t kSession = 77;
+
+class EdgePipelineTest : public testing::Test {
+ protected:
+  EdgePipelineTest() { options_.mutable_source()->set_rate(0); }
+
+  void Start(std::string_view script, bool record = true) {
+    source_ = std::make_unique<SupervisedSource>(
+        std::make_unique<FakeSource>(script), options_.frame_check(), clock_,
+        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kCaptured); },
+        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
+    ASSERT_TRUE(source_->Open().ok());
+    std::unique_ptr<Spool> spool;
+    if (record) {
+      spool = std::make_unique<Spool>(
+          "scan.mcap", std::make_unique<FakeRecordingWriter>(recording_, disk_room_), account_);
+    }
+    pipeline_ = std::make_unique<EdgePipeline>(
+        options_, EdgeParts{.source = *source_,
+                            .publisher = publisher_,
+                            .account = account_,
+                            .spool = std::move(spool),
+                            .session = kSession,
+                            .rig_thermal_delay_s = rig_thermal_delay_s_});
+    pipeline_->StartReceiving();
+    pipeline_->StartCapture();
+  }
+  /// The test's own time limit is the bound.
+  Status RunToTheEnd() {
+    while (!pipeline_->finished()) std::this_thread::yield();
+    return pipeline_->Stop();
+  }
+  void ExpectClosedAccount() {
+    for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+      const SensorAccount account = account_.Get(sensor);
+      EXPECT_EQ(account.OnTheWayToDisk(), 0);
+      EXPECT_EQ(account.OnTheWayToGround(), 0);
+    }
+  }
+
+  EdgeOptions options_;
+  FakeClock clock_;
+  FakePublisher publisher_;
+  FakeRecording recording_;
+  std::uint64_t disk_room_ = UINT64_MAX;
+  double rig_thermal_delay_s_ = 0.0;
+  FrameAccount account_;
+  std::unique_ptr<SupervisedSource> source_;
+  std::unique_ptr<EdgePipeline> pipeline_;
+};
+
+TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
+  Start("100*d 130*t 50*d");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  ExpectClosedAccount();
+  EXPECT_EQ(recording_.depth_frames.size(), 150U);
+  EXPECT_EQ(recording_.thermal_frames.size(), 130U);
+  EXPECT_TRUE(recording_.closed);
+  const std::vector<EncodedDepthFrame> depth = publisher_.depth();
+  ASSERT_EQ(depth.size(), 150U);
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    EXPECT_EQ(depth[i].header.frame_number, i);
+    EXPECT_EQ(depth[i].header.session, kSession);
+  }
+}
+
+TEST_F(EdgePipelineTest, PixelsSurviveTheCodec) {
+  Start("d:holes t");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  const Result<Image<std::uint16_t>> depth = Decode(publisher_.depth().at(0).image);
+  ASSERT_TRUE(depth.has_value());
+  EXPECT_EQ(depth->At(1, 0), FakeSource::kDepthRaw);
+  EXPECT_EQ(depth->At(0, 0), kNoDepth);
+  EXPECT_EQ(depth->At(2, 0), kNoDepthSaturated);
+  const Result<Image<std::uint16_t>> thermal = Decode(publisher_.thermal().at(0).image);
+  ASSERT_TRUE(thermal.has_value());
+  EXPECT_EQ(*thermal, Image<std::uint16_t>(6, 4, FakeSource::kCentikelvin));
+}
+
+TEST_F(EdgePipelineTest, ThermalDelayIsTheOptionsPlusTheRigs) {
+  rig_thermal_delay_s_ = 0.040;
+  options_.mutable_timestamper()->set_thermal_delay_s(0.002);
+  Start("d t");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  EXPECT_EQ(publisher_.depth().at(0).header.capture_time, FakeSource::kFakeEpoch);
+  EXPECT_EQ(publisher_.thermal().at(0).header.capture_time,
+            FakeSource::kFakeEpoch + std::chrono::milliseconds(42));
+}
+
+TEST_F(EdgePipelineTest, F07FramesAroundAClosedShutterAreInvalid) {
+  Start("2*t 4*t:shut 30*t");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  const std::vector<EncodedThermalFrame> thermal = publisher_.thermal();
+  ASSERT_EQ(thermal.size(), 36U);
+  for (std::size_t i = 0; i < thermal.size(); ++i) {
+    // Frames every 25 ms, 0.5 s to settle: 4 + 20 of them are not to be trusted.
+    EXPECT_EQ(thermal[i].valid, i < 2 || i >= 26) << i;
+  }
+  EXPECT_EQ(thermal[3].nuc_state, NucState::kInProgress);
+  EXPECT_EQ(thermal[6].nuc_state, NucState::kSettling);
+  EXPECT_EQ(recording_.nuc_events.size(), 1U);
+}
+
+TEST_F(EdgePipelineTest, F09StampsStayIncreasingAcrossACounterReset) {
+  Start("20*d d:reset 20*d");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  const std::vector<EncodedDepthFrame> depth = publisher_.depth();
+  ASSERT_EQ(depth.size(), 41U);
+  for (std::size_t i = 1; i < depth.size(); ++i) {
+    EXPECT_EQ(depth[i].header.capture_time - depth[i - 1].header.capture_time,
+              std::chrono::microseconds(33'333));
+  }
+}
+
+TEST_F(EdgePipelineTest, F11GarbageIsRejectedCountedAndGoesNowhere) {
+  Start("3*d 2*d:empty 4*d:size 3*d");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  ExpectClosedAccount();
+  const SensorAccount account = account_.Get(Sensor::kDepth);
+  EXPECT_EQ(account.captured, 12U);
+  EXPECT_EQ(account.rejected, 6U);
+  EXPECT_EQ(account.recorded, 6U);
+  EXPECT_EQ(account.published, 6U);
+}
+
+TEST_F(EdgePipelineTest, F12TemperaturesOutOfRangeLeaveAsNoValue) {
+  Start("t:hot");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  const Result<Image<std::uint16_t>> thermal = Decode(publisher_.thermal().at(0).image);
+  ASSERT_TRUE(thermal.has_value());
+  EXPECT_EQ(thermal->At(0, 0), 0);
+  EXPECT_EQ(thermal->At(2, 0), 0);
+  EXPECT_EQ(thermal->At(1, 0), FakeSource::kCentikelvin);
+}
+
+TEST_F(EdgePipelineTest, AFullDiskStopsTheRecordingOnly) {
+  disk_room_ = 10;
+  Start("60*d 60*t");
+  EXPECT_EQ(RunToTheEnd().code(), StatusCode::kIoError);
+  ExpectClosedAccount();
+  EXPECT_EQ(publisher_.depth().size(), 60U);
+  EXPECT_EQ(publisher_.thermal().size(), 60U);
+  EXPECT_EQ(recording_.depth_frames.size() + recording_.thermal_frames.size(), 10U);
+  EXPECT_EQ(
+      account_.Get(Sensor::kDepth).record_failed + account_.Get(Sensor::kThermal).record_failed,
+      110U);
+}
+
+TEST_F(EdgePipelineTest, ABrokenLinkStopsThePublishingOnly) {
+  publisher_.Break();
+  Start("60*d");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  ExpectClosedAccount();
+  EXPECT_EQ(recording_.depth_frames.size(), 60U);
+  EXPECT_EQ(account_.Get(Sensor::kDepth).publish_failed, 60U);
+}
+
+TEST_F(EdgePipelineTest, LiveCaptureDoesNotWaitForASlowLink) {
+  constexpr int kQueue = 5;
+  options_.mutable_source()->set_rate(1);
+  options_.mutable_link()->set_queue_frames(kQueue);
+  options_.mutable_spool()->set_queue_frames(1000);
+  publisher_.Hold();
+  Start("300*d");
+  // The source must come to its end although nothing is taken from the link.
+  while (account_.Get(Sensor::kDepth).captured < 300) std::this_thread::yield();
+  publisher_.Release();
+  EXPECT_TRUE(RunToTheEnd().ok());
+  ExpectClosedAccount();
+  const SensorAccount account = account_.Get(Sensor::kDepth);
+  EXPECT_EQ(account.recorded, 300U);
+  EXPECT_GE(account.publish_queue_full, 300U - kQueue - 2U);
+  EXPECT_EQ(account.published + account.publish_queue_full, 300U);
+  EXPECT_EQ(publisher_.depth().back().header.frame_number, 299U) << "the newest frames are kept";
+}
+
+TEST_F(EdgePipelineTest, UnpacedPlaybackWaitsInsteadOfDropping) {
+  options_.mutable_link()->set_queue_frames(1);
+  options_.mutable_spool()->set_queue_frames(1);
+  Start("200*d 200*t");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  EXPECT_EQ(publisher_.depth().size(), 200U);
+  EXPECT_EQ(publisher_.thermal().size(), 200U);
+}
+
+TEST_F(EdgePipelineTest, F38StopEmptiesTheQueuesAndClosesTheAccount) {
+  publisher_.Hold();
+  Start("100000*d");
+  while (account_.Get(Sensor::kDepth).captured < 20) std::this_thread::yield();
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  ExpectClosedAccount();
+  EXPECT_TRUE(recording_.closed);
+  EXPECT_LT(account_.Get(Sensor::kDepth).captured, 100'000U);
+  EXPECT_TRUE(pipeline_->Stop().ok()) << "a second stop changes nothing";
+}
+
+TEST_F(EdgePipelineTest, WithoutRecordingOnlyTheLinkCounts) {
+  Start("10*d", false);
+  EXPECT_TRUE(RunToTheEnd().ok());
+  EXPECT_EQ(publisher_.depth().size(), 10U);
+  EXPECT_EQ(account_.Get(Sensor::kDepth).recorded, 0U);
+}
+
+TEST_F(EdgePipelineTest, EveryCommandIsAnswered) {
+  publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc},
+                         {.number = 2,
+                          .kind = CommandKind::kSetPublishPolicy,
+                          .publish_policy = PublishPolicy::kLossless},
+                         {.number = 3, .kind = CommandKind::kStopScan}};
+  Start("d");
+  while (publisher_.answers().size() < 3) {
+    pipeline_->AnswerCommands();
+    std::this_thread::yield();
+  }
+  const std::vector<CommandResult> answers = publisher_.answers();
+  EXPECT_EQ(answers[0].outcome, CommandOutcome::kRefused);
+  EXPECT_FALSE(answers[0].text.empty());
+  EXPECT_EQ(answers[1].outcome, CommandOutcome::kDone);
+  EXPECT_EQ(publisher_.policy(), PublishPolicy::kLossless);
+  EXPECT_EQ(answers[2].number, 3U);
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/transport/messages.h"
+#include "edge/frame_account.h"
+#include "edge/host_status.h"
+
+namespace isotherm {
+
+/// Turns counts into frames per second. Thread-compatible.
+class RateMeter {
+ public:
+  /// Frames per second since the last call; 0 at the first.
+  double Update(std::uint64_t count, SteadyTime now);
+
+ private:
+  std::optional<SteadyTime> last_time_;
+  std::uint64_t last_count_ = 0;
+};
+
+/// The part of the status message that the account knows: frames and drops by reason on the way to
+/// the ground.
+StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz);
+
+/// The host's part.
+void AddHostStatus(const HostStatus& host, EdgeStatus& status);
+
+/// One line for the operator: rates, drops, NUC, what the ground says.
+std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
+                       const std::optional<Feedback>& feedback);
+
+/// What became of every frame, printed at exit. `recording`: whether there was one.
+std::string Summary(const FrameAccount& account, bool recording,
+                    const std::optional<Receipt>& receipt);
+
+}  // namespace isotherm

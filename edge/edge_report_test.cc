@@ -1,0 +1,90 @@
+#include "edge/edge_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edge/frame_account.h"
+
+namespace isotherm {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+using testing::Not;
+
+class EdgeReportTest : public testing::Test {
+ protected:
+  void Count(Sensor sensor, FrameFate fate, std::uint64_t count) {
+    account_.Set(sensor, fate, count);
+  }
+  FrameAccount account_;
+};
+
+TEST_F(EdgeReportTest, TheAccountClosesWhenEachFrameHasItsFate) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 10);
+  Count(Sensor::kDepth, FrameFate::kRejected, 1);
+  Count(Sensor::kDepth, FrameFate::kRecorded, 6);
+  Count(Sensor::kDepth, FrameFate::kRecordFailed, 3);
+  Count(Sensor::kDepth, FrameFate::kPublished, 7);
+  Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 1);
+  EXPECT_EQ(account_.Get(Sensor::kDepth).OnTheWayToDisk(), 0);
+  EXPECT_EQ(account_.Get(Sensor::kDepth).OnTheWayToGround(), 1);
+}
+
+TEST_F(EdgeReportTest, SummaryIsTheAccountAsAnEquation) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 10);
+  Count(Sensor::kDepth, FrameFate::kRecorded, 8);
+  Count(Sensor::kDepth, FrameFate::kRecordQueueFull, 2);
+  Count(Sensor::kDepth, FrameFate::kPublished, 10);
+  const std::string text = Summary(account_, true, std::nullopt);
+  EXPECT_THAT(text, HasSubstr("captured 10 = recorded 8 + rejected 0 + queue full 2 + failed 0\n"));
+  EXPECT_THAT(text,
+              HasSubstr("captured 10 = published 10 + rejected 0 + queue full 0 + failed 0\n"));
+  EXPECT_THAT(text, Not(HasSubstr("unaccounted")));
+}
+
+TEST_F(EdgeReportTest, SummarySaysWhatTheGroundHas) {
+  Receipt receipt;
+  receipt.depth = {.next = 10, .handled = 10, .received = 9};
+  EXPECT_THAT(Summary(account_, false, receipt),
+              HasSubstr("depth    ground received 9, missing 1"));
+}
+
+TEST_F(EdgeReportTest, AnAccountThatDoesNotCloseIsNotHidden) {
+  Count(Sensor::kThermal, FrameFate::kCaptured, 5);
+  Count(Sensor::kThermal, FrameFate::kPublished, 4);
+  EXPECT_THAT(Summary(account_, false, std::nullopt), HasSubstr("unaccounted 1"));
+}
+
+TEST_F(EdgeReportTest, StreamStatusAddsUp) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 20);
+  Count(Sensor::kDepth, FrameFate::kRejected, 2);
+  Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 3);
+  Count(Sensor::kDepth, FrameFate::kPublished, 11);
+  const StreamStatus status = ToStreamStatus(account_.Get(Sensor::kDepth), 30.0);
+  std::uint64_t dropped = 0;
+  for (const DropCount& drop : status.dropped) dropped += drop.frames;
+  EXPECT_EQ(status.captured, status.published + dropped + status.queue_frames);
+}
+
+TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
+  Feedback feedback;
+  feedback.tracking_state = TrackingState::kLost;
+  feedback.model.good = 0.34F;
+  feedback.advice = {Advice::kGoBackToRelocalise};
+  EXPECT_THAT(StatusLine({}, account_, true, feedback),
+              HasSubstr("LOST, 34 % measured well, go back to relocalise"));
+  EXPECT_THAT(StatusLine({}, account_, false, feedback), HasSubstr("ground: absent"));
+  EXPECT_THAT(StatusLine({}, account_, true, std::nullopt), HasSubstr("no feedback yet"));
+}
+
+TEST(RateMeterTest, CountsPerSecond) {
+  RateMeter meter;
+  const SteadyTime start{seconds(100)};
+  EXPECT_EQ(meter.Update(7, start), 0.0);
+  EXPECT_DOUBLE_EQ(meter.Update(67, start + seconds(2)), 30.0);
+  EXPECT_EQ(meter.Update(80, start + seconds(2)), 0.0) << "no time has passed";
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,44 @@
+#include "edge/host_status.h"
+
+#include <sys/timex.h>
+
+#include <fstream>
+#include <system_error>
+
+namespace isotherm {
+namespace {
+
+std::uint64_t FreeBytes(std::filesystem::path path) {
+  std::error_code error;
+  path = std::filesystem::absolute(path, error);
+  while (!std::filesystem::exists(path, error) && path.has_relative_path())
+    path = path.parent_path();
+  const std::filesystem::space_info space = std::filesystem::space(path, error);
+  return error ? 0 : space.available;
+}
+
+double CpuTemperature() {
+  std::ifstream file("/sys/class/thermal/thermal_zone0/temp");
+  double millidegrees = 0.0;
+  if (!(file >> millidegrees)) return std::numeric_limits<double>::quiet_NaN();
+  return millidegrees / 1000.0;
+}
+
+}  // namespace
+
+HostStatus ReadHostStatus(const std::filesystem::path& disk) {
+  HostStatus status;
+  status.disk_free_bytes = FreeBytes(disk);
+  status.cpu_temperature_celsius = CpuTemperature();
+  // chrony keeps the kernel's estimate of the clock current.
+  timex kernel{};
+  const int state = adjtimex(&kernel);
+  if (state != -1 && state != TIME_ERROR) {
+    const double unit_s = (kernel.status & STA_NANO) != 0 ? 1e-9 : 1e-6;
+    status.clock_offset_s = static_cast<double>(kernel.offset) * unit_s;
+    status.clock_error_s = static_cast<double>(kernel.maxerror) * 1e-6;
+  }
+  return status;
+}
+
+}  // namespace isotherm

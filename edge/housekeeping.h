@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "common/time/clock.h"
+#include "edge/edge_pipeline.h"
+#include "edge/edge_report.h"
+#include "edge/frame_account.h"
+#include "edge/publisher/publisher.h"
+
+namespace isotherm {
+
+/// What the daemon's main thread does beside the line: answers commands, publishes the status once
+/// a second, tells the operator and the service manager. Thread-bound.
+class Housekeeping {
+ public:
+  /// All must outlive it. `disk` is where the recording goes.
+  Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
+               const FrameAccount& account, std::filesystem::path disk);
+
+  /// Does what is due; call it often.
+  void Tick();
+  /// Publishes the final counts.
+  void PublishEnd();
+
+ private:
+  EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
+  void Show(const EdgeStatus& status);
+  void FeedWatchdog(const EdgeStatus& status);
+
+  const Clock& clock_;
+  EdgePipeline& pipeline_;
+  Publisher& publisher_;
+  const FrameAccount& account_;
+  const std::filesystem::path disk_;
+  const bool terminal_;
+  SteadyTime next_status_;
+  SteadyTime next_log_;
+  RateMeter depth_rate_;
+  RateMeter thermal_rate_;
+  std::uint64_t captured_at_last_feed_ = 0;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,105 @@
+#include "edge/validate_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+#include <string_view>
+
+#include "edge/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+/// Collects problems under one stage's name.
+class Problems {
+ public:
+  void Stage(std::string_view stage) { stage_ = stage; }
+
+  /// `value` must lie in [lowest, highest]. NaN does not.
+  template <typename T>
+  void CheckRange(std::string_view field, T value, T lowest, T highest) {
+    if (value >= lowest && value <= highest) return;
+    Add(field, fmt::format("is {}, must be from {} to {}", value, lowest, highest));
+  }
+  void Add(std::string_view field, std::string_view problem) {
+    text_ += fmt::format("{}{}.{}: {}", text_.empty() ? "" : "\n", stage_, field, problem);
+  }
+  Status ToStatus() const { return text_.empty() ? OkStatus() : InvalidArgument(text_); }
+
+ private:
+  std::string_view stage_;
+  std::string text_;
+};
+
+bool IsPlainName(const std::string& name) {
+  constexpr std::string_view kAllowed =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+  return !name.empty() && name.size() <= 32 &&
+         name.find_first_not_of(kAllowed) == std::string::npos;
+}
+
+void CheckSource(const SourceOptions& options, Problems& problems) {
+  problems.Stage("source");
+  problems.CheckRange("rate", options.rate(), 0.0, 100.0);
+  problems.CheckRange("loops", options.loops(), 0, 1'000'000);
+  if (options.kind() == REPLAY && options.recording().empty()) {
+    problems.Add("recording", "is empty; name the file to replay (--recording FILE)");
+  }
+}
+
+void CheckFrames(const FrameCheckOptions& options, Problems& problems) {
+  problems.Stage("frame_check");
+  problems.CheckRange("min_celsius", options.min_celsius(), -273.0, 382.0);
+  problems.CheckRange("max_celsius", options.max_celsius(), -273.0, 382.19);
+  if (options.max_celsius() <= options.min_celsius()) {
+    problems.Add("max_celsius", fmt::format("is {}, must be above min_celsius, which is {}",
+                                            options.max_celsius(), options.min_celsius()));
+  }
+  problems.CheckRange("max_bad_in_a_row", options.max_bad_in_a_row(), 1, 100'000);
+  problems.CheckRange("retry_min_s", options.retry_min_s(), 0.01, 60.0);
+  problems.CheckRange("retry_max_s", options.retry_max_s(), options.retry_min_s(), 600.0);
+}
+
+void CheckTimestamper(const TimestamperOptions& options, Problems& problems) {
+  problems.Stage("timestamper");
+  problems.CheckRange("depth_window", options.depth_window(), 1, 1000);
+  problems.CheckRange("thermal_window", options.thermal_window(), 1, 1000);
+  problems.CheckRange("depth_delay_s", options.depth_delay_s(), -1.0, 1.0);
+  problems.CheckRange("thermal_delay_s", options.thermal_delay_s(), -1.0, 1.0);
+}
+
+void CheckSpool(const SpoolOptions& options, Problems& problems) {
+  problems.Stage("spool");
+  if (options.record().empty()) problems.Add("record", "is empty; name a file or say \"off\"");
+  problems.CheckRange("queue_frames", options.queue_frames(), 1, 100'000);
+  problems.CheckRange("flush_interval_s", options.flush_interval_s(), 0.05, 1.0);
+}
+
+void CheckLink(const LinkOptions& options, Problems& problems) {
+  problems.Stage("link");
+  if (!IsPlainName(options.edge_id())) {
+    problems.Add("edge_id",
+                 fmt::format("is \"{}\", must be 1 to 32 letters, digits, '_', '-' or '.'",
+                             options.edge_id()));
+  }
+  problems.CheckRange("domain", options.domain(), 0, 230);
+  problems.CheckRange("queue_frames", options.queue_frames(), 1, 100'000);
+  problems.CheckRange("linger_s", options.linger_s(), 0.0, 60.0);
+}
+
+}  // namespace
+
+Status Validate(const EdgeOptions& options) {
+  Problems problems;
+  CheckSource(options.source(), problems);
+  CheckFrames(options.frame_check(), problems);
+  CheckTimestamper(options.timestamper(), problems);
+  problems.Stage("nuc");
+  problems.CheckRange("settle_time_s", options.nuc().settle_time_s(), 0.0, 60.0);
+  CheckSpool(options.spool(), problems);
+  CheckLink(options.link(), problems);
+  return problems.ToStatus();
+}
+
+}  // namespace isotherm
