@@ -5,6 +5,9 @@
 
 #include "common/simulation/primitive.h"
 
+/// Inlined into loops that are compiled for another instruction set than the rest of the program.
+#define ISOTHERM_ALWAYS_INLINE inline __attribute__((always_inline))
+
 namespace isotherm {
 
 /// A ray in a primitive's coordinates: origin + t direction. The direction needs no unit length.
@@ -29,7 +32,7 @@ inline constexpr T kNoHit = std::numeric_limits<T>::infinity();
 // NaN are false.
 
 template <typename T>
-T IntersectBox(const LocalRay<T>& ray, const LocalSize<T>& size) {
+ISOTHERM_ALWAYS_INLINE T IntersectBox(const LocalRay<T>& ray, const LocalSize<T>& size) {
   const T ix = T(1) / ray.dx, iy = T(1) / ray.dy, iz = T(1) / ray.dz;
   const T x1 = (-size.a - ray.ox) * ix, x2 = (size.a - ray.ox) * ix;
   const T y1 = (-size.b - ray.oy) * iy, y2 = (size.b - ray.oy) * iy;
@@ -43,14 +46,14 @@ T IntersectBox(const LocalRay<T>& ray, const LocalSize<T>& size) {
 }
 
 template <typename T>
-T IntersectRectangle(const LocalRay<T>& ray, const LocalSize<T>& size) {
+ISOTHERM_ALWAYS_INLINE T IntersectRectangle(const LocalRay<T>& ray, const LocalSize<T>& size) {
   const T t = -ray.oz / ray.dz;
   const T x = std::abs(ray.ox + t * ray.dx), y = std::abs(ray.oy + t * ray.dy);
   return ((x <= size.a) & (y <= size.b) & (t > T(0))) ? t : kNoHit<T>;
 }
 
 template <typename T>
-T IntersectDisc(const LocalRay<T>& ray, const LocalSize<T>& size) {
+ISOTHERM_ALWAYS_INLINE T IntersectDisc(const LocalRay<T>& ray, const LocalSize<T>& size) {
   const T t = -ray.oz / ray.dz;
   const T x = ray.ox + t * ray.dx, y = ray.oy + t * ray.dy;
   const T r2 = x * x + y * y;
@@ -61,35 +64,35 @@ T IntersectDisc(const LocalRay<T>& ray, const LocalSize<T>& size) {
 // or axis. That keeps float accurate when the radius is much smaller than the distance.
 
 template <typename T>
-T IntersectSphere(const LocalRay<T>& ray, const LocalSize<T>& size) {
+ISOTHERM_ALWAYS_INLINE T IntersectSphere(const LocalRay<T>& ray, const LocalSize<T>& size) {
   const T inverse = T(1) / (ray.dx * ray.dx + ray.dy * ray.dy + ray.dz * ray.dz);
   const T closest = -(ray.ox * ray.dx + ray.oy * ray.dy + ray.oz * ray.dz) * inverse;
   const T x = ray.ox + closest * ray.dx, y = ray.oy + closest * ray.dy,
           z = ray.oz + closest * ray.dz;
   const T rest = (size.a * size.a - (x * x + y * y + z * z)) * inverse;
-  const T t = closest - std::sqrt(rest > T(0) ? rest : T(0));
-  return ((rest >= T(0)) & (t > T(0))) ? t : kNoHit<T>;
+  const T t = closest - std::sqrt(rest);
+  return t > T(0) ? t : kNoHit<T>;
 }
 
-/// Where a ray meets an endless cylinder around z: closest - half_chord and closest + half_chord.
+/// Where a ray meets an endless cylinder around z: closest - half_chord and closest + half_chord;
+/// NaN if it does not.
 template <typename T>
 struct Chord {
   T closest, half_chord;
-  bool hit;
 };
 
 template <typename T>
-Chord<T> IntersectEndless(const LocalRay<T>& ray, T radius) {
+ISOTHERM_ALWAYS_INLINE Chord<T> IntersectEndless(const LocalRay<T>& ray, T radius) {
   const T inverse = T(1) / (ray.dx * ray.dx + ray.dy * ray.dy);
   const T closest = -(ray.ox * ray.dx + ray.oy * ray.dy) * inverse;
   const T x = ray.ox + closest * ray.dx, y = ray.oy + closest * ray.dy;
   const T rest = (radius * radius - (x * x + y * y)) * inverse;
-  return {closest, std::sqrt(rest > T(0) ? rest : T(0)), rest >= T(0)};
+  return {closest, std::sqrt(rest)};
 }
 
 /// The end (at +c or -c) that faces the ray's origin.
 template <typename T>
-T IntersectCap(const LocalRay<T>& ray, const LocalSize<T>& size, T inner) {
+ISOTHERM_ALWAYS_INLINE T IntersectCap(const LocalRay<T>& ray, const LocalSize<T>& size, T inner) {
   const T t = ((ray.dz > T(0) ? -size.c : size.c) - ray.oz) / ray.dz;
   const T x = ray.ox + t * ray.dx, y = ray.oy + t * ray.dy;
   const T r2 = x * x + y * y;
@@ -97,34 +100,32 @@ T IntersectCap(const LocalRay<T>& ray, const LocalSize<T>& size, T inner) {
 }
 
 template <typename T>
-T IntersectCylinder(const LocalRay<T>& ray, const LocalSize<T>& size) {
+ISOTHERM_ALWAYS_INLINE T IntersectCylinder(const LocalRay<T>& ray, const LocalSize<T>& size) {
   const Chord<T> chord = IntersectEndless(ray, size.a);
   const T side = chord.closest - chord.half_chord;
-  const bool on_side = chord.hit & (side > T(0)) & (std::abs(ray.oz + side * ray.dz) <= size.c);
-  const T t = on_side ? side : kNoHit<T>;
+  const T side_z = std::abs(ray.oz + side * ray.dz);
+  const T t = ((side > T(0)) & (side_z <= size.c)) ? side : kNoHit<T>;
   const T cap = IntersectCap(ray, size, T(0));
   return cap < t ? cap : t;
 }
 
 template <typename T>
-T IntersectTube(const LocalRay<T>& ray, const LocalSize<T>& size) {
+ISOTHERM_ALWAYS_INLINE T IntersectTube(const LocalRay<T>& ray, const LocalSize<T>& size) {
   const Chord<T> outer = IntersectEndless(ray, size.a);
   const T outside = outer.closest - outer.half_chord;
-  const bool on_outside =
-      outer.hit & (outside > T(0)) & (std::abs(ray.oz + outside * ray.dz) <= size.c);
   const Chord<T> inner = IntersectEndless(ray, size.b);
   const T inside = inner.closest + inner.half_chord;
-  const bool on_inside =
-      inner.hit & (inside > T(0)) & (std::abs(ray.oz + inside * ray.dz) <= size.c);
-  const T t1 = on_outside ? outside : kNoHit<T>;
-  const T t2 = on_inside ? inside : kNoHit<T>;
+  const T outside_z = std::abs(ray.oz + outside * ray.dz);
+  const T inside_z = std::abs(ray.oz + inside * ray.dz);
+  const T t1 = ((outside > T(0)) & (outside_z <= size.c)) ? outside : kNoHit<T>;
+  const T t2 = ((inside > T(0)) & (inside_z <= size.c)) ? inside : kNoHit<T>;
   const T cap = IntersectCap(ray, size, size.b);
   const T t = t1 < t2 ? t1 : t2;
   return cap < t ? cap : t;
 }
 
 template <Shape shape, typename T>
-T IntersectShape(const LocalRay<T>& ray, const LocalSize<T>& size) {
+ISOTHERM_ALWAYS_INLINE T IntersectShape(const LocalRay<T>& ray, const LocalSize<T>& size) {
   if constexpr (shape == Shape::kBox) return IntersectBox(ray, size);
   if constexpr (shape == Shape::kRectangle) return IntersectRectangle(ray, size);
   if constexpr (shape == Shape::kSphere) return IntersectSphere(ray, size);

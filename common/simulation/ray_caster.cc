@@ -1,11 +1,10 @@
 #include "common/simulation/ray_caster.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
-#include "common/simulation/intersection.h"
+#include "common/simulation/trace_tile.h"
 
 namespace isotherm {
 namespace {
@@ -14,11 +13,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A primitive as one camera sees it, with the bounds that spare most intersections.
 struct SeenPrimitive {
-  int index = 0;
   Shape shape = Shape::kBox;
-  Eigen::Matrix3f R_primitive_camera;
-  Eigen::Vector3f camera_in_primitive;
-  LocalSize<float> size{};
+  TileTarget target;
   float min_z = 0.0F;  ///< Nearest depth of the bounding box.
   float min_x = -kInfinity, max_x = kInfinity, min_y = -kInfinity, max_y = kInfinity;
 };
@@ -56,12 +52,13 @@ std::vector<SeenPrimitive> LookAt(const Scene& scene, const RigidTransform& T_wo
         T_world_camera.inverse() * primitive.T_world_primitive;
     const RigidTransform T_primitive_camera = T_camera_primitive.inverse();
     SeenPrimitive one;
-    one.index = static_cast<int>(i);
     one.shape = primitive.shape;
-    one.R_primitive_camera = T_primitive_camera.linear().cast<float>();
-    one.camera_in_primitive = T_primitive_camera.translation().cast<float>();
-    const Eigen::Vector3f size = primitive.size.cast<float>();
-    one.size = {size.x(), size.y(), size.z()};
+    one.target.index = static_cast<std::int32_t>(i);
+    Eigen::Map<Eigen::Matrix3f>(one.target.R_primitive_camera) =
+        T_primitive_camera.linear().cast<float>();
+    Eigen::Map<Eigen::Vector3f>(one.target.camera_in_primitive) =
+        T_primitive_camera.translation().cast<float>();
+    Eigen::Map<Eigen::Vector3f>(one.target.size) = primitive.size.cast<float>();
     SetBounds(primitive, T_camera_primitive, one);
     seen.push_back(one);
   }
@@ -75,40 +72,12 @@ bool Overlap(const SeenPrimitive& primitive, const RayGrid::Tile& tile) {
          primitive.min_y <= tile.max_y && primitive.max_y >= tile.min_y;
 }
 
-struct TileHits {
-  std::array<float, RayGrid::kTilePixels> z;
-  std::array<std::int32_t, RayGrid::kTilePixels> index;
-};
-
-template <Shape shape>
-void TraceTile(const SeenPrimitive& p, const RayGrid::Tile& tile, TileHits& hits) {
-  const Eigen::Matrix3f& R = p.R_primitive_camera;
-  const float r00 = R(0, 0), r01 = R(0, 1), r02 = R(0, 2);
-  const float r10 = R(1, 0), r11 = R(1, 1), r12 = R(1, 2);
-  const float r20 = R(2, 0), r21 = R(2, 1), r22 = R(2, 2);
-  const float ox = p.camera_in_primitive.x(), oy = p.camera_in_primitive.y(),
-              oz = p.camera_in_primitive.z();
-  const LocalSize<float> size = p.size;
-  const std::int32_t index = p.index;
-  float* const z = hits.z.data();
-  std::int32_t* const indices = hits.index.data();
-  for (int i = 0; i < RayGrid::kTilePixels; ++i) {
-    const float x = tile.ray_x[i], y = tile.ray_y[i];
-    const LocalRay<float> ray{
-        ox, oy, oz, r00 * x + r01 * y + r02, r10 * x + r11 * y + r12, r20 * x + r21 * y + r22};
-    const float t = IntersectShape<shape, float>(ray, size);
-    const float before = z[i];
-    z[i] = t < before ? t : before;
-    indices[i] = t < before ? index : indices[i];
-  }
-}
-
 void StoreTile(const RayGrid::Tile& tile, const TileHits& hits, HitImage& image) {
   const int columns = std::min(RayGrid::kTileWidth, image.z_m.width() - tile.x0);
   const int rows = std::min(RayGrid::kTileHeight, image.z_m.height() - tile.y0);
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
-      const auto i = static_cast<std::size_t>(row * RayGrid::kTileWidth + column);
+      const int i = row * RayGrid::kTileWidth + column;
       image.z_m.At(tile.x0 + column, tile.y0 + row) = hits.z[i];
       image.primitive.At(tile.x0 + column, tile.y0 + row) =
           static_cast<std::int16_t>(hits.index[i]);
@@ -158,15 +127,14 @@ void CastRays(const Scene& scene, const RayGrid& grid, const RigidTransform& T_w
   const std::vector<SeenPrimitive> seen = LookAt(scene, T_world_camera);
   TileHits tile_hits;
   for (const RayGrid::Tile& tile : grid.tiles()) {
-    tile_hits.z.fill(kInfinity);
-    tile_hits.index.fill(-1);
+    std::fill_n(tile_hits.z, RayGrid::kTilePixels, kInfinity);
+    std::fill_n(tile_hits.index, RayGrid::kTilePixels, -1);
     float farthest = kInfinity;
     for (const SeenPrimitive& primitive : seen) {
       if (primitive.min_z > farthest) break;  // Sorted: all that follow are hidden.
       if (!Overlap(primitive, tile)) continue;
-      VisitShape(primitive.shape,
-                 [&]<Shape shape>() { TraceTile<shape>(primitive, tile, tile_hits); });
-      farthest = *std::max_element(tile_hits.z.begin(), tile_hits.z.end());
+      TraceTile(primitive.shape, primitive.target, tile, tile_hits);
+      farthest = tile_hits.farthest;
     }
     StoreTile(tile, tile_hits, hits);
   }

@@ -1,0 +1,164 @@
+#include "common/simulation/options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "common/config/text_proto.h"
+#include "common/radiometry/radiometry.h"
+#include "common/simulation/simulation_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+/// Collects the first violated range.
+class RangeCheck {
+ public:
+  void operator()(const char* field, double value, double low, double high) {
+    if (!status_.ok() || (value >= low && value <= high)) return;
+    status_ = InvalidArgument(
+        fmt::format("simulation.{} must be {}..{}, got {}", field, low, high, value));
+  }
+  Status status() const { return status_; }
+
+ private:
+  Status status_;
+};
+
+void CheckDepth(const DepthCameraOptions& depth, RangeCheck& check) {
+  check("depth.rate_hz", depth.rate_hz(), 0.1, 1000.0);
+  check("depth.baseline_m", depth.baseline_m(), 0.001, 10.0);
+  check("depth.disparity_step_px", depth.disparity_step_px(), 0.0, 10.0);
+  check("depth.disparity_noise_px", depth.disparity_noise_px(), 0.0, 10.0);
+  check("depth.min_depth_m", depth.min_depth_m(), 0.0, 100.0);
+  check("depth.max_depth_m", depth.max_depth_m(), depth.min_depth_m(), 100.0);
+  check("depth.grazing_start_deg", depth.grazing_start_deg(), 0.0, 90.0);
+  check("depth.grazing_end_deg", depth.grazing_end_deg(), depth.grazing_start_deg(), 90.0);
+  check("depth.edge_dropout", depth.edge_dropout(), 0.0, 1.0);
+  check("depth.depth_scale", depth.depth_scale(), 1.0, 1e6);
+}
+
+void CheckThermal(const ThermalCameraOptions& thermal, RangeCheck& check) {
+  check("thermal.rate_hz", thermal.rate_hz(), 0.1, 1000.0);
+  check("thermal.netd_kelvin", thermal.netd_kelvin(), 0.0, 10.0);
+  check("thermal.blur_px", thermal.blur_px(), 0.0, 10.0);
+  check("thermal.band_min_um", thermal.band_min_um(), 0.5, 100.0);
+  check("thermal.band_max_um", thermal.band_max_um(), thermal.band_min_um() + 0.01, 200.0);
+}
+
+void CheckClock(const std::string& name, const ClockOptions& clock, RangeCheck& check) {
+  check((name + ".drift_ppm").c_str(), clock.drift_ppm(), -1e5, 1e5);
+  check((name + ".delay_s").c_str(), clock.delay_s(), 0.0, 10.0);
+  check((name + ".jitter_s").c_str(), clock.jitter_s(), 0.0, 1.0);
+  check((name + ".impulse_share").c_str(), clock.impulse_share(), 0.0, 1.0);
+  check((name + ".impulse_max_s").c_str(), clock.impulse_max_s(), 0.0, 10.0);
+}
+
+void SetClock(double offset_s, double drift_ppm, double delay_s, double jitter_s,
+              double impulse_share, double impulse_max_s, ClockOptions& clock) {
+  clock.set_offset_s(offset_s);
+  clock.set_drift_ppm(drift_ppm);
+  clock.set_delay_s(delay_s);
+  clock.set_jitter_s(jitter_s);
+  clock.set_impulse_share(impulse_share);
+  clock.set_impulse_max_s(impulse_max_s);
+}
+
+}  // namespace
+
+Status Validate(const SimulationOptions& options) {
+  constexpr double kHour = 3600.0;
+  RangeCheck check;
+  check("duration_s", options.duration_s(), 0.0, kHour);
+  const SceneOptions& scene = options.scene();
+  check("scene.surround_celsius", scene.surround_celsius(), kMinRadiometricCelsius,
+        kMaxRadiometricCelsius);
+  // The hottest parts of a scene are never hotter than this, the coldest not colder than the
+  // surroundings.
+  if (scene.has_hot_celsius()) check("scene.hot_celsius", scene.hot_celsius(), 0.0, 1400.0);
+  CheckDepth(options.depth(), check);
+  CheckThermal(options.thermal(), check);
+  const ShutterOptions& shutter = options.shutter();
+  check("shutter.first_s", shutter.first_s(), 0.0, kHour);
+  check("shutter.interval_s", shutter.interval_s(), 0.0, kHour);
+  check("shutter.duration_s", shutter.duration_s(), 0.0, kHour);
+  check("shutter.shutter_celsius", shutter.shutter_celsius(), kMinRadiometricCelsius,
+        kMaxRadiometricCelsius);
+  CheckClock("depth_clock", options.depth_clock(), check);
+  CheckClock("thermal_clock", options.thermal_clock(), check);
+  check("thermal_phase_s", options.thermal_phase_s(), 0.0, 10.0);
+  return check.status();
+}
+
+SimulationOptions Resolved(const SimulationOptions& options) {
+  SimulationOptions resolved = options;
+  if (!options.has_depth_clock()) {
+    SetClock(1000.0, 18.0, 0.021, 0.0012, 0.015, 0.030, *resolved.mutable_depth_clock());
+  }
+  if (!options.has_thermal_clock()) {
+    SetClock(52.0, -31.0, 0.034, 0.0016, 0.02, 0.045, *resolved.mutable_thermal_clock());
+  }
+  return resolved;
+}
+
+Rig DefaultSimulatedRig() {
+  Rig rig;
+  CameraModel depth;
+  depth.width = 640;
+  depth.height = 480;
+  depth.fx = depth.fy = 567.7;
+  depth.cx = 321.3;
+  depth.cy = 242.4;
+  CameraModel thermal;
+  thermal.width = 382;
+  thermal.height = 288;
+  thermal.fx = 371.4;
+  thermal.fy = 372.1;
+  thermal.cx = 205.5;
+  thermal.cy = 150.5;
+  thermal.k1 = -0.439;
+  thermal.k2 = 0.29;
+  thermal.p1 = 0.000454;
+  thermal.p2 = -0.000257;
+  thermal.k3 = -0.114;
+  rig.depth = depth;
+  rig.thermal = thermal;
+  rig.T_thermal_depth = MakeTransform(
+      {0.0485, 0.0533, 0.0115},
+      Eigen::Quaterniond(0.999984020972, -0.004360234902, 0.003494424540, -0.000857420105));
+  rig.serial = "simulated";
+  rig.method = "true by construction";
+  return rig;
+}
+
+Result<Rig> SimulatedRig(const SimulationOptions& options) {
+  Rig rig = DefaultSimulatedRig();
+  if (!options.rig_file().empty()) {
+    Result<Rig> loaded = LoadRigCalibration(options.rig_file());
+    if (!loaded) return Err(loaded.error().WithContext("simulation.rig_file"));
+    rig = *loaded;
+  }
+  if (!rig.depth || !rig.thermal || !rig.T_thermal_depth) {
+    return Err(InvalidArgument(fmt::format(
+        "{}: a simulated rig needs depth, thermal and T_thermal_depth", options.rig_file())));
+  }
+  rig.depth_scale = options.depth().depth_scale();
+  return rig;
+}
+
+std::string SceneName(const SimulationOptions& options) {
+  switch (options.scene().scene()) {
+    case CALIBRATOR:
+      return "calibrator";
+    case PLANE:
+      return "plane";
+    case CORNER_SPHERE:
+      return "corner-sphere";
+    case FURNACE_DOOR:
+      break;
+  }
+  return "furnace-door";
+}
+
+}  // namespace isotherm

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "common/base/status.h"
+#include "common/geometry/camera.h"
+
+namespace isotherm {
+
+class SimulationOptions;
+
+/// Checks ranges and relations; the message names the field.
+Status Validate(const SimulationOptions& options);
+
+/// The options with everything that may be left out filled in (clocks).
+SimulationOptions Resolved(const SimulationOptions& options);
+
+/// The rig of the thesis: a PrimeSense Carmine 1.09 below an Optris PI 450.
+Rig DefaultSimulatedRig();
+
+/// The rig that the options name, with their depth scale. Fails if the file has no depth or no
+/// thermal camera.
+Result<Rig> SimulatedRig(const SimulationOptions& options);
+
+/// "furnace-door", "calibrator", "plane", "corner-sphere".
+std::string SceneName(const SimulationOptions& options);
+
+}  // namespace isotherm

@@ -1,0 +1,151 @@
+#include "common/simulation/render_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "common/codec/codec.h"
+#include "common/config/text_proto.h"
+#include "common/recording/recording.h"
+#include "common/simulation/options.h"
+#include "common/simulation/simulated_scan.h"
+#include "common/simulation/simulation_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::uint64_t kSession = 1;
+
+/// One thing to write, in the order of true time.
+struct Item {
+  enum class Kind { kNuc, kDepth, kThermal };  // Order at equal times.
+  CaptureTime time;
+  Kind kind;
+  std::uint64_t number;
+};
+
+std::vector<Item> InOrderOfTime(const SimulatedScan& scan) {
+  std::vector<Item> items;
+  for (std::size_t i = 0; i < scan.nuc_events().size(); ++i) {
+    items.push_back({scan.nuc_events()[i].start, Item::Kind::kNuc, i});
+  }
+  for (std::size_t i = 0; i < scan.depth_times().size(); ++i) {
+    items.push_back({scan.depth_times()[i].exposure, Item::Kind::kDepth, i});
+  }
+  for (std::size_t i = 0; i < scan.thermal_times().size(); ++i) {
+    items.push_back({scan.thermal_times()[i].exposure, Item::Kind::kThermal, i});
+  }
+  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+    return std::tie(a.time, a.kind, a.number) < std::tie(b.time, b.kind, b.number);
+  });
+  return items;
+}
+
+FrameHeader MakeHeader(std::uint64_t number, const SimulatedFrameTime& time) {
+  FrameHeader header;
+  header.session = kSession;
+  header.frame_number = number;
+  header.device_ticks = time.device_ticks;
+  header.capture_time = time.exposure;
+  return header;
+}
+
+/// Renders and encodes one item at a time; each thread's work has its own.
+struct Worker {
+  SimulatedScan::Scratch scratch;
+  DepthEncoder depth_encoder;
+  ThermalEncoder thermal_encoder;
+  EncodedDepthFrame depth;
+  EncodedThermalFrame thermal;
+
+  void Render(const SimulatedScan& scan, const Item& item) {
+    if (item.kind == Item::Kind::kDepth) RenderDepth(scan, item.number);
+    if (item.kind == Item::Kind::kThermal) RenderThermal(scan, item.number);
+  }
+
+  void RenderDepth(const SimulatedScan& scan, std::uint64_t number) {
+    const RawFrame raw = scan.RenderDepth(number, scratch);
+    depth.header = MakeHeader(number, scan.depth_times()[number]);
+    depth.depth_scale = raw.depth_scale;
+    depth.image = depth_encoder.Encode(raw.pixels);
+  }
+
+  void RenderThermal(const SimulatedScan& scan, std::uint64_t number) {
+    const RawFrame raw = scan.RenderThermal(number, scratch);
+    thermal.header = MakeHeader(number, scan.thermal_times()[number]);
+    thermal.housekeeping = raw.housekeeping;
+    thermal.nuc_state = raw.shutter_closed ? NucState::kInProgress : NucState::kIdle;
+    thermal.nuc_source = NucSource::kInBand;
+    thermal.valid = !raw.shutter_closed;
+    const CaptureTime time = thermal.header.capture_time;
+    const std::optional<CaptureTime> opening = scan.LastOpening(time);
+    thermal.seconds_since_nuc.reset();
+    if (opening) thermal.seconds_since_nuc = ToSeconds(time - *opening);
+    thermal.image = thermal_encoder.Encode(raw.pixels);
+  }
+};
+
+Status WriteItem(const SimulatedScan& scan, const Item& item, const Worker& worker,
+                 RecordingWriter& writer) {
+  switch (item.kind) {
+    case Item::Kind::kNuc:
+      return writer.Write(scan.nuc_events()[item.number]);
+    case Item::Kind::kDepth:
+      ISOTHERM_RETURN_IF_ERROR(
+          writer.WritePose("groundtruth", {item.time, scan.PoseAt(item.time)}));
+      return writer.Write(worker.depth, scan.depth_times()[item.number].arrival);
+    case Item::Kind::kThermal:
+      break;
+  }
+  return writer.Write(worker.thermal, scan.thermal_times()[item.number].arrival);
+}
+
+Status WriteStart(const SimulationOptions& options, const SimulatedScan& scan,
+                  RecordingWriter& writer) {
+  ISOTHERM_RETURN_IF_ERROR(
+      writer.WriteMetadata("simulation", {{"scene", scan.scene().name()},
+                                          {"seed", std::to_string(options.seed())},
+                                          {"version", ISOTHERM_VERSION},
+                                          {"options", ToTextProto(Resolved(options))}}));
+  return writer.Write(scan.rig());
+}
+
+}  // namespace
+
+Status RenderRecording(const SimulationOptions& options, const std::filesystem::path& path,
+                       ThreadPool& pool, const SimulationProgress& progress, std::stop_token stop) {
+  const Result<std::unique_ptr<SimulatedScan>> scan = SimulatedScan::Create(options);
+  if (!scan) return scan.error();
+  RecordingOptions recording_options;
+  recording_options.sync = false;  // Can be rendered again.
+  Result<std::unique_ptr<RecordingWriter>> writer =
+      RecordingWriter::Create(path, recording_options);
+  if (!writer) return writer.error();
+  ISOTHERM_RETURN_IF_ERROR(WriteStart(options, **scan, **writer));
+
+  // Threads render whole frames; a batch is written in order when all of it is done.
+  constexpr int kFramesPerThread = 6;
+  std::vector<Worker> workers(static_cast<std::size_t>(pool.threads() * kFramesPerThread));
+  const std::vector<Item> items = InOrderOfTime(**scan);
+  for (std::size_t done = 0; done < items.size();) {
+    if (stop.stop_requested()) return Unavailable("rendering the simulated scan was interrupted");
+    const std::size_t count = std::min(workers.size(), items.size() - done);
+    pool.ParallelFor(static_cast<int>(count), [&](int i) {
+      const auto index = static_cast<std::size_t>(i);
+      workers[index].Render(**scan, items[done + index]);
+    });
+    for (std::size_t i = 0; i < count; ++i) {
+      ISOTHERM_RETURN_IF_ERROR(WriteItem(**scan, items[done + i], workers[i], **writer));
+    }
+    done += count;
+    if (progress) progress(static_cast<double>(done) / static_cast<double>(items.size()));
+  }
+  return (*writer)->Close();
+}
+
+}  // namespace isotherm

@@ -1,0 +1,150 @@
+#include "common/simulation/simulated_scan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/base/check.h"
+#include "common/simulation/noise.h"
+#include "common/simulation/options.h"
+#include "common/simulation/simulation_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+/// What a stream of random numbers is for.
+enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels, kDepthClock, kThermalClock };
+
+}  // namespace
+
+Result<std::unique_ptr<SimulatedScan>> SimulatedScan::Create(const SimulationOptions& options) {
+  if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
+  const Result<Rig> rig = SimulatedRig(options);
+  if (!rig) return Err(rig.error());
+  return std::unique_ptr<SimulatedScan>(new SimulatedScan(Resolved(options), *rig));
+}
+
+SimulatedScan::SimulatedScan(const SimulationOptions& resolved, const Rig& rig)
+    : options_(std::make_unique<const SimulationOptions>(resolved)),
+      rig_(rig),
+      staged_(MakeScene(resolved.scene())),
+      depth_sensor_(*rig.depth, resolved.depth()),
+      thermal_sensor_(*rig.thermal, resolved.thermal()),
+      start_(CaptureTimeFromNanoseconds(resolved.start_time_ns())) {
+  ScheduleFrames();
+  ScheduleShutter();
+}
+
+SimulatedScan::~SimulatedScan() = default;
+
+void SimulatedScan::ScheduleFrames() {
+  const CaptureTime end = start_ + FromSeconds(options_->duration_s());
+  const auto schedule = [&](const ClockOptions& clock_options, double rate_hz,
+                            CaptureTime first_exposure, NoisePurpose purpose) {
+    SimulatedClock clock(clock_options, rate_hz, start_, first_exposure,
+                         NoiseStream(options_->seed(), purpose, 0));
+    std::vector<SimulatedFrameTime> times;
+    for (SimulatedFrameTime time = clock.Next(); time.exposure < end; time = clock.Next()) {
+      times.push_back(time);
+    }
+    return times;
+  };
+  depth_times_ =
+      schedule(options_->depth_clock(), options_->depth().rate_hz(), start_, kDepthClock);
+  thermal_times_ = schedule(options_->thermal_clock(), options_->thermal().rate_hz(),
+                            start_ + FromSeconds(options_->thermal_phase_s()), kThermalClock);
+}
+
+void SimulatedScan::ScheduleShutter() {
+  const ShutterOptions& shutter = options_->shutter();
+  if (shutter.interval_s() <= 0.0 || shutter.duration_s() <= 0.0) return;
+  const double interval_s = std::max(shutter.interval_s(), shutter.duration_s());
+  for (double at_s = shutter.first_s(); at_s < options_->duration_s(); at_s += interval_s) {
+    const CaptureTime closed = start_ + FromSeconds(at_s);
+    nuc_events_.push_back({closed, closed + FromSeconds(shutter.duration_s()), NucSource::kInBand});
+  }
+}
+
+bool SimulatedScan::IsShutterClosed(CaptureTime time) const {
+  return std::any_of(nuc_events_.begin(), nuc_events_.end(), [&](const NucEvent& event) {
+    return time >= event.start && time < event.end;
+  });
+}
+
+std::optional<CaptureTime> SimulatedScan::LastOpening(CaptureTime time) const {
+  std::optional<CaptureTime> opening;
+  for (const NucEvent& event : nuc_events_) {
+    if (event.end <= time) opening = event.end;
+  }
+  return opening;
+}
+
+RigidTransform SimulatedScan::PoseAt(CaptureTime time) const {
+  return staged_.path.PoseAt(ToSeconds(time - start_));
+}
+
+RigidTransform SimulatedScan::ThermalPoseAt(CaptureTime time) const {
+  return PoseAt(time) * rig_.T_thermal_depth->inverse();
+}
+
+RawFrame SimulatedScan::RenderDepth(std::uint64_t frame_number, Scratch& scratch) const {
+  CHECK(frame_number < depth_times_.size());
+  const SimulatedFrameTime& time = depth_times_[frame_number];
+  RawFrame frame;
+  frame.sensor = Sensor::kDepth;
+  frame.frame_number = frame_number;
+  frame.device_ticks = time.device_ticks;
+  frame.arrival_wall = time.arrival;
+  frame.depth_scale = rig_.depth_scale;
+  frame.pixels = depth_sensor_.Render(scene(), PoseAt(time.exposure),
+                                      NoiseStream(options_->seed(), kDepthPixels, frame_number),
+                                      scratch.depth);
+  return frame;
+}
+
+RawFrame SimulatedScan::RenderThermal(std::uint64_t frame_number, Scratch& scratch) const {
+  CHECK(frame_number < thermal_times_.size());
+  const SimulatedFrameTime& time = thermal_times_[frame_number];
+  RawFrame frame;
+  frame.sensor = Sensor::kThermal;
+  frame.frame_number = frame_number;
+  frame.device_ticks = time.device_ticks;
+  frame.arrival_wall = time.arrival;
+  frame.shutter_closed = IsShutterClosed(time.exposure);
+  frame.housekeeping = HousekeepingAt(time.exposure);
+  frame.pixels = ThermalPixels(frame_number, scratch);
+  return frame;
+}
+
+Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
+                                                  Scratch& scratch) const {
+  const auto closed = [&](std::uint64_t number) {
+    return IsShutterClosed(thermal_times_[number].exposure);
+  };
+  const bool freeze = options_->shutter().appearance() == ShutterOptions::FREEZE;
+  // A frozen camera repeats the last picture from before the shutter closed, noise included.
+  std::uint64_t shown = frame_number;
+  while (freeze && shown > 0 && closed(shown)) --shown;
+  const std::uint64_t noise = NoiseStream(options_->seed(), kThermalPixels, shown);
+  if (closed(shown)) {
+    return thermal_sensor_.RenderShutter(options_->shutter().shutter_celsius(), noise,
+                                         scratch.thermal);
+  }
+  return thermal_sensor_.Render(scene(), ThermalPoseAt(thermal_times_[shown].exposure), noise,
+                                scratch.thermal);
+}
+
+ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {
+  // A camera that was switched on a while ago and still warms up a little.
+  constexpr double kHousingCelsius = 30.0, kWarmUpKelvin = 1.5, kWarmUpS = 120.0;
+  constexpr double kFpaAboveHousingKelvin = 4.0;
+  const double warmed_up = 1.0 - std::exp(-ToSeconds(time - start_) / kWarmUpS);
+  ThermalHousekeeping housekeeping;
+  housekeeping.housing_celsius = static_cast<float>(kHousingCelsius + kWarmUpKelvin * warmed_up);
+  housekeeping.fpa_celsius =
+      housekeeping.housing_celsius + static_cast<float>(kFpaAboveHousingKelvin);
+  housekeeping.shutter_celsius = static_cast<float>(options_->shutter().shutter_celsius());
+  return housekeeping;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/base/status.h"
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+#include "common/recording/recording.h"
+#include "common/simulation/depth_sensor.h"
+#include "common/simulation/scenes.h"
+#include "common/simulation/simulated_clock.h"
+#include "common/simulation/thermal_sensor.h"
+
+namespace isotherm {
+
+class SimulationOptions;
+
+/// A whole scan: scene, path, rig, clocks and shutter. Knows the true time and pose of every frame
+/// and renders any of them in any order with the same result. Thread-safe (immutable); scratch
+/// memory is the caller's.
+class SimulatedScan {
+ public:
+  /// Fails if the options are out of range or the rig file cannot be used.
+  static Result<std::unique_ptr<SimulatedScan>> Create(const SimulationOptions& options);
+  ~SimulatedScan();
+
+  struct Scratch {
+    DepthSensor::Scratch depth;
+    ThermalSensor::Scratch thermal;
+  };
+
+  const Rig& rig() const { return rig_; }
+  const Scene& scene() const { return staged_.scene; }
+  const BandRadiance& band() const { return thermal_sensor_.band(); }
+  /// True exposure, device ticks and arrival of each frame, by frame number.
+  const std::vector<SimulatedFrameTime>& depth_times() const { return depth_times_; }
+  const std::vector<SimulatedFrameTime>& thermal_times() const { return thermal_times_; }
+  /// When the shutter was closed, within the scan.
+  const std::vector<NucEvent>& nuc_events() const { return nuc_events_; }
+  bool IsShutterClosed(CaptureTime time) const;
+  /// The shutter's last opening before `time`, if it was closed before.
+  std::optional<CaptureTime> LastOpening(CaptureTime time) const;
+
+  /// True T_world_depth.
+  RigidTransform PoseAt(CaptureTime time) const;
+  /// True T_world_thermal.
+  RigidTransform ThermalPoseAt(CaptureTime time) const;
+
+  RawFrame RenderDepth(std::uint64_t frame_number, Scratch& scratch) const;
+  RawFrame RenderThermal(std::uint64_t frame_number, Scratch& scratch) const;
+
+ private:
+  SimulatedScan(const SimulationOptions& resolved, const Rig& rig);
+  void ScheduleFrames();
+  void ScheduleShutter();
+  Image<std::uint16_t> ThermalPixels(std::uint64_t frame_number, Scratch& scratch) const;
+  ThermalHousekeeping HousekeepingAt(CaptureTime time) const;
+
+  const std::unique_ptr<const SimulationOptions> options_;
+  const Rig rig_;
+  const StagedScene staged_;
+  const DepthSensor depth_sensor_;
+  const ThermalSensor thermal_sensor_;
+  const CaptureTime start_;
+  std::vector<SimulatedFrameTime> depth_times_;
+  std::vector<SimulatedFrameTime> thermal_times_;
+  std::vector<NucEvent> nuc_events_;
+};
+
+}  // namespace isotherm
