@@ -89,6 +89,8 @@ std::optional<RefusalCause> CheckThermal(const ThermalFields& fields) {
 }
 
 std::optional<RefusalCause> CheckRig(const Rig& rig) {
+  // A rig that nobody calibrated may be announced; what needs the calibration refuses.
+  if (!rig.depth && !rig.thermal) return CheckFinite({rig.depth_scale, rig.thermal_delay_s});
   if (Validate(rig).ok()) return std::nullopt;
   return RefusalCause::kOutOfRange;
 }

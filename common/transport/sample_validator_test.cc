@@ -105,6 +105,16 @@ TEST(SampleValidatorTest, F60ThermalHousekeeping) {
   EXPECT_EQ(CheckThermal({.shutter_celsius = -274.0F}), RefusalCause::kOutOfRange);
 }
 
+TEST(SampleValidatorTest, F56ARigWithoutCalibrationMayBeAnnounced) {
+  Rig rig;
+  EXPECT_EQ(CheckRig(rig), std::nullopt);
+  rig.thermal_delay_s = kNan;
+  EXPECT_EQ(CheckRig(rig), RefusalCause::kNotFinite);
+  rig = {};
+  rig.depth.emplace();  // Intrinsics are NaN until they are given.
+  EXPECT_EQ(CheckRig(rig), RefusalCause::kOutOfRange);
+}
+
 TEST(SampleValidatorTest, F60ReceiptMustFitTogether) {
   const StreamReceipt good{.next = 10, .handled = 10, .received = 7, .holes = {{2, 3}, {5, 5}}};
   EXPECT_EQ(CheckStreamReceipt(good), std::nullopt);

@@ -1,0 +1,338 @@
+// The edge's and the ground's end of the link together, over DDS on loopback, in one process and in
+// two.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <csignal>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/transport/test_domain.h"
+#include "ground/subscriber/subscriber.h"
+#include "tests/link/edge_side.h"
+#include "tests/system/process.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A ground station that only looks at what it gets.
+class GroundSide {
+ public:
+  GroundSide(const TransportEnvironment& environment, const Clock& clock, int domain,
+             Nanoseconds work_per_frame = Nanoseconds(0))
+      : work_per_frame_(work_per_frame) {
+    participant_ = std::move(*Participant::Create(environment, domain));
+    SubscriberOptions options;
+    options.edge_id = "test-edge";
+    SubscriberHandlers handlers;
+    handlers.depth = [this](ReceivedDepth item) { Take(*item.encoded, &depth_); };
+    handlers.thermal = [this](ReceivedThermal item) { Take(*item.encoded, &thermal_); };
+    handlers.rig = [this](const RigDescription& rig) {
+      Update([&] { rig_session_ = rig.session; });
+    };
+    handlers.command_result = [this](const CommandResult& result) {
+      Update([&] { result_ = result; });
+    };
+    handlers.session_end = [this](const SessionAccount& account) {
+      Update([&] { ended_.push_back(account); });
+    };
+    subscriber_ = std::move(*Subscriber::Create(*participant_, clock, options, handlers));
+    receiver_ = std::jthread([this](const std::stop_token& stop) { subscriber_->Run(stop); });
+  }
+
+  Subscriber& subscriber() { return *subscriber_; }
+  void Stop() {
+    receiver_.request_stop();
+    receiver_.join();
+  }
+
+  /// The account of the session that ended as number `count`.
+  std::optional<SessionAccount> AwaitSessionEnd(std::size_t count = 1) {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait_for(lock, kLinkPatience, [&] { return ended_.size() >= count; })) return {};
+    return ended_[count - 1];
+  }
+  bool AwaitDepth(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kLinkPatience, [&] { return depth_.size() >= count; });
+  }
+  std::optional<CommandResult> AwaitResult() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLinkPatience, [&] { return result_.has_value(); });
+    return result_;
+  }
+  std::vector<std::uint64_t> depth() const {
+    std::scoped_lock lock(mutex_);
+    return depth_;
+  }
+  std::vector<std::uint64_t> thermal() const {
+    std::scoped_lock lock(mutex_);
+    return thermal_;
+  }
+  int corrupt() const {
+    std::scoped_lock lock(mutex_);
+    return corrupt_;
+  }
+  std::optional<std::uint64_t> rig_session() const {
+    std::scoped_lock lock(mutex_);
+    return rig_session_;
+  }
+
+ private:
+  template <typename Function>
+  void Update(Function update) {
+    std::scoped_lock lock(mutex_);
+    update();
+    changed_.notify_all();
+  }
+  template <typename Encoded>
+  void Take(const Encoded& frame, std::vector<std::uint64_t>* numbers) {
+    const std::uint64_t number = frame.header.frame_number;
+    // A consumer that is slower than the sender.
+    if (work_per_frame_ > Nanoseconds(0)) std::this_thread::sleep_for(work_per_frame_);
+    bool good = true;
+    for (std::size_t i = 0; i < frame.image.payload.size(); i += 1001) {
+      good = good && frame.image.payload[i] == NoiseByte(number, i);
+    }
+    Update([&] {
+      numbers->push_back(number);
+      if (!good) ++corrupt_;
+    });
+  }
+
+  const Nanoseconds work_per_frame_;
+  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Subscriber> subscriber_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::uint64_t> depth_, thermal_;
+  std::optional<std::uint64_t> rig_session_;
+  std::optional<CommandResult> result_;
+  std::vector<SessionAccount> ended_;
+  int corrupt_ = 0;
+  std::jthread receiver_;
+};
+
+std::vector<std::uint64_t> Range(std::uint64_t first, std::uint64_t end) {
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = first; i < end; ++i) numbers.push_back(i);
+  return numbers;
+}
+
+class LinkTest : public ::testing::Test {
+ protected:
+  EdgePlan Plan(std::uint64_t depth, std::uint64_t thermal) const {
+    EdgePlan plan;
+    plan.domain = domain_.number();
+    plan.depth_frames = depth;
+    plan.thermal_frames = thermal;
+    plan.wait_for_ground = kLinkPatience;
+    return plan;
+  }
+  static system_test::Command Peer(const EdgePlan& plan) {
+    return {.program = LINK_PEER,
+            .arguments = {std::to_string(plan.domain), std::to_string(plan.session),
+                          std::to_string(plan.depth_frames), std::to_string(plan.thermal_frames),
+                          std::to_string(plan.depth_hz),
+                          plan.policy == PublishPolicy::kLive ? "live" : "lossless",
+                          std::to_string(plan.wait_for_ground / 1s)},
+            .environment = {}};
+  }
+  std::unique_ptr<GroundSide> StartGround(Nanoseconds work_per_frame = Nanoseconds(0)) {
+    return std::make_unique<GroundSide>(environment_, clock_, domain_.number(), work_per_frame);
+  }
+  static void ExpectEverything(const EdgePlan& plan, GroundSide& ground) {
+    const auto account = ground.AwaitSessionEnd();
+    ASSERT_TRUE(account.has_value());
+    EXPECT_TRUE(account->ended);
+    EXPECT_EQ(account->session, plan.session);
+    EXPECT_EQ(account->depth.published, plan.depth_frames);
+    EXPECT_EQ(account->depth.missing, 0U);
+    EXPECT_EQ(account->thermal.published, plan.thermal_frames);
+    EXPECT_EQ(account->thermal.missing, 0U);
+    EXPECT_EQ(ground.depth(), Range(0, plan.depth_frames));
+    EXPECT_EQ(ground.thermal(), Range(0, plan.thermal_frames));
+    EXPECT_EQ(ground.corrupt(), 0);
+    EXPECT_EQ(ground.subscriber().stats().refused, 0U);
+  }
+
+  SystemClock clock_;
+  TransportEnvironment environment_{clock_};
+  TestDomain domain_;
+};
+
+TEST_F(LinkTest, GroundFirstLosesNothingInOneProcess) {
+  const EdgePlan plan = Plan(90, 120);
+  const auto ground = StartGround();
+  EdgeSide edge(environment_, clock_, plan);
+  EXPECT_TRUE(edge.SendAll());
+  ExpectEverything(plan, *ground);
+}
+
+TEST_F(LinkTest, GroundFirstLosesNothingBetweenTwoProcesses) {
+  const EdgePlan plan = Plan(300, 400);
+  const auto ground = StartGround();
+  system_test::Process edge(Peer(plan));
+  ExpectEverything(plan, *ground);
+  EXPECT_TRUE(edge.WaitForOutput("\ndrained", kLinkPatience)) << edge.output();
+  EXPECT_EQ(edge.WaitForExit(kLinkPatience), 0);
+}
+
+TEST_F(LinkTest, EdgeFirstLosesNothingBetweenTwoProcesses) {
+  const EdgePlan plan = Plan(300, 400);
+  system_test::Process edge(Peer(plan));
+  ASSERT_TRUE(edge.WaitForOutput("started", kLinkPatience));
+  const auto ground = StartGround();
+  ExpectEverything(plan, *ground);
+  EXPECT_EQ(edge.WaitForExit(kLinkPatience), 0);
+}
+
+TEST_F(LinkTest, ASlowGroundPacesALosslessEdge) {
+  const EdgePlan plan = Plan(120, 160);
+  const auto ground = StartGround(2ms);
+  system_test::Process edge(Peer(plan));
+  ExpectEverything(plan, *ground);
+}
+
+TEST_F(LinkTest, LiveVgaAtThirtyHertzLosesNothing) {
+  EdgePlan plan = Plan(90, 120);
+  plan.depth_hz = 30.0;
+  plan.policy = PublishPolicy::kLive;
+  const auto ground = StartGround();
+  system_test::Process edge(Peer(plan));
+  ExpectEverything(plan, *ground);
+}
+
+TEST_F(LinkTest, F19AGroundThatJoinsLateKnowsExactlyWhatItMissed) {
+  EdgePlan plan = Plan(200, 200);
+  plan.policy = PublishPolicy::kLive;
+  EdgeSide edge(environment_, clock_, plan);
+  edge.Begin();
+  edge.SendFrames(0, 100);
+  const auto ground = StartGround();
+  ASSERT_TRUE(edge.publisher().WaitForGround(kLinkPatience, {}));
+  ASSERT_TRUE(ground->AwaitDepth(1));
+  const std::uint64_t first = ground->depth().front();
+  EXPECT_GT(first, 0U);
+  EXPECT_LT(first, 100U);  // The last ones are kept for late joiners.
+  edge.publisher().SetPolicy(PublishPolicy::kLossless);
+  edge.SendFrames(100, 200);
+  EXPECT_TRUE(edge.End());
+  const auto account = ground->AwaitSessionEnd();
+  ASSERT_TRUE(account.has_value());
+  EXPECT_EQ(account->depth.published, 200U);
+  EXPECT_EQ(account->depth.received + account->depth.missing, 200U);
+  EXPECT_EQ(account->depth.missing, first);
+  EXPECT_EQ(ground->depth(), Range(first, 200));
+  EXPECT_EQ(ground->rig_session(), plan.session);  // Written before the ground was there.
+}
+
+TEST_F(LinkTest, ARestartedEdgeIsANewSession) {
+  const auto ground = StartGround();
+  EdgePlan plan = Plan(40, 40);
+  EXPECT_EQ(system_test::RunToEnd(Peer(plan), kLinkPatience).status, 0);
+  ASSERT_TRUE(ground->AwaitSessionEnd(1).has_value());
+  plan.session = 2;
+  EXPECT_EQ(system_test::RunToEnd(Peer(plan), kLinkPatience).status, 0);
+  const auto account = ground->AwaitSessionEnd(2);
+  ASSERT_TRUE(account.has_value());
+  EXPECT_EQ(account->session, 2U);
+  EXPECT_EQ(account->depth.missing, 0U);
+  EXPECT_EQ(ground->depth().size(), 80U);
+}
+
+TEST_F(LinkTest, ARestartedGroundGoesOnWithTheSession) {
+  const EdgePlan plan = Plan(150, 150);
+  EdgeSide edge(environment_, clock_, plan);
+  auto ground = StartGround();
+  ASSERT_TRUE(edge.publisher().WaitForGround(kLinkPatience, {}));
+  edge.Begin();
+  edge.SendFrames(0, 50);
+  ASSERT_TRUE(ground->AwaitDepth(50));
+  ground.reset();
+  ground = StartGround();
+  ASSERT_TRUE(ground->AwaitDepth(1));
+  edge.SendFrames(50, 150);
+  EXPECT_TRUE(edge.End());
+  const auto account = ground->AwaitSessionEnd();
+  ASSERT_TRUE(account.has_value());
+  EXPECT_EQ(account->depth.received + account->depth.missing, 150U);
+  EXPECT_EQ(ground->depth(), Range(account->depth.missing, 150));
+}
+
+TEST_F(LinkTest, AnEdgeThatIsKilledIsSeenToBeGone) {
+  EdgePlan plan = Plan(100'000, 0);
+  plan.depth_hz = 30.0;
+  const auto ground = StartGround();
+  system_test::Process edge(Peer(plan));
+  ASSERT_TRUE(ground->AwaitDepth(5));
+  EXPECT_TRUE(ground->subscriber().stats().edge_present);
+  edge.Signal(SIGKILL);
+  const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
+  while (ground->subscriber().stats().edge_present && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  EXPECT_FALSE(ground->subscriber().stats().edge_present);
+}
+
+TEST_F(LinkTest, F38StopEndsBothReceiversAtOnce) {
+  const auto ground = StartGround();
+  auto edge = std::make_unique<EdgeSide>(environment_, clock_, Plan(1, 1));
+  ASSERT_TRUE(edge->publisher().WaitForGround(kLinkPatience, {}));
+  const auto start = std::chrono::steady_clock::now();
+  ground->Stop();
+  edge.reset();
+  EXPECT_LT(std::chrono::steady_clock::now() - start, 1s);
+}
+
+TEST_F(LinkTest, NobodyThereEndsTheWaitForGround) {
+  EdgeSide edge(environment_, clock_, Plan(1, 1));
+  EXPECT_FALSE(edge.publisher().WaitForGround(1ms, {}));
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_FALSE(edge.publisher().WaitForGround(1h, stop.get_token()));
+  EXPECT_TRUE(edge.publisher().Drain(1ms));  // Nobody listens: nothing to wait for.
+}
+
+TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
+  const auto ground = StartGround();
+  auto participant = std::move(*Participant::Create(environment_, domain_.number()));
+  PublisherOptions options;
+  options.edge_id = "test-edge";
+  const auto publisher = std::move(*Publisher::Create(*participant, clock_, options));
+  std::jthread receiver([&](const std::stop_token& stop) {
+    publisher->Run(stop, [&](const Command& command) {
+      EXPECT_EQ(command.kind, CommandKind::kTriggerNuc);
+      EXPECT_TRUE(publisher
+                      ->Answer({.number = command.number,
+                                .outcome = CommandOutcome::kRefused,
+                                .text = "no shutter"})
+                      .ok());
+    });
+  });
+  ASSERT_TRUE(publisher->WaitForGround(kLinkPatience, {}));
+  const auto number = ground->subscriber().Send({.kind = CommandKind::kTriggerNuc});
+  ASSERT_TRUE(number.has_value());
+  const auto result = ground->AwaitResult();
+  ASSERT_TRUE(result.has_value());
+  EXPECT_EQ(result->number, *number);
+  EXPECT_EQ(result->text, "no shutter");
+
+  Feedback feedback;
+  feedback.frame_number = 12;
+  ASSERT_TRUE(ground->subscriber().Publish(feedback).ok());
+  const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
+  while (!publisher->feedback().Get() && std::chrono::steady_clock::now() < deadline) {
+    std::this_thread::yield();
+  }
+  ASSERT_TRUE(publisher->feedback().Get().has_value());
+  EXPECT_EQ(publisher->feedback().Get()->frame_number, 12U);
+}
+
+}  // namespace
+}  // namespace isotherm
