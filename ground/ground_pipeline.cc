@@ -1,7 +1,5 @@
 #include "ground/ground_pipeline.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -35,37 +33,22 @@ int ThreadCount(const GroundOptions& options) {
 
 }  // namespace
 
-std::vector<Status> ValidateAll(const GroundOptions& options) {
-  std::vector<Status> problems;
-  const auto check = [&](Status status) {
-    if (!status.ok()) problems.push_back(std::move(status));
-  };
-  check(Validate(options.volume()));
-  check(Validate(options.preprocessor()));
-  check(Validate(options.tracker()));
-  check(Validate(options.tsdf(), options.volume()));
-  check(Validate(options.thermal()));
-  if (options.threads() < 0 || options.threads() > 256) {
-    check(InvalidArgument(fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));
-  }
-  if (!options.volume().initial_pose().empty()) {
-    if (const auto pose = ParsePose(options.volume().initial_pose()); !pose) {
-      check(pose.error().WithContext("volume.initial_pose"));
-    }
-  }
-  return problems;
-}
-
 Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(const GroundOptions& options, const Rig& rig,
                                                                std::optional<RigidTransform> initial_pose) {
-  if (const std::vector<Status> problems = ValidateAll(options); !problems.empty()) return Err(problems.front());
+  for (const Status& status :
+       {Validate(options.volume()), Validate(options.preprocessor()), Validate(options.tracker()),
+        Validate(options.tsdf(), options.volume()), Validate(options.raycast()), Validate(options.thermal())}) {
+    if (!status.ok()) return Err(status);
+  }
   if (Status status = Validate(rig); !status.ok()) return Err(status.WithContext("rig calibration"));
   if (!rig.depth) {
     return Err(FailedPrecondition(
         "the rig calibration has no depth intrinsics: nothing can be reconstructed without a depth camera"));
   }
   if (!initial_pose && !options.volume().initial_pose().empty()) {
-    initial_pose = ParsePose(options.volume().initial_pose()).value();
+    const Result<RigidTransform> pose = ParsePose(options.volume().initial_pose());
+    if (!pose) return Err(pose.error().WithContext("volume.initial_pose"));
+    initial_pose = *pose;
   }
   const Result<VoxelGrid> grid = MakeVoxelGrid(options.volume());
   if (!grid) return Err(grid.error());

@@ -22,9 +22,6 @@
 
 namespace isotherm {
 
-/// Checks every stage's options; returns all problems, not only the first.
-std::vector<Status> ValidateAll(const GroundOptions& options);
-
 /// What the pipeline did with the frames it was given: in = sum of the outcomes.
 struct PipelineCounts {
   std::uint64_t depth_in = 0;

@@ -65,23 +65,23 @@ CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& li
   return counts;
 }
 
-std::string_view ToString(Advice advice) {
+std::string_view ToString(AdviceKind advice) {
   switch (advice) {
-    case Advice::kNone:
+    case AdviceKind::kNone:
       return "carry on";
-    case Advice::kDone:
+    case AdviceKind::kDone:
       return "done here";
-    case Advice::kCloser:
+    case AdviceKind::kCloser:
       return "closer";
-    case Advice::kFarther:
+    case AdviceKind::kFarther:
       return "farther";
-    case Advice::kLessOblique:
+    case AdviceKind::kLessOblique:
       return "less oblique";
-    case Advice::kSlower:
+    case AdviceKind::kSlower:
       return "slower";
-    case Advice::kHoldForNuc:
+    case AdviceKind::kHoldForNuc:
       return "hold for NUC";
-    case Advice::kGoBack:
+    case AdviceKind::kGoBack:
       return "go back";
   }
   return "";
@@ -92,38 +92,38 @@ OperatorAdvice AdviseOperator(const CoverageSummary& coverage, const ScanSituati
   const auto percent = [](double share) { return 100.0 * share; };
   const auto beyond = [](double value, double limit) { return limit > 0.0 && value > limit; };
   if (situation.tracking_lost) {
-    return {Advice::kGoBack, "tracking is lost: return to the last view that was tracked"};
+    return {AdviceKind::kGoBack, "tracking is lost: return to the last view that was tracked"};
   }
   if (situation.nuc_running) {
-    return {Advice::kHoldForNuc, "the thermal camera is correcting itself: hold still"};
+    return {AdviceKind::kHoldForNuc, "the thermal camera is correcting itself: hold still"};
   }
   if (beyond(situation.speed_m_s, situation.max_speed_m_s)) {
-    return {Advice::kSlower, fmt::format("{:.2f} m/s, the model follows up to {:.2f} m/s",
+    return {AdviceKind::kSlower, fmt::format("{:.2f} m/s, the model follows up to {:.2f} m/s",
                                          situation.speed_m_s, situation.max_speed_m_s)};
   }
   if (beyond(situation.turn_rate_deg_s, situation.max_turn_rate_deg_s)) {
-    return {Advice::kSlower,
+    return {AdviceKind::kSlower,
             fmt::format("turning at {:.0f} deg/s, the model follows up to {:.0f} deg/s",
                         situation.turn_rate_deg_s, situation.max_turn_rate_deg_s)};
   }
   if (coverage.surface < kSurfaceNeeded) {
-    return {Advice::kGoBack, "no surface of the model in view: point at the object"};
+    return {AdviceKind::kGoBack, "no surface of the model in view: point at the object"};
   }
   if (coverage.good + coverage.acceptable >= kDone) {
-    return {Advice::kDone, fmt::format("{:.0f} % of the surface in view is measured well",
+    return {AdviceKind::kDone, fmt::format("{:.0f} % of the surface in view is measured well",
                                        percent(coverage.good + coverage.acceptable))};
   }
   const double most = std::max({coverage.too_near, coverage.too_far, coverage.too_oblique});
   if (most < kWorthSaying) return {};
   if (coverage.too_far == most) {
-    return {Advice::kCloser, fmt::format("{:.0f} % of the surface is farther than {:.2f} m",
+    return {AdviceKind::kCloser, fmt::format("{:.0f} % of the surface is farther than {:.2f} m",
                                          percent(most), limits.distance_max_m())};
   }
   if (coverage.too_near == most) {
-    return {Advice::kFarther, fmt::format("{:.0f} % of the surface is nearer than {:.2f} m",
+    return {AdviceKind::kFarther, fmt::format("{:.0f} % of the surface is nearer than {:.2f} m",
                                           percent(most), limits.distance_min_m())};
   }
-  return {Advice::kLessOblique,
+  return {AdviceKind::kLessOblique,
           fmt::format("{:.0f} % of the surface is seen at more than {:.0f} deg", percent(most),
                       limits.angle_max_deg())};
 }

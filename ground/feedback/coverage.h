@@ -26,7 +26,7 @@ struct CoverageSummary {
 
 CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& limits);
 
-enum class Advice {
+enum class AdviceKind {
   kNone,  ///< Carry on.
   kDone,  ///< What is in view is measured well.
   kCloser,
@@ -36,7 +36,7 @@ enum class Advice {
   kHoldForNuc,
   kGoBack,  ///< Tracking is lost: return to where it worked.
 };
-std::string_view ToString(Advice advice);
+std::string_view ToString(AdviceKind advice);
 
 /// What advice depends on besides the coverage.
 struct ScanSituation {
@@ -50,7 +50,7 @@ struct ScanSituation {
 
 /// One thing to do, and the sentence that says why, with its numbers.
 struct OperatorAdvice {
-  Advice advice = Advice::kNone;
+  AdviceKind advice = AdviceKind::kNone;
   std::string reason;
 };
 

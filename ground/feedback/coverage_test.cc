@@ -64,27 +64,27 @@ TEST(CoverageTest, IsZeroWithoutASurface) {
 }
 
 TEST(AdviceTest, FollowsFromWhatHindersMost) {
-  EXPECT_EQ(AdviceFor(Row(10, 0, 1.2, 20.0)).advice, Advice::kCloser);
-  EXPECT_EQ(AdviceFor(Row(10, 0, 0.2, 20.0)).advice, Advice::kFarther);
-  EXPECT_EQ(AdviceFor(Row(10, 0, 0.5, 75.0)).advice, Advice::kLessOblique);
-  EXPECT_EQ(AdviceFor(Row(10, 0, 0.5, 20.0)).advice, Advice::kNone);
+  EXPECT_EQ(AdviceFor(Row(10, 0, 1.2, 20.0)).advice, AdviceKind::kCloser);
+  EXPECT_EQ(AdviceFor(Row(10, 0, 0.2, 20.0)).advice, AdviceKind::kFarther);
+  EXPECT_EQ(AdviceFor(Row(10, 0, 0.5, 75.0)).advice, AdviceKind::kLessOblique);
+  EXPECT_EQ(AdviceFor(Row(10, 0, 0.5, 20.0)).advice, AdviceKind::kNone);
 }
 
 TEST(AdviceTest, SurfaceThatIsMeasuredWellNeedsNothing) {
   ViewMaps view = Row(10, 0, 1.2, 20.0);
   for (int x = 0; x < 9; ++x) Measure(view, x, kGood, kAcceptable);
-  EXPECT_EQ(AdviceFor(view).advice, Advice::kDone);
+  EXPECT_EQ(AdviceFor(view).advice, AdviceKind::kDone);
   EXPECT_NE(AdviceFor(view).reason.find("90 %"), std::string::npos);
 }
 
 TEST(AdviceTest, TrackingComesBeforeNucBeforeMotion) {
   const ViewMaps view = Row(10, 0, 1.2, 20.0);
   ScanSituation situation{.speed_m_s = 0.5, .max_speed_m_s = 0.3};
-  EXPECT_EQ(AdviceFor(view, situation).advice, Advice::kSlower);
+  EXPECT_EQ(AdviceFor(view, situation).advice, AdviceKind::kSlower);
   situation.nuc_running = true;
-  EXPECT_EQ(AdviceFor(view, situation).advice, Advice::kHoldForNuc);
+  EXPECT_EQ(AdviceFor(view, situation).advice, AdviceKind::kHoldForNuc);
   situation.tracking_lost = true;
-  EXPECT_EQ(AdviceFor(view, situation).advice, Advice::kGoBack);
+  EXPECT_EQ(AdviceFor(view, situation).advice, AdviceKind::kGoBack);
 }
 
 TEST(AdviceTest, EveryAdviceButNoneGivesAReason) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ground/ground_options.pb.h"
 #include "ground/tsdf/raycast_kernel.h"
 
 namespace isotherm {
@@ -90,6 +91,13 @@ std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vect
   VoxelCursor cursor(volume, MinWeightCode(min_weight));
   const float value = cursor.Interpolate(p_voxel);
   return std::isnan(value) ? std::nullopt : std::optional<float>(value);
+}
+
+Status Validate(const RaycastOptions& o) {
+  if (!(o.min_weight() >= 0.0 && o.min_weight() <= 1000.0) || o.halvings() < 0 || o.halvings() > 2) {
+    return InvalidArgument("raycast: min_weight must be 0..1000 observations and halvings 0..2");
+  }
+  return OkStatus();
 }
 
 void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera) {

@@ -10,6 +10,10 @@
 
 namespace isotherm {
 
+class RaycastOptions;
+
+Status Validate(const RaycastOptions& options);
+
 /// Bounds of the depth at which rays can meet a block, per tile of the image: blocks are projected as spheres.
 /// Thread-compatible.
 class RangeMap {

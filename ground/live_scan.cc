@@ -1,0 +1,138 @@
+#include "ground/live_scan.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <numbers>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+/// Depth frames per second for the speed that advice is about, if the rig does not say.
+constexpr double kNominalDepthHz = 30.0;
+
+std::optional<Advice> ToWire(AdviceKind kind) {
+  switch (kind) {
+    case AdviceKind::kNone:
+      return std::nullopt;
+    case AdviceKind::kDone:
+      return Advice::kDone;
+    case AdviceKind::kCloser:
+      return Advice::kMoveCloser;
+    case AdviceKind::kFarther:
+      return Advice::kMoveFarther;
+    case AdviceKind::kLessOblique:
+      return Advice::kLessOblique;
+    case AdviceKind::kSlower:
+      return Advice::kSlower;
+    case AdviceKind::kHoldForNuc:
+      return Advice::kHoldForNuc;
+    case AdviceKind::kGoBack:
+      return Advice::kGoBackToRelocalise;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan, std::uint64_t session,
+                                    CaptureTime start) {
+  const std::filesystem::path base(options.live().output_dir());
+  if (single_scan) return base;
+  const std::time_t seconds = ToNanoseconds(start) / 1'000'000'000;
+  return base / fmt::format("scan-{:%Y%m%dT%H%M%SZ}-{:08x}", fmt::gmtime(seconds),
+                            static_cast<std::uint32_t>(session));
+}
+
+Result<std::unique_ptr<LiveScan>> LiveScan::Create(const GroundOptions& options, const RigDescription& rig) {
+  Result<std::unique_ptr<GroundPipeline>> pipeline = GroundPipeline::Create(options, rig.rig, std::nullopt);
+  if (!pipeline) return Err(pipeline.error());
+  return std::unique_ptr<LiveScan>(new LiveScan(options, rig, std::move(*pipeline)));
+}
+
+LiveScan::LiveScan(const GroundOptions& options, const RigDescription& rig,
+                   std::unique_ptr<GroundPipeline> pipeline)
+    : options_(options),
+      session_(rig.session),
+      rig_(rig.rig),
+      pipeline_(std::move(pipeline)),
+      assembler_(FromSeconds(options.thermal().max_wait_s())) {}
+
+void LiveScan::Add(const ReceivedDepth& depth) {
+  assembler_.Add(depth.frame);
+  while (const auto frame = assembler_.Pop()) Process(*frame);
+}
+
+void LiveScan::Add(const ReceivedThermal& thermal) {
+  const NucState state = thermal.frame->nuc_state;
+  nuc_running_ = state == NucState::kInProgress || state == NucState::kSettling;
+  // The delay was applied on the edge; a rig that still carries one was recorded before that.
+  assembler_.Add(thermal.frame);
+  while (const auto frame = assembler_.Pop()) Process(*frame);
+}
+
+void LiveScan::FinishFrames() {
+  while (const auto frame = assembler_.Flush()) Process(*frame);
+  pipeline_->Finish();
+}
+
+void LiveScan::Process(const Assembler::Frame& frame) {
+  ++processed_;
+  if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
+    pipeline_->ProcessThermal(*thermal);
+    return;
+  }
+  const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
+  newest_report_ = pipeline_->ProcessDepth(depth);
+  newest_header_ = depth.header;
+  const CaptureTime time = depth.header.capture_time;
+  if (!next_feedback_ || time >= *next_feedback_) {
+    feedback_waiting_ = true;
+    next_feedback_ = time + FromSeconds(1.0 / options_.live().feedback_hz());
+  }
+}
+
+std::optional<Feedback> LiveScan::TakeFeedback() {
+  if (!feedback_waiting_) return std::nullopt;
+  feedback_waiting_ = false;
+  return MakeFeedback();
+}
+
+Feedback LiveScan::MakeFeedback() {
+  Feedback feedback;
+  feedback.session = session_;
+  feedback.frame_number = newest_header_.frame_number;
+  feedback.capture_time = newest_header_.capture_time;
+  const TrackingResult& tracking = newest_report_->tracking;
+  feedback.tracking_state = newest_report_->tracked ? TrackingState::kTracked : TrackingState::kLost;
+  if (newest_report_->tracked) feedback.T_world_depth = tracking.T_world_depth;
+
+  const ModelView& model = pipeline_->view();
+  CoverageSummary coverage;
+  if (model.maps.width() > 0) {
+    SampleView(model.maps, model.T_world_depth.translation(), pipeline_->tsdf(), pipeline_->thermal(),
+               pipeline_->pool(), view_);
+    coverage = SummarizeCoverage(view_, options_.thermal());
+  }
+  feedback.view = {static_cast<float>(coverage.good), static_cast<float>(coverage.acceptable),
+                   static_cast<float>(coverage.bad), static_cast<float>(coverage.never_measured)};
+  ScanSituation situation;
+  situation.tracking_lost = !newest_report_->tracked;
+  situation.nuc_running = nuc_running_;
+  situation.speed_m_s = tracking.step_m * kNominalDepthHz;
+  situation.turn_rate_deg_s = tracking.step_rad * kDegPerRad * kNominalDepthHz;
+  situation.max_speed_m_s = options_.tsdf().max_step_m() * kNominalDepthHz;
+  situation.max_turn_rate_deg_s = options_.tsdf().max_step_deg() * kNominalDepthHz;
+  if (const auto advice = ToWire(AdviseOperator(coverage, situation, options_.thermal()).advice)) {
+    feedback.advice.push_back(*advice);
+  }
+  return feedback;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "common/base/status.h"
+#include "common/transport/messages.h"
+#include "ground/assembler/assembler.h"
+#include "ground/feedback/coverage.h"
+#include "ground/ground_options.pb.h"
+#include "ground/ground_pipeline.h"
+#include "ground/subscriber/received_frame.h"
+
+namespace isotherm {
+
+/// Where the results of a session go.
+std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan, std::uint64_t session,
+                                    CaptureTime start);
+
+/// One session of the live driver: the same stages as the inline one, fed by the link. Owns no thread.
+/// Thread-bound to the reconstruction thread.
+class LiveScan {
+ public:
+  static Result<std::unique_ptr<LiveScan>> Create(const GroundOptions& options, const RigDescription& rig);
+
+  void Add(const ReceivedDepth& depth);
+  void Add(const ReceivedThermal& thermal);
+  /// Processes what the assembler still holds back.
+  void FinishFrames();
+
+  /// Feedback on the newest depth frame if one is due (LiveOptions.feedback_hz, by capture time).
+  std::optional<Feedback> TakeFeedback();
+
+  std::uint64_t session() const { return session_; }
+  std::uint64_t processed() const { return processed_; }
+  bool anything_processed() const { return processed_ > 0; }
+  GroundPipeline& pipeline() { return *pipeline_; }
+  const Rig& rig() const { return rig_; }
+
+ private:
+  LiveScan(const GroundOptions& options, const RigDescription& rig, std::unique_ptr<GroundPipeline> pipeline);
+  void Process(const Assembler::Frame& frame);
+  Feedback MakeFeedback();
+
+  const GroundOptions options_;
+  const std::uint64_t session_;
+  const Rig rig_;
+  std::unique_ptr<GroundPipeline> pipeline_;
+  Assembler assembler_;
+  ViewMaps view_;
+  std::optional<DepthReport> newest_report_;
+  FrameHeader newest_header_;
+  bool feedback_waiting_ = false;
+  std::optional<CaptureTime> next_feedback_;
+  bool nuc_running_ = false;
+  std::uint64_t processed_ = 0;
+};
+
+}  // namespace isotherm

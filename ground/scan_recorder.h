@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "common/base/status.h"
+#include "common/recording/recording.h"
+#include "common/transport/messages.h"
+#include "ground/ground_options.pb.h"
+#include "ground/subscriber/received_frame.h"
+
+namespace isotherm {
+
+/// Writes what arrives during one session into `scan.mcap`. A disk that fills up ends the recording, not the scan:
+/// what was written stays readable and the rest is counted. Thread-compatible.
+class ScanRecorder {
+ public:
+  static Result<std::unique_ptr<ScanRecorder>> Create(const std::filesystem::path& path,
+                                                      const GroundOptions& options);
+
+  void Write(const RigDescription& rig);
+  void Write(const ReceivedDepth& depth);
+  void Write(const ReceivedThermal& thermal);
+  /// Writes index and footer. The first error of the recording, or ok. Idempotent.
+  Status Close();
+
+  RecordingStats stats() const { return writer_->stats(); }
+
+ private:
+  explicit ScanRecorder(std::unique_ptr<RecordingWriter> writer) : writer_(std::move(writer)) {}
+  void Note(const Status& status);
+
+  std::unique_ptr<RecordingWriter> writer_;
+  Status first_error_;
+};
+
+}  // namespace isotherm
