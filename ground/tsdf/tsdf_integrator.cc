@@ -43,7 +43,7 @@ struct CameraF {
 
 /// Updates the voxels of one block. Rows along x advance by a constant vector in camera coordinates.
 void UpdateBlock(std::span<TsdfVoxel, kBlockVoxels> voxels, const Eigen::Vector3f& first, const Eigen::Matrix3f& axes,
-                 const CameraF& camera, const Image<SurfaceSample>& samples, float truncation_m, float max_weight) {
+                 const CameraF& camera, const Image<DepthSample>& samples, float truncation_m, float max_weight) {
   const float inverse_truncation = 1.0F / truncation_m;
   std::size_t index = 0;
   for (int z = 0; z < kBlockSide; ++z) {
@@ -58,7 +58,7 @@ void UpdateBlock(std::span<TsdfVoxel, kBlockVoxels> voxels, const Eigen::Vector3
               v < static_cast<float>(camera.height))) {
           continue;
         }
-        const SurfaceSample& s = samples.At(static_cast<int>(u), static_cast<int>(v));
+        const DepthSample& s = samples.At(static_cast<int>(u), static_cast<int>(v));
         if (!(s.weight > 0.0F)) continue;
         const float distance = s.nx * p.x() + s.ny * p.y() + s.nz * p.z() - s.offset;
         // Far in front along the ray counts as free whatever the plane's tilt; behind the band is unknown.
@@ -100,7 +100,7 @@ void TsdfIntegrator::MakeSamples(const PreparedDepth& depth, ThreadPool& pool) {
     const int end = std::min(camera.height, (task + 1) * kRowsPerTask);
     for (int y = task * kRowsPerTask; y < end; ++y) {
       for (int x = 0; x < camera.width; ++x) {
-        SurfaceSample& s = samples_.At(x, y);
+        DepthSample& s = samples_.At(x, y);
         const float z = depth.depth_m.At(x, y);
         s.depth_m = z;
         s.weight = 0.0F;

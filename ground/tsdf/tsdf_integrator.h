@@ -18,7 +18,7 @@ Status Validate(const TsdfOptions& options, const VolumeOptions& volume);
 
 /// What one depth pixel says about the surface: the plane n . p = offset (camera coordinates, metres, n towards
 /// the camera) and the weight of the observation (0 = nothing was seen).
-struct SurfaceSample {
+struct DepthSample {
   float nx, ny, nz, offset;
   float depth_m;
   float weight;
@@ -46,7 +46,7 @@ class TsdfIntegrator {
   void SelectBlocks(const PreparedDepth& depth, const RigidTransform& T_depth_world, const TsdfVolume& volume);
 
   const TsdfOptions options_;
-  Image<SurfaceSample> samples_;
+  Image<DepthSample> samples_;
   std::vector<std::vector<GridIndex>> touched_by_strip_;
   std::vector<std::int32_t> updated_blocks_;
 };
