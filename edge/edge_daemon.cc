@@ -29,6 +29,9 @@ constexpr Nanoseconds kTick = milliseconds(50);
 // Time to let the ground confirm the last frames when a signal says to leave.
 constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
 
+// EX_CANTCREAT of sysexits.h: the recording could not be created or not be finished.
+constexpr int kExitRecording = 73;
+
 int Fail(const Status& status) {
   LOG(Edge, Error) << status.message();
   return ExitCode(status);
@@ -85,10 +88,13 @@ Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const std::
                                          FrameAccount& account) {
   const std::optional<std::filesystem::path> path = SpoolPath(options.spool().record(), now);
   if (!path) return nullptr;
+  const TimestamperOptions& timing = options.timestamper();
   const Spool::Metadata metadata = {
       {"configuration", {{"edge", ToTextProto(options)}}},
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
-      {"timing", {{"rig_thermal_delay_s", fmt::format("{}", rig_thermal_delay_s)}}}};
+      {"timing",
+       {{"depth_delay_s", fmt::format("{}", timing.depth_delay_s())},
+        {"thermal_delay_s", fmt::format("{}", timing.thermal_delay_s() + rig_thermal_delay_s)}}}};
   LOG(Edge, Info) << "recording to " << path->string();
   return Spool::Create(*path, options.spool(), WithoutThermalDelay(rig), metadata, account);
 }
@@ -165,7 +171,10 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const CaptureTime start = clock.Now();
   Result<std::unique_ptr<Spool>> spool =
       OpenSpool(options, *rig, rig_thermal_delay_s, start, account);
-  if (!spool) return Fail(spool.error());
+  if (!spool) {
+    LOG(Edge, Error) << spool.error().message();
+    return kExitRecording;
+  }
   const bool recording = *spool != nullptr;
   const std::filesystem::path disk = recording ? (*spool)->path() : ".";
 
@@ -191,7 +200,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
     LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
   }
   std::fputs(Summary(account, recording, publisher.receipt()).c_str(), stdout);
-  return recorded.ok() ? 0 : ExitCode(recorded);
+  return recorded.ok() ? 0 : kExitRecording;
 }
 
 }  // namespace isotherm

@@ -52,8 +52,8 @@ constexpr const char* kFooter =
     "  65  the recording or calibration is damaged\n"
     "  66  a file does not exist\n"
     "  69  the network or the source is not available\n"
-    "  73  the recording cannot be written, or ended early because the disk is full\n"
-    "  74  reading or writing failed\n"
+    "  73  the recording cannot be created, or ended early (disk full); publishing went on\n"
+    "  74  reading failed\n"
     "  78  wrong configuration (all problems are listed)";
 
 struct CommandLine {
@@ -105,10 +105,12 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_flag("--list-sources", line.list_sources, "List sources and scenes, then leave");
 }
 
-std::string ToCase(std::string text, int (*convert)(int)) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [convert](unsigned char c) { return static_cast<char>(convert(c)); });
-  return text;
+// FURNACE_DOOR in the configuration is furnace-door on the command line.
+std::string SpokenName(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+    return c == '_' ? '-' : static_cast<char>(std::tolower(c));
+  });
+  return name;
 }
 
 void ListSources() {
@@ -117,18 +119,20 @@ void ListSources() {
       "synthetic   a simulated scan (--scene NAME), rendered once and kept in the cache. Scenes:");
   const auto* scenes = SimulatedScene_descriptor();
   for (int i = 0; i < scenes->value_count(); ++i) {
-    std::printf("              %s\n", ToCase(scenes->value(i)->name(), std::tolower).c_str());
+    std::printf("              %s\n", SpokenName(scenes->value(i)->name()).c_str());
   }
 }
 
 Status ApplyScene(const std::string& name, SourceOptions& options) {
-  SimulatedScene scene{};
-  if (!SimulatedScene_Parse(ToCase(name, std::toupper), &scene)) {
-    return InvalidArgument("--scene " + name + ": no such scene; --list-sources names them");
+  const auto* scenes = SimulatedScene_descriptor();
+  for (int i = 0; i < scenes->value_count(); ++i) {
+    if (SpokenName(scenes->value(i)->name()) != SpokenName(name)) continue;
+    options.set_kind(SYNTHETIC);
+    options.mutable_simulation()->mutable_scene()->set_scene(
+        static_cast<SimulatedScene>(scenes->value(i)->number()));
+    return OkStatus();
   }
-  options.set_kind(SYNTHETIC);
-  options.mutable_simulation()->mutable_scene()->set_scene(scene);
-  return OkStatus();
+  return InvalidArgument("--scene " + name + ": no such scene; --list-sources names them");
 }
 
 Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {

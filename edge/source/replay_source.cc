@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <utility>
 #include <variant>
 
@@ -13,23 +14,24 @@
 namespace isotherm {
 namespace {
 
+// More than any camera needs; what a file says beyond it is not believed.
+constexpr double kLongestDelay_s = 10.0;
 // Between the last frame of a loop and the first of the next; about one frame period.
 constexpr Nanoseconds kLoopGap = std::chrono::milliseconds(33);
 
-}  // namespace
-
-Result<Rig> ReadRigForReplay(RecordingReader& reader) {
-  Result<Rig> rig = reader.ReadRig();
-  if (!rig) return rig;
-  const auto& metadata = reader.info().metadata;
-  const auto timing = metadata.find("timing");
-  if (timing == metadata.end()) return rig;
-  const auto delay = timing->second.find("rig_thermal_delay_s");
-  if (delay == timing->second.end()) return rig;
-  const std::string& text = delay->second;
-  std::from_chars(text.data(), text.data() + text.size(), rig->thermal_delay_s);
-  return rig;
+/// Seconds under `key` in the recording's metadata "timing"; 0 if absent or no number.
+Nanoseconds KnownDelay(const RecordingInfo& info, const std::string& key) {
+  const auto timing = info.metadata.find("timing");
+  if (timing == info.metadata.end()) return Nanoseconds(0);
+  const auto value = timing->second.find(key);
+  if (value == timing->second.end()) return Nanoseconds(0);
+  double seconds = 0.0;
+  const std::string& text = value->second;
+  std::from_chars(text.data(), text.data() + text.size(), seconds);
+  return std::abs(seconds) < kLongestDelay_s ? FromSeconds(seconds) : Nanoseconds(0);
 }
+
+}  // namespace
 
 ReplaySource::ReplaySource(const SourceOptions& options, std::filesystem::path recording,
                            const Clock& clock, Nanoseconds longest_pause)
@@ -46,7 +48,9 @@ Status ReplaySource::Open() {
   Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(path_);
   if (!reader) return reader.error();
   reader_ = std::move(*reader);
-  if (Result<Rig> rig = ReadRigForReplay(*reader_)) {
+  known_delay_ = {KnownDelay(reader_->info(), "depth_delay_s"),
+                  KnownDelay(reader_->info(), "thermal_delay_s")};
+  if (Result<Rig> rig = reader_->ReadRig()) {
     rig_ = std::move(*rig);
   } else if (rig.error().code() != StatusCode::kNotFound) {
     return rig.error();
@@ -112,10 +116,11 @@ RawFrame ReplaySource::Prepare(Sensor sensor, const FrameHeader& header, const E
                                const std::optional<CaptureTime>& arrival) {
   RawFrame frame;
   frame.sensor = sensor;
-  frame.frame_number = frames_[static_cast<std::size_t>(sensor)]++;
+  const auto index = static_cast<std::size_t>(sensor);
+  frame.frame_number = frames_[index]++;
   if (arrival) {
     frame.device_ticks = header.device_ticks;
-    frame.arrival_wall = *arrival;
+    frame.arrival_wall = *arrival + known_delay_[index];
   } else {
     const auto time =
         std::chrono::floor<std::chrono::microseconds>(header.capture_time.time_since_epoch());

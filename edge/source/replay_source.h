@@ -19,9 +19,10 @@ class SourceOptions;
 ///
 /// Times: device ticks and arrival are those recorded, so that the Timestamper has the same work as
 /// live. Frames without a recorded arrival (imported data sets) get ticks and arrival equal to
-/// their capture time, rounded down to a microsecond, which makes the Timestamper an identity. With
-/// `rebase` in paced playback, all arrivals move by one constant so that the first is now. Each
-/// loop continues the time line of the one before.
+/// their capture time, rounded down to a microsecond, which makes the Timestamper an identity.
+/// Constant delays that the recorder knew (metadata "timing") are added to recorded arrivals: they
+/// are already in the stamps, and in them only. With `rebase` in paced playback, all arrivals move
+/// by one constant so that the first is now. Each loop continues the time line of the one before.
 ///
 /// Reopening goes on behind the last frame, as a camera does. Thread-bound.
 class ReplaySource final : public FrameSource {
@@ -57,6 +58,7 @@ class ReplaySource final : public FrameSource {
 
   std::unique_ptr<RecordingReader> reader_;
   std::optional<Rig> rig_;
+  std::array<Nanoseconds, 2> known_delay_{};  ///< Added to recorded arrivals, by Sensor.
   std::optional<NucEvent> last_nuc_event_;
   std::array<std::uint64_t, 2> frames_{};  ///< Delivered so far, by Sensor.
   std::uint64_t unreadable_ = 0;
@@ -69,9 +71,5 @@ class ReplaySource final : public FrameSource {
   Nanoseconds rebase_offset_{0};
   SteadyTime started_at_{};
 };
-
-/// The rig in a recording as it was before the edge that recorded it applied (and zeroed) the
-/// thermal delay.
-Result<Rig> ReadRigForReplay(RecordingReader& reader);
 
 }  // namespace isotherm

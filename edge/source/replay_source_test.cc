@@ -240,13 +240,33 @@ TEST_F(ReplaySourceTest, OpeningAgainGoesOnBehindTheLastFrame) {
   EXPECT_EQ(rest[0].frame_number, 1U);
 }
 
-TEST_F(ReplaySourceTest, TheThermalDelayThatTheEdgeAppliedIsRestored) {
-  Rig rig;
-  rig.depth = CameraModel{.width = 8, .height = 6, .fx = 7.0, .fy = 7.0, .cx = 3.5, .cy = 2.5};
-  ASSERT_TRUE(writer_->Write(rig).ok());
-  ASSERT_TRUE(writer_->WriteMetadata("timing", {{"rig_thermal_delay_s", "0.0427"}}).ok());
-  ASSERT_TRUE(Open().rig().has_value());
-  EXPECT_DOUBLE_EQ(source_->rig()->thermal_delay_s, 0.0427);
+TEST_F(ReplaySourceTest, DelaysThatTheRecorderKnewAreInTheArrivals) {
+  ASSERT_TRUE(
+      writer_->WriteMetadata("timing", {{"depth_delay_s", "-0.04"}, {"thermal_delay_s", "0.0427"}})
+          .ok());
+  WriteDepth(milliseconds(0));
+  WriteThermal(milliseconds(7));
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].arrival_wall, kRecordedStart + kTransport - milliseconds(40));
+  EXPECT_EQ(frames[1].arrival_wall,
+            kRecordedStart + milliseconds(7) + kTransport + microseconds(42'700));
+}
+
+TEST_F(ReplaySourceTest, KnownDelaysDoNotConcernFramesWithoutArrival) {
+  constexpr bool kImported = false;
+  ASSERT_TRUE(writer_->WriteMetadata("timing", {{"depth_delay_s", "-0.04"}}).ok());
+  WriteDepth(milliseconds(0), kImported);
+  Open();
+  EXPECT_EQ(ReadAll().at(0).arrival_wall, kRecordedStart);
+}
+
+TEST_F(ReplaySourceTest, AnAbsurdKnownDelayIsNotBelieved) {
+  ASSERT_TRUE(writer_->WriteMetadata("timing", {{"depth_delay_s", "1e300"}}).ok());
+  WriteDepth(milliseconds(0));
+  Open();
+  EXPECT_EQ(ReadAll().at(0).arrival_wall, kRecordedStart + kTransport);
 }
 
 TEST(ReplaySourceOpenTest, AMissingRecordingIsNamed) {

@@ -1,8 +1,13 @@
 #include "edge/source/synthetic_source.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <thread>
 #include <utility>
 
+#include "common/base/progress.h"
+#include "common/concurrency/thread_pool.h"
+#include "common/simulation/render_recording.h"
 #include "edge/edge_options.pb.h"
 #include "edge/source/replay_source.h"
 
@@ -17,8 +22,29 @@ SyntheticSource::SyntheticSource(const SourceOptions& options, const Clock& cloc
 SyntheticSource::~SyntheticSource() = default;
 
 Status SyntheticSource::Open() {
-  if (!replay_) return Unavailable("no simulation yet");
+  if (!replay_) {
+    const Result<std::filesystem::path> recording = RenderOrFind();
+    if (!recording) return recording.error();
+    replay_ = std::make_unique<ReplaySource>(*options_, *recording, clock_);
+  }
   return replay_->Open();
+}
+
+Result<std::filesystem::path> SyntheticSource::RenderOrFind() const {
+  const std::filesystem::path cache_dir = options_->cache_dir().empty()
+                                              ? DefaultCacheDir()
+                                              : std::filesystem::path(options_->cache_dir());
+  ThreadPool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  // No bar for a scan that is in the cache.
+  std::optional<ProgressBar> progress;
+  return CachedRecording(
+      options_->simulation(), cache_dir, pool,
+      [&progress](double fraction) {
+        if (!progress) progress.emplace("rendering the simulated scan", 0, "");
+        progress->Update(fraction);
+        if (fraction >= 1.0) progress->Finish();
+      },
+      stop_);
 }
 
 Result<SourceItem> SyntheticSource::Read(std::stop_token stop) { return replay_->Read(stop); }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -28,6 +29,8 @@ class SyntheticSource final : public FrameSource {
   std::optional<Rig> rig() const override;
 
  private:
+  Result<std::filesystem::path> RenderOrFind() const;
+
   const std::unique_ptr<const SourceOptions> options_;
   const Clock& clock_;
   const std::stop_token stop_;
