@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+#include <string_view>
+
+#include "common/base/status.h"
+
+namespace CLI {
+class App;
+}
+
+namespace isotherm {
+
+/// What the chosen subcommand does after its options were read; the process's exit status.
+using CommandBody = std::function<int()>;
+
+/// Says the failure in one sentence on standard error and returns its exit status.
+int Fail(const Status& status);
+
+/// The same with the exit status for a wrong configuration.
+int FailConfiguration(std::string_view message);
+
+/// Name and version of this program, for files that it writes.
+std::string_view SoftwareName();
+
+// One function per subcommand, in a file of the same name: adds it to the parser; when it is
+// chosen, `body` is set.
+void AddImportCommand(CLI::App& app, CommandBody& body);
+void AddInspectCommand(CLI::App& app, CommandBody& body);
+void AddReconstructCommand(CLI::App& app, CommandBody& body);
+void AddEvaluateCommand(CLI::App& app, CommandBody& body);
+void AddSimulateCommand(CLI::App& app, CommandBody& body);
+void AddDemoCommand(CLI::App& app, CommandBody& body);
+
+}  // namespace isotherm

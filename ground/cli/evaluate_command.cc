@@ -1,0 +1,99 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "ground/cli/command.h"
+#include "ground/cli/numbers.h"
+#include "ground/cli/result_evaluation.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Trajectory: positions of frames with the same stamp, after the rigid alignment that fits best
+(no scale) and with the first poses made equal. Surface: distance of each point of cloud.ply to
+the true surface, discs around its samples, with the first poses made equal and after a rigid
+fit of the cloud. Temperature: measured minus the apparent temperature that the true
+temperature, the emissivity and the surroundings imply, by class: good in distance and angle,
+acceptable, bad in either. Edges are places where true temperatures differ by more than 5 K
+within 5 mm.
+
+Example:
+  isotherm evaluate out --groundtruth furnace/groundtruth.txt --surface furnace/surface.ply \
+      --emissivity 0.96 --ambient 23)";
+
+struct Arguments {
+  EvaluationRequest request;
+  std::string result_dir, groundtruth, surface, repeats, volume_box;
+  bool json = false;
+};
+
+Result<Eigen::AlignedBox3f> ParseBox(const std::string& text) {
+  const auto numbers = ParseNumbers(text, {6}, "--volume-box");
+  if (!numbers) return Err(numbers.error());
+  const Eigen::Matrix<float, 6, 1> v =
+      Eigen::Map<const Eigen::Matrix<double, 6, 1>>(numbers->data()).cast<float>();
+  const Eigen::AlignedBox3f box(v.head<3>(), v.tail<3>());
+  if (box.isEmpty())
+    return Err(InvalidArgument("--volume-box: the second corner must not be below the first"));
+  return box;
+}
+
+int Run(const Arguments& arguments) {
+  EvaluationRequest request = arguments.request;
+  request.result_dir = arguments.result_dir;
+  request.groundtruth = arguments.groundtruth;
+  if (!arguments.surface.empty()) request.surface = arguments.surface;
+  if (!arguments.repeats.empty()) request.skip_repeats = arguments.repeats;
+  if (!arguments.volume_box.empty()) {
+    const auto box = ParseBox(arguments.volume_box);
+    if (!box) return Fail(box.error());
+    request.volume_box = *box;
+  }
+  if (request.emissivity && !request.surface) {
+    return Fail(InvalidArgument("--emissivity needs --surface, which holds the true temperatures"));
+  }
+  const Result<EvaluationReport> report = Evaluate(request);
+  if (!report) return Fail(report.error());
+  const std::string text = arguments.json ? ToJson(*report).ToText() : ToText(*report);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void AddEvaluateCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* command = app.add_subcommand("evaluate", "Compares a result with the truth");
+  auto arguments = std::make_shared<Arguments>();
+  EvaluationRequest& request = arguments->request;
+  command
+      ->add_option("folder", arguments->result_dir,
+                   "Result folder with trajectory.txt and cloud.ply")
+      ->required();
+  command
+      ->add_option("--groundtruth", arguments->groundtruth,
+                   "True poses: trajectory file, or recording with ground truth (.mcap)")
+      ->required();
+  command->add_option("--surface", arguments->surface,
+                      "True surface (.ply: x y z nx ny nz scalar_temperature seen)");
+  command->add_option("--emissivity", request.emissivity,
+                      "Compare temperatures, for this emissivity (0..1)");
+  command->add_option("--ambient", request.ambient_celsius, "Temperature of the surroundings, °C")
+      ->capture_default_str();
+  command->add_option(
+      "--volume-box", arguments->volume_box,
+      "Count only true surface inside \"x y z x y z\" (two corners, the truth's world, metres)");
+  command->add_option("--first", request.first, "Only the first N true poses");
+  command->add_option("--skip-repeats", arguments->repeats,
+                      "Leave out depth frames of this recording that repeat the one before");
+  command
+      ->add_option("--tolerance-ms", request.tolerance_ms,
+                   "Largest difference between stamps of one frame")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
+  command->add_flag("--json", arguments->json, "Machine-readable output (metres, radians, kelvin)");
+  command->footer(kFooter);
+  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace isotherm

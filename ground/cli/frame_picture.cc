@@ -1,0 +1,96 @@
+#include "ground/cli/frame_picture.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "common/codec/codec.h"
+#include "ground/export/output_file.h"
+#include "ground/ground_options.pb.h"
+#include "ground/renderer/legend.h"
+#include "ground/renderer/palette.h"
+#include "ground/renderer/png.h"
+#include "ground/renderer/temperature_scale.h"
+
+namespace isotherm {
+namespace {
+
+// Colours `values` (NaN = none); the scale's "temperatures" are in the legend's unit.
+RgbImage Picture(const Image<float>& values, const RendererOptions& options,
+                 const std::string& title, const std::string& unit) {
+  const ColourTable colours(options);
+  const std::optional<TemperatureScale> scale = ChooseScale(options, Summarize(values.pixels()));
+  RgbImage picture(values.width(), values.height());
+  for (int y = 0; y < values.height(); ++y) {
+    for (int x = 0; x < values.width(); ++x) {
+      const float value = values.At(x, y);
+      picture.At(x, y) = scale && std::isfinite(value) ? colours.At(scale->Share(value))
+                                                       : NeverMeasuredColour(x, y, 1.0);
+    }
+  }
+  ScaleLegend legend;
+  legend.title = title;
+  legend.scale = scale;
+  legend.rule = ScaleRuleName(options);
+  legend.unit = unit;
+  return WithLegend(picture, legend, colours);
+}
+
+Status WritePng(const RgbImage& picture, const std::filesystem::path& path) {
+  const Result<std::vector<std::uint8_t>> bytes = EncodePng(picture);
+  if (!bytes) return bytes.error();
+  return WriteFile(path, std::as_bytes(std::span(*bytes)));
+}
+
+Result<RgbImage> PictureOf(const RecordedItem& item) {
+  const auto* depth = std::get_if<RecordedDepth>(&item);
+  const auto* thermal = std::get_if<RecordedThermal>(&item);
+  const Result<Image<std::uint16_t>> image =
+      Decode(depth != nullptr ? depth->frame.image : thermal->frame.image);
+  if (!image) return Err(image.error());
+  return depth != nullptr ? DepthPicture(*image, depth->frame.depth_scale) : ThermalPicture(*image);
+}
+
+}  // namespace
+
+RgbImage ThermalPicture(const Image<std::uint16_t>& centikelvin) {
+  Image<float> celsius(centikelvin.width(), centikelvin.height(), NAN);
+  for (std::size_t i = 0; i < celsius.size(); ++i) {
+    const std::uint16_t raw = centikelvin.pixels()[i];
+    if (raw != 0) celsius.pixels()[i] = CentikelvinToCelsius(raw);
+  }
+  return Picture(celsius, RendererOptions(), "apparent temperature", "\u00B0C");
+}
+
+RgbImage DepthPicture(const Image<std::uint16_t>& depth_raw, double depth_scale) {
+  Image<float> metres(depth_raw.width(), depth_raw.height(), NAN);
+  for (std::size_t i = 0; i < metres.size(); ++i) {
+    const std::uint16_t raw = depth_raw.pixels()[i];
+    if (raw != kNoDepth && raw != kNoDepthSaturated)
+      metres.pixels()[i] = static_cast<float>(raw / depth_scale);
+  }
+  RendererOptions options;
+  options.set_palette(Palette::GREY);
+  return Picture(metres, options, "distance", "m");
+}
+
+Status RenderFrame(RecordingReader& reader, Sensor sensor, std::uint64_t place,
+                   const std::filesystem::path& png) {
+  std::uint64_t seen = 0;
+  for (;;) {
+    const Result<std::optional<RecordedItem>> item = reader.Next();
+    if (!item) continue;  // Inspect counts what cannot be read.
+    if (!*item) break;
+    const bool wanted = sensor == Sensor::kDepth ? std::holds_alternative<RecordedDepth>(**item)
+                                                 : std::holds_alternative<RecordedThermal>(**item);
+    if (!wanted || seen++ != place) continue;
+    const Result<RgbImage> picture = PictureOf(**item);
+    if (!picture) return picture.error();
+    return WritePng(*picture, png);
+  }
+  return InvalidArgument(
+      fmt::format("there is no {} frame {}: the recording has {} (numbered from 0)",
+                  sensor == Sensor::kDepth ? "depth" : "thermal", place, seen));
+}
+
+}  // namespace isotherm

@@ -1,0 +1,72 @@
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "common/dataset/text_lines.h"
+#include "ground/cli/command.h"
+#include "ground/cli/frame_picture.h"
+#include "ground/cli/recording_report.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Shows what is in a recording: streams with rates, missing frames and gaps, shutter events,
+calibration, size, and whether the file is complete. A torn file is read up to its last good
+part.
+
+Examples:
+  isotherm inspect scan.mcap
+  isotherm inspect scan.mcap --render 120 -o frame.png
+  isotherm inspect scan.mcap --render 0 --stream depth -o depth.png)";
+
+struct Arguments {
+  std::string recording, output, stream;
+  bool json = false;
+  std::optional<std::uint64_t> render;
+};
+
+Sensor ChosenStream(const Arguments& arguments, const RecordingInfo& info) {
+  if (arguments.stream == "depth") return Sensor::kDepth;
+  if (arguments.stream == "thermal") return Sensor::kThermal;
+  const auto thermal = info.messages_by_topic.find("/thermal");
+  return thermal != info.messages_by_topic.end() && thermal->second > 0 ? Sensor::kThermal
+                                                                        : Sensor::kDepth;
+}
+
+int Run(const Arguments& arguments) {
+  const auto reader = RecordingReader::Open(arguments.recording);
+  if (!reader) return Fail(reader.error());
+  if (arguments.render) {
+    if (arguments.output.empty()) return Fail(InvalidArgument("--render needs -o FILE.png"));
+    const Status status = RenderFrame(**reader, ChosenStream(arguments, (*reader)->info()),
+                                      *arguments.render, arguments.output);
+    return status.ok() ? 0 : Fail(status);
+  }
+  const RecordingReport report = MakeReport(**reader, arguments.recording);
+  const std::string text = arguments.json ? ToJson(report).ToText() : ToText(report);
+  std::fwrite(text.data(), 1, text.size(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void AddInspectCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* command = app.add_subcommand("inspect", "Shows what is in a recording");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
+  command->add_flag("--json", arguments->json, "Machine-readable output");
+  command->add_option("--render", arguments->render, "Draw frame N (from 0) as a picture instead");
+  command
+      ->add_option("--stream", arguments->stream,
+                   "Stream to draw: depth or thermal (default, if there is one)")
+      ->check(CLI::IsMember({"depth", "thermal"}));
+  command->add_option("-o,--output", arguments->output, "Picture to write (.png)");
+  command->footer(kFooter);
+  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace isotherm

@@ -1,0 +1,77 @@
+// isotherm: the tool. Each subcommand is in a file of its own.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "ground/cli/command.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kDescription =
+    R"(Close-range 3D thermography: recordings of depth and thermal frames in, validated 3D thermograms
+out.)";
+
+constexpr const char* kFooter =
+    R"(Start here:
+  isotherm demo                                     a simulated scan over DDS on this computer
+  isotherm import --from tum FOLDER -o scan.mcap    your own images and time stamps
+  isotherm inspect scan.mcap                        what is in it
+  isotherm reconstruct scan.mcap -o out             the 3D thermogram: out/cloud.ply, out/mesh.ply, ...
+  isotherm evaluate out --groundtruth poses.txt     how far it is from the truth
+`isotherm COMMAND --help` explains each of them.
+
+Exit status:
+   0  done
+  64  wrong command line or argument
+  65  data is damaged, inconsistent or lacks something
+  66  a file or folder does not exist
+  69  a program, device or the network is not available
+  70  a defect of this program
+  73  the output cannot be created, the disk is full, or a limit is reached
+  74  reading or writing failed
+  78  wrong configuration (all problems are listed))";
+
+int Main(int argc, char** argv) {
+  CLI::App app(kDescription, "isotherm");
+  app.set_version_flag("--version", std::string(SoftwareName()));
+  app.require_subcommand(0, 1);
+  app.footer(kFooter);
+  CommandBody body;
+  AddDemoCommand(app, body);
+  AddImportCommand(app, body);
+  AddInspectCommand(app, body);
+  AddReconstructCommand(app, body);
+  AddEvaluateCommand(app, body);
+  AddSimulateCommand(app, body);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
+    if (asked) return app.exit(error);  // --help, --version
+    return Fail(InvalidArgument(std::string(error.what()) +
+                                " (isotherm --help explains the command line)"));
+  }
+  if (!body) {
+    std::fputs(app.help().c_str(), stdout);
+    return 0;
+  }
+  const int status = body();
+  // A full disk behind a redirected output shows only here.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    return Fail(IoError("standard output cannot be written"));
+  }
+  return status;
+}
+
+}  // namespace
+}  // namespace isotherm
+
+int main(int argc, char** argv) {
+  try {
+    return isotherm::Main(argc, argv);
+  } catch (const std::exception& exception) {
+    return isotherm::Fail(isotherm::Internal(std::string("unexpected: ") + exception.what()));
+  }
+}

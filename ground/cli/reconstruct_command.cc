@@ -1,0 +1,140 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "common/base/progress.h"
+#include "common/config/text_proto.h"
+#include "ground/cli/command.h"
+#include "ground/cli/numbers.h"
+#include "ground/cli/truth.h"
+
+#include "ground/reconstruct.h"
+#include "ground/validate_options.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kFooter =
+    R"(The scan volume is a box in `world` from --volume-min, axes along its edges. The initial pose is
+T_world_depth of the first depth frame; without one the volume's centre lies on the first
+frame's optical axis at the median depth. Options come from the defaults, the configuration
+file, --set and the other options, the later ones winning.
+
+DIR gets trajectory.txt, cloud.ply, mesh.ply, renders/*.png and stats.json.
+
+Examples:
+  isotherm reconstruct scan.mcap -o out
+  isotherm reconstruct room.mcap -o out --volume "4 3 4" --voxel 0.006 --set tsdf.truncation_distance_m=0.03
+  isotherm reconstruct door.mcap -o out --volume 0.96 --volume-min "-0.48 -0.48 -0.48" \
+      --initial-pose-from groundtruth.txt)";
+
+struct Arguments {
+  std::string recording, output, config, volume, volume_min, initial_pose, initial_pose_from;
+  std::optional<double> voxel;
+  std::optional<int> threads;
+  std::vector<std::string> overrides;
+};
+
+// All that is wrong with the options at once, one problem per line; empty if they are fine.
+std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
+  std::string problems;
+  const auto add = [&](const Status& status) {
+    if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
+  };
+  if (!arguments.config.empty()) add(LoadTextProto(arguments.config, options));
+  for (const std::string& assignment : arguments.overrides) {
+    add(ApplyOverride(assignment, options).WithContext("--set"));
+  }
+  VolumeOptions& volume = *options.mutable_volume();
+  if (!arguments.volume.empty()) {
+    if (const auto size = ParseNumbers(arguments.volume, {1, 3}, "--volume")) {
+      volume.set_size_x_m(size->front());
+      volume.set_size_y_m((*size)[size->size() / 2]);
+      volume.set_size_z_m(size->back());
+    } else {
+      add(size.error());
+    }
+  }
+  if (!arguments.volume_min.empty()) {
+    if (const auto corner = ParseNumbers(arguments.volume_min, {3}, "--volume-min")) {
+      volume.set_min_x_m((*corner)[0]);
+      volume.set_min_y_m((*corner)[1]);
+      volume.set_min_z_m((*corner)[2]);
+    } else {
+      add(corner.error());
+    }
+  }
+  if (arguments.voxel) volume.set_voxel_size_m(*arguments.voxel);
+  if (!arguments.initial_pose.empty()) volume.set_initial_pose(arguments.initial_pose);
+  if (arguments.threads) options.set_threads(*arguments.threads);
+  if (problems.empty()) {
+    for (const Status& status : ValidateAll(options)) add(status);
+  }
+  return problems;
+}
+
+Result<std::optional<RigidTransform>> InitialPose(const Arguments& arguments) {
+  if (arguments.initial_pose_from.empty()) return std::optional<RigidTransform>();
+  const auto poses = ReadTruePoses(arguments.initial_pose_from);
+  if (!poses) return Err(poses.error());
+  const auto time = FirstDepthTime(arguments.recording);
+  if (!time) return Err(time.error());
+  const auto pose = PoseAt(*poses, *time);
+  if (!pose) return Err(pose.error().WithContext(arguments.initial_pose_from));
+  return std::optional<RigidTransform>(*pose);
+}
+
+int Run(const Arguments& arguments) {
+  ReconstructRequest request;
+  const std::string problems = CollectOptions(arguments, request.options);
+  if (!problems.empty()) return FailConfiguration(problems);
+  const auto pose = InitialPose(arguments);
+  if (!pose) return Fail(pose.error());
+  request.initial_pose = *pose;
+  request.recording = arguments.recording;
+  request.output_dir = arguments.output;
+  std::optional<ProgressBar> progress;
+  request.progress = [&](double fraction, std::string_view) {
+    if (!progress) progress.emplace("reconstructing", 0, "");
+    progress->Update(fraction);
+  };
+  const Result<ReconstructSummary> summary = Reconstruct(request);
+  if (summary && progress) progress->Finish();
+  progress.reset();
+  if (!summary) return Fail(summary.error());
+  std::fwrite(summary->text.data(), 1, summary->text.size(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void AddReconstructCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* command = app.add_subcommand("reconstruct", "Turns a recording into a 3D thermogram");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
+  command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
+  command->add_option("--config", arguments->config,
+                      "Configuration file (text format of isotherm.GroundOptions)");
+  command->add_option("--volume", arguments->volume,
+                      "Edge length of the scan volume, or \"x y z\", metres");
+  command->add_option("--volume-min", arguments->volume_min,
+                      "Corner with the smallest coordinates, \"x y z\", metres");
+  command->add_option("--voxel", arguments->voxel, "Edge length of a voxel, metres");
+  CLI::Option* pose =
+      command->add_option("--initial-pose", arguments->initial_pose,
+                          "T_world_depth of the first depth frame, \"x y z qx qy qz qw\"");
+  command
+      ->add_option("--initial-pose-from", arguments->initial_pose_from,
+                   "Take it from this trajectory, or from the ground truth in a recording (.mcap)")
+      ->excludes(pose);
+  command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
+  command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
+      ->take_all()
+      ->type_name("STAGE.FIELD=VALUE");
+  command->footer(kFooter);
+  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace isotherm

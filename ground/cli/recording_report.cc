@@ -1,0 +1,252 @@
+#include "ground/cli/recording_report.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <ctime>
+
+#include "common/dataset/text_lines.h"
+
+namespace isotherm {
+namespace {
+
+std::string Utc(CaptureTime time) {
+  const std::time_t seconds = static_cast<std::time_t>(ToSeconds(time.time_since_epoch()));
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
+                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+std::string Size(const StreamSummary& stream) {
+  std::string text;
+  for (const auto& [width, height] : stream.sizes) {
+    text += fmt::format("{}{} x {}", text.empty() ? "" : " and ", width, height);
+  }
+  return text;
+}
+
+double Ratio(std::uint64_t part, std::uint64_t whole) {
+  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+}
+
+std::string Encodings(const StreamSummary& stream) {
+  std::string text;
+  for (const auto& [name, count] : stream.encodings) {
+    text += (text.empty() ? "" : ", ") + name;
+    if (stream.encodings.size() > 1) text += fmt::format(" ({})", count);
+  }
+  return text;
+}
+
+void AppendStream(std::string_view name, const StreamSummary& stream, std::string& text) {
+  if (stream.frames == 0) {
+    text += fmt::format("{:<14}none\n", name);
+    return;
+  }
+  text += fmt::format("{:<14}{} frames of {} pixels", name, stream.frames, Size(stream));
+  if (stream.period_s > 0.0) text += fmt::format(" at {:.2f} Hz", stream.rate_hz());
+  text += fmt::format(" over {:.3f} s\n", ToSeconds(stream.last - stream.first));
+  constexpr std::string_view kIndent = "              ";
+  text += fmt::format("{}stored as {}, {:.1f} % of {:.1f} MB raw\n", kIndent, Encodings(stream),
+                      100.0 * Ratio(stream.payload_bytes, stream.raw_bytes),
+                      1e-6 * static_cast<double>(stream.raw_bytes));
+  text += fmt::format("{}{} missing", kIndent, stream.missing);
+  if (stream.holes > 0) text += fmt::format(" in {} holes", stream.holes);
+  text += fmt::format(", {} duplicate, {} out of order, {} repeat the picture before\n",
+                      stream.duplicates, stream.out_of_order, stream.repeats);
+  if (stream.gaps == 0) {
+    text += fmt::format("{}no time gaps\n", kIndent);
+  } else {
+    text += fmt::format("{}{} time gap{} over 1.5 periods, the longest {:.1f} ms before {}\n",
+                        kIndent, stream.gaps, stream.gaps == 1 ? "" : "s",
+                        1e3 * stream.longest_gap_s, FormatStamp(stream.longest_gap_at));
+  }
+  if (stream.sigma_s > 0.0)
+    text += fmt::format("{}capture time +-{:.3f} ms\n", kIndent, 1e3 * stream.sigma_s);
+  if (stream.sessions.size() > 1)
+    text += fmt::format("{}{} sessions\n", kIndent, stream.sessions.size());
+}
+
+void AppendNuc(const RecordingSummary& summary, std::string& text) {
+  if (summary.thermal.frames == 0) return;
+  text += fmt::format("{:<14}{} of {} thermal frames valid;", "shutter", summary.valid_thermal,
+                      summary.thermal.frames);
+  std::string states;
+  for (const auto& [name, count] : summary.nuc_states)
+    states += fmt::format("{} {} {}", states.empty() ? "" : ",", count, name);
+  text += states + "\n";
+  for (const NucRun& run : summary.nuc_runs) {
+    text += fmt::format("{:<14}closed from {} to {} ({} frames)\n", "", FormatStamp(run.start),
+                        FormatStamp(run.end), run.frames);
+  }
+  for (const NucEvent& event : summary.nuc_events) {
+    text += fmt::format("{:<14}event from {} to {} ({:.3f} s)\n", "", FormatStamp(event.start),
+                        FormatStamp(event.end), ToSeconds(event.end - event.start));
+  }
+}
+
+void AppendCamera(std::string_view name, const std::optional<CameraModel>& camera,
+                  std::string& text) {
+  if (!camera) {
+    text += fmt::format("{:<14}{}: no intrinsics\n", "", name);
+    return;
+  }
+  text += fmt::format("{:<14}{}: {} x {}, fx {:.2f} fy {:.2f} cx {:.2f} cy {:.2f}{}\n", "", name,
+                      camera->width, camera->height, camera->fx, camera->fy, camera->cx, camera->cy,
+                      camera->HasDistortion() ? ", with distortion" : "");
+}
+
+void AppendRig(const RecordingReport& report, std::string& text) {
+  text += fmt::format("{:<14}", "calibration");
+  if (!report.rig) {
+    text += report.rig_problem + "\n";
+    return;
+  }
+  const Rig& rig = *report.rig;
+  text += fmt::format("{} depth units per metre, thermal delay {} s", rig.depth_scale,
+                      rig.thermal_delay_s);
+  if (!rig.serial.empty()) text += ", serial " + rig.serial;
+  if (!rig.date.empty()) text += ", " + rig.date;
+  text += "\n";
+  AppendCamera("depth", rig.depth, text);
+  AppendCamera("thermal", rig.thermal, text);
+  if (rig.T_thermal_depth) {
+    const Eigen::Vector3d t = 1e3 * rig.T_thermal_depth->translation();
+    const double angle_deg =
+        RotationAngle(RigidTransform::Identity(), *rig.T_thermal_depth) * 180.0 / 3.14159265358979;
+    text += fmt::format("{:<14}T_thermal_depth: {:.1f} {:.1f} {:.1f} mm, {:.2f} degrees\n", "",
+                        t.x(), t.y(), t.z(), angle_deg);
+  } else {
+    text += fmt::format("{:<14}no T_thermal_depth: temperatures cannot be fused\n", "");
+  }
+}
+
+void AppendOther(const RecordingReport& report, std::string& text) {
+  for (const auto& [stream, count] : report.summary.poses)
+    text += fmt::format("{:<14}{} poses\n", stream, count);
+  for (const auto& [topic, count] : report.info.messages_by_topic) {
+    text += fmt::format("{:<14}{} messages\n", topic, count);
+  }
+  for (const auto& [name, values] : report.info.metadata) {
+    for (const auto& [key, value] : values) {
+      const bool long_text = value.find('\n') != std::string::npos;
+      text += fmt::format("{:<14}{}: {}\n", name, key,
+                          long_text ? fmt::format("({} bytes of text)", value.size()) : value);
+    }
+  }
+}
+
+Json StreamJson(const StreamSummary& stream) {
+  Json json;
+  json["frames"] = stream.frames;
+  if (stream.frames == 0) return json;
+  json["width"] = stream.sizes.begin()->first;
+  json["height"] = stream.sizes.begin()->second;
+  json["sizes"] = stream.sizes.size();
+  json["first"] = FormatStamp(stream.first);
+  json["last"] = FormatStamp(stream.last);
+  json["rate_hz"] = stream.rate_hz();
+  json["missing"] = stream.missing;
+  json["holes"] = stream.holes;
+  json["duplicates"] = stream.duplicates;
+  json["out_of_order"] = stream.out_of_order;
+  json["gaps"] = stream.gaps;
+  json["longest_gap_s"] = stream.longest_gap_s;
+  json["repeats"] = stream.repeats;
+  json["sessions"] = stream.sessions.size();
+  json["capture_sigma_s"] = stream.sigma_s;
+  for (const auto& [name, count] : stream.encodings) json["encodings"][name] = count;
+  json["raw_bytes"] = stream.raw_bytes;
+  json["payload_bytes"] = stream.payload_bytes;
+  json["compression"] = Ratio(stream.payload_bytes, stream.raw_bytes);
+  return json;
+}
+
+Json NucJson(const RecordingSummary& summary) {
+  Json json;
+  json["valid_frames"] = summary.valid_thermal;
+  for (const auto& [name, count] : summary.nuc_states) json["states"][name] = count;
+  for (const NucRun& run : summary.nuc_runs) {
+    Json closed;
+    closed["start"] = FormatStamp(run.start);
+    closed["end"] = FormatStamp(run.end);
+    closed["frames"] = run.frames;
+    json["closed"].Append(std::move(closed));
+  }
+  for (const NucEvent& event : summary.nuc_events) {
+    Json item;
+    item["start"] = FormatStamp(event.start);
+    item["end"] = FormatStamp(event.end);
+    json["events"].Append(std::move(item));
+  }
+  return json;
+}
+
+}  // namespace
+
+RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path& path) {
+  RecordingReport report;
+  report.file = path.string();
+  std::error_code error;
+  report.file_bytes = std::filesystem::file_size(path, error);
+  if (error) report.file_bytes = 0;
+  report.info = reader.info();
+  if (Result<Rig> rig = reader.ReadRig()) {
+    report.rig = std::move(*rig);
+  } else {
+    report.rig_problem = rig.error().message();
+  }
+  report.summary = Summarize(reader);
+  return report;
+}
+
+std::string ToText(const RecordingReport& report) {
+  std::string text =
+      fmt::format("{}: {:.1f} MB, ", report.file, 1e-6 * static_cast<double>(report.file_bytes));
+  text += report.info.complete ? "complete\n" : "not complete (the recorder was interrupted)\n";
+  if (report.info.bytes_ignored > 0) {
+    text += fmt::format("{:<14}{} bytes are damaged or unfinished and were left out\n", "",
+                        report.info.bytes_ignored);
+  }
+  if (report.info.start && report.info.end) {
+    text += fmt::format("{:<14}{} to {} ({})\n", "time", FormatStamp(*report.info.start),
+                        FormatStamp(*report.info.end), Utc(*report.info.start));
+  }
+  AppendStream("depth", report.summary.depth, text);
+  AppendStream("thermal", report.summary.thermal, text);
+  AppendNuc(report.summary, text);
+  AppendRig(report, text);
+  if (report.summary.unreadable > 0)
+    text += fmt::format("{:<14}{} messages\n", "unreadable", report.summary.unreadable);
+  AppendOther(report, text);
+  return text;
+}
+
+Json ToJson(const RecordingReport& report) {
+  Json json;
+  json["file"] = report.file;
+  json["bytes"] = report.file_bytes;
+  json["complete"] = report.info.complete;
+  json["bytes_ignored"] = report.info.bytes_ignored;
+  json["unreadable_messages"] = report.summary.unreadable;
+  json["depth"] = StreamJson(report.summary.depth);
+  json["thermal"] = StreamJson(report.summary.thermal);
+  json["nuc"] = NucJson(report.summary);
+  for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
+  for (const auto& [topic, count] : report.info.messages_by_topic) json["messages"][topic] = count;
+  for (const auto& [name, values] : report.info.metadata) {
+    for (const auto& [key, value] : values) json["metadata"][name][key] = value;
+  }
+  json["calibration"]["present"] = report.rig.has_value();
+  if (report.rig) {
+    json["calibration"]["depth"] = report.rig->depth.has_value();
+    json["calibration"]["thermal"] = report.rig->thermal.has_value();
+    json["calibration"]["T_thermal_depth"] = report.rig->T_thermal_depth.has_value();
+    json["calibration"]["thermal_delay_s"] = report.rig->thermal_delay_s;
+  }
+  return json;
+}
+
+}  // namespace isotherm

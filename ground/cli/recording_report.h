@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+
+#include "ground/cli/recording_summary.h"
+#include "ground/export/json.h"
+
+namespace isotherm {
+
+/// Everything that `isotherm inspect` says.
+struct RecordingReport {
+  std::string file;
+  std::uint64_t file_bytes = 0;
+  RecordingInfo info;
+  RecordingSummary summary;
+  std::optional<Rig> rig;
+  std::string rig_problem;  ///< Why there is no rig.
+};
+
+RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path& path);
+
+std::string ToText(const RecordingReport& report);
+Json ToJson(const RecordingReport& report);
+
+}  // namespace isotherm

@@ -1,0 +1,160 @@
+#include "ground/cli/recording_summary.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isotherm {
+namespace {
+
+template <typename T>
+T Median(std::vector<T> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void CountNumbers(std::vector<std::pair<std::uint64_t, std::uint64_t>>& numbers,
+                  StreamSummary& stream) {
+  std::sort(numbers.begin(), numbers.end());
+  for (std::size_t i = 1; i < numbers.size(); ++i) {
+    if (numbers[i].first != numbers[i - 1].first) continue;
+    const std::uint64_t step = numbers[i].second - numbers[i - 1].second;
+    if (step == 0) ++stream.duplicates;
+    if (step < 2) continue;
+    ++stream.holes;
+    stream.missing += step - 1;
+  }
+}
+
+void MeasurePeriods(std::vector<CaptureTime>& times, StreamSummary& stream) {
+  constexpr double kGapPeriods = 1.5;
+  std::sort(times.begin(), times.end());
+  stream.first = times.front();
+  stream.last = times.back();
+  std::vector<double> periods_s;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    periods_s.push_back(ToSeconds(times[i] - times[i - 1]));
+  if (periods_s.empty()) return;
+  stream.period_s = Median(periods_s);
+  for (std::size_t i = 0; i < periods_s.size(); ++i) {
+    if (periods_s[i] <= kGapPeriods * stream.period_s) continue;
+    ++stream.gaps;
+    if (periods_s[i] <= stream.longest_gap_s) continue;
+    stream.longest_gap_s = periods_s[i];
+    stream.longest_gap_at = times[i];
+  }
+}
+
+}  // namespace
+
+std::string EncodingName(Encoding encoding) {
+  switch (encoding) {
+    case Encoding::kRaw16:
+      return "raw";
+    case Encoding::kPng16:
+      return "png";
+    case Encoding::kDepthRvl:
+      return "depth-rvl";
+    case Encoding::kThermalDelta:
+      return "thermal-delta";
+  }
+  return fmt::format("unknown ({})", static_cast<int>(encoding));
+}
+
+std::string NucStateName(NucState state) {
+  switch (state) {
+    case NucState::kUnknown:
+      return "unknown";
+    case NucState::kIdle:
+      return "idle";
+    case NucState::kDesired:
+      return "desired";
+    case NucState::kImminent:
+      return "imminent";
+    case NucState::kInProgress:
+      return "in progress";
+    case NucState::kSettling:
+      return "settling";
+    case NucState::kBlocked:
+      return "blocked";
+    case NucState::kError:
+      return "error";
+  }
+  return fmt::format("unknown ({})", static_cast<int>(state));
+}
+
+void RecordingSummarizer::AddFrame(const FrameHeader& header, const EncodedImage& image,
+                                   StreamSummary& stream, Stamps& stamps) {
+  ++stream.frames;
+  stream.sessions.insert(header.session);
+  stream.sizes.insert({image.width, image.height});
+  ++stream.encodings[EncodingName(image.encoding)];
+  stream.raw_bytes +=
+      2 * static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
+  stream.payload_bytes += image.payload.size();
+  const EncodedImage& last = stamps.last_image;
+  // Our codes are deterministic: equal pictures have equal codes.
+  if (stream.frames > 1 && last.encoding == image.encoding && last.payload == image.payload)
+    ++stream.repeats;
+  if (!stamps.times.empty() && header.capture_time < stamps.times.back()) ++stream.out_of_order;
+  stamps.numbers.emplace_back(header.session, header.frame_number);
+  stamps.times.push_back(header.capture_time);
+  stamps.sigmas_ns.push_back(header.capture_sigma.count());
+  stamps.last_image = image;
+}
+
+void RecordingSummarizer::AddNuc(const EncodedThermalFrame& frame) {
+  if (frame.valid) ++summary_.valid_thermal;
+  ++summary_.nuc_states[NucStateName(frame.nuc_state)];
+  const bool in_nuc = frame.nuc_state == NucState::kInProgress;
+  const CaptureTime now = frame.header.capture_time;
+  if (in_nuc && !in_nuc_) summary_.nuc_runs.push_back({now, now, 0});
+  if (in_nuc) {
+    summary_.nuc_runs.back().end = now;
+    ++summary_.nuc_runs.back().frames;
+  }
+  in_nuc_ = in_nuc;
+}
+
+void RecordingSummarizer::Add(const RecordedItem& item) {
+  if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
+    AddFrame(depth->frame.header, depth->frame.image, summary_.depth, depth_);
+  } else if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
+    AddFrame(thermal->frame.header, thermal->frame.image, summary_.thermal, thermal_);
+    AddNuc(thermal->frame);
+  } else if (const auto* event = std::get_if<NucEvent>(&item)) {
+    summary_.nuc_events.push_back(*event);
+  } else if (const auto* pose = std::get_if<RecordedPose>(&item)) {
+    ++summary_.poses[pose->stream];
+  }
+}
+
+void RecordingSummarizer::FinishStream(Stamps& stamps, StreamSummary& stream) {
+  if (stamps.times.empty()) return;
+  CountNumbers(stamps.numbers, stream);
+  MeasurePeriods(stamps.times, stream);
+  stream.sigma_s = 1e-9 * static_cast<double>(Median(stamps.sigmas_ns));
+}
+
+RecordingSummary RecordingSummarizer::Finish() {
+  FinishStream(depth_, summary_.depth);
+  FinishStream(thermal_, summary_.thermal);
+  return std::move(summary_);
+}
+
+RecordingSummary Summarize(RecordingReader& reader) {
+  RecordingSummarizer summarizer;
+  for (;;) {
+    const Result<std::optional<RecordedItem>> item = reader.Next();
+    if (!item) {
+      summarizer.AddUnreadable();
+    } else if (!*item) {
+      return summarizer.Finish();
+    } else {
+      summarizer.Add(**item);
+    }
+  }
+}
+
+}  // namespace isotherm

@@ -1,0 +1,197 @@
+#include "ground/cli/result_evaluation.h"
+
+#include <fmt/format.h>
+
+#include "common/dataset/trajectory.h"
+#include "ground/cli/truth.h"
+#include "ground/evaluation/point_sets.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+
+Result<TrajectoryErrors> CompareTrajectory(const EvaluationRequest& request) {
+  const std::filesystem::path path = request.result_dir / "trajectory.txt";
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return Err(
+        NotFound(fmt::format("{}: no such file; is '{}' the output folder of isotherm reconstruct?",
+                             path.string(), request.result_dir.string())));
+  }
+  const auto estimated = ReadTrajectory(path);
+  if (!estimated) return Err(estimated.error());
+  const auto truth = ReadTruePoses(request.groundtruth);
+  if (!truth) return Err(truth.error());
+  TrajectoryEvaluationOptions options;
+  options.tolerance = FromSeconds(1e-3 * request.tolerance_ms);
+  options.first = request.first;
+  if (request.skip_repeats) {
+    auto repeats = RepeatedDepthFrames(*request.skip_repeats);
+    if (!repeats) return Err(repeats.error());
+    options.left_out = std::move(*repeats);
+  }
+  return EvaluateTrajectory(*estimated, *truth, options);
+}
+
+void KeepInside(const Eigen::AlignedBox3f& box, TruePoints& points) {
+  TruePoints kept;
+  for (std::size_t i = 0; i < points.positions_m.size(); ++i) {
+    if (!box.contains(points.positions_m[i])) continue;
+    kept.positions_m.push_back(points.positions_m[i]);
+    kept.normals.push_back(points.normals[i]);
+    kept.primitive.push_back(points.primitive[i]);
+    if (!points.celsius.empty()) kept.celsius.push_back(points.celsius[i]);
+    if (!points.seen.empty()) kept.seen.push_back(points.seen[i]);
+  }
+  points = std::move(kept);
+}
+
+Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) {
+  const auto cloud = ReadMeasuredCloud(request.result_dir / "cloud.ply");
+  if (!cloud) return cloud.error();
+  if (cloud->positions_m.empty()) return DataLoss("cloud.ply has no points");
+  auto points = ReadTruePoints(*request.surface);
+  if (!points) return points.error();
+  if (request.volume_box) KeepInside(*request.volume_box, *points);
+  if (points->positions_m.empty())
+    return InvalidArgument("no true surface lies inside the volume box");
+  const TrueSurface truth(std::move(*points));
+  const std::vector<Eigen::Vector3f> positions =
+      Transformed(report.trajectory.T_truth_world, cloud->positions_m);
+  report.cloud_points = positions.size();
+  report.surface = EvaluateSurface(positions, truth, {});
+  if (!request.emissivity) return OkStatus();
+  TemperatureEvaluationOptions options;
+  options.emissivity = *request.emissivity;
+  options.ambient_celsius = request.ambient_celsius;
+  const auto temperature = EvaluateTemperatures(*cloud, positions, truth, options);
+  if (!temperature) return temperature.error();
+  report.temperature = *temperature;
+  return OkStatus();
+}
+
+std::string Line(std::string_view name, const ErrorStatistics& s, double factor,
+                 std::string_view unit) {
+  return fmt::format("  {:<26}RMS {:.3f}  median {:.3f}  95 % {:.3f}  max {:.3f} {}\n", name,
+                     factor * s.rms, factor * s.median, factor * s.p95, factor * s.max, unit);
+}
+
+std::string Line(std::string_view name, const TemperatureErrors& errors) {
+  if (errors.magnitude.count == 0) return fmt::format("  {:<26}no points\n", name);
+  return fmt::format(
+      "  {:<26}{} points  median {:.3f}  95 % {:.3f} K  beyond 5 K {:.2f} %  mean {:+.3f} K\n",
+      name, errors.magnitude.count, errors.magnitude.median, errors.magnitude.p95,
+      100.0 * errors.gross_share, errors.mean);
+}
+
+Json StatisticsJson(const ErrorStatistics& s) {
+  Json json;
+  json["count"] = s.count;
+  json["rms"] = s.rms;
+  json["median"] = s.median;
+  json["p95"] = s.p95;
+  json["max"] = s.max;
+  return json;
+}
+
+Json TemperatureJson(const TemperatureErrors& errors) {
+  Json json;
+  json["count"] = errors.magnitude.count;
+  json["median_kelvin"] = errors.magnitude.median;
+  json["p95_kelvin"] = errors.magnitude.p95;
+  json["mean_kelvin"] = errors.mean;
+  json["share_beyond_5_kelvin"] = errors.gross_share;
+  return json;
+}
+
+Json ClassJson(const ClassErrors& errors) {
+  Json json = TemperatureJson(errors.all);
+  json["away_from_edges"] = TemperatureJson(errors.away_from_edges);
+  return json;
+}
+
+std::string TemperatureText(const TemperatureReport& temperature) {
+  std::string text =
+      fmt::format("temperature (measured minus expected apparent; {} points were never measured)\n",
+                  temperature.never_measured);
+  text += Line("good", temperature.good.all);
+  text += Line("  away from edges", temperature.good.away_from_edges);
+  text += Line("acceptable", temperature.acceptable.all);
+  text += Line("  away from edges", temperature.acceptable.away_from_edges);
+  text += Line("bad", temperature.bad.all);
+  text += Line("  away from edges", temperature.bad.away_from_edges);
+  return text + Line("all", temperature.any.all);
+}
+
+}  // namespace
+
+Result<EvaluationReport> Evaluate(const EvaluationRequest& request) {
+  EvaluationReport report;
+  auto trajectory = CompareTrajectory(request);
+  if (!trajectory) return Err(trajectory.error());
+  report.trajectory = std::move(*trajectory);
+  if (request.surface) {
+    if (Status status = CompareCloud(request, report); !status.ok()) return Err(std::move(status));
+  }
+  return report;
+}
+
+std::string ToText(const EvaluationReport& report) {
+  const TrajectoryErrors& t = report.trajectory;
+  std::string text = fmt::format(
+      "trajectory: {} of {} true poses have a pose ({:.1f} %), path {:.3f} m", t.matched,
+      t.truth_poses, 100.0 * static_cast<double>(t.matched) / static_cast<double>(t.truth_poses),
+      t.length_m);
+  if (t.left_out > 0) text += fmt::format(", {} repeated frames left out", t.left_out);
+  if (t.without_truth > 0) text += fmt::format(", {} poses without truth", t.without_truth);
+  text += "\n" + Line("rigidly aligned", t.aligned_m, kMillimetres, "mm");
+  text += Line("", t.aligned_rad, kDegrees, "degrees");
+  text += Line("from the first pose", t.from_first_m, kMillimetres, "mm");
+  if (report.surface) {
+    const SurfaceErrors& s = *report.surface;
+    text += fmt::format("surface: {} points to the true surface\n", report.cloud_points);
+    text += Line("from the first pose", s.distance_m, kMillimetres, "mm");
+    text += Line("rigidly fitted", s.fitted_distance_m, kMillimetres, "mm");
+    text += fmt::format(
+        "  {:<26}{:.2f} % of {} true points seen at least 3 times have a point within 5 mm ({:.2f} "
+        "% fitted)\n",
+        "completeness", 100.0 * s.completeness, s.surface_points, 100.0 * s.fitted_completeness);
+  }
+  if (report.temperature) text += TemperatureText(*report.temperature);
+  return text;
+}
+
+Json ToJson(const EvaluationReport& report) {
+  Json json;
+  Json& trajectory = json["trajectory"];
+  trajectory["true_poses"] = report.trajectory.truth_poses;
+  trajectory["matched"] = report.trajectory.matched;
+  trajectory["left_out"] = report.trajectory.left_out;
+  trajectory["without_truth"] = report.trajectory.without_truth;
+  trajectory["path_m"] = report.trajectory.length_m;
+  trajectory["aligned_m"] = StatisticsJson(report.trajectory.aligned_m);
+  trajectory["aligned_rad"] = StatisticsJson(report.trajectory.aligned_rad);
+  trajectory["from_first_m"] = StatisticsJson(report.trajectory.from_first_m);
+  if (report.surface) {
+    Json& surface = json["surface"];
+    surface["points"] = report.cloud_points;
+    surface["distance_m"] = StatisticsJson(report.surface->distance_m);
+    surface["fitted_distance_m"] = StatisticsJson(report.surface->fitted_distance_m);
+    surface["true_points"] = report.surface->surface_points;
+    surface["completeness"] = report.surface->completeness;
+    surface["fitted_completeness"] = report.surface->fitted_completeness;
+  }
+  if (report.temperature) {
+    Json& temperature = json["temperature"];
+    temperature["never_measured"] = report.temperature->never_measured;
+    temperature["good"] = ClassJson(report.temperature->good);
+    temperature["acceptable"] = ClassJson(report.temperature->acceptable);
+    temperature["bad"] = ClassJson(report.temperature->bad);
+    temperature["all"] = ClassJson(report.temperature->any);
+  }
+  return json;
+}
+
+}  // namespace isotherm

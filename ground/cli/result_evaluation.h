@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
+
+#include "ground/evaluation/surface_evaluation.h"
+#include "ground/evaluation/temperature_evaluation.h"
+#include "ground/evaluation/trajectory_evaluation.h"
+#include "ground/export/json.h"
+
+namespace isotherm {
+
+/// What `isotherm evaluate` compares.
+struct EvaluationRequest {
+  std::filesystem::path result_dir;   ///< With trajectory.txt and cloud.ply.
+  std::filesystem::path groundtruth;  ///< Trajectory file, or recording with ground truth.
+  std::optional<std::filesystem::path> surface;
+  std::optional<double> emissivity;  ///< Absent: temperatures are not compared.
+  double ambient_celsius = 23.0;
+  std::size_t first = 0;
+  std::optional<std::filesystem::path>
+      skip_repeats;  ///< Recording whose repeated frames are left out.
+  double tolerance_ms = 1.0;
+  /// True surface outside this box (truth's world) does not count.
+  std::optional<Eigen::AlignedBox3f> volume_box;
+};
+
+struct EvaluationReport {
+  TrajectoryErrors trajectory;
+  std::optional<SurfaceErrors> surface;
+  std::size_t cloud_points = 0;
+  std::optional<TemperatureReport> temperature;
+};
+
+Result<EvaluationReport> Evaluate(const EvaluationRequest& request);
+
+std::string ToText(const EvaluationReport& report);
+Json ToJson(const EvaluationReport& report);
+
+}  // namespace isotherm

@@ -1,0 +1,86 @@
+#include "ground/cli/simulation_files.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/config/nearest_name.h"
+#include "common/simulation/options.h"
+#include "common/simulation/render_recording.h"
+#include "common/simulation/simulated_scan.h"
+#include "common/simulation/simulation_options.pb.h"
+#include "common/simulation/surface_sampling.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kSampleSpacing_m = 0.002;
+constexpr std::size_t kPoseStep = 10;
+
+}  // namespace
+
+Status SetScene(const std::string& name, SimulationOptions& options) {
+  std::vector<std::string> names;
+  for (int value = SimulatedScene_MIN; value <= SimulatedScene_MAX; ++value) {
+    if (!SimulatedScene_IsValid(value)) continue;
+    options.mutable_scene()->set_scene(static_cast<SimulatedScene>(value));
+    names.push_back(SceneName(options));
+    if (names.back() == name) return OkStatus();
+  }
+  return InvalidArgument(fmt::format("there is no scene '{}'.{} Known: {}", name,
+                                     DidYouMean(name, names), JoinNames(names)));
+}
+
+Status RenderToFile(const SimulationOptions& options, const std::filesystem::path& path,
+                    bool overwrite, ThreadPool& pool,
+                    const std::function<void(double fraction)>& progress) {
+  std::error_code error;
+  const std::filesystem::file_status found = std::filesystem::status(path, error);
+  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) {
+    return InvalidArgument(
+        fmt::format("{}: is not a regular file; name a new .mcap file", path.string()));
+  }
+  if (std::filesystem::exists(found) && !overwrite) {
+    return InvalidArgument(fmt::format("{}: exists already; --force replaces it", path.string()));
+  }
+  std::filesystem::path partial = path;
+  partial.replace_filename(fmt::format(".{}.{}.partial", path.filename().string(), ::getpid()));
+  const Status status = RenderRecording(options, partial, pool, progress);
+  if (!status.ok()) {
+    std::filesystem::remove(partial, error);
+    return status;
+  }
+  std::filesystem::rename(partial, path, error);
+  if (!error) return OkStatus();
+  const std::string reason = error.message();
+  std::filesystem::remove(partial, error);
+  return IoError(fmt::format("{}: cannot be created: {}", path.string(), reason));
+}
+
+Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem::path& path) {
+  const Result<std::unique_ptr<SimulatedScan>> scan = SimulatedScan::Create(options);
+  if (!scan) return scan.error();
+  std::vector<SurfaceSample> samples = SampleSurface((*scan)->scene(), kSampleSpacing_m);
+  const Rig& rig = (*scan)->rig();
+  const double max_depth_m = options.depth().max_depth_m();
+  const auto& times = (*scan)->depth_times();
+  for (std::size_t i = 0; i < times.size(); i += kPoseStep) {
+    const CaptureTime time = times[i].exposure;
+    CountSeen((*scan)->scene(), *rig.depth, (*scan)->PoseAt(time), max_depth_m, SeenBy::kDepth,
+              samples);
+    CountSeen((*scan)->scene(), *rig.thermal, (*scan)->ThermalPoseAt(time), max_depth_m,
+              SeenBy::kThermal, samples);
+  }
+  return WriteSurfacePly(path, samples);
+}
+
+int ChosenThreads(int threads) {
+  return threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+}  // namespace isotherm
