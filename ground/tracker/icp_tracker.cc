@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "ground/tracker/icp_kernel.h"
+
 namespace isotherm {
 namespace {
 
@@ -18,81 +20,25 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Depth at which an observation has weight 1, metres.
 constexpr float kReferenceDepth = 0.5F;
 
-/// Upper triangle of H (21), g (6), squared residuals, in single precision for one strip of rows.
-struct StripSums {
-  std::array<float, 28> sums{};
-  std::int64_t inliers = 0;
-  std::int64_t candidates = 0;
-
-  void Add(const std::array<float, 6>& J, float residual, float weight) {
-    std::size_t k = 0;
-    for (std::size_t i = 0; i < 6; ++i) {
-      const float weighted = weight * J[i];
-      for (std::size_t j = i; j < 6; ++j) sums[k++] += weighted * J[j];
-    }
-    for (std::size_t i = 0; i < 6; ++i) sums[k++] += weight * J[i] * residual;
-    sums[k] += residual * residual;
-    ++inliers;
+IcpSums ToIcpSums(const IcpKernelSums& strip) {
+  IcpSums result;
+  std::size_t k = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) result.H(i, j) = result.H(j, i) = strip.sums[k++];
   }
+  for (int i = 0; i < 6; ++i) result.g(i) = strip.sums[k++];
+  result.squared_residuals_m2 = strip.sums[k];
+  result.inliers = strip.inliers;
+  result.candidates = strip.candidates;
+  return result;
+}
 
-  IcpSums ToIcpSums() const {
-    IcpSums result;
-    std::size_t k = 0;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j) result.H(i, j) = result.H(j, i) = sums[k++];
-    }
-    for (int i = 0; i < 6; ++i) result.g(i) = sums[k++];
-    result.squared_residuals_m2 = sums[k];
-    result.inliers = inliers;
-    result.candidates = candidates;
-    return result;
-  }
-};
-
-/// Single-precision copies of all that a strip needs.
-struct StripContext {
-  const SurfaceMaps& current;
-  const SurfaceMaps& model;
-  Eigen::Matrix3f R_world_depth;
-  Eigen::Vector3f t_world_depth;
-  Eigen::Matrix3f R_model_world;
-  Eigen::Vector3f t_model_world;
-  float fx, fy, cx, cy;
-  Eigen::Vector3f volume_min, volume_max, centre;
-  float max_squared_distance, min_normal_cosine;
-};
-
-void AccumulateRow(const StripContext& c, int y, StripSums& sums) {
-  const auto vertex = [](const SurfaceMaps& m, std::size_t i) {
-    return Eigen::Vector3f(m.vx.data()[i], m.vy.data()[i], m.vz.data()[i]);
-  };
-  const auto normal = [](const SurfaceMaps& m, std::size_t i) {
-    return Eigen::Vector3f(m.nx.data()[i], m.ny.data()[i], m.nz.data()[i]);
-  };
-  const int width = c.current.width();
-  for (int x = 0; x < width; ++x) {
-    const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-    const float depth = c.current.vz.data()[i];
-    if (!(depth > 0.0F)) continue;
-    const Eigen::Vector3f p = c.R_world_depth * vertex(c.current, i) + c.t_world_depth;
-    if ((p.array() < c.volume_min.array()).any() || (p.array() > c.volume_max.array()).any()) continue;
-    ++sums.candidates;
-    const Eigen::Vector3f p_model = c.R_model_world * p + c.t_model_world;
-    if (!(p_model.z() > 0.0F)) continue;
-    const int u = static_cast<int>(std::floor(c.fx * p_model.x() / p_model.z() + c.cx + 0.5F));
-    const int v = static_cast<int>(std::floor(c.fy * p_model.y() / p_model.z() + c.cy + 0.5F));
-    if (!c.model.vx.Contains(u, v)) continue;
-    const auto j = static_cast<std::size_t>(v) * static_cast<std::size_t>(c.model.width()) +
-                   static_cast<std::size_t>(u);
-    const Eigen::Vector3f q = vertex(c.model, j);
-    const Eigen::Vector3f difference = p - q;
-    if (!(difference.squaredNorm() < c.max_squared_distance)) continue;  // Also refuses NaN.
-    const Eigen::Vector3f n = normal(c.model, j);
-    if (!(n.dot(c.R_world_depth * normal(c.current, i)) > c.min_normal_cosine)) continue;
-    const float weight = std::pow(kReferenceDepth / depth, 4.0F);
-    const Eigen::Vector3f rotation = (p - c.centre).cross(n);
-    sums.Add({n.x(), n.y(), n.z(), rotation.x(), rotation.y(), rotation.z()}, n.dot(difference), weight);
-  }
+/// Row-major rotation and translation in single precision.
+void CopyTransform(const RigidTransform& transform, float* R, float* t) {
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> rotation = transform.linear().cast<float>();
+  const Eigen::Vector3f translation = transform.translation().cast<float>();
+  std::copy_n(rotation.data(), 9, R);
+  std::copy_n(translation.data(), 3, t);
 }
 
 }  // namespace
@@ -141,33 +87,32 @@ IcpSums& IcpSums::operator+=(const IcpSums& other) {
 }
 
 IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth, const ModelView& model,
-                      const VoxelGrid& grid, const IcpLimits& limits, const Eigen::Vector3d& centre,
-                      ThreadPool& pool) {
-  const RigidTransform T_model_world = model.T_world_depth.inverse();
-  const StripContext context{current,
-                             model.maps,
-                             T_world_depth.linear().cast<float>(),
-                             T_world_depth.translation().cast<float>(),
-                             T_model_world.linear().cast<float>(),
-                             T_model_world.translation().cast<float>(),
-                             static_cast<float>(model.camera.fx),
-                             static_cast<float>(model.camera.fy),
-                             static_cast<float>(model.camera.cx),
-                             static_cast<float>(model.camera.cy),
-                             grid.min_m.cast<float>(),
-                             grid.max_m().cast<float>(),
-                             centre.cast<float>(),
-                             limits.max_distance_m * limits.max_distance_m,
-                             limits.min_normal_cosine};
+                      const VoxelGrid& grid, const IcpLimits& limits, ThreadPool& pool) {
+  IcpKernelArgs args{};
+  args.current = &current;
+  args.model = &model.maps;
+  CopyTransform(T_world_depth, args.R_world_depth, args.t_world_depth);
+  CopyTransform(model.T_world_depth.inverse() * T_world_depth, args.R_model_depth, args.t_model_depth);
+  args.fx = static_cast<float>(model.camera.fx);
+  args.fy = static_cast<float>(model.camera.fy);
+  args.cx = static_cast<float>(model.camera.cx);
+  args.cy = static_cast<float>(model.camera.cy);
+  const Eigen::Vector3f volume_min = grid.min_m.cast<float>();
+  const Eigen::Vector3f volume_max = grid.max_m().cast<float>();
+  std::copy_n(volume_min.data(), 3, args.volume_min);
+  std::copy_n(volume_max.data(), 3, args.volume_max);
+  args.max_squared_distance_m2 = limits.max_distance_m * limits.max_distance_m;
+  args.min_normal_cosine = limits.min_normal_cosine;
+  args.reference_depth_m = kReferenceDepth;
+
   const int height = current.height();
   const int strips = (height + kRowsPerTask - 1) / kRowsPerTask;
-  std::vector<StripSums> partial(static_cast<std::size_t>(strips));
+  std::vector<IcpKernelSums> partial(static_cast<std::size_t>(strips));
   pool.ParallelFor(strips, [&](int strip) {
-    const int end = std::min(height, (strip + 1) * kRowsPerTask);
-    for (int y = strip * kRowsPerTask; y < end; ++y) AccumulateRow(context, y, partial[strip]);
+    AccumulateIcpRows(args, strip * kRowsPerTask, std::min(height, (strip + 1) * kRowsPerTask), partial[strip]);
   });
   IcpSums total;  // In order, so that the result does not depend on the thread count.
-  for (const StripSums& sums : partial) total += sums.ToIcpSums();
+  for (const IcpKernelSums& sums : partial) total += ToIcpSums(sums);
   return total;
 }
 
@@ -186,9 +131,7 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
                                                       options_.iterations_coarse()};
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
     for (int iteration = 0; iteration < iterations[level]; ++iteration) {
-      const Eigen::Vector3d centre = result.T_world_depth.translation();
-      const IcpSums sums =
-          AccumulateIcp(depth.maps[level], result.T_world_depth, model, grid, limits, centre, pool);
+      const IcpSums sums = AccumulateIcp(depth.maps[level], result.T_world_depth, model, grid, limits, pool);
       ++result.iterations;
       result.inlier_ratio =
           static_cast<double>(sums.inliers) / static_cast<double>(std::max<std::int64_t>(sums.candidates, 1));

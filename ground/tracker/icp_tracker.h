@@ -55,7 +55,7 @@ class IcpTracker {
 };
 
 /// Sums of one ICP iteration. H x = -g in the twist (translation, rotation) applied from the left in `world`,
-/// about `centre`.
+/// about the camera's position.
 struct IcpSums {
   Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
@@ -73,7 +73,6 @@ struct IcpLimits {
 
 /// One pass over the current maps (camera coordinates): associates, rejects, accumulates.
 IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth, const ModelView& model,
-                      const VoxelGrid& grid, const IcpLimits& limits, const Eigen::Vector3d& centre,
-                      ThreadPool& pool);
+                      const VoxelGrid& grid, const IcpLimits& limits, ThreadPool& pool);
 
 }  // namespace isotherm
