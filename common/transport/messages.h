@@ -93,7 +93,7 @@ struct StreamStatus {
   std::uint64_t next_frame_number =
       0;                 ///< One above the highest published; at the end, no higher one will come.
   double rate_hz = 0.0;  ///< Measured over the last seconds.
-  std::uint32_t queue_frames = 0;  ///< Waiting to be published.
+  std::uint32_t queue_frames = 0;    ///< Waiting to be published.
   std::vector<DropCount> dropped{};  ///< At most kMaxDropReasons.
 };
 
@@ -202,7 +202,7 @@ struct Feedback {
   double covered_area_m2 = 0.0;                      ///< Surface in the model.
   CoverageShares model;                              ///< Of the whole surface.
   CoverageShares view;                               ///< Of the surface in view.
-  std::vector<Advice> advice{};                        ///< Most urgent first; at most kMaxAdvice.
+  std::vector<Advice> advice{};                      ///< Most urgent first; at most kMaxAdvice.
   std::optional<RigidTransform> T_world_depth_next;  ///< Where to go next.
   std::vector<std::uint8_t>
       picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.

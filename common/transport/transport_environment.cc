@@ -41,13 +41,27 @@ struct TransportEnvironment::LogSink {
     while (text.ends_with('\n') || text.ends_with('\0')) text.remove_suffix(1);
     {
       std::scoped_lock lock(mutex);
+      if (std::uint64_t* refused = RefusalIn(text); refused != nullptr && ++*refused > 1) return;
       if (!limiter.Admit(clock.SteadyNow())) return;
     }
     WriteLog(LevelOf(data.priority), "Dds", text);
   }
 
+  /// The counter for a message that says that something was refused, otherwise null.
+  std::uint64_t* RefusalIn(std::string_view text) {
+    const auto says = [text](std::string_view words) {
+      return text.find(words) != std::string_view::npos;
+    };
+    if (says("dropping oversize")) return &refusals.oversize;
+    if (says("malformed packet") || (says("deserialization") && says("failed"))) {
+      return &refusals.malformed;
+    }
+    return nullptr;
+  }
+
   const Clock& clock;
-  std::mutex mutex;
+  std::mutex mutex;  // Guards what follows.
+  MiddlewareRefusals refusals;
   LineLimiter limiter{kMaxLogLinesPerSecond};
 };
 
@@ -64,6 +78,11 @@ TransportEnvironment::~TransportEnvironment() { dds_set_log_sink(nullptr, nullpt
 std::uint64_t TransportEnvironment::suppressed_log_lines() const {
   std::scoped_lock lock(sink_->mutex);
   return sink_->limiter.suppressed();
+}
+
+MiddlewareRefusals TransportEnvironment::refused() const {
+  std::scoped_lock lock(sink_->mutex);
+  return sink_->refusals;
 }
 
 }  // namespace isotherm

@@ -7,6 +7,12 @@
 
 namespace isotherm {
 
+/// Samples and packets that the middleware dropped itself, before any reader of ours saw them.
+struct MiddlewareRefusals {
+  std::uint64_t oversize = 0;   ///< Larger than MaxSampleSize of the profile.
+  std::uint64_t malformed = 0;  ///< Not what the type says, beyond a bound, or not a valid packet.
+};
+
 /// Process-wide preparation for DDS. Construct it first thing in main(), before any thread starts,
 /// and keep it until the last Participant is gone. It
 ///   - keeps freed memory for large samples (mallopt), which makes writing and taking them ten
@@ -14,7 +20,8 @@ namespace isotherm {
 ///   - sets CYCLONEDDS_URI to the compiled-in loopback profile if the variable is unset, so that
 ///   nothing leaves
 ///     this computer unless somebody said so (deploy/cyclonedds-lan.xml),
-///   - sends the middleware's messages to our log, at most ten lines per second.
+///   - sends the middleware's messages to our log, at most ten lines per second, and
+///     once per cause for samples that it refuses.
 /// One per process. Thread-safe.
 class TransportEnvironment {
  public:
@@ -26,6 +33,8 @@ class TransportEnvironment {
 
   /// Messages of the middleware that were left out of the log because there were too many.
   std::uint64_t suppressed_log_lines() const;
+  /// Logged once per cause. Known from the middleware's messages only: a lower bound.
+  MiddlewareRefusals refused() const;
 
  private:
   struct LogSink;
