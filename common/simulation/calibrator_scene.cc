@@ -77,6 +77,12 @@ void AddPanel(SceneBuilder& scene, double hot_celsius) {
   piece("panel left", {kLeft, slots, kPanelZ + 0.001}, {kLeft + 0.014, slots + 0.088, back});
   piece("panel right", {kRight - 0.014, slots, kPanelZ + 0.001}, {kRight, slots + 0.088, back});
 
+  // The inside is warmer than the panel and shows through the slots.
+  scene
+      .Box("inside", {kLeft + 0.01, slots, back - 0.001},
+           {kRight - 0.01, slots + 0.09, back + 0.004})
+      .temperature = Uniform(warm + 9.0);
+
   Primitive& display =
       scene.Box("display", {0.395, 0.445, kPanelZ - 0.006}, {0.475, 0.473, kPanelZ});
   display.temperature = Uniform(warm + 4.0);
@@ -123,8 +129,8 @@ ScanPath MakePath() {
   path.target_y_m = {0.60, 0.05, 13.0, 2.2, 0.02, 9.0};
   path.target_z_m = {0.56};
   path.azimuth_rad = {0.0, 0.50, 20.0, -0.9, 0.06, 37.0};
-  path.elevation_rad = {0.38, 0.20, 13.0, 0.8, 0.04, 29.0};
-  path.distance_m = {0.60, 0.09, 16.0, 1.0, 0.03, 11.0};
+  path.elevation_rad = {0.33, 0.20, 13.0, 0.8, 0.04, 29.0};
+  path.distance_m = {0.65, 0.08, 16.0, 1.0, 0.02, 11.0};
   path.roll_rad = {0.0, 0.05, 11.0, 0.4};
   return path;
 }

@@ -26,23 +26,34 @@ void MakeCorrelatedNoise(std::uint64_t stream, DepthSensor::Scratch& scratch) {
   std::uint64_t counter = 0;
   for (float& value : scratch.white.pixels()) value = NormalNoise(stream, counter++);
   for (int y = 0; y < height; ++y) {
-    const auto in = scratch.white.Row(y);
-    const auto out = scratch.rows.Row(y);
-    for (std::size_t x = 0; x < in.size(); ++x) {
-      const std::size_t left = x > 0 ? x - 1 : 1 % in.size();
-      const std::size_t right = x + 1 < in.size() ? x + 1 : (x > 0 ? x - 1 : 0);
-      out[x] = in[left] + 2.0F * in[x] + in[right];
-    }
+    const float* const in = scratch.white.Row(y).data();
+    float* const out = scratch.rows.Row(y).data();
+    for (int x = 1; x + 1 < width; ++x) out[x] = in[x - 1] + 2.0F * in[x] + in[x + 1];
+    // Mirrored at the border.
+    const int last = width - 1, before_last = std::max(0, width - 2), second = std::min(1, last);
+    out[0] = 2.0F * in[0] + 2.0F * in[second];
+    out[last] = 2.0F * in[last] + 2.0F * in[before_last];
   }
 }
 
-/// The other direction of MakeCorrelatedNoise, pixel by pixel.
-float CorrelatedNoise(const Image<float>& rows, int x, int y) {
+/// The other direction of MakeCorrelatedNoise, row by row.
+void CorrelateColumns(const Image<float>& rows, int y, std::vector<float>& noise) {
   constexpr float kNormalize =
       1.0F / 6.0F;  // 1 / (1 + 4 + 1), the root of the sum of squared weights.
-  const int above = y > 0 ? y - 1 : std::min(1, rows.height() - 1);
-  const int below = y + 1 < rows.height() ? y + 1 : std::max(0, y - 1);
-  return (rows.At(x, above) + 2.0F * rows.At(x, y) + rows.At(x, below)) * kNormalize;
+  const int last = rows.height() - 1;
+  const float* const above = rows.Row(y > 0 ? y - 1 : std::min(1, last)).data();
+  const float* const middle = rows.Row(y).data();
+  const float* const below = rows.Row(y < last ? y + 1 : std::max(0, last - 1)).data();
+  noise.resize(static_cast<std::size_t>(rows.width()));
+  float* const out = noise.data();
+  for (int x = 0; x < rows.width(); ++x) {
+    out[x] = (above[x] + 2.0F * middle[x] + below[x]) * kNormalize;
+  }
+}
+
+/// std::round is a library call on processors without SSE4.1 in the build's baseline.
+float RoundPositive(float value) {
+  return static_cast<float>(static_cast<std::int32_t>(value + 0.5F));
 }
 
 bool IsEdge(const HitImage& hits, int x, int y) {
@@ -78,10 +89,12 @@ Image<std::uint16_t> DepthSensor::Render(const Scene& scene, const RigidTransfor
   const std::uint64_t drop_stream = MixBits(noise_stream);
   Image<std::uint16_t> depth_raw(grid_.width(), grid_.height(), kNoDepth);
   for (int y = 0; y < grid_.height(); ++y) {
+    CorrelateColumns(scratch.rows, y, scratch.noise);
+    MeasureRow(scratch.hits.z_m.Row(y), scratch);
     for (int x = 0; x < grid_.width(); ++x) {
       if (scratch.lit.At(x, y) == 0) continue;
       if (IsDropped(scratch.hits, view, x, y, drop_stream)) continue;
-      depth_raw.At(x, y) = Measure(scratch.hits.z_m.At(x, y), CorrelatedNoise(scratch.rows, x, y));
+      depth_raw.At(x, y) = static_cast<std::uint16_t>(scratch.raw[static_cast<std::size_t>(x)]);
     }
   }
   return depth_raw;
@@ -122,14 +135,27 @@ bool DepthSensor::IsDropped(const HitImage& hits, const CameraView& view, int x,
   return dropped_share > 0.0F && UniformNoise(drop_stream, counter) < dropped_share;
 }
 
-std::uint16_t DepthSensor::Measure(float z_m, float noise) const {
-  float disparity_px = disparity_metres_px_ / z_m + sigma_px_ * noise;
-  if (step_px_ > 0.0F) disparity_px = std::round(disparity_px / step_px_) * step_px_;
-  const float measured_m = disparity_metres_px_ / disparity_px;
-  if (!(measured_m >= min_depth_m_ && measured_m <= max_depth_m_)) return kNoDepth;
-  const float raw = std::round(measured_m * depth_scale_);
+void DepthSensor::MeasureRow(std::span<const float> z_m, Scratch& scratch) const {
+  // Without branches and member accesses inside, so that the divisions become SIMD code.
   constexpr float kLargest = static_cast<float>(kNoDepthSaturated - 1);
-  return raw <= kLargest ? static_cast<std::uint16_t>(raw) : kNoDepth;
+  constexpr float kUnquantised = 1e-4F;  // A step far below any noise.
+  constexpr float kMostPx = 1e5F;        // Nearer than any camera; keeps steps within 32 bits.
+  const float disparity_metres_px = disparity_metres_px_, sigma_px = sigma_px_;
+  const float step_px = step_px_ > 0.0F ? step_px_ : kUnquantised;
+  const float min_m = min_depth_m_, max_m = max_depth_m_, scale = depth_scale_;
+  scratch.raw.resize(z_m.size());
+  const float* const z = z_m.data();
+  const float* const noise = scratch.noise.data();
+  std::int32_t* const out = scratch.raw.data();
+  const int width = static_cast<int>(z_m.size());
+  for (int x = 0; x < width; ++x) {
+    const float true_px = disparity_metres_px / z[x];
+    const float noisy_px = std::min(true_px, kMostPx) + sigma_px * noise[x];
+    const float measured_m = disparity_metres_px / (RoundPositive(noisy_px / step_px) * step_px);
+    const float raw = measured_m * scale;
+    const bool good = (measured_m >= min_m) & (measured_m <= max_m) & (raw <= kLargest);
+    out[x] = static_cast<std::int32_t>(RoundPositive(good ? raw : 0.0F));
+  }
 }
 
 }  // namespace isotherm

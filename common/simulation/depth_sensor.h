@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "common/frame/image.h"
 #include "common/geometry/camera.h"
@@ -20,8 +22,10 @@ class DepthSensor {
 
   struct Scratch {
     HitImage hits;
-    Image<float> white;       ///< Independent noise.
-    Image<float> rows;        ///< ... smoothed along rows.
+    Image<float> white;        ///< Independent noise.
+    Image<float> rows;         ///< ... smoothed along rows.
+    std::vector<float> noise;  ///< ... and along columns, one row.
+    std::vector<std::int32_t> raw;
     Image<std::uint8_t> lit;  ///< 1 = the projector reaches it.
   };
 
@@ -34,7 +38,8 @@ class DepthSensor {
   void FindShadow(const HitImage& hits, Image<std::uint8_t>& lit) const;
   bool IsDropped(const HitImage& hits, const CameraView& view, int x, int y,
                  std::uint64_t drop_stream) const;
-  std::uint16_t Measure(float z_m, float noise) const;
+  /// Raw values of one row of true depths with scratch.noise, 0 = out of range, into scratch.raw.
+  void MeasureRow(std::span<const float> z_m, Scratch& scratch) const;
 
   const RayGrid grid_;
   const float disparity_metres_px_;  ///< Focal length x baseline: disparity = this / depth.

@@ -44,8 +44,8 @@ void AddLeaf(SceneBuilder& scene) {
   leaf.temperature = Radial(leaf, kPort, kForward, 215.0, 0.36, 88.0);
   // Louvre in the lower part.
   for (int i = 0; i < 4; ++i) {
-    Primitive& slat = scene.RotatedBox("slat", {0.34, 0.610 + 0.028 * i, kDoorZ - 0.008},
-                                       {0.22, 0.004, 0.028}, {-35.0, 0.0, 0.0});
+    Primitive& slat = scene.RotatedBox("slat", {0.34, 0.610 + 0.028 * i, kDoorZ - 0.010},
+                                       {0.22, 0.004, 0.030}, {-48.0, 0.0, 0.0});
     slat.temperature = Linear(slat, {0.34, 0.6, kDoorZ}, 104.0, {0.34, 0.6, kDoorZ - 0.02}, 84.0);
   }
   Primitive& brace = scene.RotatedBox("brace", {0.575, 0.655, kDoorZ - 0.005}, {0.17, 0.022, 0.012},
@@ -136,12 +136,12 @@ void AddPlate(SceneBuilder& scene, bool polished) {
 
 ScanPath MakePath() {
   ScanPath path;
-  path.target_x_m = {0.46, 0.10, 17.0, 0.3, 0.02, 7.0};
-  path.target_y_m = {0.47, 0.09, 13.0, 2.2, 0.02, 9.0};
+  path.target_x_m = {0.48, 0.12, 17.0, 0.3, 0.02, 7.0};
+  path.target_y_m = {0.48, 0.12, 13.0, 2.2, 0.02, 9.0};
   path.target_z_m = {0.79};
-  path.azimuth_rad = {0.0, 0.50, 20.0, -0.9, 0.06, 37.0};
+  path.azimuth_rad = {0.0, 0.52, 20.0, -0.9, 0.06, 37.0};
   path.elevation_rad = {0.08, 0.30, 13.0, 0.8, 0.04, 29.0};
-  path.distance_m = {0.60, 0.10, 16.0, 1.0, 0.03, 11.0};
+  path.distance_m = {0.60, 0.10, 16.0, 1.0, 0.02, 11.0};
   path.roll_rad = {0.0, 0.05, 11.0, 0.4};
   return path;
 }

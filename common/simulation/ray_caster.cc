@@ -75,12 +75,13 @@ bool Overlap(const SeenPrimitive& primitive, const RayGrid::Tile& tile) {
 void StoreTile(const RayGrid::Tile& tile, const TileHits& hits, HitImage& image) {
   const int columns = std::min(RayGrid::kTileWidth, image.z_m.width() - tile.x0);
   const int rows = std::min(RayGrid::kTileHeight, image.z_m.height() - tile.y0);
+  const auto x0 = static_cast<std::size_t>(tile.x0);
   for (int row = 0; row < rows; ++row) {
+    const int first = row * RayGrid::kTileWidth;
+    std::copy_n(hits.z + first, columns, image.z_m.Row(tile.y0 + row).begin() + tile.x0);
+    std::int16_t* const indices = image.primitive.Row(tile.y0 + row).data() + x0;
     for (int column = 0; column < columns; ++column) {
-      const int i = row * RayGrid::kTileWidth + column;
-      image.z_m.At(tile.x0 + column, tile.y0 + row) = hits.z[i];
-      image.primitive.At(tile.x0 + column, tile.y0 + row) =
-          static_cast<std::int16_t>(hits.index[i]);
+      indices[column] = static_cast<std::int16_t>(hits.index[first + column]);
     }
   }
 }

@@ -38,15 +38,13 @@ SimulatedScan::SimulatedScan(const SimulationOptions& resolved, const Rig& rig)
 SimulatedScan::~SimulatedScan() = default;
 
 void SimulatedScan::ScheduleFrames() {
-  const CaptureTime end = start_ + FromSeconds(options_->duration_s());
   const auto schedule = [&](const ClockOptions& clock_options, double rate_hz,
                             CaptureTime first_exposure, NoisePurpose purpose) {
     SimulatedClock clock(clock_options, rate_hz, start_, first_exposure,
                          NoiseStream(options_->seed(), purpose, 0));
+    const auto frames = static_cast<std::size_t>(std::lround(options_->duration_s() * rate_hz));
     std::vector<SimulatedFrameTime> times;
-    for (SimulatedFrameTime time = clock.Next(); time.exposure < end; time = clock.Next()) {
-      times.push_back(time);
-    }
+    for (std::size_t i = 0; i < frames; ++i) times.push_back(clock.Next());
     return times;
   };
   depth_times_ =

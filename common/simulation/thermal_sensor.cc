@@ -112,22 +112,29 @@ void ThermalSensor::Blur(Scratch& scratch) const {
   if (radius == 0) return;
   const int width = grid_.width(), height = grid_.height();
   scratch.rows.Resize(width, height);
-  const auto convolve = [&](const Image<float>& in, Image<float>& out, int step_x, int step_y) {
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        float sum = blur_weights_[0] * in.At(x, y);
-        for (int i = 1; i <= radius; ++i) {
-          const float before = in.At(std::max(0, x - i * step_x), std::max(0, y - i * step_y));
-          const float after =
-              in.At(std::min(width - 1, x + i * step_x), std::min(height - 1, y + i * step_y));
-          sum += blur_weights_[static_cast<std::size_t>(i)] * (before + after);
-        }
-        out.At(x, y) = sum;
+  for (int y = 0; y < height; ++y) {
+    const float* const in = scratch.radiance.Row(y).data();
+    float* const out = scratch.rows.Row(y).data();
+    for (int x = 0; x < width; ++x) {
+      float sum = blur_weights_[0] * in[x];
+      for (int i = 1; i <= radius; ++i) {
+        sum += blur_weights_[static_cast<std::size_t>(i)] *
+               (in[std::max(0, x - i)] + in[std::min(width - 1, x + i)]);
       }
+      out[x] = sum;
     }
-  };
-  convolve(scratch.radiance, scratch.rows, 1, 0);
-  convolve(scratch.rows, scratch.radiance, 0, 1);
+  }
+  for (int y = 0; y < height; ++y) {
+    float* const out = scratch.radiance.Row(y).data();
+    const float* const middle = scratch.rows.Row(y).data();
+    for (int x = 0; x < width; ++x) out[x] = blur_weights_[0] * middle[x];
+    for (int i = 1; i <= radius; ++i) {
+      const float weight = blur_weights_[static_cast<std::size_t>(i)];
+      const float* const above = scratch.rows.Row(std::max(0, y - i)).data();
+      const float* const below = scratch.rows.Row(std::min(height - 1, y + i)).data();
+      for (int x = 0; x < width; ++x) out[x] += weight * (above[x] + below[x]);
+    }
+  }
 }
 
 Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream,
@@ -142,7 +149,7 @@ Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream,
     const double value =
         (band_.CelsiusFromRadiance(measured) + kCelsiusZeroKelvin) * kCentikelvinPerKelvin;
     // NaN (out of the radiometric range) and what 16 bits cannot say become 0 = no value.
-    out[i] = value >= 0.5 && value <= kRange ? static_cast<std::uint16_t>(std::lround(value)) : 0;
+    out[i] = value >= 0.5 && value < kRange ? static_cast<std::uint16_t>(value + 0.5) : 0;
   }
   return centikelvin;
 }
