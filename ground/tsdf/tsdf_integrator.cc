@@ -41,36 +41,6 @@ struct CameraF {
         height(c.height) {}
 };
 
-/// Updates the voxels of one block. Rows along x advance by a constant vector in camera coordinates.
-void UpdateBlock(std::span<TsdfVoxel, kBlockVoxels> voxels, const Eigen::Vector3f& first, const Eigen::Matrix3f& axes,
-                 const CameraF& camera, const Image<DepthSample>& samples, float truncation_m, float max_weight) {
-  const float inverse_truncation = 1.0F / truncation_m;
-  std::size_t index = 0;
-  for (int z = 0; z < kBlockSide; ++z) {
-    for (int y = 0; y < kBlockSide; ++y) {
-      Eigen::Vector3f p = first + axes.col(1) * static_cast<float>(y) + axes.col(2) * static_cast<float>(z);
-      for (int x = 0; x < kBlockSide; ++x, ++index, p += axes.col(0)) {
-        if (!(p.z() > 0.0F)) continue;
-        const float inverse_z = 1.0F / p.z();
-        const float u = camera.fx * p.x() * inverse_z + camera.cx + 0.5F;
-        const float v = camera.fy * p.y() * inverse_z + camera.cy + 0.5F;
-        if (!(u >= 0.0F && v >= 0.0F && u < static_cast<float>(camera.width) &&
-              v < static_cast<float>(camera.height))) {
-          continue;
-        }
-        const DepthSample& s = samples.At(static_cast<int>(u), static_cast<int>(v));
-        if (!(s.weight > 0.0F)) continue;
-        const float distance = s.nx * p.x() + s.ny * p.y() + s.nz * p.z() - s.offset;
-        // Far in front along the ray counts as free whatever the plane's tilt; behind the band is unknown.
-        const float along_ray = s.depth_m - p.z();
-        if (distance < -truncation_m || along_ray < -2.0F * truncation_m) continue;
-        const float tsdf = along_ray > 2.0F * truncation_m ? 1.0F : std::min(1.0F, distance * inverse_truncation);
-        voxels[index].Update(tsdf, s.weight, max_weight);
-      }
-    }
-  }
-}
-
 }  // namespace
 
 Status Validate(const TsdfOptions& o, const VolumeOptions& volume) {
@@ -215,18 +185,28 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
 
   const CameraF camera(depth.camera);
   const VoxelGrid& grid = volume.grid();
-  const Eigen::Matrix3f axes = (T_depth_world.linear() * grid.voxel_size_m).cast<float>();
-  const auto truncation = static_cast<float>(volume.truncation_distance_m());
-  const auto max_weight = static_cast<float>(options_.max_weight());
+  IntegrationKernelArgs args{};
+  args.samples = &samples_.data()->nx;
+  args.width = camera.width;
+  args.height = camera.height;
+  args.fx = camera.fx;
+  args.fy = camera.fy;
+  args.cx = camera.cx;
+  args.cy = camera.cy;
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> axes =
+      (T_depth_world.linear() * grid.voxel_size_m).cast<float>();
+  std::copy_n(axes.data(), 9, args.axes);
+  args.truncation_m = static_cast<float>(volume.truncation_distance_m());
+  args.max_weight = static_cast<float>(options_.max_weight());
   constexpr int kBlocksPerTask = 32;
   const int count = static_cast<int>(updated_blocks_.size());
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
     const int end = std::min(count, (task + 1) * kBlocksPerTask);
     for (int i = task * kBlocksPerTask; i < end; ++i) {
       const std::int32_t block = updated_blocks_[i];
-      const Eigen::Vector3d first = grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide);
-      UpdateBlock(volume.voxels(block), (T_depth_world * first).cast<float>(), axes, camera, samples_, truncation,
-                  max_weight);
+      const Eigen::Vector3f first =
+          (T_depth_world * grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide)).cast<float>();
+      IntegrateBlock(args, first.data(), &volume.voxels(block).front().bits);
     }
   });
 }

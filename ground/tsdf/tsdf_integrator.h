@@ -8,6 +8,7 @@
 #include "common/frame/image.h"
 #include "common/geometry/rigid_transform.h"
 #include "ground/ground_options.pb.h"
+#include "ground/tsdf/integration_kernel.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
@@ -15,14 +16,6 @@ namespace isotherm {
 struct PreparedDepth;
 
 Status Validate(const TsdfOptions& options, const VolumeOptions& volume);
-
-/// What one depth pixel says about the surface: the plane n . p = offset (camera coordinates, metres, n towards
-/// the camera) and the weight of the observation (0 = nothing was seen).
-struct DepthSample {
-  float nx, ny, nz, offset;
-  float depth_m;
-  float weight;
-};
 
 /// Fuses depth images into the volume (algorithm 2). Distances are measured from the voxel to the plane through
 /// the observed point along its normal, so that they do not depend on the direction of view (thesis 8.2); where
