@@ -7,11 +7,14 @@
 #include <limits>
 #include <vector>
 
+#include "ground/tracker/filter_kernel.h"
+#include "ground/tracker/surface_map_kernel.h"
+
 namespace isotherm {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRowsPerTask = 16;
+constexpr int kMaxBilateralRadius = 8;
 
 /// Pixels to either side for normals, per pyramid level: about the same patch of surface at each.
 constexpr std::array<int, kPyramidLevels> kNormalReach = {3, 2, 1};
@@ -45,9 +48,9 @@ Status Validate(const PreprocessorOptions& o) {
         "preprocessor: need 0 <= min_depth_m < max_depth_m <= 100 m, got {} m and {} m", o.min_depth_m(),
         o.max_depth_m()));
   }
-  if (o.bilateral_radius_px() < 0 || o.bilateral_radius_px() > 8) {
-    return InvalidArgument(fmt::format("preprocessor.bilateral_radius_px must be 0..8 pixels, got {}",
-                                       o.bilateral_radius_px()));
+  if (o.bilateral_radius_px() < 0 || o.bilateral_radius_px() > kMaxBilateralRadius) {
+    return InvalidArgument(fmt::format("preprocessor.bilateral_radius_px must be 0..{} pixels, got {}",
+                                       kMaxBilateralRadius, o.bilateral_radius_px()));
   }
   if (!(o.bilateral_sigma_px() > 0.0 && o.bilateral_sigma_depth_m() > 0.0 && o.max_depth_step_ratio() > 0.0)) {
     return InvalidArgument(
@@ -66,39 +69,23 @@ void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& opt
     std::copy(depth_m.pixels().begin(), depth_m.pixels().end(), filtered_m.pixels().begin());
     return;
   }
-  const auto sigma_px = static_cast<float>(options.bilateral_sigma_px());
+  const double sigma_px = options.bilateral_sigma_px();
+  const int side = 2 * radius + 1;
+  std::vector<float> spatial;
+  for (int dy = -radius; dy <= radius; ++dy) {
+    for (int dx = -radius; dx <= radius; ++dx) {
+      spatial.push_back(static_cast<float>(std::exp(-(dx * dx + dy * dy) / (2.0 * sigma_px * sigma_px))));
+    }
+  }
   // The biweight with tau = sqrt(7) sigma has the variance of a Gaussian with that sigma.
   const auto tau_at_1m = static_cast<float>(options.bilateral_sigma_depth_m() * std::sqrt(7.0));
   ForRows(pool, height, [&](int y) {
-    thread_local std::vector<float> sum, weight_sum, inverse_tau2;
-    const auto n = static_cast<std::size_t>(width);
-    sum.assign(n, 0.0F);
-    weight_sum.assign(n, 0.0F);
-    inverse_tau2.resize(n);
-    const float* centre = depth_m.Row(y).data();
-    for (int x = 0; x < width; ++x) {
-      const float tau = tau_at_1m * centre[x] * centre[x];
-      inverse_tau2[x] = 1.0F / std::max(tau * tau, 1e-12F);
+    std::array<const float*, 2 * kMaxBilateralRadius + 1> rows{};
+    for (int k = 0; k < side; ++k) {
+      const int row = y + k - radius;
+      rows[k] = row >= 0 && row < height ? depth_m.Row(row).data() : nullptr;
     }
-    for (int dy = -radius; dy <= radius; ++dy) {
-      if (y + dy < 0 || y + dy >= height) continue;
-      const float* row = depth_m.Row(y + dy).data();
-      for (int dx = -radius; dx <= radius; ++dx) {
-        const float spatial =
-            std::exp(-static_cast<float>(dx * dx + dy * dy) / (2.0F * sigma_px * sigma_px));
-        const int begin = std::max(0, -dx);
-        const int end = std::min(width, width - dx);
-        for (int x = begin; x < end; ++x) {
-          const float difference = row[x + dx] - centre[x];
-          const float falloff = std::max(0.0F, 1.0F - difference * difference * inverse_tau2[x]);
-          const float w = spatial * falloff * falloff;
-          sum[x] += w * row[x + dx];
-          weight_sum[x] += w;
-        }
-      }
-    }
-    float* out = filtered_m.Row(y).data();
-    for (int x = 0; x < width; ++x) out[x] = centre[x] > 0.0F ? sum[x] / weight_sum[x] : 0.0F;
+    BilateralRow({rows.data(), spatial.data(), radius, width, tau_at_1m}, filtered_m.Row(y));
   });
 }
 
@@ -129,54 +116,15 @@ void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& p
 
 void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach, float max_step_ratio,
                      ThreadPool& pool, SurfaceMaps& maps) {
-  const int width = depth_m.width();
-  const int height = depth_m.height();
-  maps.Resize(width, height);
-  const auto inverse_fx = static_cast<float>(1.0 / camera.fx);
-  const auto inverse_fy = static_cast<float>(1.0 / camera.fy);
-  const auto cx = static_cast<float>(camera.cx);
-  const auto cy = static_cast<float>(camera.cy);
-  const float max_step = max_step_ratio * static_cast<float>(reach);
-
-  ForRows(pool, height, [&](int y) {
-    const float* z = depth_m.Row(y).data();
-    const auto unproject = [&](int u, int v, float depth) {
-      return Eigen::Vector3f((static_cast<float>(u) - cx) * inverse_fx * depth,
-                             (static_cast<float>(v) - cy) * inverse_fy * depth, depth);
-    };
-    const auto store = [&](int x, const Eigen::Vector3f& p, const Eigen::Vector3f& n) {
-      maps.vx.At(x, y) = p.x();
-      maps.vy.At(x, y) = p.y();
-      maps.vz.At(x, y) = p.z();
-      maps.nx.At(x, y) = n.x();
-      maps.ny.At(x, y) = n.y();
-      maps.nz.At(x, y) = n.z();
-    };
-    const Eigen::Vector3f nothing = Eigen::Vector3f::Constant(kNan);
-    const bool row_inside = y >= reach && y + reach < height;
-    for (int x = 0; x < width; ++x) {
-      const float depth = z[x];
-      if (!row_inside || x < reach || x + reach >= width || !(depth > 0.0F)) {
-        store(x, nothing, nothing);
-        continue;
-      }
-      const float left = z[x - reach];
-      const float right = z[x + reach];
-      const float up = depth_m.At(x, y - reach);
-      const float down = depth_m.At(x, y + reach);
-      const float limit = max_step * depth;
-      const bool smooth = std::abs(left - depth) < limit && std::abs(right - depth) < limit &&
-                          std::abs(up - depth) < limit && std::abs(down - depth) < limit;
-      if (!smooth) {
-        store(x, nothing, nothing);
-        continue;
-      }
-      const Eigen::Vector3f along_x = unproject(x + reach, y, right) - unproject(x - reach, y, left);
-      const Eigen::Vector3f along_y = unproject(x, y + reach, down) - unproject(x, y - reach, up);
-      // y x x points towards the camera (x right, y down, z forward).
-      store(x, unproject(x, y, depth), along_y.cross(along_x).normalized());
-    }
-  });
+  maps.Resize(depth_m.width(), depth_m.height());
+  const SurfaceMapArgs args{&depth_m,
+                            static_cast<float>(camera.fx),
+                            static_cast<float>(camera.fy),
+                            static_cast<float>(camera.cx),
+                            static_cast<float>(camera.cy),
+                            reach,
+                            max_step_ratio * static_cast<float>(reach)};
+  ForRows(pool, depth_m.height(), [&](int y) { SurfaceMapRow(args, y, maps); });
 }
 
 DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera)
