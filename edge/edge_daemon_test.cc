@@ -48,6 +48,17 @@ class EdgeDaemonTest : public testing::Test {
   }
   ~EdgeDaemonTest() override { std::filesystem::remove_all(folder_); }
 
+  /// Something that does not compress to nothing.
+  static Image<std::uint16_t> Noise(int width, int height, std::uint16_t base) {
+    Image<std::uint16_t> image(width, height);
+    std::uint32_t state = 1;
+    for (std::uint16_t& pixel : image.pixels()) {
+      state = state * 1664525U + 1013904223U;
+      pixel = static_cast<std::uint16_t>(base + (state >> 24U));
+    }
+    return image;
+  }
+
   /// A second of both cameras.
   static void WriteScan(const std::filesystem::path& path) {
     const Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, {});
@@ -57,12 +68,12 @@ class EdgeDaemonTest : public testing::Test {
       EncodedDepthFrame depth;
       depth.header.frame_number = static_cast<std::uint64_t>(i);
       depth.header.capture_time = time;
-      depth.image = DepthEncoder().Encode(Image<std::uint16_t>(64, 48, 700));
+      depth.image = DepthEncoder().Encode(Noise(64, 48, 700));
       ASSERT_TRUE((*writer)->Write(depth, std::nullopt).ok());
       EncodedThermalFrame thermal;
       thermal.header = depth.header;
       thermal.header.capture_time = time + milliseconds(7);
-      thermal.image = ThermalEncoder().Encode(Image<std::uint16_t>(38, 28, 29'815));
+      thermal.image = ThermalEncoder().Encode(Noise(38, 28, 29'815));
       ASSERT_TRUE((*writer)->Write(thermal, std::nullopt).ok());
     }
     ASSERT_TRUE((*writer)->Close().ok());
@@ -129,6 +140,29 @@ TEST_F(EdgeDaemonTest, F38SigtermLeavesACompleteRecordingInTime) {
   EXPECT_GT(copy.depth, 0);
   EXPECT_THAT(edge.output(), HasSubstr("captured " + std::to_string(copy.depth) + " = recorded " +
                                        std::to_string(copy.depth) + " + rejected 0"));
+}
+
+TEST_F(EdgeDaemonTest, ADiskThatFillsUpEndsTheRecordingOnly) {
+  // A limit on the file's size fails as a full disk does, and needs no file system of its own.
+  const std::string script = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
+  Command command = Edge({"--recording", scan_, "--record", copy_, "--rate", "0", "--exit-at-end",
+                          "--set", "source.loops=3", "--set", "spool.flush_interval_s=0.05"});
+  command.arguments.insert(command.arguments.begin(), {"-c", script, command.program});
+  command.program = "/bin/sh";
+  const Finished edge = RunToEnd(command, kPatience);
+  EXPECT_EQ(edge.status, 73) << edge.output;
+  EXPECT_THAT(edge.output, HasSubstr("captured 90 = published 90 + rejected 0"));
+  const Counts copy = ReadRecording(copy_);
+  EXPECT_FALSE(copy.complete);
+  EXPECT_GT(copy.depth, 0) << "what is good stays";
+  EXPECT_LT(copy.depth, 90);
+  EXPECT_THAT(edge.output, HasSubstr("captured 90 = recorded " + std::to_string(copy.depth) +
+                                     " + rejected 0 + queue full 0 + failed " +
+                                     std::to_string(90 - copy.depth)));
+  const std::string said = "recording ended early";
+  const std::size_t first = edge.output.find(said);
+  EXPECT_NE(first, std::string::npos);
+  EXPECT_EQ(edge.output.find(said, first + 1), std::string::npos) << "said once";
 }
 
 TEST_F(EdgeDaemonTest, F11GarbageInARecordingIsCountedNotPublished) {

@@ -45,18 +45,19 @@ Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
 
 SourceItem SupervisedSource::Judge(RawFrame frame) {
   on_frame_(frame.sensor);
+  int& bad_in_a_row = bad_in_a_row_[static_cast<std::size_t>(frame.sensor)];
   const Status verdict = check_.Process(frame);
   if (verdict.ok()) {
-    bad_in_a_row_ = 0;
+    bad_in_a_row = 0;
     next_wait_ = retry_min_;
     return frame;
   }
   on_rejected_(frame.sensor);
-  if (bad_in_a_row_ == 0) {
+  if (bad_in_a_row == 0) {
     LOG(Source, Warning) << "dropped: " << verdict.message();
   }
-  if (++bad_in_a_row_ >= max_bad_in_a_row_) {
-    ScheduleReopen(verdict.WithContext(fmt::format("{} bad frames in a row", bad_in_a_row_)));
+  if (++bad_in_a_row >= max_bad_in_a_row_) {
+    ScheduleReopen(verdict.WithContext(fmt::format("{} bad frames in a row", bad_in_a_row)));
   }
   return NothingYet{};
 }
@@ -67,7 +68,7 @@ void SupervisedSource::ScheduleReopen(const Status& reason) {
   source_->Close();
   reopen_at_ = clock_.SteadyNow() + next_wait_;
   next_wait_ = std::min(2 * next_wait_, retry_max_);
-  bad_in_a_row_ = 0;
+  bad_in_a_row_ = {};
 }
 
 SourceItem SupervisedSource::ReopenWhenDue(const std::stop_token& stop) {

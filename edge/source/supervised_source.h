@@ -57,7 +57,7 @@ class SupervisedSource final : public FrameSource {
   const Nanoseconds retry_max_;
   const Nanoseconds longest_pause_;
   FrameCheck check_;
-  int bad_in_a_row_ = 0;
+  std::array<int, 2> bad_in_a_row_{};  ///< By Sensor: one camera may fail while the other works.
   std::uint64_t reopened_ = 0;
   Nanoseconds next_wait_;
   std::optional<SteadyTime> reopen_at_;  ///< Set while waiting.

@@ -75,6 +75,16 @@ TEST_F(SupervisedSourceTest, F11NineBadFramesAndAGoodOneStartTheCountAgain) {
   EXPECT_EQ(source_->reopened(), 0U);
 }
 
+TEST_F(SupervisedSourceTest, F11GoodFramesOfTheOtherCameraDoNotHideTheBadOnes) {
+  Start(
+      "d t d:size t d:size t d:size t d:size t d:size t d:size t d:size t d:size t d:size t "
+      "d:size");
+  EXPECT_EQ(Read(21), 11);
+  clock_.Advance(milliseconds(500));
+  Read(1);
+  EXPECT_EQ(source_->reopened(), 1U);
+}
+
 TEST_F(SupervisedSourceTest, AFailedReadReopensTheSource) {
   Start("d ! d");
   EXPECT_EQ(Read(2), 1);
