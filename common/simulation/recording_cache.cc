@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 /// Raise when the same options give another recording: scenes, sensors, noise, clocks or the file's
 /// layout changed.
-constexpr int kRenderVersion = 1;
+constexpr int kRenderVersion = 2;
 
 /// FNV-1a.
 std::uint64_t Hash(const std::string& text) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -105,6 +106,12 @@ Status WriteItem(const SimulatedScan& scan, const Item& item, const Worker& work
   return writer.Write(worker.thermal, scan.thermal_times()[item.number].arrival);
 }
 
+/// What a calibration of the camera's constant delay would find: added to filtered arrivals, it
+/// gives the exposure. The median of exponential jitter is ln 2 of its mean.
+std::string KnownDelay(const ClockOptions& clock) {
+  return fmt::format("{:.6f}", -(clock.delay_s() + std::numbers::ln2 * clock.jitter_s()));
+}
+
 Status WriteStart(const SimulationOptions& options, const SimulatedScan& scan,
                   RecordingWriter& writer) {
   ISOTHERM_RETURN_IF_ERROR(
@@ -112,6 +119,10 @@ Status WriteStart(const SimulationOptions& options, const SimulatedScan& scan,
                                           {"seed", std::to_string(options.seed())},
                                           {"version", ISOTHERM_VERSION},
                                           {"options", ToTextProto(Resolved(options))}}));
+  const SimulationOptions resolved = Resolved(options);
+  ISOTHERM_RETURN_IF_ERROR(
+      writer.WriteMetadata("timing", {{"depth_delay_s", KnownDelay(resolved.depth_clock())},
+                                      {"thermal_delay_s", KnownDelay(resolved.thermal_clock())}}));
   return writer.Write(scan.rig());
 }
 
