@@ -1,0 +1,69 @@
+#include "common/simulation/scan_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "common/simulation/options.h"
+#include "common/simulation/ray_caster.h"
+#include "common/simulation/scenes.h"
+#include "common/simulation/simulation_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+// Thesis 6.1.3: the fastest scan whose steps between frames at 30 Hz are still integrated, and the
+// smallest step.
+constexpr double kMaxSpeedMps = 0.3;
+constexpr double kMaxTurnRadps = 17.0 * std::numbers::pi / 180.0;
+constexpr double kMinStepM = 0.001;
+constexpr double kMinStepRad = 0.06 * std::numbers::pi / 180.0;
+constexpr double kFrameS = 1.0 / 30.0;
+
+class ScanPathTest : public ::testing::TestWithParam<int> {
+ protected:
+  ScanPathTest() {
+    SceneOptions options;
+    options.set_scene(static_cast<SimulatedScene>(GetParam()));
+    staged_.emplace(MakeScene(options));
+  }
+  std::optional<StagedScene> staged_;
+};
+
+TEST_P(ScanPathTest, StaysWithinTheLimitsOfTheMethodAndKeepsMoving) {
+  int still = 0, frames = 0;
+  for (double t = 0.0; t < 180.0; t += kFrameS, ++frames) {
+    const RigidTransform a = staged_->path.PoseAt(t), b = staged_->path.PoseAt(t + kFrameS);
+    ASSERT_TRUE(IsRigid(a));
+    ASSERT_LE(TranslationDistance(a, b), kMaxSpeedMps * kFrameS) << t;
+    ASSERT_LE(RotationAngle(a, b), kMaxTurnRadps * kFrameS) << t;
+    if (TranslationDistance(a, b) < kMinStepM && RotationAngle(a, b) < kMinStepRad) ++still;
+  }
+  EXPECT_LE(still, frames / 50);
+}
+
+TEST_P(ScanPathTest, StartsFromRest) {
+  const RigidTransform a = staged_->path.PoseAt(0.0), b = staged_->path.PoseAt(0.005);
+  EXPECT_LT(TranslationDistance(a, b), 5e-5);
+  EXPECT_TRUE(staged_->path.PoseAt(-1.0).isApprox(a));
+}
+
+TEST_P(ScanPathTest, KeepsMostOfThePictureInWorkingRange) {
+  const CameraModel camera = DefaultSimulatedRig().depth->Downscaled(3);
+  const RayGrid grid(camera);
+  HitImage hits;
+  for (double t = 0.0; t < 60.0; t += 1.0) {
+    CastRays(staged_->scene, grid, staged_->path.PoseAt(t), hits);
+    int in_range = 0;
+    for (const float z : hits.z_m.pixels()) in_range += z > 0.36F && z < 1.2F;
+    EXPECT_GT(in_range, 0.55 * static_cast<double>(hits.z_m.size())) << t;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(ScannedScenes, ScanPathTest,
+                         ::testing::Values(FURNACE_DOOR, CALIBRATOR, CORNER_SPHERE));
+
+}  // namespace
+}  // namespace isotherm
