@@ -11,6 +11,7 @@
 #include "common/base/check.h"
 #include "common/concurrency/thread_pool.h"
 #include "ground/export/marching_cubes.h"
+#include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
 namespace {
@@ -51,7 +52,12 @@ class Extractor {
  public:
   Extractor(const TsdfVolume& tsdf, const ThermalVolume& thermal, const SurfaceOptions& options,
             ThreadPool& threads)
-      : tsdf_(tsdf), thermal_(thermal), options_(options), threads_(threads) {}
+      : tsdf_(tsdf),
+        thermal_(thermal),
+        options_(options),
+        threads_(threads),
+        voxels_per_unit_(
+            static_cast<float>(tsdf.truncation_distance_m() / tsdf.grid().voxel_size_m)) {}
 
   Surface Run() {
     SortBlocks();
@@ -114,11 +120,12 @@ class Extractor {
     return inside && outside;
   }
 
+  /// Distances in voxel sizes, from distances in truncation distances.
+  float InVoxels(float tsdf) const { return tsdf * voxels_per_unit_; }
+
   bool Crosses(float a, float b) const {
     if (std::isnan(a) || std::isnan(b) || (a < 0.0F) == (b < 0.0F)) return false;
-    const double difference_vox =
-        std::abs(a - b) * tsdf_.truncation_distance_m() / tsdf_.grid().voxel_size_m;
-    return difference_vox <= static_cast<double>(options_.max_slope);
+    return InVoxels(std::abs(a - b)) <= options_.max_slope;
   }
 
   void FindCrossings(std::int32_t block, BlockCrossings& result) const {
@@ -133,8 +140,10 @@ class Extractor {
         const float to = samples[SampleIndex(local + GridIndex::Unit(axis))];
         if (!Crosses(from, to)) continue;
         const float along = std::clamp(from / (from - to), kEndMargin, 1.0F - kEndMargin);
+        const std::optional<CloudPoint> point = MakePoint(base + local, axis, along);
+        if (!point) continue;
         result.keys.push_back(EdgeKey(local, axis));
-        result.points.push_back(MakePoint(base + local, axis, along));
+        result.points.push_back(*point);
       }
     }
   }
@@ -157,20 +166,43 @@ class Extractor {
     return gradient;
   }
 
-  /// The point `along` (0..1) the edge from `voxel` along `axis`.
-  CloudPoint MakePoint(const GridIndex& voxel, int axis, float along) const {
-    const VoxelGrid& grid = tsdf_.grid();
-    const GridIndex next = voxel + GridIndex::Unit(axis);
-    Eigen::Vector3d p_world = grid.VoxelCentre(voxel);
-    p_world[axis] += static_cast<double>(along) * grid.voxel_size_m;
-    // The gradient of the trilinear field's lattice values, interpolated along the edge.
-    Eigen::Vector3f gradient = (1.0F - along) * Gradient(voxel) + along * Gradient(next);
-    if (gradient.squaredNorm() == 0.0F) {
-      gradient[axis] = SampleAt(next) - SampleAt(voxel);
+  /// Whether the distance grows along `normal` no faster than a distance to a surface can, one
+  /// voxel to either side. Unobserved sides pass.
+  bool IsGradual(const Eigen::Vector3f& p_voxel, const Eigen::Vector3f& normal) const {
+    for (const float side : {-1.0F, 1.0F}) {
+      const std::optional<float> tsdf =
+          InterpolateTsdf(tsdf_, p_voxel + side * normal, options_.min_weight);
+      if (tsdf && InVoxels(std::abs(*tsdf)) > options_.max_slope) return false;
     }
+    return true;
+  }
+
+  /// The point `along` (0..1) the edge from `voxel` along `axis`; nullopt if it is not a surface.
+  std::optional<CloudPoint> MakePoint(const GridIndex& voxel, int axis, float along) const {
+    const GridIndex next = voxel + GridIndex::Unit(axis);
+    const Eigen::Vector3f here = Gradient(voxel);
+    const Eigen::Vector3f there = Gradient(next);
+    if (here.dot(there) < options_.min_gradient_cosine * here.norm() * there.norm()) {
+      return std::nullopt;
+    }
+    // The gradient of the trilinear field's lattice values, interpolated along the edge.
+    Eigen::Vector3f gradient = (1.0F - along) * here + along * there;
+    if (gradient.squaredNorm() == 0.0F) gradient[axis] = SampleAt(next) - SampleAt(voxel);
+    if (InVoxels(gradient.norm()) > options_.max_slope) return std::nullopt;
+    const Eigen::Vector3f normal = gradient.normalized();
+    Eigen::Vector3d p_voxel = voxel.cast<double>();
+    p_voxel[axis] += static_cast<double>(along);
+    if (!IsGradual(p_voxel.cast<float>(), normal)) return std::nullopt;
+    return Measured(
+        tsdf_.grid().min_m + (p_voxel + Eigen::Vector3d::Constant(0.5)) * tsdf_.grid().voxel_size_m,
+        normal);
+  }
+
+  /// Algorithm 10, lines 4-9.
+  CloudPoint Measured(const Eigen::Vector3d& p_world, const Eigen::Vector3f& normal) const {
     CloudPoint point;
     point.position_m = p_world.cast<float>();
-    point.normal = gradient.normalized();
+    point.normal = normal;
     const ThermalVoxel measured = ThermalVoxelAt(tsdf_, thermal_, p_world);
     if (measured.measured()) {
       point.celsius = measured.celsius();
@@ -267,6 +299,7 @@ class Extractor {
   const ThermalVolume& thermal_;
   const SurfaceOptions options_;
   ThreadPool& threads_;
+  const float voxels_per_unit_;  // Truncation distance in voxels.
   const MarchingCubesTable table_;
   std::vector<std::int32_t> order_;        // Blocks in the order of output.
   std::vector<std::int32_t> position_;     // Of each block in order_.

@@ -36,10 +36,14 @@ struct Surface {
 struct SurfaceOptions {
   /// Least weight of a voxel that becomes part of the surface.
   float min_weight = 2.0F;
-  /// Neighbouring voxels whose distances differ by more than this many voxel sizes are not on one
-  /// surface: free space touches what lies unseen behind an edge. A distance field without noise
-  /// has slope 1.
-  float max_slope = 3.0F;
+  /// Where free space touches what lies unseen behind an edge, the distance changes sign as well,
+  /// but faster than any distance to a surface can. Crossings where it changes by more than this
+  /// many voxel sizes per voxel, along the edge or along the normal to either side, are left out. A
+  /// distance field without noise has slope 1.
+  float max_slope = 2.0F;
+  /// Left out likewise: crossings where the gradients at the two ends of the edge point apart by
+  /// more than this cosine (0.9: 26 degrees). -1 turns the test off.
+  float min_gradient_cosine = 0.9F;
   bool triangles = true;
 };
 

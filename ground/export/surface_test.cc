@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -26,6 +27,9 @@ VoxelGrid Grid(int blocks) {
   grid.blocks = GridIndex::Constant(blocks);
   return grid;
 }
+
+/// Takes every change of sign for a surface.
+constexpr SurfaceOptions kAnything{.max_slope = 100.0F, .min_gradient_cosine = -1.0F};
 
 /// How often each directed side occurs. Closed and oriented: each once, and its opposite once.
 std::map<std::pair<int, int>, int> DirectedSides(const Surface& surface) {
@@ -202,7 +206,32 @@ TEST(SurfaceTest, JumpFromFreeSpaceBehindAnEdgeIsNotSurface) {
   const ThermalVolume thermal(8);
   ThreadPool pool(1);
   EXPECT_TRUE(ExtractSurface(tsdf, thermal, {}, pool).points.empty());
-  EXPECT_FALSE(ExtractSurface(tsdf, thermal, {.max_slope = 8.0F}, pool).points.empty());
+  EXPECT_FALSE(ExtractSurface(tsdf, thermal, kAnything, pool).points.empty());
+}
+
+TEST(SurfaceTest, BendsWithinOneVoxelAreLeftOutAndFacesBesideThemStay) {
+  const Eigen::Vector3d centre = Eigen::Vector3d::Constant(0.0641);
+  constexpr double kHalf = 0.0402;
+  TsdfVolume tsdf(Grid(4), kTruncation, 64);
+  testing::FillVolume(tsdf, [&](const Eigen::Vector3d& p) {  // A cube.
+    const Eigen::Vector3d d = (p - centre).cwiseAbs() - Eigen::Vector3d::Constant(kHalf);
+    return d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
+  });
+  const auto count = [&](const Surface& surface, bool near_edge) {
+    return std::ranges::count_if(surface.points, [&](const CloudPoint& point) {
+      Eigen::Vector3d d = (point.position_m.cast<double>() - centre).cwiseAbs();
+      std::sort(d.data(), d.data() + 3);
+      return (kHalf - d[1] < 2.5 * kVoxel) ==
+             near_edge;  // The middle one: nearest edge of the face.
+    });
+  };
+  const ThermalVolume thermal(64);
+  ThreadPool pool(2);
+  const Surface all = ExtractSurface(tsdf, thermal, kAnything, pool);
+  const Surface smooth = ExtractSurface(tsdf, thermal, {}, pool);
+  EXPECT_EQ(count(smooth, false), count(all, false));
+  EXPECT_GT(count(all, false), 1000);
+  EXPECT_LT(count(smooth, true), count(all, true));
 }
 
 TEST(SurfaceTest, MeshOfNoiseIsClosed) {
@@ -219,7 +248,7 @@ TEST(SurfaceTest, MeshOfNoiseIsClosed) {
   });
   const ThermalVolume thermal(27);
   ThreadPool pool(2);
-  const Surface surface = ExtractSurface(tsdf, thermal, {.max_slope = 100.0F}, pool);
+  const Surface surface = ExtractSurface(tsdf, thermal, kAnything, pool);
   ASSERT_GT(surface.triangles.size(), 10000U);
   ExpectClosedManifold(surface);
 }
