@@ -19,12 +19,12 @@ constexpr Rgb8 kOutline{110, 116, 126};
 // read.
 constexpr double kReferenceHeight = 480.0;
 constexpr double kLetterPx = 9.0;
-constexpr double kPanelPx = 150.0;
+constexpr double kPanelPx = 156.0;
 constexpr int kLeastHeight = 240;
 
 /// A picture with room for a panel, and the panel's measures in pixels.
 struct Panel {
-  Panel(const RgbImage& picture)
+  explicit Panel(const RgbImage& picture)
       : factor(std::clamp(picture.height() / kReferenceHeight, 0.9, 4.0)),
         left(picture.width()),
         image(picture.width() + Px(kPanelPx), std::max(picture.height(), kLeastHeight),
@@ -36,6 +36,11 @@ struct Panel {
   }
   int Px(double reference_px) const { return static_cast<int>(std::lround(reference_px * factor)); }
   double letter() const { return kLetterPx * factor; }
+  /// Letter height at which `text` from `x` on stays inside the panel, at most `wanted`.
+  double Fitting(const std::string& text, double x, double wanted) const {
+    const double room = image.width() - Px(8) - x;
+    return wanted * std::min(1.0, room / std::max(TextWidth(text, wanted), 1.0));
+  }
 
   const double factor;
   const int left;
@@ -107,8 +112,8 @@ RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend,
   Panel panel(picture);
   Canvas canvas(panel.image);
   const int below_title = DrawTitle(panel, canvas, legend.title);
-  canvas.Text(panel.left + panel.Px(16), below_title, legend.scale ? "in " + legend.unit : "none measured",
-              panel.letter(), kDimText);
+  canvas.Text(panel.left + panel.Px(16), below_title,
+              legend.scale ? "in " + legend.unit : "none measured", panel.letter(), kDimText);
   int bottom = panel.image.height() - panel.Px(22);
   if (legend.never_measured) {
     DrawNeverMeasuredKey(panel, canvas, bottom);
@@ -136,7 +141,7 @@ RgbImage WithLegend(const RgbImage& picture, const ClassLegend& legend) {
     for (const std::string& line : {row.detail, row.share}) {
       if (line.empty()) continue;
       y += panel.Px(17);
-      canvas.Text(text_x, y, line, panel.letter() * 0.9, kDimText);
+      canvas.Text(text_x, y, line, panel.Fitting(line, text_x, panel.letter() * 0.9), kDimText);
     }
     y += panel.Px(28);
   }

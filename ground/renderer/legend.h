@@ -17,7 +17,7 @@ struct ScaleLegend {
   std::string title;                      ///< E.g. "apparent temperature"; spaces break lines.
   std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured, no bar is drawn.
   std::string rule;                       ///< How the scale was chosen.
-  bool never_measured = true;  ///< Explain the pattern of surfaces without a temperature.
+  bool never_measured = true;    ///< Explain the pattern of surfaces without a temperature.
   std::string unit = "\u00B0C";  ///< Of the scale.
 };
 

@@ -77,18 +77,16 @@ Status Validate(const RendererOptions& options) {
 
 Renderer::Renderer(const RendererOptions& options, const ThermalOptions& thermal)
     : options_(std::make_unique<RendererOptions>(options)), colours_(options) {
-  const auto metres = [](double from, double to) {
-    return fmt::format("{:.2f}-{:.2f} m", from, to);
-  };
+  const auto metres = [](double from, double to) { return fmt::format("{:g}-{:g} m", from, to); };
   const auto degrees = [](double from, double to) {
     return fmt::format("{:g}-{:g}\u00B0", from, to);
   };
-  distance_ = std::make_unique<Layer>(Layer{
-      "measurement distance", metres(thermal.distance_min_m(), thermal.distance_good_m()),
-      metres(thermal.distance_good_m(), thermal.distance_max_m()),
-      fmt::format("< {:.2f}, > {:.2f} m", thermal.distance_min_m(), thermal.distance_max_m())});
+  distance_ = std::make_unique<Layer>(
+      Layer{"measurement distance", metres(thermal.distance_min_m(), thermal.distance_good_m()),
+            metres(thermal.distance_good_m(), thermal.distance_max_m()),
+            fmt::format("< {:g} or > {:g} m", thermal.distance_min_m(), thermal.distance_max_m())});
   const std::string too_frontal =
-      thermal.angle_min_deg() > 0.0 ? fmt::format("< {:g}\u00B0, ", thermal.angle_min_deg()) : "";
+      thermal.angle_min_deg() > 0.0 ? fmt::format("< {:g}\u00B0 or ", thermal.angle_min_deg()) : "";
   angle_ = std::make_unique<Layer>(
       Layer{"emission angle", degrees(thermal.angle_min_deg(), thermal.angle_good_deg()),
             degrees(thermal.angle_good_deg(), thermal.angle_max_deg()),
@@ -112,7 +110,8 @@ RgbImage Renderer::Thermal(const ViewMaps& view,
     return Shaded(colours_.At(scale->Share(celsius)), cos_view);
   });
   if (!options_->legend()) return picture;
-  return WithLegend(picture, {"apparent temperature", scale, ScaleRuleName(*options_), true},
+  return WithLegend(picture,
+                    {"apparent temperature", scale, "scale: " + ScaleRuleName(*options_), true},
                     colours_);
 }
 
@@ -171,8 +170,9 @@ RgbImage RenderThermalFrame(const Image<std::uint16_t>& centikelvin,
     }
   }
   if (!options.legend()) return picture;
-  return WithLegend(picture, {"apparent temperature", scale, ScaleRuleName(options), !all_measured},
-                    colours);
+  return WithLegend(
+      picture, {"apparent temperature", scale, "scale: " + ScaleRuleName(options), !all_measured},
+      colours);
 }
 
 }  // namespace isotherm

@@ -63,9 +63,9 @@ std::string ScaleRuleName(const RendererOptions& options) {
     case MIN_MAX:
       return "min to max";
     case ONE_SIGMA:
-      return "mean +- 1 sigma";
+      return "1 sigma";
     case THREE_SIGMA:
-      return "mean +- 3 sigma";
+      return "3 sigma";
     case FIXED:
       return "fixed";
   }

@@ -38,7 +38,7 @@ struct TemperatureScale {
 std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
                                             const TemperatureStatistics& statistics);
 
-/// The scale rule in words for a legend or a header, e.g. "mean +- 3 sigma".
+/// The scale rule in words for a legend or a header, e.g. "3 sigma".
 std::string ScaleRuleName(const RendererOptions& options);
 
 }  // namespace isotherm
