@@ -7,11 +7,13 @@
 /// Raw bits, lowest first.
 namespace isotherm::codec {
 
-/// Appends to its own buffer. Thread-compatible.
+/// Keeps its memory. Thread-compatible.
 class BitWriter {
  public:
-  void Clear() {
-    bytes_.clear();
+  /// Starts over; at most `max_values` values will be put.
+  void Reset(std::size_t max_values) {
+    bytes_.resize(max_values * 2 + sizeof(pending_));
+    next_ = bytes_.data();
     pending_ = 0;
     pending_bits_ = 0;
   }
@@ -30,17 +32,16 @@ class BitWriter {
   std::span<const std::uint8_t> Finish() {
     PutBytes((pending_bits_ + 7) / 8);
     pending_bits_ = 0;
-    return bytes_;
+    return {bytes_.data(), next_};
   }
 
  private:
   void PutBytes(unsigned count) {
-    for (unsigned i = 0; i < count; ++i) {
-      bytes_.push_back(static_cast<std::uint8_t>(pending_ >> (8 * i)));
-    }
+    for (unsigned i = 0; i < count; ++i) *next_++ = static_cast<std::uint8_t>(pending_ >> (8 * i));
   }
 
   std::vector<std::uint8_t> bytes_;
+  std::uint8_t* next_ = nullptr;
   std::uint64_t pending_ = 0;
   unsigned pending_bits_ = 0;
 };
@@ -66,6 +67,14 @@ class BitReader {
 
  private:
   void Refill(unsigned needed) {
+    if (end_ - next_ >= 8) [[likely]] {
+      std::uint64_t bytes = 0;
+      for (unsigned i = 0; i < 8; ++i) bytes |= static_cast<std::uint64_t>(next_[i]) << (8 * i);
+      pending_ |= bytes << pending_bits_;
+      next_ += (63 - pending_bits_) / 8;
+      pending_bits_ |= 56U;
+      return;
+    }
     while (pending_bits_ <= 56 && next_ != end_) {
       pending_ |= static_cast<std::uint64_t>(*next_++) << pending_bits_;
       pending_bits_ += 8;

@@ -1,36 +1,12 @@
 #include <algorithm>
-#include <bit>
 
 #include "common/codec/image_codecs.h"
-#include "common/codec/predictive_coder.h"
+#include "common/codec/predictive_decoder.h"
+#include "common/codec/predictive_encoder.h"
+#include "common/frame/frame.h"
 
 namespace isotherm::codec {
 namespace {
-
-std::uint32_t Distance(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; }
-
-/// Prediction is the mean of west and north; a neighbour without measurement is replaced by one
-/// that has one. The context is which of the two have none, and how much the neighbours differ.
-struct DepthModel {
-  static constexpr std::uint32_t kActivities = 6;
-  static constexpr std::uint32_t kContexts = 4 * kActivities;
-  static constexpr bool kHasHoles = true;
-
-  static Prediction Predict(std::uint32_t w, std::uint32_t n, std::uint32_t nw, std::uint32_t ne) {
-    const std::uint32_t holes = (w == 0 ? 1U : 0U) + (n == 0 ? 2U : 0U);
-    const std::uint32_t other = ne != 0 ? ne : nw;
-    const std::uint32_t north = n != 0 ? n : (w != 0 ? w : other);
-    const std::uint32_t west = w != 0 ? w : north;
-    const std::uint32_t north_west = nw != 0 ? nw : north;
-    const std::uint32_t north_east = ne != 0 ? ne : north;
-    const std::uint32_t activity =
-        Distance(west, north_west) + Distance(north, north_west) + Distance(north, north_east);
-    return {
-        .value = (west + north) / 2,
-        .context = holes * kActivities +
-                   std::min(static_cast<std::uint32_t>(std::bit_width(activity)), kActivities - 1)};
-  }
-};
 
 constexpr std::uint32_t kValues = 1U << 16;
 /// With more values a table of them costs more than it saves.
@@ -52,14 +28,11 @@ struct DepthCodec::Scratch {
 
   void FindValues(const Image<std::uint16_t>& image) {
     std::fill(occurs.begin(), occurs.end(), std::uint8_t{0});
-    std::size_t zeros = 0;
-    std::size_t saturated = 0;
-    for (const std::uint16_t value : image.pixels()) {
-      occurs[value] = 1;
-      zeros += value == 0;
-      saturated += value == kValues - 1;
-    }
-    hole = saturated > zeros ? std::uint16_t{kValues - 1} : std::uint16_t{0};
+    for (const std::uint16_t value : image.pixels()) occurs[value] = 1;
+    hole = 0;
+    if (occurs[kNoDepthSaturated] == 0) return;
+    const auto saturated = std::ranges::count(image.pixels(), kNoDepthSaturated);
+    if (saturated > std::ranges::count(image.pixels(), kNoDepth)) hole = kNoDepthSaturated;
   }
 
   /// Fills `mapping` (pixel to coded value, holes to 0) and writes how to invert it.
@@ -92,7 +65,7 @@ struct DepthCodec::Scratch {
   std::optional<std::uint32_t> GetMapping(PayloadReader& in) {
     const std::optional<std::uint8_t> flags = in.Byte();
     if (!flags || *flags > (kHoleIs65535 | kRanked)) return std::nullopt;
-    hole = (*flags & kHoleIs65535) != 0 ? std::uint16_t{kValues - 1} : std::uint16_t{0};
+    hole = (*flags & kHoleIs65535) != 0 ? kNoDepthSaturated : kNoDepth;
     if ((*flags & kRanked) == 0) {
       for (std::uint32_t value = 0; value < kValues; ++value) {
         mapping[value] = static_cast<std::uint16_t>(value + hole);
@@ -126,7 +99,7 @@ void DepthCodec::Encode(const Image<std::uint16_t>& image, std::vector<std::uint
     std::ranges::transform(image.Row(y), padded.Row(y) + 1,
                            [&](std::uint16_t value) { return scratch.mapping[value]; });
   }
-  scratch.encoder.Encode(image.width(), image.height(), payload);
+  scratch.encoder.Encode(payload);
 }
 
 Status DepthCodec::Decode(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -10,10 +11,10 @@
 /// Range asymmetric numeral systems (Duda, "Asymmetric numeral systems", arXiv:1311.2540,
 /// section 2.3): an entropy coder as dense as arithmetic coding with a multiplication per symbol.
 /// State 32 bits in [2^16, 2^32), written in 16-bit words; frequencies are fixed per payload and
-/// add up to 2^12.
+/// add up to 2^10.
 namespace isotherm::codec {
 
-inline constexpr unsigned kScaleBits = 12;
+inline constexpr unsigned kScaleBits = 10;
 inline constexpr std::uint32_t kScale = 1U << kScaleBits;
 inline constexpr std::uint32_t kLeastState = 1U << 16;
 
@@ -27,27 +28,28 @@ bool GetFrequencies(PayloadReader& in, std::span<std::uint16_t> frequencies);
 
 /// What the encoder needs to know about a symbol.
 struct EncodeSymbol {
-  /// ceil(2^44 / frequency): with x < 2^20 * frequency, x * reciprocal stays below 2^64 and
-  /// (x * reciprocal) >> 44 is exactly x / frequency.
+  /// ceil(2^kReciprocalBits / frequency): for a state x < 2^(32 - kScaleBits) * frequency, x *
+  /// reciprocal stays below 2^64 and (x * reciprocal) >> kReciprocalBits is exactly x / frequency.
   std::uint64_t reciprocal = 0;
   std::uint32_t frequency = 0;
   std::uint32_t start = 0;
 };
-inline constexpr unsigned kReciprocalBits = 44;
+inline constexpr unsigned kReciprocalBits = 32 + kScaleBits;
 
 void MakeEncodeSymbols(std::span<const std::uint16_t> frequencies, std::span<EncodeSymbol> symbols);
 
 /// Encodes backwards: the last symbol first. Thread-compatible.
 class RansEncoder {
  public:
-  /// `words` is filled from its end.
+  /// Words are written backwards from `end`; one more than is used may be overwritten.
   explicit RansEncoder(std::uint16_t* end) : next_(end) {}
 
   void Put(const EncodeSymbol& symbol) {
-    if (state_ >= static_cast<std::uint64_t>(symbol.frequency) << (32 - kScaleBits)) {
-      *--next_ = static_cast<std::uint16_t>(state_);
-      state_ >>= 16;
-    }
+    // Without a branch: when a word is due, nothing foretells.
+    const bool full = state_ >= static_cast<std::uint64_t>(symbol.frequency) << (32 - kScaleBits);
+    next_[-1] = static_cast<std::uint16_t>(state_);
+    next_ -= full ? 1 : 0;
+    state_ = full ? state_ >> 16 : state_;
     const auto quotient =
         static_cast<std::uint32_t>((state_ * symbol.reciprocal) >> kReciprocalBits);
     state_ += quotient * (kScale - symbol.frequency) + symbol.start;
@@ -65,26 +67,43 @@ class RansEncoder {
   std::uint16_t* next_;
 };
 
-/// Symbols below 256. Lookup of the symbol by slot, then of its place.
-template <std::size_t kSymbols>
-struct DecodeTable {
-  std::array<std::uint8_t, kScale> symbol_of_slot;
-  std::array<std::uint16_t, kSymbols> frequency;
-  std::array<std::uint16_t, kSymbols> start;
-};
+/// What the decoder needs to know about the contexts' symbols: first the symbol of a slot, then its
+/// place. Two small tables stay in the first-level cache where one large one would not. Symbols are
+/// below kMaxSymbols.
+template <std::size_t kContexts>
+class DecodeTables {
+ public:
+  static constexpr std::size_t kMaxSymbols = 128;
 
-template <std::size_t kSymbols>
-void MakeDecodeTable(std::span<const std::uint16_t> frequencies, DecodeTable<kSymbols>& table) {
-  std::uint32_t start = 0;
-  for (std::size_t symbol = 0; symbol < kSymbols; ++symbol) {
-    table.frequency[symbol] = frequencies[symbol];
-    table.start[symbol] = static_cast<std::uint16_t>(start);
-    for (std::uint32_t i = 0; i < frequencies[symbol]; ++i) {
-      table.symbol_of_slot[start + i] = static_cast<std::uint8_t>(symbol);
+  struct Place {
+    std::uint16_t frequency = 0;
+    std::uint16_t start = 0;
+  };
+
+  void Set(std::size_t context, std::span<const std::uint16_t> frequencies) {
+    std::uint8_t* slot = symbols_.data() + context * kScale;
+    // A context that does not occur must not keep the symbols of the image before.
+    std::fill_n(slot, kScale, std::uint8_t{0});
+    std::uint32_t start = 0;
+    for (std::size_t symbol = 0; symbol < frequencies.size(); ++symbol) {
+      places_[context * kMaxSymbols + symbol] = {.frequency = frequencies[symbol],
+                                                 .start = static_cast<std::uint16_t>(start)};
+      std::fill_n(slot + start, frequencies[symbol], static_cast<std::uint8_t>(symbol));
+      start += frequencies[symbol];
     }
-    start += frequencies[symbol];
   }
-}
+
+  std::uint32_t SymbolOf(std::size_t context, std::uint32_t slot) const {
+    return symbols_[context * kScale + slot];
+  }
+  Place PlaceOf(std::size_t context, std::uint32_t symbol) const {
+    return places_[context * kMaxSymbols + symbol];
+  }
+
+ private:
+  std::array<std::uint8_t, kContexts * kScale> symbols_;
+  std::array<Place, kContexts * kMaxSymbols> places_;
+};
 
 /// Reads little-endian words. Behind their end it reads zeros and ok() is false. Thread-compatible.
 class RansDecoder {
@@ -95,11 +114,12 @@ class RansDecoder {
     state_ |= Word();
   }
 
-  template <std::size_t kSymbols>
-  std::uint32_t Get(const DecodeTable<kSymbols>& table) {
+  template <std::size_t kContexts>
+  std::uint32_t Get(const DecodeTables<kContexts>& tables, std::size_t context) {
     const std::uint32_t slot = state_ & (kScale - 1);
-    const std::uint32_t symbol = table.symbol_of_slot[slot];
-    state_ = table.frequency[symbol] * (state_ >> kScaleBits) + slot - table.start[symbol];
+    const std::uint32_t symbol = tables.SymbolOf(context, slot);
+    const auto place = tables.PlaceOf(context, symbol);
+    state_ = place.frequency * (state_ >> kScaleBits) + slot - place.start;
     if (state_ < kLeastState) state_ = state_ << 16 | Word();
     return symbol;
   }

@@ -9,53 +9,57 @@
 /// token says the magnitude with its two bits below the leading one, as the rest is noise.
 namespace isotherm::codec {
 
-inline constexpr std::uint32_t kDirectTokens = 16;
-inline constexpr std::uint32_t kResidualTokens = kDirectTokens + 12 * 4;
+inline constexpr int kDirectTokens = 16;
+inline constexpr int kResidualTokens = kDirectTokens + 12 * 4;
 
 /// 0, -1, 1, -2, 2, ... -> 0, 1, 2, 3, 4, ...
-constexpr std::uint32_t ZigZag(std::uint16_t residual) {
-  const std::uint32_t value = residual;
-  return (value << 1 ^ (value & 0x8000U ? 0x1FFFFU : 0U)) & 0xFFFFU;
+constexpr int ZigZag(int residual) {
+  const auto value = static_cast<std::int16_t>(residual);
+  return static_cast<std::uint16_t>(value << 1 ^ value >> 15);
 }
-constexpr std::uint16_t UnZigZag(std::uint32_t value) {
-  return static_cast<std::uint16_t>(value >> 1 ^ (0U - (value & 1U)));
+constexpr int UnZigZag(int value) { return value >> 1 ^ -(value & 1); }
+
+struct Token {
+  int token = 0;
+  int raw_bits = 0;  ///< How many of the lowest bits follow.
+};
+
+/// Without branches or tables, so that it becomes vector instructions: the exponent and the two
+/// leading bits of the mantissa of a float are just what a token is made of.
+constexpr Token TokenOf(int value) {
+  constexpr int kMantissaBits = 23;
+  constexpr int kBias = 127;
+  const int bits = std::bit_cast<int>(static_cast<float>(value));
+  const bool direct = value < kDirectTokens;
+  return {.token = direct ? value : (bits >> (kMantissaBits - 2)) - 4 * kBias,
+          .raw_bits = direct ? 0 : (bits >> kMantissaBits) - kBias - 2};
 }
 
-constexpr std::uint8_t TokenOf(std::uint32_t value) {
-  if (value < kDirectTokens) return static_cast<std::uint8_t>(value);
-  const auto magnitude = static_cast<std::uint32_t>(std::bit_width(value)) - 1U;
-  return static_cast<std::uint8_t>(kDirectTokens + (magnitude - 4) * 4 +
-                                   (value >> (magnitude - 2) & 3U));
-}
-
+/// The values of a token: `base` and what `raw_bits` add.
 struct TokenRange {
-  std::uint16_t base = 0;  ///< Least value of the token.
-  std::uint16_t bits = 0;  ///< Raw bits that follow.
+  std::uint16_t base = 0;
+  std::uint16_t raw_bits = 0;
 };
 
 constexpr std::array<TokenRange, kResidualTokens> MakeTokenRanges() {
   std::array<TokenRange, kResidualTokens> ranges{};
-  for (std::uint32_t token = 0; token < kResidualTokens; ++token) {
-    if (token < kDirectTokens) {
-      ranges[token] = {.base = static_cast<std::uint16_t>(token), .bits = 0};
-      continue;
-    }
-    const std::uint32_t magnitude = (token - kDirectTokens) / 4 + 4;
-    const std::uint32_t leading = 4 + (token - kDirectTokens) % 4;
-    ranges[token] = {.base = static_cast<std::uint16_t>(leading << (magnitude - 2)),
-                     .bits = static_cast<std::uint16_t>(magnitude - 2)};
+  for (int value = 0xFFFF; value >= 0; --value) {
+    const Token token = TokenOf(value);
+    ranges[static_cast<std::size_t>(token.token)] = {
+        .base = static_cast<std::uint16_t>(value),
+        .raw_bits = static_cast<std::uint16_t>(token.raw_bits)};
   }
   return ranges;
 }
 inline constexpr std::array<TokenRange, kResidualTokens> kTokenRanges = MakeTokenRanges();
 
-/// Most differences are small: their tokens come from a table.
-inline constexpr std::uint32_t kTabulatedValues = 1024;
-constexpr std::array<std::uint8_t, kTabulatedValues> MakeTokenTable() {
-  std::array<std::uint8_t, kTabulatedValues> tokens{};
-  for (std::uint32_t value = 0; value < kTabulatedValues; ++value) tokens[value] = TokenOf(value);
-  return tokens;
+/// Number of bits of `value`, which must be below 2^22: for one pixel after the other ...
+constexpr int BitWidth(int value) {
+  return static_cast<int>(std::bit_width(static_cast<unsigned>(value) << 1 | 1U)) - 1;
 }
-inline constexpr std::array<std::uint8_t, kTabulatedValues> kTokenTable = MakeTokenTable();
+/// ... and the same for many at once.
+constexpr int BitWidthForVectors(int value) {
+  return (std::bit_cast<int>(static_cast<float>(value << 1 | 1)) >> 23) - 127;
+}
 
 }  // namespace isotherm::codec

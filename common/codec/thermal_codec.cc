@@ -1,34 +1,10 @@
 #include <algorithm>
-#include <bit>
 
 #include "common/codec/image_codecs.h"
-#include "common/codec/predictive_coder.h"
+#include "common/codec/predictive_decoder.h"
+#include "common/codec/predictive_encoder.h"
 
 namespace isotherm::codec {
-namespace {
-
-std::uint32_t Distance(std::uint32_t a, std::uint32_t b) { return a > b ? a - b : b - a; }
-
-/// Median edge detector (Weinberger, Seroussi, Sapiro, "LOCO-I", 2000): the plane through the
-/// neighbours or, at an edge, the neighbour on the pixel's side. The context is how much the
-/// neighbours differ: it tells flat areas, where the difference is the camera's noise, from edges.
-struct ThermalModel {
-  static constexpr std::uint32_t kContexts = 12;
-  static constexpr bool kHasHoles = false;
-
-  static Prediction Predict(std::uint32_t w, std::uint32_t n, std::uint32_t nw, std::uint32_t ne) {
-    const std::uint32_t least = std::min(w, n);
-    const std::uint32_t most = std::max(w, n);
-    const std::uint32_t plane = w + n - std::clamp(nw, least, most);
-    const std::uint32_t activity = Distance(w, nw) + Distance(n, nw) + Distance(n, ne);
-    return {
-        .value = plane,
-        .context = std::min(static_cast<std::uint32_t>(std::bit_width(activity)), kContexts - 1)};
-  }
-};
-
-}  // namespace
-
 struct ThermalCodec::Scratch {
   PredictiveEncoder<ThermalModel> encoder;
   PredictiveDecoder<ThermalModel> decoder;
@@ -41,7 +17,7 @@ void ThermalCodec::Encode(const Image<std::uint16_t>& image, std::vector<std::ui
   PaddedImage& padded = scratch_->encoder.image();
   padded.Reset(image.width(), image.height());
   for (int y = 0; y < image.height(); ++y) std::ranges::copy(image.Row(y), padded.Row(y) + 1);
-  scratch_->encoder.Encode(image.width(), image.height(), payload);
+  scratch_->encoder.Encode(payload);
 }
 
 Status ThermalCodec::Decode(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image) {

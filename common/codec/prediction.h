@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdlib>
+
+#include "common/codec/residual_token.h"
+
+/// How a pixel is predicted from its west, north, north-west and north-east neighbours, and which
+/// of a few contexts it is in. Each context has its own token frequencies: they tell flat areas,
+/// where the difference is the camera's noise, from edges.
+namespace isotherm::codec {
+
+/// Values that have been coded before; a hole has the value above it.
+struct Neighbours {
+  int west = 0;
+  int north = 0;
+  int north_west = 0;
+  int north_east = 0;
+};
+
+/// By value, unlike std::min: compilers make vector instructions of it.
+constexpr int Min(int a, int b) { return a < b ? a : b; }
+constexpr int Max(int a, int b) { return a > b ? a : b; }
+
+/// How much the neighbours differ.
+constexpr int Activity(const Neighbours& pixels) {
+  return std::abs(pixels.west - pixels.north_west) + std::abs(pixels.north - pixels.north_west) +
+         std::abs(pixels.north - pixels.north_east);
+}
+
+/// Depth. Value 0 is a hole (no return) and has a token of its own; the context also says which of
+/// the western and northern neighbours are holes.
+struct DepthModel {
+  static constexpr bool kHasHoles = true;
+  static constexpr int kActivities = 6;
+  /// Most differences are so small that their token says it all.
+  static constexpr bool kRawBitsAreRare = true;
+
+  static constexpr int Predict(const Neighbours& pixels) {
+    return (pixels.west + pixels.north) >> 1;
+  }
+};
+
+/// Temperature, by the median edge detector (Weinberger, Seroussi, Sapiro, "LOCO-I", 2000): the
+/// plane through the neighbours or, at an edge, the neighbour on the pixel's side.
+struct ThermalModel {
+  static constexpr bool kHasHoles = false;
+  static constexpr int kActivities = 12;
+  static constexpr bool kRawBitsAreRare = false;
+
+  static constexpr int Predict(const Neighbours& pixels) {
+    const int least = Min(pixels.west, pixels.north);
+    const int most = Max(pixels.west, pixels.north);
+    return least + most - Min(Max(pixels.north_west, least), most);
+  }
+};
+
+template <typename Model>
+inline constexpr int kContexts = Model::kActivities*(Model::kHasHoles ? 4 : 1);
+template <typename Model>
+inline constexpr int kTokens = kResidualTokens + (Model::kHasHoles ? 1 : 0);
+
+/// `activity_bits` is the number of bits of the activity.
+template <typename Model>
+constexpr int Context(int activity_bits, bool hole_west, bool hole_north) {
+  const int activity = Min(activity_bits, Model::kActivities - 1);
+  if constexpr (!Model::kHasHoles) return activity;
+  return activity + (hole_west ? Model::kActivities : 0) +
+         (hole_north ? 2 * Model::kActivities : 0);
+}
+
+}  // namespace isotherm::codec
