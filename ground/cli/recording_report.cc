@@ -11,12 +11,15 @@
 namespace isotherm {
 namespace {
 
+// " (date time UTC)"; nothing for stamps that do not count from 1970, as those of many data sets.
 std::string Utc(CaptureTime time) {
+  constexpr int kFirstPlausibleYear = 2000;
   const std::time_t seconds = static_cast<std::time_t>(ToSeconds(time.time_since_epoch()));
   std::tm utc{};
   gmtime_r(&seconds, &utc);
-  return fmt::format("{:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC", utc.tm_year + 1900, utc.tm_mon + 1,
-                     utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
+  if (utc.tm_year + 1900 < kFirstPlausibleYear) return {};
+  return fmt::format(" ({:04}-{:02}-{:02} {:02}:{:02}:{:02} UTC)", utc.tm_year + 1900,
+                     utc.tm_mon + 1, utc.tm_mday, utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
 std::string Size(const StreamSummary& stream) {
@@ -59,7 +62,7 @@ void AppendStream(std::string_view name, const StreamSummary& stream, std::strin
   if (stream.gaps == 0) {
     text += fmt::format("{}no time gaps\n", kIndent);
   } else {
-    text += fmt::format("{}{} time gap{} over 1.5 periods, the longest {:.1f} ms before {}\n",
+    text += fmt::format("{}{} time gap{} over 1.5 periods, the longest {:.1f} ms after {}\n",
                         kIndent, stream.gaps, stream.gaps == 1 ? "" : "s",
                         1e3 * stream.longest_gap_s, FormatStamp(stream.longest_gap_at));
   }
@@ -127,12 +130,12 @@ void AppendOther(const RecordingReport& report, std::string& text) {
   for (const auto& [stream, count] : report.summary.poses)
     text += fmt::format("{:<14}{} poses\n", stream, count);
   for (const auto& [topic, count] : report.info.messages_by_topic) {
-    text += fmt::format("{:<14}{} messages\n", topic, count);
+    text += fmt::format("{:<22}{} messages\n", topic, count);
   }
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) {
       const bool long_text = value.find('\n') != std::string::npos;
-      text += fmt::format("{:<14}{}: {}\n", name, key,
+      text += fmt::format("{:<22}{}: {}\n", name, key,
                           long_text ? fmt::format("({} bytes of text)", value.size()) : value);
     }
   }
@@ -211,7 +214,7 @@ std::string ToText(const RecordingReport& report) {
                         report.info.bytes_ignored);
   }
   if (report.info.start && report.info.end) {
-    text += fmt::format("{:<14}{} to {} ({})\n", "time", FormatStamp(*report.info.start),
+    text += fmt::format("{:<14}{} to {}{}\n", "time", FormatStamp(*report.info.start),
                         FormatStamp(*report.info.end), Utc(*report.info.start));
   }
   AppendStream("depth", report.summary.depth, text);

@@ -54,10 +54,10 @@ std::string EncodingName(Encoding encoding) {
       return "raw";
     case Encoding::kPng16:
       return "png";
-    case Encoding::kDepthRvl:
-      return "depth-rvl";
-    case Encoding::kThermalDelta:
-      return "thermal-delta";
+    case Encoding::kDepthRans:
+      return "depth-rans";
+    case Encoding::kThermalRans:
+      return "thermal-rans";
   }
   return fmt::format("unknown ({})", static_cast<int>(encoding));
 }

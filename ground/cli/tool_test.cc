@@ -1,0 +1,238 @@
+// Runs the program `isotherm` as a user does.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kUsage = 64, kData = 65, kNoInput = 66, kCannotCreate = 73, kIo = 74,
+              kConfiguration = 78;
+
+std::string ReadAll(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string err;
+};
+
+class ToolTest : public testing::Test {
+ protected:
+  ToolTest() {
+    std::string pattern = (fs::temp_directory_path() / "isotherm-tool-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~ToolTest() override {
+    std::error_code error;
+    fs::remove_all(folder_, error);
+  }
+
+  // `arguments` are words for the shell; the program runs in the test's folder.
+  Outcome Run(const std::string& arguments, const std::string& environment = "") const {
+    const std::string command = "cd '" + folder_.string() + "' && " + environment +
+                                " '" ISOTHERM_PROGRAM "' " + arguments +
+                                " >out.txt 2>err.txt </dev/null";
+    const int raw = std::system(command.c_str());
+    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, ReadAll(folder_ / "out.txt"),
+            ReadAll(folder_ / "err.txt")};
+  }
+
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+
+  // A small scan of a corner with a sphere, with truth: scan.mcap and scan.ply.
+  void Simulate(const std::string& more = "") const {
+    const Outcome outcome = Run(
+        "simulate --scene corner-sphere --duration 0.4 -o scan.mcap --surface scan.ply " + more);
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ToolTest, HelpTeachesAndVersionNamesTheProgram) {
+  const Outcome help = Run("--help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("isotherm import --from tum"), HasSubstr("Exit status"),
+                              HasSubstr("78")));
+  EXPECT_EQ(Run("").out, help.out);
+  EXPECT_THAT(Run("--version").out, HasSubstr("isotherm 0."));
+  for (const std::string name :
+       {"demo", "import", "inspect", "reconstruct", "evaluate", "simulate"}) {
+    EXPECT_THAT(help.out, HasSubstr(name));
+    const Outcome each = Run(name + " --help");
+    EXPECT_EQ(each.status, 0);
+    EXPECT_THAT(each.out, HasSubstr("Example"));
+  }
+}
+
+TEST_F(ToolTest, WrongCommandLinesAreOneSentenceAndStatus64) {
+  for (const std::string arguments :
+       {"dance", "import", "import --nonsense x -o y", "import x -o y --from kitti", "inspect",
+        "evaluate x", "reconstruct a.mcap -o b --initial-pose 1 --initial-pose-from c"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, kUsage) << arguments;
+    EXPECT_THAT(outcome.err, HasSubstr("isotherm: ")) << arguments;
+    EXPECT_EQ(outcome.out, "") << arguments;
+  }
+}
+
+TEST_F(ToolTest, MissingInputsAreSaidWithStatus66) {
+  EXPECT_EQ(Run("import nowhere -o scan.mcap").status, kNoInput);
+  EXPECT_EQ(Run("inspect nowhere.mcap").status, kNoInput);
+  EXPECT_EQ(Run("reconstruct nowhere.mcap -o out").status, kNoInput);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  EXPECT_EQ(Run("reconstruct nowhere.mcap -o out --config nowhere.textproto").status,
+            kConfiguration);
+  fs::create_directory(folder_ / "result");
+  const Outcome evaluate = Run("evaluate result --groundtruth nowhere.txt");
+  EXPECT_EQ(evaluate.status, kNoInput);
+  EXPECT_THAT(evaluate.err, HasSubstr("is 'result' the output folder"));
+}
+
+TEST_F(ToolTest, F59AllConfigurationErrorsAreListedAndNothingStarts) {
+  Write("bad.textproto", "volume { size_x: 1 }\ntracker { max_distance_m: \"far\" }\nvoxel: 2\n");
+  const Outcome outcome =
+      Run("reconstruct scan.mcap -o out --config bad.textproto --set tsdf.max_wieght=3 --voxel "
+          "0.002 --volume big");
+  EXPECT_EQ(outcome.status, kConfiguration);
+  EXPECT_THAT(outcome.err,
+              AllOf(HasSubstr("bad.textproto:1:10: unknown field 'size_x'"),
+                    HasSubstr("bad.textproto:2:27: Expected double"),
+                    HasSubstr("bad.textproto:3:1: unknown field 'voxel'"),
+                    HasSubstr("Did you mean 'max_weight'?"), HasSubstr("--volume: 'big'")));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(ToolTest, F59OptionsOutOfRangeAreConfigurationErrors) {
+  const Outcome outcome = Run("reconstruct scan.mcap -o out --voxel -1 --set tsdf.max_weight=0");
+  EXPECT_EQ(outcome.status, kConfiguration);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("voxel_size_m"), HasSubstr("max_weight")));
+}
+
+TEST_F(ToolTest, F71HugeVolumeIsRefusedWithNumbers) {
+  const Outcome outcome = Run("reconstruct scan.mcap -o out --volume 1e9 --voxel 0.001");
+  EXPECT_EQ(outcome.status, kConfiguration) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
+  Simulate();
+  const Outcome inspect = Run("inspect scan.mcap");
+  EXPECT_EQ(inspect.status, 0) << inspect.err;
+  EXPECT_THAT(inspect.out,
+              AllOf(HasSubstr("complete"), HasSubstr("640 x 480"), HasSubstr("382 x 288"),
+                    HasSubstr("0 missing"), HasSubstr("groundtruth")));
+  EXPECT_THAT(Run("inspect scan.mcap --json").out,
+              AllOf(HasSubstr("\"complete\": true"), HasSubstr("\"missing\": 0")));
+  const Outcome render = Run("inspect scan.mcap --render 3 -o frame.png");
+  EXPECT_EQ(render.status, 0) << render.err;
+  EXPECT_THAT(ReadAll(folder_ / "frame.png"), testing::StartsWith("\x89PNG"));
+  EXPECT_EQ(Run("inspect scan.mcap --render 3 --stream depth -o depth.png").status, 0);
+  EXPECT_THAT(Run("inspect scan.mcap --render 99999 -o x.png").err,
+              HasSubstr("there is no thermal frame 99999"));
+  EXPECT_EQ(Run("inspect scan.mcap --render 0").status, kUsage);
+
+  const Outcome reconstruct =
+      Run("reconstruct scan.mcap -o out --voxel 0.004 --initial-pose-from scan.mcap "
+          "--set tsdf.truncation_distance_m=0.016");
+  ASSERT_EQ(reconstruct.status, 0) << reconstruct.err;
+  const Outcome evaluate =
+      Run("evaluate out --groundtruth scan.mcap --surface scan.ply --emissivity 0.96 --ambient 23 "
+          "--json");
+  ASSERT_EQ(evaluate.status, 0) << evaluate.err;
+  EXPECT_THAT(evaluate.out, AllOf(HasSubstr("\"aligned_m\""), HasSubstr("\"completeness\""),
+                                  HasSubstr("\"good\"")));
+  EXPECT_THAT(Run("evaluate out --groundtruth scan.mcap").out, HasSubstr("rigidly aligned"));
+  EXPECT_EQ(Run("evaluate out --groundtruth scan.mcap --emissivity 0.9").status, kUsage);
+}
+
+TEST_F(ToolTest, F44TornRecordingIsInspectedUpToItsLastGoodPart) {
+  Simulate();
+  fs::resize_file(folder_ / "scan.mcap", fs::file_size(folder_ / "scan.mcap") * 2 / 3);
+  const Outcome inspect = Run("inspect scan.mcap");
+  EXPECT_EQ(inspect.status, 0) << inspect.err;
+  EXPECT_THAT(inspect.out, HasSubstr("not complete"));
+}
+
+TEST_F(ToolTest, SimulateRefusesToOverwriteUnlessForced) {
+  Write("scan.mcap", "precious");
+  const Outcome outcome = Run("simulate --scene corner-sphere --duration 0.1 -o scan.mcap");
+  EXPECT_EQ(outcome.status, kUsage);
+  EXPECT_THAT(outcome.err, HasSubstr("exists already"));
+  EXPECT_EQ(ReadAll(folder_ / "scan.mcap"), "precious");
+  EXPECT_THAT(Run("simulate --scene furnace-dor -o x.mcap").err,
+              HasSubstr("Did you mean 'furnace-door'?"));
+}
+
+TEST_F(ToolTest, FullStandardOutputIsAnError) {
+  const std::string command =
+      "'" ISOTHERM_PROGRAM "' --help >/dev/full 2>'" + (folder_ / "err.txt").string() + "'";
+  const int help = std::system(command.c_str());
+  EXPECT_NE(WEXITSTATUS(help), 1);
+  Simulate();
+  const std::string inspect = "cd '" + folder_.string() +
+                              "' && '" ISOTHERM_PROGRAM "' inspect scan.mcap >/dev/full 2>err.txt";
+  EXPECT_EQ(WEXITSTATUS(std::system(inspect.c_str())), kIo);
+}
+
+TEST_F(ToolTest, OutputThatCannotBeWrittenIsSaidBeforeAnyWork) {
+  Simulate();
+  Write("file", "");
+  const Outcome reconstruct = Run("reconstruct scan.mcap -o file/out");
+  EXPECT_TRUE(reconstruct.status == kCannotCreate || reconstruct.status == kIo)
+      << reconstruct.status;
+  EXPECT_THAT(reconstruct.err, HasSubstr("file/out"));
+}
+
+TEST_F(ToolTest, F70OutputIsTheSameInAnyLocaleAndForAnyFileName) {
+  Simulate();
+  const std::string name = "T\xc3\xbcr \xfc 1.mcap";
+  fs::rename(folder_ / "scan.mcap", folder_ / name);
+  const std::string arguments = "inspect '" + name + "'";
+  const Outcome plain = Run(arguments, "LC_ALL=C TZ=UTC");
+  EXPECT_EQ(plain.status, 0) << plain.err;
+  for (const std::string environment : {"LC_ALL=de_DE.UTF-8 TZ=Asia/Tokyo", "LC_ALL=tr_TR.UTF-8",
+                                        "LC_ALL=ar_SA.UTF-8", "LC_ALL=C.UTF-8"}) {
+    EXPECT_EQ(Run(arguments, environment).out, plain.out) << environment;
+  }
+}
+
+// Thermal without depth: what can be done works, the rest is refused in words.
+TEST_F(ToolTest, RealThermalOnlyDataIsImportedInspectedAndRendered) {
+  const char* set = std::getenv("ISOTHERM_DATA_DIR");
+  const fs::path data = set != nullptr ? set : ISOTHERM_SOURCE_DIR "/../shared/data";
+  if (!fs::exists(data / "optris_desk")) GTEST_SKIP() << "no test data; set ISOTHERM_DATA_DIR";
+  const Outcome import =
+      Run("import --from tum '" + (data / "optris_desk").string() + "' -o desk.mcap");
+  ASSERT_EQ(import.status, 0) << import.err;
+  EXPECT_THAT(import.out, AllOf(HasSubstr("100 thermal frames"), HasSubstr("thermal only")));
+  EXPECT_THAT(Run("inspect desk.mcap").out,
+              AllOf(HasSubstr("100 frames of 382 x 288"), HasSubstr("25.00 Hz")));
+  EXPECT_EQ(Run("inspect desk.mcap --render 50 -o desk.png").status, 0);
+  EXPECT_GT(fs::file_size(folder_ / "desk.png"), 10000U);
+  const Outcome reconstruct = Run("reconstruct desk.mcap -o out");
+  EXPECT_EQ(reconstruct.status, kData);
+  EXPECT_THAT(reconstruct.err, HasSubstr("no depth"));
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+}  // namespace
