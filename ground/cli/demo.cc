@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <numbers>
 #include <thread>
 
 #include "common/base/progress.h"
@@ -51,35 +50,22 @@ Result<fs::path> SimulatedRecording(const SimulationOptions& options, const std:
   return recording;
 }
 
-// What the median filter of the time stamps cannot know: the constant part of the way from exposure
-// to arrival and the median of its jitter (exponentially distributed). On real rigs it is
-// calibrated.
-double ConstantDelay_s(const ClockOptions& clock) {
-  return clock.delay_s() + std::numbers::ln2 * clock.jitter_s();
-}
-
-std::vector<std::string> EdgeArguments(const DemoRequest& request,
-                                       const SimulationOptions& simulation,
-                                       const fs::path& recording, const std::string& edge_id) {
-  return {
-      "--recording",
-      recording.string(),
-      "--edge-id",
-      edge_id,
-      "--domain",
-      std::to_string(request.domain),
-      "--rate",
-      fmt::format("{}", request.rate),
-      "--wait-for-ground",
-      "--exit-at-end",
-      "--set",
-      "source.rebase=false",
-      "--set",
-      "link.linger_s=600",
-      "--set",
-      fmt::format("timestamper.depth_delay_s={}", -ConstantDelay_s(simulation.depth_clock())),
-      "--set",
-      fmt::format("timestamper.thermal_delay_s={}", -ConstantDelay_s(simulation.thermal_clock()))};
+std::vector<std::string> EdgeArguments(const DemoRequest& request, const fs::path& recording,
+                                       const std::string& edge_id) {
+  return {"--recording",
+          recording.string(),
+          "--edge-id",
+          edge_id,
+          "--domain",
+          std::to_string(request.domain),
+          "--rate",
+          fmt::format("{}", request.rate),
+          "--wait-for-ground",
+          "--exit-at-end",
+          "--set",
+          "source.rebase=false",
+          "--set",
+          "link.linger_s=600"};
 }
 
 Result<std::vector<std::string>> GroundArguments(const DemoRequest& request,
@@ -173,8 +159,7 @@ Status CompareWithTruth(const DemoRequest& request, const SimulationOptions& sim
   return OkStatus();
 }
 
-Status Scan(const DemoRequest& request, const SimulationOptions& simulation,
-            const fs::path& recording, const std::stop_token& stop) {
+Status Scan(const DemoRequest& request, const fs::path& recording, const std::stop_token& stop) {
   const std::string edge_id = fmt::format("demo-{}", ::getpid());
   const auto edge_program = NeighbourProgram("isotherm-edge");
   if (!edge_program) return edge_program.error();
@@ -185,9 +170,8 @@ Status Scan(const DemoRequest& request, const SimulationOptions& simulation,
   auto ground =
       ChildProcess::Start(*ground_program, *ground_arguments, request.output / "ground.log");
   if (!ground) return ground.error();
-  auto edge =
-      ChildProcess::Start(*edge_program, EdgeArguments(request, simulation, recording, edge_id),
-                          request.output / "edge.log");
+  auto edge = ChildProcess::Start(*edge_program, EdgeArguments(request, recording, edge_id),
+                                  request.output / "edge.log");
   if (!edge) return edge.error();
   return WaitForBoth(*edge, *ground, request.output / kRecordingName, recording, stop);
 }
@@ -218,7 +202,7 @@ Result<DemoReport> RunDemo(const DemoRequest& request, std::stop_token stop) {
   if (!recording) return Err(recording.error());
   DemoReport report;
   report.simulated_recording = *recording;
-  Status status = Scan(request, *simulation, *recording, stop);
+  Status status = Scan(request, *recording, stop);
   if (status.ok()) status = CountFrames(*recording, &DemoAccount::simulated, report);
   if (status.ok())
     status = CountFrames(request.output / kRecordingName, &DemoAccount::arrived, report);
