@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <optional>
 #include <utility>
 
 #include "common/base/log.h"
@@ -25,11 +26,14 @@ Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher
       disk_(std::move(disk)),
       terminal_(isatty(STDERR_FILENO) == 1),
       next_status_(clock.SteadyNow()),
-      next_log_(next_status_ + kLogInterval) {}
+      next_log_(next_status_ + kLogInterval),
+      watchdog_interval_(WatchdogInterval()),
+      next_feed_(next_status_) {}
 
 void Housekeeping::Tick() {
   pipeline_.AnswerCommands();
   const SteadyTime now = clock_.SteadyNow();
+  FeedWatchdog(now);
   if (now < next_status_) return;
   next_status_ += kStatusInterval;
   const bool ended = pipeline_.finished();
@@ -39,7 +43,6 @@ void Housekeeping::Tick() {
     LOG(Edge, Debug) << "status not published: " << published.message();
   }
   Show(status);
-  FeedWatchdog(status);
 }
 
 void Housekeeping::PublishEnd() {
@@ -80,10 +83,13 @@ void Housekeeping::Show(const EdgeStatus& status) {
   NotifyStatus(line);
 }
 
-void Housekeeping::FeedWatchdog(const EdgeStatus& status) {
-  // A daemon whose source has ended is idle, not stuck.
-  const std::uint64_t captured = status.depth.captured + status.thermal.captured;
-  if (captured == captured_at_last_feed_ && status.scan_state != ScanState::kEnded) return;
+void Housekeeping::FeedWatchdog(SteadyTime now) {
+  if (!watchdog_interval_ || now < next_feed_) return;
+  next_feed_ = now + *watchdog_interval_;
+  // Only while frames move. A daemon whose source has ended is idle, not stuck.
+  const std::uint64_t captured =
+      account_.Get(Sensor::kDepth).captured + account_.Get(Sensor::kThermal).captured;
+  if (captured == captured_at_last_feed_ && !pipeline_.finished()) return;
   captured_at_last_feed_ = captured;
   NotifyWatchdog();
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "common/time/clock.h"
 #include "edge/edge_pipeline.h"
@@ -27,7 +28,7 @@ class Housekeeping {
  private:
   EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
   void Show(const EdgeStatus& status);
-  void FeedWatchdog(const EdgeStatus& status);
+  void FeedWatchdog(SteadyTime now);
 
   const Clock& clock_;
   EdgePipeline& pipeline_;
@@ -37,6 +38,8 @@ class Housekeeping {
   const bool terminal_;
   SteadyTime next_status_;
   SteadyTime next_log_;
+  const std::optional<Nanoseconds> watchdog_interval_;  ///< Nullopt: nobody watches.
+  SteadyTime next_feed_;
   RateMeter depth_rate_;
   RateMeter thermal_rate_;
   std::uint64_t captured_at_last_feed_ = 0;

@@ -85,7 +85,7 @@ void CheckLink(const LinkOptions& options, Problems& problems) {
   }
   problems.CheckRange("domain", options.domain(), 0, 230);
   problems.CheckRange("queue_frames", options.queue_frames(), 1, 100'000);
-  problems.CheckRange("linger_s", options.linger_s(), 0.0, 60.0);
+  problems.CheckRange("linger_s", options.linger_s(), 0.0, 3600.0);
 }
 
 }  // namespace
