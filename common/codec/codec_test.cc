@@ -152,7 +152,7 @@ TEST_P(CodecTest, DamagedPayloadsNeverCrash) {
   const EncodedImage whole = EncodeWith(GetParam(), DepthLike(24, 18));
   for (int i = 0; i < 20'000; ++i) {
     EncodedImage damaged = whole;
-    for (std::uint32_t flips = random() % 4 + 1; flips > 0; --flips) {
+    for (auto flips = random() % 4 + 1; flips > 0; --flips) {
       damaged.payload[random() % damaged.payload.size()] = static_cast<std::uint8_t>(random());
     }
     static_cast<void>(Decode(damaged));  // Either an error or an image of the right size.

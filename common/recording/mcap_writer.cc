@@ -109,16 +109,13 @@ Status Writer::WriteMetadata(const Metadata& metadata) {
 Status Writer::Flush() {
   if (!failure_.ok()) return failure_;
   if (chunk_.records.empty()) return OkStatus();
-  ISOTHERM_RETURN_IF_ERROR(AppendChunk());
-  Account(chunk_);
-  chunk_ = OpenChunk{.records = std::move(chunk_.records), .indexes = {}, .schemas = {}};
-  chunk_.records.clear();
+  ISOTHERM_RETURN_IF_ERROR(WriteChunk());
   if (!options_.sync) return OkStatus();
   failure_ = sink_->Sync();
   return failure_;
 }
 
-Status Writer::AppendChunk() {
+Status Writer::WriteChunk() {
   compressed_.resize(ZSTD_compressBound(chunk_.records.size()));
   const std::size_t compressed_size =
       ZSTD_compress2(zstd_.get(), compressed_.data(), compressed_.size(), chunk_.records.data(),
@@ -144,14 +141,25 @@ Status Writer::AppendChunk() {
                    .compression = header.compression,
                    .compressed_size = header.compressed_size,
                    .uncompressed_size = header.uncompressed_size};
+  ISOTHERM_RETURN_IF_ERROR(WriteBytes(out_));
+  // From here on the messages are in the file, even if their indexes do not fit.
+  Account(chunk_);
+  ISOTHERM_RETURN_IF_ERROR(WriteMessageIndexes(index));
+  chunk_indexes_.push_back(std::move(index));
+  return OkStatus();
+}
+
+Status Writer::WriteMessageIndexes(ChunkIndex& index) {
+  out_.clear();
   for (const MessageIndex& messages : chunk_.indexes) {
     index.message_index_offsets[messages.channel_id] = offset_ + out_.size();
     Append(messages, out_);
   }
-  index.message_index_length = out_.size() - index.chunk_length;
-  ISOTHERM_RETURN_IF_ERROR(WriteBytes(out_));
-  chunk_indexes_.push_back(std::move(index));
-  return OkStatus();
+  index.message_index_length = out_.size();
+  chunk_.records.clear();
+  chunk_.indexes.clear();
+  chunk_.schemas.clear();
+  return WriteBytes(out_);
 }
 
 void Writer::Account(const OpenChunk& chunk) {

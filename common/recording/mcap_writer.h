@@ -22,7 +22,7 @@ struct WriterOptions {
 };
 
 /// Writes an MCAP container: records are collected in chunks (zstd, CRC); each chunk goes out with
-/// its message indexes in one write and repeats the schemas and channels it needs, so that every
+/// its message indexes and repeats the schemas and channels it needs, so that every
 /// chunk can be read without any other. Close() adds the summary. After the first failure of the
 /// sink nothing more is written and every call returns that failure. Thread-compatible.
 class Writer {
@@ -68,7 +68,9 @@ class Writer {
   Writer(std::unique_ptr<ByteSink> sink, WriterOptions options);
 
   MessageIndex& IndexFor(ChannelId channel);
-  Status AppendChunk();
+  Status WriteChunk();
+  /// Of the chunk that was just written; completes `index` and empties the chunk.
+  Status WriteMessageIndexes(ChunkIndex& index);
   void AppendSummary(Bytes& out) const;
   void AppendSummaryGroup(Opcode group, Bytes& out, std::vector<SummaryOffset>& offsets) const;
   /// Writes and counts; remembers the first failure.
