@@ -17,6 +17,7 @@ constexpr int kNone = -1;
 constexpr std::array<std::array<int, 4>, 6> kFaces = {
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
+/// All edges, sorted by axis, then by their first corner.
 Edges MakeEdges() {
   Edges edges;
   std::size_t count = 0;

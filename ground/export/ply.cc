@@ -72,6 +72,7 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
   return text + "end_header\n";
 }
 
+/// One vertex, in the order of the header's properties.
 void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& records) {
   for (const float value : point.position_m) records.Add(value);
   for (const float value : point.normal) records.Add(value);
@@ -85,6 +86,7 @@ void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& reco
   records.EndRecord();
 }
 
+/// One face: the number of its corners, then their indices.
 void AddTriangle(const Eigen::Vector3i& triangle, RecordWriter& records) {
   records.Add(std::uint8_t{3});
   for (const std::int32_t index : triangle) records.Add(index);

@@ -48,6 +48,7 @@ struct BlockCrossings {
   std::uint32_t first = 0;  ///< Index of points[0] among all points.
 };
 
+/// The passes of one extraction: crossings per block, then points, then triangles between them.
 class Extractor {
  public:
   Extractor(const TsdfVolume& tsdf, const ThermalVolume& thermal, const SurfaceOptions& options,
