@@ -40,6 +40,7 @@ double LabForward(double t) { return t > 0.008856 ? std::cbrt(t) : 7.787 * t + 1
 
 double LabInverse(double f) { return f > 0.20689 ? f * f * f : (f - 16.0 / 116.0) / 7.787; }
 
+/// sRGB -> XYZ -> CIELAB -> Msh.
 Msh MshFromRgb(const Rgb8& rgb) {
   const Eigen::Vector3d linear(Linear(rgb.r / 255.0), Linear(rgb.g / 255.0), Linear(rgb.b / 255.0));
   const Eigen::Vector3d xyz = XyzFromLinear() * linear;
@@ -49,6 +50,7 @@ Msh MshFromRgb(const Rgb8& rgb) {
   return {m, std::acos(lab.x() / m), std::atan2(lab.z(), lab.y())};
 }
 
+/// The way back; colours outside sRGB are cut off per channel.
 Rgb8 RgbFromMsh(const Msh& msh) {
   const double lightness = msh.m * std::cos(msh.s);
   const double a = msh.m * std::sin(msh.s) * std::cos(msh.h);

@@ -19,6 +19,7 @@ constexpr Rgb8 kBadColour{255, 0, 0};
 constexpr Rgb8 kNeverMeasuredClassColour{0, 0, 0};
 constexpr Rgb8 kGeometryColour{224, 226, 230};
 
+/// Algorithm 7, line 12.
 Rgb8 Shaded(Rgb8 colour, double brightness) {
   const auto scaled = [brightness](std::uint8_t value) {
     return static_cast<std::uint8_t>(std::lround(value * brightness));

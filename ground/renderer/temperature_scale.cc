@@ -13,6 +13,7 @@ constexpr double kNarrowestKelvin = 0.1;
 
 }  // namespace
 
+/// In one pass and numerically stable, whatever the order of the values.
 TemperatureStatistics Summarize(std::span<const float> celsius) {
   TemperatureStatistics result;
   double sum_of_squares = 0.0;  // Of deviations from the running mean (Welford 1962).
