@@ -94,6 +94,9 @@ class DdsPublisher final : public Publisher {
   template <typename Frame>
   void WaitForRoom(std::uint64_t number, const Writer<Frame>& writer, Stream* stream,
                    const std::stop_token& stop);
+  /// Messages for other rigs share the topics.
+  bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
+  void TakeReceipts();
   void OnReceipt(const Receipt& receipt);
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
@@ -109,6 +112,7 @@ class DdsPublisher final : public Publisher {
   const Hello own_hello_;
   RefusalCounter refusals_;
   EdgeEndpoints ends_;
+  std::mutex receipts_mutex_;  // Run() takes receipts, and so does Drain(), before or after Run().
   LatestValue<Feedback> feedback_;
   LatestValue<Receipt> receipt_;
   std::atomic<PublishPolicy> policy_;
@@ -146,24 +150,25 @@ Status DdsPublisher::Open(const Participant& participant) {
 
 void DdsPublisher::Run(std::stop_token stop, std::function<void(const Command&)> on_command) {
   const std::stop_callback wake(stop, [this] { ends_.wait_set.Wake(); });
-  // Messages for other rigs share the topics.
-  const auto is_ours = [this](const auto& received) {
-    return received.edge_id == options_.edge_id;
-  };
   while (!stop.stop_requested()) {
     ends_.wait_set.Wait(kPresenceInterval);
     ends_.peers.Take([&](Received<Hello>&& peer) { OnPeer(peer); });
-    ends_.receipts.Take([&](Received<Receipt>&& receipt) {
-      if (is_ours(receipt)) OnReceipt(receipt.message);
-    });
+    TakeReceipts();
     ends_.feedback.Take([&](Received<Feedback>&& feedback) {
-      if (is_ours(feedback)) feedback_.Set(std::move(feedback.message));
+      if (IsOurs(feedback.edge_id)) feedback_.Set(std::move(feedback.message));
     });
     ends_.commands.Take([&](Received<Command>&& command) {
-      if (is_ours(command)) on_command(command.message);
+      if (IsOurs(command.edge_id)) on_command(command.message);
     });
     LookForGround();
   }
+}
+
+void DdsPublisher::TakeReceipts() {
+  std::scoped_lock lock(receipts_mutex_);
+  ends_.receipts.Take([&](Received<Receipt>&& receipt) {
+    if (IsOurs(receipt.edge_id)) OnReceipt(receipt.message);
+  });
 }
 
 void DdsPublisher::OnPeer(const Received<Hello>& peer) {
@@ -301,7 +306,7 @@ bool DdsPublisher::Drain(Nanoseconds timeout) {
   if (!ends_.thermal.WaitForAcknowledgments(left())) return false;
   if (!ends_.status.WaitForAcknowledgments(left())) return false;
   // ... and the ground has taken it.
-  while (!IsHandled()) {
+  for (TakeReceipts(); !IsHandled(); TakeReceipts()) {
     if (ends_.depth.matched_readers() == 0 && ends_.thermal.matched_readers() == 0) return true;
     if (left() == Nanoseconds(0)) return false;
     std::unique_lock lock(mutex_);

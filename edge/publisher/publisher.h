@@ -80,6 +80,7 @@ class Publisher {
 
   /// Waits until every reader has acknowledged all frames, so that nothing is lost when the process
   /// ends. False after `timeout` (also if the ground vanished); true at once if nobody listens.
+  /// Works also when Run() has ended.
   virtual bool Drain(Nanoseconds timeout) = 0;
 
   virtual void SetPolicy(PublishPolicy policy) = 0;

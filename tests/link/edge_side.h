@@ -99,6 +99,9 @@ class EdgeSide {
     }
   }
   bool End() {
+    // As the daemon does it: first the receive thread ends, then the last word is said.
+    receiver_.request_stop();
+    receiver_.join();
     EdgeStatus status;
     status.scan_state = ScanState::kEnded;
     CHECK(publisher_->Publish(status).ok());
