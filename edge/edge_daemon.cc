@@ -68,25 +68,34 @@ std::optional<Rig> WithoutThermalDelay(std::optional<Rig> rig) {
   return rig;
 }
 
-RigDescription Describe(const std::optional<Rig>& rig, std::uint64_t session) {
+/// What was found out before anything starts.
+struct Start {
+  CaptureTime time;
+  std::optional<Rig> rig;            ///< As published and recorded.
+  double rig_thermal_delay_s = 0.0;  ///< As calibrated.
+
+  /// One per start of a scan.
+  std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
+};
+
+RigDescription Describe(const Start& start) {
   RigDescription description;
-  description.session = session;
-  if (!rig) return description;
-  description.rig = *rig;
+  description.session = start.session();
+  if (!start.rig) return description;
+  description.rig = *start.rig;
   const auto mode = [](const std::optional<CameraModel>& camera, Encoding encoding) {
     StreamMode stream;
     if (camera) stream = {camera->width, camera->height, 0.0, encoding, ""};
     return stream;
   };
-  description.depth = mode(rig->depth, Encoding::kDepthRans);
-  description.thermal = mode(rig->thermal, Encoding::kThermalRans);
+  description.depth = mode(start.rig->depth, Encoding::kDepthRans);
+  description.thermal = mode(start.rig->thermal, Encoding::kThermalRans);
   return description;
 }
 
-Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const std::optional<Rig>& rig,
-                                         double rig_thermal_delay_s, CaptureTime now,
+Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const Start& start,
                                          FrameAccount& account) {
-  const std::optional<std::filesystem::path> path = SpoolPath(options.spool().record(), now);
+  const std::optional<std::filesystem::path> path = SpoolPath(options.spool().record(), start.time);
   if (!path) return nullptr;
   const TimestamperOptions& timing = options.timestamper();
   const Spool::Metadata metadata = {
@@ -94,9 +103,10 @@ Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const std::
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
       {"timing",
        {{"depth_delay_s", fmt::format("{}", timing.depth_delay_s())},
-        {"thermal_delay_s", fmt::format("{}", timing.thermal_delay_s() + rig_thermal_delay_s)}}}};
+        {"thermal_delay_s",
+         fmt::format("{}", timing.thermal_delay_s() + start.rig_thermal_delay_s)}}}};
   LOG(Edge, Info) << "recording to " << path->string();
-  return Spool::Create(*path, options.spool(), WithoutThermalDelay(rig), metadata, account);
+  return Spool::Create(*path, options.spool(), start.rig, metadata, account);
 }
 
 Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
@@ -145,6 +155,34 @@ void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Houseke
   }
 }
 
+/// Captures until told to leave, then hands on what is under way. The process's exit status.
+int Capture(const EdgeOptions& options, const Start& start, SupervisedSource& source,
+            std::unique_ptr<Spool> spool, FrameAccount& account, Publisher& publisher,
+            const Clock& clock, const std::stop_token& stop) {
+  const bool recording = spool != nullptr;
+  const std::filesystem::path disk = recording ? spool->path() : ".";
+  EdgePipeline pipeline(options, {source, publisher, account, std::move(spool), start.session(),
+                                  start.rig_thermal_delay_s});
+  pipeline.StartReceiving();
+  NotifyReady(fmt::format("capturing from {}", source.name()));
+  LOG(Edge, Info) << "started: " << source.name() << ", edge_id=" << options.link().edge_id()
+                  << " domain=" << options.link().domain() << " session=" << start.session();
+  if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
+
+  pipeline.StartCapture();
+  Housekeeping housekeeping(clock, pipeline, publisher, account, disk);
+  RunUntilStopped(options, pipeline, housekeeping, stop);
+
+  NotifyStopping();
+  const Status recorded = pipeline.Stop();
+  housekeeping.PublishEnd();
+  if (!Drain(publisher, options.link(), clock, stop)) {
+    LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
+  }
+  std::fputs(Summary(account, recording, publisher.receipt()).c_str(), stdout);
+  return recorded.ok() ? 0 : kExitRecording;
+}
+
 }  // namespace
 
 int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment, const Clock& clock,
@@ -160,47 +198,21 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   if (!*rig) {
     LOG(Edge, Warning) << "no rig calibration: thermal frames cannot be fused with depth";
   }
-  const double rig_thermal_delay_s = *rig ? (*rig)->thermal_delay_s : 0.0;
+  const Start start{clock.Now(), WithoutThermalDelay(*rig), *rig ? (*rig)->thermal_delay_s : 0.0};
 
   const Result<std::unique_ptr<Participant>> participant =
       Participant::Create(environment, options.link().domain());
   if (!participant) return Fail(participant.error());
-  const Result<std::unique_ptr<Publisher>> created = MakePublisher(options, **participant, clock);
-  if (!created) return Fail(created.error());
-  Publisher& publisher = **created;
-  const CaptureTime start = clock.Now();
-  Result<std::unique_ptr<Spool>> spool =
-      OpenSpool(options, *rig, rig_thermal_delay_s, start, account);
+  const Result<std::unique_ptr<Publisher>> publisher = MakePublisher(options, **participant, clock);
+  if (!publisher) return Fail(publisher.error());
+  Result<std::unique_ptr<Spool>> spool = OpenSpool(options, start, account);
   if (!spool) {
     LOG(Edge, Error) << spool.error().message();
     return kExitRecording;
   }
-  const bool recording = *spool != nullptr;
-  const std::filesystem::path disk = recording ? (*spool)->path() : ".";
-
-  const auto session = static_cast<std::uint64_t>(ToNanoseconds(start));
-  const Status begun = publisher.BeginSession(Describe(WithoutThermalDelay(*rig), session));
+  const Status begun = (*publisher)->BeginSession(Describe(start));
   if (!begun.ok()) return Fail(begun);
-  EdgePipeline pipeline(
-      options, {*source, publisher, account, std::move(*spool), session, rig_thermal_delay_s});
-  pipeline.StartReceiving();
-  NotifyReady(fmt::format("capturing from {}", source->name()));
-  LOG(Edge, Info) << "started: " << source->name() << ", edge_id=" << options.link().edge_id()
-                  << " domain=" << options.link().domain() << " session=" << session;
-  if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
-
-  pipeline.StartCapture();
-  Housekeeping housekeeping(clock, pipeline, publisher, account, disk);
-  RunUntilStopped(options, pipeline, housekeeping, stop);
-
-  NotifyStopping();
-  const Status recorded = pipeline.Stop();
-  housekeeping.PublishEnd();
-  if (!Drain(publisher, options.link(), clock, stop)) {
-    LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
-  }
-  std::fputs(Summary(account, recording, publisher.receipt()).c_str(), stdout);
-  return recorded.ok() ? 0 : kExitRecording;
+  return Capture(options, start, *source, std::move(*spool), account, **publisher, clock, stop);
 }
 
 }  // namespace isotherm
