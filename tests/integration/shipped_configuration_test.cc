@@ -1,0 +1,75 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "common/config/text_proto.h"
+#include "edge/edge_options.pb.h"
+#include "edge/validate_options.h"
+#include "ground/ground_options.pb.h"
+#include "ground/validate_options.h"
+
+namespace isotherm {
+namespace {
+
+const std::filesystem::path kDeploy = std::filesystem::path(ISOTHERM_SOURCE_DIR) / "deploy";
+
+std::string ReadAll(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(ShippedConfigurationTest, TheGroundFileLoadsAndValidates) {
+  GroundOptions options;
+  const Status loaded = LoadTextProto(kDeploy / "ground.textproto", options);
+  ASSERT_TRUE(loaded.ok()) << loaded.message();
+  for (const Status& problem : ValidateAll(options)) ADD_FAILURE() << problem.message();
+}
+
+TEST(ShippedConfigurationTest, TheEdgeFileLoadsAndValidates) {
+  EdgeOptions options;
+  const Status loaded = LoadTextProto(kDeploy / "edge.textproto", options);
+  ASSERT_TRUE(loaded.ok()) << loaded.message();
+  const Status valid = Validate(options);
+  EXPECT_TRUE(valid.ok()) << valid.message();
+}
+
+TEST(ShippedConfigurationTest, EdgeAndGroundMeetOnTheLink) {
+  EdgeOptions edge;
+  GroundOptions ground;
+  ASSERT_TRUE(LoadTextProto(kDeploy / "edge.textproto", edge).ok());
+  ASSERT_TRUE(LoadTextProto(kDeploy / "ground.textproto", ground).ok());
+  EXPECT_EQ(edge.link().domain(), ground.live().domain());
+  EXPECT_EQ(edge.link().edge_id(), ground.live().edge_id());
+}
+
+/// A file that is not named in a test above is not tested: this fails when one is added.
+TEST(ShippedConfigurationTest, NoShippedFileIsForgotten) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(kDeploy)) {
+    if (entry.path().extension() == ".textproto") names.push_back(entry.path().filename().string());
+  }
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("edge.textproto", "ground.textproto"));
+}
+
+TEST(ShippedConfigurationTest, TheDefaultsAreValid) {
+  EXPECT_THAT(ValidateAll(GroundOptions()), ::testing::IsEmpty());
+  EXPECT_TRUE(Validate(EdgeOptions()).ok()) << Validate(EdgeOptions()).message();
+}
+
+TEST(ShippedConfigurationTest, TheCalibrationInTheReadmeIsValid) {
+  const std::string readme = ReadAll(std::filesystem::path(ISOTHERM_SOURCE_DIR) / "README.md");
+  const std::size_t begin = readme.find("# rig.textproto");
+  ASSERT_NE(begin, std::string::npos);
+  const Result<Rig> rig =
+      ParseRigCalibration(readme.substr(begin, readme.find("```", begin) - begin), "README.md");
+  ASSERT_TRUE(rig.has_value()) << rig.error().message();
+  EXPECT_TRUE(CheckThermalFusion(*rig).ok());
+}
+
+}  // namespace
+}  // namespace isotherm

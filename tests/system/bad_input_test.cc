@@ -1,0 +1,308 @@
+// What the programs say and return when they are given something that cannot work: one sentence
+// that names the file, the exit status of --help, and nothing lost that was good.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <sstream>
+
+#include "common/dataset/dataset_folder_for_test.h"
+#include "tests/system/programs.h"
+
+namespace isotherm::system_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr int kUsage = 64, kBadData = 65, kNoInput = 66, kCannotCreate = 73, kIoError = 74,
+              kConfiguration = 78;
+
+Finished RunTool(std::vector<std::string> arguments, std::filesystem::path output_file = {}) {
+  return RunToEnd({Tool(), std::move(arguments), {}, std::move(output_file)}, kPatience);
+}
+
+/// The lines that are not a progress bar.
+std::vector<std::string> Sentences(const std::string& output) {
+  std::vector<std::string> sentences;
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(" %") == std::string::npos || line.find("  [") == std::string::npos) {
+      sentences.push_back(line);
+    }
+  }
+  return sentences;
+}
+
+/// `finished` failed with `status` and said why in one line that contains `word`.
+void ExpectOneSentence(const Finished& finished, const ::testing::Matcher<int>& status,
+                       const std::string& word) {
+  EXPECT_THAT(finished.status, status) << finished.output;
+  EXPECT_THAT(Sentences(finished.output), ::testing::ElementsAre(HasSubstr(word)));
+}
+
+class BadInputTest : public ::testing::Test {
+ protected:
+  std::filesystem::path Recording() const { return dataset_.root() / "scan.mcap"; }
+  std::filesystem::path Results() const { return dataset_.root() / "results"; }
+
+  Finished Import() const { return RunTool({"import", dataset_.path(), "-o", Recording()}); }
+  void ImportGood() const {
+    const Finished import = Import();
+    ASSERT_EQ(import.status, 0) << import.output;
+  }
+  void WriteFile(const std::filesystem::path& path, const std::string& text) const {
+    std::ofstream(path, std::ios::binary) << text;
+  }
+
+  DatasetFolder dataset_;
+};
+
+TEST_F(BadInputTest, TheUntouchedFolderIsImported) { ImportGood(); }
+
+struct BrokenDataset {
+  const char* name;
+  std::function<void(const DatasetFolder&)> damage;
+  int status;
+  const char* word;
+};
+
+class BrokenDatasetTest : public BadInputTest,
+                          public ::testing::WithParamInterface<BrokenDataset> {};
+
+TEST_P(BrokenDatasetTest, IsRefusedInOneSentence) {
+  GetParam().damage(dataset_);
+  ExpectOneSentence(Import(), GetParam().status, GetParam().word);
+  EXPECT_FALSE(std::filesystem::exists(Recording())) << "a recording of a refused dataset";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , BrokenDatasetTest,
+    ::testing::Values(
+        BrokenDataset{"MissingFolder", [](const DatasetFolder& d) { d.Remove(""); }, kNoInput,
+                      "scan"},
+        BrokenDataset{"EmptyFolder",
+                      [](const DatasetFolder& d) {
+                        d.Remove("");
+                        std::filesystem::create_directories(d.path());
+                      },
+                      kNoInput, "scan"},
+        BrokenDataset{"MissingCalibration",
+                      [](const DatasetFolder& d) { d.Remove("rig.textproto"); }, kNoInput,
+                      "rig.textproto"},
+        BrokenDataset{
+            "CalibrationWithoutIntrinsics",
+            [](const DatasetFolder& d) { d.Write("rig.textproto", "depth_scale: 1000\n"); },
+            kBadData, "rig.textproto"},
+        BrokenDataset{"MisspeltImage",
+                      [](const DatasetFolder& d) { d.Rename("depth/1.png", "depth/l.png"); },
+                      kNoInput, "depth/1.png"},
+        BrokenDataset{"EightBitImage",
+                      [](const DatasetFolder& d) {
+                        d.WriteImage("depth/1.png", cv::Mat(24, 32, CV_8U, 7.0));
+                      },
+                      kBadData, "depth/1.png"},
+        BrokenDataset{"ImageOfAnotherSize",
+                      [](const DatasetFolder& d) {
+                        d.WriteImage("thermal/1.png", cv::Mat(24, 32, CV_16U, 30000.0));
+                      },
+                      kBadData, "thermal/1.png"},
+        BrokenDataset{"NotAnImage", [](const DatasetFolder& d) { d.Write("depth/1.png", "hello"); },
+                      kBadData, "depth/1.png"},
+        BrokenDataset{"DuplicateStamp",
+                      [](const DatasetFolder& d) {
+                        d.Write("depth.txt", "1.0 depth/0.png\n1.0 depth/1.png\n");
+                      },
+                      kBadData, "depth.txt"},
+        BrokenDataset{"UnsortedStamps",
+                      [](const DatasetFolder& d) {
+                        d.Write("depth.txt", "2.0 depth/0.png\n1.0 depth/1.png\n");
+                      },
+                      kBadData, "depth.txt"},
+        BrokenDataset{"StampThatIsNoNumber",
+                      [](const DatasetFolder& d) { d.Write("depth.txt", "now depth/0.png\n"); },
+                      kBadData, "depth.txt"}),
+    [](const auto& suite) { return suite.param.name; });
+
+TEST_F(BadInputTest, ThermalWithoutDepthIsImportedAndInspectedButNotReconstructed) {
+  dataset_.Remove("depth.txt");
+  dataset_.Remove("depth");
+  dataset_.Write("rig.textproto", "thermal { width: 20 height: 15 fx: 20 fy: 20 cx: 9.5 cy: 7 }\n");
+  ImportGood();
+  const Finished inspect = RunTool({"inspect", Recording()});
+  EXPECT_EQ(inspect.status, 0) << inspect.output;
+  EXPECT_THAT(inspect.output, HasSubstr("thermal"));
+  ExpectOneSentence(RunTool({"reconstruct", Recording(), "-o", Results()}), kBadData, "depth");
+}
+
+TEST_F(BadInputTest, MissingRecordingIsNamed) {
+  const std::string nowhere = dataset_.root() / "nowhere.mcap";
+  ExpectOneSentence(RunTool({"inspect", nowhere}), kNoInput, "nowhere.mcap");
+  ExpectOneSentence(RunTool({"reconstruct", nowhere, "-o", Results()}), kNoInput, "nowhere.mcap");
+}
+
+TEST_F(BadInputTest, AFileThatIsNoRecordingIsNamed) {
+  WriteFile(Recording(),
+            "this is not MCAP at all, only text that is long enough to have been one\n");
+  ExpectOneSentence(RunTool({"inspect", Recording()}), kBadData, "scan.mcap");
+  ExpectOneSentence(RunTool({"reconstruct", Recording(), "-o", Results()}), kBadData, "scan.mcap");
+}
+
+TEST_F(BadInputTest, F44ATruncatedRecordingIsReadUpToItsLastGoodChunk) {
+  SimulateScan(Recording(), 1.5);
+  const auto whole = ReadRecording(Recording());
+  std::filesystem::resize_file(Recording(), std::filesystem::file_size(Recording()) * 2 / 3);
+  const auto rest = ReadRecording(Recording());
+  EXPECT_FALSE(rest.complete);
+  EXPECT_GT(rest.depth.size(), 0U);
+  EXPECT_LT(rest.depth.size(), whole.depth.size());
+  const Finished inspect = RunTool({"inspect", Recording()});
+  EXPECT_EQ(inspect.status, 0) << inspect.output;
+  EXPECT_THAT(inspect.output, HasSubstr("not"));  // Not complete, in whatever words.
+  std::vector<std::string> arguments = {"reconstruct", Recording(), "-o", Results()};
+  for (const std::string& option : QuickModel()) arguments.push_back(option);
+  const Finished reconstruct = RunTool(arguments);
+  EXPECT_EQ(reconstruct.status, 0) << reconstruct.output;
+  EXPECT_EQ(NumberAt(ReadStats(Results()), {"frames", "depth", "in"}),
+            static_cast<double>(rest.depth.size()));
+}
+
+TEST_F(BadInputTest, F59AllConfigurationErrorsAreListedWithTheirPlace) {
+  ImportGood();
+  const std::filesystem::path config = dataset_.root() / "ground.textproto";
+  WriteFile(config, "volume {\n  voxel_sice_m: 0.002 }\ntracker { colour: 1 }\n");
+  const Finished reconstruct =
+      RunTool({"reconstruct", Recording(), "-o", Results(), "--config", config});
+  EXPECT_EQ(reconstruct.status, kConfiguration) << reconstruct.output;
+  EXPECT_THAT(reconstruct.output, HasSubstr("ground.textproto:2:"));
+  EXPECT_THAT(reconstruct.output, HasSubstr("voxel_sice_m"));
+  EXPECT_THAT(reconstruct.output, HasSubstr("colour"));
+  EXPECT_FALSE(std::filesystem::exists(Results()));
+  for (const std::filesystem::path& daemon : {EdgeDaemon(), GroundService()}) {
+    const Finished started = RunToEnd({daemon, {"--config", config}, {}}, kPatience);
+    EXPECT_EQ(started.status, kConfiguration) << started.output;
+    EXPECT_THAT(started.output, HasSubstr("ground.textproto:"));
+  }
+}
+
+TEST_F(BadInputTest, F71AHugeVolumeIsRefusedWithNumbers) {
+  ImportGood();
+  const Finished reconstruct =
+      RunTool({"reconstruct", Recording(), "-o", Results(), "--volume", "100", "--voxel", "0.001"});
+  EXPECT_EQ(reconstruct.status, kConfiguration) << reconstruct.output;
+  EXPECT_THAT(reconstruct.output, HasSubstr("volume"));
+}
+
+TEST_F(BadInputTest, WrongOptionsAreConfigurationErrors) {
+  ImportGood();
+  for (const char* assignment : {"tsdf.no_such_field=1", "nowhere.field=1", "tsdf.max_weight=many",
+                                 "volume.voxel_size_m=-1", "tracker.min_inlier_ratio=nan"}) {
+    const Finished reconstruct =
+        RunTool({"reconstruct", Recording(), "-o", Results(), "--set", assignment});
+    EXPECT_EQ(reconstruct.status, kConfiguration) << assignment << ": " << reconstruct.output;
+  }
+}
+
+TEST_F(BadInputTest, WrongCommandLinesAreUsageErrors) {
+  for (const std::vector<std::string>& arguments : std::vector<std::vector<std::string>>{
+           {"no-such-command"}, {"import"}, {"reconstruct"}, {"inspect", "--no-such-option"}}) {
+    EXPECT_EQ(RunTool(arguments).status, kUsage) << arguments.front();
+  }
+  for (const std::filesystem::path& daemon : {EdgeDaemon(), GroundService()}) {
+    EXPECT_EQ(RunToEnd({daemon, {"--no-such-option"}, {}}, kPatience).status, kUsage) << daemon;
+  }
+}
+
+TEST_F(BadInputTest, OutputThatCannotBeCreatedIsNamed) {
+  ImportGood();
+  WriteFile(dataset_.root() / "file", "a file where a folder should be");
+  const std::string below = dataset_.root() / "file/results";
+  const auto cannot_create = ::testing::AnyOf(kCannotCreate, kIoError);
+  ExpectOneSentence(RunTool({"reconstruct", Recording(), "-o", below}), cannot_create, "file");
+  ExpectOneSentence(RunTool({"import", dataset_.path(), "-o", below + ".mcap"}), cannot_create,
+                    "file");
+  const std::string domain = std::to_string(TestDomain());
+  ExpectOneSentence(
+      RunToEnd({GroundService(), {"--domain", domain, "--output", below}, {}}, kPatience),
+      cannot_create, "file");
+  const Finished edge =
+      RunToEnd({EdgeDaemon(),
+                {"--domain", domain, "--recording", Recording(), "--record", below + ".mcap"},
+                {}},
+               kPatience);
+  EXPECT_THAT(edge.status, cannot_create) << edge.output;
+  EXPECT_THAT(edge.output, HasSubstr("file"));
+}
+
+TEST_F(BadInputTest, AFullStandardOutputIsAnError) {
+  ImportGood();
+  EXPECT_EQ(RunTool({"inspect", Recording()}, "/dev/full").status, kIoError);
+}
+
+/// Runs the tool with a small file system mounted on `folder`; nullopt if this computer does not
+/// allow that.
+std::optional<Finished> RunWithSmallDisk(const std::filesystem::path& folder,
+                                         const std::string& size, const std::string& command) {
+  std::filesystem::create_directories(folder);
+  const std::string mount =
+      "mount -t tmpfs -o size=" + size + " none '" + folder.string() + "' && ";
+  const auto run = [&](const std::string& script) {
+    return RunToEnd(
+        {"/usr/bin/unshare", {"--map-root-user", "--mount", "/bin/sh", "-c", script}, {}},
+        kPatience);
+  };
+  if (!std::filesystem::exists("/usr/bin/unshare") || run(mount + "true").status != 0)
+    return std::nullopt;
+  return run(mount + command);
+}
+
+TEST_F(BadInputTest, AFullDiskEndsAnImportAndNamesTheFile) {
+  const std::filesystem::path disk = dataset_.root() / "disk";
+  const auto finished =
+      RunWithSmallDisk(disk, "4k",
+                       "exec '" + Tool().string() + "' import '" + dataset_.path().string() +
+                           "' -o '" + disk.string() + "/scan.mcap'");
+  if (!finished) GTEST_SKIP() << "mounting a small file system is not allowed here";
+  ExpectOneSentence(*finished, kCannotCreate, "scan.mcap");
+}
+
+TEST_F(BadInputTest, AFullDiskEndsAReconstructionAndNamesTheFile) {
+  SimulateScan(Recording(), 0.5);
+  const std::filesystem::path disk = dataset_.root() / "disk";
+  const auto finished = RunWithSmallDisk(disk, "64k",
+                                         "exec '" + Tool().string() + "' reconstruct '" +
+                                             Recording().string() + "' -o '" + disk.string() +
+                                             "/results' --set volume.voxel_size_m=0.006 --set " +
+                                             "tsdf.truncation_distance_m=0.024");
+  if (!finished) GTEST_SKIP() << "mounting a small file system is not allowed here";
+  EXPECT_EQ(finished->status, kCannotCreate) << finished->output;
+  EXPECT_THAT(finished->output, HasSubstr("results"));
+}
+
+/// The decimal comma and other alphabets of a locale do not reach what is written. (A locale that
+/// is not installed acts like C; the programs never ask for one.)
+TEST_F(BadInputTest, F70OutputDoesNotDependOnTheLocale) {
+  ImportGood();
+  const Finished plain = RunToEnd({Tool(), {"inspect", Recording()}, {"LC_ALL=C"}}, kPatience);
+  for (const char* locale : {"LC_ALL=de_DE.UTF-8", "LC_ALL=tr_TR.UTF-8", "LC_ALL=ar_EG.UTF-8"}) {
+    const Finished other =
+        RunToEnd({Tool(), {"inspect", Recording()}, {locale, "TZ=Asia/Kolkata"}}, kPatience);
+    EXPECT_EQ(other.output, plain.output) << locale;
+  }
+}
+
+TEST_F(BadInputTest, F70NamesThatAreNoUtf8Work) {
+  const DatasetFolder odd("caf\xe9 \xff");
+  const std::filesystem::path recording = odd.root() / "ofen \xfc.mcap";
+  const Finished import = RunTool({"import", odd.path(), "-o", recording});
+  EXPECT_EQ(import.status, 0) << import.output;
+  const Finished inspect = RunTool({"inspect", recording});
+  EXPECT_EQ(inspect.status, 0) << inspect.output;
+}
+
+}  // namespace
+}  // namespace isotherm::system_test

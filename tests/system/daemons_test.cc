@@ -1,0 +1,211 @@
+// Edge and ground as two processes over DDS on loopback.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cmath>
+#include <memory>
+
+#include "common/testing/temporary_directory.h"
+#include "tests/system/programs.h"
+
+namespace isotherm::system_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using testing::TemporaryDirectory;
+
+/// A program must be gone this soon after SIGTERM.
+constexpr Seconds kLeaveLimit{2};
+/// Length of the simulated scan: long enough to be tracked, integrated and fused.
+constexpr double kScanSeconds = 2.0;
+
+std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+class DaemonsTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    shared_ = std::make_unique<TemporaryDirectory>();
+    SimulateScan(Source(), kScanSeconds);
+  }
+  static void TearDownTestSuite() { shared_.reset(); }
+  static std::filesystem::path Source() { return shared_->path() / "source.mcap"; }
+
+  std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
+
+  /// As fast as the ground takes it, so that the test needs no more time than the work does.
+  Command Edge(const std::vector<std::string>& more = {}) const {
+    return {EdgeDaemon(),
+            Joined({"--recording", Source(), "--domain", std::to_string(TestDomain()), "--record",
+                    Path("edge.mcap")},
+                   more),
+            {}};
+  }
+  Command UnpacedEdge() const {
+    return Edge({"--rate", "0", "--wait-for-ground", "--exit-at-end"});
+  }
+
+  Command Ground(const std::vector<std::string>& more = {}) const {
+    return {
+        GroundService(),
+        Joined(Joined({"--domain", std::to_string(TestDomain()), "--output", Path("ground")}, more),
+               QuickModel()),
+        {}};
+  }
+
+  void ExpectAccountIsExact(const char* sensor, std::size_t frames) const {
+    const auto stats = ReadStats(Path("ground"));
+    const auto count = [&](const char* what) { return NumberAt(stats, {"link", sensor, what}); };
+    EXPECT_EQ(count("published"), static_cast<double>(frames)) << sensor;
+    EXPECT_EQ(count("received"), count("published")) << sensor;
+    EXPECT_EQ(count("recorded"), count("published")) << sensor;
+    EXPECT_EQ(count("missing"), 0) << sensor;
+    EXPECT_EQ(NumberAt(stats, {"frames", sensor, "in"}), count("published")) << sensor;
+  }
+
+  void ExpectNothingWasLost() const {
+    const RecordingContent source = ReadRecording(Source());
+    const RecordingContent edge = ReadRecording(Path("edge.mcap"));
+    const RecordingContent ground = ReadRecording(Path("ground/scan.mcap"));
+    EXPECT_TRUE(edge.complete);
+    EXPECT_TRUE(ground.complete);
+    ASSERT_THAT(source.depth, Not(IsEmpty()));
+    ASSERT_THAT(source.thermal, Not(IsEmpty()));
+    EXPECT_EQ(edge.depth.size(), source.depth.size());
+    EXPECT_EQ(edge.thermal.size(), source.thermal.size());
+    EXPECT_TRUE(ground.depth == edge.depth) << ground.depth.size() << " of " << edge.depth.size();
+    EXPECT_TRUE(ground.thermal == edge.thermal)
+        << ground.thermal.size() << " of " << edge.thermal.size();
+    ExpectAccountIsExact("depth", source.depth.size());
+    ExpectAccountIsExact("thermal", source.thermal.size());
+  }
+
+  static std::unique_ptr<TemporaryDirectory> shared_;
+  TemporaryDirectory folder_;
+};
+
+std::unique_ptr<TemporaryDirectory> DaemonsTest::shared_;
+
+TEST_F(DaemonsTest, NothingIsLostWhenTheGroundStartsFirst) {
+  Process ground(Ground({"--once"}));
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  const Finished edge = RunToEnd(UnpacedEdge(), kPatience);
+  EXPECT_EQ(edge.status, 0) << edge.output;
+  EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+  ExpectNothingWasLost();
+}
+
+TEST_F(DaemonsTest, NothingIsLostWhenTheEdgeStartsFirst) {
+  Process edge(UnpacedEdge());
+  ASSERT_TRUE(edge.WaitForOutput("waiting for a ground station", kPatience)) << edge.output();
+  Process ground(Ground({"--once"}));
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+  ExpectNothingWasLost();
+}
+
+/// Position and orientation components, metres and quaternion: both drivers run the same stages on
+/// the same frames, so only the last digits of the text may differ.
+constexpr double kPoseTolerance = 1e-6;
+
+TEST_F(DaemonsTest, TheLiveResultEqualsTheReconstructionOfTheGroundsRecording) {
+  Process ground(Ground({"--once"}));
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  ASSERT_EQ(RunToEnd(UnpacedEdge(), kPatience).status, 0);
+  ASSERT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+
+  const Finished inline_run = RunToEnd(
+      {Tool(),
+       Joined({"reconstruct", Path("ground/scan.mcap"), "-o", Path("inline")}, QuickModel()),
+       {}},
+      kPatience);
+  ASSERT_EQ(inline_run.status, 0) << inline_run.output;
+
+  const auto live = ReadNumbers(Path("ground/trajectory.txt"));
+  const auto again = ReadNumbers(Path("inline/trajectory.txt"));
+  ASSERT_EQ(live.size(), again.size());
+  ASSERT_GT(live.size(), 10U);
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    ASSERT_EQ(live[i].size(), 8U);
+    for (std::size_t k = 0; k < live[i].size(); ++k) {
+      ASSERT_NEAR(live[i][k], again[i][k], kPoseTolerance) << "pose " << i;
+    }
+  }
+  const auto stats = ReadStats(Path("ground"));
+  const auto inline_stats = ReadStats(Path("inline"));
+  for (const auto& path : std::vector<std::vector<std::string>>{{"frames", "depth", "tracked"},
+                                                                {"frames", "depth", "integrated"},
+                                                                {"frames", "thermal", "fused"},
+                                                                {"volume", "blocks"}}) {
+    EXPECT_EQ(NumberAt(stats, path), NumberAt(inline_stats, path)) << path.back();
+  }
+  EXPECT_EQ(std::filesystem::file_size(Path("ground/cloud.ply")),
+            std::filesystem::file_size(Path("inline/cloud.ply")));
+}
+
+TEST_F(DaemonsTest, F38SigtermEndsBothSoonWithEverythingFlushed) {
+  Process ground(Ground());
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  Process edge(Edge({"--set", "source.loops=0"}));
+  ASSERT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output() << edge.output();
+  // In the middle of the scan: the edge has spoken to the ground for a while.
+  EXPECT_EQ(edge.WaitForExit(Seconds(1.5)), std::nullopt) << edge.output();
+
+  edge.Signal(SIGTERM);
+  edge.Signal(SIGTERM);  // A second one must not tear anything down.
+  EXPECT_EQ(edge.WaitForExit(kLeaveLimit), 0) << edge.output();
+  ground.Signal(SIGTERM);
+  ground.Signal(SIGTERM);
+  EXPECT_EQ(ground.WaitForExit(kLeaveLimit), 0) << ground.output();
+
+  const RecordingContent sent = ReadRecording(Path("edge.mcap"));
+  EXPECT_TRUE(sent.complete);
+  EXPECT_THAT(sent.depth, Not(IsEmpty()));
+  std::filesystem::path scan;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(Path("ground"))) {
+    if (entry.path().filename() == "scan.mcap") scan = entry.path();
+  }
+  ASSERT_FALSE(scan.empty()) << ground.output();
+  EXPECT_TRUE(std::filesystem::exists(scan.parent_path() / "stats.json"));
+  EXPECT_TRUE(std::filesystem::exists(scan.parent_path() / "cloud.ply"));
+  const RecordingContent received = ReadRecording(scan);
+  EXPECT_TRUE(received.complete);
+  EXPECT_TRUE(received.depth == sent.depth) << received.depth.size() << " of " << sent.depth.size();
+  EXPECT_TRUE(received.thermal == sent.thermal)
+      << received.thermal.size() << " of " << sent.thermal.size();
+}
+
+TEST_F(DaemonsTest, TheEdgeRecordsEverythingWithoutAGround) {
+  const Finished edge =
+      RunToEnd(Edge({"--rate", "4", "--exit-at-end", "--set", "link.linger_s=0"}), kPatience);
+  EXPECT_EQ(edge.status, 0) << edge.output;
+  const RecordingContent source = ReadRecording(Source());
+  const RecordingContent recorded = ReadRecording(Path("edge.mcap"));
+  EXPECT_TRUE(recorded.complete);
+  EXPECT_EQ(recorded.depth.size(), source.depth.size()) << edge.output;
+  EXPECT_EQ(recorded.thermal.size(), source.thermal.size()) << edge.output;
+}
+
+TEST_F(DaemonsTest, BothTellTheServiceManager) {
+  const std::vector<Command> daemons = {Edge({"--set", "source.loops=0"}), Ground()};
+  for (Command daemon : daemons) {
+    const TemporaryDirectory folder;
+    NotifySocket manager(folder.path());
+    daemon.environment = {manager.environment(), "WATCHDOG_USEC=1000000"};
+    Process process(daemon);
+    EXPECT_TRUE(manager.WaitFor("READY=1", kPatience)) << process.output();
+    EXPECT_TRUE(manager.WaitFor("WATCHDOG=1", kPatience)) << process.output();
+    process.Signal(SIGTERM);
+    EXPECT_TRUE(manager.WaitFor("STOPPING=1", kPatience)) << process.output();
+    EXPECT_EQ(process.WaitForExit(kPatience), 0) << process.output();
+  }
+}
+
+}  // namespace
+}  // namespace isotherm::system_test

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <google/protobuf/struct.pb.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/recording/recording.h"
+#include "tests/system/process.h"
+
+namespace isotherm::system_test {
+
+/// The programs of this build.
+std::filesystem::path Tool();
+std::filesystem::path EdgeDaemon();
+std::filesystem::path GroundService();
+
+/// A DDS domain for this test process, so that programs of other tests on this computer are not
+/// met.
+int TestDomain();
+
+/// Far more than any program needs here: a limit for hanging, not a requirement.
+inline constexpr Seconds kPatience{120};
+
+/// Options of a coarse, quick model.
+std::vector<std::string> QuickModel();
+
+/// Renders a short simulated scan: 640 x 480 depth and 382 x 288 thermal frames of a corner with a
+/// sphere. Fails the running test if that does not work.
+void SimulateScan(const std::filesystem::path& path, double duration_s);
+
+/// stats.json of a result folder. Fails the running test if it is not JSON.
+google::protobuf::Struct ReadStats(const std::filesystem::path& folder);
+/// The number at `path` ("link", "depth", "received"); fails the running test and gives NaN if
+/// there is none.
+double NumberAt(const google::protobuf::Struct& json, const std::vector<std::string>& path);
+
+/// What a recorded frame is, however it is stored.
+struct StoredFrame {
+  Sensor sensor = Sensor::kDepth;
+  std::uint64_t frame_number = 0;
+  CaptureTime capture_time{};
+  std::vector<std::uint16_t> pixels;
+  friend bool operator==(const StoredFrame&, const StoredFrame&) = default;
+};
+
+struct RecordingContent {
+  bool complete = false;
+  std::vector<StoredFrame> depth;    ///< By frame number.
+  std::vector<StoredFrame> thermal;  ///< By frame number.
+};
+
+/// All frames of a recording. Fails the running test if it cannot be read.
+RecordingContent ReadRecording(const std::filesystem::path& path);
+
+/// Lines that are neither empty nor comments, each split into numbers.
+std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path);
+
+}  // namespace isotherm::system_test
