@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <system_error>
 
@@ -34,6 +35,20 @@ bool IsComplete(const fs::path& path) {
   if (!fs::is_regular_file(path, error)) return false;
   const auto reader = RecordingReader::Open(path);
   return reader && (*reader)->info().complete;
+}
+
+constexpr const char* kUnfinished = ".unfinished";
+
+/// Removes what killed runs left behind. A run that is alive writes at least every few seconds.
+void RemoveLeftovers(const fs::path& cache_dir) {
+  constexpr auto kAbandoned = std::chrono::minutes(10);
+  const auto now = fs::file_time_type::clock::now();
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(cache_dir, error)) {
+    if (entry.path().extension() != kUnfinished) continue;
+    const auto written = entry.last_write_time(error);
+    if (!error && now - written > kAbandoned) fs::remove(entry.path(), error);
+  }
 }
 
 }  // namespace
@@ -71,7 +86,8 @@ Result<fs::path> CachedRecording(const SimulationOptions& options, const fs::pat
         fmt::format("cannot create the cache folder {}: {}", cache_dir.string(), error.message())));
   }
   const fs::path unfinished =
-      cache_dir / fmt::format(".{}.{}.unfinished", *name, static_cast<long>(getpid()));
+      cache_dir / fmt::format(".{}.{}{}", *name, static_cast<long>(getpid()), kUnfinished);
+  RemoveLeftovers(cache_dir);
   fs::remove(unfinished, error);
   Status status = RenderRecording(options, unfinished, pool, progress, stop);
   if (status.ok()) {

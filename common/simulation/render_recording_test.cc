@@ -1,8 +1,9 @@
 #include "common/simulation/render_recording.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -27,8 +28,7 @@ class RenderRecordingTest : public ::testing::Test {
   RenderRecordingTest() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     dir_ = fs::temp_directory_path() /
-           (std::string("isotherm_render_") + test->name() + "_" +
-            std::to_string(::testing::UnitTest::GetInstance()->random_seed()));
+           (std::string("isotherm_render_") + test->name() + "_" + std::to_string(getpid()));
     fs::remove_all(dir_);
     fs::create_directories(dir_);
     Rig rig = DefaultSimulatedRig();
@@ -255,6 +255,18 @@ TEST_F(RenderRecordingTest, AnInterruptedRunLeavesNothingThatLooksLikeAScan) {
   ASSERT_FALSE(interrupted);
   EXPECT_EQ(interrupted.error().code(), StatusCode::kUnavailable);
   EXPECT_TRUE(fs::is_empty(dir_ / "cache"));
+}
+
+TEST_F(RenderRecordingTest, LeftoversOfKilledRunsAreRemovedAndRunningOnesAreNot) {
+  fs::create_directories(dir_ / "cache");
+  const fs::path old = dir_ / "cache" / ".scan.mcap.1.unfinished";
+  const fs::path young = dir_ / "cache" / ".scan.mcap.2.unfinished";
+  std::ofstream(old) << "half a scan";
+  std::ofstream(young) << "half a scan";
+  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(1));
+  ASSERT_TRUE(Cached());
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_TRUE(fs::exists(young));
 }
 
 TEST_F(RenderRecordingTest, ACacheFolderThatCannotBeMadeIsAClearError) {

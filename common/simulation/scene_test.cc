@@ -1,6 +1,7 @@
 #include "common/simulation/scene.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -183,7 +184,8 @@ TEST(SurfaceSamplingTest, PlyHasTheSizeItsHeaderPromises) {
   builder.UseMaterial({});
   builder.Sphere("ball", {0.5, 0.5, 0.5}, 0.1);
   const auto samples = SampleSurface(builder.Build("test"), 0.02);
-  const auto path = std::filesystem::temp_directory_path() / "isotherm_surface_sampling_test.ply";
+  const auto path = std::filesystem::temp_directory_path() /
+                    ("isotherm_surface_sampling_test_" + std::to_string(getpid()) + ".ply");
   ASSERT_TRUE(WriteSurfacePly(path, samples).ok());
   std::ifstream file(path, std::ios::binary);
   const std::string content((std::istreambuf_iterator<char>(file)), {});
