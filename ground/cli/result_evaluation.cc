@@ -149,6 +149,7 @@ std::string ToText(const EvaluationReport& report) {
   text += "\n" + Line("rigidly aligned", t.aligned_m, kMillimetres, "mm");
   text += Line("", t.aligned_rad, kDegrees, "degrees");
   text += Line("from the first pose", t.from_first_m, kMillimetres, "mm");
+  text += Line("", t.from_first_rad, kDegrees, "degrees");
   if (report.surface) {
     const SurfaceErrors& s = *report.surface;
     text += fmt::format("surface: {} points to the true surface\n", report.cloud_points);
@@ -173,6 +174,7 @@ Json ToJson(const EvaluationReport& report) {
   trajectory["path_m"] = report.trajectory.length_m;
   trajectory["aligned_m"] = StatisticsJson(report.trajectory.aligned_m);
   trajectory["aligned_rad"] = StatisticsJson(report.trajectory.aligned_rad);
+  trajectory["from_first_rad"] = StatisticsJson(report.trajectory.from_first_rad);
   trajectory["from_first_m"] = StatisticsJson(report.trajectory.from_first_m);
   if (report.surface) {
     Json& surface = json["surface"];

@@ -103,6 +103,7 @@ Result<TrajectoryErrors> EvaluateTrajectory(std::span<const StampedPose> estimat
   errors.aligned_m = Summarize(std::move(aligned_m));
   errors.aligned_rad = Summarize(std::move(aligned_rad));
   errors.from_first_m = Summarize(std::move(first_m));
+  errors.from_first_rad = Summarize(std::move(first_rad));
   return errors;
 }
 

@@ -27,8 +27,10 @@ struct TrajectoryErrors {
       0;  ///< Estimated poses that have no truth (beyond the first N not counted).
   ErrorStatistics aligned_m;  ///< Position, after the rigid alignment that fits all positions best.
   ErrorStatistics from_first_m;  ///< Position, with the first matched poses made equal.
-  ErrorStatistics aligned_rad;   ///< Orientation, after the same alignment.
-  double length_m = 0.0;         ///< Of the matched true path.
+  ErrorStatistics
+      aligned_rad;  ///< Orientation, after the same alignment (loose for short or straight paths).
+  ErrorStatistics from_first_rad;  ///< Orientation, with the first matched poses made equal.
+  double length_m = 0.0;           ///< Of the matched true path.
   RigidTransform T_truth_world = RigidTransform::Identity();  ///< From the first matched pose.
 };
 
