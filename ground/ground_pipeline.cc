@@ -106,6 +106,13 @@ void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
                   pool_, view_.maps);
 }
 
+SurfaceMaps GroundPipeline::CastFullView() {
+  SurfaceMaps maps;
+  raycaster_.Cast(*tsdf_, rig_.depth->WithoutDistortion(), view_.T_world_depth,
+                  static_cast<float>(options_.raycast().min_weight()), pool_, maps);
+  return maps;
+}
+
 DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   ++counts_.depth_in;
   DepthReport report;

@@ -61,6 +61,8 @@ class GroundPipeline {
   const ThermalVolume& thermal() const { return *thermal_; }
   /// The model as seen from the last tracked pose; empty maps before the first frame.
   const ModelView& view() const { return view_; }
+  /// The same at the depth camera's full resolution, cast now.
+  SurfaceMaps CastFullView();
   const std::vector<StampedPose>& trajectory() const { return trajectory_; }
   const PipelineCounts& counts() const { return counts_; }
   /// Milliseconds per call by stage, in the order of the line.

@@ -77,10 +77,11 @@ Result<std::string> WriteScan(GroundPipeline& pipeline, const GroundOptions& opt
                               const std::filesystem::path& dir,
                               const std::function<void(std::string_view what, double share)>& progress) {
   const bool has_view = pipeline.view().maps.width() > 0;
+  const SurfaceMaps view = has_view ? pipeline.CastFullView() : SurfaceMaps();
   const ResultInputs inputs{pipeline.tsdf(),
                             pipeline.thermal(),
                             pipeline.trajectory(),
-                            has_view ? &pipeline.view().maps : nullptr,
+                            has_view ? &view : nullptr,
                             pipeline.view().T_world_depth.translation(),
                             options.renderer(),
                             options.thermal(),
