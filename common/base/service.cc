@@ -46,6 +46,12 @@ StopSignal::~StopSignal() {
   waiter_.request_stop();
   // Wakes sigwait. The signal is sent to that thread alone, where it is blocked.
   pthread_kill(waiter_.native_handle(), SIGTERM);
+  waiter_.join();
+  // Signals of its lifetime that nobody took are not for whoever comes next.
+  const sigset_t signals = StopSignals();
+  const timespec now{};
+  while (sigtimedwait(&signals, nullptr, &now) > 0) {
+  }
 }
 
 void StopSignal::Wait(const std::stop_token& end) {
