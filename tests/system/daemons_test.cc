@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <cmath>
+#include <iostream>
 #include <memory>
 
 #include "common/testing/temporary_directory.h"
@@ -99,6 +99,7 @@ TEST_F(DaemonsTest, NothingIsLostWhenTheGroundStartsFirst) {
   EXPECT_EQ(edge.status, 0) << edge.output;
   EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
   ExpectNothingWasLost();
+  if (HasFailure()) std::cout << "edge:\n" << edge.output << "ground:\n" << ground.output();
 }
 
 TEST_F(DaemonsTest, NothingIsLostWhenTheEdgeStartsFirst) {
@@ -108,6 +109,7 @@ TEST_F(DaemonsTest, NothingIsLostWhenTheEdgeStartsFirst) {
   EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
   EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
   ExpectNothingWasLost();
+  if (HasFailure()) std::cout << "edge:\n" << edge.output() << "ground:\n" << ground.output();
 }
 
 /// Position and orientation components, metres and quaternion: both drivers run the same stages on
