@@ -96,8 +96,8 @@ class GroundSide {
     // A consumer that is slower than the sender.
     if (work_per_frame_ > Nanoseconds(0)) std::this_thread::sleep_for(work_per_frame_);
     bool good = true;
-    for (std::size_t i = 0; i < frame.image.payload.size(); i += 1001) {
-      good = good && frame.image.payload[i] == NoiseByte(number, i);
+    for (std::size_t i = 0; i < frame.image.payload.size(); i += kMarkEvery) {
+      good = good && frame.image.payload[i] == Mark(number, i);
     }
     Update([&] {
       numbers->push_back(number);
@@ -175,7 +175,7 @@ TEST_F(LinkTest, GroundFirstLosesNothingInOneProcess) {
 }
 
 TEST_F(LinkTest, GroundFirstLosesNothingBetweenTwoProcesses) {
-  const EdgePlan plan = Plan(300, 400);
+  const EdgePlan plan = Plan(210, 280);
   const auto ground = StartGround();
   system_test::Process edge(Peer(plan));
   ExpectEverything(plan, *ground);
@@ -184,7 +184,7 @@ TEST_F(LinkTest, GroundFirstLosesNothingBetweenTwoProcesses) {
 }
 
 TEST_F(LinkTest, EdgeFirstLosesNothingBetweenTwoProcesses) {
-  const EdgePlan plan = Plan(300, 400);
+  const EdgePlan plan = Plan(210, 280);
   system_test::Process edge(Peer(plan));
   ASSERT_TRUE(edge.WaitForOutput("started", kLinkPatience));
   const auto ground = StartGround();
@@ -193,14 +193,14 @@ TEST_F(LinkTest, EdgeFirstLosesNothingBetweenTwoProcesses) {
 }
 
 TEST_F(LinkTest, ASlowGroundPacesALosslessEdge) {
-  const EdgePlan plan = Plan(120, 160);
+  const EdgePlan plan = Plan(90, 120);
   const auto ground = StartGround(2ms);
   system_test::Process edge(Peer(plan));
   ExpectEverything(plan, *ground);
 }
 
 TEST_F(LinkTest, LiveVgaAtThirtyHertzLosesNothing) {
-  EdgePlan plan = Plan(90, 120);
+  EdgePlan plan = Plan(75, 100);
   plan.depth_hz = 30.0;
   plan.policy = PublishPolicy::kLive;
   const auto ground = StartGround();
