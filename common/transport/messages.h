@@ -12,9 +12,8 @@
 #include "common/time/time_types.h"
 
 /// What crosses the link besides frames, in the program's own types. idl/ says how it is packed,
-/// qos.cc how it is carried. Sender and receiver of each message are in docs and in Publisher and
-/// Subscriber. Bounds that the link enforces are named constants here: writers cut strings and
-/// lists that are longer, and count nothing silently.
+/// qos.cc how it is carried. The bounds of the link are the constants below: writers cut text and
+/// lists that are longer, and leave out a picture that is too large.
 namespace isotherm {
 
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
