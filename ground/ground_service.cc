@@ -175,6 +175,7 @@ class ReconstructionLoop {
     link["session"] = account.session;
     link["closed"] = account.closed;
     link["not_processed_at_stop"] = unprocessed_;
+    link["out_of_order_frames"] = scan_->out_of_order();
     RecordingOutcome recording;
     if (start_.recording.wait_for(1s) == std::future_status::ready) recording = start_.recording.get();
     AddStream(link["depth"], account.depth, recording.stats.depth_frames);

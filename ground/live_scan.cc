@@ -62,7 +62,7 @@ LiveScan::LiveScan(const GroundOptions& options, const RigDescription& rig,
       session_(rig.session),
       rig_(rig.rig),
       pipeline_(std::move(pipeline)),
-      assembler_(FromSeconds(options.thermal().max_wait_s())) {}
+      assembler_(rig.rig.thermal.has_value()) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
   assembler_.Add(depth.frame);
@@ -72,7 +72,6 @@ void LiveScan::Add(const ReceivedDepth& depth) {
 void LiveScan::Add(const ReceivedThermal& thermal) {
   const NucState state = thermal.frame->nuc_state;
   nuc_running_ = state == NucState::kInProgress || state == NucState::kSettling;
-  // The delay was applied on the edge; a rig that still carries one was recorded before that.
   assembler_.Add(thermal.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
 }
@@ -83,7 +82,6 @@ void LiveScan::FinishFrames() {
 }
 
 void LiveScan::Process(const Assembler::Frame& frame) {
-  ++processed_;
   if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
     pipeline_->ProcessThermal(*thermal);
     return;

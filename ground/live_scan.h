@@ -37,8 +37,7 @@ class LiveScan {
   std::optional<Feedback> TakeFeedback();
 
   std::uint64_t session() const { return session_; }
-  std::uint64_t processed() const { return processed_; }
-  bool anything_processed() const { return processed_ > 0; }
+  std::uint64_t out_of_order() const { return assembler_.refused_late(); }
   GroundPipeline& pipeline() { return *pipeline_; }
   const Rig& rig() const { return rig_; }
 
@@ -58,7 +57,6 @@ class LiveScan {
   bool feedback_waiting_ = false;
   std::optional<CaptureTime> next_feedback_;
   bool nuc_running_ = false;
-  std::uint64_t processed_ = 0;
 };
 
 }  // namespace isotherm

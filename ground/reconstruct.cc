@@ -28,7 +28,7 @@ class InlineDriver {
         reader_(reader),
         thermal_delay_(FromSeconds(rig.thermal_delay_s)),
         pipeline_(pipeline),
-        assembler_(FromSeconds(request.options.thermal().max_wait_s())) {
+        assembler_(rig.thermal.has_value()) {
     for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
   }
 

@@ -25,6 +25,7 @@ void Assembler::Add(DepthFramePtr frame) {
     ++refused_late_;
     return;
   }
+  depth_stalled_ = false;
   newest_depth_ = std::max(newest_depth_.value_or(time), time);
   Insert(depth_, std::move(frame));
 }
@@ -35,6 +36,7 @@ void Assembler::Add(ThermalFramePtr frame) {
     ++refused_late_;
     return;
   }
+  thermal_stalled_ = false;
   newest_thermal_ = std::max(newest_thermal_.value_or(time), time);
   Insert(thermal_, std::move(frame));
 }
@@ -61,12 +63,12 @@ std::optional<Assembler::Frame> Assembler::Pop() {
   if (depth_.empty() && thermal_.empty()) return std::nullopt;
   const CaptureTime earliest =
       depth_.empty() ? thermal_.front()->header.capture_time : depth_.front()->header.capture_time;
-  const std::optional<CaptureTime>& other = depth_.empty() ? newest_depth_ : newest_thermal_;
-  const CaptureTime newest = std::max(newest_depth_.value_or(earliest), newest_thermal_.value_or(earliest));
   // The other stream is in order: once it has been beyond this time, nothing earlier will come.
-  const bool other_is_past = other && *other > earliest;
-  const bool waited_long_enough = newest - earliest > max_wait_;
-  return other_is_past || waited_long_enough ? PopEarliest() : std::nullopt;
+  const std::optional<CaptureTime>& other = depth_.empty() ? newest_depth_ : newest_thermal_;
+  if (other && *other > earliest) return PopEarliest();
+  bool& other_stalled = depth_.empty() ? depth_stalled_ : thermal_stalled_;
+  if (waiting() > max_held_) other_stalled = true;
+  return other_stalled ? PopEarliest() : std::nullopt;
 }
 
 std::optional<Assembler::Frame> Assembler::Flush() { return PopEarliest(); }

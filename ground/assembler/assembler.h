@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -10,15 +11,19 @@
 namespace isotherm {
 
 /// Puts depth and thermal frames, which arrive on two streams, into one order by capture time, so that a live scan
-/// and its recording are processed alike. A frame is released once the other stream has reached its time, or has
-/// fallen behind by more than the longest wait. Reads no clock: waiting is measured in capture time. A frame older
-/// than what was already released is refused and counted. Thread-compatible.
+/// and its recording are processed alike. A frame is released once the other stream has reached its time.
+///
+/// A stream that stops must not stop the other: when `max_held` frames wait for it, it counts as stalled and is not
+/// waited for until it delivers again. (Frames, not seconds: under back-pressure or in fast replay the streams are
+/// seconds apart in capture time without either having stopped.) A frame older than what was already released is
+/// refused and counted. Reads no clock. Thread-compatible.
 class Assembler {
  public:
   using Frame = std::variant<DepthFramePtr, ThermalFramePtr>;
 
-  /// `max_wait` bounds what is held back, and with it memory.
-  explicit Assembler(Nanoseconds max_wait) : max_wait_(max_wait) {}
+  /// `expects_thermal` is false for a rig without a thermal camera: nothing is ever held back then.
+  explicit Assembler(bool expects_thermal, std::size_t max_held = 96)
+      : max_held_(max_held), thermal_stalled_(!expects_thermal) {}
 
   void Add(DepthFramePtr frame);
   void Add(ThermalFramePtr frame);
@@ -33,10 +38,12 @@ class Assembler {
  private:
   std::optional<Frame> PopEarliest();
 
-  const Nanoseconds max_wait_;
+  const std::size_t max_held_;
   std::deque<DepthFramePtr> depth_;
   std::deque<ThermalFramePtr> thermal_;
   std::optional<CaptureTime> newest_depth_, newest_thermal_, released_;
+  bool depth_stalled_ = false;
+  bool thermal_stalled_;
   std::uint64_t refused_late_ = 0;
 };
 

@@ -7,8 +7,6 @@
 namespace isotherm {
 namespace {
 
-using namespace std::chrono_literals;
-
 class AssemblerTest : public ::testing::Test {
  protected:
   void Depth(std::int64_t ms) {
@@ -38,7 +36,8 @@ class AssemblerTest : public ::testing::Test {
     return names;
   }
 
-  Assembler assembler_{100ms};
+  static constexpr std::size_t kMaxHeld = 3;
+  Assembler assembler_{true, kMaxHeld};
 };
 
 TEST_F(AssemblerTest, ReleasesInCaptureTimeOrderWhateverTheOrderOfArrival) {
@@ -49,7 +48,7 @@ TEST_F(AssemblerTest, ReleasesInCaptureTimeOrderWhateverTheOrderOfArrival) {
   EXPECT_EQ(PopAll(), "d0 t7");
   Thermal(32);
   Thermal(57);
-  EXPECT_EQ(PopAll(), "t32 d33 t57");
+  EXPECT_EQ(PopAll(), "t32 d33");  // A depth frame could still come before 57.
 }
 
 TEST_F(AssemblerTest, DepthComesFirstAtEqualTimes) {
@@ -60,10 +59,35 @@ TEST_F(AssemblerTest, DepthComesFirstAtEqualTimes) {
   EXPECT_EQ(PopAll(), "t10");
 }
 
-TEST_F(AssemblerTest, AStreamThatStopsHoldsTheOtherUpOnlyForTheLongestWait) {
-  for (int ms = 0; ms <= 200; ms += 50) Depth(ms);
-  EXPECT_EQ(PopAll(), "d0 d50");  // 100 ms and less are still waiting.
-  EXPECT_EQ(assembler_.waiting(), 3U);
+TEST_F(AssemblerTest, F04AStreamThatStopsIsNotWaitedForAnyMore) {
+  for (int ms = 0; ms <= 150; ms += 50) Depth(ms);
+  EXPECT_EQ(PopAll(), "d0 d50 d100 d150");  // One more than may be held.
+  Depth(200);
+  EXPECT_EQ(PopAll(), "d200");
+}
+
+TEST_F(AssemblerTest, AStreamThatDeliversAgainIsWaitedForAgain) {
+  for (int ms = 0; ms <= 150; ms += 50) Depth(ms);
+  PopAll();
+  Thermal(160);
+  Depth(200);
+  EXPECT_EQ(PopAll(), "t160");
+  EXPECT_EQ(assembler_.waiting(), 1U);
+}
+
+TEST_F(AssemblerTest, StreamsFarApartInTimeAreNotTakenForStalled) {
+  Depth(0);
+  Depth(5000);
+  Thermal(7);
+  Thermal(4990);
+  EXPECT_EQ(PopAll(), "d0 t7 t4990");
+  EXPECT_EQ(assembler_.refused_late(), 0U);
+}
+
+TEST(AssemblerWithoutThermalTest, HoldsNothingBack) {
+  Assembler assembler(false);
+  assembler.Add(std::make_shared<const DepthFrame>());
+  EXPECT_TRUE(assembler.Pop().has_value());
 }
 
 TEST_F(AssemblerTest, F21SwappedFramesAreSortedAndTooLateOnesCounted) {
