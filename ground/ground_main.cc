@@ -22,18 +22,24 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kDescription =
-    "Receives depth and thermal frames from isotherm-edge over DDS, tracks the rig, builds the surface, assigns\n"
-    "temperatures where they were measured under good conditions, and tells the edge what is still to be scanned.";
+    "Receives depth and thermal frames from isotherm-edge over DDS, tracks the rig, builds the "
+    "surface, assigns\n"
+    "temperatures where they were measured under good conditions, and tells the edge what is still "
+    "to be scanned.";
 
 constexpr const char* kFooter =
     "Examples:\n"
     "  isotherm-ground --output /tmp/scans              a folder per scan, until stopped\n"
-    "  isotherm-ground --output out/scan --once         one scan straight into out/scan, then leave\n"
+    "  isotherm-ground --output out/scan --once         one scan straight into out/scan, then "
+    "leave\n"
     "  isotherm-ground --config /etc/isotherm/ground.textproto --set volume.voxel_size_m=0.003\n"
     "\n"
-    "Each scan leaves scan.mcap (what was received), cloud.ply, mesh.ply, trajectory.txt, renders/ and stats.json.\n"
-    "SIGTERM and Ctrl-C end it with everything flushed. The network is chosen by CYCLONEDDS_URI (default: loopback\n"
-    "only). Options come from the defaults, the configuration file, --set and the other options, the later winning.\n"
+    "Each scan leaves scan.mcap (what was received), cloud.ply, mesh.ply, trajectory.txt, renders/ "
+    "and stats.json.\n"
+    "SIGTERM and Ctrl-C end it with everything flushed. The network is chosen by CYCLONEDDS_URI "
+    "(default: loopback\n"
+    "only). Options come from the defaults, the configuration file, --set and the other options, "
+    "the later winning.\n"
     "\n"
     "Exit status:\n"
     "   0  ended by a signal, or the one scan is done\n"
@@ -58,15 +64,19 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.description(kDescription);
   app.footer(kFooter);
   app.set_version_flag("--version", "isotherm-ground " ISOTHERM_VERSION);
-  app.add_option("--config", line.config, "Configuration file (protobuf text format)")->type_name("FILE");
+  app.add_option("--config", line.config, "Configuration file (protobuf text format)")
+      ->type_name("FILE");
   app.add_option("--set", line.overrides, "Override an option of the configuration; repeatable")
       ->type_name("STAGE.FIELD=VALUE")
       ->allow_extra_args(false);
   app.add_option("--output", line.output, "Where recordings and results go")->type_name("DIR");
-  app.add_option("--edge-id", line.edge_id, "The rig to follow; \"\" = the first one seen")->type_name("NAME");
+  app.add_option("--edge-id", line.edge_id, "The rig to follow; \"\" = the first one seen")
+      ->type_name("NAME");
   app.add_option("--domain", line.domain, "DDS domain, 0..230")->type_name("N");
-  app.add_option("--threads", line.threads, "Threads of the reconstruction, 0 = one per core")->type_name("N");
-  app.add_flag("--once", line.once, "Serve one scan, write its results into DIR itself, then leave");
+  app.add_option("--threads", line.threads, "Threads of the reconstruction, 0 = one per core")
+      ->type_name("N");
+  app.add_flag("--once", line.once,
+               "Serve one scan, write its results into DIR itself, then leave");
   app.add_flag("--no-record", line.no_record, "Do not record what is received");
   const std::map<std::string, LogLevel> levels = {{"debug", LogLevel::kDebug},
                                                   {"info", LogLevel::kInfo},

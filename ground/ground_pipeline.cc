@@ -17,7 +17,8 @@ class StageTimer {
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
   ~StageTimer() {
-    const std::chrono::duration<double, std::milli> elapsed = std::chrono::steady_clock::now() - start_;
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - start_;
     stats_.Add(elapsed.count());
   }
 
@@ -33,17 +34,20 @@ int ThreadCount(const GroundOptions& options) {
 
 }  // namespace
 
-Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(const GroundOptions& options, const Rig& rig,
-                                                               std::optional<RigidTransform> initial_pose) {
+Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
+    const GroundOptions& options, const Rig& rig, std::optional<RigidTransform> initial_pose) {
   for (const Status& status :
        {Validate(options.volume()), Validate(options.preprocessor()), Validate(options.tracker()),
-        Validate(options.tsdf(), options.volume()), Validate(options.raycast()), Validate(options.thermal())}) {
+        Validate(options.tsdf(), options.volume()), Validate(options.raycast()),
+        Validate(options.thermal())}) {
     if (!status.ok()) return Err(status);
   }
-  if (Status status = Validate(rig); !status.ok()) return Err(status.WithContext("rig calibration"));
+  if (Status status = Validate(rig); !status.ok())
+    return Err(status.WithContext("rig calibration"));
   if (!rig.depth) {
-    return Err(FailedPrecondition(
-        "the rig calibration has no depth intrinsics: nothing can be reconstructed without a depth camera"));
+    return Err(
+        FailedPrecondition("the rig calibration has no depth intrinsics: nothing can be "
+                           "reconstructed without a depth camera"));
   }
   if (!initial_pose && !options.volume().initial_pose().empty()) {
     const Result<RigidTransform> pose = ParsePose(options.volume().initial_pose());
@@ -69,7 +73,8 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
   const std::int32_t max_blocks = MaxBlocks(options.volume(), grid);
   tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
   thermal_ = std::make_unique<ThermalVolume>(max_blocks);
-  if (thermal_status_.ok()) fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal);
+  if (thermal_status_.ok())
+    fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal);
   view_.camera = rig.depth->WithoutDistortion().Downscaled(options.raycast().halvings());
 }
 
@@ -81,8 +86,10 @@ RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
 RigidTransform GroundPipeline::Predict(CaptureTime time) const {
   const RigidTransform& last = view_.T_world_depth;
   if (!options_.tracker().predict_motion() || !last_ || !before_last_) return last;
-  const double alpha = ToSeconds(time - before_last_->time) / ToSeconds(last_->time - before_last_->time);
-  constexpr double kMaxExtrapolation = 3.0;  // Two missing frames; beyond that velocity says little.
+  const double alpha =
+      ToSeconds(time - before_last_->time) / ToSeconds(last_->time - before_last_->time);
+  constexpr double kMaxExtrapolation =
+      3.0;  // Two missing frames; beyond that velocity says little.
   if (!(alpha >= 1.0 && alpha <= kMaxExtrapolation)) return last;
   return Interpolate(before_last_->T_world_depth, last_->T_world_depth, alpha);
 }
@@ -102,8 +109,8 @@ TrackingResult GroundPipeline::Track(const PreparedDepth& depth, CaptureTime tim
 void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
   const StageTimer timer(stage_stats_["raycast"]);
   view_.T_world_depth = T_world_depth;
-  raycaster_.Cast(*tsdf_, view_.camera, T_world_depth, static_cast<float>(options_.raycast().min_weight()),
-                  pool_, view_.maps);
+  raycaster_.Cast(*tsdf_, view_.camera, T_world_depth,
+                  static_cast<float>(options_.raycast().min_weight()), pool_, view_.maps);
 }
 
 SurfaceMaps GroundPipeline::CastFullView() {
@@ -116,7 +123,8 @@ SurfaceMaps GroundPipeline::CastFullView() {
 DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   ++counts_.depth_in;
   DepthReport report;
-  if (frame.depth_raw.width() != rig_.depth->width || frame.depth_raw.height() != rig_.depth->height) {
+  if (frame.depth_raw.width() != rig_.depth->width ||
+      frame.depth_raw.height() != rig_.depth->height) {
     ++counts_.depth_refused;
     LOG(Ground, Warning) << "depth frame of another size than the calibration's, frame="
                          << frame.header.frame_number << " width_px=" << frame.depth_raw.width()
@@ -140,7 +148,8 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   }
   ++counts_.depth_tracked;
   const RigidTransform& T_world_depth = report.tracking.T_world_depth;
-  report.integrated = gate_.Accepts(last_ ? std::optional(last_->T_world_depth) : std::nullopt, T_world_depth);
+  report.integrated =
+      gate_.Accepts(last_ ? std::optional(last_->T_world_depth) : std::nullopt, T_world_depth);
   if (report.integrated) {
     const StageTimer integrate_timer(stage_stats_["integrate"]);
     integrator_.Integrate(*depth, T_world_depth, pool_, *tsdf_);
@@ -192,8 +201,10 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
     const double alpha = interval_s > 0.0 ? ToSeconds(time - before_last_->time) / interval_s : 1.0;
     const RigidTransform T_world_depth_at_capture =
         Interpolate(before_last_->T_world_depth, last_->T_world_depth, alpha);
-    const RigidTransform T_world_thermal = T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
-    fuser_->Fuse(*frame, T_world_thermal, view_.maps, view_.camera, view_.T_world_depth, *tsdf_, pool_, *thermal_);
+    const RigidTransform T_world_thermal =
+        T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
+    fuser_->Fuse(*frame, T_world_thermal, view_.maps, view_.camera, view_.T_world_depth, *tsdf_,
+                 pool_, *thermal_);
     ++counts_.thermal_fused;
   }
 }

@@ -26,8 +26,8 @@ namespace isotherm {
 struct PipelineCounts {
   std::uint64_t depth_in = 0;
   std::uint64_t depth_tracked = 0;
-  std::uint64_t depth_integrated = 0;  ///< Of the tracked ones.
-  std::uint64_t depth_refused = 0;     ///< Wrong size or nothing in it.
+  std::uint64_t depth_integrated = 0;               ///< Of the tracked ones.
+  std::uint64_t depth_refused = 0;                  ///< Wrong size or nothing in it.
   std::map<std::string, std::uint64_t> depth_lost;  ///< By reason.
   std::uint64_t thermal_in = 0;
   std::uint64_t thermal_fused = 0;
@@ -40,15 +40,17 @@ struct DepthReport {
   TrackingResult tracking;
 };
 
-/// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame at a time, in
-/// capture-time order. Both drivers, live and inline, call it; it owns no thread but its pool, no device and no
-/// clock that matters to the result (stage times are measured for statistics only). Thread-bound.
+/// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame
+/// at a time, in capture-time order. Both drivers, live and inline, call it; it owns no thread but
+/// its pool, no device and no clock that matters to the result (stage times are measured for
+/// statistics only). Thread-bound.
 class GroundPipeline {
  public:
-  /// `rig` must have depth intrinsics. `initial_pose` is T_world_depth of the first depth frame; without one it
-  /// comes from options.volume.initial_pose, and without that the volume's centre is put on the first frame's
-  /// optical axis at its median depth.
-  static Result<std::unique_ptr<GroundPipeline>> Create(const GroundOptions& options, const Rig& rig,
+  /// `rig` must have depth intrinsics. `initial_pose` is T_world_depth of the first depth frame;
+  /// without one it comes from options.volume.initial_pose, and without that the volume's centre is
+  /// put on the first frame's optical axis at its median depth.
+  static Result<std::unique_ptr<GroundPipeline>> Create(const GroundOptions& options,
+                                                        const Rig& rig,
                                                         std::optional<RigidTransform> initial_pose);
 
   DepthReport ProcessDepth(const DepthFrame& frame);
@@ -99,7 +101,8 @@ class GroundPipeline {
   std::unique_ptr<ThermalFuser> fuser_;
   ModelView view_;
   std::vector<StampedPose> trajectory_;
-  std::optional<StampedPose> last_, before_last_;  ///< Consecutive tracked poses; empty after a lost frame.
+  std::optional<StampedPose> last_,
+      before_last_;  ///< Consecutive tracked poses; empty after a lost frame.
   std::deque<ThermalFramePtr> waiting_thermal_;
   PipelineCounts counts_;
   std::map<std::string, StageStats> stage_stats_;

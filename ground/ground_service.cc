@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <atomic>
-#include <condition_variable>
 #include <chrono>
+#include <condition_variable>
 #include <cstdio>
 #include <deque>
 #include <future>
 #include <memory>
 #include <mutex>
-#include <variant>
 #include <thread>
 #include <utility>
+#include <variant>
 
 #include "common/base/log.h"
 #include "common/base/service.h"
@@ -35,7 +35,8 @@ struct RecordingOutcome {
   Status status;
 };
 
-/// A new session: both consumers get the same folder, and the reconstruction learns what was recorded.
+/// A new session: both consumers get the same folder, and the reconstruction learns what was
+/// recorded.
 struct SessionStart {
   RigDescription rig;
   std::filesystem::path folder;
@@ -47,7 +48,8 @@ using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, SessionA
 using ItemQueue = BoundedQueue<Item>;
 
 bool IsFrame(const Item& item) {
-  return std::holds_alternative<ReceivedDepth>(item) || std::holds_alternative<ReceivedThermal>(item);
+  return std::holds_alternative<ReceivedDepth>(item) ||
+         std::holds_alternative<ReceivedThermal>(item);
 }
 
 /// Records one session after the other. Runs on the recording thread.
@@ -68,7 +70,8 @@ class RecordingLoop {
     End();
     promise_ = start.recording_promise;
     if (!options_.live().record()) return;
-    Result<std::unique_ptr<ScanRecorder>> recorder = ScanRecorder::Create(start.folder / "scan.mcap", options_);
+    Result<std::unique_ptr<ScanRecorder>> recorder =
+        ScanRecorder::Create(start.folder / "scan.mcap", options_);
     if (!recorder) {
       LOG(Ground, Error) << "not recording: " << recorder.error().message();
       status_ = recorder.error();
@@ -116,7 +119,8 @@ void AddStream(Json& json, const StreamAccount& account, std::uint64_t recorded)
 /// Reconstructs one session after the other. Runs on the reconstruction thread.
 class ReconstructionLoop {
  public:
-  ReconstructionLoop(const GroundOptions& options, bool single_scan, Subscriber& subscriber, StopSignal& signal)
+  ReconstructionLoop(const GroundOptions& options, bool single_scan, Subscriber& subscriber,
+                     StopSignal& signal)
       : options_(options), single_scan_(single_scan), subscriber_(subscriber), signal_(signal) {}
 
   void Run(ItemQueue& queue, const std::stop_token& stop) {
@@ -138,12 +142,14 @@ class ReconstructionLoop {
     start_ = start;
     Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(options_, start.rig);
     if (!scan) {
-      LOG(Ground, Error) << "session " << start.rig.session << " is recorded only: " << scan.error().message();
+      LOG(Ground, Error) << "session " << start.rig.session
+                         << " is recorded only: " << scan.error().message();
       status_ = scan.error();
       return;
     }
     scan_ = std::move(*scan);
-    LOG(Ground, Info) << "scan started, session=" << start.rig.session << " results=" << start.folder.string();
+    LOG(Ground, Info) << "scan started, session=" << start.rig.session
+                      << " results=" << start.folder.string();
     if (const Status& thermal = scan_->pipeline().thermal_status(); !thermal.ok()) {
       LOG(Ground, Warning) << thermal.message();
     }
@@ -177,7 +183,8 @@ class ReconstructionLoop {
     link["not_processed_at_stop"] = unprocessed_;
     link["out_of_order_frames"] = scan_->out_of_order();
     RecordingOutcome recording;
-    if (start_.recording.wait_for(1s) == std::future_status::ready) recording = start_.recording.get();
+    if (start_.recording.wait_for(1s) == std::future_status::ready)
+      recording = start_.recording.get();
     AddStream(link["depth"], account.depth, recording.stats.depth_frames);
     AddStream(link["thermal"], account.thermal, recording.stats.thermal_frames);
     link["recording_failed_frames"] = recording.stats.failed;
@@ -190,8 +197,8 @@ class ReconstructionLoop {
       return;
     }
     const auto line = [](const char* name, const StreamAccount& a, std::uint64_t recorded) {
-      return fmt::format("{:<8} {} published = {} received + {} missing; {} recorded\n", name, a.published,
-                         a.received, a.missing, recorded);
+      return fmt::format("{:<8} {} published = {} received + {} missing; {} recorded\n", name,
+                         a.published, a.received, a.missing, recorded);
     };
     const std::string summary = *text + line("link", account.depth, recording.stats.depth_frames) +
                                 line("", account.thermal, recording.stats.thermal_frames);
@@ -211,19 +218,20 @@ class ReconstructionLoop {
   Status status_;
 };
 
-/// Turns what the subscriber delivers into items for both consumers. Frames that arrive before their session's
-/// calibration are kept until it is there. Bound to the receive thread.
+/// Turns what the subscriber delivers into items for both consumers. Frames that arrive before
+/// their session's calibration are kept until it is there. Bound to the receive thread.
 class Distributor {
  public:
-  Distributor(const GroundOptions& options, bool single_scan, const Clock& clock, ItemQueue& reconstruction,
-              ItemQueue& recording)
+  Distributor(const GroundOptions& options, bool single_scan, const Clock& clock,
+              ItemQueue& reconstruction, ItemQueue& recording)
       : options_(options),
         single_scan_(single_scan),
         clock_(clock),
         reconstruction_(reconstruction),
         recording_(recording) {}
 
-  /// Reconstruction gives up waiting for room when `stop` is requested; the recording takes everything.
+  /// Reconstruction gives up waiting for room when `stop` is requested; the recording takes
+  /// everything.
   void SetStop(std::stop_token stop) { stop_ = std::move(stop); }
 
   void OnRig(const RigDescription& rig) {
@@ -252,7 +260,8 @@ class Distributor {
     constexpr std::size_t kMaxEarly = 128;
     if (early_.size() == kMaxEarly) {
       early_.pop_front();
-      LOG(Ground, Warning) << "frames arrive but no rig description: is the edge of another version?";
+      LOG(Ground, Warning)
+          << "frames arrive but no rig description: is the edge of another version?";
     }
     early_.push_back(std::move(item));
   }
@@ -265,7 +274,8 @@ class Distributor {
  private:
   static std::uint64_t SessionOf(const Item& item) {
     if (const auto* depth = std::get_if<ReceivedDepth>(&item)) return depth->frame->header.session;
-    if (const auto* thermal = std::get_if<ReceivedThermal>(&item)) return thermal->frame->header.session;
+    if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
+      return thermal->frame->header.session;
     return 0;
   }
   void Send(Item item) {
@@ -284,7 +294,8 @@ class Distributor {
 };
 
 /// Feeds the service manager's watchdog while frames move or nothing waits.
-void GuardUntilStopped(const std::stop_token& stop, const ItemQueue& queue, const ReconstructionLoop& loop) {
+void GuardUntilStopped(const std::stop_token& stop, const ItemQueue& queue,
+                       const ReconstructionLoop& loop) {
   const auto interval = WatchdogInterval().value_or(std::chrono::microseconds(500ms));
   std::uint64_t seen = 0;
   std::mutex mutex;
@@ -304,10 +315,12 @@ int Fail(const Status& status) {
 
 }  // namespace
 
-int RunGround(const GroundOptions& options, const ServiceMode& mode, const TransportEnvironment& environment,
-              const Clock& clock, StopSignal& signal) {
-  if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok()) return Fail(prepared);
-  const Result<std::unique_ptr<Participant>> participant = Participant::Create(environment, options.live().domain());
+int RunGround(const GroundOptions& options, const ServiceMode& mode,
+              const TransportEnvironment& environment, const Clock& clock, StopSignal& signal) {
+  if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
+    return Fail(prepared);
+  const Result<std::unique_ptr<Participant>> participant =
+      Participant::Create(environment, options.live().domain());
   if (!participant) return Fail(participant.error());
 
   const auto capacity = static_cast<std::size_t>(options.live().queue_frames());
@@ -333,7 +346,8 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode, const Trans
   RecordingLoop recording(options);
   ReconstructionLoop reconstruction(options, mode.single_scan, **subscriber, signal);
   {
-    std::jthread recording_thread([&](const std::stop_token& stop) { recording.Run(to_recording, stop); });
+    std::jthread recording_thread(
+        [&](const std::stop_token& stop) { recording.Run(to_recording, stop); });
     std::jthread reconstruction_thread(
         [&](const std::stop_token& stop) { reconstruction.Run(to_reconstruction, stop); });
     std::jthread receive_thread([&](const std::stop_token& stop) {
@@ -341,11 +355,13 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode, const Trans
       (*subscriber)->Run(stop);
     });
     NotifyReady("waiting for an edge");
-    LOG(Ground, Info) << "ready, domain=" << options.live().domain() << " edge_id=\"" << options.live().edge_id()
+    LOG(Ground, Info) << "ready, domain=" << options.live().domain() << " edge_id=\""
+                      << options.live().edge_id()
                       << "\" output_dir=" << options.live().output_dir();
     GuardUntilStopped(signal.token(), to_reconstruction, reconstruction);
     NotifyStopping();
-    // Reception first, so that nothing new comes; then each consumer empties its queue and closes its files.
+    // Reception first, so that nothing new comes; then each consumer empties its queue and closes
+    // its files.
     receive_thread.request_stop();
     receive_thread.join();
     recording_thread.request_stop();

@@ -9,7 +9,8 @@ namespace isotherm {
 class StopSignal;
 
 struct ServiceMode {
-  bool single_scan = false;  ///< Results go straight into live.output_dir; leave when the scan has ended.
+  bool single_scan =
+      false;  ///< Results go straight into live.output_dir; leave when the scan has ended.
 };
 
 /// The threaded driver:
@@ -19,9 +20,9 @@ struct ServiceMode {
 ///               +-> queue -> ScanRecorder
 ///                            recording thread
 ///
-/// Runs until the signal (or, with single_scan, the end of the scan), then flushes everything. Returns the
-/// process's exit status.
-int RunGround(const GroundOptions& options, const ServiceMode& mode, const TransportEnvironment& environment,
-              const Clock& clock, StopSignal& signal);
+/// Runs until the signal (or, with single_scan, the end of the scan), then flushes everything.
+/// Returns the process's exit status.
+int RunGround(const GroundOptions& options, const ServiceMode& mode,
+              const TransportEnvironment& environment, const Clock& clock, StopSignal& signal);
 
 }  // namespace isotherm

@@ -33,8 +33,8 @@ Result<RigidTransform> ParsePose(std::string_view text) {
   }
   const Eigen::Quaterniond rotation(values[6], values[3], values[4], values[5]);
   if (std::abs(rotation.norm() - 1.0) > 0.01) {
-    return Err(InvalidArgument(
-        fmt::format("the quaternion of \"{}\" has length {:.4f} instead of 1", text, rotation.norm())));
+    return Err(InvalidArgument(fmt::format(
+        "the quaternion of \"{}\" has length {:.4f} instead of 1", text, rotation.norm())));
   }
   return MakeTransform({values[0], values[1], values[2]}, rotation);
 }

@@ -12,8 +12,8 @@ namespace isotherm {
 /// "x y z qx qy qz qw": metres and a quaternion, which must have unit length within 1 %.
 Result<RigidTransform> ParsePose(std::string_view text);
 
-/// T_world_depth that puts the volume's centre on the optical axis at the image's median depth, axes parallel to
-/// the camera's. `depth_m`: 0 = no return.
+/// T_world_depth that puts the volume's centre on the optical axis at the image's median depth,
+/// axes parallel to the camera's. `depth_m`: 0 = no return.
 RigidTransform PoseFacingCentre(const VoxelGrid& grid, const Image<float>& depth_m);
 
 }  // namespace isotherm

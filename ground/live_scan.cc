@@ -41,8 +41,8 @@ std::optional<Advice> ToWire(AdviceKind kind) {
 
 }  // namespace
 
-std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan, std::uint64_t session,
-                                    CaptureTime start) {
+std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
+                                    std::uint64_t session, CaptureTime start) {
   const std::filesystem::path base(options.live().output_dir());
   if (single_scan) return base;
   const std::time_t seconds = ToNanoseconds(start) / 1'000'000'000;
@@ -50,8 +50,10 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
                             static_cast<std::uint32_t>(session));
 }
 
-Result<std::unique_ptr<LiveScan>> LiveScan::Create(const GroundOptions& options, const RigDescription& rig) {
-  Result<std::unique_ptr<GroundPipeline>> pipeline = GroundPipeline::Create(options, rig.rig, std::nullopt);
+Result<std::unique_ptr<LiveScan>> LiveScan::Create(const GroundOptions& options,
+                                                   const RigDescription& rig) {
+  Result<std::unique_ptr<GroundPipeline>> pipeline =
+      GroundPipeline::Create(options, rig.rig, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
   return std::unique_ptr<LiveScan>(new LiveScan(options, rig, std::move(*pipeline)));
 }
@@ -108,14 +110,15 @@ Feedback LiveScan::MakeFeedback() {
   feedback.frame_number = newest_header_.frame_number;
   feedback.capture_time = newest_header_.capture_time;
   const TrackingResult& tracking = newest_report_->tracking;
-  feedback.tracking_state = newest_report_->tracked ? TrackingState::kTracked : TrackingState::kLost;
+  feedback.tracking_state =
+      newest_report_->tracked ? TrackingState::kTracked : TrackingState::kLost;
   if (newest_report_->tracked) feedback.T_world_depth = tracking.T_world_depth;
 
   const ModelView& model = pipeline_->view();
   CoverageSummary coverage;
   if (model.maps.width() > 0) {
-    SampleView(model.maps, model.T_world_depth.translation(), pipeline_->tsdf(), pipeline_->thermal(),
-               pipeline_->pool(), view_);
+    SampleView(model.maps, model.T_world_depth.translation(), pipeline_->tsdf(),
+               pipeline_->thermal(), pipeline_->pool(), view_);
     coverage = SummarizeCoverage(view_, options_.thermal());
   }
   feedback.view = {static_cast<float>(coverage.good), static_cast<float>(coverage.acceptable),

@@ -19,14 +19,15 @@
 namespace isotherm {
 
 /// Where the results of a session go.
-std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan, std::uint64_t session,
-                                    CaptureTime start);
+std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
+                                    std::uint64_t session, CaptureTime start);
 
-/// One session of the live driver: the same stages as the inline one, fed by the link. Owns no thread.
-/// Thread-bound to the reconstruction thread.
+/// One session of the live driver: the same stages as the inline one, fed by the link. Owns no
+/// thread. Thread-bound to the reconstruction thread.
 class LiveScan {
  public:
-  static Result<std::unique_ptr<LiveScan>> Create(const GroundOptions& options, const RigDescription& rig);
+  static Result<std::unique_ptr<LiveScan>> Create(const GroundOptions& options,
+                                                  const RigDescription& rig);
 
   void Add(const ReceivedDepth& depth);
   void Add(const ReceivedThermal& thermal);
@@ -42,7 +43,8 @@ class LiveScan {
   const Rig& rig() const { return rig_; }
 
  private:
-  LiveScan(const GroundOptions& options, const RigDescription& rig, std::unique_ptr<GroundPipeline> pipeline);
+  LiveScan(const GroundOptions& options, const RigDescription& rig,
+           std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
   Feedback MakeFeedback();
 

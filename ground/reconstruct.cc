@@ -23,7 +23,8 @@ constexpr double kFramesShare = 0.9;
 /// Frames of a recording, decoded and fed through the assembler into the pipeline.
 class InlineDriver {
  public:
-  InlineDriver(const ReconstructRequest& request, RecordingReader& reader, const Rig& rig, GroundPipeline& pipeline)
+  InlineDriver(const ReconstructRequest& request, RecordingReader& reader, const Rig& rig,
+               GroundPipeline& pipeline)
       : request_(request),
         reader_(reader),
         thermal_delay_(FromSeconds(rig.thermal_delay_s)),
@@ -60,7 +61,8 @@ class InlineDriver {
     auto frame = std::make_shared<DepthFrame>();
     frame->header = recorded.frame.header;
     frame->depth_scale = recorded.frame.depth_scale;
-    if (DecodeInto(recorded.frame.image, "depth", frame->header, frame->depth_raw)) assembler_.Add(std::move(frame));
+    if (DecodeInto(recorded.frame.image, "depth", frame->header, frame->depth_raw))
+      assembler_.Add(std::move(frame));
   }
 
   void Take(RecordedThermal& recorded) {
@@ -73,7 +75,8 @@ class InlineDriver {
     frame->seconds_since_nuc = encoded.seconds_since_nuc;
     frame->housekeeping = encoded.housekeeping;
     frame->valid = encoded.valid;
-    if (DecodeInto(encoded.image, "thermal", frame->header, frame->centikelvin)) assembler_.Add(std::move(frame));
+    if (DecodeInto(encoded.image, "thermal", frame->header, frame->centikelvin))
+      assembler_.Add(std::move(frame));
   }
 
   void Take(const NucEvent& /*event*/) {}  // Each frame carries its NUC state.
@@ -121,10 +124,10 @@ class InlineDriver {
 Status CheckHasDepth(const RecordingInfo& info, const std::filesystem::path& path) {
   const auto depth = info.messages_by_topic.find("/depth");
   if (depth != info.messages_by_topic.end() && depth->second > 0) return OkStatus();
-  return FailedPrecondition(fmt::format(
-      "{}: the recording has no depth frames, so there is no surface to reconstruct "
-      "(`isotherm inspect --render` shows thermal frames as pictures)",
-      path.string()));
+  return FailedPrecondition(
+      fmt::format("{}: the recording has no depth frames, so there is no surface to reconstruct "
+                  "(`isotherm inspect --render` shows thermal frames as pictures)",
+                  path.string()));
 }
 
 }  // namespace
@@ -143,7 +146,8 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
 
   if (info.bytes_ignored > 0) {
     LOG(Reconstruct, Warning) << request.recording.string()
-                              << ": damaged or unfinished end is left out, bytes=" << info.bytes_ignored;
+                              << ": damaged or unfinished end is left out, bytes="
+                              << info.bytes_ignored;
   }
   const auto start = std::chrono::steady_clock::now();
   InlineDriver driver(request, **reader, *rig, **pipeline);
@@ -165,7 +169,8 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
       WriteScan(**pipeline, request.options, std::move(stats), request.output_dir, progress);
   if (!text) return Err(text.error());
   const PipelineCounts& counts = (*pipeline)->counts();
-  return ReconstructSummary{counts.depth_in, counts.depth_tracked, counts.thermal_in, counts.thermal_fused, *text};
+  return ReconstructSummary{counts.depth_in, counts.depth_tracked, counts.thermal_in,
+                            counts.thermal_fused, *text};
 }
 
 }  // namespace isotherm

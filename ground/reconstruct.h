@@ -30,9 +30,9 @@ struct ReconstructSummary {
   std::string text;  ///< One screen for the user.
 };
 
-/// The inline driver: one recording in, one folder of results out, the same each time. Everything good in a
-/// damaged recording is used. Fails before any work if the output folder cannot be written, the recording has no
-/// calibration or no depth, or an option is out of range.
+/// The inline driver: one recording in, one folder of results out, the same each time. Everything
+/// good in a damaged recording is used. Fails before any work if the output folder cannot be
+/// written, the recording has no calibration or no depth, or an option is out of range.
 Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request);
 
 }  // namespace isotherm

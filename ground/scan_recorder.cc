@@ -8,7 +8,8 @@ namespace isotherm {
 Result<std::unique_ptr<ScanRecorder>> ScanRecorder::Create(const std::filesystem::path& path,
                                                            const GroundOptions& options) {
   RecordingOptions recording;
-  recording.image_storage = options.live().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
+  recording.image_storage =
+      options.live().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
   Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, recording);
   if (!writer) return Err(writer.error());
   std::unique_ptr<ScanRecorder> recorder(new ScanRecorder(std::move(*writer)));
@@ -24,8 +25,12 @@ void ScanRecorder::Note(const Status& status) {
 }
 
 void ScanRecorder::Write(const RigDescription& rig) { Note(writer_->Write(rig.rig)); }
-void ScanRecorder::Write(const ReceivedDepth& depth) { Note(writer_->Write(*depth.encoded, depth.arrival)); }
-void ScanRecorder::Write(const ReceivedThermal& thermal) { Note(writer_->Write(*thermal.encoded, thermal.arrival)); }
+void ScanRecorder::Write(const ReceivedDepth& depth) {
+  Note(writer_->Write(*depth.encoded, depth.arrival));
+}
+void ScanRecorder::Write(const ReceivedThermal& thermal) {
+  Note(writer_->Write(*thermal.encoded, thermal.arrival));
+}
 
 Status ScanRecorder::Close() {
   Note(writer_->Close());

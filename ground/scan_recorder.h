@@ -12,8 +12,9 @@
 
 namespace isotherm {
 
-/// Writes what arrives during one session into `scan.mcap`. A disk that fills up ends the recording, not the scan:
-/// what was written stays readable and the rest is counted. Thread-compatible.
+/// Writes what arrives during one session into `scan.mcap`. A disk that fills up ends the
+/// recording, not the scan: what was written stays readable and the rest is counted.
+/// Thread-compatible.
 class ScanRecorder {
  public:
   static Result<std::unique_ptr<ScanRecorder>> Create(const std::filesystem::path& path,

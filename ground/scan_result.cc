@@ -33,7 +33,8 @@ std::uint64_t Sum(const std::map<std::string, std::uint64_t>& counts) {
 
 std::string List(const std::map<std::string, std::uint64_t>& counts) {
   std::string text;
-  for (const auto& [reason, count] : counts) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, reason);
+  for (const auto& [reason, count] : counts)
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, reason);
   return text;
 }
 
@@ -52,7 +53,8 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   Json& thermal = json["frames"]["thermal"];
   thermal["in"] = counts.thermal_in;
   thermal["fused"] = counts.thermal_fused;
-  for (const auto& [reason, count] : counts.thermal_left_out) thermal["left_out_by_reason"][reason] = count;
+  for (const auto& [reason, count] : counts.thermal_left_out)
+    thermal["left_out_by_reason"][reason] = count;
   json["stages"] = DescribeStages(pipeline);
   json["threads"] = pipeline.threads();
 
@@ -65,17 +67,20 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   volume["voxel_size_m"] = grid.voxel_size_m;
   volume["blocks"] = pipeline.tsdf().block_count();
   volume["blocks_refused_for_memory"] = pipeline.tsdf().refused_blocks();
-  volume["memory_bytes"] = pipeline.tsdf().memory_bytes() +
-                           static_cast<std::size_t>(pipeline.tsdf().block_count()) * kBlockVoxels * sizeof(ThermalVoxel);
+  volume["memory_bytes"] =
+      pipeline.tsdf().memory_bytes() +
+      static_cast<std::size_t>(pipeline.tsdf().block_count()) * kBlockVoxels * sizeof(ThermalVoxel);
   json["calibration"] = ToText(rig);
   json["configuration"] = ToTextProto(options);
-  if (!pipeline.thermal_status().ok()) json["thermal_not_fused_because"] = pipeline.thermal_status().message();
+  if (!pipeline.thermal_status().ok())
+    json["thermal_not_fused_because"] = pipeline.thermal_status().message();
   return json;
 }
 
-Result<std::string> WriteScan(GroundPipeline& pipeline, const GroundOptions& options, Json stats,
-                              const std::filesystem::path& dir,
-                              const std::function<void(std::string_view what, double share)>& progress) {
+Result<std::string> WriteScan(
+    GroundPipeline& pipeline, const GroundOptions& options, Json stats,
+    const std::filesystem::path& dir,
+    const std::function<void(std::string_view what, double share)>& progress) {
   const bool has_view = pipeline.view().maps.width() > 0;
   const SurfaceMaps view = has_view ? pipeline.CastFullView() : SurfaceMaps();
   const ResultInputs inputs{pipeline.tsdf(),
@@ -91,18 +96,24 @@ Result<std::string> WriteScan(GroundPipeline& pipeline, const GroundOptions& opt
   if (!summary) return Err(summary.error());
 
   const PipelineCounts& counts = pipeline.counts();
-  std::string text = fmt::format("depth    {} frames: {} tracked, {} integrated{}{}\n", counts.depth_in,
-                                 counts.depth_tracked, counts.depth_integrated,
-                                 counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
-  text += fmt::format("thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
-                      counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));
-  if (!pipeline.thermal_status().ok()) text += fmt::format("         {}\n", pipeline.thermal_status().message());
+  std::string text =
+      fmt::format("depth    {} frames: {} tracked, {} integrated{}{}\n", counts.depth_in,
+                  counts.depth_tracked, counts.depth_integrated,
+                  counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
+  text += fmt::format(
+      "thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
+      counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));
+  if (!pipeline.thermal_status().ok())
+    text += fmt::format("         {}\n", pipeline.thermal_status().message());
   const auto share = [&](std::size_t part) {
-    return summary->points == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(summary->points);
+    return summary->points == 0
+               ? 0.0
+               : 100.0 * static_cast<double>(part) / static_cast<double>(summary->points);
   };
-  text += fmt::format("surface  {} points, {:.1f} % with a temperature, {:.1f} % measured well; {} triangles\n",
-                      summary->points, share(summary->measured_points), share(summary->good_points),
-                      summary->triangles);
+  text += fmt::format(
+      "surface  {} points, {:.1f} % with a temperature, {:.1f} % measured well; {} triangles\n",
+      summary->points, share(summary->measured_points), share(summary->good_points),
+      summary->triangles);
   if (summary->measured_points > 0) {
     text += fmt::format("         {:.1f} to {:.1f} °C, mean {:.1f} °C (apparent temperature)\n",
                         summary->temperatures.min_celsius, summary->temperatures.max_celsius,
@@ -115,8 +126,9 @@ Result<std::string> WriteScan(GroundPipeline& pipeline, const GroundOptions& opt
     const auto found = pipeline.stage_stats().find(stage);
     return found == pipeline.stage_stats().end() ? 0.0 : found->second.Percentile(50);
   };
-  text += fmt::format("time     {:.1f} ms per depth frame, {:.1f} ms per thermal frame (medians, {} threads)\n",
-                      median("depth_frame"), median("thermal_frame"), pipeline.threads());
+  text += fmt::format(
+      "time     {:.1f} ms per depth frame, {:.1f} ms per thermal frame (medians, {} threads)\n",
+      median("depth_frame"), median("thermal_frame"), pipeline.threads());
   text += fmt::format("results  {}\n", dir.string());
   return text;
 }

@@ -15,10 +15,11 @@ namespace isotherm {
 /// Frames, stages, volume and calibration of a scan as they go into stats.json.
 Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig);
 
-/// Writes all result files of a scan into `dir` and returns one screen of text for the user. `stats` is
-/// DescribeScan() plus whatever the driver adds.
-Result<std::string> WriteScan(GroundPipeline& pipeline, const GroundOptions& options, Json stats,
-                              const std::filesystem::path& dir,
-                              const std::function<void(std::string_view what, double share)>& progress);
+/// Writes all result files of a scan into `dir` and returns one screen of text for the user.
+/// `stats` is DescribeScan() plus whatever the driver adds.
+Result<std::string> WriteScan(
+    GroundPipeline& pipeline, const GroundOptions& options, Json stats,
+    const std::filesystem::path& dir,
+    const std::function<void(std::string_view what, double share)>& progress);
 
 }  // namespace isotherm

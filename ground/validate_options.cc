@@ -19,16 +19,20 @@ namespace isotherm {
 Status Validate(const LiveOptions& o) {
   constexpr int kMaxDomain = 230;
   if (o.domain() < 0 || o.domain() > kMaxDomain) {
-    return InvalidArgument(fmt::format("live.domain must be 0..{}, got {}", kMaxDomain, o.domain()));
+    return InvalidArgument(
+        fmt::format("live.domain must be 0..{}, got {}", kMaxDomain, o.domain()));
   }
   if (o.queue_frames() < 1 || o.queue_frames() > 4096) {
-    return InvalidArgument(fmt::format("live.queue_frames must be 1..4096, got {}", o.queue_frames()));
+    return InvalidArgument(
+        fmt::format("live.queue_frames must be 1..4096, got {}", o.queue_frames()));
   }
   if (!(o.feedback_hz() > 0.0 && o.feedback_hz() <= 100.0)) {
-    return InvalidArgument(fmt::format("live.feedback_hz must be above 0 and at most 100 Hz, got {}", o.feedback_hz()));
+    return InvalidArgument(fmt::format(
+        "live.feedback_hz must be above 0 and at most 100 Hz, got {}", o.feedback_hz()));
   }
   if (!(o.reorder_window_s() >= 0.0 && o.reorder_window_s() <= 0.2)) {
-    return InvalidArgument(fmt::format("live.reorder_window_s must be 0..0.2 s, got {}", o.reorder_window_s()));
+    return InvalidArgument(
+        fmt::format("live.reorder_window_s must be 0..0.2 s, got {}", o.reorder_window_s()));
   }
   if (o.output_dir().empty()) return InvalidArgument("live.output_dir must name a folder");
   return OkStatus();
@@ -49,7 +53,8 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   check(Validate(options.export_()));
   check(Validate(options.live()));
   if (options.threads() < 0 || options.threads() > 256) {
-    check(InvalidArgument(fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));
+    check(InvalidArgument(
+        fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));
   }
   if (!options.volume().initial_pose().empty()) {
     if (const auto pose = ParsePose(options.volume().initial_pose()); !pose) {

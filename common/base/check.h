@@ -8,10 +8,10 @@ namespace isotherm::internal {
 }  // namespace isotherm::internal
 
 /// Aborts on a bug; always on.
-#define CHECK(condition)                                                       \
-  do {                                                                         \
-    if (!(condition)) [[unlikely]]                                             \
-      ::isotherm::internal::CheckFailed(#condition, __FILE__, __LINE__);       \
+#define CHECK(condition)                                                 \
+  do {                                                                   \
+    if (!(condition)) [[unlikely]]                                       \
+      ::isotherm::internal::CheckFailed(#condition, __FILE__, __LINE__); \
   } while (false)
 
 /// The same for inner loops; compiled out with NDEBUG.

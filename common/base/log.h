@@ -11,8 +11,8 @@ enum class LogLevel { kDebug, kInfo, kWarning, kError };
 void SetLogLevel(LogLevel level);
 bool IsLogged(LogLevel level);
 
-/// Writes one line to standard error: `category: message`, with the journal's level prefix (`<4>`) if
-/// standard error is the journal and with a plain level word otherwise. Thread-safe.
+/// Writes one line to standard error: `category: message`, with the journal's level prefix (`<4>`)
+/// if standard error is the journal and with a plain level word otherwise. Thread-safe.
 void WriteLog(LogLevel level, std::string_view category, std::string_view message);
 
 /// Collects one line and writes it at the end of the full expression. Use LOG().
@@ -34,7 +34,7 @@ class LogLine {
 
 /// LOG(Nuc, Warning) << "shutter did not open, closed_for_s=" << s;
 /// The category is the folder's name; numbers go into a key=value tail with units in the key.
-#define LOG(category, level)                                        \
-  if (!::isotherm::IsLogged(::isotherm::LogLevel::k##level)) {      \
-  } else                                                            \
+#define LOG(category, level)                                   \
+  if (!::isotherm::IsLogged(::isotherm::LogLevel::k##level)) { \
+  } else                                                       \
     ::isotherm::LogLine(::isotherm::LogLevel::k##level, #category).stream()

@@ -13,7 +13,8 @@ enum class StatusCode {
   kInvalidArgument,     ///< An argument, option or configuration is wrong.
   kNotFound,            ///< A file, stream or device does not exist.
   kDataLoss,            ///< Content is corrupt, truncated or inconsistent.
-  kFailedPrecondition,  ///< The operation needs something that is not there (calibration, tracking, ...).
+  kFailedPrecondition,  ///< The operation needs something that is not there (calibration, tracking,
+                        ///< ...).
   kResourceExhausted,   ///< Memory, disk or a configured limit.
   kUnavailable,         ///< A device, peer or service does not answer; trying again may help.
   kIoError,             ///< Reading or writing failed.
@@ -60,8 +61,8 @@ inline tl::unexpected<Status> Err(Status status) {
   return tl::unexpected<Status>(std::move(status));
 }
 
-/// Process exit status for `status`, following sysexits.h: 0 ok, 64 usage, 65 bad data, 66 no input, 69
-/// unavailable, 70 internal, 73 cannot create output, 74 I/O error, 78 configuration.
+/// Process exit status for `status`, following sysexits.h: 0 ok, 64 usage, 65 bad data, 66 no
+/// input, 69 unavailable, 70 internal, 73 cannot create output, 74 I/O error, 78 configuration.
 int ExitCode(const Status& status);
 
 /// Exit statuses used directly by the programs.
@@ -71,8 +72,7 @@ inline constexpr int kExitConfiguration = 78;
 }  // namespace isotherm
 
 /// Returns the failure of a Status expression to the caller (function returns Status).
-#define ISOTHERM_RETURN_IF_ERROR(expression)                      \
-  do {                                                            \
-    if (::isotherm::Status status_ = (expression); !status_.ok()) \
-      return status_;                                             \
+#define ISOTHERM_RETURN_IF_ERROR(expression)                                      \
+  do {                                                                            \
+    if (::isotherm::Status status_ = (expression); !status_.ok()) return status_; \
   } while (false)

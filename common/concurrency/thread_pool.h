@@ -10,8 +10,9 @@
 
 namespace isotherm {
 
-/// A fixed set of threads for parallel loops over blocks or rows. The calling thread works too, so a pool of
-/// one has no thread of its own and runs everything inline. Thread-bound: one ParallelFor at a time.
+/// A fixed set of threads for parallel loops over blocks or rows. The calling thread works too, so
+/// a pool of one has no thread of its own and runs everything inline. Thread-bound: one ParallelFor
+/// at a time.
 class ThreadPool {
  public:
   /// `threads` >= 1 counts the calling thread.
@@ -22,8 +23,8 @@ class ThreadPool {
 
   int threads() const { return static_cast<int>(workers_.size()) + 1; }
 
-  /// Calls `body(index)` once for each index in [0, count), in no particular order and from any thread of the
-  /// pool; returns when all are done. Bodies must not write to shared data.
+  /// Calls `body(index)` once for each index in [0, count), in no particular order and from any
+  /// thread of the pool; returns when all are done. Bodies must not write to shared data.
   void ParallelFor(int count, const std::function<void(int index)>& body);
 
  private:

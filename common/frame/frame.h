@@ -14,7 +14,13 @@ namespace isotherm {
 enum class Sensor : std::uint8_t { kDepth = 0, kThermal = 1 };
 
 /// Where the knowledge about the shutter comes from.
-enum class NucSource : std::uint8_t { kUnknown = 0, kInBand = 1, kPolled = 2, kCommanded = 3, kInferred = 4 };
+enum class NucSource : std::uint8_t {
+  kUnknown = 0,
+  kInBand = 1,
+  kPolled = 2,
+  kCommanded = 3,
+  kInferred = 4
+};
 
 /// Non-uniformity correction of the thermal camera (thesis 3.2.3). A fresh camera is kUnknown.
 enum class NucState : std::uint8_t {
@@ -39,20 +45,23 @@ struct ThermalHousekeeping {
 
 /// What identifies and dates a frame, from the edge to the end.
 struct FrameHeader {
-  std::uint64_t session = 0;       ///< One per start of a scan on the edge.
-  std::uint64_t frame_number = 0;  ///< Counts frames of this sensor within the session, from 0, without holes at the source.
-  DeviceTicks device_ticks{};      ///< The camera's own stamp.
-  CaptureTime capture_time{};      ///< Middle of the exposure, edge wall clock.
-  Nanoseconds capture_sigma{0};    ///< One-sigma uncertainty of capture_time; 0 = not estimated.
+  std::uint64_t session = 0;  ///< One per start of a scan on the edge.
+  std::uint64_t frame_number =
+      0;  ///< Counts frames of this sensor within the session, from 0, without holes at the source.
+  DeviceTicks device_ticks{};    ///< The camera's own stamp.
+  CaptureTime capture_time{};    ///< Middle of the exposure, edge wall clock.
+  Nanoseconds capture_sigma{0};  ///< One-sigma uncertainty of capture_time; 0 = not estimated.
 };
 
-/// Raw value of a depth pixel without a return; 65535 means the same (PrimeSense recorders write both).
+/// Raw value of a depth pixel without a return; 65535 means the same (PrimeSense recorders write
+/// both).
 inline constexpr std::uint16_t kNoDepth = 0;
 inline constexpr std::uint16_t kNoDepthSaturated = 65535;
 
 struct DepthFrame {
   FrameHeader header;
-  Image<std::uint16_t> depth_raw;  ///< height x width, row-major, `depth_scale` units per metre along z; 0 and 65535 = no return.
+  Image<std::uint16_t> depth_raw;  ///< height x width, row-major, `depth_scale` units per metre
+                                   ///< along z; 0 and 65535 = no return.
   double depth_scale = 1000.0;     ///< Raw units per metre.
 };
 
@@ -66,23 +75,27 @@ constexpr float CentikelvinToCelsius(double centikelvin) {
 
 struct ThermalFrame {
   FrameHeader header;
-  Image<std::uint16_t> centikelvin;  ///< height x width, row-major, apparent temperature, kelvin x 100; 0 = no value.
+  Image<std::uint16_t> centikelvin;  ///< height x width, row-major, apparent temperature, kelvin x
+                                     ///< 100; 0 = no value.
   NucState nuc_state = NucState::kUnknown;
   NucSource nuc_source = NucSource::kUnknown;
-  std::optional<double> seconds_since_nuc;  ///< Since the shutter opened; nullopt = none in this session.
+  std::optional<double>
+      seconds_since_nuc;  ///< Since the shutter opened; nullopt = none in this session.
   ThermalHousekeeping housekeeping;
   bool valid = false;  ///< Temperatures may reach the model.
 };
 
-/// What a FrameSource delivers: pixels and times as the device and the host gave them, not yet stamped.
+/// What a FrameSource delivers: pixels and times as the device and the host gave them, not yet
+/// stamped.
 struct RawFrame {
   Sensor sensor = Sensor::kDepth;
-  std::uint64_t frame_number = 0;  ///< Counted by the source; a hole is a frame that was lost before us.
+  std::uint64_t frame_number =
+      0;  ///< Counted by the source; a hole is a frame that was lost before us.
   DeviceTicks device_ticks{};
-  CaptureTime arrival_wall{};      ///< Edge wall clock when the first byte reached us.
-  Image<std::uint16_t> pixels;     ///< As DepthFrame::depth_raw or ThermalFrame::centikelvin.
-  double depth_scale = 1000.0;     ///< Raw depth units per metre (depth only).
-  bool shutter_closed = false;     ///< Thermal only: the camera says so (in band).
+  CaptureTime arrival_wall{};   ///< Edge wall clock when the first byte reached us.
+  Image<std::uint16_t> pixels;  ///< As DepthFrame::depth_raw or ThermalFrame::centikelvin.
+  double depth_scale = 1000.0;  ///< Raw depth units per metre (depth only).
+  bool shutter_closed = false;  ///< Thermal only: the camera says so (in band).
   ThermalHousekeeping housekeeping;
 };
 
@@ -90,8 +103,9 @@ struct RawFrame {
 enum class Encoding : std::uint8_t {
   kRaw16 = 0,      ///< Little-endian 16-bit samples, row-major.
   kPng16 = 1,      ///< PNG, 16-bit grey.
-  kDepthRans = 2,    ///< Ranks of the values that occur, predicted, entropy coded (common/codec).
-  kThermalRans = 3,  ///< Values predicted by the median edge detector, entropy coded (common/codec).
+  kDepthRans = 2,  ///< Ranks of the values that occur, predicted, entropy coded (common/codec).
+  kThermalRans =
+      3,  ///< Values predicted by the median edge detector, entropy coded (common/codec).
 };
 
 struct EncodedImage {
@@ -101,7 +115,8 @@ struct EncodedImage {
   std::vector<std::uint8_t> payload;
 };
 
-/// A frame on its way between processes or into a file: everything but the pixels is as in the frame.
+/// A frame on its way between processes or into a file: everything but the pixels is as in the
+/// frame.
 struct EncodedDepthFrame {
   FrameHeader header;
   EncodedImage image;

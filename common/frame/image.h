@@ -8,7 +8,8 @@
 
 namespace isotherm {
 
-/// Contiguous row-major image, height x width. What a value means is said where the image is declared.
+/// Contiguous row-major image, height x width. What a value means is said where the image is
+/// declared.
 template <typename T>
 class Image {
  public:

@@ -32,17 +32,19 @@ CameraModel CameraModel::Downscaled(int levels) const {
 
 Status Validate(const CameraModel& c, std::string_view name) {
   if (c.width < 1 || c.height < 1 || c.width > kMaxImageSide || c.height > kMaxImageSide) {
-    return InvalidArgument(fmt::format("{}: width and height must be 1..{} pixels, got {} x {}", name,
-                                       kMaxImageSide, c.width, c.height));
+    return InvalidArgument(fmt::format("{}: width and height must be 1..{} pixels, got {} x {}",
+                                       name, kMaxImageSide, c.width, c.height));
   }
   if (!(std::isfinite(c.fx) && c.fx > 0.0 && std::isfinite(c.fy) && c.fy > 0.0)) {
     return InvalidArgument(fmt::format(
-        "{}: fx and fy (focal lengths in pixels) must be given and positive, got {} and {}", name, c.fx, c.fy));
+        "{}: fx and fy (focal lengths in pixels) must be given and positive, got {} and {}", name,
+        c.fx, c.fy));
   }
   if (!(c.cx > -c.width && c.cx < 2 * c.width && c.cy > -c.height && c.cy < 2 * c.height)) {
-    return InvalidArgument(fmt::format(
-        "{}: principal point cx cy must be given and lie near the image of {} x {} pixels, got {} {}", name,
-        c.width, c.height, c.cx, c.cy));
+    return InvalidArgument(
+        fmt::format("{}: principal point cx cy must be given and lie near the image of {} x {} "
+                    "pixels, got {} {}",
+                    name, c.width, c.height, c.cx, c.cy));
   }
   for (const double k : {c.k1, c.k2, c.p1, c.p2, c.k3}) {
     if (!std::isfinite(k)) {
@@ -68,7 +70,8 @@ std::optional<Eigen::Vector2d> Project(const CameraModel& camera, const Eigen::V
 }
 
 Eigen::Vector2d Unproject(const CameraModel& camera, const Eigen::Vector2d& pixel) {
-  const Eigen::Vector2d distorted((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy);
+  const Eigen::Vector2d distorted((pixel.x() - camera.cx) / camera.fx,
+                                  (pixel.y() - camera.cy) / camera.fy);
   if (!camera.HasDistortion()) return distorted;
   constexpr int kMaxIterations = 50;
   constexpr double kConverged = 1e-12;
@@ -105,13 +108,16 @@ Status Validate(const Rig& rig) {
 
 Status CheckThermalFusion(const Rig& rig) {
   if (!rig.thermal) {
-    return FailedPrecondition("the rig calibration has no thermal intrinsics: temperatures are not fused");
+    return FailedPrecondition(
+        "the rig calibration has no thermal intrinsics: temperatures are not fused");
   }
   if (!rig.depth) {
-    return FailedPrecondition("the rig calibration has no depth intrinsics: temperatures are not fused");
+    return FailedPrecondition(
+        "the rig calibration has no depth intrinsics: temperatures are not fused");
   }
   if (!rig.T_thermal_depth) {
-    return FailedPrecondition("the rig calibration has no T_thermal_depth: temperatures are not fused");
+    return FailedPrecondition(
+        "the rig calibration has no T_thermal_depth: temperatures are not fused");
   }
   return OkStatus();
 }

@@ -9,9 +9,9 @@
 
 namespace isotherm {
 
-/// Pinhole camera with OpenCV's five-parameter distortion (same order and meaning). Pixel centres are at
-/// integer coordinates: pixel (u, v) covers [u - 0.5, u + 0.5). Coordinate frame: optical (x right, y down,
-/// z forward). Thermal and depth cameras use the same model (thesis 2.3.5).
+/// Pinhole camera with OpenCV's five-parameter distortion (same order and meaning). Pixel centres
+/// are at integer coordinates: pixel (u, v) covers [u - 0.5, u + 0.5). Coordinate frame: optical (x
+/// right, y down, z forward). Thermal and depth cameras use the same model (thesis 2.3.5).
 struct CameraModel {
   int width = 0;
   int height = 0;
@@ -30,17 +30,19 @@ struct CameraModel {
   CameraModel Downscaled(int levels) const;
 };
 
-/// Checks sizes (1..16384), finite and positive focal lengths, a principal point inside the image, and finite
-/// distortion. `name` is the camera's field in the rig file, for the message.
+/// Checks sizes (1..16384), finite and positive focal lengths, a principal point inside the image,
+/// and finite distortion. `name` is the camera's field in the rig file, for the message.
 Status Validate(const CameraModel& intrinsics, std::string_view name);
 
 /// Normalised image coordinates (x/z, y/z) -> distorted pixel coordinates.
 Eigen::Vector2d ProjectNormalized(const CameraModel& camera, const Eigen::Vector2d& normalized);
 
-/// Point in the camera's optical frame (metres) -> distorted pixel coordinates; nullopt behind the camera.
+/// Point in the camera's optical frame (metres) -> distorted pixel coordinates; nullopt behind the
+/// camera.
 std::optional<Eigen::Vector2d> Project(const CameraModel& camera, const Eigen::Vector3d& p_camera);
 
-/// Pixel coordinates (distorted) -> normalised image coordinates without distortion, by fixed-point iteration.
+/// Pixel coordinates (distorted) -> normalised image coordinates without distortion, by fixed-point
+/// iteration.
 Eigen::Vector2d Unproject(const CameraModel& camera, const Eigen::Vector2d& pixel);
 
 /// What was calibrated about one rig. Data, not configuration.
@@ -55,8 +57,8 @@ struct Rig {
   std::optional<double> reprojection_error_px;
 };
 
-/// Checks all that is present (ranges, finite, rigid); absent parts are allowed here and refused by the stage
-/// that needs them.
+/// Checks all that is present (ranges, finite, rigid); absent parts are allowed here and refused by
+/// the stage that needs them.
 Status Validate(const Rig& rig);
 
 /// Why thermal frames cannot be fused with this rig (one sentence), or ok.

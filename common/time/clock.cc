@@ -3,8 +3,8 @@
 namespace isotherm {
 
 CaptureTime SystemClock::Now() const {
-  return CaptureTime(std::chrono::duration_cast<Nanoseconds>(
-      std::chrono::system_clock::now().time_since_epoch()));
+  return CaptureTime(
+      std::chrono::duration_cast<Nanoseconds>(std::chrono::system_clock::now().time_since_epoch()));
 }
 
 SteadyTime SystemClock::SteadyNow() const { return std::chrono::steady_clock::now(); }

@@ -5,7 +5,8 @@
 
 namespace isotherm {
 
-/// The edge's wall clock (CLOCK_REALTIME as disciplined by chrony): nanoseconds since the Unix epoch.
+/// The edge's wall clock (CLOCK_REALTIME as disciplined by chrony): nanoseconds since the Unix
+/// epoch.
 struct CaptureClock {
   using duration = std::chrono::nanoseconds;
   using rep = duration::rep;
@@ -14,7 +15,8 @@ struct CaptureClock {
   static constexpr bool is_steady = false;
 };
 
-/// A camera's own counter: microseconds from an arbitrary zero, wrapping and resetting at its pleasure.
+/// A camera's own counter: microseconds from an arbitrary zero, wrapping and resetting at its
+/// pleasure.
 struct DeviceClock {
   using duration = std::chrono::microseconds;
   using rep = duration::rep;
@@ -24,9 +26,9 @@ struct DeviceClock {
 };
 
 /// The three times of a frame. They do not convert into each other: a Timestamper relates them.
-using CaptureTime = CaptureClock::time_point;                ///< Middle of the exposure, edge wall clock.
-using DeviceTicks = DeviceClock::time_point;                 ///< Camera counter.
-using SteadyTime = std::chrono::steady_clock::time_point;    ///< This computer's monotonic clock.
+using CaptureTime = CaptureClock::time_point;  ///< Middle of the exposure, edge wall clock.
+using DeviceTicks = DeviceClock::time_point;   ///< Camera counter.
+using SteadyTime = std::chrono::steady_clock::time_point;  ///< This computer's monotonic clock.
 
 using Nanoseconds = std::chrono::nanoseconds;
 

@@ -10,13 +10,15 @@
 
 namespace isotherm {
 
-/// Puts depth and thermal frames, which arrive on two streams, into one order by capture time, so that a live scan
-/// and its recording are processed alike. A frame is released once the other stream has reached its time.
+/// Puts depth and thermal frames, which arrive on two streams, into one order by capture time, so
+/// that a live scan and its recording are processed alike. A frame is released once the other
+/// stream has reached its time.
 ///
-/// A stream that stops must not stop the other: when `max_held` frames wait for it, it counts as stalled and is not
-/// waited for until it delivers again. (Frames, not seconds: under back-pressure or in fast replay the streams are
-/// seconds apart in capture time without either having stopped.) A frame older than what was already released is
-/// refused and counted. Reads no clock. Thread-compatible.
+/// A stream that stops must not stop the other: when `max_held` frames wait for it, it counts as
+/// stalled and is not waited for until it delivers again. (Frames, not seconds: under back-pressure
+/// or in fast replay the streams are seconds apart in capture time without either having stopped.)
+/// A frame older than what was already released is refused and counted. Reads no clock.
+/// Thread-compatible.
 class Assembler {
  public:
   using Frame = std::variant<DepthFramePtr, ThermalFramePtr>;
@@ -27,7 +29,8 @@ class Assembler {
 
   void Add(DepthFramePtr frame);
   void Add(ThermalFramePtr frame);
-  /// The next frame in capture-time order; nullopt if more must arrive first. At equal times depth comes first.
+  /// The next frame in capture-time order; nullopt if more must arrive first. At equal times depth
+  /// comes first.
   std::optional<Frame> Pop();
   /// The same at the end of the streams: waits for nothing.
   std::optional<Frame> Flush();

@@ -99,7 +99,7 @@ OperatorAdvice AdviseOperator(const CoverageSummary& coverage, const ScanSituati
   }
   if (beyond(situation.speed_m_s, situation.max_speed_m_s)) {
     return {AdviceKind::kSlower, fmt::format("{:.2f} m/s, the model follows up to {:.2f} m/s",
-                                         situation.speed_m_s, situation.max_speed_m_s)};
+                                             situation.speed_m_s, situation.max_speed_m_s)};
   }
   if (beyond(situation.turn_rate_deg_s, situation.max_turn_rate_deg_s)) {
     return {AdviceKind::kSlower,
@@ -111,17 +111,17 @@ OperatorAdvice AdviseOperator(const CoverageSummary& coverage, const ScanSituati
   }
   if (coverage.good + coverage.acceptable >= kDone) {
     return {AdviceKind::kDone, fmt::format("{:.0f} % of the surface in view is measured well",
-                                       percent(coverage.good + coverage.acceptable))};
+                                           percent(coverage.good + coverage.acceptable))};
   }
   const double most = std::max({coverage.too_near, coverage.too_far, coverage.too_oblique});
   if (most < kWorthSaying) return {};
   if (coverage.too_far == most) {
     return {AdviceKind::kCloser, fmt::format("{:.0f} % of the surface is farther than {:.2f} m",
-                                         percent(most), limits.distance_max_m())};
+                                             percent(most), limits.distance_max_m())};
   }
   if (coverage.too_near == most) {
     return {AdviceKind::kFarther, fmt::format("{:.0f} % of the surface is nearer than {:.2f} m",
-                                          percent(most), limits.distance_min_m())};
+                                              percent(most), limits.distance_min_m())};
   }
   return {AdviceKind::kLessOblique,
           fmt::format("{:.0f} % of the surface is seen at more than {:.0f} deg", percent(most),

@@ -41,7 +41,8 @@ struct Projector {
     if (!(p.z() > 0.0F)) return false;
     u = fx * p.x() / p.z() + cx;
     v = fy * p.y() / p.z() + cy;
-    return u >= 0.0F && v >= 0.0F && u <= static_cast<float>(width - 1) && v <= static_cast<float>(height - 1);
+    return u >= 0.0F && v >= 0.0F && u <= static_cast<float>(width - 1) &&
+           v <= static_cast<float>(height - 1);
   }
 };
 
@@ -79,23 +80,27 @@ int Rank(ConditionClass c) { return static_cast<int>(c); }
 Status Validate(const ThermalOptions& o) {
   if (!(o.distance_min_m() >= 0.0 && o.distance_min_m() < o.distance_good_m() &&
         o.distance_good_m() <= o.distance_max_m())) {
-    return InvalidArgument(fmt::format(
-        "thermal: need 0 <= distance_min_m < distance_good_m <= distance_max_m, got {} m, {} m, {} m",
-        o.distance_min_m(), o.distance_good_m(), o.distance_max_m()));
+    return InvalidArgument(
+        fmt::format("thermal: need 0 <= distance_min_m < distance_good_m <= distance_max_m, got {} "
+                    "m, {} m, {} m",
+                    o.distance_min_m(), o.distance_good_m(), o.distance_max_m()));
   }
   if (!(o.angle_min_deg() >= 0.0 && o.angle_min_deg() < o.angle_good_deg() &&
         o.angle_good_deg() <= o.angle_max_deg() && o.angle_max_deg() <= 90.0)) {
-    return InvalidArgument(fmt::format(
-        "thermal: need 0 <= angle_min_deg < angle_good_deg <= angle_max_deg <= 90, got {}, {}, {} degrees",
-        o.angle_min_deg(), o.angle_good_deg(), o.angle_max_deg()));
+    return InvalidArgument(
+        fmt::format("thermal: need 0 <= angle_min_deg < angle_good_deg <= angle_max_deg <= 90, got "
+                    "{}, {}, {} degrees",
+                    o.angle_min_deg(), o.angle_good_deg(), o.angle_max_deg()));
   }
   if (!(o.parallax_tolerance_m() > 0.0 && o.vertex_distance_vox() > 0.0 && o.max_wait_s() >= 0.0 &&
         o.max_wait_s() <= 10.0)) {
     return InvalidArgument(
-        "thermal: parallax_tolerance_m and vertex_distance_vox must be positive, max_wait_s 0..10 s");
+        "thermal: parallax_tolerance_m and vertex_distance_vox must be positive, max_wait_s 0..10 "
+        "s");
   }
   if (o.edge_margin_px() < 0 || o.edge_margin_px() > 16) {
-    return InvalidArgument(fmt::format("thermal.edge_margin_px must be 0..16 pixels, got {}", o.edge_margin_px()));
+    return InvalidArgument(
+        fmt::format("thermal.edge_margin_px must be 0..16 pixels, got {}", o.edge_margin_px()));
   }
   return OkStatus();
 }
@@ -157,7 +162,8 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, ThreadPo
         const float sx = source_x_.At(u, v);
         const float sy = source_y_.At(u, v);
         float result = kNan;
-        if (sx >= 0.0F && sy >= 0.0F && sx < static_cast<float>(width - 1) && sy < static_cast<float>(height - 1)) {
+        if (sx >= 0.0F && sy >= 0.0F && sx < static_cast<float>(width - 1) &&
+            sy < static_cast<float>(height - 1)) {
           const int x = static_cast<int>(sx);
           const int y = static_cast<int>(sy);
           const float fx = sx - static_cast<float>(x);
@@ -202,7 +208,8 @@ void ThermalFuser::SampleVertices(const SurfaceMaps& view, const RigidTransform&
   std::atomic<std::int64_t> occluded{0};
   pool.ParallelFor((view.height() + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
     const auto begin = static_cast<std::size_t>(task * kRowsPerTask * width);
-    const auto end = std::min(view.vx.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
+    const auto end =
+        std::min(view.vx.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
     std::int64_t hidden = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f p(view.vx.data()[i], view.vy.data()[i], view.vz.data()[i]);
@@ -215,7 +222,8 @@ void ThermalFuser::SampleVertices(const SurfaceMaps& view, const RigidTransform&
       const float cosine = to_camera.dot(n) / distance;
       if (!(cosine > 0.0F)) continue;  // The camera is behind the surface.
       if (options_.parallax_filter()) {
-        const float nearest = nearest_around_m_.At(static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F));
+        const float nearest =
+            nearest_around_m_.At(static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F));
         // A slanted surface covers a range of distances within the margin.
         if (distance - nearest > tolerance) {
           ++hidden;
@@ -267,11 +275,12 @@ void ThermalFuser::SelectBlocks(const SurfaceMaps& view, const TsdfVolume& tsdf)
 
 FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
                                 const SurfaceMaps& view, const CameraModel& view_camera,
-                                const RigidTransform& T_world_depth, const TsdfVolume& tsdf, ThreadPool& pool,
-                                ThermalVolume& thermal) {
+                                const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
+                                ThreadPool& pool, ThermalVolume& thermal) {
   const CameraModel& thermal_camera = rectifier_.ideal_camera();
   CHECK(frame.valid);
-  CHECK(frame.centikelvin.width() == thermal_camera.width && frame.centikelvin.height() == thermal_camera.height);
+  CHECK(frame.centikelvin.width() == thermal_camera.width &&
+        frame.centikelvin.height() == thermal_camera.height);
   const RigidTransform T_thermal_world = T_world_thermal.inverse();
   rectifier_.Rectify(frame.centikelvin, pool, celsius_);
   MakeDistanceMap(view, T_thermal_world);
@@ -282,7 +291,8 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
   const Projector depth(view_camera, T_world_depth.inverse());
   const auto voxel_m = static_cast<float>(grid.voxel_size_m);
   const auto max_distance = static_cast<float>(options_.vertex_distance_vox()) * voxel_m;
-  const float max_tsdf = std::min(1.0F, 2.0F * max_distance / static_cast<float>(tsdf.truncation_distance_m()));
+  const float max_tsdf =
+      std::min(1.0F, 2.0F * max_distance / static_cast<float>(tsdf.truncation_distance_m()));
   const bool validate = options_.validation();
   std::atomic<std::int64_t> considered{0};
   std::atomic<std::int64_t> assigned{0};
@@ -302,21 +312,24 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
         const TsdfVoxel voxel = distances[i];
         if (!voxel.observed() || std::abs(voxel.tsdf()) > max_tsdf) continue;
         const Eigen::Vector3f c =
-            first + voxel_m * Eigen::Vector3f(static_cast<float>(i & 7), static_cast<float>((i >> 3) & 7),
+            first + voxel_m * Eigen::Vector3f(static_cast<float>(i & 7),
+                                              static_cast<float>((i >> 3) & 7),
                                               static_cast<float>(i >> 6));
         float u = 0.0F;
         float v = 0.0F;
         if (!depth.Project(c, u, v)) continue;
         const auto pixel = static_cast<std::size_t>(static_cast<int>(v + 0.5F) * view.width() +
                                                     static_cast<int>(u + 0.5F));
-        const Eigen::Vector3f vertex(view.vx.data()[pixel], view.vy.data()[pixel], view.vz.data()[pixel]);
+        const Eigen::Vector3f vertex(view.vx.data()[pixel], view.vy.data()[pixel],
+                                     view.vz.data()[pixel]);
         if (!((c - vertex).squaredNorm() < max_distance * max_distance)) continue;
         ++task_considered;
         const float celsius = vertex_celsius_[pixel];
         if (std::isnan(celsius)) continue;
         const auto distance_class = static_cast<ConditionClass>(vertex_classes_[pixel] >> 4);
         const auto angle_class = static_cast<ConditionClass>(vertex_classes_[pixel] & 0xFU);
-        if (validate && !ReplacesMeasurement(distance_class, angle_class, temperatures[i])) continue;
+        if (validate && !ReplacesMeasurement(distance_class, angle_class, temperatures[i]))
+          continue;
         temperatures[i] = ThermalVoxel::Make(celsius, distance_class, angle_class);
         ++task_assigned;
       }

@@ -29,12 +29,13 @@ struct ConditionLimits {
 /// Algorithm 6: whether a measurement under the new classes replaces one under the old classes.
 bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle, ThermalVoxel old);
 
-/// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the picture or
-/// where the frame has no value. Bilinear. Thread-compatible.
+/// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the
+/// picture or where the frame has no value. Bilinear. Thread-compatible.
 class ThermalRectifier {
  public:
   explicit ThermalRectifier(const CameraModel& camera);
-  void Rectify(const Image<std::uint16_t>& centikelvin, ThreadPool& pool, Image<float>& celsius) const;
+  void Rectify(const Image<std::uint16_t>& centikelvin, ThreadPool& pool,
+               Image<float>& celsius) const;
   const CameraModel& ideal_camera() const { return ideal_; }
 
  private:
@@ -45,21 +46,24 @@ class ThermalRectifier {
 /// What one thermal frame did to the model.
 struct FusionReport {
   std::int64_t considered = 0;  ///< Voxels on the surface in view of both cameras.
-  std::int64_t occluded = 0;    ///< Of these: hidden from the thermal camera or too near an occluding edge.
+  std::int64_t occluded =
+      0;  ///< Of these: hidden from the thermal camera or too near an occluding edge.
   std::int64_t assigned = 0;
 };
 
-/// Assigns temperatures to the surface that both cameras see (algorithms 4 to 6). Keeps scratch images.
-/// Thread-compatible.
+/// Assigns temperatures to the surface that both cameras see (algorithms 4 to 6). Keeps scratch
+/// images. Thread-compatible.
 class ThermalFuser {
  public:
   ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera);
 
-  /// `view`: the model in `world` as the depth camera sees it from `T_world_depth`. `T_world_thermal` is the
-  /// thermal camera's pose when `frame` was captured. `frame` must be valid and have the camera's size (CHECK).
-  FusionReport Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal, const SurfaceMaps& view,
-                    const CameraModel& view_camera, const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
-                    ThreadPool& pool, ThermalVolume& thermal);
+  /// `view`: the model in `world` as the depth camera sees it from `T_world_depth`.
+  /// `T_world_thermal` is the thermal camera's pose when `frame` was captured. `frame` must be
+  /// valid and have the camera's size (CHECK).
+  FusionReport Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
+                    const SurfaceMaps& view, const CameraModel& view_camera,
+                    const RigidTransform& T_world_depth, const TsdfVolume& tsdf, ThreadPool& pool,
+                    ThermalVolume& thermal);
 
  private:
   void MakeDistanceMap(const SurfaceMaps& view, const RigidTransform& T_thermal_world);
@@ -71,10 +75,10 @@ class ThermalFuser {
   const ConditionLimits limits_;
   const ThermalRectifier rectifier_;
   Image<float> celsius_;
-  Image<float> nearest_m_;          ///< Algorithm 4's D: distance to the nearest vertex per thermal pixel.
-  Image<float> nearest_around_m_;   ///< The same, smallest within the edge margin.
-  std::vector<float> vertex_celsius_;             ///< Per view pixel, NaN = not to be assigned.
-  std::vector<std::uint8_t> vertex_classes_;      ///< Distance class << 4 | angle class.
+  Image<float> nearest_m_;  ///< Algorithm 4's D: distance to the nearest vertex per thermal pixel.
+  Image<float> nearest_around_m_;             ///< The same, smallest within the edge margin.
+  std::vector<float> vertex_celsius_;         ///< Per view pixel, NaN = not to be assigned.
+  std::vector<std::uint8_t> vertex_classes_;  ///< Distance class << 4 | angle class.
   std::vector<std::int32_t> blocks_;
   std::vector<std::uint32_t> block_stamp_;
   std::uint32_t stamp_ = 0;

@@ -7,10 +7,11 @@ namespace isotherm {
 
 ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, ConditionClass angle) {
   constexpr float kMaxCode = 65535.0F;
-  const float code = std::clamp(1.0F + std::round((celsius - kMinCelsius) / kStepKelvin), 1.0F, kMaxCode);
+  const float code =
+      std::clamp(1.0F + std::round((celsius - kMinCelsius) / kStepKelvin), 1.0F, kMaxCode);
   ThermalVoxel voxel;
-  voxel.bits = (static_cast<std::uint32_t>(code) << 16) | (static_cast<std::uint32_t>(distance) << 4) |
-               static_cast<std::uint32_t>(angle);
+  voxel.bits = (static_cast<std::uint32_t>(code) << 16) |
+               (static_cast<std::uint32_t>(distance) << 4) | static_cast<std::uint32_t>(angle);
   return voxel;
 }
 
@@ -24,8 +25,8 @@ ThermalVoxel VoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal, const
   const std::int32_t block = tsdf.Find(voxel / kBlockSide);
   if (block == TsdfVolume::kNoBlock) return {};
   const auto local = [](int i) { return static_cast<std::size_t>(i % kBlockSide); };
-  return thermal.voxels(block)[local(voxel.x()) +
-                               kBlockSide * (local(voxel.y()) + kBlockSide * local(voxel.z()))];
+  return thermal.voxels(
+      block)[local(voxel.x()) + kBlockSide * (local(voxel.y()) + kBlockSide * local(voxel.z()))];
 }
 
 }  // namespace

@@ -15,7 +15,8 @@ enum class ConditionClass : std::uint8_t { kBad = 0, kGood = 1, kAcceptable = 2 
 inline constexpr std::uint8_t kNeverMeasured = 255;
 
 /// One thermal voxel in 32 bits (thesis fig. 6.9):
-///   bits 31..16  temperature code: 0 = never measured, else 1 + (celsius + 100) / 0.025 (steps of 0.025 K
+///   bits 31..16  temperature code: 0 = never measured, else 1 + (celsius + 100) / 0.025 (steps of
+///   0.025 K
 ///                from -100 to 1538 °C)
 ///   bits 15..8   reserved (motion and disagreement classes)
 ///   bits  7..4   distance class, bits 3..0 angle class (ConditionClass)
@@ -37,17 +38,19 @@ struct ThermalVoxel {
 };
 static_assert(sizeof(ThermalVoxel) == 4);
 
-/// Temperatures and their conditions, in a block parallel to each TSDF block (same index). Thread-compatible;
-/// different blocks may be written by different threads.
+/// Temperatures and their conditions, in a block parallel to each TSDF block (same index).
+/// Thread-compatible; different blocks may be written by different threads.
 class ThermalVolume {
  public:
   explicit ThermalVolume(std::int32_t max_blocks);
 
   std::span<ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) {
-    return std::span<ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+    return std::span<ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
+                                                 kBlockVoxels);
   }
   std::span<const ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) const {
-    return std::span<const ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+    return std::span<const ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
+                                                       kBlockVoxels);
   }
 
  private:
@@ -55,8 +58,8 @@ class ThermalVolume {
   GrowingArena arena_;
 };
 
-/// The thermal voxel that belongs to a surface point: of the voxel the point lies in, or, if that was never
-/// measured, of the nearest measured one among the 26 around it. Unmeasured if none.
+/// The thermal voxel that belongs to a surface point: of the voxel the point lies in, or, if that
+/// was never measured, of the nearest measured one among the 26 around it. Unmeasured if none.
 ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                             const Eigen::Vector3d& p_world);
 

@@ -44,23 +44,26 @@ Image<std::int32_t> MakeRectification(const CameraModel& camera) {
 
 Status Validate(const PreprocessorOptions& o) {
   if (!(o.min_depth_m() >= 0.0 && o.max_depth_m() > o.min_depth_m() && o.max_depth_m() <= 100.0)) {
-    return InvalidArgument(fmt::format(
-        "preprocessor: need 0 <= min_depth_m < max_depth_m <= 100 m, got {} m and {} m", o.min_depth_m(),
-        o.max_depth_m()));
+    return InvalidArgument(
+        fmt::format("preprocessor: need 0 <= min_depth_m < max_depth_m <= 100 m, got {} m and {} m",
+                    o.min_depth_m(), o.max_depth_m()));
   }
   if (o.bilateral_radius_px() < 0 || o.bilateral_radius_px() > kMaxBilateralRadius) {
-    return InvalidArgument(fmt::format("preprocessor.bilateral_radius_px must be 0..{} pixels, got {}",
-                                       kMaxBilateralRadius, o.bilateral_radius_px()));
-  }
-  if (!(o.bilateral_sigma_px() > 0.0 && o.bilateral_sigma_depth_m() > 0.0 && o.max_depth_step_ratio() > 0.0)) {
     return InvalidArgument(
-        "preprocessor: bilateral_sigma_px, bilateral_sigma_depth_m and max_depth_step_ratio must be positive");
+        fmt::format("preprocessor.bilateral_radius_px must be 0..{} pixels, got {}",
+                    kMaxBilateralRadius, o.bilateral_radius_px()));
+  }
+  if (!(o.bilateral_sigma_px() > 0.0 && o.bilateral_sigma_depth_m() > 0.0 &&
+        o.max_depth_step_ratio() > 0.0)) {
+    return InvalidArgument(
+        "preprocessor: bilateral_sigma_px, bilateral_sigma_depth_m and max_depth_step_ratio must "
+        "be positive");
   }
   return OkStatus();
 }
 
-void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options, ThreadPool& pool,
-                     Image<float>& filtered_m) {
+void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
+                     ThreadPool& pool, Image<float>& filtered_m) {
   const int width = depth_m.width();
   const int height = depth_m.height();
   const int radius = options.bilateral_radius_px();
@@ -74,7 +77,8 @@ void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& opt
   std::vector<float> spatial;
   for (int dy = -radius; dy <= radius; ++dy) {
     for (int dx = -radius; dx <= radius; ++dx) {
-      spatial.push_back(static_cast<float>(std::exp(-(dx * dx + dy * dy) / (2.0 * sigma_px * sigma_px))));
+      spatial.push_back(
+          static_cast<float>(std::exp(-(dx * dx + dy * dy) / (2.0 * sigma_px * sigma_px))));
     }
   }
   // The biweight with tau = sqrt(7) sigma has the variance of a Gaussian with that sigma.
@@ -89,14 +93,16 @@ void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& opt
   });
 }
 
-void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool, Image<float>& half_m) {
+void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
+                Image<float>& half_m) {
   half_m.Resize(depth_m.width() / 2, depth_m.height() / 2);
   ForRows(pool, half_m.height(), [&](int y) {
     const float* upper = depth_m.Row(2 * y).data();
     const float* lower = depth_m.Row(2 * y + 1).data();
     float* out = half_m.Row(y).data();
     for (int x = 0; x < half_m.width(); ++x) {
-      const std::array<float, 4> z = {upper[2 * x], upper[2 * x + 1], lower[2 * x], lower[2 * x + 1]};
+      const std::array<float, 4> z = {upper[2 * x], upper[2 * x + 1], lower[2 * x],
+                                      lower[2 * x + 1]};
       float nearest = std::numeric_limits<float>::infinity();
       for (const float value : z) {
         if (value > 0.0F) nearest = std::min(nearest, value);
@@ -114,8 +120,8 @@ void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& p
   });
 }
 
-void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach, float max_step_ratio,
-                     ThreadPool& pool, SurfaceMaps& maps) {
+void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
+                     float max_step_ratio, ThreadPool& pool, SurfaceMaps& maps) {
   maps.Resize(depth_m.width(), depth_m.height());
   const SurfaceMapArgs args{&depth_m,
                             static_cast<float>(camera.fx),
@@ -127,7 +133,8 @@ void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int
   ForRows(pool, depth_m.height(), [&](int y) { SurfaceMapRow(args, y, maps); });
 }
 
-DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera)
+DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options,
+                                     const CameraModel& depth_camera)
     : options_(options), camera_(depth_camera.WithoutDistortion()) {
   if (depth_camera.HasDistortion()) rectification_ = MakeRectification(depth_camera);
   prepared_.camera = camera_;
@@ -146,7 +153,8 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
     int count = 0;
     for (int x = 0; x < camera_.width; ++x) {
       const std::uint16_t value =
-          source == nullptr ? raw[x] : (source[x] < 0 ? kNoDepth : frame.depth_raw.data()[source[x]]);
+          source == nullptr ? raw[x]
+                            : (source[x] < 0 ? kNoDepth : frame.depth_raw.data()[source[x]]);
       const float depth = static_cast<float>(value) * metres_per_unit;
       const bool good = value != kNoDepthSaturated && depth >= min_depth && depth <= max_depth;
       out[x] = good && value != kNoDepth ? depth : 0.0F;
@@ -164,8 +172,8 @@ const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadP
   BilateralFilter(prepared_.depth_m, options_, pool, filtered_m_[0]);
   for (int level = 0; level < kPyramidLevels; ++level) {
     if (level > 0) HalveDepth(filtered_m_[level - 1], step_ratio, pool, filtered_m_[level]);
-    MakeSurfaceMaps(filtered_m_[level], camera_.Downscaled(level), kNormalReach[level], step_ratio, pool,
-                    prepared_.maps[level]);
+    MakeSurfaceMaps(filtered_m_[level], camera_.Downscaled(level), kNormalReach[level], step_ratio,
+                    pool, prepared_.maps[level]);
   }
   return prepared_;
 }

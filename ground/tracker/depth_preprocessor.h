@@ -22,8 +22,8 @@ struct PreparedDepth {
 
 Status Validate(const PreprocessorOptions& options);
 
-/// Algorithm 1, lines 2-3: range check, rectification, bilateral filter, depth pyramid, vertex and normal maps.
-/// Keeps its images, so a stream of equal frames allocates nothing. Thread-compatible.
+/// Algorithm 1, lines 2-3: range check, rectification, bilateral filter, depth pyramid, vertex and
+/// normal maps. Keeps its images, so a stream of equal frames allocates nothing. Thread-compatible.
 class DepthPreprocessor {
  public:
   DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera);
@@ -36,22 +36,27 @@ class DepthPreprocessor {
 
   const PreprocessorOptions options_;
   const CameraModel camera_;
-  Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside; empty: no distortion.
+  Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside;
+                                       ///< empty: no distortion.
   std::array<Image<float>, kPyramidLevels> filtered_m_;
   PreparedDepth prepared_;
 };
 
-/// Bilateral filter with a Gaussian over pixels and a compact biweight (1 - (d/tau)^2)^2 over depth, tau growing
-/// with depth squared as the noise of a triangulating sensor does. 0 = no return, in and out.
-void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options, ThreadPool& pool,
-                     Image<float>& filtered_m);
+/// Bilateral filter with a Gaussian over pixels and a compact biweight (1 - (d/tau)^2)^2 over
+/// depth, tau growing with depth squared as the noise of a triangulating sensor does. 0 = no
+/// return, in and out.
+void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
+                     ThreadPool& pool, Image<float>& filtered_m);
 
-/// Halves a depth image: mean of those of the 2x2 pixels that lie within `max_step_ratio` of the nearest.
-void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool, Image<float>& half_m);
+/// Halves a depth image: mean of those of the 2x2 pixels that lie within `max_step_ratio` of the
+/// nearest.
+void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
+                Image<float>& half_m);
 
-/// Vertices and normals in camera coordinates. Normals from central differences over +-`reach` pixels; NaN where
-/// a neighbour is missing or further away than `max_step_ratio` times the depth per pixel of reach.
-void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach, float max_step_ratio,
-                     ThreadPool& pool, SurfaceMaps& maps);
+/// Vertices and normals in camera coordinates. Normals from central differences over +-`reach`
+/// pixels; NaN where a neighbour is missing or further away than `max_step_ratio` times the depth
+/// per pixel of reach.
+void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
+                     float max_step_ratio, ThreadPool& pool, SurfaceMaps& maps);
 
 }  // namespace isotherm

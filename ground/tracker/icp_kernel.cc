@@ -37,13 +37,15 @@ HWY_INLINE Vector3 Rotate(const float* R, const Vector3& p) {
 }
 
 HWY_INLINE Vector3 Add(const Vector3& p, const float* t) {
-  return {hn::Add(p.x, hn::Set(d, t[0])), hn::Add(p.y, hn::Set(d, t[1])), hn::Add(p.z, hn::Set(d, t[2]))};
+  return {hn::Add(p.x, hn::Set(d, t[0])), hn::Add(p.y, hn::Set(d, t[1])),
+          hn::Add(p.z, hn::Set(d, t[2]))};
 }
 
 /// NaN compares false, so a pixel without a vertex is outside.
 HWY_INLINE MF Inside(const IcpKernelArgs& a, const Vector3& p) {
   const auto between = [&](VF v, int axis) {
-    return hn::And(hn::Ge(v, hn::Set(d, a.volume_min[axis])), hn::Le(v, hn::Set(d, a.volume_max[axis])));
+    return hn::And(hn::Ge(v, hn::Set(d, a.volume_min[axis])),
+                   hn::Le(v, hn::Set(d, a.volume_max[axis])));
   };
   return hn::And(between(p.x, 0), hn::And(between(p.y, 1), between(p.z, 2)));
 }
@@ -59,14 +61,16 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
   for (VF& sum : sums) sum = zero;
   for (int y = first_row; y < last_row; ++y) {
     for (int x = 0; x < width; x += lanes) {
-      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+      const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                            static_cast<std::size_t>(x);
       const MF in_row = hn::FirstN(d, static_cast<std::size_t>(width - x));
       const bool whole = x + lanes <= width;
       const auto load = [&](const Image<float>& plane) {
         return whole ? hn::LoadU(d, plane.data() + i) : hn::MaskedLoad(in_row, d, plane.data() + i);
       };
       const Vector3 p_depth{load(current.vx), load(current.vy), load(current.vz)};
-      const Vector3 arm = Rotate(a.R_world_depth, p_depth);  // From the camera's position to the point, in world.
+      const Vector3 arm =
+          Rotate(a.R_world_depth, p_depth);  // From the camera's position to the point, in world.
       const Vector3 p = Add(arm, a.t_world_depth);
       const MF seen = hn::And(in_row, hn::Gt(p_depth.z, zero));
       const MF candidate = hn::And(seen, Inside(a, p));
@@ -75,30 +79,39 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
 
       const Vector3 p_model = Add(Rotate(a.R_model_depth, p_depth), a.t_model_depth);
       const VF inverse_z = hn::Div(one, p_model.z);
-      const VF u = hn::MulAdd(hn::Mul(p_model.x, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx + 0.5F));
-      const VF v = hn::MulAdd(hn::Mul(p_model.y, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy + 0.5F));
+      const VF u =
+          hn::MulAdd(hn::Mul(p_model.x, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx + 0.5F));
+      const VF v =
+          hn::MulAdd(hn::Mul(p_model.y, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy + 0.5F));
       MF good = hn::And(candidate, hn::Gt(p_model.z, zero));
-      good = hn::And(good, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(model.width())))));
-      good = hn::And(good, hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, static_cast<float>(model.height())))));
+      good = hn::And(
+          good, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(model.width())))));
+      good = hn::And(good, hn::And(hn::Ge(v, zero),
+                                   hn::Lt(v, hn::Set(d, static_cast<float>(model.height())))));
       const VI column = hn::ConvertTo(di, hn::IfThenElseZero(good, u));
       const VI row = hn::ConvertTo(di, hn::IfThenElseZero(good, v));
       const VI j = hn::Add(hn::Mul(row, hn::Set(di, model.width())), column);
 
-      const Vector3 q{hn::GatherIndex(d, model.vx.data(), j), hn::GatherIndex(d, model.vy.data(), j),
+      const Vector3 q{hn::GatherIndex(d, model.vx.data(), j),
+                      hn::GatherIndex(d, model.vy.data(), j),
                       hn::GatherIndex(d, model.vz.data(), j)};
       const Vector3 difference{hn::Sub(p.x, q.x), hn::Sub(p.y, q.y), hn::Sub(p.z, q.z)};
-      good = hn::And(good, hn::Lt(Dot(difference, difference), hn::Set(d, a.max_squared_distance_m2)));
+      good =
+          hn::And(good, hn::Lt(Dot(difference, difference), hn::Set(d, a.max_squared_distance_m2)));
       if (hn::AllFalse(d, good)) continue;
       Vector3 n{hn::GatherIndex(d, model.nx.data(), j), hn::GatherIndex(d, model.ny.data(), j),
                 hn::GatherIndex(d, model.nz.data(), j)};
-      const Vector3 n_current = Rotate(a.R_world_depth, {load(current.nx), load(current.ny), load(current.nz)});
+      const Vector3 n_current =
+          Rotate(a.R_world_depth, {load(current.nx), load(current.ny), load(current.nz)});
       good = hn::And(good, hn::Gt(Dot(n, n_current), hn::Set(d, a.min_normal_cosine)));
       out.inliers += static_cast<std::int64_t>(hn::CountTrue(d, good));
 
       // Lanes that are no inliers contribute zeros, whatever NaN they hold.
-      n = {hn::IfThenElseZero(good, n.x), hn::IfThenElseZero(good, n.y), hn::IfThenElseZero(good, n.z)};
+      n = {hn::IfThenElseZero(good, n.x), hn::IfThenElseZero(good, n.y),
+           hn::IfThenElseZero(good, n.z)};
       const VF residual = hn::IfThenElseZero(good, Dot(n, difference));
-      const VF ratio = hn::IfThenElseZero(good, hn::Div(hn::Set(d, a.reference_depth_m), p_depth.z));
+      const VF ratio =
+          hn::IfThenElseZero(good, hn::Div(hn::Set(d, a.reference_depth_m), p_depth.z));
       const VF squared_ratio = hn::Mul(ratio, ratio);
       const VF weight = hn::Mul(squared_ratio, squared_ratio);
       const Vector3 r{hn::IfThenElseZero(good, arm.x), hn::IfThenElseZero(good, arm.y),
@@ -121,7 +134,8 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
       sums[27] = hn::MulAdd(residual, residual, sums[27]);
     }
   }
-  for (std::size_t k = 0; k < out.sums.size(); ++k) out.sums[k] += hn::GetLane(hn::SumOfLanes(d, sums[k]));
+  for (std::size_t k = 0; k < out.sums.size(); ++k)
+    out.sums[k] += hn::GetLane(hn::SumOfLanes(d, sums[k]));
 }
 
 }  // namespace isotherm::HWY_NAMESPACE
@@ -132,7 +146,8 @@ namespace isotherm {
 
 HWY_EXPORT(AccumulateIcpRows);
 
-void AccumulateIcpRows(const IcpKernelArgs& args, int first_row, int last_row, IcpKernelSums& sums) {
+void AccumulateIcpRows(const IcpKernelArgs& args, int first_row, int last_row,
+                       IcpKernelSums& sums) {
   HWY_DYNAMIC_DISPATCH(AccumulateIcpRows)(args, first_row, last_row, sums);
 }
 

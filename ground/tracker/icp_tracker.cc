@@ -64,15 +64,19 @@ std::string_view ToString(LostReason reason) {
 Status Validate(const TrackerOptions& o) {
   if (o.iterations_coarse() < 0 || o.iterations_middle() < 0 || o.iterations_fine() < 1 ||
       o.iterations_coarse() + o.iterations_middle() + o.iterations_fine() > 1000) {
-    return InvalidArgument("tracker: iterations must not be negative, iterations_fine at least 1, 1000 in all");
+    return InvalidArgument(
+        "tracker: iterations must not be negative, iterations_fine at least 1, 1000 in all");
   }
-  if (!(o.max_distance_m() > 0.0 && o.max_normal_angle_deg() > 0.0 && o.max_normal_angle_deg() <= 90.0)) {
-    return InvalidArgument("tracker: max_distance_m must be positive and max_normal_angle_deg in (0, 90]");
+  if (!(o.max_distance_m() > 0.0 && o.max_normal_angle_deg() > 0.0 &&
+        o.max_normal_angle_deg() <= 90.0)) {
+    return InvalidArgument(
+        "tracker: max_distance_m must be positive and max_normal_angle_deg in (0, 90]");
   }
   if (!(o.min_inlier_ratio() >= 0.0 && o.min_inlier_ratio() <= 1.0 && o.max_residual_m() > 0.0 &&
         o.max_step_m() > 0.0 && o.max_step_deg() > 0.0)) {
     return InvalidArgument(
-        "tracker: min_inlier_ratio must be 0..1; max_residual_m, max_step_m and max_step_deg must be positive");
+        "tracker: min_inlier_ratio must be 0..1; max_residual_m, max_step_m and max_step_deg must "
+        "be positive");
   }
   return OkStatus();
 }
@@ -86,13 +90,15 @@ IcpSums& IcpSums::operator+=(const IcpSums& other) {
   return *this;
 }
 
-IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth, const ModelView& model,
-                      const VoxelGrid& grid, const IcpLimits& limits, ThreadPool& pool) {
+IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth,
+                      const ModelView& model, const VoxelGrid& grid, const IcpLimits& limits,
+                      ThreadPool& pool) {
   IcpKernelArgs args{};
   args.current = &current;
   args.model = &model.maps;
   CopyTransform(T_world_depth, args.R_world_depth, args.t_world_depth);
-  CopyTransform(model.T_world_depth.inverse() * T_world_depth, args.R_model_depth, args.t_model_depth);
+  CopyTransform(model.T_world_depth.inverse() * T_world_depth, args.R_model_depth,
+                args.t_model_depth);
   args.fx = static_cast<float>(model.camera.fx);
   args.fy = static_cast<float>(model.camera.fy);
   args.cx = static_cast<float>(model.camera.cx);
@@ -109,15 +115,17 @@ IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_
   const int strips = (height + kRowsPerTask - 1) / kRowsPerTask;
   std::vector<IcpKernelSums> partial(static_cast<std::size_t>(strips));
   pool.ParallelFor(strips, [&](int strip) {
-    AccumulateIcpRows(args, strip * kRowsPerTask, std::min(height, (strip + 1) * kRowsPerTask), partial[strip]);
+    AccumulateIcpRows(args, strip * kRowsPerTask, std::min(height, (strip + 1) * kRowsPerTask),
+                      partial[strip]);
   });
   IcpSums total;  // In order, so that the result does not depend on the thread count.
   for (const IcpKernelSums& sums : partial) total += ToIcpSums(sums);
   return total;
 }
 
-TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
-                                 const RigidTransform& guess, ThreadPool& pool) const {
+TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& model,
+                                 const VoxelGrid& grid, const RigidTransform& guess,
+                                 ThreadPool& pool) const {
   TrackingResult result;
   result.T_world_depth = guess;
   constexpr int kMinPixels = 1000;
@@ -125,18 +133,20 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
     result.lost = LostReason::kTooFewPixels;
     return result;
   }
-  const IcpLimits limits{static_cast<float>(options_.max_distance_m()),
-                         static_cast<float>(std::cos(options_.max_normal_angle_deg() * kRadPerDeg))};
-  const std::array<int, kPyramidLevels> iterations = {options_.iterations_fine(), options_.iterations_middle(),
-                                                      options_.iterations_coarse()};
+  const IcpLimits limits{
+      static_cast<float>(options_.max_distance_m()),
+      static_cast<float>(std::cos(options_.max_normal_angle_deg() * kRadPerDeg))};
+  const std::array<int, kPyramidLevels> iterations = {
+      options_.iterations_fine(), options_.iterations_middle(), options_.iterations_coarse()};
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
     for (int iteration = 0; iteration < iterations[level]; ++iteration) {
-      const IcpSums sums = AccumulateIcp(depth.maps[level], result.T_world_depth, model, grid, limits, pool);
+      const IcpSums sums =
+          AccumulateIcp(depth.maps[level], result.T_world_depth, model, grid, limits, pool);
       ++result.iterations;
-      result.inlier_ratio =
-          static_cast<double>(sums.inliers) / static_cast<double>(std::max<std::int64_t>(sums.candidates, 1));
-      result.residual_m =
-          std::sqrt(sums.squared_residuals_m2 / static_cast<double>(std::max<std::int64_t>(sums.inliers, 1)));
+      result.inlier_ratio = static_cast<double>(sums.inliers) /
+                            static_cast<double>(std::max<std::int64_t>(sums.candidates, 1));
+      result.residual_m = std::sqrt(sums.squared_residuals_m2 /
+                                    static_cast<double>(std::max<std::int64_t>(sums.inliers, 1)));
       const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(sums.H);
       if (sums.inliers < 6 || ldlt.info() != Eigen::Success || !ldlt.isPositive() ||
           ldlt.vectorD().minCoeff() <= 1e-9 * ldlt.vectorD().maxCoeff()) {
@@ -168,7 +178,8 @@ TrackingResult IcpTracker::Judge(TrackingResult result) const {
     result.lost = LostReason::kTooFewInliers;
   } else if (result.residual_m > options_.max_residual_m()) {
     result.lost = LostReason::kResidual;
-  } else if (result.step_m > options_.max_step_m() || result.step_rad > options_.max_step_deg() * kRadPerDeg) {
+  } else if (result.step_m > options_.max_step_m() ||
+             result.step_rad > options_.max_step_deg() * kRadPerDeg) {
     result.lost = LostReason::kStep;
   }
   return result;

@@ -26,9 +26,9 @@ struct ModelView {
 struct TrackingResult {
   LostReason lost = LostReason::kNone;
   RigidTransform T_world_depth;  ///< The best estimate, meaningful only if not lost.
-  double inlier_ratio = 0.0;     ///< Correspondences / valid pixels inside the volume, finest level.
-  double residual_m = 0.0;       ///< RMS point-to-plane distance of the inliers.
-  double step_m = 0.0;           ///< Motion since the model view's pose.
+  double inlier_ratio = 0.0;  ///< Correspondences / valid pixels inside the volume, finest level.
+  double residual_m = 0.0;    ///< RMS point-to-plane distance of the inliers.
+  double step_m = 0.0;        ///< Motion since the model view's pose.
   double step_rad = 0.0;
   int iterations = 0;
 
@@ -37,14 +37,14 @@ struct TrackingResult {
 
 Status Validate(const TrackerOptions& options);
 
-/// Pyramid ICP with projective data association and the point-to-plane metric (algorithm 1, line 9; Newcombe et
-/// al., KinectFusion, 2011). Stateless between calls. Thread-compatible.
+/// Pyramid ICP with projective data association and the point-to-plane metric (algorithm 1, line 9;
+/// Newcombe et al., KinectFusion, 2011). Stateless between calls. Thread-compatible.
 class IcpTracker {
  public:
   explicit IcpTracker(const TrackerOptions& options) : options_(options) {}
 
-  /// Finds T_world_depth of `depth` near `guess`. Residuals are weighted by the sensor's depth noise (variance
-  /// grows with the fourth power of the depth).
+  /// Finds T_world_depth of `depth` near `guess`. Residuals are weighted by the sensor's depth
+  /// noise (variance grows with the fourth power of the depth).
   TrackingResult Track(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
                        const RigidTransform& guess, ThreadPool& pool) const;
 
@@ -54,8 +54,8 @@ class IcpTracker {
   const TrackerOptions options_;
 };
 
-/// Sums of one ICP iteration. H x = -g in the twist (translation, rotation) applied from the left in `world`,
-/// about the camera's position.
+/// Sums of one ICP iteration. H x = -g in the twist (translation, rotation) applied from the left
+/// in `world`, about the camera's position.
 struct IcpSums {
   Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
@@ -72,7 +72,8 @@ struct IcpLimits {
 };
 
 /// One pass over the current maps (camera coordinates): associates, rejects, accumulates.
-IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth, const ModelView& model,
-                      const VoxelGrid& grid, const IcpLimits& limits, ThreadPool& pool);
+IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth,
+                      const ModelView& model, const VoxelGrid& grid, const IcpLimits& limits,
+                      ThreadPool& pool);
 
 }  // namespace isotherm

@@ -21,7 +21,8 @@ constexpr D d;
 /// Fills pixels [begin, end) of a row with "no surface".
 void ClearPixels(SurfaceMaps& maps, int y, int begin, int end) {
   for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz}) {
-    std::fill(plane->Row(y).begin() + begin, plane->Row(y).begin() + end, std::numeric_limits<float>::quiet_NaN());
+    std::fill(plane->Row(y).begin() + begin, plane->Row(y).begin() + end,
+              std::numeric_limits<float>::quiet_NaN());
   }
 }
 
@@ -53,7 +54,8 @@ void SurfaceMapRow(const SurfaceMapArgs& a, int y, SurfaceMaps& maps) {
   for (int start = reach; start < end; start += lanes) {
     const int x = std::min(start, end - lanes);  // The last vector overlaps the one before.
     const auto ray_x = [&](int offset) {
-      const VF column = hn::Add(hn::Iota(d, static_cast<float>(x)), hn::Set(d, static_cast<float>(offset) - a.cx));
+      const VF column = hn::Add(hn::Iota(d, static_cast<float>(x)),
+                                hn::Set(d, static_cast<float>(offset) - a.cx));
       return hn::Mul(column, inverse_fx);
     };
     const VF z = hn::LoadU(d, centre_row + x);

@@ -4,8 +4,9 @@
 
 namespace isotherm {
 
-/// Vertex and normal maps (thesis 6.1.3) as six planes. Vertices in metres, unit normals towards the camera;
-/// NaN in all planes = no surface at this pixel. The coordinate frame is said where the maps are declared.
+/// Vertex and normal maps (thesis 6.1.3) as six planes. Vertices in metres, unit normals towards
+/// the camera; NaN in all planes = no surface at this pixel. The coordinate frame is said where the
+/// maps are declared.
 struct SurfaceMaps {
   Image<float> vx, vy, vz;
   Image<float> nx, ny, nz;

@@ -40,7 +40,8 @@ void IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uin
     const auto coordinate = [&](int row) {
       const float* axis = a.axes + 3 * row;
       return hn::MulAdd(hn::Set(d, axis[0]), x,
-                        hn::MulAdd(hn::Set(d, axis[1]), y, hn::MulAdd(hn::Set(d, axis[2]), z, hn::Set(d, first[row]))));
+                        hn::MulAdd(hn::Set(d, axis[1]), y,
+                                   hn::MulAdd(hn::Set(d, axis[2]), z, hn::Set(d, first[row]))));
     };
     const VF px = coordinate(0);
     const VF py = coordinate(1);
@@ -49,8 +50,10 @@ void IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uin
     const VF u = hn::MulAdd(hn::Mul(px, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx + 0.5F));
     const VF v = hn::MulAdd(hn::Mul(py, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy + 0.5F));
     MF good = hn::Gt(pz, zero);
-    good = hn::And(good, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(a.width)))));
-    good = hn::And(good, hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, static_cast<float>(a.height)))));
+    good =
+        hn::And(good, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(a.width)))));
+    good = hn::And(good,
+                   hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, static_cast<float>(a.height)))));
     if (hn::AllFalse(d, good)) continue;
     const VI column = hn::ConvertTo(di, hn::IfThenElseZero(good, u));
     const VI row = hn::ConvertTo(di, hn::IfThenElseZero(good, v));
@@ -68,17 +71,19 @@ void IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uin
     const VF nz = hn::GatherIndex(d, a.samples + 2, sample);
     const VF offset = hn::GatherIndex(d, a.samples + 3, sample);
     const VF distance = hn::MulAdd(nx, px, hn::MulAdd(ny, py, hn::MulSub(nz, pz, offset)));
-    // Far in front along the ray counts as free whatever the plane's tilt; behind the band is unknown.
+    // Far in front along the ray counts as free whatever the plane's tilt; behind the band is
+    // unknown.
     const MF is_free = hn::Gt(along_ray, double_truncation);
     good = hn::And(good, hn::Or(is_free, hn::Ge(distance, hn::Neg(truncation))));
     if (hn::AllFalse(d, good)) continue;
-    const VF tsdf =
-        hn::IfThenElse(is_free, one, hn::Min(one, hn::Mul(distance, hn::Set(d, 1.0F / a.truncation_m))));
+    const VF tsdf = hn::IfThenElse(
+        is_free, one, hn::Min(one, hn::Mul(distance, hn::Set(d, 1.0F / a.truncation_m))));
 
     const VI word = hn::LoadU(di, words + i);
-    const VF old_tsdf = hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(word)), hn::Set(d, 1.0F / kTsdfScale));
-    const VF old_weight =
-        hn::Mul(hn::ConvertTo(d, hn::And(word, hn::Set(di, 0xFFFF))), hn::Set(d, 1.0F / kWeightScale));
+    const VF old_tsdf =
+        hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(word)), hn::Set(d, 1.0F / kTsdfScale));
+    const VF old_weight = hn::Mul(hn::ConvertTo(d, hn::And(word, hn::Set(di, 0xFFFF))),
+                                  hn::Set(d, 1.0F / kWeightScale));
     const VF total = hn::Add(old_weight, weight);
     const VF averaged = hn::Div(hn::MulAdd(old_tsdf, old_weight, hn::Mul(tsdf, weight)), total);
     const VI tsdf_code = hn::NearestInt(hn::Mul(averaged, hn::Set(d, kTsdfScale)));

@@ -1,4 +1,5 @@
-// One row of rays through the sparse volume, in SIMD lanes along x. Compiled once per instruction set.
+// One row of rays through the sparse volume, in SIMD lanes along x. Compiled once per instruction
+// set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tsdf/raycast_kernel.cc"
 #include <hwy/foreach_target.h>  // Must come before highway.h.
@@ -82,7 +83,8 @@ HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Point& p) 
     const VI x = (k & 1) != 0 ? hn::Add(x0, one) : x0;
     const VI y = (k & 2) != 0 ? hn::Add(y0, one) : y0;
     const VI z = (k & 4) != 0 ? hn::Add(z0, one) : z0;
-    const Lookup block = FindBlock(a, hn::ShiftRight<3>(x), hn::ShiftRight<3>(y), hn::ShiftRight<3>(z));
+    const Lookup block =
+        FindBlock(a, hn::ShiftRight<3>(x), hn::ShiftRight<3>(y), hn::ShiftRight<3>(z));
     const VI word = hn::GatherIndex(di, a.voxels, hn::Add(block.index, LocalIndex(x, y, z)));
     valid = hn::And(valid, hn::And(block.found, Observed(a, word)));
     corner[k] = DecodeTsdf(word);
@@ -99,8 +101,9 @@ HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Point& p) 
   const VF far = lerp(x01, x11, fy);
   Interpolated result;
   result.value = lerp(near, far, fz);
-  result.gradient.x = lerp(lerp(hn::Sub(corner[1], corner[0]), hn::Sub(corner[3], corner[2]), fy),
-                           lerp(hn::Sub(corner[5], corner[4]), hn::Sub(corner[7], corner[6]), fy), fz);
+  result.gradient.x =
+      lerp(lerp(hn::Sub(corner[1], corner[0]), hn::Sub(corner[3], corner[2]), fy),
+           lerp(hn::Sub(corner[5], corner[4]), hn::Sub(corner[7], corner[6]), fy), fz);
   result.gradient.y = lerp(hn::Sub(x10, x00), hn::Sub(x11, x01), fz);
   result.gradient.z = hn::Sub(far, near);
   result.valid = hn::RebindMask(d, valid);
@@ -204,10 +207,12 @@ void RaycastRow(const RaycastKernelArgs& a, int y, SurfaceMaps& maps) {
 
     Rays rays;
     rays.origin = a.origin;
-    const VF u = hn::Mul(hn::Sub(hn::ConvertTo(d, column), hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
+    const VF u =
+        hn::Mul(hn::Sub(hn::ConvertTo(d, column), hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
     const float v = (static_cast<float>(y) - a.cy) / a.fy;
     const auto rotate = [&](int row) {
-      return hn::MulAdd(hn::Set(d, a.R[3 * row]), u, hn::Set(d, a.R[3 * row + 1] * v + a.R[3 * row + 2]));
+      return hn::MulAdd(hn::Set(d, a.R[3 * row]), u,
+                        hn::Set(d, a.R[3 * row + 1] * v + a.R[3 * row + 2]));
     };
     rays.direction = {rotate(0), rotate(1), rotate(2)};
     const VF one = hn::Set(d, 1.0F);
@@ -219,7 +224,8 @@ void RaycastRow(const RaycastKernelArgs& a, int y, SurfaceMaps& maps) {
     VF depth = zero;
     Interpolated surface{zero, {zero, zero, zero}, hn::MaskFromVec(zero)};
     if (!hn::AllFalse(d, c.found)) {
-      // Bracket the crossing of the interpolated distance, which can lie a little beside the nearest voxel's.
+      // Bracket the crossing of the interpolated distance, which can lie a little beside the
+      // nearest voxel's.
       const VF step = hn::Div(one, rays.length);
       Interpolated f0 = Interpolate(a, rays.At(c.before));
       Interpolated f1 = Interpolate(a, rays.At(c.after));
@@ -233,31 +239,35 @@ void RaycastRow(const RaycastKernelArgs& a, int y, SurfaceMaps& maps) {
         const MF before_valid = f0.valid;
         c.before = hn::IfThenElse(late, c.after, hn::IfThenElse(early, shifted, c.before));
         f0.value = hn::IfThenElse(late, f1.value, hn::IfThenElse(early, fs.value, f0.value));
-        f0.valid = hn::Or(hn::And(late, f1.valid),
-                          hn::Or(hn::And(early, fs.valid), hn::AndNot(hn::Or(late, early), f0.valid)));
+        f0.valid =
+            hn::Or(hn::And(late, f1.valid),
+                   hn::Or(hn::And(early, fs.valid), hn::AndNot(hn::Or(late, early), f0.valid)));
         c.after = hn::IfThenElse(late, shifted, hn::IfThenElse(early, before, c.after));
         f1.value = hn::IfThenElse(late, fs.value, hn::IfThenElse(early, before_value, f1.value));
-        f1.valid = hn::Or(hn::And(late, fs.valid),
-                          hn::Or(hn::And(early, before_valid), hn::AndNot(hn::Or(late, early), f1.valid)));
+        f1.valid =
+            hn::Or(hn::And(late, fs.valid),
+                   hn::Or(hn::And(early, before_valid), hn::AndNot(hn::Or(late, early), f1.valid)));
       }
       MF good = hn::And(c.found, hn::And(f0.valid, f1.valid));
       good = hn::And(good, hn::And(hn::Gt(f0.value, zero), hn::Le(f1.value, zero)));
       const auto secant = [&](VF t0, VF t1, VF v0, VF v1) {
-        return hn::MulAdd(hn::Sub(t1, t0), hn::Div(v0, hn::Max(hn::Sub(v0, v1), hn::Set(d, 1e-9F))), t0);
+        return hn::MulAdd(hn::Sub(t1, t0), hn::Div(v0, hn::Max(hn::Sub(v0, v1), hn::Set(d, 1e-9F))),
+                          t0);
       };
       depth = secant(c.before, c.after, f0.value, f1.value);
       depth = hn::IfThenElse(good, depth, c.after);
       surface = Interpolate(a, rays.At(depth));
-      // One more secant step; the gradient stays that of the point before, a fraction of a voxel away.
+      // One more secant step; the gradient stays that of the point before, a fraction of a voxel
+      // away.
       const MF in_front = hn::Gt(surface.value, zero);
       const VF refined = hn::IfThenElse(in_front, secant(depth, c.after, surface.value, f1.value),
                                         secant(c.before, depth, f0.value, surface.value));
       depth = hn::IfThenElse(surface.valid, refined, depth);
       surface.valid = hn::And(good, surface.valid);
     }
-    const VF squared = hn::MulAdd(
-        surface.gradient.x, surface.gradient.x,
-        hn::MulAdd(surface.gradient.y, surface.gradient.y, hn::Mul(surface.gradient.z, surface.gradient.z)));
+    const VF squared = hn::MulAdd(surface.gradient.x, surface.gradient.x,
+                                  hn::MulAdd(surface.gradient.y, surface.gradient.y,
+                                             hn::Mul(surface.gradient.z, surface.gradient.z)));
     const MF valid = hn::And(surface.valid, hn::Gt(squared, hn::Set(d, 1e-12F)));
     const VF scale = hn::Div(one, hn::Sqrt(hn::Max(squared, hn::Set(d, 1e-12F))));
     const VF none = hn::Set(d, nan);
@@ -268,8 +278,9 @@ void RaycastRow(const RaycastKernelArgs& a, int y, SurfaceMaps& maps) {
                           hn::Mul(surface.gradient.x, scale),
                           hn::Mul(surface.gradient.y, scale),
                           hn::Mul(surface.gradient.z, scale)};
-    float* targets[6] = {maps.vx.Row(y).data() + x, maps.vy.Row(y).data() + x, maps.vz.Row(y).data() + x,
-                         maps.nx.Row(y).data() + x, maps.ny.Row(y).data() + x, maps.nz.Row(y).data() + x};
+    float* targets[6] = {maps.vx.Row(y).data() + x, maps.vy.Row(y).data() + x,
+                         maps.vz.Row(y).data() + x, maps.nx.Row(y).data() + x,
+                         maps.ny.Row(y).data() + x, maps.nz.Row(y).data() + x};
     const int count = width - x < lanes ? width - x : lanes;
     for (int k = 0; k < 6; ++k) {
       const VF value = hn::IfThenElse(valid, planes[k], none);

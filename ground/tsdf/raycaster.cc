@@ -31,12 +31,11 @@ class VoxelCursor {
   }
 
   static std::size_t Local(const GridIndex& voxel) {
-    return static_cast<std::size_t>((voxel.x() & 7) | ((voxel.y() & 7) << 3) | ((voxel.z() & 7) << 6));
+    return static_cast<std::size_t>((voxel.x() & 7) | ((voxel.y() & 7) << 3) |
+                                    ((voxel.z() & 7) << 6));
   }
 
-  bool Observed(TsdfVoxel voxel) const {
-    return (voxel.bits & 0xFFFFU) >= min_weight_;
-  }
+  bool Observed(TsdfVoxel voxel) const { return (voxel.bits & 0xFFFFU) >= min_weight_; }
 
   /// NaN where nothing was observed.
   float Tsdf(const GridIndex& voxel) {
@@ -87,20 +86,23 @@ std::int32_t MinWeightCode(float min_weight) {
 
 }  // namespace
 
-std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vector3f& p_voxel, float min_weight) {
+std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vector3f& p_voxel,
+                                     float min_weight) {
   VoxelCursor cursor(volume, MinWeightCode(min_weight));
   const float value = cursor.Interpolate(p_voxel);
   return std::isnan(value) ? std::nullopt : std::optional<float>(value);
 }
 
 Status Validate(const RaycastOptions& o) {
-  if (!(o.min_weight() >= 0.0 && o.min_weight() <= 1000.0) || o.halvings() < 0 || o.halvings() > 2) {
+  if (!(o.min_weight() >= 0.0 && o.min_weight() <= 1000.0) || o.halvings() < 0 ||
+      o.halvings() > 2) {
     return InvalidArgument("raycast: min_weight must be 0..1000 observations and halvings 0..2");
   }
   return OkStatus();
 }
 
-void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera) {
+void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
+                       const RigidTransform& T_world_camera) {
   tiles_x_ = (camera.width + kRaycastTile - 1) / kRaycastTile;
   tiles_y_ = (camera.height + kRaycastTile - 1) / kRaycastTile;
   const auto count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
@@ -111,7 +113,8 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera, cons
   // Block coordinates to camera coordinates in voxels: p = A b + t.
   const Eigen::Matrix3f A = (T_camera_world.linear() * kBlockSide).cast<float>();
   const Eigen::Vector3f t =
-      (T_camera_world * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m())) / grid.voxel_size_m)
+      (T_camera_world * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m())) /
+       grid.voxel_size_m)
           .cast<float>();
   constexpr float kRadius = 0.5F * 1.7320508F * kBlockSide;
   const auto fx = static_cast<float>(camera.fx);
@@ -125,7 +128,8 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera, cons
     if (far <= 0.0F) continue;
     int x0 = 0, y0 = 0, x1 = tiles_x_ - 1, y1 = tiles_y_ - 1;
     if (near > kRadius) {
-      // The sphere around the block projects into this rectangle (the nearest depth gives the largest extent).
+      // The sphere around the block projects into this rectangle (the nearest depth gives the
+      // largest extent).
       const float inverse = 1.0F / near;
       const float extent = kRadius * 1.5F * inverse;
       const float u = fx * p.x() / p.z() + cx;
@@ -151,11 +155,13 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera, cons
   }
 }
 
-void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera,
-                     float min_weight, ThreadPool& pool, SurfaceMaps& maps) {
+void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
+                     const RigidTransform& T_world_camera, float min_weight, ThreadPool& pool,
+                     SurfaceMaps& maps) {
   maps.Resize(camera.width, camera.height);
   if (volume.block_count() == 0) {
-    for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz}) plane->Fill(kNan);
+    for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz})
+      plane->Fill(kNan);
     return;
   }
   range_.Compute(volume, camera, T_world_camera);

@@ -14,11 +14,12 @@ class RaycastOptions;
 
 Status Validate(const RaycastOptions& options);
 
-/// Bounds of the depth at which rays can meet a block, per tile of the image: blocks are projected as spheres.
-/// Thread-compatible.
+/// Bounds of the depth at which rays can meet a block, per tile of the image: blocks are projected
+/// as spheres. Thread-compatible.
 class RangeMap {
  public:
-  void Compute(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera);
+  void Compute(const TsdfVolume& volume, const CameraModel& camera,
+               const RigidTransform& T_world_camera);
 
   int tiles_x() const { return tiles_x_; }
   int tiles_y() const { return tiles_y_; }
@@ -32,21 +33,24 @@ class RangeMap {
   std::vector<float> near_vox_, far_vox_;
 };
 
-/// Vertex and normal maps of the model (algorithm 3). The zero crossing is found between trilinearly interpolated
-/// distances and the normal is their interpolated gradient. Keeps scratch memory. Thread-compatible.
+/// Vertex and normal maps of the model (algorithm 3). The zero crossing is found between
+/// trilinearly interpolated distances and the normal is their interpolated gradient. Keeps scratch
+/// memory. Thread-compatible.
 class Raycaster {
  public:
-  /// Maps in `world`, seen by `camera` (its distortion is ignored) from `T_world_camera`. Voxels lighter than
-  /// `min_weight` do not count as observed.
-  void Cast(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_world_camera,
-            float min_weight, ThreadPool& pool, SurfaceMaps& maps);
+  /// Maps in `world`, seen by `camera` (its distortion is ignored) from `T_world_camera`. Voxels
+  /// lighter than `min_weight` do not count as observed.
+  void Cast(const TsdfVolume& volume, const CameraModel& camera,
+            const RigidTransform& T_world_camera, float min_weight, ThreadPool& pool,
+            SurfaceMaps& maps);
 
  private:
   RangeMap range_;
 };
 
-/// Truncated distance (in truncation distances) interpolated at voxel coordinates; nullopt unless all eight
-/// voxels around were observed.
-std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vector3f& p_voxel, float min_weight);
+/// Truncated distance (in truncation distances) interpolated at voxel coordinates; nullopt unless
+/// all eight voxels around were observed.
+std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vector3f& p_voxel,
+                                     float min_weight);
 
 }  // namespace isotherm

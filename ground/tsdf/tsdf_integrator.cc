@@ -17,8 +17,8 @@ constexpr int kRowsPerTask = 16;
 /// Every n-th pixel allocates blocks: at 1 m and 570 px focal length two pixels are 3.5 mm apart.
 constexpr int kAllocationStride = 2;
 
-/// Weight of an observation: the variance of triangulated depth grows with the fourth power of depth, but far
-/// surfaces must still be learnt in a few frames.
+/// Weight of an observation: the variance of triangulated depth grows with the fourth power of
+/// depth, but far surfaces must still be learnt in a few frames.
 constexpr float kReferenceDepth = 0.5F;
 constexpr float kMinWeight = 0.25F;
 /// Without a normal the point lies on an edge, where depth is least certain.
@@ -44,16 +44,19 @@ struct CameraF {
 }  // namespace
 
 Status Validate(const TsdfOptions& o, const VolumeOptions& volume) {
-  if (!(o.truncation_distance_m() >= 2.0 * volume.voxel_size_m() && o.truncation_distance_m() <= 1.0)) {
+  if (!(o.truncation_distance_m() >= 2.0 * volume.voxel_size_m() &&
+        o.truncation_distance_m() <= 1.0)) {
     return InvalidArgument(fmt::format(
         "tsdf.truncation_distance_m must be at least two voxels ({} m) and at most 1 m, got {} m",
         2.0 * volume.voxel_size_m(), o.truncation_distance_m()));
   }
   if (!(o.max_weight() >= 1.0 && o.max_weight() <= 1000.0)) {
-    return InvalidArgument(fmt::format("tsdf.max_weight must be 1..1000 observations, got {}", o.max_weight()));
+    return InvalidArgument(
+        fmt::format("tsdf.max_weight must be 1..1000 observations, got {}", o.max_weight()));
   }
   for (const double bound : {o.min_step_m(), o.max_step_m(), o.min_step_deg(), o.max_step_deg()}) {
-    if (!(bound >= 0.0)) return InvalidArgument("tsdf: step bounds must not be negative (0 turns one off)");
+    if (!(bound >= 0.0))
+      return InvalidArgument("tsdf: step bounds must not be negative (0 turns one off)");
   }
   if ((o.max_step_m() > 0.0 && o.min_step_m() > o.max_step_m()) ||
       (o.max_step_deg() > 0.0 && o.min_step_deg() > o.max_step_deg())) {
@@ -103,9 +106,11 @@ void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransfo
   const auto inverse_block = static_cast<float>(1.0 / grid.block_size_m());
   // Block coordinates of a camera point: B = (R p + t - min) / block.
   const Eigen::Matrix3f R = (T_world_depth.linear() / grid.block_size_m()).cast<float>();
-  const Eigen::Vector3f t = ((T_world_depth.translation() - grid.min_m) / grid.block_size_m()).cast<float>();
+  const Eigen::Vector3f t =
+      ((T_world_depth.translation() - grid.min_m) / grid.block_size_m()).cast<float>();
   // Samples along the ray at most half a block apart, both ends of the band included.
-  const int half_steps = std::max(1, static_cast<int>(std::ceil(2.0F * truncation * inverse_block)));
+  const int half_steps =
+      std::max(1, static_cast<int>(std::ceil(2.0F * truncation * inverse_block)));
   const float step = truncation / static_cast<float>(half_steps);
 
   const int strips = (camera.height + kRowsPerTask - 1) / kRowsPerTask;
@@ -129,7 +134,8 @@ void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransfo
           const GridIndex block = (b + along * direction).array().floor().cast<int>();
           if (block == last[i]) continue;
           last[i] = block;
-          if (volume.InGrid(block) && volume.Find(block) == TsdfVolume::kNoBlock) touched.push_back(block);
+          if (volume.InGrid(block) && volume.Find(block) == TsdfVolume::kNoBlock)
+            touched.push_back(block);
         }
       }
     }
@@ -152,7 +158,8 @@ void TsdfIntegrator::SelectBlocks(const PreparedDepth& depth, const RigidTransfo
   updated_blocks_.clear();
   for (std::int32_t block = 0; block < volume.block_count(); ++block) {
     const Eigen::Vector3f centre =
-        min + (volume.block_coordinates(block).cast<float>() + Eigen::Vector3f::Constant(0.5F)) * block_m;
+        min +
+        (volume.block_coordinates(block).cast<float>() + Eigen::Vector3f::Constant(0.5F)) * block_m;
     const Eigen::Vector3f p = R * centre + t;
     if (p.z() < radius) continue;
     const float u = camera.fx * p.x() / p.z() + camera.cx;
@@ -166,8 +173,10 @@ void TsdfIntegrator::SelectBlocks(const PreparedDepth& depth, const RigidTransfo
     bool maybe_seen = false;
     for (int dy = -1; dy <= 1 && !maybe_seen; ++dy) {
       for (int dx = -1; dx <= 1 && !maybe_seen; ++dx) {
-        const int x = std::clamp(static_cast<int>(u + static_cast<float>(dx) * margin), 0, camera.width - 1);
-        const int y = std::clamp(static_cast<int>(v + static_cast<float>(dy) * margin), 0, camera.height - 1);
+        const int x =
+            std::clamp(static_cast<int>(u + static_cast<float>(dx) * margin), 0, camera.width - 1);
+        const int y =
+            std::clamp(static_cast<int>(v + static_cast<float>(dy) * margin), 0, camera.height - 1);
         const float z = depth.depth_m.At(x, y);
         maybe_seen = z > 0.0F && p.z() - reach <= z;
       }
@@ -176,8 +185,8 @@ void TsdfIntegrator::SelectBlocks(const PreparedDepth& depth, const RigidTransfo
   }
 }
 
-void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth, ThreadPool& pool,
-                               TsdfVolume& volume) {
+void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth,
+                               ThreadPool& pool, TsdfVolume& volume) {
   MakeSamples(depth, pool);
   AllocateBand(depth, T_world_depth, pool, volume);
   const RigidTransform T_depth_world = T_world_depth.inverse();
@@ -205,25 +214,30 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
     for (int i = task * kBlocksPerTask; i < end; ++i) {
       const std::int32_t block = updated_blocks_[i];
       const Eigen::Vector3f first =
-          (T_depth_world * grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide)).cast<float>();
+          (T_depth_world * grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide))
+              .cast<float>();
       IntegrateBlock(args, first.data(), &volume.voxels(block).front().bits);
     }
   });
 }
 
-bool IntegrationGate::Accepts(const std::optional<RigidTransform>& previous, const RigidTransform& T_world_depth) {
+bool IntegrationGate::Accepts(const std::optional<RigidTransform>& previous,
+                              const RigidTransform& T_world_depth) {
   const auto exceeds = [](double value, double bound) { return bound > 0.0 && value > bound; };
-  const bool bootstrapping = accepted_ < static_cast<std::uint64_t>(std::max(0, options_.bootstrap_frames()));
+  const bool bootstrapping =
+      accepted_ < static_cast<std::uint64_t>(std::max(0, options_.bootstrap_frames()));
   bool accept = true;
   if (previous && !bootstrapping) {
-    accept = !exceeds(TranslationDistance(*previous, T_world_depth), options_.max_step_m()) &&
-             !exceeds(RotationAngle(*previous, T_world_depth), options_.max_step_deg() * kRadPerDeg);
+    accept =
+        !exceeds(TranslationDistance(*previous, T_world_depth), options_.max_step_m()) &&
+        !exceeds(RotationAngle(*previous, T_world_depth), options_.max_step_deg() * kRadPerDeg);
   } else if (!previous && last_integrated_) {
     accept = false;  // The motion since the frame before is not known.
   }
   if (accept && last_integrated_ && !bootstrapping) {
-    accept = TranslationDistance(*last_integrated_, T_world_depth) >= options_.min_step_m() ||
-             RotationAngle(*last_integrated_, T_world_depth) >= options_.min_step_deg() * kRadPerDeg;
+    accept =
+        TranslationDistance(*last_integrated_, T_world_depth) >= options_.min_step_m() ||
+        RotationAngle(*last_integrated_, T_world_depth) >= options_.min_step_deg() * kRadPerDeg;
   }
   if (accept) {
     last_integrated_ = T_world_depth;

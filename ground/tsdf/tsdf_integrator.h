@@ -17,15 +17,16 @@ struct PreparedDepth;
 
 Status Validate(const TsdfOptions& options, const VolumeOptions& volume);
 
-/// Fuses depth images into the volume (algorithm 2). Distances are measured from the voxel to the plane through
-/// the observed point along its normal, so that they do not depend on the direction of view (thesis 8.2); where
-/// there is no normal, along the viewing ray as in the thesis. Keeps scratch memory. Thread-compatible.
+/// Fuses depth images into the volume (algorithm 2). Distances are measured from the voxel to the
+/// plane through the observed point along its normal, so that they do not depend on the direction
+/// of view (thesis 8.2); where there is no normal, along the viewing ray as in the thesis. Keeps
+/// scratch memory. Thread-compatible.
 class TsdfIntegrator {
  public:
   explicit TsdfIntegrator(const TsdfOptions& options) : options_(options) {}
 
-  /// Allocates the blocks within the truncation distance of the measured surface, then updates these and all
-  /// that lie in front of it.
+  /// Allocates the blocks within the truncation distance of the measured surface, then updates
+  /// these and all that lie in front of it.
   void Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth, ThreadPool& pool,
                  TsdfVolume& volume);
 
@@ -34,9 +35,10 @@ class TsdfIntegrator {
 
  private:
   void MakeSamples(const PreparedDepth& depth, ThreadPool& pool);
-  void AllocateBand(const PreparedDepth& depth, const RigidTransform& T_world_depth, ThreadPool& pool,
-                    TsdfVolume& volume);
-  void SelectBlocks(const PreparedDepth& depth, const RigidTransform& T_depth_world, const TsdfVolume& volume);
+  void AllocateBand(const PreparedDepth& depth, const RigidTransform& T_world_depth,
+                    ThreadPool& pool, TsdfVolume& volume);
+  void SelectBlocks(const PreparedDepth& depth, const RigidTransform& T_depth_world,
+                    const TsdfVolume& volume);
 
   const TsdfOptions options_;
   Image<DepthSample> samples_;

@@ -55,12 +55,13 @@ TsdfVoxel TsdfVolume::VoxelAt(const GridIndex& voxel) const {
   const std::int32_t block = Find(voxel / kBlockSide);
   if (block == kNoBlock) return {};
   const auto local = [](int i) { return static_cast<std::size_t>(i % kBlockSide); };
-  return voxels(block)[local(voxel.x()) +
-                       kBlockSide * (local(voxel.y()) + kBlockSide * local(voxel.z()))];
+  return voxels(
+      block)[local(voxel.x()) + kBlockSide * (local(voxel.y()) + kBlockSide * local(voxel.z()))];
 }
 
 std::size_t TsdfVolume::memory_bytes() const {
-  return static_cast<std::size_t>(block_count()) * (kBlockVoxels * sizeof(TsdfVoxel) + sizeof(GridIndex)) +
+  return static_cast<std::size_t>(block_count()) *
+             (kBlockVoxels * sizeof(TsdfVoxel) + sizeof(GridIndex)) +
          table_.size() * sizeof(std::int32_t);
 }
 

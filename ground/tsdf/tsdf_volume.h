@@ -9,9 +9,10 @@
 
 namespace isotherm {
 
-/// One voxel in 32 bits: the upper 16 hold the truncated signed distance divided by the truncation distance
-/// (positive in front of the surface, signed, 32767 = 1), the lower 16 the weight in 1/64 observations.
-/// Weight 0 = never observed. Update rule: running weighted average (algorithm 2, line 10).
+/// One voxel in 32 bits: the upper 16 hold the truncated signed distance divided by the truncation
+/// distance (positive in front of the surface, signed, 32767 = 1), the lower 16 the weight in 1/64
+/// observations. Weight 0 = never observed. Update rule: running weighted average (algorithm 2,
+/// line 10).
 struct TsdfVoxel {
   static constexpr float kTsdfScale = 32767.0F;
   static constexpr float kWeightScale = 64.0F;
@@ -23,12 +24,14 @@ struct TsdfVoxel {
   }
   float weight() const { return static_cast<float>(bits & 0xFFFFU) * (1.0F / kWeightScale); }
   bool observed() const { return (bits & 0xFFFFU) != 0; }
-  /// Averages `tsdf` in [-1, 1] with weight `observation_weight` into the voxel; the weight stops at `max_weight`.
+  /// Averages `tsdf` in [-1, 1] with weight `observation_weight` into the voxel; the weight stops
+  /// at `max_weight`.
   void Update(float tsdf, float observation_weight, float max_weight);
 };
 static_assert(sizeof(TsdfVoxel) == 4);
 
-/// Anonymous memory that grows without moving: address space is reserved once, pages are taken as they are used.
+/// Anonymous memory that grows without moving: address space is reserved once, pages are taken as
+/// they are used.
 class GrowingArena {
  public:
   explicit GrowingArena(std::size_t reserve_bytes);
@@ -43,9 +46,9 @@ class GrowingArena {
   std::size_t bytes_ = 0;
 };
 
-/// Truncated signed distances in sparse 8^3 blocks inside the scan volume. A direct table over the volume's
-/// blocks finds a block by its coordinates. Blocks never move, so `voxels` of a block stays valid.
-/// Thread-compatible; different blocks may be written by different threads.
+/// Truncated signed distances in sparse 8^3 blocks inside the scan volume. A direct table over the
+/// volume's blocks finds a block by its coordinates. Blocks never move, so `voxels` of a block
+/// stays valid. Thread-compatible; different blocks may be written by different threads.
 class TsdfVolume {
  public:
   static constexpr std::int32_t kNoBlock = -1;
@@ -64,15 +67,19 @@ class TsdfVolume {
     return (b.array() >= 0).all() && (b.array() < grid_.blocks.array()).all();
   }
   /// kNoBlock outside the volume or where nothing was observed.
-  std::int32_t Find(const GridIndex& b) const { return InGrid(b) ? table_[TableIndex(b)] : kNoBlock; }
+  std::int32_t Find(const GridIndex& b) const {
+    return InGrid(b) ? table_[TableIndex(b)] : kNoBlock;
+  }
   /// Finds or creates; kNoBlock if the block limit is reached. `b` must be in the grid.
   std::int32_t FindOrAllocate(const GridIndex& b);
 
   std::span<TsdfVoxel, kBlockVoxels> voxels(std::int32_t block) {
-    return std::span<TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+    return std::span<TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
+                                              kBlockVoxels);
   }
   std::span<const TsdfVoxel, kBlockVoxels> voxels(std::int32_t block) const {
-    return std::span<const TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block, kBlockVoxels);
+    return std::span<const TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
+                                                    kBlockVoxels);
   }
   /// The voxel at voxel coordinates; a never observed voxel where there is no block.
   TsdfVoxel VoxelAt(const GridIndex& voxel) const;

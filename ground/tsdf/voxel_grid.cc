@@ -26,8 +26,8 @@ std::string DescribeSize(const VolumeOptions& o) {
 Status Validate(const VolumeOptions& o) {
   for (const double size : {o.size_x_m(), o.size_y_m(), o.size_z_m()}) {
     if (!(std::isfinite(size) && size > 0.0)) {
-      return InvalidArgument(
-          fmt::format("volume: size_x_m, size_y_m and size_z_m must be positive, got {}", DescribeSize(o)));
+      return InvalidArgument(fmt::format(
+          "volume: size_x_m, size_y_m and size_z_m must be positive, got {}", DescribeSize(o)));
     }
   }
   if (!(std::isfinite(o.voxel_size_m()) && o.voxel_size_m() >= 1e-4)) {
@@ -35,7 +35,8 @@ Status Validate(const VolumeOptions& o) {
         fmt::format("volume.voxel_size_m must be at least 0.0001 m, got {} m", o.voxel_size_m()));
   }
   for (const double corner : {o.min_x_m(), o.min_y_m(), o.min_z_m()}) {
-    if (!std::isfinite(corner)) return InvalidArgument("volume: min_x_m, min_y_m and min_z_m must be finite");
+    if (!std::isfinite(corner))
+      return InvalidArgument("volume: min_x_m, min_y_m and min_z_m must be finite");
   }
   const Result<VoxelGrid> grid = MakeVoxelGrid(o);
   return grid ? OkStatus() : grid.error();
@@ -45,7 +46,8 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
   const double block_m = o.voxel_size_m() * kBlockSide;
   // A tiny tolerance keeps 0.96 / 0.016 from rounding up to 61 blocks.
   const Eigen::Vector3d blocks =
-      (Eigen::Vector3d(o.size_x_m(), o.size_y_m(), o.size_z_m()) / block_m - Eigen::Vector3d::Constant(1e-6))
+      (Eigen::Vector3d(o.size_x_m(), o.size_y_m(), o.size_z_m()) / block_m -
+       Eigen::Vector3d::Constant(1e-6))
           .array()
           .ceil()
           .max(1.0);
@@ -55,7 +57,8 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
     const double fitting_voxel_m = o.voxel_size_m() * std::cbrt(table_bytes / allowed_bytes);
     return Err(ResourceExhausted(fmt::format(
         "a volume of {} needs {:.1f} GiB for its block table alone, {:.2f} GiB are allowed "
-        "(a quarter of volume.max_memory_bytes): use voxels of {:.4f} m or more, or a smaller volume",
+        "(a quarter of volume.max_memory_bytes): use voxels of {:.4f} m or more, or a smaller "
+        "volume",
         DescribeSize(o), table_bytes / kGibibyte, allowed_bytes / kGibibyte, fitting_voxel_m)));
   }
   VoxelGrid grid;
@@ -68,9 +71,11 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
 std::int32_t MaxBlocks(const VolumeOptions& options, const VoxelGrid& grid) {
   const double table_bytes = static_cast<double>(grid.block_count()) * sizeof(std::int32_t);
   const double block_bytes = kBlockVoxels * (sizeof(TsdfVoxel) + sizeof(std::uint32_t));
-  const double fitting = (static_cast<double>(options.max_memory_bytes()) - table_bytes) / block_bytes;
+  const double fitting =
+      (static_cast<double>(options.max_memory_bytes()) - table_bytes) / block_bytes;
   const double limit = std::min(static_cast<double>(grid.block_count()), fitting);
-  return static_cast<std::int32_t>(std::clamp(limit, 1.0, static_cast<double>(kMaxAddressableBlocks)));
+  return static_cast<std::int32_t>(
+      std::clamp(limit, 1.0, static_cast<double>(kMaxAddressableBlocks)));
 }
 
 }  // namespace isotherm

@@ -26,9 +26,7 @@ struct VoxelGrid {
   double block_size_m() const { return voxel_size_m * kBlockSide; }
   Eigen::Vector3d size_m() const { return blocks.cast<double>() * block_size_m(); }
   Eigen::Vector3d max_m() const { return min_m + size_m(); }
-  std::int64_t block_count() const {
-    return std::int64_t{blocks.x()} * blocks.y() * blocks.z();
-  }
+  std::int64_t block_count() const { return std::int64_t{blocks.x()} * blocks.y() * blocks.z(); }
   /// Continuous voxel coordinates of a point: voxel centres are at integers.
   Eigen::Vector3d ToVoxel(const Eigen::Vector3d& p_world) const {
     return (p_world - min_m) / voxel_size_m - Eigen::Vector3d::Constant(0.5);
@@ -38,8 +36,9 @@ struct VoxelGrid {
   }
 };
 
-/// The grid that covers the volume in `options`, sizes rounded up to whole blocks. Refuses non-finite, empty or
-/// absurd volumes with the memory they would need and what would fit (overflow-safe).
+/// The grid that covers the volume in `options`, sizes rounded up to whole blocks. Refuses
+/// non-finite, empty or absurd volumes with the memory they would need and what would fit
+/// (overflow-safe).
 Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& options);
 
 Status Validate(const VolumeOptions& options);
@@ -47,7 +46,8 @@ Status Validate(const VolumeOptions& options);
 /// Kernels address voxels with 31-bit indices.
 inline constexpr std::int32_t kMaxAddressableBlocks = 1 << 22;
 
-/// Blocks that fit into the options' memory limit beside the block table (TSDF and thermal voxels together).
+/// Blocks that fit into the options' memory limit beside the block table (TSDF and thermal voxels
+/// together).
 std::int32_t MaxBlocks(const VolumeOptions& options, const VoxelGrid& grid);
 
 }  // namespace isotherm
