@@ -208,7 +208,6 @@ Result<DemoReport> RunDemo(const DemoRequest& request, std::stop_token stop) {
     status = CountFrames(request.output / kRecordingName, &DemoAccount::arrived, report);
   if (status.ok()) status = CompareWithTruth(request, *simulation, report);
   if (!status.ok()) return Err(std::move(status));
-  report.ground_summary = LastLines(request.output / "ground.log", 20);
   return report;
 }
 

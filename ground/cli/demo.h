@@ -29,7 +29,6 @@ struct DemoReport {
   std::filesystem::path simulated_recording;
   DemoAccount depth, thermal;
   EvaluationReport evaluation;
-  std::string ground_summary;  ///< What isotherm-ground printed.
 };
 
 /// Simulates a scan (cached), lets isotherm-edge and isotherm-ground carry and reconstruct it as

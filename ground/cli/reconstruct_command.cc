@@ -88,6 +88,10 @@ Result<std::optional<RigidTransform>> InitialPose(const Arguments& arguments) {
 
 int Run(const Arguments& arguments) {
   ReconstructRequest request;
+  if (std::error_code error;
+      !arguments.config.empty() && !std::filesystem::exists(arguments.config, error)) {
+    return Fail(NotFound(arguments.config + ": there is no such configuration file"));
+  }
   const std::string problems = CollectOptions(arguments, request.options);
   if (!problems.empty()) return FailConfiguration(problems);
   const auto pose = InitialPose(arguments);

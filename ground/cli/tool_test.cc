@@ -100,8 +100,7 @@ TEST_F(ToolTest, MissingInputsAreSaidWithStatus66) {
   EXPECT_EQ(Run("inspect nowhere.mcap").status, kNoInput);
   EXPECT_EQ(Run("reconstruct nowhere.mcap -o out").status, kNoInput);
   EXPECT_FALSE(fs::exists(folder_ / "out"));
-  EXPECT_EQ(Run("reconstruct nowhere.mcap -o out --config nowhere.textproto").status,
-            kConfiguration);
+  EXPECT_EQ(Run("reconstruct nowhere.mcap -o out --config nowhere.textproto").status, kNoInput);
   fs::create_directory(folder_ / "result");
   const Outcome evaluate = Run("evaluate result --groundtruth nowhere.txt");
   EXPECT_EQ(evaluate.status, kNoInput);
