@@ -24,6 +24,10 @@ using MI = hn::Mask<DI>;
 constexpr D d;
 constexpr DI di;
 
+/// The interpolated surface can lie this many voxels along the ray beside the nearest voxels'
+/// change of sign, at grazing incidence.
+constexpr int kMaxShifts = 3;
+
 struct Point {
   VF x, y, z;
 };
@@ -229,24 +233,23 @@ void RaycastRow(const RaycastKernelArgs& a, int y, SurfaceMaps& maps) {
       const VF step = hn::Div(one, rays.length);
       Interpolated f0 = Interpolate(a, rays.At(c.before));
       Interpolated f1 = Interpolate(a, rays.At(c.after));
-      const MF late = hn::Gt(f1.value, zero);
-      const MF early = hn::AndNot(late, hn::Le(f0.value, zero));
-      if (!hn::AllFalse(d, hn::And(c.found, hn::Or(late, early)))) {
+      for (int shift = 0; shift < kMaxShifts; ++shift) {
+        const MF late = hn::And(c.found, hn::Gt(f1.value, zero));
+        const MF early = hn::AndNot(late, hn::And(c.found, hn::Le(f0.value, zero)));
+        const MF moved = hn::Or(late, early);
+        if (hn::AllFalse(d, moved)) break;
         const VF shifted = hn::IfThenElse(late, hn::Add(c.after, step), hn::Sub(c.before, step));
         const Interpolated fs = Interpolate(a, rays.At(shifted));
-        const VF before = c.before;
-        const VF before_value = f0.value;
-        const MF before_valid = f0.valid;
-        c.before = hn::IfThenElse(late, c.after, hn::IfThenElse(early, shifted, c.before));
-        f0.value = hn::IfThenElse(late, f1.value, hn::IfThenElse(early, fs.value, f0.value));
-        f0.valid =
-            hn::Or(hn::And(late, f1.valid),
-                   hn::Or(hn::And(early, fs.valid), hn::AndNot(hn::Or(late, early), f0.valid)));
-        c.after = hn::IfThenElse(late, shifted, hn::IfThenElse(early, before, c.after));
-        f1.value = hn::IfThenElse(late, fs.value, hn::IfThenElse(early, before_value, f1.value));
-        f1.valid =
-            hn::Or(hn::And(late, fs.valid),
-                   hn::Or(hn::And(early, before_valid), hn::AndNot(hn::Or(late, early), f1.valid)));
+        const auto advance = [&](VF& before, VF& after, VF next) {
+          const VF old_before = before;
+          before = hn::IfThenElse(late, after, hn::IfThenElse(early, next, before));
+          after = hn::IfThenElse(late, next, hn::IfThenElse(early, old_before, after));
+        };
+        advance(c.before, c.after, shifted);
+        advance(f0.value, f1.value, fs.value);
+        // What the bracket moves over must have been observed as well.
+        f0.valid = hn::And(f0.valid, hn::Or(fs.valid, hn::Not(moved)));
+        f1.valid = hn::And(f1.valid, hn::Or(fs.valid, hn::Not(moved)));
       }
       MF good = hn::And(c.found, hn::And(f0.valid, f1.valid));
       good = hn::And(good, hn::And(hn::Gt(f0.value, zero), hn::Le(f1.value, zero)));

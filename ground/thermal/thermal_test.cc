@@ -1,0 +1,245 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/testing/volume_shapes.h"
+#include "ground/thermal/thermal_fuser.h"
+#include "ground/tracker/analytic_views_for_test.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+using enum ConditionClass;
+
+TEST(ThermalVoxelTest, KeepsTemperatureToHalfAStepAndBothClasses) {
+  for (float celsius = -100.0F; celsius < 1500.0F; celsius += 7.3F) {
+    const ThermalVoxel voxel = ThermalVoxel::Make(celsius, kAcceptable, kGood);
+    ASSERT_TRUE(voxel.measured());
+    ASSERT_NEAR(voxel.celsius(), celsius, 0.5F * ThermalVoxel::kStepKelvin + 1e-4F);
+    ASSERT_EQ(voxel.distance_class(), kAcceptable);
+    ASSERT_EQ(voxel.angle_class(), kGood);
+  }
+  EXPECT_TRUE(std::isnan(ThermalVoxel().celsius()));
+  EXPECT_EQ(ThermalVoxel::Make(20.0F, kGood, kBad).bits & 0xFFFFU, 0x10U);
+  EXPECT_EQ(ThermalVoxel::Make(20.0F, kAcceptable, kGood).bits & 0xFFFFU, 0x21U);
+}
+
+TEST(ConditionLimitsTest, ClassesChangeAtTheLimitsOfEquation63) {
+  ThermalOptions options;
+  options.set_angle_min_deg(15);
+  const ConditionLimits limits(options);
+  EXPECT_EQ(limits.ClassifyDistance(0.299F), kBad);
+  EXPECT_EQ(limits.ClassifyDistance(0.301F), kGood);
+  EXPECT_EQ(limits.ClassifyDistance(0.599F), kGood);
+  EXPECT_EQ(limits.ClassifyDistance(0.601F), kAcceptable);
+  EXPECT_EQ(limits.ClassifyDistance(0.899F), kAcceptable);
+  EXPECT_EQ(limits.ClassifyDistance(0.901F), kBad);
+  EXPECT_EQ(limits.ClassifyDistance(std::nanf("")), kBad);
+  const auto angle = [&](double degrees) {
+    return limits.ClassifyAngle(static_cast<float>(std::cos(degrees * M_PI / 180.0)));
+  };
+  EXPECT_EQ(angle(14.0), kBad);
+  EXPECT_EQ(angle(16.0), kGood);
+  EXPECT_EQ(angle(39.0), kGood);
+  EXPECT_EQ(angle(41.0), kAcceptable);
+  EXPECT_EQ(angle(59.0), kAcceptable);
+  EXPECT_EQ(angle(61.0), kBad);
+}
+
+TEST(ReplacesMeasurementTest, FollowsAlgorithm6ForAllClassPairs) {
+  // Algorithm 6 in its own words, with smaller numbers for better conditions.
+  const auto algorithm6 = [](ConditionClass d, ConditionClass a, ConditionClass old_d,
+                             ConditionClass old_a) {
+    const bool old_valid = old_d != kBad && old_a != kBad;
+    const bool valid = d != kBad && a != kBad;
+    bool better = true;
+    if (!valid) {
+      better = false;
+    } else if (d < old_d) {
+      better = true;
+    } else if (d > old_d) {
+      better = false;
+    } else if (a < old_a) {
+      better = true;
+    } else if (a > old_a) {
+      better = false;
+    }
+    return !old_valid || better;
+  };
+  for (const auto d : {kBad, kGood, kAcceptable}) {
+    for (const auto a : {kBad, kGood, kAcceptable}) {
+      EXPECT_TRUE(ReplacesMeasurement(d, a, ThermalVoxel())) << "nothing was measured before";
+      for (const auto old_d : {kBad, kGood, kAcceptable}) {
+        for (const auto old_a : {kBad, kGood, kAcceptable}) {
+          EXPECT_EQ(ReplacesMeasurement(d, a, ThermalVoxel::Make(20.0F, old_d, old_a)),
+                    algorithm6(d, a, old_d, old_a))
+              << static_cast<int>(d) << static_cast<int>(a) << static_cast<int>(old_d)
+              << static_cast<int>(old_a);
+        }
+      }
+    }
+  }
+}
+
+CameraModel ThermalCameraModel() {
+  CameraModel camera;
+  camera.width = 191;
+  camera.height = 144;
+  camera.fx = camera.fy = 186.0;
+  camera.cx = 95.0;
+  camera.cy = 71.5;
+  return camera;
+}
+
+TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
+  CameraModel camera = ThermalCameraModel();
+  camera.k1 = -0.4;
+  camera.k2 = 0.2;
+  camera.p1 = 0.001;
+  // A temperature that is linear in the distorted pixel survives bilinear interpolation exactly.
+  const auto raw = [](double u, double v) { return 29'000.0 + 10.0 * u + 7.0 * v; };
+  Image<std::uint16_t> picture(camera.width, camera.height);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) picture.At(u, v) = static_cast<std::uint16_t>(raw(u, v));
+  }
+  ThreadPool pool(1);
+  Image<float> celsius;
+  ThermalRectifier(camera).Rectify(picture, pool, celsius);
+  for (const Eigen::Vector2d& ideal :
+       {Eigen::Vector2d(95, 71), Eigen::Vector2d(50, 40), Eigen::Vector2d(150, 110)}) {
+    const Eigen::Vector2d source =
+        ProjectNormalized(camera, Unproject(camera.WithoutDistortion(), ideal));
+    EXPECT_NEAR(celsius.At(static_cast<int>(ideal.x()), static_cast<int>(ideal.y())),
+                CentikelvinToCelsius(raw(source.x(), source.y())), 0.001);
+  }
+  picture.At(95, 71) = 0;
+  ThermalRectifier(camera).Rectify(picture, pool, celsius);
+  EXPECT_TRUE(std::isnan(celsius.At(95, 71))) << "a pixel without value stays without value";
+}
+
+/// A hot ball before a cold wall, seen by a depth camera and by a thermal camera beside it.
+class ThermalFuserTest : public ::testing::Test {
+ protected:
+  static constexpr float kHot = 100.0F;
+  static constexpr float kCold = 20.0F;
+
+  ThermalFuserTest() {
+    VolumeOptions volume;
+    for (auto set : {&VolumeOptions::set_size_x_m, &VolumeOptions::set_size_y_m,
+                     &VolumeOptions::set_size_z_m}) {
+      (volume.*set)(0.64);
+    }
+    volume.set_voxel_size_m(0.004);
+    const VoxelGrid grid = MakeVoxelGrid(volume).value();
+    const std::int32_t max_blocks = MaxBlocks(volume, grid);
+    tsdf_ = std::make_unique<TsdfVolume>(grid, 0.016, max_blocks);
+    thermal_ = std::make_unique<ThermalVolume>(max_blocks);
+    testing::FillVolume(*tsdf_, Scene);
+    Raycaster().Cast(*tsdf_, depth_camera_, T_world_depth_, 0.0F, pool_, view_);
+  }
+
+  static double Ball(const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d(0.32, 0.32, 0.40)).norm() - 0.06;
+  }
+  static double Scene(const Eigen::Vector3d& p) { return std::min(Ball(p), 0.60 - p.z()); }
+
+  ThermalFrame Picture(const RigidTransform& T_world_thermal) const {
+    ThermalFrame frame;
+    frame.valid = true;
+    frame.centikelvin = Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height);
+    for (int v = 0; v < thermal_camera_.height; ++v) {
+      for (int u = 0; u < thermal_camera_.width; ++u) {
+        const double z = testing::TraceDepth(Scene, thermal_camera_, T_world_thermal, u, v);
+        const Eigen::Vector2d xy = Unproject(thermal_camera_, {u, v});
+        const Eigen::Vector3d p = T_world_thermal * Eigen::Vector3d(xy.x() * z, xy.y() * z, z);
+        const float celsius = Ball(p) < 1e-4 ? kHot : kCold;
+        frame.centikelvin.At(u, v) =
+            static_cast<std::uint16_t>(std::lround((celsius + 273.15) * 100.0));
+      }
+    }
+    return frame;
+  }
+
+  struct Outcome {
+    int assigned = 0;
+    int hot_on_wall = 0;
+    int cold_on_ball = 0;
+  };
+  Outcome Fuse(const ThermalOptions& options) {
+    ThermalFuser fuser(options, thermal_camera_);
+    fuser.Fuse(Picture(T_world_thermal_), T_world_thermal_, view_, depth_camera_, T_world_depth_,
+               *tsdf_, pool_, *thermal_);
+    Outcome outcome;
+    for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
+      testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
+                            [&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+                              if (!voxel.measured()) return;
+                              ++outcome.assigned;
+                              const bool on_wall = p.z() > 0.58;
+                              if (on_wall && voxel.celsius() > 25.0F) ++outcome.hot_on_wall;
+                              if (!on_wall && voxel.celsius() < 25.0F) ++outcome.cold_on_ball;
+                            });
+    }
+    return outcome;
+  }
+
+  CameraModel depth_camera_ = testing::SmallDepthCamera();
+  CameraModel thermal_camera_ = ThermalCameraModel();
+  RigidTransform T_world_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
+  RigidTransform T_world_thermal_ =
+      MakeTransform({0.40, 0.36, 0.0}, Eigen::Quaterniond::Identity());
+  ThreadPool pool_{2};
+  std::unique_ptr<TsdfVolume> tsdf_;
+  std::unique_ptr<ThermalVolume> thermal_;
+  SurfaceMaps view_;
+};
+
+TEST_F(ThermalFuserTest, ParallaxFilterKeepsTheBallsTemperatureOffTheWall) {
+  const Outcome outcome = Fuse(ThermalOptions());
+  EXPECT_GT(outcome.assigned, 10'000);
+  EXPECT_LE(outcome.hot_on_wall, outcome.assigned / 1000) << "mixed pixels on the very silhouette";
+}
+
+TEST_F(ThermalFuserTest, WithoutTheFilterTheWallTakesTheBallsTemperature) {
+  ThermalOptions options;
+  options.set_parallax_filter(false);
+  EXPECT_GT(Fuse(options).hot_on_wall, 200);
+}
+
+TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
+  ThermalOptions options;
+  Fuse(options);
+  const ConditionLimits limits(options);
+  int checked = 0;
+  for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
+    testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
+                          [&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+                            if (!voxel.measured() || p.z() < 0.58) return;
+                            const Eigen::Vector3d on_wall(p.x(), p.y(), 0.60);
+                            const Eigen::Vector3d ray = on_wall - T_world_thermal_.translation();
+                            const auto distance = static_cast<float>(ray.norm());
+                            const auto cosine = static_cast<float>(ray.z() / ray.norm());
+                            constexpr float kNearLimit =
+                                0.01F;  // A voxel beside the vertex it belongs to.
+                            if (std::abs(distance - limits.distance_good_m) < kNearLimit) return;
+                            ++checked;
+                            EXPECT_EQ(voxel.distance_class(), limits.ClassifyDistance(distance));
+                            EXPECT_EQ(voxel.angle_class(), limits.ClassifyAngle(cosine));
+                          });
+  }
+  EXPECT_GT(checked, 5'000);
+}
+
+TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
+  ThermalFrame frame = Picture(T_world_thermal_);
+  frame.centikelvin.Fill(0);
+  const FusionReport report = ThermalFuser(ThermalOptions(), thermal_camera_)
+                                  .Fuse(frame, T_world_thermal_, view_, depth_camera_,
+                                        T_world_depth_, *tsdf_, pool_, *thermal_);
+  EXPECT_EQ(report.assigned, 0);
+  EXPECT_GT(report.considered, 0);
+}
+
+}  // namespace
+}  // namespace isotherm

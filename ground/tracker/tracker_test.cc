@@ -1,0 +1,248 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "common/testing/volume_shapes.h"
+#include "ground/tracker/analytic_views_for_test.h"
+#include "ground/tracker/depth_preprocessor.h"
+#include "ground/tracker/icp_tracker.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+class DepthPreprocessorTest : public ::testing::Test {
+ protected:
+  const PreparedDepth& Process(const DepthFrame& frame) {
+    preprocessor_ = std::make_unique<DepthPreprocessor>(options_, camera_);
+    return preprocessor_->Process(frame, pool_);
+  }
+  DepthFrame Flat(std::uint16_t raw) const {
+    DepthFrame frame;
+    frame.depth_raw = Image<std::uint16_t>(camera_.width, camera_.height, raw);
+    return frame;
+  }
+
+  PreprocessorOptions options_;
+  CameraModel camera_ = testing::SmallDepthCamera();
+  ThreadPool pool_{2};
+  std::unique_ptr<DepthPreprocessor> preprocessor_;
+};
+
+TEST_F(DepthPreprocessorTest, F12ValuesWithoutReturnOrOutOfRangeAreMasked) {
+  DepthFrame frame = Flat(500);
+  frame.depth_raw.At(100, 100) = kNoDepth;
+  frame.depth_raw.At(101, 100) = kNoDepthSaturated;
+  frame.depth_raw.At(102, 100) = 299;   // Nearer than 0.3 m.
+  frame.depth_raw.At(103, 100) = 4001;  // Beyond 4 m.
+  const PreparedDepth& depth = Process(frame);
+  EXPECT_EQ(depth.valid_pixels, camera_.width * camera_.height - 4);
+  for (int x = 100; x < 104; ++x) {
+    EXPECT_EQ(depth.depth_m.At(x, 100), 0.0F);
+    EXPECT_TRUE(std::isnan(depth.maps[0].vz.At(x, 100)));
+  }
+  EXPECT_FLOAT_EQ(depth.maps[0].vz.At(150, 100), 0.5F);
+}
+
+TEST_F(DepthPreprocessorTest, NormalsOfATiltedPlaneAreExactAtEachLevel) {
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.3, -0.2, -1.0).normalized();
+  const auto plane = [&](const Eigen::Vector3d& p) {
+    return normal.dot(p - Eigen::Vector3d(0.3, 0.26, 0.5));
+  };
+  options_.set_bilateral_radius_px(0);
+  const PreparedDepth& depth = Process(testing::RenderDepth(plane, camera_, testing::FirstPose()));
+  for (int level = 0; level < kPyramidLevels; ++level) {
+    const SurfaceMaps& maps = depth.maps[static_cast<std::size_t>(level)];
+    const int x = maps.width() / 3;
+    const int y = maps.height() / 2;
+    const Eigen::Vector3d n(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y));
+    EXPECT_GT(n.dot(normal), std::cos(0.3 * kRadPerDeg)) << "level " << level;
+    const Eigen::Vector3d p(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
+    EXPECT_NEAR(plane(testing::FirstPose() * p), 0.0, 2e-5) << "level " << level;
+  }
+}
+
+TEST_F(DepthPreprocessorTest, FilterSmoothsNoiseButNotAnEdge) {
+  constexpr unsigned kSeed = 7;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::normal_distribution<double> noise(0.0, 0.5);  // Millimetres, as at half a metre.
+  DepthFrame frame = Flat(0);
+  for (int y = 0; y < camera_.height; ++y) {
+    for (int x = 0; x < camera_.width; ++x) {
+      const double truth = x < 160 ? 500.0 : 560.0;
+      frame.depth_raw.At(x, y) = static_cast<std::uint16_t>(std::lround(truth + noise(random)));
+    }
+  }
+  options_.set_min_depth_m(0.1);
+  const PreparedDepth& depth = Process(frame);
+  const SurfaceMaps& maps = depth.maps[0];
+  double squared = 0.0;
+  int count = 0;
+  for (int y = 20; y < 200; ++y) {
+    for (int x = 20; x < 140; ++x, ++count) squared += std::pow(maps.vz.At(x, y) - 0.5, 2);
+    EXPECT_NEAR(maps.vz.At(155, y), 0.5, 0.003) << "left of the edge, row " << y;
+    EXPECT_NEAR(maps.vz.At(165, y), 0.56, 0.003) << "right of the edge, row " << y;
+  }
+  EXPECT_LT(std::sqrt(squared / count), 0.00025) << "half of the noise";
+}
+
+TEST_F(DepthPreprocessorTest, DepthOfADistortedCameraIsRectified) {
+  camera_.k1 = -0.2;
+  const auto wall = [](const Eigen::Vector3d& p) { return 0.5 - p.z(); };
+  const auto ball = [](const Eigen::Vector3d& p) {
+    return std::min(0.5 - p.z(), (p - Eigen::Vector3d(0.10, 0.06, 0.42)).norm() - 0.04);
+  };
+  const DepthFrame frame = testing::RenderDepth(ball, camera_, RigidTransform::Identity());
+  const PreparedDepth& depth = Process(frame);
+  // The rectified image shows the ball where an ideal camera would.
+  const CameraModel ideal = camera_.WithoutDistortion();
+  const auto centre = Project(ideal, {0.10, 0.06, 0.38});
+  EXPECT_LT(depth.depth_m.At(static_cast<int>(centre->x()), static_cast<int>(centre->y())), 0.39F);
+  EXPECT_GT(wall(Eigen::Vector3d::Zero()), 0.0);
+}
+
+class IcpTrackerTest : public ::testing::Test {
+ protected:
+  IcpTrackerTest() {
+    VolumeOptions volume_options;
+    volume_options.set_size_x_m(0.64);
+    volume_options.set_size_y_m(0.64);
+    volume_options.set_size_z_m(0.64);
+    volume_options.set_voxel_size_m(0.004);
+    grid_ = MakeVoxelGrid(volume_options).value();
+    volume_ = std::make_unique<TsdfVolume>(grid_, 0.016, MaxBlocks(volume_options, grid_));
+    testing::FillVolume(*volume_, testing::BallInCorner);
+    LookFrom(testing::FirstPose());
+  }
+  void LookFrom(const RigidTransform& pose) {
+    view_.camera = camera_;
+    view_.T_world_depth = pose;
+    Raycaster().Cast(*volume_, camera_, pose, 0.0F, pool_, view_.maps);
+  }
+  TrackingResult Track(const DepthFrame& frame, int threads = 2) {
+    ThreadPool pool(threads);
+    DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
+    return IcpTracker(options_).Track(preprocessor.Process(frame, pool), view_, grid_,
+                                      view_.T_world_depth, pool);
+  }
+  DepthFrame Render(const RigidTransform& pose) const {
+    return testing::RenderDepth(testing::BallInCorner, camera_, pose);
+  }
+  static RigidTransform Moved(const Eigen::Vector3d& translation_m, double angle_deg) {
+    const Eigen::AngleAxisd turn(angle_deg * kRadPerDeg,
+                                 Eigen::Vector3d(0.4, 1.0, -0.3).normalized());
+    return testing::FirstPose() * MakeTransform(translation_m, Eigen::Quaterniond(turn));
+  }
+
+  TrackerOptions options_;
+  CameraModel camera_ = testing::SmallDepthCamera();
+  ThreadPool pool_{2};
+  VoxelGrid grid_;
+  std::unique_ptr<TsdfVolume> volume_;
+  ModelView view_;
+};
+
+TEST_F(IcpTrackerTest, FindsAKnownMotion) {
+  constexpr double kMaxError = 0.0003;  // Metres, of 4 mm voxels.
+  constexpr double kMaxAngle = 0.05 * kRadPerDeg;
+  const RigidTransform truth = Moved({0.008, -0.005, 0.006}, 1.0);
+  const TrackingResult result = Track(Render(truth));
+  ASSERT_TRUE(result.tracked()) << ToString(result.lost) << " step_m=" << result.step_m
+                                << " step_rad=" << result.step_rad
+                                << " inliers=" << result.inlier_ratio
+                                << " residual_m=" << result.residual_m;
+  EXPECT_LT(TranslationDistance(result.T_world_depth, truth), kMaxError);
+  EXPECT_LT(RotationAngle(result.T_world_depth, truth), kMaxAngle);
+  EXPECT_GT(result.inlier_ratio, 0.8);
+  EXPECT_NEAR(result.step_m, std::sqrt(64e-6 + 25e-6 + 36e-6), kMaxError);
+}
+
+TEST_F(IcpTrackerTest, DoesNotDependOnTheNumberOfThreads) {
+  const DepthFrame frame = Render(Moved({0.004, 0.002, -0.003}, 0.5));
+  EXPECT_EQ(Track(frame, 1).T_world_depth.matrix(), Track(frame, 3).T_world_depth.matrix());
+}
+
+TEST_F(IcpTrackerTest, ACoveredCameraIsLost) {
+  DepthFrame frame;
+  frame.depth_raw = Image<std::uint16_t>(camera_.width, camera_.height, 0);
+  EXPECT_EQ(Track(frame).lost, LostReason::kTooFewPixels);
+}
+
+TEST_F(IcpTrackerTest, AnotherSceneIsLost) {
+  const auto other = [](const Eigen::Vector3d& p) {
+    return (p - Eigen::Vector3d(0.3, 0.3, 0.36)).norm() - 0.06;
+  };
+  const TrackingResult result = Track(testing::RenderDepth(other, camera_, testing::FirstPose()));
+  EXPECT_FALSE(result.tracked());
+}
+
+TEST_F(IcpTrackerTest, AJumpBeyondTheStepLimitIsLost) {
+  options_.set_max_step_m(0.005);
+  EXPECT_EQ(Track(Render(Moved({0.012, 0.0, 0.0}, 0.0))).lost, LostReason::kStep);
+}
+
+/// The sums of one pass, pixel by pixel in double precision.
+IcpSums ReferenceSums(const SurfaceMaps& current, const RigidTransform& T, const ModelView& model,
+                      const VoxelGrid& grid, const IcpLimits& limits) {
+  IcpSums sums;
+  const RigidTransform T_model_world = model.T_world_depth.inverse();
+  for (int y = 0; y < current.height(); ++y) {
+    for (int x = 0; x < current.width(); ++x) {
+      const Eigen::Vector3d p_depth(current.vx.At(x, y), current.vy.At(x, y), current.vz.At(x, y));
+      if (!(p_depth.z() > 0.0)) continue;
+      const Eigen::Vector3d p = T * p_depth;
+      if ((p.array() < grid.min_m.array()).any() || (p.array() > grid.max_m().array()).any())
+        continue;
+      ++sums.candidates;
+      const auto pixel = Project(model.camera, T_model_world * p);
+      if (!pixel) continue;
+      const int u = static_cast<int>(std::floor(pixel->x() + 0.5));
+      const int v = static_cast<int>(std::floor(pixel->y() + 0.5));
+      if (!model.maps.vx.Contains(u, v)) continue;
+      const Eigen::Vector3d q(model.maps.vx.At(u, v), model.maps.vy.At(u, v),
+                              model.maps.vz.At(u, v));
+      const Eigen::Vector3d n(model.maps.nx.At(u, v), model.maps.ny.At(u, v),
+                              model.maps.nz.At(u, v));
+      const Eigen::Vector3d n_current(current.nx.At(x, y), current.ny.At(x, y),
+                                      current.nz.At(x, y));
+      if (!((p - q).norm() < limits.max_distance_m)) continue;
+      if (!(n.dot(T.linear() * n_current) > limits.min_normal_cosine)) continue;
+      ++sums.inliers;
+      Eigen::Matrix<double, 6, 1> J;
+      J << n, (p - T.translation()).cross(n);
+      const double weight = std::pow(0.5 / p_depth.z(), 4);
+      const double residual = n.dot(p - q);
+      sums.H += weight * J * J.transpose();
+      sums.g += weight * J * residual;
+      sums.squared_residuals_m2 += residual * residual;
+    }
+  }
+  return sums;
+}
+
+TEST_F(IcpTrackerTest, KernelMatchesTheScalarReference) {
+  const RigidTransform guess = Moved({0.003, 0.004, -0.002}, 0.7);
+  DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
+  const PreparedDepth& depth =
+      preprocessor.Process(Render(Moved({0.006, -0.002, 0.004}, 0.2)), pool_);
+  const IcpLimits limits{0.03F, 0.9F};
+  for (const SurfaceMaps& maps : depth.maps) {
+    const IcpSums fast = AccumulateIcp(maps, guess, view_, grid_, limits, pool_);
+    const IcpSums slow = ReferenceSums(maps, guess, view_, grid_, limits);
+    ASSERT_GT(slow.inliers, 500);
+    // Rounding decides a few pixels on borders differently.
+    EXPECT_NEAR(static_cast<double>(fast.inliers), static_cast<double>(slow.inliers),
+                0.002 * static_cast<double>(slow.inliers) + 2.0);
+    EXPECT_NEAR(static_cast<double>(fast.candidates), static_cast<double>(slow.candidates), 2.0);
+    EXPECT_LT((fast.H - slow.H).norm(), 0.003 * slow.H.norm());
+    EXPECT_LT((fast.g - slow.g).norm(), 0.01 * slow.g.norm());
+  }
+}
+
+}  // namespace
+}  // namespace isotherm

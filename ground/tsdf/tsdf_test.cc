@@ -1,0 +1,313 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "common/testing/volume_shapes.h"
+#include "ground/tracker/analytic_views_for_test.h"
+#include "ground/tracker/depth_preprocessor.h"
+#include "ground/tsdf/raycaster.h"
+#include "ground/tsdf/tsdf_integrator.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kVoxel = 0.004;
+constexpr double kTruncation = 0.016;
+
+VolumeOptions SmallVolume() {
+  VolumeOptions options;
+  options.set_size_x_m(0.64);
+  options.set_size_y_m(0.64);
+  options.set_size_z_m(0.64);
+  options.set_voxel_size_m(kVoxel);
+  return options;
+}
+
+TsdfVolume MakeVolume() {
+  const VoxelGrid grid = MakeVoxelGrid(SmallVolume()).value();
+  return {grid, kTruncation, MaxBlocks(SmallVolume(), grid)};
+}
+
+TEST(VoxelGridTest, CoversTheVolumeWithWholeBlocks) {
+  VolumeOptions options;
+  EXPECT_EQ(MakeVoxelGrid(options)->blocks, GridIndex(60, 60, 60));  // 0.96 m / 16 mm.
+  options.set_size_x_m(0.961);
+  EXPECT_EQ(MakeVoxelGrid(options)->blocks.x(), 61);
+}
+
+TEST(VoxelGridTest, F71HugeVolumeIsRefusedWithWhatWouldFit) {
+  VolumeOptions options;
+  for (const double size_m : {100.0, 1e9, 1e300}) {
+    options.set_size_x_m(size_m);
+    options.set_size_y_m(size_m);
+    options.set_size_z_m(size_m);
+    options.set_voxel_size_m(0.001);
+    const auto grid = MakeVoxelGrid(options);
+    ASSERT_FALSE(grid.has_value()) << size_m;
+    EXPECT_EQ(grid.error().code(), StatusCode::kResourceExhausted);
+    EXPECT_NE(grid.error().message().find("GiB"), std::string::npos);
+    EXPECT_NE(grid.error().message().find("use voxels of"), std::string::npos);
+  }
+}
+
+TEST(VoxelGridTest, NonFiniteAndEmptyVolumesAreRefused) {
+  for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    VolumeOptions options;
+    options.set_size_y_m(bad);
+    EXPECT_FALSE(Validate(options).ok()) << bad;
+    options = VolumeOptions();
+    options.set_voxel_size_m(bad);
+    EXPECT_FALSE(Validate(options).ok()) << bad;
+  }
+}
+
+TEST(TsdfVoxelTest, HoldsTheWeightedMeanOfItsObservations) {
+  TsdfVoxel voxel;
+  EXPECT_FALSE(voxel.observed());
+  voxel.Update(0.5F, 1.0F, 100.0F);
+  voxel.Update(-0.25F, 3.0F, 100.0F);
+  EXPECT_NEAR(voxel.tsdf(), (0.5 - 0.75) / 4.0, 2.0 / TsdfVoxel::kTsdfScale);
+  EXPECT_FLOAT_EQ(voxel.weight(), 4.0F);
+  for (int i = 0; i < 200; ++i) voxel.Update(1.0F, 1.0F, 100.0F);
+  EXPECT_FLOAT_EQ(voxel.weight(), 100.0F);
+}
+
+TEST(TsdfVolumeTest, RefusesAndCountsBlocksBeyondItsLimit) {
+  const VoxelGrid grid = MakeVoxelGrid(SmallVolume()).value();
+  TsdfVolume volume(grid, kTruncation, 2);
+  EXPECT_EQ(volume.FindOrAllocate({0, 0, 0}), 0);
+  EXPECT_EQ(volume.FindOrAllocate({1, 0, 0}), 1);
+  EXPECT_EQ(volume.FindOrAllocate({0, 0, 0}), 0);
+  EXPECT_EQ(volume.FindOrAllocate({2, 0, 0}), TsdfVolume::kNoBlock);
+  EXPECT_EQ(volume.refused_blocks(), 1U);
+  EXPECT_EQ(volume.Find({-1, 0, 0}), TsdfVolume::kNoBlock);
+}
+
+class RaycasterTest : public ::testing::Test {
+ protected:
+  RaycasterTest() : volume_(MakeVolume()) { testing::FillSphere(volume_, kCentre, kRadius); }
+  SurfaceMaps Cast(int threads) {
+    ThreadPool pool(threads);
+    SurfaceMaps maps;
+    Raycaster().Cast(volume_, camera_, pose_, 0.0F, pool, maps);
+    return maps;
+  }
+
+  const Eigen::Vector3d kCentre{0.33, 0.31, 0.40};
+  static constexpr double kRadius = 0.15;
+  TsdfVolume volume_;
+  CameraModel camera_ = testing::SmallDepthCamera();
+  RigidTransform pose_ =
+      MakeTransform({0.28, 0.33, -0.1}, Eigen::Quaterniond(0.995, 0.02, 0.08, -0.03));
+};
+
+TEST_F(RaycasterTest, MeetsTheSphereWhereTheClosedFormDoes) {
+  constexpr double kMaxError = 0.1 * kVoxel;  // Trilinear interpolation of a curved distance.
+  constexpr double kMinCosine = 0.9986;       // 3 degrees.
+  constexpr double kGrazing = 0.35;           // Cosine below which a ray only scrapes the sphere.
+  const SurfaceMaps maps = Cast(2);
+  int hits = 0;
+  for (int v = 0; v < camera_.height; ++v) {
+    for (int u = 0; u < camera_.width; ++u) {
+      const Eigen::Vector2d xy = Unproject(camera_, {u, v});
+      const Eigen::Vector3d ray =
+          (pose_.linear() * Eigen::Vector3d(xy.x(), xy.y(), 1.0)).normalized();
+      const Eigen::Vector3d to_centre = kCentre - pose_.translation();
+      const double along = to_centre.dot(ray);
+      const double squared = kRadius * kRadius - (to_centre.squaredNorm() - along * along);
+      const Eigen::Vector3d p(maps.vx.At(u, v), maps.vy.At(u, v), maps.vz.At(u, v));
+      if (squared < 0.0) {
+        // A ray that misses by less than a voxel may meet the interpolated surface.
+        if (squared < -2.0 * kRadius * kVoxel) {
+          EXPECT_TRUE(std::isnan(p.x())) << u << " " << v;
+        }
+        continue;
+      }
+      const Eigen::Vector3d truth = pose_.translation() + ray * (along - std::sqrt(squared));
+      const Eigen::Vector3d normal = (truth - kCentre) / kRadius;
+      if (-normal.dot(ray) < kGrazing) continue;
+      ++hits;
+      ASSERT_NEAR((p - truth).norm(), 0.0, kMaxError / -normal.dot(ray)) << u << " " << v;
+      const Eigen::Vector3d n(maps.nx.At(u, v), maps.ny.At(u, v), maps.nz.At(u, v));
+      ASSERT_GT(n.dot(normal), kMinCosine) << u << " " << v;
+    }
+  }
+  EXPECT_GT(hits, 10'000);
+}
+
+TEST_F(RaycasterTest, GivesTheSameBitsForAnyNumberOfThreads) {
+  const SurfaceMaps one = Cast(1);
+  const SurfaceMaps three = Cast(3);
+  EXPECT_EQ(std::memcmp(one.vx.data(), three.vx.data(), one.vx.size() * sizeof(float)), 0);
+  EXPECT_EQ(std::memcmp(one.nz.data(), three.nz.data(), one.nz.size() * sizeof(float)), 0);
+}
+
+TEST_F(RaycasterTest, AnEmptyVolumeShowsNothing) {
+  TsdfVolume empty = MakeVolume();
+  ThreadPool pool(1);
+  SurfaceMaps maps;
+  Raycaster().Cast(empty, camera_, pose_, 0.0F, pool, maps);
+  for (const float x : maps.vx.pixels()) ASSERT_TRUE(std::isnan(x));
+}
+
+TEST_F(RaycasterTest, ASurfaceSeenFromBehindIsNone) {
+  pose_ = MakeTransform(kCentre, Eigen::Quaterniond::Identity());  // Inside the sphere.
+  const SurfaceMaps maps = Cast(1);
+  for (const float x : maps.vx.pixels()) ASSERT_TRUE(std::isnan(x));
+}
+
+class TsdfIntegratorTest : public ::testing::Test {
+ protected:
+  TsdfIntegratorTest() : volume_(MakeVolume()) { preprocessing_.set_bilateral_radius_px(0); }
+  void Integrate(const DepthFrame& frame, const RigidTransform& pose) {
+    DepthPreprocessor preprocessor(preprocessing_, camera_);
+    TsdfIntegrator(options_).Integrate(preprocessor.Process(frame, pool_), pose, pool_, volume_);
+  }
+
+  PreprocessorOptions preprocessing_;
+  TsdfOptions options_;
+  CameraModel camera_ = testing::SmallDepthCamera();
+  ThreadPool pool_{2};
+  TsdfVolume volume_;
+};
+
+TEST_F(TsdfIntegratorTest, DistancesToATiltedPlaneDoNotDependOnTheViewingRay) {
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.4, -0.2, -1.0).normalized();
+  const Eigen::Vector3d point(0.32, 0.32, 0.45);
+  const auto plane = [&](const Eigen::Vector3d& p) { return normal.dot(p - point); };
+  Integrate(testing::RenderDepth(plane, camera_, testing::FirstPose()), testing::FirstPose());
+  constexpr double kTolerance = 0.0001;  // 10 um depth steps over normals of +-3 pixels, metres.
+  int checked = 0;
+  for (std::int32_t block = 0; block < volume_.block_count(); ++block) {
+    testing::ForEachVoxel(volume_.voxels(block), volume_.grid(), volume_.block_coordinates(block),
+                          [&](const TsdfVoxel& voxel, const Eigen::Vector3d& p) {
+                            if (!voxel.observed() || std::abs(voxel.tsdf()) > 0.9F) return;
+                            const Eigen::Vector3d c = testing::FirstPose().inverse() * p;
+                            const auto pixel = Project(camera_, c);
+                            constexpr double kBorder = 8.0;  // No normals there.
+                            if (!pixel || pixel->x() < kBorder || pixel->y() < kBorder ||
+                                pixel->x() > camera_.width - kBorder ||
+                                pixel->y() > camera_.height - kBorder) {
+                              return;
+                            }
+                            ++checked;
+                            EXPECT_NEAR(voxel.tsdf() * kTruncation, plane(p), kTolerance);
+                          });
+  }
+  EXPECT_GT(checked, 10'000);
+}
+
+TEST_F(TsdfIntegratorTest, F12PixelsWithoutReturnLeaveNoTrace) {
+  DepthFrame frame;
+  frame.depth_raw = Image<std::uint16_t>(camera_.width, camera_.height, kNoDepthSaturated);
+  for (int x = 0; x < camera_.width; ++x) frame.depth_raw.At(x, 10) = kNoDepth;
+  Integrate(frame, testing::FirstPose());
+  EXPECT_EQ(volume_.block_count(), 0);
+}
+
+TEST_F(TsdfIntegratorTest, SeeingThroughAStrayVoxelClearsIt) {
+  const auto wall = [](const Eigen::Vector3d& p) { return 0.6 - p.z(); };
+  const std::int32_t block = volume_.FindOrAllocate({10, 10, 10});  // In the air before the wall.
+  for (TsdfVoxel& voxel : volume_.voxels(block)) voxel.Update(-0.2F, 1.0F, 100.0F);
+  const DepthFrame frame = testing::RenderDepth(wall, camera_, testing::FirstPose());
+  for (int i = 0; i < 20; ++i) Integrate(frame, testing::FirstPose());
+  for (const TsdfVoxel& voxel : volume_.voxels(block)) EXPECT_GT(voxel.tsdf(), 0.5F);
+}
+
+/// What the kernel must do, one voxel at a time and in double precision.
+void ReferenceUpdate(TsdfVoxel& voxel, const Eigen::Vector3d& p, const CameraModel& camera,
+                     const std::vector<DepthSample>& samples, double truncation, float max_weight) {
+  if (p.z() <= 0.0) return;
+  const double u = camera.fx * p.x() / p.z() + camera.cx + 0.5;
+  const double v = camera.fy * p.y() / p.z() + camera.cy + 0.5;
+  if (u < 0.0 || v < 0.0 || u >= camera.width || v >= camera.height) return;
+  const DepthSample& s =
+      samples[static_cast<std::size_t>(static_cast<int>(v) * camera.width + static_cast<int>(u))];
+  if (s.weight <= 0.0F) return;
+  const double along_ray = s.depth_m - p.z();
+  const double distance = s.nx * p.x() + s.ny * p.y() + s.nz * p.z() - s.offset;
+  if (along_ray < -2.0 * truncation) return;
+  if (along_ray <= 2.0 * truncation && distance < -truncation) return;
+  const double tsdf = along_ray > 2.0 * truncation ? 1.0 : std::min(1.0, distance / truncation);
+  voxel.Update(static_cast<float>(tsdf), s.weight, max_weight);
+}
+
+TEST(IntegrationKernelTest, MatchesTheScalarReferenceOnRandomSamples) {
+  constexpr unsigned kSeed = 20261121;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
+  CameraModel camera = testing::SmallDepthCamera();
+  std::vector<DepthSample> samples(static_cast<std::size_t>(camera.width * camera.height));
+  for (DepthSample& s : samples) {
+    const Eigen::Vector3f n = Eigen::Vector3f(unit(random), unit(random), -1.5F).normalized();
+    s = {n.x(),
+         n.y(),
+         n.z(),
+         -0.5F * std::abs(n.z()) + 0.01F * unit(random),
+         0.5F + 0.05F * unit(random),
+         unit(random)};
+  }
+  IntegrationKernelArgs args{};
+  args.samples = &samples[0].nx;
+  args.width = camera.width;
+  args.height = camera.height;
+  args.fx = static_cast<float>(camera.fx);
+  args.fy = static_cast<float>(camera.fy);
+  args.cx = static_cast<float>(camera.cx);
+  args.cy = static_cast<float>(camera.cy);
+  for (int i = 0; i < 3; ++i) args.axes[4 * i] = static_cast<float>(kVoxel);
+  args.truncation_m = static_cast<float>(kTruncation);
+  args.max_weight = 3.0F;
+  int updated = 0;
+  int different = 0;
+  for (int round = 0; round < 200; ++round) {
+    std::array<TsdfVoxel, kBlockVoxels> fast{};
+    std::array<TsdfVoxel, kBlockVoxels> slow{};
+    const Eigen::Vector3f first(0.3F * unit(random), 0.3F * unit(random),
+                                0.5F + 0.1F * unit(random));
+    for (int pass = 0; pass < 4; ++pass) {
+      IntegrateBlock(args, first.data(), &fast.front().bits);
+      for (int i = 0; i < kBlockVoxels; ++i) {
+        const Eigen::Vector3d p =
+            first.cast<double>() + kVoxel * Eigen::Vector3d(i & 7, (i >> 3) & 7, i >> 6);
+        ReferenceUpdate(slow[static_cast<std::size_t>(i)], p, camera, samples, kTruncation,
+                        args.max_weight);
+      }
+    }
+    for (std::size_t i = 0; i < fast.size(); ++i) {
+      updated += slow[i].observed() ? 1 : 0;
+      // Single precision may choose the neighbouring pixel or side of a threshold, rarely.
+      const bool same = fast[i].observed() == slow[i].observed() &&
+                        std::abs(fast[i].tsdf() - slow[i].tsdf()) < 1e-3F &&
+                        std::abs(fast[i].weight() - slow[i].weight()) < 0.05F;
+      different += same ? 0 : 1;
+    }
+  }
+  EXPECT_GT(updated, 10'000);
+  EXPECT_LT(different, updated / 500);
+}
+
+TEST(IntegrationGateTest, AcceptsMotionWithinBoundsAfterTheFirstFrames) {
+  TsdfOptions options;
+  options.set_bootstrap_frames(1);
+  IntegrationGate gate(options);
+  const auto at = [](double x_m, double angle_deg = 0.0) {
+    return MakeTransform({x_m, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(
+                                          angle_deg * M_PI / 180.0, Eigen::Vector3d::UnitY())));
+  };
+  EXPECT_TRUE(gate.Accepts(std::nullopt, at(0.0)));
+  EXPECT_FALSE(gate.Accepts(at(0.0), at(0.0005))) << "less than 1 mm and 0.06 degrees";
+  EXPECT_TRUE(gate.Accepts(at(0.0005), at(0.0011)));
+  EXPECT_FALSE(gate.Accepts(at(0.0011), at(0.0121))) << "more than 10 mm since the frame before";
+  EXPECT_TRUE(gate.Accepts(at(0.0121), at(0.0141)));
+  EXPECT_FALSE(gate.Accepts(at(0.0141), at(0.0151, 0.7))) << "more than 0.6 degrees";
+  EXPECT_TRUE(gate.Accepts(at(0.0151, 0.7), at(0.0151, 0.8)));
+  EXPECT_FALSE(gate.Accepts(std::nullopt, at(0.03))) << "motion unknown after a loss";
+  EXPECT_EQ(gate.accepted(), 4U);
+}
+
+}  // namespace
+}  // namespace isotherm
