@@ -121,6 +121,12 @@ SurfaceMaps GroundPipeline::CastFullView() {
 }
 
 DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
+  const DepthReport report = TrackAndIntegrate(frame);
+  if (report.tracked) FuseWaitingThermal(frame.header.capture_time);
+  return report;
+}
+
+DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   ++counts_.depth_in;
   DepthReport report;
   if (frame.depth_raw.width() != rig_.depth->width ||
@@ -159,7 +165,6 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   before_last_ = last_;
   last_ = StampedPose{time, T_world_depth};
   trajectory_.push_back(*last_);
-  FuseWaitingThermal(time);
   return report;
 }
 

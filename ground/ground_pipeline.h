@@ -79,6 +79,8 @@ class GroundPipeline {
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
                  std::optional<RigidTransform> initial_pose);
 
+  /// All that a depth frame does to the geometric model; the stage "depth_frame".
+  DepthReport TrackAndIntegrate(const DepthFrame& frame);
   RigidTransform InitialPose(const PreparedDepth& depth) const;
   TrackingResult Track(const PreparedDepth& depth, CaptureTime time);
   RigidTransform Predict(CaptureTime time) const;
