@@ -1,5 +1,5 @@
-// One row of rays through the sparse volume, in SIMD lanes along x. Compiled once per instruction
-// set.
+// A tile of rays through the sparse volume, in SIMD lanes of 4 x n pixels. Compiled once per
+// instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tsdf/raycast_kernel.cc"
 #include <hwy/foreach_target.h>  // Must come before highway.h.
@@ -19,52 +19,45 @@ using DI = hn::RebindToSigned<D>;
 using VF = hn::Vec<D>;
 using VI = hn::Vec<DI>;
 using MF = hn::Mask<D>;
-using MI = hn::Mask<DI>;
 
 constexpr D d;
 constexpr DI di;
 
-/// The interpolated surface can lie this many voxels along the ray beside the nearest voxels'
-/// change of sign, at grazing incidence.
-constexpr int kMaxShifts = 3;
+/// Lanes are 4 pixels wide (1 where there is but one lane) and as many rows high as fit.
+constexpr int kLaneColumnsLog2 = hn::MaxLanes(d) >= 4 ? 2 : 0;
+constexpr int kLaneColumns = 1 << kLaneColumnsLog2;
+
+/// Newton steps from the change of sign to the surface. One or two suffice; at grazing incidence
+/// the interpolated surface can lie a few voxels along the ray beside the nearest voxels' change
+/// of sign.
+constexpr int kMaxRefinements = 4;
+constexpr float kMaxStepVox = 3.0F;
+/// A last step below this leaves an error of second order; above `kDiverged` there is no surface.
+constexpr float kConvergedVox = 0.1F;
+constexpr float kDivergedVox = 0.5F;
 
 struct Point {
   VF x, y, z;
 };
+
+HWY_INLINE VF Dot(const Point& a, const Point& b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
 
 /// tsdf in [-1, 1] from a voxel word; the scale is TsdfVoxel::kTsdfScale.
 HWY_INLINE VF DecodeTsdf(VI word) {
   return hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(word)), hn::Set(d, 1.0F / 32767.0F));
 }
 
-struct Lookup {
-  VI index;  ///< First voxel of the block; 0 where there is none.
-  MI found;
-};
-
-HWY_INLINE Lookup FindBlock(const RaycastKernelArgs& a, VI bx, VI by, VI bz) {
-  const VI minus_one = hn::Set(di, -1);
-  MI inside = hn::And(hn::And(hn::Gt(bx, minus_one), hn::Lt(bx, hn::Set(di, a.blocks_x))),
-                      hn::And(hn::Gt(by, minus_one), hn::Lt(by, hn::Set(di, a.blocks_y))));
-  inside = hn::And(inside, hn::And(hn::Gt(bz, minus_one), hn::Lt(bz, hn::Set(di, a.blocks_z))));
-  const VI entry = hn::Add(
-      bx, hn::Mul(hn::Set(di, a.blocks_x), hn::Add(by, hn::Mul(hn::Set(di, a.blocks_y), bz))));
-  const VI block = hn::GatherIndex(di, a.table, hn::IfThenElseZero(inside, entry));
-  const MI found = hn::And(inside, hn::Gt(block, minus_one));
-  return {hn::IfThenElseZero(found, hn::ShiftLeft<9>(block)), found};
-}
-
-HWY_INLINE VI LocalIndex(VI x, VI y, VI z) {
-  const VI seven = hn::Set(di, 7);
-  return hn::Or(hn::And(x, seven),
-                hn::Or(hn::ShiftLeft<3>(hn::And(y, seven)), hn::ShiftLeft<6>(hn::And(z, seven))));
-}
-
-HWY_INLINE MI Observed(const RaycastKernelArgs& a, VI word) {
+HWY_INLINE hn::Mask<DI> Observed(const RaycastKernelArgs& a, VI word) {
   return hn::Gt(hn::And(word, hn::Set(di, 0xFFFF)), hn::Set(di, a.min_weight_code - 1));
 }
 
-HWY_INLINE VI FloorToInt(VF v) { return hn::ConvertTo(di, hn::Floor(v)); }
+/// Whole voxels of a coordinate, kept within the table: lanes that are done, or whose ray misses
+/// the volume, may be anywhere.
+HWY_INLINE VI ToVoxel(VF coordinate, std::int32_t last) {
+  return hn::Min(hn::Max(hn::ConvertTo(di, coordinate), hn::Zero(di)), hn::Set(di, last));
+}
 
 struct Interpolated {
   VF value;
@@ -74,43 +67,73 @@ struct Interpolated {
 
 /// Trilinear interpolation of the distance and its gradient within the cell.
 HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Point& p) {
-  const VF lx = hn::Floor(p.x);
-  const VF ly = hn::Floor(p.y);
-  const VF lz = hn::Floor(p.z);
-  const VI x0 = hn::ConvertTo(di, lx);
-  const VI y0 = hn::ConvertTo(di, ly);
-  const VI z0 = hn::ConvertTo(di, lz);
   const VI one = hn::Set(di, 1);
-  MI valid = hn::Eq(one, one);
+  const VI seven = hn::Set(di, 7);
+  // Per axis, for the lower and the upper voxel: share of the table index and of the index in the
+  // block. Positions on rays are positive, so truncation is the floor.
+  VI table_part[3][2], local_part[3][2];
+  VF fraction[3];
+  bool crosses[3];
+  const VF position[3] = {p.x, p.y, p.z};
+  const VI stride[3] = {one, hn::Set(di, a.stride_y), hn::Set(di, a.stride_z)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const VI lower = ToVoxel(position[axis], a.last[axis] - 1);
+    fraction[axis] = hn::Sub(position[axis], hn::ConvertTo(d, lower));
+    const VI upper = hn::Add(lower, one);
+    const VI lower_block = hn::ShiftRight<3>(lower);
+    const VI upper_block = hn::ShiftRight<3>(upper);
+    crosses[axis] = !hn::AllTrue(di, hn::Eq(lower_block, upper_block));
+    table_part[axis][0] = axis == 0 ? lower_block : hn::Mul(lower_block, stride[axis]);
+    table_part[axis][1] =
+        crosses[axis] ? hn::IfThenElse(hn::Eq(lower_block, upper_block), table_part[axis][0],
+                                       hn::Add(table_part[axis][0], stride[axis]))
+                      : table_part[axis][0];
+    const VI lower_local = hn::And(lower, seven);
+    const VI upper_local = hn::And(upper, seven);
+    local_part[axis][0] = axis == 0   ? lower_local
+                          : axis == 1 ? hn::ShiftLeft<3>(lower_local)
+                                      : hn::ShiftLeft<6>(lower_local);
+    local_part[axis][1] = axis == 0   ? upper_local
+                          : axis == 1 ? hn::ShiftLeft<3>(upper_local)
+                                      : hn::ShiftLeft<6>(upper_local);
+  }
+  VI block[8];
   VF corner[8];
+  VI least_weight = hn::Set(di, 0xFFFF);
   for (int k = 0; k < 8; ++k) {
-    const VI x = (k & 1) != 0 ? hn::Add(x0, one) : x0;
-    const VI y = (k & 2) != 0 ? hn::Add(y0, one) : y0;
-    const VI z = (k & 4) != 0 ? hn::Add(z0, one) : z0;
-    const Lookup block =
-        FindBlock(a, hn::ShiftRight<3>(x), hn::ShiftRight<3>(y), hn::ShiftRight<3>(z));
-    const VI word = hn::GatherIndex(di, a.voxels, hn::Add(block.index, LocalIndex(x, y, z)));
-    valid = hn::And(valid, hn::And(block.found, Observed(a, word)));
+    // Where no lane crosses a border of blocks, both corners lie in the same block.
+    if ((k & 1) != 0 && !crosses[0]) {
+      block[k] = block[k ^ 1];
+    } else if ((k & 2) != 0 && !crosses[1]) {
+      block[k] = block[k ^ 2];
+    } else if ((k & 4) != 0 && !crosses[2]) {
+      block[k] = block[k ^ 4];
+    } else {
+      const VI entry = hn::Add(table_part[0][k & 1],
+                               hn::Add(table_part[1][(k >> 1) & 1], table_part[2][k >> 2]));
+      block[k] = hn::ShiftLeft<9>(hn::GatherIndex(di, a.table, entry));
+    }
+    const VI local =
+        hn::Or(local_part[0][k & 1], hn::Or(local_part[1][(k >> 1) & 1], local_part[2][k >> 2]));
+    const VI word = hn::GatherIndex(di, a.voxels, hn::Add(block[k], local));
+    least_weight = hn::Min(least_weight, hn::And(word, hn::Set(di, 0xFFFF)));
     corner[k] = DecodeTsdf(word);
   }
-  const VF fx = hn::Sub(p.x, lx);
-  const VF fy = hn::Sub(p.y, ly);
-  const VF fz = hn::Sub(p.z, lz);
   const auto lerp = [](VF from, VF to, VF f) { return hn::MulAdd(f, hn::Sub(to, from), from); };
-  const VF x00 = lerp(corner[0], corner[1], fx);
-  const VF x10 = lerp(corner[2], corner[3], fx);
-  const VF x01 = lerp(corner[4], corner[5], fx);
-  const VF x11 = lerp(corner[6], corner[7], fx);
-  const VF near = lerp(x00, x10, fy);
-  const VF far = lerp(x01, x11, fy);
+  const VF x00 = lerp(corner[0], corner[1], fraction[0]);
+  const VF x10 = lerp(corner[2], corner[3], fraction[0]);
+  const VF x01 = lerp(corner[4], corner[5], fraction[0]);
+  const VF x11 = lerp(corner[6], corner[7], fraction[0]);
+  const VF near = lerp(x00, x10, fraction[1]);
+  const VF far = lerp(x01, x11, fraction[1]);
   Interpolated result;
-  result.value = lerp(near, far, fz);
-  result.gradient.x =
-      lerp(lerp(hn::Sub(corner[1], corner[0]), hn::Sub(corner[3], corner[2]), fy),
-           lerp(hn::Sub(corner[5], corner[4]), hn::Sub(corner[7], corner[6]), fy), fz);
-  result.gradient.y = lerp(hn::Sub(x10, x00), hn::Sub(x11, x01), fz);
+  result.value = lerp(near, far, fraction[2]);
+  result.gradient.x = lerp(
+      lerp(hn::Sub(corner[1], corner[0]), hn::Sub(corner[3], corner[2]), fraction[1]),
+      lerp(hn::Sub(corner[5], corner[4]), hn::Sub(corner[7], corner[6]), fraction[1]), fraction[2]);
+  result.gradient.y = lerp(hn::Sub(x10, x00), hn::Sub(x11, x01), fraction[2]);
   result.gradient.z = hn::Sub(far, near);
-  result.valid = hn::RebindMask(d, valid);
+  result.valid = hn::RebindMask(d, hn::Gt(least_weight, hn::Set(di, a.min_weight_code - 1)));
   return result;
 }
 
@@ -128,50 +151,67 @@ struct Rays {
   }
 };
 
+/// Never 0, so that a ray parallel to an axis leaves through it infinitely late instead of at NaN.
+HWY_INLINE VF NotZero(VF direction) {
+  const VF least = hn::Set(d, 1e-8F);
+  return hn::IfThenElse(hn::Lt(hn::Abs(direction), least), least, direction);
+}
+
+/// Keeps [start, end] inside the volume along one axis.
+HWY_INLINE void ClipToAxis(float low, float high, float origin, VF inverse, VF& start, VF& end) {
+  const VF t0 = hn::Mul(hn::Set(d, low - origin), inverse);
+  const VF t1 = hn::Mul(hn::Set(d, high - origin), inverse);
+  start = hn::Max(start, hn::Min(t0, t1));
+  end = hn::Min(end, hn::Max(t0, t1));
+}
+
 /// Depth at which the ray leaves the block of `b` along one axis.
-HWY_INLINE VF AxisExit(VI b, VF origin, VF direction, VF inverse) {
-  const VF low = hn::Sub(hn::ConvertTo(d, hn::ShiftLeft<3>(b)), hn::Set(d, 0.5F));
-  const VF high = hn::Add(low, hn::Set(d, 8.0F));
-  const VF face = hn::IfThenElse(hn::Ge(direction, hn::Zero(d)), high, low);
-  const VF exit = hn::Mul(hn::Sub(face, origin), inverse);
-  // A ray parallel to the axis never leaves through it.
-  const VF never = hn::Set(d, 1e30F);
-  return hn::IfThenElse(hn::Lt(hn::Abs(direction), hn::Set(d, 1e-8F)), never, exit);
+HWY_INLINE VF AxisExit(VI b, float origin, VF direction, VF inverse) {
+  const VF low = hn::Sub(hn::ConvertTo(d, hn::ShiftLeft<3>(b)), hn::Set(d, 0.5F + origin));
+  const VF face =
+      hn::IfThenElse(hn::Ge(direction, hn::Zero(d)), hn::Add(low, hn::Set(d, 8.0F)), low);
+  return hn::Mul(face, inverse);
 }
 
 struct Crossing {
-  VF before, after;  ///< Depths around the zero crossing.
+  VF depth;  ///< Of the zero crossing, between the nearest voxels' distances.
   MF found;
 };
 
 /// Marches until the nearest voxel's distance changes from positive to negative.
 HWY_INLINE Crossing March(const RaycastKernelArgs& a, const Rays& rays, VF start, VF end) {
   const VF zero = hn::Zero(d);
+  const VF half = hn::Set(d, 0.5F);
   const VF voxel_step = hn::Div(hn::Set(d, 1.0F), rays.length);
   const VF safe_step = hn::Mul(voxel_step, hn::Set(d, 0.8F * a.truncation_vox));
+  const VI seven = hn::Set(di, 7);
   VF depth = start;
   VF previous_depth = zero;
   VF previous = zero;  // Not positive: no crossing can start here.
-  Crossing crossing{zero, zero, hn::MaskFromVec(zero)};
+  Crossing crossing{zero, hn::MaskFromVec(zero)};
   MF active = hn::Lt(start, end);
   while (!hn::AllFalse(d, active)) {
     const Point p = rays.At(depth);
-    const VF half = hn::Set(d, 0.5F);
-    const VI x = FloorToInt(hn::Add(p.x, half));
-    const VI y = FloorToInt(hn::Add(p.y, half));
-    const VI z = FloorToInt(hn::Add(p.z, half));
+    const VI x = ToVoxel(hn::Add(p.x, half), a.last[0]);
+    const VI y = ToVoxel(hn::Add(p.y, half), a.last[1]);
+    const VI z = ToVoxel(hn::Add(p.z, half), a.last[2]);
     const VI bx = hn::ShiftRight<3>(x);
     const VI by = hn::ShiftRight<3>(y);
     const VI bz = hn::ShiftRight<3>(z);
-    const Lookup block = FindBlock(a, bx, by, bz);
-    const VI word = hn::GatherIndex(di, a.voxels, hn::Add(block.index, LocalIndex(x, y, z)));
-    const MF in_block = hn::RebindMask(d, block.found);
-    const MF observed = hn::And(in_block, hn::RebindMask(d, Observed(a, word)));
+    const VI entry = hn::Add(
+        bx, hn::Add(hn::Mul(by, hn::Set(di, a.stride_y)), hn::Mul(bz, hn::Set(di, a.stride_z))));
+    const VI block = hn::GatherIndex(di, a.table, entry);
+    const VI local = hn::Or(hn::And(x, seven), hn::Or(hn::ShiftLeft<3>(hn::And(y, seven)),
+                                                      hn::ShiftLeft<6>(hn::And(z, seven))));
+    const VI word = hn::GatherIndex(di, a.voxels, hn::Add(hn::ShiftLeft<9>(block), local));
+    const MF in_block = hn::RebindMask(d, hn::Gt(block, hn::Set(di, -1)));
+    const MF observed = hn::RebindMask(d, Observed(a, word));
     const VF value = DecodeTsdf(word);
     const MF behind = hn::And(active, hn::And(observed, hn::Le(value, zero)));
     const MF hit = hn::And(behind, hn::Gt(previous, zero));
-    crossing.before = hn::IfThenElse(hit, previous_depth, crossing.before);
-    crossing.after = hn::IfThenElse(hit, depth, crossing.after);
+    const VF share = hn::Div(previous, hn::Max(hn::Sub(previous, value), hn::Set(d, 1e-9F)));
+    crossing.depth = hn::IfThenElse(
+        hit, hn::MulAdd(share, hn::Sub(depth, previous_depth), previous_depth), crossing.depth);
     crossing.found = hn::Or(crossing.found, hit);
     // A surface entered from behind (or whose front was never observed) hides what lies beyond it.
     active = hn::AndNot(behind, active);
@@ -180,11 +220,11 @@ HWY_INLINE Crossing March(const RaycastKernelArgs& a, const Rays& rays, VF start
     previous_depth = hn::IfThenElse(observed, depth, previous_depth);
     const VF free_step = hn::Max(voxel_step, hn::Mul(safe_step, value));
     VF next = hn::Add(depth, hn::IfThenElse(observed, free_step, voxel_step));
-    if (!hn::AllTrue(d, in_block)) {
-      VF exit = AxisExit(bx, hn::Set(d, a.origin[0]), rays.direction.x, rays.inverse.x);
-      exit = hn::Min(exit, AxisExit(by, hn::Set(d, a.origin[1]), rays.direction.y, rays.inverse.y));
-      exit = hn::Min(exit, AxisExit(bz, hn::Set(d, a.origin[2]), rays.direction.z, rays.inverse.z));
-      exit = hn::Add(hn::Max(exit, depth), hn::Mul(voxel_step, hn::Set(d, 0.01F)));
+    if (!hn::AllFalse(d, hn::AndNot(in_block, active))) {
+      VF exit = AxisExit(bx, a.origin[0], rays.direction.x, rays.inverse.x);
+      exit = hn::Min(exit, AxisExit(by, a.origin[1], rays.direction.y, rays.inverse.y));
+      exit = hn::Min(exit, AxisExit(bz, a.origin[2], rays.direction.z, rays.inverse.z));
+      exit = hn::MulAdd(voxel_step, hn::Set(d, 0.01F), hn::Max(exit, depth));
       next = hn::IfThenElse(in_block, next, exit);
     }
     depth = next;
@@ -193,105 +233,117 @@ HWY_INLINE Crossing March(const RaycastKernelArgs& a, const Rays& rays, VF start
   return crossing;
 }
 
-void RaycastRow(const RaycastKernelArgs& a, int y, SurfaceMaps& maps) {
-  const int width = maps.width();
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const float nan = std::numeric_limits<float>::quiet_NaN();
+struct Surface {
+  VF depth;
+  Point gradient;
+  MF valid;
+};
+
+/// Finds the zero crossing of the interpolated distance near the change of sign by Newton steps
+/// along the ray.
+HWY_INLINE Surface Refine(const RaycastKernelArgs& a, const Rays& rays, const Crossing& crossing,
+                          VF start, VF end) {
   const VF zero = hn::Zero(d);
-  const float* near_row = a.near_vox + (y / kRaycastTile) * a.tiles_per_row;
-  const float* far_row = a.far_vox + (y / kRaycastTile) * a.tiles_per_row;
-  HWY_ALIGN float out[6][hn::MaxLanes(d)];
-  for (int x = 0; x < width; x += lanes) {
-    // Lanes may span tiles: take each lane's own tile; lanes beyond the row do nothing.
-    const VI column = hn::Iota(di, x);
-    const VI tile = hn::Min(hn::ShiftRight<3>(column), hn::Set(di, a.tiles_per_row - 1));
-    const VF start = hn::GatherIndex(d, near_row, tile);
-    VF end = hn::GatherIndex(d, far_row, tile);
-    end = hn::IfThenElse(hn::RebindMask(d, hn::Lt(column, hn::Set(di, width))), end, zero);
+  const VF voxel_step = hn::Div(hn::Set(d, 1.0F), rays.length);
+  const VF max_step = hn::Mul(voxel_step, hn::Set(d, kMaxStepVox));
+  const VF converged = hn::Mul(voxel_step, hn::Set(d, kConvergedVox));
+  Surface surface{
+      hn::IfThenElse(crossing.found, crossing.depth, start), {zero, zero, zero}, crossing.found};
+  for (int i = 0; i < kMaxRefinements; ++i) {
+    surface.depth = hn::Min(hn::Max(surface.depth, start), end);
+    const Interpolated f = Interpolate(a, rays.At(surface.depth));
+    const VF slope = Dot(f.gradient, rays.direction);
+    const MF facing = hn::Lt(slope, hn::Set(d, -1e-6F));
+    const VF newton = hn::Div(f.value, hn::Neg(hn::IfThenElse(facing, slope, hn::Set(d, -1.0F))));
+    const VF step = hn::Max(hn::Min(newton, max_step), hn::Neg(max_step));
+    surface.gradient = f.gradient;
+    surface.valid = hn::And(
+        hn::And(crossing.found, f.valid),
+        hn::And(facing, hn::Lt(hn::Abs(newton), hn::Mul(voxel_step, hn::Set(d, kDivergedVox)))));
+    surface.depth = hn::Add(surface.depth, step);
+    // Lanes whose cell is not observed cannot get better.
+    const MF open = hn::And(hn::And(crossing.found, f.valid), hn::Gt(hn::Abs(step), converged));
+    if (hn::AllFalse(d, open)) break;
+  }
+  return surface;
+}
 
-    Rays rays;
-    rays.origin = a.origin;
-    const VF u =
-        hn::Mul(hn::Sub(hn::ConvertTo(d, column), hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
-    const float v = (static_cast<float>(y) - a.cy) / a.fy;
-    const auto rotate = [&](int row) {
-      return hn::MulAdd(hn::Set(d, a.R[3 * row]), u,
-                        hn::Set(d, a.R[3 * row + 1] * v + a.R[3 * row + 2]));
-    };
-    rays.direction = {rotate(0), rotate(1), rotate(2)};
-    const VF one = hn::Set(d, 1.0F);
-    rays.inverse = {hn::Div(one, rays.direction.x), hn::Div(one, rays.direction.y),
-                    hn::Div(one, rays.direction.z)};
-    rays.length = hn::Sqrt(hn::MulAdd(u, u, hn::Set(d, 1.0F + v * v)));
-
-    Crossing c = March(a, rays, start, end);
-    VF depth = zero;
-    Interpolated surface{zero, {zero, zero, zero}, hn::MaskFromVec(zero)};
-    if (!hn::AllFalse(d, c.found)) {
-      // Bracket the crossing of the interpolated distance, which can lie a little beside the
-      // nearest voxel's.
-      const VF step = hn::Div(one, rays.length);
-      Interpolated f0 = Interpolate(a, rays.At(c.before));
-      Interpolated f1 = Interpolate(a, rays.At(c.after));
-      for (int shift = 0; shift < kMaxShifts; ++shift) {
-        const MF late = hn::And(c.found, hn::Gt(f1.value, zero));
-        const MF early = hn::AndNot(late, hn::And(c.found, hn::Le(f0.value, zero)));
-        const MF moved = hn::Or(late, early);
-        if (hn::AllFalse(d, moved)) break;
-        const VF shifted = hn::IfThenElse(late, hn::Add(c.after, step), hn::Sub(c.before, step));
-        const Interpolated fs = Interpolate(a, rays.At(shifted));
-        const auto advance = [&](VF& before, VF& after, VF next) {
-          const VF old_before = before;
-          before = hn::IfThenElse(late, after, hn::IfThenElse(early, next, before));
-          after = hn::IfThenElse(late, next, hn::IfThenElse(early, old_before, after));
-        };
-        advance(c.before, c.after, shifted);
-        advance(f0.value, f1.value, fs.value);
-        // What the bracket moves over must have been observed as well.
-        f0.valid = hn::And(f0.valid, hn::Or(fs.valid, hn::Not(moved)));
-        f1.valid = hn::And(f1.valid, hn::Or(fs.valid, hn::Not(moved)));
-      }
-      MF good = hn::And(c.found, hn::And(f0.valid, f1.valid));
-      good = hn::And(good, hn::And(hn::Gt(f0.value, zero), hn::Le(f1.value, zero)));
-      const auto secant = [&](VF t0, VF t1, VF v0, VF v1) {
-        return hn::MulAdd(hn::Sub(t1, t0), hn::Div(v0, hn::Max(hn::Sub(v0, v1), hn::Set(d, 1e-9F))),
-                          t0);
-      };
-      depth = secant(c.before, c.after, f0.value, f1.value);
-      depth = hn::IfThenElse(good, depth, c.after);
-      surface = Interpolate(a, rays.At(depth));
-      // One more secant step; the gradient stays that of the point before, a fraction of a voxel
-      // away.
-      const MF in_front = hn::Gt(surface.value, zero);
-      const VF refined = hn::IfThenElse(in_front, secant(depth, c.after, surface.value, f1.value),
-                                        secant(c.before, depth, f0.value, surface.value));
-      depth = hn::IfThenElse(surface.valid, refined, depth);
-      surface.valid = hn::And(good, surface.valid);
+void ClearTile(SurfaceMaps& maps, int x, int y) {
+  const int columns = maps.width() - x < kRaycastTile ? maps.width() - x : kRaycastTile;
+  const int rows = maps.height() - y < kRaycastTile ? maps.height() - y : kRaycastTile;
+  for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz}) {
+    for (int row = y; row < y + rows; ++row) {
+      for (int i = 0; i < columns; ++i)
+        plane->At(x + i, row) = std::numeric_limits<float>::quiet_NaN();
     }
-    const VF squared = hn::MulAdd(surface.gradient.x, surface.gradient.x,
-                                  hn::MulAdd(surface.gradient.y, surface.gradient.y,
-                                             hn::Mul(surface.gradient.z, surface.gradient.z)));
-    const MF valid = hn::And(surface.valid, hn::Gt(squared, hn::Set(d, 1e-12F)));
-    const VF scale = hn::Div(one, hn::Sqrt(hn::Max(squared, hn::Set(d, 1e-12F))));
-    const VF none = hn::Set(d, nan);
-    const VF metres = hn::Mul(depth, hn::Set(d, a.voxel_m));
-    const VF planes[6] = {hn::MulAdd(metres, rays.direction.x, hn::Set(d, a.world_origin[0])),
-                          hn::MulAdd(metres, rays.direction.y, hn::Set(d, a.world_origin[1])),
-                          hn::MulAdd(metres, rays.direction.z, hn::Set(d, a.world_origin[2])),
-                          hn::Mul(surface.gradient.x, scale),
-                          hn::Mul(surface.gradient.y, scale),
-                          hn::Mul(surface.gradient.z, scale)};
-    float* targets[6] = {maps.vx.Row(y).data() + x, maps.vy.Row(y).data() + x,
-                         maps.vz.Row(y).data() + x, maps.nx.Row(y).data() + x,
-                         maps.ny.Row(y).data() + x, maps.nz.Row(y).data() + x};
-    const int count = width - x < lanes ? width - x : lanes;
-    for (int k = 0; k < 6; ++k) {
-      const VF value = hn::IfThenElse(valid, planes[k], none);
-      if (count == lanes) {
-        hn::StoreU(value, d, targets[k]);
-      } else {
-        hn::Store(value, d, out[k]);
-        for (int i = 0; i < count; ++i) targets[k][i] = out[k][i];
+  }
+}
+
+void RaycastTile(const RaycastKernelArgs& a, int tile_x, int tile_y, float near_vox, float far_vox,
+                 SurfaceMaps& maps) {
+  if (!(far_vox > near_vox)) {
+    ClearTile(maps, tile_x, tile_y);
+    return;
+  }
+  const int width = maps.width();
+  const int height = maps.height();
+  constexpr int kMaxRows = static_cast<int>(hn::MaxLanes(d)) / kLaneColumns;
+  const int lane_rows = static_cast<int>(hn::Lanes(d)) / kLaneColumns;
+  const VF zero = hn::Zero(d);
+  const VF one = hn::Set(d, 1.0F);
+  const VI lane = hn::Iota(di, 0);
+  const VF lane_column = hn::ConvertTo(d, hn::And(lane, hn::Set(di, kLaneColumns - 1)));
+  const VF lane_row = hn::ConvertTo(d, hn::ShiftRight<kLaneColumnsLog2>(lane));
+  Image<float>* const targets[6] = {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz};
+  HWY_ALIGN float out[kMaxRows * kLaneColumns];
+  for (int y = tile_y; y < tile_y + kRaycastTile && y < height; y += lane_rows) {
+    for (int x = tile_x; x < tile_x + kRaycastTile && x < width; x += kLaneColumns) {
+      const VF column = hn::Add(lane_column, hn::Set(d, static_cast<float>(x)));
+      const VF row = hn::Add(lane_row, hn::Set(d, static_cast<float>(y)));
+      const MF in_image = hn::And(hn::Lt(column, hn::Set(d, static_cast<float>(width))),
+                                  hn::Lt(row, hn::Set(d, static_cast<float>(height))));
+      const VF u = hn::Mul(hn::Sub(column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
+      const VF v = hn::Mul(hn::Sub(row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy));
+      const auto rotate = [&](int i) {
+        return NotZero(
+            hn::MulAdd(hn::Set(d, a.R[3 * i]), u,
+                       hn::MulAdd(hn::Set(d, a.R[3 * i + 1]), v, hn::Set(d, a.R[3 * i + 2]))));
+      };
+      Rays rays;
+      rays.origin = a.origin;
+      rays.direction = {rotate(0), rotate(1), rotate(2)};
+      rays.inverse = {hn::Div(one, rays.direction.x), hn::Div(one, rays.direction.y),
+                      hn::Div(one, rays.direction.z)};
+      rays.length = hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one)));
+      VF start = hn::Set(d, near_vox);
+      VF end = hn::IfThenElse(in_image, hn::Set(d, far_vox), start);
+      ClipToAxis(a.low, a.high[0], a.origin[0], rays.inverse.x, start, end);
+      ClipToAxis(a.low, a.high[1], a.origin[1], rays.inverse.y, start, end);
+      ClipToAxis(a.low, a.high[2], a.origin[2], rays.inverse.z, start, end);
+      const Crossing crossing = March(a, rays, start, end);
+      Surface surface{zero, {zero, zero, zero}, hn::MaskFromVec(zero)};
+      if (!hn::AllFalse(d, crossing.found)) {
+        surface = Refine(a, rays, crossing, start, end);
+      }
+      const VF squared = Dot(surface.gradient, surface.gradient);
+      const MF valid = hn::And(surface.valid, hn::Gt(squared, hn::Set(d, 1e-12F)));
+      const VF scale = hn::Div(one, hn::Sqrt(hn::Max(squared, hn::Set(d, 1e-12F))));
+      const VF metres = hn::Mul(surface.depth, hn::Set(d, a.voxel_m));
+      const VF none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+      const VF planes[6] = {hn::MulAdd(metres, rays.direction.x, hn::Set(d, a.world_origin[0])),
+                            hn::MulAdd(metres, rays.direction.y, hn::Set(d, a.world_origin[1])),
+                            hn::MulAdd(metres, rays.direction.z, hn::Set(d, a.world_origin[2])),
+                            hn::Mul(surface.gradient.x, scale),
+                            hn::Mul(surface.gradient.y, scale),
+                            hn::Mul(surface.gradient.z, scale)};
+      const int rows = height - y < lane_rows ? height - y : lane_rows;
+      const int columns = width - x < kLaneColumns ? width - x : kLaneColumns;
+      for (int k = 0; k < 6; ++k) {
+        hn::Store(hn::IfThenElse(valid, planes[k], none), d, out);
+        for (int r = 0; r < rows; ++r) {
+          float* target = targets[k]->Row(y + r).data() + x;
+          for (int i = 0; i < columns; ++i) target[i] = out[r * kLaneColumns + i];
+        }
       }
     }
   }
@@ -303,10 +355,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace isotherm {
 
-HWY_EXPORT(RaycastRow);
+HWY_EXPORT(RaycastTile);
 
-void RaycastRow(const RaycastKernelArgs& args, int y, SurfaceMaps& maps) {
-  HWY_DYNAMIC_DISPATCH(RaycastRow)(args, y, maps);
+void RaycastTile(const RaycastKernelArgs& args, int x, int y, float near_vox, float far_vox,
+                 SurfaceMaps& maps) {
+  HWY_DYNAMIC_DISPATCH(RaycastTile)(args, x, y, near_vox, far_vox, maps);
 }
 
 }  // namespace isotherm

@@ -1,19 +1,21 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "ground/tracker/surface_maps.h"
 
 namespace isotherm {
 
-/// Everything a row of rays needs, in voxel coordinates (voxel centres at integers). Plain numbers:
-/// no options, no Eigen, so that the kernel can be compiled for several instruction sets.
+/// Everything a tile of rays needs. Positions are in voxels with the border block of the table
+/// included: the centre of voxel (0, 0, 0) of the volume is at (8, 8, 8). Plain numbers: no
+/// options, no Eigen, so that the kernel can be compiled for several instruction sets.
 struct RaycastKernelArgs {
-  const std::int32_t* table;   ///< Block indices, x fastest, -1 = none.
-  const std::int32_t* voxels;  ///< TsdfVoxel words of block 0.
-  std::int32_t blocks_x, blocks_y, blocks_z;
-  std::int32_t min_weight_code;  ///< In TsdfVoxel weight units, at least 1.
+  const std::int32_t* table;   ///< Block indices with border, x fastest, -1 = none.
+  const std::int32_t* voxels;  ///< TsdfVoxel words of block 0; block -1 exists and is unobserved.
+  std::int32_t stride_y, stride_z;  ///< Of the table.
+  std::int32_t last[3];             ///< The table's last voxel along each axis.
+  float low, high[3];               ///< Rays stay inside, half way into the border.
+  std::int32_t min_weight_code;     ///< In TsdfVoxel weight units, at least 1.
   float truncation_vox;
 
   float origin[3];  ///< Camera position.
@@ -21,17 +23,14 @@ struct RaycastKernelArgs {
   float fx, fy, cx, cy;
   float voxel_m;
   float world_origin[3];  ///< Camera position in metres.
-
-  const float* near_vox;  ///< Per tile: depth along z where marching starts, in voxels.
-  const float* far_vox;   ///< Per tile: where it ends; not above near = no block there.
-  std::int32_t tiles_per_row;
 };
 
-/// Pixels per side of a tile of the range map.
+/// Pixels per side of a tile.
 inline constexpr int kRaycastTile = 8;
 
-/// Casts the rays of image row `y` and writes all six planes of `maps` (world, metres; NaN = no
-/// surface).
-void RaycastRow(const RaycastKernelArgs& args, int y, SurfaceMaps& maps);
+/// Casts the rays of the tile whose first pixel is (x, y), from depth `near_vox` to `far_vox` along
+/// the camera's z, and writes all six planes of `maps` there (world, metres; NaN = no surface).
+void RaycastTile(const RaycastKernelArgs& args, int x, int y, float near_vox, float far_vox,
+                 SurfaceMaps& maps);
 
 }  // namespace isotherm

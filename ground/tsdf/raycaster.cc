@@ -108,48 +108,43 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
   const auto count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
   near_vox_.assign(count, std::numeric_limits<float>::max());
   far_vox_.assign(count, 0.0F);
-  const RigidTransform T_camera_world = T_world_camera.inverse();
   const VoxelGrid& grid = volume.grid();
-  // Block coordinates to camera coordinates in voxels: p = A b + t.
-  const Eigen::Matrix3f A = (T_camera_world.linear() * kBlockSide).cast<float>();
-  const Eigen::Vector3f t =
-      (T_camera_world * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m())) /
-       grid.voxel_size_m)
-          .cast<float>();
-  constexpr float kRadius = 0.5F * 1.7320508F * kBlockSide;
+  const BlockToCamera to_camera(grid, T_world_camera.inverse());
+  const float radius = BlockRadius(grid);
+  const auto inverse_voxel = static_cast<float>(1.0 / grid.voxel_size_m);
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx) + 0.5F;
   const auto cy = static_cast<float>(camera.cy) + 0.5F;
-  for (std::int32_t block = 0; block < volume.block_count(); ++block) {
-    const Eigen::Vector3f p = A * volume.block_coordinates(block).cast<float>() + t;
-    const float near = std::max(p.z() - kRadius, 0.0F);
-    const float far = p.z() + kRadius;
-    if (far <= 0.0F) continue;
+  const auto tile_of = [](float pixel, int tiles) {
+    return std::clamp(static_cast<int>(pixel) / kRaycastTile, 0, tiles - 1);
+  };
+  // A ray ends where it comes from an observed voxel before the surface into one behind it: start
+  // early enough to meet the former.
+  constexpr float kLeadVox = 3.0F;
+  for (const std::int32_t block : visible_.Find(volume, camera, T_world_camera)) {
+    if (!volume.may_end_rays(block)) continue;
+    const Eigen::Vector3f p = to_camera.Centre(volume.block_coordinates(block));
+    const float near = std::max(p.z() - radius, 0.0F);
+    const float near_vox = std::max(near * inverse_voxel - kLeadVox, 0.0F);
+    const float far_vox = (p.z() + radius) * inverse_voxel;
     int x0 = 0, y0 = 0, x1 = tiles_x_ - 1, y1 = tiles_y_ - 1;
-    if (near > kRadius) {
+    if (near > radius) {
       // The sphere around the block projects into this rectangle (the nearest depth gives the
       // largest extent).
-      const float inverse = 1.0F / near;
-      const float extent = kRadius * 1.5F * inverse;
+      const float extent = radius * 1.5F / near;
       const float u = fx * p.x() / p.z() + cx;
       const float v = fy * p.y() / p.z() + cy;
-      const float du = fx * extent;
-      const float dv = fy * extent;
-      if (u + du < 0.0F || v + dv < 0.0F || u - du >= static_cast<float>(camera.width) ||
-          v - dv >= static_cast<float>(camera.height)) {
-        continue;
-      }
-      x0 = std::max(0, static_cast<int>(u - du) / kRaycastTile);
-      y0 = std::max(0, static_cast<int>(v - dv) / kRaycastTile);
-      x1 = std::min(x1, static_cast<int>(u + du) / kRaycastTile);
-      y1 = std::min(y1, static_cast<int>(v + dv) / kRaycastTile);
+      x0 = tile_of(u - fx * extent, tiles_x_);
+      y0 = tile_of(v - fy * extent, tiles_y_);
+      x1 = tile_of(u + fx * extent, tiles_x_);
+      y1 = tile_of(v + fy * extent, tiles_y_);
     }
     for (int y = y0; y <= y1; ++y) {
       for (int x = x0; x <= x1; ++x) {
         const auto tile = static_cast<std::size_t>(y * tiles_x_ + x);
-        near_vox_[tile] = std::min(near_vox_[tile], near);
-        far_vox_[tile] = std::max(far_vox_[tile], far);
+        near_vox_[tile] = std::min(near_vox_[tile], near_vox);
+        far_vox_[tile] = std::max(far_vox_[tile], far_vox);
       }
     }
   }
@@ -169,12 +164,18 @@ void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
   RaycastKernelArgs args{};
   args.table = volume.table().data();
   args.voxels = reinterpret_cast<const std::int32_t*>(volume.base());
-  args.blocks_x = grid.blocks.x();
-  args.blocks_y = grid.blocks.y();
-  args.blocks_z = grid.blocks.z();
+  args.stride_y = volume.table_stride_y();
+  args.stride_z = volume.table_stride_z();
+  args.low = 0.5F * kBlockSide;
+  for (int axis = 0; axis < 3; ++axis) {
+    args.last[axis] = kBlockSide * (grid.blocks[axis] + 2) - 1;
+    args.high[axis] = static_cast<float>(args.last[axis]) - args.low;
+  }
   args.min_weight_code = MinWeightCode(min_weight);
   args.truncation_vox = static_cast<float>(volume.truncation_distance_m() / grid.voxel_size_m);
-  const Eigen::Vector3f origin = grid.ToVoxel(T_world_camera.translation()).cast<float>();
+  const Eigen::Vector3f origin =
+      (grid.ToVoxel(T_world_camera.translation()) + Eigen::Vector3d::Constant(kBlockSide))
+          .cast<float>();
   const Eigen::Vector3f world_origin = T_world_camera.translation().cast<float>();
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_world_camera.linear().cast<float>();
   std::copy_n(origin.data(), 3, args.origin);
@@ -185,12 +186,11 @@ void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
   args.cx = static_cast<float>(camera.cx);
   args.cy = static_cast<float>(camera.cy);
   args.voxel_m = static_cast<float>(grid.voxel_size_m);
-  args.near_vox = range_.near_vox();
-  args.far_vox = range_.far_vox();
-  args.tiles_per_row = range_.tiles_x();
-  pool.ParallelFor(range_.tiles_y(), [&](int task) {
-    const int end = std::min(camera.height, (task + 1) * kRaycastTile);
-    for (int y = task * kRaycastTile; y < end; ++y) RaycastRow(args, y, maps);
+  pool.ParallelFor(range_.tiles_y(), [&](int y) {
+    for (int x = 0; x < range_.tiles_x(); ++x) {
+      RaycastTile(args, x * kRaycastTile, y * kRaycastTile, range_.near_vox(x, y),
+                  range_.far_vox(x, y), maps);
+    }
   });
 }
 

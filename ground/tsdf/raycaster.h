@@ -7,6 +7,7 @@
 #include "common/geometry/camera.h"
 #include "ground/tracker/surface_maps.h"
 #include "ground/tsdf/tsdf_volume.h"
+#include "ground/tsdf/visible_blocks.h"
 
 namespace isotherm {
 
@@ -14,8 +15,8 @@ class RaycastOptions;
 
 Status Validate(const RaycastOptions& options);
 
-/// Bounds of the depth at which rays can meet a block, per tile of the image: blocks are projected
-/// as spheres. Thread-compatible.
+/// Bounds of the depth at which rays can end, per tile of the image: blocks that may hold voxels
+/// behind the surface are projected as spheres. Thread-compatible.
 class RangeMap {
  public:
   void Compute(const TsdfVolume& volume, const CameraModel& camera,
@@ -23,11 +24,14 @@ class RangeMap {
 
   int tiles_x() const { return tiles_x_; }
   int tiles_y() const { return tiles_y_; }
-  /// Depth along z in voxels, row-major; far <= near where no block projects.
-  const float* near_vox() const { return near_vox_.data(); }
-  const float* far_vox() const { return far_vox_.data(); }
+  /// Depth along z in voxels; far <= near where no block projects.
+  float near_vox(int x, int y) const { return near_vox_[Index(x, y)]; }
+  float far_vox(int x, int y) const { return far_vox_[Index(x, y)]; }
 
  private:
+  std::size_t Index(int x, int y) const { return static_cast<std::size_t>(y * tiles_x_ + x); }
+
+  VisibleBlocks visible_;
   int tiles_x_ = 0;
   int tiles_y_ = 0;
   std::vector<float> near_vox_, far_vox_;

@@ -12,22 +12,12 @@ namespace isotherm {
 namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr int kRowsPerTask = 16;
+/// Side of the tiles whose largest depth is kept; a strip of tiles is one task.
+constexpr int kTile = 16;
 
-/// Every n-th pixel allocates blocks: at 1 m and 570 px focal length two pixels are 3.5 mm apart.
+/// Every n-th row, and column, looks for missing blocks: at 1 m and 570 px focal length two pixels
+/// are 3.5 mm apart.
 constexpr int kAllocationStride = 2;
-
-/// Weight of an observation: the variance of triangulated depth grows with the fourth power of
-/// depth, but far surfaces must still be learnt in a few frames.
-constexpr float kReferenceDepth = 0.5F;
-constexpr float kMinWeight = 0.25F;
-/// Without a normal the point lies on an edge, where depth is least certain.
-constexpr float kEdgeWeight = 0.125F;
-
-float DepthWeight(float depth) {
-  const float ratio = kReferenceDepth / depth;
-  return std::clamp(ratio * ratio, kMinWeight, 1.0F);
-}
 
 struct CameraF {
   float fx, fy, cx, cy;
@@ -67,32 +57,25 @@ Status Validate(const TsdfOptions& o, const VolumeOptions& volume) {
 
 void TsdfIntegrator::MakeSamples(const PreparedDepth& depth, ThreadPool& pool) {
   const CameraF camera(depth.camera);
-  samples_.Resize(camera.width, camera.height);
+  const auto width = static_cast<std::size_t>(camera.width);
+  samples_.resize(width * static_cast<std::size_t>(camera.height) + 1);
+  samples_.back() = DepthSample{};
+  farthest_m_.Resize((camera.width + kTile - 1) / kTile, (camera.height + kTile - 1) / kTile);
   const SurfaceMaps& maps = depth.maps[0];
-  pool.ParallelFor((camera.height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
-    const int end = std::min(camera.height, (task + 1) * kRowsPerTask);
-    for (int y = task * kRowsPerTask; y < end; ++y) {
-      for (int x = 0; x < camera.width; ++x) {
-        DepthSample& s = samples_.At(x, y);
-        const float z = depth.depth_m.At(x, y);
-        s.depth_m = z;
-        s.weight = 0.0F;
-        if (!(z > 0.0F)) continue;
-        const Eigen::Vector3f p((static_cast<float>(x) - camera.cx) / camera.fx * z,
-                                (static_cast<float>(y) - camera.cy) / camera.fy * z, z);
-        const Eigen::Vector3f to_camera = -p.normalized();
-        Eigen::Vector3f n(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y));
-        const float cosine = n.dot(to_camera);
-        if (cosine > 0.0F) {
-          s.weight = DepthWeight(z) * cosine;
-        } else {
-          n = to_camera;
-          s.weight = DepthWeight(z) * kEdgeWeight;
-        }
-        s.nx = n.x();
-        s.ny = n.y();
-        s.nz = n.z();
-        s.offset = n.dot(p);
+  pool.ParallelFor(farthest_m_.height(), [&](int strip) {
+    const std::span<float> farthest = farthest_m_.Row(strip);
+    std::fill(farthest.begin(), farthest.end(), 0.0F);
+    const int end = std::min(camera.height, (strip + 1) * kTile);
+    for (int y = strip * kTile; y < end; ++y) {
+      const std::span<const float> row = depth.depth_m.Row(y);
+      MakeSampleRow(
+          {row.data(), maps.nx.Row(y).data(), maps.ny.Row(y).data(), maps.nz.Row(y).data(),
+           camera.width, camera.fx, camera.cx, (static_cast<float>(y) - camera.cy) / camera.fy},
+          samples_.data() + width * static_cast<std::size_t>(y));
+      for (std::size_t tile = 0; tile < farthest.size(); ++tile) {
+        const auto first = row.begin() + static_cast<std::ptrdiff_t>(tile * kTile);
+        const auto last = std::min(first + kTile, row.end());
+        for (auto z = first; z != last; ++z) farthest[tile] = std::max(farthest[tile], *z);
       }
     }
   });
@@ -102,82 +85,70 @@ void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransfo
                                   ThreadPool& pool, TsdfVolume& volume) {
   const CameraF camera(depth.camera);
   const VoxelGrid& grid = volume.grid();
-  const auto truncation = static_cast<float>(volume.truncation_distance_m());
-  const auto inverse_block = static_cast<float>(1.0 / grid.block_size_m());
-  // Block coordinates of a camera point: B = (R p + t - min) / block.
-  const Eigen::Matrix3f R = (T_world_depth.linear() / grid.block_size_m()).cast<float>();
+  BandRowArgs args{};
+  args.width = camera.width;
+  args.fx = camera.fx;
+  args.cx = camera.cx;
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R =
+      (T_world_depth.linear() / grid.block_size_m()).cast<float>();
   const Eigen::Vector3f t =
-      ((T_world_depth.translation() - grid.min_m) / grid.block_size_m()).cast<float>();
+      ((T_world_depth.translation() - grid.min_m) / grid.block_size_m() + Eigen::Vector3d::Ones())
+          .cast<float>();
+  std::copy_n(R.data(), 9, args.R);
+  std::copy_n(t.data(), 3, args.t);
+  args.truncation_m = static_cast<float>(volume.truncation_distance_m());
   // Samples along the ray at most half a block apart, both ends of the band included.
-  const int half_steps =
-      std::max(1, static_cast<int>(std::ceil(2.0F * truncation * inverse_block)));
-  const float step = truncation / static_cast<float>(half_steps);
+  args.half_steps = std::max(
+      1, static_cast<int>(std::ceil(2.0 * volume.truncation_distance_m() / grid.block_size_m())));
+  args.table = volume.table().data();
+  args.stride_y = volume.table_stride_y();
+  args.stride_z = volume.table_stride_z();
+  std::copy_n(grid.blocks.data(), 3, args.blocks);
 
-  const int strips = (camera.height + kRowsPerTask - 1) / kRowsPerTask;
-  touched_by_strip_.resize(static_cast<std::size_t>(strips));
+  const int strips = (camera.height + kTile - 1) / kTile;
+  missing_by_strip_.resize(static_cast<std::size_t>(strips));
   pool.ParallelFor(strips, [&](int strip) {
-    std::vector<GridIndex>& touched = touched_by_strip_[strip];
-    touched.clear();
-    const std::size_t steps = static_cast<std::size_t>(2 * half_steps + 1);
-    std::vector<GridIndex> last(steps, GridIndex::Constant(-1));
-    const int end = std::min(camera.height, (strip + 1) * kRowsPerTask);
-    for (int y = strip * kRowsPerTask; y < end; y += kAllocationStride) {
-      for (int x = 0; x < camera.width; x += kAllocationStride) {
-        const float z = depth.depth_m.At(x, y);
-        if (!(z > 0.0F)) continue;
-        const Eigen::Vector3f p((static_cast<float>(x) - camera.cx) / camera.fx * z,
-                                (static_cast<float>(y) - camera.cy) / camera.fy * z, z);
-        const Eigen::Vector3f b = R * p + t;
-        const Eigen::Vector3f direction = R * p.normalized();
-        for (std::size_t i = 0; i < steps; ++i) {
-          const float along = (static_cast<float>(i) - static_cast<float>(half_steps)) * step;
-          const GridIndex block = (b + along * direction).array().floor().cast<int>();
-          if (block == last[i]) continue;
-          last[i] = block;
-          if (volume.InGrid(block) && volume.Find(block) == TsdfVolume::kNoBlock)
-            touched.push_back(block);
-        }
-      }
+    std::vector<std::int32_t>& missing = missing_by_strip_[strip];
+    std::size_t count = 0;
+    const int end = std::min(camera.height, (strip + 1) * kTile);
+    for (int y = strip * kTile; y < end; y += kAllocationStride) {
+      BandRowArgs row = args;
+      row.depth_m = depth.depth_m.Row(y).data();
+      row.ray_y = (static_cast<float>(y) - camera.cy) / camera.fy;
+      missing.resize(count + static_cast<std::size_t>(BandRowCapacity(row)));
+      count += static_cast<std::size_t>(FindMissingBlocks(row, missing.data() + count));
     }
+    missing.resize(count);
   });
-  for (const std::vector<GridIndex>& touched : touched_by_strip_) {
-    for (const GridIndex& block : touched) volume.FindOrAllocate(block);
+  for (const std::vector<std::int32_t>& missing : missing_by_strip_) {
+    for (const std::int32_t entry : missing) volume.FindOrAllocateEntry(entry);
   }
 }
 
-void TsdfIntegrator::SelectBlocks(const PreparedDepth& depth, const RigidTransform& T_depth_world,
+void TsdfIntegrator::SelectBlocks(const CameraModel& camera, const RigidTransform& T_world_depth,
                                   const TsdfVolume& volume) {
-  const CameraF camera(depth.camera);
+  const CameraF c(camera);
   const VoxelGrid& grid = volume.grid();
-  const auto block_m = static_cast<float>(grid.block_size_m());
-  const float radius = 0.5F * std::sqrt(3.0F) * block_m;
+  const BlockToCamera to_camera(grid, T_world_depth.inverse());
+  const float radius = BlockRadius(grid);
   const float reach = radius + 2.0F * static_cast<float>(volume.truncation_distance_m());
-  const Eigen::Matrix3f R = T_depth_world.linear().cast<float>();
-  const Eigen::Vector3f t = T_depth_world.translation().cast<float>();
-  const Eigen::Vector3f min = grid.min_m.cast<float>();
+  const auto tile_of = [](float pixel, int tiles) {
+    return std::clamp(static_cast<int>(pixel) / kTile, 0, tiles - 1);
+  };
   updated_blocks_.clear();
-  for (std::int32_t block = 0; block < volume.block_count(); ++block) {
-    const Eigen::Vector3f centre =
-        min +
-        (volume.block_coordinates(block).cast<float>() + Eigen::Vector3f::Constant(0.5F)) * block_m;
-    const Eigen::Vector3f p = R * centre + t;
-    if (p.z() < radius) continue;
-    const float u = camera.fx * p.x() / p.z() + camera.cx;
-    const float v = camera.fy * p.y() / p.z() + camera.cy;
-    const float margin = radius * camera.fx / (p.z() - 0.5F * radius);
-    if (u < -margin || v < -margin || u > static_cast<float>(camera.width) + margin ||
-        v > static_cast<float>(camera.height) + margin) {
-      continue;
-    }
-    // Skip blocks that are entirely behind what is measured around their centre and corners.
+  for (const std::int32_t block : visible_.Find(volume, camera, T_world_depth)) {
+    const Eigen::Vector3f p = to_camera.Centre(volume.block_coordinates(block));
+    if (p.z() < 2.0F * radius) continue;  // Nearer than any depth camera sees.
+    // Skip blocks that are entirely behind all that is measured where they project.
+    const float extent = radius * 1.5F / (p.z() - radius);
+    const float u = c.fx * p.x() / p.z() + c.cx;
+    const float v = c.fy * p.y() / p.z() + c.cy;
+    const int x1 = tile_of(u + c.fx * extent, farthest_m_.width());
+    const int y1 = tile_of(v + c.fy * extent, farthest_m_.height());
     bool maybe_seen = false;
-    for (int dy = -1; dy <= 1 && !maybe_seen; ++dy) {
-      for (int dx = -1; dx <= 1 && !maybe_seen; ++dx) {
-        const int x =
-            std::clamp(static_cast<int>(u + static_cast<float>(dx) * margin), 0, camera.width - 1);
-        const int y =
-            std::clamp(static_cast<int>(v + static_cast<float>(dy) * margin), 0, camera.height - 1);
-        const float z = depth.depth_m.At(x, y);
+    for (int y = tile_of(v - c.fy * extent, farthest_m_.height()); y <= y1 && !maybe_seen; ++y) {
+      for (int x = tile_of(u - c.fx * extent, farthest_m_.width()); x <= x1 && !maybe_seen; ++x) {
+        const float z = farthest_m_.At(x, y);
         maybe_seen = z > 0.0F && p.z() - reach <= z;
       }
     }
@@ -189,13 +160,13 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
                                ThreadPool& pool, TsdfVolume& volume) {
   MakeSamples(depth, pool);
   AllocateBand(depth, T_world_depth, pool, volume);
-  const RigidTransform T_depth_world = T_world_depth.inverse();
-  SelectBlocks(depth, T_depth_world, volume);
+  SelectBlocks(depth.camera, T_world_depth, volume);
 
+  const RigidTransform T_depth_world = T_world_depth.inverse();
   const CameraF camera(depth.camera);
   const VoxelGrid& grid = volume.grid();
   IntegrationKernelArgs args{};
-  args.samples = &samples_.data()->nx;
+  args.samples = samples_.data();
   args.width = camera.width;
   args.height = camera.height;
   args.fx = camera.fx;
@@ -216,7 +187,8 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
       const Eigen::Vector3f first =
           (T_depth_world * grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide))
               .cast<float>();
-      IntegrateBlock(args, first.data(), &volume.voxels(block).front().bits);
+      volume.set_may_end_rays(
+          block, IntegrateBlock(args, first.data(), &volume.voxels(block).front().bits));
     }
   });
 }

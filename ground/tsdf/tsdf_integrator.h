@@ -10,6 +10,7 @@
 #include "ground/ground_options.pb.h"
 #include "ground/tsdf/integration_kernel.h"
 #include "ground/tsdf/tsdf_volume.h"
+#include "ground/tsdf/visible_blocks.h"
 
 namespace isotherm {
 
@@ -37,12 +38,14 @@ class TsdfIntegrator {
   void MakeSamples(const PreparedDepth& depth, ThreadPool& pool);
   void AllocateBand(const PreparedDepth& depth, const RigidTransform& T_world_depth,
                     ThreadPool& pool, TsdfVolume& volume);
-  void SelectBlocks(const PreparedDepth& depth, const RigidTransform& T_depth_world,
+  void SelectBlocks(const CameraModel& camera, const RigidTransform& T_world_depth,
                     const TsdfVolume& volume);
 
   const TsdfOptions options_;
-  Image<DepthSample> samples_;
-  std::vector<std::vector<GridIndex>> touched_by_strip_;
+  std::vector<DepthSample> samples_;  ///< Per pixel, and one more with weight 0.
+  Image<float> farthest_m_;           ///< Largest depth per tile of the image, 0 = nothing seen.
+  std::vector<std::vector<std::int32_t>> missing_by_strip_;
+  VisibleBlocks visible_;
   std::vector<std::int32_t> updated_blocks_;
 };
 

@@ -225,13 +225,17 @@ void ReferenceUpdate(TsdfVoxel& voxel, const Eigen::Vector3d& p, const CameraMod
   if (u < 0.0 || v < 0.0 || u >= camera.width || v >= camera.height) return;
   const DepthSample& s =
       samples[static_cast<std::size_t>(static_cast<int>(v) * camera.width + static_cast<int>(u))];
-  if (s.weight <= 0.0F) return;
+  const float weight = static_cast<float>(s.normal_z_weight & 0xFFFF) / DepthSample::kWeightScale;
+  if (weight <= 0.0F) return;
   const double along_ray = s.depth_m - p.z();
-  const double distance = s.nx * p.x() + s.ny * p.y() + s.nz * p.z() - s.offset;
+  const double distance =
+      (static_cast<std::int16_t>(s.normal_xy & 0xFFFF) * p.x() + (s.normal_xy >> 16) * p.y() +
+       (s.normal_z_weight >> 16) * p.z() - s.scaled_offset) /
+      DepthSample::kNormalScale;
   if (along_ray < -2.0 * truncation) return;
   if (along_ray <= 2.0 * truncation && distance < -truncation) return;
   const double tsdf = along_ray > 2.0 * truncation ? 1.0 : std::min(1.0, distance / truncation);
-  voxel.Update(static_cast<float>(tsdf), s.weight, max_weight);
+  voxel.Update(static_cast<float>(tsdf), weight, max_weight);
 }
 
 TEST(IntegrationKernelTest, MatchesTheScalarReferenceOnRandomSamples) {
@@ -243,15 +247,12 @@ TEST(IntegrationKernelTest, MatchesTheScalarReferenceOnRandomSamples) {
   std::vector<DepthSample> samples(static_cast<std::size_t>(camera.width * camera.height));
   for (DepthSample& s : samples) {
     const Eigen::Vector3f n = Eigen::Vector3f(unit(random), unit(random), -1.5F).normalized();
-    s = {n.x(),
-         n.y(),
-         n.z(),
-         -0.5F * std::abs(n.z()) + 0.01F * unit(random),
-         0.5F + 0.05F * unit(random),
-         unit(random)};
+    const Eigen::Vector3f p(0.3F * unit(random), 0.3F * unit(random), 0.5F + 0.05F * unit(random));
+    s = DepthSample::Make(n.data(), p.data(), std::max(0.0F, unit(random)));
   }
+  samples.emplace_back();
   IntegrationKernelArgs args{};
-  args.samples = &samples[0].nx;
+  args.samples = samples.data();
   args.width = camera.width;
   args.height = camera.height;
   args.fx = static_cast<float>(camera.fx);

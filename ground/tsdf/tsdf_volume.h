@@ -49,6 +49,9 @@ class GrowingArena {
 /// Truncated signed distances in sparse 8^3 blocks inside the scan volume. A direct table over the
 /// volume's blocks finds a block by its coordinates. Blocks never move, so `voxels` of a block
 /// stays valid. Thread-compatible; different blocks may be written by different threads.
+///
+/// For kernels, the table has a border of one block all around in which there is never a block, and
+/// the voxels of block kNoBlock exist and were never observed: a look-up needs no bounds checks.
 class TsdfVolume {
  public:
   static constexpr std::int32_t kNoBlock = -1;
@@ -72,29 +75,39 @@ class TsdfVolume {
   }
   /// Finds or creates; kNoBlock if the block limit is reached. `b` must be in the grid.
   std::int32_t FindOrAllocate(const GridIndex& b);
+  /// The same for an entry of the table that is not in its border.
+  std::int32_t FindOrAllocateEntry(std::int32_t entry);
 
   std::span<TsdfVoxel, kBlockVoxels> voxels(std::int32_t block) {
-    return std::span<TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
+    return std::span<TsdfVoxel, kBlockVoxels>(base() + std::ptrdiff_t{kBlockVoxels} * block,
                                               kBlockVoxels);
   }
   std::span<const TsdfVoxel, kBlockVoxels> voxels(std::int32_t block) const {
-    return std::span<const TsdfVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
+    return std::span<const TsdfVoxel, kBlockVoxels>(base() + std::ptrdiff_t{kBlockVoxels} * block,
                                                     kBlockVoxels);
   }
   /// The voxel at voxel coordinates; a never observed voxel where there is no block.
   TsdfVoxel VoxelAt(const GridIndex& voxel) const;
 
-  /// For kernels: first voxel of block 0, and the block table (x fastest).
-  TsdfVoxel* base() const { return reinterpret_cast<TsdfVoxel*>(arena_.data()); }
+  /// Whether a block can hold observed voxels behind the surface (distance <= 0), so that a ray may
+  /// end there. True until said otherwise.
+  bool may_end_rays(std::int32_t block) const { return may_end_rays_[block] != 0; }
+  void set_may_end_rays(std::int32_t block, bool value) { may_end_rays_[block] = value ? 1 : 0; }
+
+  /// For kernels: first voxel of block 0, the block table with its border, and coordinates of all
+  /// blocks (x y z each).
+  TsdfVoxel* base() const { return reinterpret_cast<TsdfVoxel*>(arena_.data()) + kBlockVoxels; }
   std::span<const std::int32_t> table() const { return table_; }
+  std::int32_t table_stride_y() const { return grid_.blocks.x() + 2; }
+  std::int32_t table_stride_z() const { return table_stride_y() * (grid_.blocks.y() + 2); }
+  const std::int32_t* coordinates() const { return coordinates_.data()->data(); }
   std::size_t memory_bytes() const;
 
  private:
   std::size_t TableIndex(const GridIndex& b) const {
-    return static_cast<std::size_t>(b.x()) +
-           static_cast<std::size_t>(grid_.blocks.x()) *
-               (static_cast<std::size_t>(b.y()) +
-                static_cast<std::size_t>(grid_.blocks.y()) * static_cast<std::size_t>(b.z()));
+    return static_cast<std::size_t>(b.x() + 1) +
+           static_cast<std::size_t>(table_stride_y()) * static_cast<std::size_t>(b.y() + 1) +
+           static_cast<std::size_t>(table_stride_z()) * static_cast<std::size_t>(b.z() + 1);
   }
 
   const VoxelGrid grid_;
@@ -103,6 +116,7 @@ class TsdfVolume {
   GrowingArena arena_;
   std::vector<std::int32_t> table_;
   std::vector<GridIndex> coordinates_;
+  std::vector<std::uint8_t> may_end_rays_;
   std::uint64_t refused_blocks_ = 0;
 };
 

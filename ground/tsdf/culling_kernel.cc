@@ -1,0 +1,72 @@
+// Blocks against the planes of a view in SIMD lanes. Compiled once per instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ground/tsdf/culling_kernel.cc"
+#include <hwy/foreach_target.h>  // Must come before highway.h.
+//
+#include <hwy/highway.h>
+
+#include "ground/tsdf/culling_kernel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace isotherm::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<float>;
+using DI = hn::RebindToSigned<D>;
+using VF = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+
+constexpr D d;
+constexpr DI di;
+
+std::int32_t CullBlocks(const float (&planes)[kFrustumPlanes][4], const std::int32_t* coordinates,
+                        std::int32_t count, std::int32_t* inside) {
+  const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));
+  std::int32_t found = 0;
+  std::int32_t block = 0;
+  for (; block + lanes <= count; block += lanes) {
+    VI x, y, z;
+    hn::LoadInterleaved3(di, coordinates + 3 * std::ptrdiff_t{block}, x, y, z);
+    const VF bx = hn::ConvertTo(d, x);
+    const VF by = hn::ConvertTo(d, y);
+    const VF bz = hn::ConvertTo(d, z);
+    VF least = hn::Set(d, 0.0F);
+    for (const auto& plane : planes) {
+      least = hn::Min(
+          least,
+          hn::MulAdd(hn::Set(d, plane[0]), bx,
+                     hn::MulAdd(hn::Set(d, plane[1]), by,
+                                hn::MulAdd(hn::Set(d, plane[2]), bz, hn::Set(d, plane[3])))));
+    }
+    const auto seen = hn::RebindMask(di, hn::Ge(least, hn::Zero(d)));
+    found +=
+        static_cast<std::int32_t>(hn::CompressStore(hn::Iota(di, block), seen, di, inside + found));
+  }
+  for (; block < count; ++block) {
+    const std::int32_t* b = coordinates + 3 * std::ptrdiff_t{block};
+    bool seen = true;
+    for (const auto& plane : planes) {
+      seen = seen && plane[0] * static_cast<float>(b[0]) + plane[1] * static_cast<float>(b[1]) +
+                             plane[2] * static_cast<float>(b[2]) + plane[3] >=
+                         0.0F;
+    }
+    if (seen) inside[found++] = block;
+  }
+  return found;
+}
+
+}  // namespace isotherm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isotherm {
+
+HWY_EXPORT(CullBlocks);
+
+std::int32_t CullBlocks(const float (&planes)[kFrustumPlanes][4], const std::int32_t* coordinates,
+                        std::int32_t count, std::int32_t* inside) {
+  return HWY_DYNAMIC_DISPATCH(CullBlocks)(planes, coordinates, count, inside);
+}
+
+}  // namespace isotherm
+#endif  // HWY_ONCE
