@@ -74,7 +74,8 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
   tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
   thermal_ = std::make_unique<ThermalVolume>(max_blocks);
   if (thermal_status_.ok())
-    fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal);
+    fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
+                                            static_cast<float>(options.raycast().min_weight()));
   view_.camera = rig.depth->WithoutDistortion().Downscaled(options.raycast().halvings());
 }
 
@@ -208,8 +209,8 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
         Interpolate(before_last_->T_world_depth, last_->T_world_depth, alpha);
     const RigidTransform T_world_thermal =
         T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
-    fuser_->Fuse(*frame, T_world_thermal, view_.maps, view_.camera, view_.T_world_depth, *tsdf_,
-                 pool_, *thermal_);
+    fuser_->Fuse(*frame, T_world_thermal, view_.camera, T_world_depth_at_capture, *tsdf_, pool_,
+                 *thermal_);
     ++counts_.thermal_fused;
   }
 }

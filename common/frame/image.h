@@ -16,11 +16,9 @@ class Image {
   using value_type = T;
 
   Image() = default;
-  Image(int width, int height, T value = T{})
-      : width_(width),
-        height_(height),
-        pixels_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), value) {
+  Image(int width, int height, T value = T{}) : width_(width), height_(height) {
     CHECK(width >= 0 && height >= 0);
+    Allocate(value);
   }
 
   int width() const { return width_; }
@@ -55,12 +53,22 @@ class Image {
     CHECK(width >= 0 && height >= 0);
     width_ = width;
     height_ = height;
-    pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    Allocate(T{});
   }
 
   friend bool operator==(const Image&, const Image&) = default;
 
  private:
+  /// Where masked loads are not a machine instruction, kernels read a whole vector beyond the last
+  /// pixel: there is memory.
+  static constexpr std::size_t kSlackBytes = 64;
+
+  void Allocate(T value) {
+    const std::size_t size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    if (size > pixels_.capacity()) pixels_.reserve(size + kSlackBytes / sizeof(T));
+    pixels_.resize(size, value);
+  }
+
   int width_ = 0;
   int height_ = 0;
   std::vector<T> pixels_;

@@ -26,9 +26,9 @@ struct StreamSummary {
   std::uint64_t out_of_order = 0;  ///< Frames earlier than the one before, as recorded.
   std::uint64_t gaps = 0;          ///< Times of more than 1.5 periods without a frame.
   double longest_gap_s = 0.0;
-  CaptureTime longest_gap_at{};    ///< The frame before it.
-  std::uint64_t repeats = 0;  ///< Pictures equal bit for bit to the one before.
-  double sigma_s = 0.0;       ///< Median uncertainty of the capture time; 0 = not estimated.
+  CaptureTime longest_gap_at{};  ///< The frame before it.
+  std::uint64_t repeats = 0;     ///< Pictures equal bit for bit to the one before.
+  double sigma_s = 0.0;          ///< Median uncertainty of the capture time; 0 = not estimated.
 
   double rate_hz() const { return period_s > 0.0 ? 1.0 / period_s : 0.0; }
 };

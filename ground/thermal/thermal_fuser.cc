@@ -12,65 +12,14 @@ namespace isotherm {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kFar = std::numeric_limits<float>::max();
-constexpr int kRowsPerTask = 16;
+constexpr int kRowsPerTask = 8;
+
+/// Side of the tiles whose depths are kept to choose blocks; a row of tiles is one task.
+constexpr int kTile = kRowsPerTask;
+
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 float CosineOfDegrees(double degrees) { return static_cast<float>(std::cos(degrees * kRadPerDeg)); }
-
-/// Single-precision pinhole projection.
-struct Projector {
-  Eigen::Matrix3f R;
-  Eigen::Vector3f t;
-  float fx, fy, cx, cy;
-  int width, height;
-
-  Projector(const CameraModel& c, const RigidTransform& T_camera_world)
-      : R(T_camera_world.linear().cast<float>()),
-        t(T_camera_world.translation().cast<float>()),
-        fx(static_cast<float>(c.fx)),
-        fy(static_cast<float>(c.fy)),
-        cx(static_cast<float>(c.cx)),
-        cy(static_cast<float>(c.cy)),
-        width(c.width),
-        height(c.height) {}
-
-  /// Pixel coordinates; false behind the camera or outside the image.
-  bool Project(const Eigen::Vector3f& p_world, float& u, float& v) const {
-    const Eigen::Vector3f p = R * p_world + t;
-    if (!(p.z() > 0.0F)) return false;
-    u = fx * p.x() / p.z() + cx;
-    v = fy * p.y() / p.z() + cy;
-    return u >= 0.0F && v >= 0.0F && u <= static_cast<float>(width - 1) &&
-           v <= static_cast<float>(height - 1);
-  }
-};
-
-/// NaN if one of the four pixels around has no value. `u`, `v` inside the image.
-float Bilinear(const Image<float>& image, float u, float v) {
-  const int x = std::min(static_cast<int>(u), image.width() - 2);
-  const int y = std::min(static_cast<int>(v), image.height() - 2);
-  const float fx = u - static_cast<float>(x);
-  const float fy = v - static_cast<float>(y);
-  const float upper = image.At(x, y) + fx * (image.At(x + 1, y) - image.At(x, y));
-  const float lower = image.At(x, y + 1) + fx * (image.At(x + 1, y + 1) - image.At(x, y + 1));
-  return upper + fy * (lower - upper);
-}
-
-void MinimumAround(const Image<float>& in, int margin, Image<float>& out) {
-  out.Resize(in.width(), in.height());
-  for (int y = 0; y < in.height(); ++y) {
-    for (int x = 0; x < in.width(); ++x) {
-      float smallest = in.At(x, y);
-      for (int v = std::max(0, y - margin); v <= std::min(in.height() - 1, y + margin); ++v) {
-        for (int u = std::max(0, x - margin); u <= std::min(in.width() - 1, x + margin); ++u) {
-          smallest = std::min(smallest, in.At(u, v));
-        }
-      }
-      out.At(x, y) = smallest;
-    }
-  }
-}
 
 /// Smaller is better: good before acceptable.
 int Rank(ConditionClass c) { return static_cast<int>(c); }
@@ -135,209 +84,235 @@ bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle, 
 
 ThermalRectifier::ThermalRectifier(const CameraModel& camera)
     : ideal_(camera.WithoutDistortion()),
-      source_x_(camera.width, camera.height),
-      source_y_(camera.width, camera.height) {
+      source_(camera.width, camera.height, -1),
+      fraction_x_(camera.width, camera.height),
+      fraction_y_(camera.width, camera.height) {
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const Eigen::Vector2d pixel = ProjectNormalized(camera, Unproject(ideal_, {u, v}));
-      source_x_.At(u, v) = static_cast<float>(pixel.x());
-      source_y_.At(u, v) = static_cast<float>(pixel.y());
+      if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= camera.width - 1 &&
+            pixel.y() <= camera.height - 1)) {
+        continue;
+      }
+      const int x = std::min(static_cast<int>(pixel.x()), camera.width - 2);
+      const int y = std::min(static_cast<int>(pixel.y()), camera.height - 2);
+      source_.At(u, v) = y * camera.width + x;
+      fraction_x_.At(u, v) = static_cast<float>(pixel.x() - x);
+      fraction_y_.At(u, v) = static_cast<float>(pixel.y() - y);
     }
   }
 }
 
-void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, ThreadPool& pool,
-                               Image<float>& celsius) const {
+void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
+                               Image<float>& celsius) {
   const int width = ideal_.width;
   const int height = ideal_.height;
-  celsius.Resize(width, height);
-  const auto value = [&](int x, int y) {
-    const std::uint16_t raw = centikelvin.At(x, y);
-    return raw == 0 ? kNan : CentikelvinToCelsius(raw);
-  };
-  pool.ParallelFor((height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
+  picture_.Resize(width, height);
+  if (celsius.width() != width + 2 * apron || celsius.height() != height + 2 * apron)
+    celsius = Image<float>(width + 2 * apron, height + 2 * apron, kNan);
+  const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
+  pool.ParallelFor(tasks, [&](int task) {
+    const auto begin = static_cast<std::size_t>(task * kRowsPerTask * width);
+    const auto end =
+        std::min(picture_.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint16_t raw = centikelvin.data()[i];
+      picture_.data()[i] = raw == 0 ? kNan : static_cast<float>(raw) * 0.01F - 273.15F;
+    }
+  });
+  pool.ParallelFor(tasks, [&](int task) {
     const int end = std::min(height, (task + 1) * kRowsPerTask);
     for (int v = task * kRowsPerTask; v < end; ++v) {
-      for (int u = 0; u < width; ++u) {
-        const float sx = source_x_.At(u, v);
-        const float sy = source_y_.At(u, v);
-        float result = kNan;
-        if (sx >= 0.0F && sy >= 0.0F && sx < static_cast<float>(width - 1) &&
-            sy < static_cast<float>(height - 1)) {
-          const int x = static_cast<int>(sx);
-          const int y = static_cast<int>(sy);
-          const float fx = sx - static_cast<float>(x);
-          const float fy = sy - static_cast<float>(y);
-          const float upper = value(x, y) + fx * (value(x + 1, y) - value(x, y));
-          const float lower = value(x, y + 1) + fx * (value(x + 1, y + 1) - value(x, y + 1));
-          result = upper + fy * (lower - upper);
-        }
-        celsius.At(u, v) = result;
-      }
+      ResampleRow({picture_.data(), width, source_.Row(v).data(), fraction_x_.Row(v).data(),
+                   fraction_y_.Row(v).data(), width},
+                  celsius.Row(v + apron).data() + apron);
     }
   });
 }
 
-ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera)
-    : options_(options), limits_(options), rectifier_(thermal_camera) {}
-
-void ThermalFuser::MakeDistanceMap(const SurfaceMaps& view, const RigidTransform& T_thermal_world) {
-  const CameraModel& camera = rectifier_.ideal_camera();
-  nearest_m_.Resize(camera.width, camera.height);
-  nearest_m_.Fill(kFar);
-  const Projector thermal(camera, T_thermal_world);
-  const Eigen::Vector3f position = T_thermal_world.inverse().translation().cast<float>();
-  for (std::size_t i = 0; i < view.vx.size(); ++i) {
-    const Eigen::Vector3f p(view.vx.data()[i], view.vy.data()[i], view.vz.data()[i]);
-    float u = 0.0F;
-    float v = 0.0F;
-    if (!thermal.Project(p, u, v)) continue;  // Also refuses NaN.
-    float& nearest = nearest_m_.At(static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F));
-    nearest = std::min(nearest, (p - position).norm());
-  }
-  MinimumAround(nearest_m_, options_.edge_margin_px(), nearest_around_m_);
+ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera,
+                           float min_weight)
+    : options_(options),
+      limits_(options),
+      min_weight_(min_weight),
+      apron_(std::max(1, options.edge_margin_px())),
+      rectifier_(thermal_camera) {
+  const int width = thermal_camera.width;
+  const int height = thermal_camera.height;
+  distances_m_ =
+      Image<float>(width + 2 * apron_, height + 2 * apron_, std::numeric_limits<float>::max());
+  pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + 1);
+  const int tiles_x = (width + kTile - 1) / kTile;
+  const int tiles_y = (height + kTile - 1) / kTile;
+  nearest_m_.Resize(tiles_x, tiles_y);
+  farthest_m_.Resize(tiles_x, tiles_y);
 }
 
-void ThermalFuser::SampleVertices(const SurfaceMaps& view, const RigidTransform& T_thermal_world,
-                                  const Eigen::Vector3f& thermal_position, ThreadPool& pool) {
-  vertex_celsius_.assign(view.vx.size(), kNan);
-  vertex_classes_.assign(view.vx.size(), 0);
-  const Projector thermal(rectifier_.ideal_camera(), T_thermal_world);
-  const auto tolerance = static_cast<float>(options_.parallax_tolerance_m());
-  const int width = view.width();
+std::int64_t ThermalFuser::MakePixels(const RigidTransform& T_world_thermal,
+                                      const CameraModel& depth_camera,
+                                      const RigidTransform& T_world_depth, ThreadPool& pool) {
+  const int width = surface_.width();
+  const int height = surface_.height();
+  PixelRowArgs args{};
+  args.distance_stride = distances_m_.width();
+  args.celsius_stride = celsius_.width();
+  args.margin = options_.edge_margin_px();
+  args.width = width;
+  const Eigen::Vector3f position = T_world_thermal.translation().cast<float>();
+  std::copy_n(position.data(), 3, args.position);
+  const Eigen::Vector4f z_axis = T_world_thermal.inverse().matrix().row(2).cast<float>();
+  std::copy_n(z_axis.data(), 4, args.z_axis);
+  const RigidTransform T_depth_world = T_world_depth.inverse();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_world.linear().cast<float>();
+  const Eigen::Vector3f t = T_depth_world.translation().cast<float>();
+  std::copy_n(R.data(), 9, args.R_depth);
+  std::copy_n(t.data(), 3, args.t_depth);
+  args.depth_fx = static_cast<float>(depth_camera.fx);
+  args.depth_fy = static_cast<float>(depth_camera.fy);
+  args.depth_cx = static_cast<float>(depth_camera.cx);
+  args.depth_cy = static_cast<float>(depth_camera.cy);
+  args.depth_width = static_cast<float>(depth_camera.width);
+  args.depth_height = static_cast<float>(depth_camera.height);
+  args.occlusion_tolerance_m = static_cast<float>(options_.parallax_tolerance_m());
+  args.distance_min_m = limits_.distance_min_m;
+  args.distance_good_m = limits_.distance_good_m;
+  args.distance_max_m = limits_.distance_max_m;
+  args.cosine_min_angle = limits_.cosine_min_angle;
+  args.cosine_good_angle = limits_.cosine_good_angle;
+  args.cosine_max_angle = limits_.cosine_max_angle;
+
+  const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
+  const auto for_rows = [&](const auto& row) {
+    pool.ParallelFor(tasks, [&](int task) {
+      const int end = std::min(height, (task + 1) * kRowsPerTask);
+      for (int y = task * kRowsPerTask; y < end; ++y) row(y);
+    });
+  };
+  for_rows([&](int y) {
+    DistanceRow(surface_.vx.Row(y).data(), surface_.vy.Row(y).data(), surface_.vz.Row(y).data(),
+                args.position, width, distances_m_.Row(y + apron_).data() + apron_);
+  });
   std::atomic<std::int64_t> occluded{0};
-  pool.ParallelFor((view.height() + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
-    const auto begin = static_cast<std::size_t>(task * kRowsPerTask * width);
-    const auto end =
-        std::min(view.vx.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
+  pool.ParallelFor(tasks, [&](int task) {
+    const std::span<float> nearest = nearest_m_.Row(task);
+    const std::span<float> farthest = farthest_m_.Row(task);
+    std::fill(nearest.begin(), nearest.end(), std::numeric_limits<float>::max());
+    std::fill(farthest.begin(), farthest.end(), 0.0F);
+    const int end = std::min(height, (task + 1) * kRowsPerTask);
     std::int64_t hidden = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3f p(view.vx.data()[i], view.vy.data()[i], view.vz.data()[i]);
-      float u = 0.0F;
-      float v = 0.0F;
-      if (!thermal.Project(p, u, v)) continue;
-      const Eigen::Vector3f to_camera = thermal_position - p;
-      const float distance = to_camera.norm();
-      const Eigen::Vector3f n(view.nx.data()[i], view.ny.data()[i], view.nz.data()[i]);
-      const float cosine = to_camera.dot(n) / distance;
-      if (!(cosine > 0.0F)) continue;  // The camera is behind the surface.
-      if (options_.parallax_filter()) {
-        const float nearest =
-            nearest_around_m_.At(static_cast<int>(u + 0.5F), static_cast<int>(v + 0.5F));
-        // A slanted surface covers a range of distances within the margin.
-        if (distance - nearest > tolerance) {
-          ++hidden;
-          continue;
-        }
+    for (int y = task * kRowsPerTask; y < end; ++y) {
+      PixelRowArgs row = args;
+      row.vx = surface_.vx.Row(y).data();
+      row.vy = surface_.vy.Row(y).data();
+      row.vz = surface_.vz.Row(y).data();
+      row.nx = surface_.nx.Row(y).data();
+      row.ny = surface_.ny.Row(y).data();
+      row.nz = surface_.nz.Row(y).data();
+      row.distance_m = distances_m_.Row(y + apron_).data() + apron_;
+      row.celsius = celsius_.Row(y + apron_).data() + apron_;
+      ThermalPixel* pixels =
+          pixels_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+      hidden += MakePixelRow(row, pixels);
+      for (int x = 0; x < width; ++x) {
+        const float depth = pixels[x].depth_m;
+        const auto tile = static_cast<std::size_t>(x / kTile);
+        farthest[tile] = std::max(farthest[tile], depth);
+        if (depth > 0.0F) nearest[tile] = std::min(nearest[tile], depth);
       }
-      vertex_celsius_[i] = Bilinear(celsius_, u, v);
-      vertex_classes_[i] = static_cast<std::uint8_t>(
-          (static_cast<unsigned>(limits_.ClassifyDistance(distance)) << 4) |
-          static_cast<unsigned>(limits_.ClassifyAngle(std::min(cosine, 1.0F))));
     }
     occluded += hidden;
   });
-  occluded_ = occluded;
+  return occluded;
 }
 
-void ThermalFuser::SelectBlocks(const SurfaceMaps& view, const TsdfVolume& tsdf) {
-  const VoxelGrid& grid = tsdf.grid();
-  block_stamp_.resize(tsdf.table().size(), 0);
-  ++stamp_;
-  blocks_.clear();
-  const auto inverse_voxel = static_cast<float>(1.0 / grid.voxel_size_m);
-  const Eigen::Vector3f min = grid.min_m.cast<float>();
-  const auto reach = static_cast<float>(options_.vertex_distance_vox());
-  const auto visit = [&](const Eigen::Vector3f& p_vox) {
-    const GridIndex block = (p_vox / static_cast<float>(kBlockSide)).array().floor().cast<int>();
-    if (!tsdf.InGrid(block)) return;
-    const std::int32_t index = tsdf.Find(block);
-    if (index == TsdfVolume::kNoBlock || block_stamp_[index] == stamp_) return;
-    block_stamp_[index] = stamp_;
-    blocks_.push_back(index);
+void ThermalFuser::SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf) {
+  const CameraModel& camera = rectifier_.ideal_camera();
+  const BlockToCamera to_camera(tsdf.grid(), T_world_thermal.inverse());
+  const float radius = BlockRadius(tsdf.grid());
+  const float reach =
+      radius + static_cast<float>(options_.vertex_distance_vox() * tsdf.grid().voxel_size_m);
+  const auto fx = static_cast<float>(camera.fx);
+  const auto fy = static_cast<float>(camera.fy);
+  const auto cx = static_cast<float>(camera.cx);
+  const auto cy = static_cast<float>(camera.cy);
+  const auto tile_of = [](float pixel, int tiles) {
+    return std::clamp(static_cast<int>(pixel) / kTile, 0, tiles - 1);
   };
-  constexpr int kStride = 2;
-  for (int y = 0; y < view.height(); y += kStride) {
-    for (int x = 0; x < view.width(); x += kStride) {
-      const Eigen::Vector3f p(view.vx.At(x, y), view.vy.At(x, y), view.vz.At(x, y));
-      if (std::isnan(p.x())) continue;
-      const Eigen::Vector3f p_vox = (p - min) * inverse_voxel;
-      visit(p_vox);
-      for (int axis = 0; axis < 3; ++axis) {
-        Eigen::Vector3f offset = Eigen::Vector3f::Zero();
-        offset[axis] = reach;
-        visit(p_vox + offset);
-        visit(p_vox - offset);
+  blocks_.clear();
+  for (const std::int32_t block : visible_.Find(tsdf, camera, T_world_thermal)) {
+    const Eigen::Vector3f p = to_camera.Centre(tsdf.block_coordinates(block));
+    if (p.z() < 2.0F * radius) continue;
+    // Keep blocks through which the visible surface passes.
+    const float extent = radius * 1.5F / (p.z() - radius);
+    const float u = fx * p.x() / p.z() + cx;
+    const float v = fy * p.y() / p.z() + cy;
+    const int x1 = tile_of(u + fx * extent, nearest_m_.width());
+    const int y1 = tile_of(v + fy * extent, nearest_m_.height());
+    bool on_surface = false;
+    for (int y = tile_of(v - fy * extent, nearest_m_.height()); y <= y1 && !on_surface; ++y) {
+      for (int x = tile_of(u - fx * extent, nearest_m_.width()); x <= x1 && !on_surface; ++x) {
+        on_surface = p.z() - reach <= farthest_m_.At(x, y) && p.z() + reach >= nearest_m_.At(x, y);
       }
     }
+    if (on_surface) blocks_.push_back(block);
   }
 }
 
 FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
-                                const SurfaceMaps& view, const CameraModel& view_camera,
+                                const CameraModel& depth_camera,
                                 const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
                                 ThreadPool& pool, ThermalVolume& thermal) {
-  const CameraModel& thermal_camera = rectifier_.ideal_camera();
+  const CameraModel& camera = rectifier_.ideal_camera();
   CHECK(frame.valid);
-  CHECK(frame.centikelvin.width() == thermal_camera.width &&
-        frame.centikelvin.height() == thermal_camera.height);
-  const RigidTransform T_thermal_world = T_world_thermal.inverse();
-  rectifier_.Rectify(frame.centikelvin, pool, celsius_);
-  MakeDistanceMap(view, T_thermal_world);
-  SampleVertices(view, T_thermal_world, T_world_thermal.translation().cast<float>(), pool);
-  SelectBlocks(view, tsdf);
+  CHECK(frame.centikelvin.width() == camera.width && frame.centikelvin.height() == camera.height);
+  rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
+  raycaster_.Cast(tsdf, camera, T_world_thermal, min_weight_, pool, surface_);
+  FusionReport report;
+  report.occluded = MakePixels(T_world_thermal, depth_camera, T_world_depth, pool);
+  SelectBlocks(T_world_thermal, tsdf);
 
   const VoxelGrid& grid = tsdf.grid();
-  const Projector depth(view_camera, T_world_depth.inverse());
-  const auto voxel_m = static_cast<float>(grid.voxel_size_m);
-  const auto max_distance = static_cast<float>(options_.vertex_distance_vox()) * voxel_m;
-  const float max_tsdf =
-      std::min(1.0F, 2.0F * max_distance / static_cast<float>(tsdf.truncation_distance_m()));
-  const bool validate = options_.validation();
+  const RigidTransform T_thermal_world = T_world_thermal.inverse();
+  FusionKernelArgs args{};
+  args.pixels = pixels_.data();
+  args.width = camera.width;
+  args.height = camera.height;
+  args.fx = static_cast<float>(camera.fx);
+  args.fy = static_cast<float>(camera.fy);
+  args.cx = static_cast<float>(camera.cx);
+  args.cy = static_cast<float>(camera.cy);
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> axes =
+      (T_thermal_world.linear() * grid.voxel_size_m).cast<float>();
+  std::copy_n(axes.data(), 9, args.axes);
+  const double max_distance_m = options_.vertex_distance_vox() * grid.voxel_size_m;
+  args.max_distance_m = static_cast<float>(max_distance_m);
+  // A distance measured along a normal is at most that to the vertex, but for noise.
+  constexpr double kNoiseMargin = 1.25;
+  args.max_tsdf_code = static_cast<std::int32_t>(
+      TsdfVoxel::kTsdfScale *
+      std::min(1.0, kNoiseMargin * max_distance_m / tsdf.truncation_distance_m()));
+  args.validate = options_.validation();
   std::atomic<std::int64_t> considered{0};
   std::atomic<std::int64_t> assigned{0};
   constexpr int kBlocksPerTask = 32;
   const int count = static_cast<int>(blocks_.size());
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
-    std::int64_t task_considered = 0;
-    std::int64_t task_assigned = 0;
+    FusionKernelCounts counts;
     const int end = std::min(count, (task + 1) * kBlocksPerTask);
-    for (int b = task * kBlocksPerTask; b < end; ++b) {
-      const std::int32_t block = blocks_[b];
-      const auto distances = tsdf.voxels(block);
-      const auto temperatures = thermal.voxels(block);
+    for (int i = task * kBlocksPerTask; i < end; ++i) {
+      const std::int32_t block = blocks_[i];
       const Eigen::Vector3f first =
-          grid.VoxelCentre(tsdf.block_coordinates(block) * kBlockSide).cast<float>();
-      for (int i = 0; i < kBlockVoxels; ++i) {
-        const TsdfVoxel voxel = distances[i];
-        if (!voxel.observed() || std::abs(voxel.tsdf()) > max_tsdf) continue;
-        const Eigen::Vector3f c =
-            first + voxel_m * Eigen::Vector3f(static_cast<float>(i & 7),
-                                              static_cast<float>((i >> 3) & 7),
-                                              static_cast<float>(i >> 6));
-        float u = 0.0F;
-        float v = 0.0F;
-        if (!depth.Project(c, u, v)) continue;
-        const auto pixel = static_cast<std::size_t>(static_cast<int>(v + 0.5F) * view.width() +
-                                                    static_cast<int>(u + 0.5F));
-        const Eigen::Vector3f vertex(view.vx.data()[pixel], view.vy.data()[pixel],
-                                     view.vz.data()[pixel]);
-        if (!((c - vertex).squaredNorm() < max_distance * max_distance)) continue;
-        ++task_considered;
-        const float celsius = vertex_celsius_[pixel];
-        if (std::isnan(celsius)) continue;
-        const auto distance_class = static_cast<ConditionClass>(vertex_classes_[pixel] >> 4);
-        const auto angle_class = static_cast<ConditionClass>(vertex_classes_[pixel] & 0xFU);
-        if (validate && !ReplacesMeasurement(distance_class, angle_class, temperatures[i]))
-          continue;
-        temperatures[i] = ThermalVoxel::Make(celsius, distance_class, angle_class);
-        ++task_assigned;
-      }
+          (T_thermal_world * grid.VoxelCentre(tsdf.block_coordinates(block) * kBlockSide))
+              .cast<float>();
+      FuseBlock(args, first.data(), &tsdf.voxels(block).front().bits,
+                &thermal.voxels(block).front().bits, counts);
     }
-    considered += task_considered;
-    assigned += task_assigned;
+    considered += counts.considered;
+    assigned += counts.assigned;
   });
-  return {considered, occluded_, assigned};
+  report.considered = considered;
+  report.assigned = assigned;
+  return report;
 }
 
 }  // namespace isotherm

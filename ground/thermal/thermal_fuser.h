@@ -7,9 +7,12 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "ground/ground_options.pb.h"
+#include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/thermal_volume.h"
 #include "ground/tracker/surface_maps.h"
+#include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_volume.h"
+#include "ground/tsdf/visible_blocks.h"
 
 namespace isotherm {
 
@@ -30,59 +33,63 @@ struct ConditionLimits {
 bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle, ThermalVoxel old);
 
 /// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the
-/// picture or where the frame has no value. Bilinear. Thread-compatible.
+/// picture or where the frame has no value. Bilinear. Keeps scratch memory. Thread-compatible.
 class ThermalRectifier {
  public:
   explicit ThermalRectifier(const CameraModel& camera);
-  void Rectify(const Image<std::uint16_t>& centikelvin, ThreadPool& pool,
-               Image<float>& celsius) const;
+  /// Writes into `celsius` with `apron` pixels of NaN all around.
+  void Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
+               Image<float>& celsius);
   const CameraModel& ideal_camera() const { return ideal_; }
 
  private:
   CameraModel ideal_;
-  Image<float> source_x_, source_y_;  ///< Where each rectified pixel comes from, pixels.
+  Image<std::int32_t> source_;  ///< Upper left of the four source pixels, -1 = outside.
+  Image<float> fraction_x_, fraction_y_;
+  Image<float> picture_;  ///< The frame in °C.
 };
 
 /// What one thermal frame did to the model.
 struct FusionReport {
-  std::int64_t considered = 0;  ///< Voxels on the surface in view of both cameras.
-  std::int64_t occluded =
-      0;  ///< Of these: hidden from the thermal camera or too near an occluding edge.
-  std::int64_t assigned = 0;
+  std::int64_t considered = 0;  ///< Voxels on the surface that both cameras see.
+  std::int64_t occluded = 0;    ///< Thermal pixels too near the edge of something nearer.
+  std::int64_t assigned = 0;    ///< Voxels.
 };
 
-/// Assigns temperatures to the surface that both cameras see (algorithms 4 to 6). Keeps scratch
-/// images. Thread-compatible.
+/// Assigns temperatures to the surface that both cameras see (algorithms 4 to 6). What the thermal
+/// camera sees is decided by casting the model from its own pose, so that whatever was scanned
+/// hides what lies behind it, whether or not the depth camera sees it now (beyond algorithm 4).
+/// Keeps scratch images. Thread-compatible.
 class ThermalFuser {
  public:
-  ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera);
+  /// Voxels lighter than `min_weight` do not count as observed.
+  ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera, float min_weight);
 
-  /// `view`: the model in `world` as the depth camera sees it from `T_world_depth`.
-  /// `T_world_thermal` is the thermal camera's pose when `frame` was captured. `frame` must be
-  /// valid and have the camera's size (CHECK).
+  /// `T_world_thermal` is the thermal camera's pose when `frame` was captured, `T_world_depth` that
+  /// of the depth camera at about the same time. `frame` must be valid and have the camera's size
+  /// (CHECK).
   FusionReport Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
-                    const SurfaceMaps& view, const CameraModel& view_camera,
-                    const RigidTransform& T_world_depth, const TsdfVolume& tsdf, ThreadPool& pool,
-                    ThermalVolume& thermal);
+                    const CameraModel& depth_camera, const RigidTransform& T_world_depth,
+                    const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal);
 
  private:
-  void MakeDistanceMap(const SurfaceMaps& view, const RigidTransform& T_thermal_world);
-  void SelectBlocks(const SurfaceMaps& view, const TsdfVolume& tsdf);
-  void SampleVertices(const SurfaceMaps& view, const RigidTransform& T_thermal_world,
-                      const Eigen::Vector3f& thermal_position, ThreadPool& pool);
+  std::int64_t MakePixels(const RigidTransform& T_world_thermal, const CameraModel& depth_camera,
+                          const RigidTransform& T_world_depth, ThreadPool& pool);
+  void SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf);
 
   const ThermalOptions options_;
   const ConditionLimits limits_;
-  const ThermalRectifier rectifier_;
-  Image<float> celsius_;
-  Image<float> nearest_m_;  ///< Algorithm 4's D: distance to the nearest vertex per thermal pixel.
-  Image<float> nearest_around_m_;             ///< The same, smallest within the edge margin.
-  std::vector<float> vertex_celsius_;         ///< Per view pixel, NaN = not to be assigned.
-  std::vector<std::uint8_t> vertex_classes_;  ///< Distance class << 4 | angle class.
+  const float min_weight_;
+  const int apron_;  ///< Pixels around distances_m_ and celsius_.
+  ThermalRectifier rectifier_;
+  Raycaster raycaster_;
+  SurfaceMaps surface_;                  ///< The model as the thermal camera sees it, in world.
+  Image<float> distances_m_;             ///< Of its vertices from the camera, with an apron.
+  Image<float> celsius_;                 ///< With an apron.
+  std::vector<ThermalPixel> pixels_;     ///< And one more that shows nothing.
+  Image<float> nearest_m_, farthest_m_;  ///< Depth of the surface per tile; farthest 0 = none.
+  VisibleBlocks visible_;
   std::vector<std::int32_t> blocks_;
-  std::vector<std::uint32_t> block_stamp_;
-  std::uint32_t stamp_ = 0;
-  std::int64_t occluded_ = 0;
 };
 
 }  // namespace isotherm

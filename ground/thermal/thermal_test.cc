@@ -105,17 +105,21 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
   }
   ThreadPool pool(1);
   Image<float> celsius;
-  ThermalRectifier(camera).Rectify(picture, pool, celsius);
+  constexpr int kApron = 2;
+  ThermalRectifier(camera).Rectify(picture, kApron, pool, celsius);
+  EXPECT_TRUE(std::isnan(celsius.At(1, 71)));
   for (const Eigen::Vector2d& ideal :
        {Eigen::Vector2d(95, 71), Eigen::Vector2d(50, 40), Eigen::Vector2d(150, 110)}) {
     const Eigen::Vector2d source =
         ProjectNormalized(camera, Unproject(camera.WithoutDistortion(), ideal));
-    EXPECT_NEAR(celsius.At(static_cast<int>(ideal.x()), static_cast<int>(ideal.y())),
-                CentikelvinToCelsius(raw(source.x(), source.y())), 0.001);
+    EXPECT_NEAR(
+        celsius.At(static_cast<int>(ideal.x()) + kApron, static_cast<int>(ideal.y()) + kApron),
+        CentikelvinToCelsius(raw(source.x(), source.y())), 0.001);
   }
   picture.At(95, 71) = 0;
-  ThermalRectifier(camera).Rectify(picture, pool, celsius);
-  EXPECT_TRUE(std::isnan(celsius.At(95, 71))) << "a pixel without value stays without value";
+  ThermalRectifier(camera).Rectify(picture, kApron, pool, celsius);
+  EXPECT_TRUE(std::isnan(celsius.At(95 + kApron, 71 + kApron)))
+      << "a pixel without value stays without value";
 }
 
 /// A hot ball before a cold wall, seen by a depth camera and by a thermal camera beside it.
@@ -136,7 +140,6 @@ class ThermalFuserTest : public ::testing::Test {
     tsdf_ = std::make_unique<TsdfVolume>(grid, 0.016, max_blocks);
     thermal_ = std::make_unique<ThermalVolume>(max_blocks);
     testing::FillVolume(*tsdf_, Scene);
-    Raycaster().Cast(*tsdf_, depth_camera_, T_world_depth_, 0.0F, pool_, view_);
   }
 
   static double Ball(const Eigen::Vector3d& p) {
@@ -167,9 +170,9 @@ class ThermalFuserTest : public ::testing::Test {
     int cold_on_ball = 0;
   };
   Outcome Fuse(const ThermalOptions& options) {
-    ThermalFuser fuser(options, thermal_camera_);
-    fuser.Fuse(Picture(T_world_thermal_), T_world_thermal_, view_, depth_camera_, T_world_depth_,
-               *tsdf_, pool_, *thermal_);
+    ThermalFuser fuser(options, thermal_camera_, 0.0F);
+    fuser.Fuse(Picture(T_world_thermal_), T_world_thermal_, depth_camera_, T_world_depth_, *tsdf_,
+               pool_, *thermal_);
     Outcome outcome;
     for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
       testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
@@ -192,7 +195,6 @@ class ThermalFuserTest : public ::testing::Test {
   ThreadPool pool_{2};
   std::unique_ptr<TsdfVolume> tsdf_;
   std::unique_ptr<ThermalVolume> thermal_;
-  SurfaceMaps view_;
 };
 
 TEST_F(ThermalFuserTest, ParallaxFilterKeepsTheBallsTemperatureOffTheWall) {
@@ -201,10 +203,24 @@ TEST_F(ThermalFuserTest, ParallaxFilterKeepsTheBallsTemperatureOffTheWall) {
   EXPECT_LE(outcome.hot_on_wall, outcome.assigned / 1000) << "mixed pixels on the very silhouette";
 }
 
-TEST_F(ThermalFuserTest, WithoutTheFilterTheWallTakesTheBallsTemperature) {
+TEST_F(ThermalFuserTest, WhatHasLeftTheDepthCamerasViewStillHides) {
+  // Turned away, the depth camera sees the wall beside the ball only (thesis figs. 7.3 and 7.4).
+  constexpr double kTurn = 0.42;
+  T_world_depth_ = MakeTransform(
+      {0.32, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-kTurn, Eigen::Vector3d::UnitY())));
+  // From the right, the thermal camera sees the ball before that part of the wall.
+  T_world_thermal_ = MakeTransform(
+      {0.52, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.45, Eigen::Vector3d::UnitY())));
+  const Outcome outcome = Fuse(ThermalOptions());
+  EXPECT_GT(outcome.assigned, 3'000);
+  EXPECT_LE(outcome.hot_on_wall, outcome.assigned / 1000);
+}
+
+TEST_F(ThermalFuserTest, WithoutTheMarginTheSilhouetteIsAssigned) {
   ThermalOptions options;
-  options.set_parallax_filter(false);
-  EXPECT_GT(Fuse(options).hot_on_wall, 200);
+  const int with_margin = Fuse(options).assigned;
+  options.set_edge_margin_px(0);
+  EXPECT_GT(Fuse(options).assigned, with_margin);
 }
 
 TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
@@ -234,9 +250,9 @@ TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
 TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
   ThermalFrame frame = Picture(T_world_thermal_);
   frame.centikelvin.Fill(0);
-  const FusionReport report = ThermalFuser(ThermalOptions(), thermal_camera_)
-                                  .Fuse(frame, T_world_thermal_, view_, depth_camera_,
-                                        T_world_depth_, *tsdf_, pool_, *thermal_);
+  const FusionReport report =
+      ThermalFuser(ThermalOptions(), thermal_camera_, 0.0F)
+          .Fuse(frame, T_world_thermal_, depth_camera_, T_world_depth_, *tsdf_, pool_, *thermal_);
   EXPECT_EQ(report.assigned, 0);
   EXPECT_GT(report.considered, 0);
 }

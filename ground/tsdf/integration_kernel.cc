@@ -7,9 +7,9 @@
 #include <hwy/highway.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "ground/tsdf/integration_kernel.h"
+#include "ground/tsdf/record_gather-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
@@ -35,79 +35,17 @@ constexpr float kMinWeight = 0.25F;
 /// Without a normal the point lies on an edge, where depth is least certain.
 constexpr float kEdgeWeight = 0.125F;
 
-/// Four vectors whose lanes are the four words of a sample.
-struct SampleVectors {
-  VF depth;
-  VI normal_xy;
-  VI normal_z_weight;
-  VF scaled_offset;
-};
-
-#if HWY_TARGET == HWY_SCALAR
-
-HWY_INLINE SampleVectors GatherSamples(const DepthSample* samples, const std::int32_t* pixels) {
-  const DepthSample& s = samples[*pixels];
-  return {hn::Set(d, s.depth_m), hn::Set(di, s.normal_xy), hn::Set(di, s.normal_z_weight),
-          hn::Set(d, s.scaled_offset)};
-}
-
-HWY_INLINE void StoreSamples(const SampleVectors& v, DepthSample* samples) {
-  *samples = {hn::GetLane(v.depth), hn::GetLane(v.normal_xy), hn::GetLane(v.normal_z_weight),
-              hn::GetLane(v.scaled_offset)};
-}
-
-#else
-
-/// Transposes the 4 x 4 words in each 128-bit block of four vectors.
-HWY_INLINE SampleVectors Transpose(VF r0, VF r1, VF r2, VF r3) {
-  const hn::Repartition<double, D> dd;
-  const auto pairs = [&](VF v) { return hn::BitCast(dd, v); };
-  const auto low0 = pairs(hn::InterleaveLower(d, r0, r1));
-  const auto high0 = pairs(hn::InterleaveUpper(d, r0, r1));
-  const auto low1 = pairs(hn::InterleaveLower(d, r2, r3));
-  const auto high1 = pairs(hn::InterleaveUpper(d, r2, r3));
-  return {hn::BitCast(d, hn::InterleaveLower(dd, low0, low1)),
-          hn::BitCast(di, hn::InterleaveUpper(dd, low0, low1)),
-          hn::BitCast(di, hn::InterleaveLower(dd, high0, high1)),
-          hn::BitCast(d, hn::InterleaveUpper(dd, high0, high1))};
-}
-
-/// One load of 16 bytes per lane and a transposition are several times faster than four gathers.
-HWY_INLINE SampleVectors GatherSamples(const DepthSample* samples, const std::int32_t* pixels) {
-  constexpr int kBlocks = static_cast<int>(hn::MaxLanes(d)) / 4;
-  HWY_ALIGN float buffer[4][4 * kBlocks];
-  const hn::Full128<float> d4;
-  for (int block = 0; block < kBlocks; ++block) {
-    for (int row = 0; row < 4; ++row) {
-      const float* sample = &samples[pixels[4 * block + row]].depth_m;
-      hn::Store(hn::LoadU(d4, sample), d4, &buffer[row][4 * block]);
-    }
-  }
-  return Transpose(hn::Load(d, buffer[0]), hn::Load(d, buffer[1]), hn::Load(d, buffer[2]),
-                   hn::Load(d, buffer[3]));
-}
-
-HWY_INLINE void StoreSamples(const SampleVectors& v, DepthSample* samples) {
-  hn::StoreInterleaved4(v.depth, hn::BitCast(d, v.normal_xy), hn::BitCast(d, v.normal_z_weight),
-                        v.scaled_offset, d, &samples->depth_m);
-}
-
-#endif
-
-HWY_INLINE SampleVectors PackSamples(VF depth, VF nx, VF ny, VF nz, VF px, VF py, VF weight) {
+HWY_INLINE RecordVectors PackSamples(VF depth, VF nx, VF ny, VF nz, VF px, VF py, VF weight) {
   const VF scale = hn::Set(d, DepthSample::kNormalScale);
   const VI ix = hn::NearestInt(hn::Mul(nx, scale));
   const VI iy = hn::NearestInt(hn::Mul(ny, scale));
   const VI iz = hn::NearestInt(hn::Mul(nz, scale));
   const VI iw = hn::NearestInt(hn::Mul(weight, hn::Set(d, DepthSample::kWeightScale)));
-  SampleVectors v;
-  v.depth = depth;
-  v.normal_xy = hn::Or(hn::ShiftLeft<16>(iy), hn::And(ix, hn::Set(di, 0xFFFF)));
-  v.normal_z_weight = hn::Or(hn::ShiftLeft<16>(iz), iw);
-  v.scaled_offset =
+  const VF scaled_offset =
       hn::MulAdd(hn::ConvertTo(d, ix), px,
                  hn::MulAdd(hn::ConvertTo(d, iy), py, hn::Mul(hn::ConvertTo(d, iz), depth)));
-  return v;
+  return {{depth, hn::BitCast(d, hn::Or(hn::ShiftLeft<16>(iy), hn::And(ix, hn::Set(di, 0xFFFF)))),
+           hn::BitCast(d, hn::Or(hn::ShiftLeft<16>(iz), iw)), scaled_offset}};
 }
 
 void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
@@ -115,7 +53,6 @@ void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
   const VF zero = hn::Zero(d);
   const VF one = hn::Set(d, 1.0F);
   const VF ray_y = hn::Set(d, a.ray_y);
-  HWY_ALIGN DepthSample tail[hn::MaxLanes(d)];
   for (int x = 0; x < a.width; x += lanes) {
     const bool whole = x + lanes <= a.width;
     const MF in_row = hn::FirstN(d, static_cast<std::size_t>(a.width - x));
@@ -143,15 +80,11 @@ void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
     const VF depth_weight = hn::Min(hn::Max(hn::Mul(ratio, ratio), hn::Set(d, kMinWeight)), one);
     const VF weight = hn::Mul(
         depth_weight, hn::IfThenElse(facing, hn::Min(cosine, one), hn::Set(d, kEdgeWeight)));
-    const SampleVectors v = PackSamples(
-        depth, hn::IfThenElse(facing, nx, to_camera_x), hn::IfThenElse(facing, ny, to_camera_y),
-        hn::IfThenElse(facing, nz, shortening), px, py, hn::IfThenElseZero(seen, weight));
-    if (whole) {
-      StoreSamples(v, samples + x);
-    } else {
-      StoreSamples(v, tail);
-      std::memcpy(samples + x, tail, sizeof(DepthSample) * static_cast<std::size_t>(a.width - x));
-    }
+    StoreRecords(
+        PackSamples(depth, hn::IfThenElse(facing, nx, to_camera_x),
+                    hn::IfThenElse(facing, ny, to_camera_y), hn::IfThenElse(facing, nz, shortening),
+                    px, py, hn::IfThenElseZero(seen, weight)),
+        static_cast<std::size_t>(a.width - x), samples + x);
   }
 }
 
@@ -269,19 +202,23 @@ bool IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uin
       hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, nowhere), di, pixels + i);
     }
     for (int i = 0; i < kLayer; i += lanes) {
-      const SampleVectors s = GatherSamples(a.samples, pixels + i);
+      const RecordVectors sample = GatherRecords(a.samples, pixels + i);
+      const VF depth = sample.word[0];
+      const VI normal_xy = hn::BitCast(di, sample.word[1]);
+      const VI normal_z_weight = hn::BitCast(di, sample.word[2]);
+      const VF scaled_offset = sample.word[3];
       const VI word = hn::LoadU(di, words + i);
       const VF px = hn::Add(origin_x, hn::Load(d, along_x + i));
       const VF py = hn::Add(origin_y, hn::Load(d, along_y + i));
       const VF pz = hn::Add(origin_z, hn::Load(d, along_z + i));
-      const VF weight = hn::Mul(hn::ConvertTo(d, hn::And(s.normal_z_weight, hn::Set(di, 0xFFFF))),
+      const VF weight = hn::Mul(hn::ConvertTo(d, hn::And(normal_z_weight, hn::Set(di, 0xFFFF))),
                                 hn::Set(d, 1.0F / DepthSample::kWeightScale));
-      const VF along_ray = hn::Sub(s.depth, pz);
-      const VF nx = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(s.normal_xy)));
-      const VF ny = hn::ConvertTo(d, hn::ShiftRight<16>(s.normal_xy));
-      const VF nz = hn::ConvertTo(d, hn::ShiftRight<16>(s.normal_z_weight));
+      const VF along_ray = hn::Sub(depth, pz);
+      const VF nx = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(normal_xy)));
+      const VF ny = hn::ConvertTo(d, hn::ShiftRight<16>(normal_xy));
+      const VF nz = hn::ConvertTo(d, hn::ShiftRight<16>(normal_z_weight));
       const VF distance = hn::Mul(
-          hn::MulAdd(nx, px, hn::MulAdd(ny, py, hn::MulSub(nz, pz, s.scaled_offset))), to_tsdf);
+          hn::MulAdd(nx, px, hn::MulAdd(ny, py, hn::MulSub(nz, pz, scaled_offset))), to_tsdf);
       // Far in front along the ray counts as free whatever the plane's tilt; behind the band is
       // unknown.
       const MF is_free = hn::Gt(along_ray, double_truncation);

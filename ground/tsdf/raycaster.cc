@@ -110,7 +110,7 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
   far_vox_.assign(count, 0.0F);
   const VoxelGrid& grid = volume.grid();
   const BlockToCamera to_camera(grid, T_world_camera.inverse());
-  const float radius = BlockRadius(grid);
+  const Eigen::Vector3f half = to_camera.HalfExtent();
   const auto inverse_voxel = static_cast<float>(1.0 / grid.voxel_size_m);
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
@@ -121,24 +121,25 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
   };
   // A ray ends where it comes from an observed voxel before the surface into one behind it: start
   // early enough to meet the former.
-  constexpr float kLeadVox = 3.0F;
+  constexpr float kLeadVox = 1.5F;
   for (const std::int32_t block : visible_.Find(volume, camera, T_world_camera)) {
     if (!volume.may_end_rays(block)) continue;
     const Eigen::Vector3f p = to_camera.Centre(volume.block_coordinates(block));
-    const float near = std::max(p.z() - radius, 0.0F);
+    const float near = p.z() - half.z();
     const float near_vox = std::max(near * inverse_voxel - kLeadVox, 0.0F);
-    const float far_vox = (p.z() + radius) * inverse_voxel;
+    const float far_vox = (p.z() + half.z()) * inverse_voxel;
     int x0 = 0, y0 = 0, x1 = tiles_x_ - 1, y1 = tiles_y_ - 1;
-    if (near > radius) {
-      // The sphere around the block projects into this rectangle (the nearest depth gives the
-      // largest extent).
-      const float extent = radius * 1.5F / near;
-      const float u = fx * p.x() / p.z() + cx;
-      const float v = fy * p.y() / p.z() + cy;
-      x0 = tile_of(u - fx * extent, tiles_x_);
-      y0 = tile_of(v - fy * extent, tiles_y_);
-      x1 = tile_of(u + fx * extent, tiles_x_);
-      y1 = tile_of(v + fy * extent, tiles_y_);
+    if (near > half.z()) {
+      // Of the box around the block, the face nearer to the image's centre spreads least.
+      const float inverse_near = 1.0F / near;
+      const float inverse_far = 1.0F / (p.z() + half.z());
+      const auto project = [&](float low, float high, float f, float c, int tiles, int& first,
+                               int& last) {
+        first = tile_of(f * low * (low < 0.0F ? inverse_near : inverse_far) + c, tiles);
+        last = tile_of(f * high * (high > 0.0F ? inverse_near : inverse_far) + c, tiles);
+      };
+      project(p.x() - half.x(), p.x() + half.x(), fx, cx, tiles_x_, x0, x1);
+      project(p.y() - half.y(), p.y() + half.y(), fy, cy, tiles_y_, y0, y1);
     }
     for (int y = y0; y <= y1; ++y) {
       for (int x = x0; x <= x1; ++x) {

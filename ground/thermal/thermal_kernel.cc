@@ -1,0 +1,324 @@
+// The inner loops of thermal fusion in SIMD lanes. Compiled once per instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ground/thermal/thermal_kernel.cc"
+#include <hwy/foreach_target.h>  // Must come before highway.h.
+//
+#include <hwy/highway.h>
+
+#include <limits>
+
+#include "ground/thermal/thermal_kernel.h"
+#include "ground/tsdf/record_gather-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace isotherm::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<float>;
+using DI = hn::RebindToSigned<D>;
+using VF = hn::Vec<D>;
+using VI = hn::Vec<DI>;
+using MF = hn::Mask<D>;
+using MI = hn::Mask<DI>;
+
+constexpr D d;
+constexpr DI di;
+
+// ThermalVoxel's layout.
+constexpr float kMinCelsius = -100.0F;
+constexpr float kStepsPerKelvin = 40.0F;
+constexpr float kMaxCode = 65535.0F;
+
+// ConditionClass.
+constexpr std::int32_t kGood = 1;
+constexpr std::int32_t kAcceptable = 2;
+
+void ResampleRow(const ResampleRowArgs& a, float* out) {
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const VF none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  for (int x = 0; x < a.width; x += lanes) {
+    const auto count = static_cast<std::size_t>(a.width - x);
+    const MF in_row = hn::FirstN(d, count);
+    const bool whole = x + lanes <= a.width;
+    const VI source = whole ? hn::LoadU(di, a.source + x)
+                            : hn::MaskedLoad(hn::FirstN(di, count), di, a.source + x);
+    const VF fx =
+        whole ? hn::LoadU(d, a.fraction_x + x) : hn::MaskedLoad(in_row, d, a.fraction_x + x);
+    const VF fy =
+        whole ? hn::LoadU(d, a.fraction_y + x) : hn::MaskedLoad(in_row, d, a.fraction_y + x);
+    const MI inside = hn::Gt(source, hn::Set(di, -1));
+    const VI upper = hn::IfThenElseZero(inside, source);
+    const VI lower = hn::Add(upper, hn::Set(di, a.stride));
+    const VF p00 = hn::GatherIndex(d, a.picture, upper);
+    const VF p10 = hn::GatherIndex(d, a.picture + 1, upper);
+    const VF p01 = hn::GatherIndex(d, a.picture, lower);
+    const VF p11 = hn::GatherIndex(d, a.picture + 1, lower);
+    const VF above = hn::MulAdd(fx, hn::Sub(p10, p00), p00);
+    const VF below = hn::MulAdd(fx, hn::Sub(p11, p01), p01);
+    const VF value = hn::IfThenElse(hn::RebindMask(d, inside),
+                                    hn::MulAdd(fy, hn::Sub(below, above), above), none);
+    if (whole) {
+      hn::StoreU(value, d, out + x);
+    } else {
+      hn::BlendedStore(value, in_row, d, out + x);
+    }
+  }
+}
+
+void DistanceRow(const float* vx, const float* vy, const float* vz, const float* position,
+                 std::int32_t width, float* distance_m) {
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const VF far = hn::Set(d, std::numeric_limits<float>::max());
+  for (int x = 0; x < width; x += lanes) {
+    const MF in_row = hn::FirstN(d, static_cast<std::size_t>(width - x));
+    const bool whole = x + lanes <= width;
+    const auto offset = [&](const float* row, int axis) {
+      return hn::Sub(whole ? hn::LoadU(d, row + x) : hn::MaskedLoad(in_row, d, row + x),
+                     hn::Set(d, position[axis]));
+    };
+    const VF dx = offset(vx, 0);
+    const VF dy = offset(vy, 1);
+    const VF dz = offset(vz, 2);
+    const VF squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    const VF distance =
+        hn::IfThenElse(hn::Ge(squared, hn::Zero(d)), hn::Sqrt(squared), far);  // NaN: far.
+    if (whole) {
+      hn::StoreU(distance, d, distance_m + x);
+    } else {
+      hn::BlendedStore(distance, in_row, d, distance_m + x);
+    }
+  }
+}
+
+HWY_INLINE VI Classify(MF good, MF acceptable) {
+  return hn::IfThenElse(
+      hn::RebindMask(di, good), hn::Set(di, kGood),
+      hn::IfThenElseZero(hn::RebindMask(di, acceptable), hn::Set(di, kAcceptable)));
+}
+
+std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const VF zero = hn::Zero(d);
+  const VF one = hn::Set(d, 1.0F);
+  std::int64_t hidden = 0;
+  for (int x = 0; x < a.width; x += lanes) {
+    const auto count = static_cast<std::size_t>(a.width - x);
+    const MF in_row = hn::FirstN(d, count);
+    const bool whole = x + lanes <= a.width;
+    const auto load = [&](const float* row) {
+      return whole ? hn::LoadU(d, row + x) : hn::MaskedLoad(in_row, d, row + x);
+    };
+    const VF px = load(a.vx);
+    const VF py = load(a.vy);
+    const VF pz = load(a.vz);
+    const VF depth =
+        hn::MulAdd(hn::Set(d, a.z_axis[0]), px,
+                   hn::MulAdd(hn::Set(d, a.z_axis[1]), py,
+                              hn::MulAdd(hn::Set(d, a.z_axis[2]), pz, hn::Set(d, a.z_axis[3]))));
+    const MF surface = hn::And(in_row, hn::Gt(depth, zero));  // False for NaN.
+
+    // Seen by the depth camera's pyramid of view: what no depth frame covers may be hidden by
+    // something that was never measured.
+    const auto to_depth = [&](int row) {
+      const float* R = a.R_depth + 3 * row;
+      return hn::MulAdd(hn::Set(d, R[0]), px,
+                        hn::MulAdd(hn::Set(d, R[1]), py,
+                                   hn::MulAdd(hn::Set(d, R[2]), pz, hn::Set(d, a.t_depth[row]))));
+    };
+    const VF z = to_depth(2);
+    const VF inverse_z = hn::Div(one, z);
+    const VF u = hn::MulAdd(hn::Mul(to_depth(0), inverse_z), hn::Set(d, a.depth_fx),
+                            hn::Set(d, a.depth_cx + 0.5F));
+    const VF v = hn::MulAdd(hn::Mul(to_depth(1), inverse_z), hn::Set(d, a.depth_fy),
+                            hn::Set(d, a.depth_cy + 0.5F));
+    MF seen = hn::And(surface, hn::Gt(z, zero));
+    seen = hn::And(seen, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, a.depth_width))));
+    seen = hn::And(seen, hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, a.depth_height))));
+
+    const VF distance = load(a.distance_m);
+    VF nearest = distance;
+    for (int row = -a.margin; row <= a.margin; ++row) {
+      for (int column = -a.margin; column <= a.margin; ++column) {
+        nearest = hn::Min(nearest, load(a.distance_m + row * a.distance_stride + column));
+      }
+    }
+    // A slanted surface covers a range of distances within the margin.
+    const MF occluded = hn::Gt(hn::Sub(distance, nearest), hn::Set(d, a.occlusion_tolerance_m));
+    hidden += static_cast<std::int64_t>(hn::CountTrue(d, hn::And(seen, occluded)));
+
+    const VF to_camera_x = hn::Sub(hn::Set(d, a.position[0]), px);
+    const VF to_camera_y = hn::Sub(hn::Set(d, a.position[1]), py);
+    const VF to_camera_z = hn::Sub(hn::Set(d, a.position[2]), pz);
+    const VF along =
+        hn::MulAdd(load(a.nx), to_camera_x,
+                   hn::MulAdd(load(a.ny), to_camera_y, hn::Mul(load(a.nz), to_camera_z)));
+    const VF cosine = hn::Min(hn::Div(along, distance), one);
+    const VI distance_class = Classify(hn::And(hn::Ge(distance, hn::Set(d, a.distance_min_m)),
+                                               hn::Le(distance, hn::Set(d, a.distance_good_m))),
+                                       hn::And(hn::Ge(distance, hn::Set(d, a.distance_min_m)),
+                                               hn::Le(distance, hn::Set(d, a.distance_max_m))));
+    const VI angle_class = Classify(hn::And(hn::Le(cosine, hn::Set(d, a.cosine_min_angle)),
+                                            hn::Ge(cosine, hn::Set(d, a.cosine_good_angle))),
+                                    hn::And(hn::Le(cosine, hn::Set(d, a.cosine_min_angle)),
+                                            hn::Ge(cosine, hn::Set(d, a.cosine_max_angle))));
+
+    const VF celsius = load(a.celsius);
+    const MF has_value = hn::Eq(celsius, celsius);
+    const auto slope = [&](const float* before, const float* after) {
+      const VF half =
+          hn::Mul(hn::Sub(load(after), load(before)), hn::Set(d, 0.5F * ThermalPixel::kSlopeScale));
+      const VF limit = hn::Set(d, 32767.0F);
+      return hn::NearestInt(
+          hn::IfThenElseZero(hn::Eq(half, half), hn::Max(hn::Min(half, limit), hn::Neg(limit))));
+    };
+    const VI slope_u = slope(a.celsius - 1, a.celsius + 1);
+    const VI slope_v = slope(a.celsius - a.celsius_stride, a.celsius + a.celsius_stride);
+
+    const MF assignable =
+        hn::And(hn::AndNot(occluded, seen), hn::And(has_value, hn::Gt(cosine, zero)));
+    const auto flag = [&](MF condition, std::int32_t bit) {
+      return hn::IfThenElseZero(hn::RebindMask(di, condition), hn::Set(di, bit));
+    };
+    const VI flags =
+        hn::Or(hn::Or(flag(seen, ThermalPixel::kSeen), flag(assignable, ThermalPixel::kAssignable)),
+               hn::Or(hn::ShiftLeft<4>(distance_class), angle_class));
+    StoreRecords(
+        {{hn::IfThenElseZero(surface, depth), hn::IfThenElseZero(has_value, celsius),
+          hn::BitCast(d, hn::Or(hn::ShiftLeft<16>(slope_v), hn::And(slope_u, hn::Set(di, 0xFFFF)))),
+          hn::BitCast(d, flags)}},
+        count, pixels + x);
+  }
+  return hidden;
+}
+
+void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
+               std::uint32_t* thermal, FusionKernelCounts& counts) {
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const auto* distances = reinterpret_cast<const std::int32_t*>(tsdf);
+  auto* temperatures = reinterpret_cast<std::int32_t*>(thermal);
+  const VF zero = hn::Zero(d);
+  const VF one = hn::Set(d, 1.0F);
+  const VI seven = hn::Set(di, 7);
+  const VI low_half = hn::Set(di, 0xFFFF);
+  HWY_ALIGN std::int32_t pixels[hn::MaxLanes(d)];
+  for (int i = 0; i < 512; i += lanes) {
+    const VI word = hn::LoadU(di, distances + i);
+    const MI near =
+        hn::And(hn::Gt(hn::And(word, low_half), hn::Zero(di)),
+                hn::Lt(hn::Abs(hn::ShiftRight<16>(word)), hn::Set(di, a.max_tsdf_code + 1)));
+    if (hn::AllFalse(di, near)) continue;
+    const VI index = hn::Iota(di, i);
+    const VF x = hn::ConvertTo(d, hn::And(index, seven));
+    const VF y = hn::ConvertTo(d, hn::And(hn::ShiftRight<3>(index), seven));
+    const VF z = hn::ConvertTo(d, hn::ShiftRight<6>(index));
+    const auto coordinate = [&](int row) {
+      const float* axis = a.axes + 3 * row;
+      return hn::MulAdd(hn::Set(d, axis[0]), x,
+                        hn::MulAdd(hn::Set(d, axis[1]), y,
+                                   hn::MulAdd(hn::Set(d, axis[2]), z, hn::Set(d, first[row]))));
+    };
+    const VF px = coordinate(0);
+    const VF py = coordinate(1);
+    const VF pz = coordinate(2);
+    const VF inverse_z = hn::Div(one, pz);
+    const VF u = hn::MulAdd(hn::Mul(px, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx));
+    const VF v = hn::MulAdd(hn::Mul(py, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy));
+    const VF half = hn::Set(d, 0.5F);
+    const VF column = hn::Floor(hn::Add(u, half));
+    const VF row = hn::Floor(hn::Add(v, half));
+    const MF inside = hn::And(
+        hn::And(hn::RebindMask(d, near), hn::Gt(pz, zero)),
+        hn::And(
+            hn::And(hn::Ge(column, zero), hn::Lt(column, hn::Set(d, static_cast<float>(a.width)))),
+            hn::And(hn::Ge(row, zero), hn::Lt(row, hn::Set(d, static_cast<float>(a.height))))));
+    if (hn::AllFalse(d, inside)) continue;
+    const VI pixel =
+        hn::Add(hn::Mul(hn::ConvertTo(di, hn::IfThenElseZero(inside, row)), hn::Set(di, a.width)),
+                hn::ConvertTo(di, hn::IfThenElseZero(inside, column)));
+    hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, hn::Set(di, a.width * a.height)),
+              di, pixels);
+    const RecordVectors record = GatherRecords(a.pixels, pixels);
+    const VF depth = record.word[0];
+    const VI flags = hn::BitCast(di, record.word[3]);
+
+    // Distance between the voxel and the vertex that the pixel shows (algorithm 5).
+    const VF vertex_x =
+        hn::Mul(hn::Mul(hn::Sub(column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx)), depth);
+    const VF vertex_y =
+        hn::Mul(hn::Mul(hn::Sub(row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy)), depth);
+    const VF dx = hn::Sub(px, vertex_x);
+    const VF dy = hn::Sub(py, vertex_y);
+    const VF dz = hn::Sub(pz, depth);
+    const VF squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+    const auto has = [&](std::int32_t bit) {
+      return hn::Ne(hn::And(flags, hn::Set(di, bit)), hn::Zero(di));
+    };
+    const MI on_surface = hn::And(
+        hn::RebindMask(
+            di, hn::And(inside, hn::Lt(squared, hn::Set(d, a.max_distance_m * a.max_distance_m)))),
+        has(ThermalPixel::kSeen));
+    if (hn::AllFalse(di, on_surface)) continue;
+    counts.considered += static_cast<std::int64_t>(hn::CountTrue(di, on_surface));
+    MI assign = hn::And(on_surface, has(ThermalPixel::kAssignable));
+
+    const VI old = hn::LoadU(di, temperatures + i);
+    const VI key = hn::And(flags, hn::Set(di, 0xFF));
+    if (a.validate) {
+      const auto both_valid = [&](VI classes) {
+        return hn::And(hn::Ne(hn::And(classes, hn::Set(di, 0x0F)), hn::Zero(di)),
+                       hn::Ne(hn::And(classes, hn::Set(di, 0xF0)), hn::Zero(di)));
+      };
+      const VI old_key = hn::And(old, hn::Set(di, 0xFF));
+      // A measured voxel's code is not 0; a voxel never measured has no valid classes either.
+      const MI keep_old =
+          hn::And(both_valid(old_key), hn::Or(hn::Not(both_valid(key)), hn::Gt(key, old_key)));
+      assign = hn::AndNot(keep_old, assign);
+    }
+    if (hn::AllFalse(di, assign)) continue;
+    counts.assigned += static_cast<std::int64_t>(hn::CountTrue(di, assign));
+    // To first order between pixel centres.
+    const VI slopes = hn::BitCast(di, record.word[2]);
+    const VF slope_u = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(slopes)));
+    const VF slope_v = hn::ConvertTo(d, hn::ShiftRight<16>(slopes));
+    const VF change = hn::MulAdd(slope_u, hn::Sub(u, column), hn::Mul(slope_v, hn::Sub(v, row)));
+    const VF celsius =
+        hn::MulAdd(change, hn::Set(d, 1.0F / ThermalPixel::kSlopeScale), record.word[1]);
+    const VF code =
+        hn::MulAdd(hn::Sub(celsius, hn::Set(d, kMinCelsius)), hn::Set(d, kStepsPerKelvin), one);
+    const VI stored = hn::NearestInt(hn::Min(hn::Max(code, one), hn::Set(d, kMaxCode)));
+    hn::StoreU(hn::IfThenElse(assign, hn::Or(hn::ShiftLeft<16>(stored), key), old), di,
+               temperatures + i);
+  }
+}
+
+}  // namespace isotherm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isotherm {
+
+HWY_EXPORT(ResampleRow);
+HWY_EXPORT(DistanceRow);
+HWY_EXPORT(MakePixelRow);
+HWY_EXPORT(FuseBlock);
+
+void ResampleRow(const ResampleRowArgs& args, float* out) {
+  HWY_DYNAMIC_DISPATCH(ResampleRow)(args, out);
+}
+
+void DistanceRow(const float* vx, const float* vy, const float* vz, const float* position,
+                 std::int32_t width, float* distance_m) {
+  HWY_DYNAMIC_DISPATCH(DistanceRow)(vx, vy, vz, position, width, distance_m);
+}
+
+std::int64_t MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels) {
+  return HWY_DYNAMIC_DISPATCH(MakePixelRow)(args, pixels);
+}
+
+void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
+               std::uint32_t* thermal, FusionKernelCounts& counts) {
+  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, first, tsdf, thermal, counts);
+}
+
+}  // namespace isotherm
+#endif  // HWY_ONCE
