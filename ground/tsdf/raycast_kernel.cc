@@ -179,19 +179,28 @@ struct Crossing {
 };
 
 /// Marches until the nearest voxel's distance changes from positive to negative.
-HWY_INLINE Crossing March(const RaycastKernelArgs& a, const Rays& rays, VF start, VF end) {
-  const VF zero = hn::Zero(d);
-  const VF half = hn::Set(d, 0.5F);
-  const VF voxel_step = hn::Div(hn::Set(d, 1.0F), rays.length);
-  const VF safe_step = hn::Mul(voxel_step, hn::Set(d, 0.8F * a.truncation_vox));
-  const VI seven = hn::Set(di, 7);
-  VF depth = start;
-  VF previous_depth = zero;
-  VF previous = zero;  // Not positive: no crossing can start here.
-  Crossing crossing{zero, hn::MaskFromVec(zero)};
-  MF active = hn::Lt(start, end);
-  while (!hn::AllFalse(d, active)) {
-    const Point p = rays.At(depth);
+class March {
+ public:
+  HWY_INLINE March(const RaycastKernelArgs& a, const Rays& rays, VF start, VF end)
+      : rays_(rays),
+        end_(end),
+        voxel_step_(hn::Div(hn::Set(d, 1.0F), rays.length)),
+        safe_step_(hn::Mul(voxel_step_, hn::Set(d, 0.8F * a.truncation_vox))),
+        depth_(start),
+        previous_depth_(hn::Zero(d)),
+        previous_(hn::Zero(d)),
+        crossing_(hn::Zero(d)),
+        found_(hn::MaskFromVec(hn::Zero(d))),
+        active_(hn::Lt(start, end)) {}
+
+  HWY_INLINE bool done() const { return hn::AllFalse(d, active_); }
+  HWY_INLINE Crossing crossing() const { return {crossing_, found_}; }
+
+  HWY_INLINE void Step(const RaycastKernelArgs& a) {
+    const VF zero = hn::Zero(d);
+    const VF half = hn::Set(d, 0.5F);
+    const VI seven = hn::Set(di, 7);
+    const Point p = rays_.At(depth_);
     const VI x = ToVoxel(hn::Add(p.x, half), a.last[0]);
     const VI y = ToVoxel(hn::Add(p.y, half), a.last[1]);
     const VI z = ToVoxel(hn::Add(p.z, half), a.last[2]);
@@ -207,31 +216,77 @@ HWY_INLINE Crossing March(const RaycastKernelArgs& a, const Rays& rays, VF start
     const MF in_block = hn::RebindMask(d, hn::Gt(block, hn::Set(di, -1)));
     const MF observed = hn::RebindMask(d, Observed(a, word));
     const VF value = DecodeTsdf(word);
-    const MF behind = hn::And(active, hn::And(observed, hn::Le(value, zero)));
-    const MF hit = hn::And(behind, hn::Gt(previous, zero));
-    const VF share = hn::Div(previous, hn::Max(hn::Sub(previous, value), hn::Set(d, 1e-9F)));
-    crossing.depth = hn::IfThenElse(
-        hit, hn::MulAdd(share, hn::Sub(depth, previous_depth), previous_depth), crossing.depth);
-    crossing.found = hn::Or(crossing.found, hit);
+    const MF behind = hn::And(active_, hn::And(observed, hn::Le(value, zero)));
+    const MF hit = hn::And(behind, hn::Gt(previous_, zero));
+    const VF share = hn::Div(previous_, hn::Max(hn::Sub(previous_, value), hn::Set(d, 1e-9F)));
+    crossing_ = hn::IfThenElse(
+        hit, hn::MulAdd(share, hn::Sub(depth_, previous_depth_), previous_depth_), crossing_);
+    found_ = hn::Or(found_, hit);
     // A surface entered from behind (or whose front was never observed) hides what lies beyond it.
-    active = hn::AndNot(behind, active);
+    active_ = hn::AndNot(behind, active_);
 
-    previous = hn::IfThenElse(observed, value, hn::IfThenElse(in_block, previous, zero));
-    previous_depth = hn::IfThenElse(observed, depth, previous_depth);
-    const VF free_step = hn::Max(voxel_step, hn::Mul(safe_step, value));
-    VF next = hn::Add(depth, hn::IfThenElse(observed, free_step, voxel_step));
-    if (!hn::AllFalse(d, hn::AndNot(in_block, active))) {
-      VF exit = AxisExit(bx, a.origin[0], rays.direction.x, rays.inverse.x);
-      exit = hn::Min(exit, AxisExit(by, a.origin[1], rays.direction.y, rays.inverse.y));
-      exit = hn::Min(exit, AxisExit(bz, a.origin[2], rays.direction.z, rays.inverse.z));
-      exit = hn::MulAdd(voxel_step, hn::Set(d, 0.01F), hn::Max(exit, depth));
+    previous_ = hn::IfThenElse(observed, value, hn::IfThenElseZero(in_block, previous_));
+    previous_depth_ = hn::IfThenElse(observed, depth_, previous_depth_);
+    const VF free_step = hn::Max(voxel_step_, hn::Mul(safe_step_, value));
+    VF next = hn::Add(depth_, hn::IfThenElse(observed, free_step, voxel_step_));
+    if (!hn::AllFalse(d, hn::AndNot(in_block, active_))) {
+      VF exit = AxisExit(bx, a.origin[0], rays_.direction.x, rays_.inverse.x);
+      exit = hn::Min(exit, AxisExit(by, a.origin[1], rays_.direction.y, rays_.inverse.y));
+      exit = hn::Min(exit, AxisExit(bz, a.origin[2], rays_.direction.z, rays_.inverse.z));
+      exit = hn::MulAdd(voxel_step_, hn::Set(d, 0.01F), hn::Max(exit, depth_));
       next = hn::IfThenElse(in_block, next, exit);
     }
-    depth = next;
-    active = hn::And(active, hn::Lt(depth, end));
+    depth_ = next;
+    active_ = hn::And(active_, hn::Lt(depth_, end_));
   }
-  return crossing;
-}
+
+ private:
+  const Rays& rays_;
+  const VF end_;
+  const VF voxel_step_;
+  const VF safe_step_;  ///< Where the distance is 1.
+  VF depth_;
+  VF previous_depth_;  ///< Of the last observed voxel,
+  VF previous_;        ///< and its distance. Not positive: no crossing can start there.
+  VF crossing_;
+  MF found_;
+  MF active_;
+};
+
+/// Rays of 4 x n pixels, and how far they go.
+struct Bundle {
+  Rays rays;
+  VF start, end;
+
+  HWY_INLINE Bundle(const RaycastKernelArgs& a, int x, int y, int width, int height, float near_vox,
+                    float far_vox) {
+    const VF one = hn::Set(d, 1.0F);
+    const VI lane = hn::Iota(di, 0);
+    const VF column = hn::Add(hn::ConvertTo(d, hn::And(lane, hn::Set(di, kLaneColumns - 1))),
+                              hn::Set(d, static_cast<float>(x)));
+    const VF row = hn::Add(hn::ConvertTo(d, hn::ShiftRight<kLaneColumnsLog2>(lane)),
+                           hn::Set(d, static_cast<float>(y)));
+    const MF in_image = hn::And(hn::Lt(column, hn::Set(d, static_cast<float>(width))),
+                                hn::Lt(row, hn::Set(d, static_cast<float>(height))));
+    const VF u = hn::Mul(hn::Sub(column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
+    const VF v = hn::Mul(hn::Sub(row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy));
+    const auto rotate = [&](int i) {
+      return NotZero(
+          hn::MulAdd(hn::Set(d, a.R[3 * i]), u,
+                     hn::MulAdd(hn::Set(d, a.R[3 * i + 1]), v, hn::Set(d, a.R[3 * i + 2]))));
+    };
+    rays.origin = a.origin;
+    rays.direction = {rotate(0), rotate(1), rotate(2)};
+    rays.inverse = {hn::Div(one, rays.direction.x), hn::Div(one, rays.direction.y),
+                    hn::Div(one, rays.direction.z)};
+    rays.length = hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one)));
+    start = hn::Set(d, near_vox);
+    end = hn::IfThenElse(in_image, hn::Set(d, far_vox), start);
+    ClipToAxis(a.low, a.high[0], a.origin[0], rays.inverse.x, start, end);
+    ClipToAxis(a.low, a.high[1], a.origin[1], rays.inverse.y, start, end);
+    ClipToAxis(a.low, a.high[2], a.origin[2], rays.inverse.z, start, end);
+  }
+};
 
 struct Surface {
   VF depth;
@@ -241,16 +296,19 @@ struct Surface {
 
 /// Finds the zero crossing of the interpolated distance near the change of sign by Newton steps
 /// along the ray.
-HWY_INLINE Surface Refine(const RaycastKernelArgs& a, const Rays& rays, const Crossing& crossing,
-                          VF start, VF end) {
+HWY_INLINE Surface Refine(const RaycastKernelArgs& a, const Bundle& bundle,
+                          const Crossing& crossing) {
   const VF zero = hn::Zero(d);
+  const Rays& rays = bundle.rays;
   const VF voxel_step = hn::Div(hn::Set(d, 1.0F), rays.length);
   const VF max_step = hn::Mul(voxel_step, hn::Set(d, kMaxStepVox));
   const VF converged = hn::Mul(voxel_step, hn::Set(d, kConvergedVox));
-  Surface surface{
-      hn::IfThenElse(crossing.found, crossing.depth, start), {zero, zero, zero}, crossing.found};
+  Surface surface{hn::IfThenElse(crossing.found, crossing.depth, bundle.start),
+                  {zero, zero, zero},
+                  crossing.found};
+  if (hn::AllFalse(d, crossing.found)) return surface;
   for (int i = 0; i < kMaxRefinements; ++i) {
-    surface.depth = hn::Min(hn::Max(surface.depth, start), end);
+    surface.depth = hn::Min(hn::Max(surface.depth, bundle.start), bundle.end);
     const Interpolated f = Interpolate(a, rays.At(surface.depth));
     const VF slope = Dot(f.gradient, rays.direction);
     const MF facing = hn::Lt(slope, hn::Set(d, -1e-6F));
@@ -279,6 +337,37 @@ void ClearTile(SurfaceMaps& maps, int x, int y) {
   }
 }
 
+/// Writes what the rays of a bundle met to all planes.
+HWY_INLINE void WriteSurface(const RaycastKernelArgs& a, const Rays& rays, const Surface& surface,
+                             int x, int y, SurfaceMaps& maps) {
+  constexpr int kMaxRows = static_cast<int>(hn::MaxLanes(d)) / kLaneColumns;
+  const int lane_rows = static_cast<int>(hn::Lanes(d)) / kLaneColumns;
+  const VF one = hn::Set(d, 1.0F);
+  const VF least = hn::Set(d, 1e-12F);
+  const VF none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
+  const VF squared = Dot(surface.gradient, surface.gradient);
+  const MF valid = hn::And(surface.valid, hn::Gt(squared, least));
+  const VF scale = hn::Div(one, hn::Sqrt(hn::Max(squared, least)));
+  const VF metres = hn::Mul(surface.depth, hn::Set(d, a.voxel_m));
+  const VF planes[6] = {hn::MulAdd(metres, rays.direction.x, hn::Set(d, a.world_origin[0])),
+                        hn::MulAdd(metres, rays.direction.y, hn::Set(d, a.world_origin[1])),
+                        hn::MulAdd(metres, rays.direction.z, hn::Set(d, a.world_origin[2])),
+                        hn::Mul(surface.gradient.x, scale),
+                        hn::Mul(surface.gradient.y, scale),
+                        hn::Mul(surface.gradient.z, scale)};
+  Image<float>* const targets[6] = {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz};
+  const int rows = maps.height() - y < lane_rows ? maps.height() - y : lane_rows;
+  const int columns = maps.width() - x < kLaneColumns ? maps.width() - x : kLaneColumns;
+  HWY_ALIGN float out[kMaxRows * kLaneColumns];
+  for (int k = 0; k < 6; ++k) {
+    hn::Store(hn::IfThenElse(valid, planes[k], none), d, out);
+    for (int r = 0; r < rows; ++r) {
+      float* target = targets[k]->Row(y + r).data() + x;
+      for (int i = 0; i < columns; ++i) target[i] = out[r * kLaneColumns + i];
+    }
+  }
+}
+
 void RaycastTile(const RaycastKernelArgs& a, int tile_x, int tile_y, float near_vox, float far_vox,
                  SurfaceMaps& maps) {
   if (!(far_vox > near_vox)) {
@@ -287,64 +376,22 @@ void RaycastTile(const RaycastKernelArgs& a, int tile_x, int tile_y, float near_
   }
   const int width = maps.width();
   const int height = maps.height();
-  constexpr int kMaxRows = static_cast<int>(hn::MaxLanes(d)) / kLaneColumns;
   const int lane_rows = static_cast<int>(hn::Lanes(d)) / kLaneColumns;
-  const VF zero = hn::Zero(d);
-  const VF one = hn::Set(d, 1.0F);
-  const VI lane = hn::Iota(di, 0);
-  const VF lane_column = hn::ConvertTo(d, hn::And(lane, hn::Set(di, kLaneColumns - 1)));
-  const VF lane_row = hn::ConvertTo(d, hn::ShiftRight<kLaneColumnsLog2>(lane));
-  Image<float>* const targets[6] = {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz};
-  HWY_ALIGN float out[kMaxRows * kLaneColumns];
   for (int y = tile_y; y < tile_y + kRaycastTile && y < height; y += lane_rows) {
-    for (int x = tile_x; x < tile_x + kRaycastTile && x < width; x += kLaneColumns) {
-      const VF column = hn::Add(lane_column, hn::Set(d, static_cast<float>(x)));
-      const VF row = hn::Add(lane_row, hn::Set(d, static_cast<float>(y)));
-      const MF in_image = hn::And(hn::Lt(column, hn::Set(d, static_cast<float>(width))),
-                                  hn::Lt(row, hn::Set(d, static_cast<float>(height))));
-      const VF u = hn::Mul(hn::Sub(column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
-      const VF v = hn::Mul(hn::Sub(row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy));
-      const auto rotate = [&](int i) {
-        return NotZero(
-            hn::MulAdd(hn::Set(d, a.R[3 * i]), u,
-                       hn::MulAdd(hn::Set(d, a.R[3 * i + 1]), v, hn::Set(d, a.R[3 * i + 2]))));
-      };
-      Rays rays;
-      rays.origin = a.origin;
-      rays.direction = {rotate(0), rotate(1), rotate(2)};
-      rays.inverse = {hn::Div(one, rays.direction.x), hn::Div(one, rays.direction.y),
-                      hn::Div(one, rays.direction.z)};
-      rays.length = hn::Sqrt(hn::MulAdd(u, u, hn::MulAdd(v, v, one)));
-      VF start = hn::Set(d, near_vox);
-      VF end = hn::IfThenElse(in_image, hn::Set(d, far_vox), start);
-      ClipToAxis(a.low, a.high[0], a.origin[0], rays.inverse.x, start, end);
-      ClipToAxis(a.low, a.high[1], a.origin[1], rays.inverse.y, start, end);
-      ClipToAxis(a.low, a.high[2], a.origin[2], rays.inverse.z, start, end);
-      const Crossing crossing = March(a, rays, start, end);
-      Surface surface{zero, {zero, zero, zero}, hn::MaskFromVec(zero)};
-      if (!hn::AllFalse(d, crossing.found)) {
-        surface = Refine(a, rays, crossing, start, end);
+    // Marching waits for memory most of the time: two bundles side by side wait together.
+    for (int x = tile_x; x < tile_x + kRaycastTile && x < width; x += 2 * kLaneColumns) {
+      const Bundle left(a, x, y, width, height, near_vox, far_vox);
+      const Bundle right(a, x + kLaneColumns, y, width, height, near_vox, far_vox);
+      March left_march(a, left.rays, left.start, left.end);
+      March right_march(a, right.rays, right.start, right.end);
+      while (!left_march.done() || !right_march.done()) {
+        left_march.Step(a);
+        right_march.Step(a);
       }
-      const VF squared = Dot(surface.gradient, surface.gradient);
-      const MF valid = hn::And(surface.valid, hn::Gt(squared, hn::Set(d, 1e-12F)));
-      const VF scale = hn::Div(one, hn::Sqrt(hn::Max(squared, hn::Set(d, 1e-12F))));
-      const VF metres = hn::Mul(surface.depth, hn::Set(d, a.voxel_m));
-      const VF none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
-      const VF planes[6] = {hn::MulAdd(metres, rays.direction.x, hn::Set(d, a.world_origin[0])),
-                            hn::MulAdd(metres, rays.direction.y, hn::Set(d, a.world_origin[1])),
-                            hn::MulAdd(metres, rays.direction.z, hn::Set(d, a.world_origin[2])),
-                            hn::Mul(surface.gradient.x, scale),
-                            hn::Mul(surface.gradient.y, scale),
-                            hn::Mul(surface.gradient.z, scale)};
-      const int rows = height - y < lane_rows ? height - y : lane_rows;
-      const int columns = width - x < kLaneColumns ? width - x : kLaneColumns;
-      for (int k = 0; k < 6; ++k) {
-        hn::Store(hn::IfThenElse(valid, planes[k], none), d, out);
-        for (int r = 0; r < rows; ++r) {
-          float* target = targets[k]->Row(y + r).data() + x;
-          for (int i = 0; i < columns; ++i) target[i] = out[r * kLaneColumns + i];
-        }
-      }
+      WriteSurface(a, left.rays, Refine(a, left, left_march.crossing()), x, y, maps);
+      if (x + kLaneColumns >= width) break;
+      WriteSurface(a, right.rays, Refine(a, right, right_march.crossing()), x + kLaneColumns, y,
+                   maps);
     }
   }
 }

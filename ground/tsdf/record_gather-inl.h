@@ -33,27 +33,36 @@ HWY_INLINE RecordVectors GatherRecords(const void* records, const std::int32_t* 
 
 #else
 
-/// Record `indices[i]` for each lane i. One load of 16 bytes per lane and a transposition cost a
-/// quarter of four gathers.
+/// The 128-bit records `indices[0]`, `indices[4]`, `indices[8]`, ... side by side.
+HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> LoadEveryFourth(
+    const float* records, const std::int32_t* indices) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::Full128<float> d4;
+  const auto load = [&](int i) { return hn::LoadU(d4, records + 4 * std::ptrdiff_t{indices[i]}); };
+#if HWY_MAX_BYTES == 16
+  return load(0);
+#else
+  const hn::Full256<float> d8;
+  const auto low = hn::Combine(d8, load(4), load(0));
+#if HWY_MAX_BYTES == 32
+  return low;
+#else
+  return hn::Combine(hn::Full512<float>(), hn::Combine(d8, load(12), load(8)), low);
+#endif
+#endif
+}
+
+/// Record `indices[i]` for each lane i. One load of 16 bytes per lane and a transposition of 4 x 4
+/// words in each 128-bit block cost a quarter of four gathers.
 HWY_INLINE RecordVectors GatherRecords(const void* records, const std::int32_t* indices) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> d;
-  const hn::Full128<float> d4;
   const hn::Repartition<double, decltype(d)> dd;
-  constexpr int kBlocks = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>())) / 4;
-  // Row r holds records r, r + 4, r + 8, ... so that each 128-bit block is a 4 x 4 transposition.
-  HWY_ALIGN float rows[4][4 * kBlocks];
   const auto* base = static_cast<const float*>(records);
-  for (int block = 0; block < kBlocks; ++block) {
-    for (int row = 0; row < 4; ++row) {
-      const float* record = base + 4 * std::ptrdiff_t{indices[4 * block + row]};
-      hn::Store(hn::LoadU(d4, record), d4, &rows[row][4 * block]);
-    }
-  }
-  const auto r0 = hn::Load(d, rows[0]);
-  const auto r1 = hn::Load(d, rows[1]);
-  const auto r2 = hn::Load(d, rows[2]);
-  const auto r3 = hn::Load(d, rows[3]);
+  const auto r0 = LoadEveryFourth(base, indices);
+  const auto r1 = LoadEveryFourth(base, indices + 1);
+  const auto r2 = LoadEveryFourth(base, indices + 2);
+  const auto r3 = LoadEveryFourth(base, indices + 3);
   const auto low0 = hn::BitCast(dd, hn::InterleaveLower(d, r0, r1));
   const auto high0 = hn::BitCast(dd, hn::InterleaveUpper(d, r0, r1));
   const auto low1 = hn::BitCast(dd, hn::InterleaveLower(d, r2, r3));
