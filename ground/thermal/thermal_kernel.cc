@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "ground/thermal/thermal_kernel.h"
-#include "ground/tsdf/record_gather-inl.h"
+#include "ground/tsdf/voxel_kernel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
@@ -191,91 +191,90 @@ std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
   return hidden;
 }
 
+/// Where a voxel's new temperature is no better than the one it has (algorithm 6).
+HWY_INLINE MI KeepsOld(VI old_key, VI key) {
+  const auto both_valid = [&](VI classes) {
+    return hn::And(hn::Ne(hn::And(classes, hn::Set(di, 0x0F)), hn::Zero(di)),
+                   hn::Ne(hn::And(classes, hn::Set(di, 0xF0)), hn::Zero(di)));
+  };
+  // A voxel never measured has no valid classes either.
+  return hn::And(both_valid(old_key), hn::Or(hn::Not(both_valid(key)), hn::Gt(key, old_key)));
+}
+
 void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
                std::uint32_t* thermal, FusionKernelCounts& counts) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto* distances = reinterpret_cast<const std::int32_t*>(tsdf);
   auto* temperatures = reinterpret_cast<std::int32_t*>(thermal);
+  constexpr int kLayer = 64;
+  HWY_ALIGN float along[3][kLayer];  // Of the layer's voxels from the layer's first.
+  HWY_ALIGN std::int32_t pixels[hn::MaxLanes(d)];
   const VF zero = hn::Zero(d);
   const VF one = hn::Set(d, 1.0F);
-  const VI seven = hn::Set(di, 7);
+  const VF half = hn::Set(d, 0.5F);
   const VI low_half = hn::Set(di, 0xFFFF);
-  HWY_ALIGN std::int32_t pixels[hn::MaxLanes(d)];
+  const VI max_code = hn::Set(di, a.max_tsdf_code + 1);
+  const VF width = hn::Set(d, static_cast<float>(a.width));
+  const VF height = hn::Set(d, static_cast<float>(a.height));
+  const VI nowhere = hn::Set(di, a.width * a.height);
+  const VF max_squared = hn::Set(d, a.max_distance_m * a.max_distance_m);
+  for (int i = 0; i < kLayer; i += lanes) {
+    const VI index = hn::Iota(di, i);
+    const VF x = hn::ConvertTo(d, hn::And(index, hn::Set(di, 7)));
+    const VF y = hn::ConvertTo(d, hn::ShiftRight<3>(index));
+    for (int row = 0; row < 3; ++row) {
+      const float* axis = a.axes + 3 * row;
+      hn::Store(hn::MulAdd(hn::Set(d, axis[0]), x, hn::Mul(hn::Set(d, axis[1]), y)), d,
+                along[row] + i);
+    }
+  }
   for (int i = 0; i < 512; i += lanes) {
     const VI word = hn::LoadU(di, distances + i);
-    const MI near =
-        hn::And(hn::Gt(hn::And(word, low_half), hn::Zero(di)),
-                hn::Lt(hn::Abs(hn::ShiftRight<16>(word)), hn::Set(di, a.max_tsdf_code + 1)));
+    const MI near = hn::And(hn::Gt(hn::And(word, low_half), hn::Zero(di)),
+                            hn::Lt(hn::Abs(hn::ShiftRight<16>(word)), max_code));
     if (hn::AllFalse(di, near)) continue;
-    const VI index = hn::Iota(di, i);
-    const VF x = hn::ConvertTo(d, hn::And(index, seven));
-    const VF y = hn::ConvertTo(d, hn::And(hn::ShiftRight<3>(index), seven));
-    const VF z = hn::ConvertTo(d, hn::ShiftRight<6>(index));
+    const auto layer = static_cast<float>(i / kLayer);
     const auto coordinate = [&](int row) {
-      const float* axis = a.axes + 3 * row;
-      return hn::MulAdd(hn::Set(d, axis[0]), x,
-                        hn::MulAdd(hn::Set(d, axis[1]), y,
-                                   hn::MulAdd(hn::Set(d, axis[2]), z, hn::Set(d, first[row]))));
+      return hn::Add(hn::Load(d, along[row] + i % kLayer),
+                     hn::Set(d, first[row] + layer * a.axes[3 * row + 2]));
     };
     const VF px = coordinate(0);
     const VF py = coordinate(1);
     const VF pz = coordinate(2);
-    const VF inverse_z = hn::Div(one, pz);
+    const VF inverse_z = Reciprocal(pz);
     const VF u = hn::MulAdd(hn::Mul(px, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx));
     const VF v = hn::MulAdd(hn::Mul(py, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy));
-    const VF half = hn::Set(d, 0.5F);
     const VF column = hn::Floor(hn::Add(u, half));
     const VF row = hn::Floor(hn::Add(v, half));
-    const MF inside = hn::And(
-        hn::And(hn::RebindMask(d, near), hn::Gt(pz, zero)),
-        hn::And(
-            hn::And(hn::Ge(column, zero), hn::Lt(column, hn::Set(d, static_cast<float>(a.width)))),
-            hn::And(hn::Ge(row, zero), hn::Lt(row, hn::Set(d, static_cast<float>(a.height))))));
-    if (hn::AllFalse(d, inside)) continue;
-    const VI pixel =
-        hn::Add(hn::Mul(hn::ConvertTo(di, hn::IfThenElseZero(inside, row)), hn::Set(di, a.width)),
-                hn::ConvertTo(di, hn::IfThenElseZero(inside, column)));
-    hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, hn::Set(di, a.width * a.height)),
-              di, pixels);
+    const MF inside = hn::And(hn::And(hn::RebindMask(d, near), hn::Gt(pz, zero)),
+                              hn::And(hn::And(hn::Ge(column, zero), hn::Lt(column, width)),
+                                      hn::And(hn::Ge(row, zero), hn::Lt(row, height))));
+    // Exact in single precision: pictures have far less than 2^24 pixels.
+    const VI pixel = hn::ConvertTo(di, hn::MulAdd(row, width, column));
+    hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, nowhere), di, pixels);
     const RecordVectors record = GatherRecords(a.pixels, pixels);
     const VF depth = record.word[0];
     const VI flags = hn::BitCast(di, record.word[3]);
 
     // Distance between the voxel and the vertex that the pixel shows (algorithm 5).
-    const VF vertex_x =
-        hn::Mul(hn::Mul(hn::Sub(column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx)), depth);
-    const VF vertex_y =
-        hn::Mul(hn::Mul(hn::Sub(row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy)), depth);
-    const VF dx = hn::Sub(px, vertex_x);
-    const VF dy = hn::Sub(py, vertex_y);
+    const VF ray_x = hn::Mul(hn::Sub(column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
+    const VF ray_y = hn::Mul(hn::Sub(row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy));
+    const VF dx = hn::NegMulAdd(ray_x, depth, px);
+    const VF dy = hn::NegMulAdd(ray_y, depth, py);
     const VF dz = hn::Sub(pz, depth);
     const VF squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
     const auto has = [&](std::int32_t bit) {
       return hn::Ne(hn::And(flags, hn::Set(di, bit)), hn::Zero(di));
     };
-    const MI on_surface = hn::And(
-        hn::RebindMask(
-            di, hn::And(inside, hn::Lt(squared, hn::Set(d, a.max_distance_m * a.max_distance_m)))),
-        has(ThermalPixel::kSeen));
-    if (hn::AllFalse(di, on_surface)) continue;
-    counts.considered += static_cast<std::int64_t>(hn::CountTrue(di, on_surface));
-    MI assign = hn::And(on_surface, has(ThermalPixel::kAssignable));
-
+    const MI on_surface = hn::And(hn::RebindMask(di, hn::And(inside, hn::Lt(squared, max_squared))),
+                                  has(ThermalPixel::kSeen));
     const VI old = hn::LoadU(di, temperatures + i);
     const VI key = hn::And(flags, hn::Set(di, 0xFF));
-    if (a.validate) {
-      const auto both_valid = [&](VI classes) {
-        return hn::And(hn::Ne(hn::And(classes, hn::Set(di, 0x0F)), hn::Zero(di)),
-                       hn::Ne(hn::And(classes, hn::Set(di, 0xF0)), hn::Zero(di)));
-      };
-      const VI old_key = hn::And(old, hn::Set(di, 0xFF));
-      // A measured voxel's code is not 0; a voxel never measured has no valid classes either.
-      const MI keep_old =
-          hn::And(both_valid(old_key), hn::Or(hn::Not(both_valid(key)), hn::Gt(key, old_key)));
-      assign = hn::AndNot(keep_old, assign);
-    }
-    if (hn::AllFalse(di, assign)) continue;
+    MI assign = hn::And(on_surface, has(ThermalPixel::kAssignable));
+    if (a.validate) assign = hn::AndNot(KeepsOld(hn::And(old, hn::Set(di, 0xFF)), key), assign);
+    counts.considered += static_cast<std::int64_t>(hn::CountTrue(di, on_surface));
     counts.assigned += static_cast<std::int64_t>(hn::CountTrue(di, assign));
+    if (hn::AllFalse(di, assign)) continue;
     // To first order between pixel centres.
     const VI slopes = hn::BitCast(di, record.word[2]);
     const VF slope_u = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(slopes)));

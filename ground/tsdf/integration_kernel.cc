@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "ground/tsdf/integration_kernel.h"
-#include "ground/tsdf/record_gather-inl.h"
+#include "ground/tsdf/voxel_kernel-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
@@ -140,16 +140,6 @@ std::int32_t FindMissingBlocks(const BandRowArgs& a, std::int32_t* missing) {
     }
   }
   return found;
-}
-
-/// 1 / v to about 22 bits.
-HWY_INLINE VF Reciprocal(VF v) {
-#if HWY_ARCH_X86
-  const VF estimate = hn::ApproximateReciprocal(v);
-  return hn::Mul(estimate, hn::NegMulAdd(v, estimate, hn::Set(d, 2.0F)));
-#else
-  return hn::Div(hn::Set(d, 1.0F), v);
-#endif
 }
 
 bool IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uint32_t* voxels) {

@@ -1,10 +1,10 @@
-// Records of four 32-bit words, looked up or written by SIMD lanes. Included by kernels once per
-// instruction set, after hwy/highway.h.
-#if defined(ISOTHERM_RECORD_GATHER_INL_H_) == defined(HWY_TARGET_TOGGLE)
-#ifdef ISOTHERM_RECORD_GATHER_INL_H_
-#undef ISOTHERM_RECORD_GATHER_INL_H_
+// What the voxel kernels share: reciprocals, and records of four 32-bit words looked up or written
+// by SIMD lanes. Included once per instruction set, after hwy/highway.h.
+#if defined(ISOTHERM_VOXEL_KERNEL_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef ISOTHERM_VOXEL_KERNEL_INL_H_
+#undef ISOTHERM_VOXEL_KERNEL_INL_H_
 #else
-#define ISOTHERM_RECORD_GATHER_INL_H_
+#define ISOTHERM_VOXEL_KERNEL_INL_H_
 #endif
 
 #include <hwy/highway.h>
@@ -14,6 +14,19 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
+
+/// 1 / v to about 22 bits.
+HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> Reciprocal(
+    hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> v) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<float> d;
+#if HWY_ARCH_X86
+  const auto estimate = hn::ApproximateReciprocal(v);
+  return hn::Mul(estimate, hn::NegMulAdd(v, estimate, hn::Set(d, 2.0F)));
+#else
+  return hn::Div(hn::Set(d, 1.0F), v);
+#endif
+}
 
 /// Four vectors; lane i of each is a word of record i. Integer words are bit casts.
 struct RecordVectors {
@@ -92,4 +105,4 @@ HWY_INLINE void StoreRecords(const RecordVectors& v, std::size_t count, void* re
 }  // namespace isotherm::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
-#endif  // ISOTHERM_RECORD_GATHER_INL_H_
+#endif  // ISOTHERM_VOXEL_KERNEL_INL_H_
