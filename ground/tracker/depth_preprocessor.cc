@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "ground/tracker/filter_kernel.h"
@@ -97,26 +97,8 @@ void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& p
                 Image<float>& half_m) {
   half_m.Resize(depth_m.width() / 2, depth_m.height() / 2);
   ForRows(pool, half_m.height(), [&](int y) {
-    const float* upper = depth_m.Row(2 * y).data();
-    const float* lower = depth_m.Row(2 * y + 1).data();
-    float* out = half_m.Row(y).data();
-    for (int x = 0; x < half_m.width(); ++x) {
-      const std::array<float, 4> z = {upper[2 * x], upper[2 * x + 1], lower[2 * x],
-                                      lower[2 * x + 1]};
-      float nearest = std::numeric_limits<float>::infinity();
-      for (const float value : z) {
-        if (value > 0.0F) nearest = std::min(nearest, value);
-      }
-      float sum = 0.0F;
-      float count = 0.0F;
-      for (const float value : z) {
-        if (value > 0.0F && value - nearest <= max_step_ratio * nearest) {
-          sum += value;
-          count += 1.0F;
-        }
-      }
-      out[x] = count > 0.0F ? sum / count : 0.0F;
-    }
+    HalfRow({depth_m.Row(2 * y).data(), depth_m.Row(2 * y + 1).data(), max_step_ratio},
+            half_m.Row(y));
   });
 }
 
@@ -142,25 +124,23 @@ DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options,
 
 void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
   prepared_.depth_m.Resize(camera_.width, camera_.height);
+  const Image<std::uint16_t>* raw = &frame.depth_raw;
+  if (!rectification_.empty()) {
+    rectified_raw_.Resize(camera_.width, camera_.height);
+    ForRows(pool, camera_.height, [&](int y) {
+      const std::span<const std::int32_t> source = rectification_.Row(y);
+      std::transform(source.begin(), source.end(), rectified_raw_.Row(y).begin(),
+                     [&](std::int32_t i) { return i < 0 ? kNoDepth : frame.depth_raw.data()[i]; });
+    });
+    raw = &rectified_raw_;
+  }
   const auto metres_per_unit = static_cast<float>(1.0 / frame.depth_scale);
   const auto min_depth = static_cast<float>(options_.min_depth_m());
   const auto max_depth = static_cast<float>(options_.max_depth_m());
   std::atomic<int> valid{0};
   ForRows(pool, camera_.height, [&](int y) {
-    float* out = prepared_.depth_m.Row(y).data();
-    const std::uint16_t* raw = frame.depth_raw.Row(y).data();
-    const std::int32_t* source = rectification_.empty() ? nullptr : rectification_.Row(y).data();
-    int count = 0;
-    for (int x = 0; x < camera_.width; ++x) {
-      const std::uint16_t value =
-          source == nullptr ? raw[x]
-                            : (source[x] < 0 ? kNoDepth : frame.depth_raw.data()[source[x]]);
-      const float depth = static_cast<float>(value) * metres_per_unit;
-      const bool good = value != kNoDepthSaturated && depth >= min_depth && depth <= max_depth;
-      out[x] = good && value != kNoDepth ? depth : 0.0F;
-      count += out[x] > 0.0F ? 1 : 0;
-    }
-    valid += count;
+    valid += MetresRow({raw->Row(y).data(), metres_per_unit, min_depth, max_depth},
+                       prepared_.depth_m.Row(y));
   });
   prepared_.valid_pixels = valid;
 }

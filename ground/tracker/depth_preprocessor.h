@@ -38,6 +38,7 @@ class DepthPreprocessor {
   const CameraModel camera_;
   Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside;
                                        ///< empty: no distortion.
+  Image<std::uint16_t> rectified_raw_;
   std::array<Image<float>, kPyramidLevels> filtered_m_;
   PreparedDepth prepared_;
 };

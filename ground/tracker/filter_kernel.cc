@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "ground/tracker/filter_kernel.h"
 
@@ -16,6 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using D = hn::ScalableTag<float>;
 using VF = hn::Vec<D>;
 constexpr D d;
+
+constexpr std::int32_t kSaturated = 65535;  // kNoDepthSaturated.
 
 /// Pixel x of the row, with the neighbours that are inside the image.
 float FilterPixel(const BilateralRowArgs& a, int x) {
@@ -46,11 +49,14 @@ void BilateralRow(const BilateralRowArgs& a, std::span<float> filtered) {
   const VF one = hn::Set(d, 1.0F);
   int x = 0;
   for (; x < std::min(a.radius, a.width); ++x) filtered[x] = FilterPixel(a, x);
-  for (; x + lanes + a.radius <= a.width; x += lanes) {
-    const VF centre = hn::LoadU(d, a.rows[a.radius] + x);
+  // The last vector overlaps the one before.
+  const int last = a.width - a.radius - lanes;
+  for (int start = x; start < last + lanes && last >= x; start += lanes) {
+    const int column = std::min(start, last);
+    const VF centre = hn::LoadU(d, a.rows[a.radius] + column);
     const auto valid = hn::Gt(centre, zero);
     if (hn::AllFalse(d, valid)) {
-      hn::StoreU(zero, d, filtered.data() + x);
+      hn::StoreU(zero, d, filtered.data() + column);
       continue;
     }
     const VF tau = hn::Mul(hn::Set(d, a.tau_at_1m), hn::Mul(centre, centre));
@@ -59,7 +65,7 @@ void BilateralRow(const BilateralRowArgs& a, std::span<float> filtered) {
     VF weights = zero;
     for (int dy = 0; dy < side; ++dy) {
       if (a.rows[dy] == nullptr) continue;
-      const float* row = a.rows[dy] + x - a.radius;
+      const float* row = a.rows[dy] + column - a.radius;
       const float* spatial = a.spatial + dy * side;
       for (int dx = 0; dx < side; ++dx) {
         const VF z = hn::LoadU(d, row + dx);
@@ -71,9 +77,83 @@ void BilateralRow(const BilateralRowArgs& a, std::span<float> filtered) {
       }
     }
     const VF mean = hn::Div(sum, hn::Max(weights, hn::Set(d, 1e-9F)));
-    hn::StoreU(hn::IfThenElseZero(valid, mean), d, filtered.data() + x);
+    hn::StoreU(hn::IfThenElseZero(valid, mean), d, filtered.data() + column);
   }
+  if (last >= x) x = last + lanes;
   for (; x < a.width; ++x) filtered[x] = FilterPixel(a, x);
+}
+
+int MetresRow(const MetresRowArgs& a, std::span<float> depth_m) {
+  const hn::RebindToSigned<D> di;
+  const hn::Rebind<std::uint16_t, D> d16;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int width = static_cast<int>(depth_m.size());
+  std::size_t valid = 0;
+  int x = 0;
+  for (; x + lanes <= width; x += lanes) {
+    const auto raw = hn::PromoteTo(di, hn::LoadU(d16, a.raw + x));
+    const VF depth = hn::Mul(hn::ConvertTo(d, raw), hn::Set(d, a.metres_per_unit));
+    auto good =
+        hn::And(hn::Ge(depth, hn::Set(d, a.min_depth_m)), hn::Le(depth, hn::Set(d, a.max_depth_m)));
+    good = hn::And(good, hn::RebindMask(d, hn::And(hn::Gt(raw, hn::Zero(di)),
+                                                   hn::Lt(raw, hn::Set(di, kSaturated)))));
+    hn::StoreU(hn::IfThenElseZero(good, depth), d, depth_m.data() + x);
+    valid += hn::CountTrue(d, good);
+  }
+  for (; x < width; ++x) {
+    const float depth = static_cast<float>(a.raw[x]) * a.metres_per_unit;
+    const bool good =
+        a.raw[x] != 0 && a.raw[x] != kSaturated && depth >= a.min_depth_m && depth <= a.max_depth_m;
+    depth_m[x] = good ? depth : 0.0F;
+    valid += good ? 1 : 0;
+  }
+  return static_cast<int>(valid);
+}
+
+/// Pixel x of the smaller row.
+float HalfPixel(const HalfRowArgs& a, int x) {
+  const float z[4] = {a.upper[2 * x], a.upper[2 * x + 1], a.lower[2 * x], a.lower[2 * x + 1]};
+  float nearest = std::numeric_limits<float>::infinity();
+  for (const float value : z) {
+    if (value > 0.0F) nearest = std::min(nearest, value);
+  }
+  float sum = 0.0F;
+  float count = 0.0F;
+  for (const float value : z) {
+    if (value > 0.0F && value - nearest <= a.max_step_ratio * nearest) {
+      sum += value;
+      count += 1.0F;
+    }
+  }
+  return count > 0.0F ? sum / count : 0.0F;
+}
+
+void HalfRow(const HalfRowArgs& a, std::span<float> half_m) {
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int width = static_cast<int>(half_m.size());
+  const VF zero = hn::Zero(d);
+  const VF one = hn::Set(d, 1.0F);
+  const VF infinity = hn::Set(d, std::numeric_limits<float>::max());
+  int x = 0;
+  for (; x + lanes <= width; x += lanes) {
+    VF z[4];
+    hn::LoadInterleaved2(d, a.upper + 2 * x, z[0], z[1]);
+    hn::LoadInterleaved2(d, a.lower + 2 * x, z[2], z[3]);
+    VF nearest = infinity;
+    for (const VF value : z)
+      nearest = hn::Min(nearest, hn::IfThenElse(hn::Gt(value, zero), value, infinity));
+    VF sum = zero;
+    VF count = zero;
+    for (const VF value : z) {
+      const auto used =
+          hn::And(hn::Gt(value, zero),
+                  hn::Le(hn::Sub(value, nearest), hn::Mul(hn::Set(d, a.max_step_ratio), nearest)));
+      sum = hn::Add(sum, hn::IfThenElseZero(used, value));
+      count = hn::Add(count, hn::IfThenElseZero(used, one));
+    }
+    hn::StoreU(hn::Div(sum, hn::Max(count, one)), d, half_m.data() + x);
+  }
+  for (; x < width; ++x) half_m[x] = HalfPixel(a, x);
 }
 
 }  // namespace isotherm::HWY_NAMESPACE
@@ -83,9 +163,19 @@ HWY_AFTER_NAMESPACE();
 namespace isotherm {
 
 HWY_EXPORT(BilateralRow);
+HWY_EXPORT(MetresRow);
+HWY_EXPORT(HalfRow);
 
 void BilateralRow(const BilateralRowArgs& args, std::span<float> filtered) {
   HWY_DYNAMIC_DISPATCH(BilateralRow)(args, filtered);
+}
+
+int MetresRow(const MetresRowArgs& args, std::span<float> depth_m) {
+  return HWY_DYNAMIC_DISPATCH(MetresRow)(args, depth_m);
+}
+
+void HalfRow(const HalfRowArgs& args, std::span<float> half_m) {
+  HWY_DYNAMIC_DISPATCH(HalfRow)(args, half_m);
 }
 
 }  // namespace isotherm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 namespace isotherm {
@@ -17,5 +18,23 @@ struct BilateralRowArgs {
 };
 
 void BilateralRow(const BilateralRowArgs& args, std::span<float> filtered);
+
+/// Converts raw depth of one row to metres: 0 outside [min_depth_m, max_depth_m] and where the
+/// sensor had no return (0 or 65535). Returns how many pixels have a depth.
+struct MetresRowArgs {
+  const std::uint16_t* raw;
+  float metres_per_unit;
+  float min_depth_m, max_depth_m;
+};
+int MetresRow(const MetresRowArgs& args, std::span<float> depth_m);
+
+/// One row of a depth image of half the size: mean of those of the 2 x 2 pixels that lie within
+/// `max_step_ratio` of the nearest. 0 = no return, in and out.
+struct HalfRowArgs {
+  const float* upper;
+  const float* lower;
+  float max_step_ratio;
+};
+void HalfRow(const HalfRowArgs& args, std::span<float> half_m);
 
 }  // namespace isotherm
