@@ -15,6 +15,13 @@ target_compile_options(isotherm_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
+# On arm64 Highway compiles for NEON only and picks nothing at run time, as it does where a C library cannot tell
+# processors apart: GCC 12 takes no SVE vectors as members of structures, and where functions are compiled for more than
+# the baseline it refuses implicit constructors of structures of vectors.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "aarch64|arm64")
+  target_compile_definitions(isotherm_warnings INTERFACE TOOLCHAIN_MISS_SYS_AUXV_H)
+endif()
+
 # isotherm_library(NAME <name> SRCS <files> [DEPS <public targets>] [PRIVATE_DEPS <targets>])
 function(isotherm_library)
   cmake_parse_arguments(ARG "" "NAME" "SRCS;DEPS;PRIVATE_DEPS" ${ARGN})

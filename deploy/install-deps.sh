@@ -4,6 +4,8 @@
 #
 #   deploy/install-deps.sh            install what is missing for build and tests
 #   deploy/install-deps.sh --build    only what the build and the demo need (Node.js is for tests only)
+#   deploy/install-deps.sh --arm64    also a cross compiler, an emulator and, unpacked into build/arm64-sysroot (0.8 GB),
+#                                     the arm64 libraries for the preset arm64; this system's libraries stay as they are
 #   deploy/install-deps.sh --list     print the packages, install nothing
 # Package lists are words on purpose:
 # shellcheck disable=SC2086
@@ -26,11 +28,35 @@ add_test_packages() {
   command -v npm >/dev/null 2>&1 || packages="$packages npm"
 }
 
+# What the arm64 preset links against: the libraries from above, and those of C and C++.
+sysroot=$(dirname "$0")/../build/arm64-sysroot
+unpack_arm64() {
+  wanted="libc6-dev libstdc++-12-dev"
+  for package in $packages; do
+    case "$package" in *-dev) wanted="$wanted $package" ;; esac
+  done
+  if [ "$(cat "$sysroot/.packages" 2>/dev/null)" = "$wanted" ]; then
+    echo "install-deps: the arm64 libraries are there"
+    return
+  fi
+  echo "install-deps: unpacking arm64 libraries"
+  rm -rf "$sysroot"
+  mkdir -p "$(dirname "$sysroot")"
+  mmdebstrap --quiet --architectures=arm64 --variant=extract --include="$wanted" bookworm "$sysroot"
+  # Links that start at the root would lead into this system.
+  find "$sysroot" -type l -lname '/*' | while read -r link; do
+    ln -sfnr "$sysroot$(readlink "$link")" "$link"
+  done
+  echo "$wanted" >"$sysroot/.packages"
+}
+
+arm64=0
 case "${1-}" in
   "") add_test_packages ;;
   --build) ;;
+  --arm64) arm64=1; add_test_packages; packages="$packages g++-aarch64-linux-gnu qemu-user mmdebstrap" ;;
   --list) add_test_packages; for package in $packages; do echo "$package"; done; exit 0 ;;
-  *) echo "usage: deploy/install-deps.sh [--build | --list]" >&2; exit 64 ;;
+  *) echo "usage: deploy/install-deps.sh [--build | --arm64 | --list]" >&2; exit 64 ;;
 esac
 
 if ! command -v apt-get >/dev/null 2>&1; then
@@ -43,25 +69,29 @@ for package in $packages; do
   state=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
   [ "$state" = installed ] || missing="$missing $package"
 done
+
+install_missing() {
+  sudo=""
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null 2>&1; then
+      echo "install-deps: missing:$missing" >&2
+      echo "install-deps: run it as root or install sudo" >&2
+      exit 69
+    fi
+    sudo="sudo"
+  fi
+  # Waits for another apt to finish instead of failing. Lists that cannot be refreshed (no network, a foreign
+  # repository that is down) are no reason to stop: what is needed may be known already.
+  apt="$sudo env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=500"
+  echo "install-deps: installing$missing"
+  $apt update || echo "install-deps: package lists could not be refreshed; going on with what is known"
+  $apt install -y --no-install-recommends $missing
+  echo "install-deps: done"
+}
+
 if [ -z "$missing" ]; then
   echo "install-deps: all packages are installed"
-  exit 0
+else
+  install_missing
 fi
-
-sudo=""
-if [ "$(id -u)" -ne 0 ]; then
-  if ! command -v sudo >/dev/null 2>&1; then
-    echo "install-deps: missing:$missing" >&2
-    echo "install-deps: run it as root or install sudo" >&2
-    exit 69
-  fi
-  sudo="sudo"
-fi
-
-# Waits for another apt to finish instead of failing. Lists that cannot be refreshed (no network, a foreign
-# repository that is down) are no reason to stop: what is needed may be known already.
-apt="$sudo env DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=500"
-echo "install-deps: installing$missing"
-$apt update || echo "install-deps: package lists could not be refreshed; going on with what is known"
-$apt install -y --no-install-recommends $missing
-echo "install-deps: done"
+[ "$arm64" = 0 ] || unpack_arm64

@@ -40,10 +40,10 @@ struct SurfaceOptions {
   /// but faster than any distance to a surface can. Crossings where it changes by more than this
   /// many voxel sizes per voxel, along the edge or along the normal to either side, are left out. A
   /// distance field without noise has slope 1.
-  float max_slope = 2.0F;
+  float max_slope = 3.0F;
   /// Left out likewise: crossings where the gradients at the two ends of the edge point apart by
-  /// more than this cosine (0.9: 26 degrees). -1 turns the test off.
-  float min_gradient_cosine = 0.9F;
+  /// more than this cosine (0.7: 46 degrees). -1 turns the test off.
+  float min_gradient_cosine = 0.7F;
   bool triangles = true;
 };
 

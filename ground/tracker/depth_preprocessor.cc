@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "ground/tracker/filter_kernel.h"
@@ -54,9 +55,10 @@ Status Validate(const PreprocessorOptions& o) {
                     kMaxBilateralRadius, o.bilateral_radius_px()));
   }
   if (!(o.bilateral_sigma_px() > 0.0 && o.bilateral_sigma_depth_m() > 0.0 &&
-        o.max_depth_step_ratio() > 0.0)) {
+        o.max_surface_angle_deg() > 0.0 && o.max_surface_angle_deg() < 90.0)) {
     return InvalidArgument(
-        "preprocessor: bilateral_sigma_px, bilateral_sigma_depth_m and max_depth_step_ratio must "
+        "preprocessor: bilateral_sigma_px and bilateral_sigma_depth_m must be positive, "
+        "max_surface_angle_deg in (0, 90) "
         "be positive");
   }
   return OkStatus();
@@ -93,6 +95,11 @@ void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& opt
   });
 }
 
+float StepPerPixel(const CameraModel& camera, double angle_deg) {
+  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+  return static_cast<float>(std::tan(angle_deg * kRadPerDeg) / std::min(camera.fx, camera.fy));
+}
+
 void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
                 Image<float>& half_m) {
   half_m.Resize(depth_m.width() / 2, depth_m.height() / 2);
@@ -103,7 +110,7 @@ void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& p
 }
 
 void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
-                     float max_step_ratio, ThreadPool& pool, SurfaceMaps& maps) {
+                     float max_step_ratio, float noise_at_1m, ThreadPool& pool, SurfaceMaps& maps) {
   maps.Resize(depth_m.width(), depth_m.height());
   const SurfaceMapArgs args{&depth_m,
                             static_cast<float>(camera.fx),
@@ -111,7 +118,8 @@ void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int
                             static_cast<float>(camera.cx),
                             static_cast<float>(camera.cy),
                             reach,
-                            max_step_ratio * static_cast<float>(reach)};
+                            max_step_ratio * static_cast<float>(reach),
+                            noise_at_1m};
   ForRows(pool, depth_m.height(), [&](int y) { SurfaceMapRow(args, y, maps); });
 }
 
@@ -148,12 +156,16 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
 const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadPool& pool) {
   CHECK(frame.depth_raw.width() == camera_.width && frame.depth_raw.height() == camera_.height);
   ToMetres(frame, pool);
-  const auto step_ratio = static_cast<float>(options_.max_depth_step_ratio());
+  const auto noise_at_1m = static_cast<float>(options_.bilateral_sigma_depth_m());
   BilateralFilter(prepared_.depth_m, options_, pool, filtered_m_[0]);
+  float finer_step = 0.0F;
   for (int level = 0; level < kPyramidLevels; ++level) {
-    if (level > 0) HalveDepth(filtered_m_[level - 1], step_ratio, pool, filtered_m_[level]);
-    MakeSurfaceMaps(filtered_m_[level], camera_.Downscaled(level), kNormalReach[level], step_ratio,
-                    pool, prepared_.maps[level]);
+    if (level > 0) HalveDepth(filtered_m_[level - 1], finer_step, pool, filtered_m_[level]);
+    const CameraModel camera = camera_.Downscaled(level);
+    const float step = StepPerPixel(camera, options_.max_surface_angle_deg());
+    MakeSurfaceMaps(filtered_m_[level], camera, kNormalReach[level], step, noise_at_1m, pool,
+                    prepared_.maps[level]);
+    finer_step = step;
   }
   return prepared_;
 }

@@ -49,15 +49,20 @@ class DepthPreprocessor {
 void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
                      ThreadPool& pool, Image<float>& filtered_m);
 
+/// Difference in depth between neighbouring pixels, as a share of the depth, on a surface whose
+/// normal is turned away from the line of sight by `angle_deg`.
+float StepPerPixel(const CameraModel& camera, double angle_deg);
+
 /// Halves a depth image: mean of those of the 2x2 pixels that lie within `max_step_ratio` of the
 /// nearest.
 void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
                 Image<float>& half_m);
 
 /// Vertices and normals in camera coordinates. Normals from central differences over +-`reach`
-/// pixels; NaN where a neighbour is missing or further away than `max_step_ratio` times the depth
-/// per pixel of reach.
+/// pixels; NaN where a neighbour is missing, further away than `max_step_ratio` times the depth per
+/// pixel of reach, or where the surface bends there by more than a slope and noise explain.
+/// `noise_at_1m` (metres) grows with depth squared.
 void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
-                     float max_step_ratio, ThreadPool& pool, SurfaceMaps& maps);
+                     float max_step_ratio, float noise_at_1m, ThreadPool& pool, SurfaceMaps& maps);
 
 }  // namespace isotherm

@@ -18,6 +18,10 @@ using D = hn::ScalableTag<float>;
 using VF = hn::Vec<D>;
 constexpr D d;
 
+/// Largest difference of the steps to either side of a pixel on one surface, as a share of both
+/// together; 1 would be a step on one side only.
+constexpr float kMaxBend = 0.3F;
+
 /// Fills pixels [begin, end) of a row with "no surface".
 void ClearPixels(SurfaceMaps& maps, int y, int begin, int end) {
   for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz}) {
@@ -65,7 +69,17 @@ void SurfaceMapRow(const SurfaceMapArgs& a, int y, SurfaceMaps& maps) {
     const VF down = hn::LoadU(d, lower_row + x);
     const VF limit = hn::Mul(z, hn::Set(d, a.max_step));
     const auto near = [&](VF neighbour) { return hn::Lt(hn::Abs(hn::Sub(neighbour, z)), limit); };
-    const auto smooth = hn::And(hn::And(near(left), near(right)), hn::And(near(up), near(down)));
+    // A slope steps on both sides alike; a step on one side only is an edge, where differences
+    // would give the normal of a bridge across it.
+    const VF noise = hn::Mul(hn::Set(d, a.noise_at_1m), hn::Mul(z, z));
+    const auto even = [&](VF before, VF after) {
+      const VF bend = hn::Abs(hn::Sub(hn::Add(before, after), hn::Add(z, z)));
+      const VF slope = hn::Abs(hn::Sub(after, before));
+      return hn::Le(bend, hn::MulAdd(hn::Set(d, kMaxBend), slope, noise));
+    };
+    const auto smooth =
+        hn::And(hn::And(hn::And(near(left), near(right)), hn::And(near(up), near(down))),
+                hn::And(even(left, right), even(up, down)));
 
     const VF rx = ray_x(0);
     // Differences of the neighbours' vertices.

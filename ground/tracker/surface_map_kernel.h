@@ -10,6 +10,7 @@ struct SurfaceMapArgs {
   float fx, fy, cx, cy;
   int reach;       ///< Normals come from differences over +-reach pixels.
   float max_step;  ///< Neighbours further apart than this times the depth belong to other surfaces.
+  float noise_at_1m;  ///< Uneven steps below this (metres, grows with depth squared) are no edge.
 };
 
 /// Vertices and normals of row `y` in camera coordinates; NaN where there is no normal.

@@ -28,6 +28,9 @@ constexpr DI di;
 constexpr float kTsdfScale = 32767.0F;
 constexpr float kWeightScale = 64.0F;
 
+/// Share of the weight that an observation keeps at the far end of the band.
+constexpr float kLeastCertainty = 0.02F;
+
 /// Weight of an observation: the variance of triangulated depth grows with the fourth power of
 /// depth, but far surfaces must still be learnt in a few frames.
 constexpr float kReferenceDepth = 0.5F;
@@ -218,19 +221,28 @@ bool IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uin
       VI result = word;
       if (!hn::AllFalse(d, good)) {
         const VF tsdf = hn::IfThenElse(is_free, one, hn::Min(one, distance));
+        // Full weight as far behind the surface as noise reaches; from there to the end of the band
+        // less and less, so that what only stood in the shadow of an edge yields to free space seen
+        // from elsewhere (Bylow et al., Real-time camera tracking and 3D reconstruction using
+        // signed distance functions, 2013).
+        const VF two = hn::Set(d, 2.0F);
+        const VF certainty =
+            hn::Max(hn::Set(d, kLeastCertainty), hn::Min(one, hn::MulAdd(two, tsdf, two)));
+        const VF new_weight = hn::Mul(weight, certainty);
         const VF old_tsdf = hn::ConvertTo(d, hn::ShiftRight<16>(word));
         const VF old_weight = hn::Mul(hn::ConvertTo(d, hn::And(word, hn::Set(di, 0xFFFF))),
                                       hn::Set(d, 1.0F / kWeightScale));
-        const VF total = hn::Add(old_weight, weight);
+        const VF total = hn::Add(old_weight, new_weight);
         const VF averaged =
             hn::Mul(hn::MulAdd(old_tsdf, old_weight,
-                               hn::Mul(hn::Mul(tsdf, hn::Set(d, kTsdfScale)), weight)),
+                               hn::Mul(hn::Mul(tsdf, hn::Set(d, kTsdfScale)), new_weight)),
                     Reciprocal(total));
         const VI tsdf_code = hn::NearestInt(averaged);
         const VI weight_code = hn::NearestInt(
             hn::Mul(hn::Min(total, hn::Set(d, a.max_weight)), hn::Set(d, kWeightScale)));
-        result = hn::IfThenElse(hn::RebindMask(di, good),
-                                hn::Or(hn::ShiftLeft<16>(tsdf_code), weight_code), word);
+        // An observation too light to count leaves the voxel as it was.
+        const auto counts = hn::And(hn::RebindMask(di, good), hn::Gt(weight_code, hn::Zero(di)));
+        result = hn::IfThenElse(counts, hn::Or(hn::ShiftLeft<16>(tsdf_code), weight_code), word);
         hn::StoreU(result, di, words + i);
       }
       // Words of observed voxels are not 0; the distance is the upper half.

@@ -234,8 +234,11 @@ void ReferenceUpdate(TsdfVoxel& voxel, const Eigen::Vector3d& p, const CameraMod
       DepthSample::kNormalScale;
   if (along_ray < -2.0 * truncation) return;
   if (along_ray <= 2.0 * truncation && distance < -truncation) return;
-  const double tsdf = along_ray > 2.0 * truncation ? 1.0 : std::min(1.0, distance / truncation);
-  voxel.Update(static_cast<float>(tsdf), weight, max_weight);
+  const bool is_free = along_ray > 2.0 * truncation;
+  const double tsdf = is_free ? 1.0 : std::min(1.0, distance / truncation);
+  const double certain_weight = weight * std::clamp(2.0 + 2.0 * tsdf, 0.02, 1.0);
+  if (std::lrint((voxel.weight() + certain_weight) * TsdfVoxel::kWeightScale) == 0) return;
+  voxel.Update(static_cast<float>(tsdf), static_cast<float>(certain_weight), max_weight);
 }
 
 TEST(IntegrationKernelTest, MatchesTheScalarReferenceOnRandomSamples) {

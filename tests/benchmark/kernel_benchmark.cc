@@ -95,7 +95,8 @@ void MakeMaps(benchmark::State& state, ThreadPool& pool) {
   SurfaceMaps maps;
   for (auto _ : state) {
     MakeSurfaceMaps(scene.last->depth_m, scene.last->camera, kReach,
-                    static_cast<float>(options.max_depth_step_ratio()), pool, maps);
+                    StepPerPixel(scene.last->camera, options.max_surface_angle_deg()),
+                    static_cast<float>(options.bilateral_sigma_depth_m()), pool, maps);
     benchmark::DoNotOptimize(maps.nz.data());
   }
   state.counters["per_pixel"] = PerItem(maps.vx.size());
@@ -194,7 +195,7 @@ void RegisterTargets() {
 #else
   constexpr std::int64_t kCommon = HWY_NEON;
 #endif
-  const std::int64_t supported = hwy::SupportedTargets();
+  const std::int64_t supported = hwy::SupportedTargets() & HWY_TARGETS;
   const std::int64_t best = supported & -supported;
   RegisterAll(best);
   if (best != kCommon && (supported & kCommon) != 0) RegisterAll(kCommon);

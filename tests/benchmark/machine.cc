@@ -12,7 +12,7 @@ namespace isotherm {
 std::string DescribeMachine() {
   std::array<double, 3> load{};
   if (::getloadavg(load.data(), 3) != 3) load.fill(-1.0);
-  const std::int64_t targets = hwy::SupportedTargets();
+  const std::int64_t targets = hwy::SupportedTargets() & HWY_TARGETS;
   return fmt::format("{} cores, load average {:.2f} {:.2f} {:.2f}, SIMD {}",
                      std::thread::hardware_concurrency(), load[0], load[1], load[2],
                      hwy::TargetName(targets & -targets));
