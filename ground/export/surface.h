@@ -42,8 +42,8 @@ struct SurfaceOptions {
   /// distance field without noise has slope 1.
   float max_slope = 3.0F;
   /// Left out likewise: crossings where the gradients at the two ends of the edge point apart by
-  /// more than this cosine (0.7: 46 degrees). -1 turns the test off.
-  float min_gradient_cosine = 0.7F;
+  /// more than this cosine (0.8: 37 degrees). -1 turns the test off.
+  float min_gradient_cosine = 0.8F;
   bool triangles = true;
 };
 

@@ -128,6 +128,7 @@ DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options,
     : options_(options), camera_(depth_camera.WithoutDistortion()) {
   if (depth_camera.HasDistortion()) rectification_ = MakeRectification(depth_camera);
   prepared_.camera = camera_;
+  prepared_.noise_at_1m = static_cast<float>(options.bilateral_sigma_depth_m());
 }
 
 void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
@@ -156,15 +157,14 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
 const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadPool& pool) {
   CHECK(frame.depth_raw.width() == camera_.width && frame.depth_raw.height() == camera_.height);
   ToMetres(frame, pool);
-  const auto noise_at_1m = static_cast<float>(options_.bilateral_sigma_depth_m());
   BilateralFilter(prepared_.depth_m, options_, pool, filtered_m_[0]);
   float finer_step = 0.0F;
   for (int level = 0; level < kPyramidLevels; ++level) {
     if (level > 0) HalveDepth(filtered_m_[level - 1], finer_step, pool, filtered_m_[level]);
     const CameraModel camera = camera_.Downscaled(level);
     const float step = StepPerPixel(camera, options_.max_surface_angle_deg());
-    MakeSurfaceMaps(filtered_m_[level], camera, kNormalReach[level], step, noise_at_1m, pool,
-                    prepared_.maps[level]);
+    MakeSurfaceMaps(filtered_m_[level], camera, kNormalReach[level], step, prepared_.noise_at_1m,
+                    pool, prepared_.maps[level]);
     finer_step = step;
   }
   return prepared_;

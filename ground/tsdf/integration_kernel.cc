@@ -28,7 +28,11 @@ constexpr DI di;
 constexpr float kTsdfScale = 32767.0F;
 constexpr float kWeightScale = 64.0F;
 
-/// Share of the weight that an observation keeps at the far end of the band.
+/// Noise reaches this many standard deviations (a generous estimate) behind the surface.
+constexpr float kNoiseReach = 1.0F;
+
+/// Share of the weight that an observation keeps at the far end of the band, and of the band in
+/// which weights fall, at least.
 constexpr float kLeastCertainty = 0.02F;
 
 /// Weight of an observation: the variance of triangulated depth grows with the fourth power of
@@ -157,6 +161,7 @@ bool IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uin
   const VF one = hn::Set(d, 1.0F);
   const VF double_truncation = hn::Set(d, 2.0F * a.truncation_m);
   const VF to_tsdf = hn::Set(d, 1.0F / (DepthSample::kNormalScale * a.truncation_m));
+  const VF noise_reach_at_1m = hn::Set(d, kNoiseReach * a.noise_at_1m / a.truncation_m);
   const VF width = hn::Set(d, static_cast<float>(a.width));
   const VF height = hn::Set(d, static_cast<float>(a.height));
   const VI row_stride = hn::Set(di, a.width);
@@ -225,9 +230,10 @@ bool IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uin
         // less and less, so that what only stood in the shadow of an edge yields to free space seen
         // from elsewhere (Bylow et al., Real-time camera tracking and 3D reconstruction using
         // signed distance functions, 2013).
-        const VF two = hn::Set(d, 2.0F);
-        const VF certainty =
-            hn::Max(hn::Set(d, kLeastCertainty), hn::Min(one, hn::MulAdd(two, tsdf, two)));
+        const VF noise_reach = hn::Min(hn::Mul(hn::Mul(depth, depth), noise_reach_at_1m), one);
+        const VF room = hn::Max(hn::Sub(one, noise_reach), hn::Set(d, kLeastCertainty));
+        const VF certainty = hn::Max(hn::Set(d, kLeastCertainty),
+                                     hn::Min(one, hn::Mul(hn::Add(one, tsdf), Reciprocal(room))));
         const VF new_weight = hn::Mul(weight, certainty);
         const VF old_tsdf = hn::ConvertTo(d, hn::ShiftRight<16>(word));
         const VF old_weight = hn::Mul(hn::ConvertTo(d, hn::And(word, hn::Set(di, 0xFFFF))),

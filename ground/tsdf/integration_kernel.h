@@ -69,6 +69,7 @@ struct IntegrationKernelArgs {
                   ///< row-major.
   float truncation_m;
   float max_weight;
+  float noise_at_1m;  ///< Of the depth, metres; grows with the square of the depth.
 };
 
 /// Updates the 512 voxel words of a block whose first voxel's centre is at `first` (camera

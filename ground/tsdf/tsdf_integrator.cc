@@ -178,6 +178,7 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
   std::copy_n(axes.data(), 9, args.axes);
   args.truncation_m = static_cast<float>(volume.truncation_distance_m());
   args.max_weight = static_cast<float>(options_.max_weight());
+  args.noise_at_1m = depth.noise_at_1m;
   constexpr int kBlocksPerTask = 32;
   const int count = static_cast<int>(updated_blocks_.size());
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {

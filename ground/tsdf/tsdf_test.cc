@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kVoxel = 0.004;
 constexpr double kTruncation = 0.016;
+constexpr double kNoiseAt1m = 0.006;
 
 VolumeOptions SmallVolume() {
   VolumeOptions options;
@@ -236,7 +237,9 @@ void ReferenceUpdate(TsdfVoxel& voxel, const Eigen::Vector3d& p, const CameraMod
   if (along_ray <= 2.0 * truncation && distance < -truncation) return;
   const bool is_free = along_ray > 2.0 * truncation;
   const double tsdf = is_free ? 1.0 : std::min(1.0, distance / truncation);
-  const double certain_weight = weight * std::clamp(2.0 + 2.0 * tsdf, 0.02, 1.0);
+  const double noise_reach = std::min(1.0, kNoiseAt1m * s.depth_m * s.depth_m / truncation);
+  const double certain_weight =
+      weight * std::clamp((1.0 + tsdf) / std::max(0.02, 1.0 - noise_reach), 0.02, 1.0);
   if (std::lrint((voxel.weight() + certain_weight) * TsdfVoxel::kWeightScale) == 0) return;
   voxel.Update(static_cast<float>(tsdf), static_cast<float>(certain_weight), max_weight);
 }
@@ -265,6 +268,7 @@ TEST(IntegrationKernelTest, MatchesTheScalarReferenceOnRandomSamples) {
   for (int i = 0; i < 3; ++i) args.axes[4 * i] = static_cast<float>(kVoxel);
   args.truncation_m = static_cast<float>(kTruncation);
   args.max_weight = 3.0F;
+  args.noise_at_1m = static_cast<float>(kNoiseAt1m);
   int updated = 0;
   int different = 0;
   for (int round = 0; round < 200; ++round) {
