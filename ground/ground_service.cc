@@ -119,9 +119,13 @@ void AddStream(Json& json, const StreamAccount& account, std::uint64_t recorded)
 /// Reconstructs one session after the other. Runs on the reconstruction thread.
 class ReconstructionLoop {
  public:
-  ReconstructionLoop(const GroundOptions& options, bool single_scan, Subscriber& subscriber,
-                     StopSignal& signal)
-      : options_(options), single_scan_(single_scan), subscriber_(subscriber), signal_(signal) {}
+  ReconstructionLoop(const GroundOptions& options, bool single_scan, const Clock& clock,
+                     Subscriber& subscriber, StopSignal& signal)
+      : clock_(clock),
+        options_(options),
+        single_scan_(single_scan),
+        subscriber_(subscriber),
+        signal_(signal) {}
 
   void Run(ItemQueue& queue, const std::stop_token& stop) {
     while (std::optional<Item> item = queue.Pop(stop)) {
@@ -140,7 +144,7 @@ class ReconstructionLoop {
   void Handle(const SessionStart& start) {
     End(last_account_);
     start_ = start;
-    Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(options_, start.rig);
+    Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
     if (!scan) {
       LOG(Ground, Error) << "session " << start.rig.session
                          << " is recorded only: " << scan.error().message();
@@ -181,6 +185,7 @@ class ReconstructionLoop {
     link["session"] = account.session;
     link["closed"] = account.closed;
     link["not_processed_at_stop"] = unprocessed_;
+    link["waiting"] = DescribeStage(scan_->waiting());
     link["out_of_order_frames"] = scan_->out_of_order();
     RecordingOutcome recording;
     if (start_.recording.wait_for(1s) == std::future_status::ready)
@@ -206,6 +211,7 @@ class ReconstructionLoop {
     std::fflush(stdout);
   }
 
+  const Clock& clock_;
   const GroundOptions& options_;
   const bool single_scan_;
   Subscriber& subscriber_;
@@ -344,7 +350,7 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
   if (!subscriber) return Fail(subscriber.error());
 
   RecordingLoop recording(options);
-  ReconstructionLoop reconstruction(options, mode.single_scan, **subscriber, signal);
+  ReconstructionLoop reconstruction(options, mode.single_scan, clock, **subscriber, signal);
   {
     std::jthread recording_thread(
         [&](const std::stop_token& stop) { recording.Run(to_recording, stop); });

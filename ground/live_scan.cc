@@ -50,23 +50,25 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
                             static_cast<std::uint32_t>(session));
 }
 
-Result<std::unique_ptr<LiveScan>> LiveScan::Create(const GroundOptions& options,
+Result<std::unique_ptr<LiveScan>> LiveScan::Create(const Clock& clock, const GroundOptions& options,
                                                    const RigDescription& rig) {
   Result<std::unique_ptr<GroundPipeline>> pipeline =
       GroundPipeline::Create(options, rig.rig, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
-  return std::unique_ptr<LiveScan>(new LiveScan(options, rig, std::move(*pipeline)));
+  return std::unique_ptr<LiveScan>(new LiveScan(clock, options, rig, std::move(*pipeline)));
 }
 
-LiveScan::LiveScan(const GroundOptions& options, const RigDescription& rig,
+LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
                    std::unique_ptr<GroundPipeline> pipeline)
-    : options_(options),
+    : clock_(clock),
+      options_(options),
       session_(rig.session),
       rig_(rig.rig),
       pipeline_(std::move(pipeline)),
       assembler_(rig.rig.thermal.has_value()) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
+  arrivals_[depth.frame.get()] = depth.arrival;
   assembler_.Add(depth.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
 }
@@ -74,6 +76,7 @@ void LiveScan::Add(const ReceivedDepth& depth) {
 void LiveScan::Add(const ReceivedThermal& thermal) {
   const NucState state = thermal.frame->nuc_state;
   nuc_running_ = state == NucState::kInProgress || state == NucState::kSettling;
+  arrivals_[thermal.frame.get()] = thermal.arrival;
   assembler_.Add(thermal.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
 }
@@ -83,12 +86,25 @@ void LiveScan::FinishFrames() {
   pipeline_->Finish();
 }
 
+void LiveScan::NoteTurn(const void* frame) {
+  const auto arrival = arrivals_.extract(frame);
+  constexpr double kMsPerNs = 1e-6;
+  if (arrival) {
+    waiting_.Add(kMsPerNs * static_cast<double>((clock_.Now() - arrival.mapped()).count()));
+  }
+  // Frames that the assembler refused never have a turn.
+  constexpr std::size_t kMostHeld = 1024;
+  if (arrivals_.size() > kMostHeld) arrivals_.clear();
+}
+
 void LiveScan::Process(const Assembler::Frame& frame) {
   if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
+    NoteTurn(thermal->get());
     pipeline_->ProcessThermal(*thermal);
     return;
   }
   const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
+  NoteTurn(&depth);
   newest_report_ = pipeline_->ProcessDepth(depth);
   newest_header_ = depth.header;
   const CaptureTime time = depth.header.capture_time;

@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <variant>
 
+#include "common/base/stage_stats.h"
 #include "common/base/status.h"
+#include "common/time/clock.h"
 #include "common/transport/messages.h"
 #include "ground/assembler/assembler.h"
 #include "ground/feedback/coverage.h"
@@ -26,7 +28,8 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
 /// thread. Thread-bound to the reconstruction thread.
 class LiveScan {
  public:
-  static Result<std::unique_ptr<LiveScan>> Create(const GroundOptions& options,
+  /// `clock` must outlive the scan; it is only asked how long frames waited.
+  static Result<std::unique_ptr<LiveScan>> Create(const Clock& clock, const GroundOptions& options,
                                                   const RigDescription& rig);
 
   void Add(const ReceivedDepth& depth);
@@ -37,17 +40,22 @@ class LiveScan {
   /// Feedback on the newest depth frame if one is due (LiveOptions.feedback_hz, by capture time).
   std::optional<Feedback> TakeFeedback();
 
+  /// From a frame's arrival to its turn: in queues, and for the other stream.
+  const StageStats& waiting() const { return waiting_; }
+
   std::uint64_t session() const { return session_; }
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }
   GroundPipeline& pipeline() { return *pipeline_; }
   const Rig& rig() const { return rig_; }
 
  private:
-  LiveScan(const GroundOptions& options, const RigDescription& rig,
+  LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
            std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
+  void NoteTurn(const void* frame);
   Feedback MakeFeedback();
 
+  const Clock& clock_;
   const GroundOptions options_;
   const std::uint64_t session_;
   const Rig rig_;
@@ -59,6 +67,8 @@ class LiveScan {
   bool feedback_waiting_ = false;
   std::optional<CaptureTime> next_feedback_;
   bool nuc_running_ = false;
+  std::map<const void*, CaptureTime> arrivals_;  ///< Of frames in the assembler.
+  StageStats waiting_;
 };
 
 }  // namespace isotherm

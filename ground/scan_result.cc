@@ -10,18 +10,23 @@
 #include "ground/export/results.h"
 
 namespace isotherm {
+
+Json DescribeStage(const StageStats& stats) {
+  Json stage;
+  stage["calls"] = stats.count();
+  stage["p50_ms"] = stats.Percentile(50);
+  stage["p95_ms"] = stats.Percentile(95);
+  stage["p99_ms"] = stats.Percentile(99);
+  stage["max_ms"] = stats.max_ms();
+  stage["total_s"] = stats.total_ms() * 1e-3;
+  return stage;
+}
+
 namespace {
 
 Json DescribeStages(const GroundPipeline& pipeline) {
   Json stages;
-  for (const auto& [name, stats] : pipeline.stage_stats()) {
-    Json& stage = stages[name];
-    stage["calls"] = stats.count();
-    stage["p50_ms"] = stats.Percentile(50);
-    stage["p95_ms"] = stats.Percentile(95);
-    stage["p99_ms"] = stats.Percentile(99);
-    stage["total_s"] = stats.total_ms() * 1e-3;
-  }
+  for (const auto& [name, stats] : pipeline.stage_stats()) stages[name] = DescribeStage(stats);
   return stages;
 }
 

@@ -12,6 +12,9 @@
 
 namespace isotherm {
 
+/// How long a stage took, as it goes into stats.json.
+Json DescribeStage(const StageStats& stats);
+
 /// Frames, stages, volume and calibration of a scan as they go into stats.json.
 Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig);
 
