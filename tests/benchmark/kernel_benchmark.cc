@@ -140,7 +140,7 @@ void FuseThermal(benchmark::State& state, ThreadPool& pool) {
   const Rig& rig = scene.frames.rig;
   const RigidTransform T_world_thermal = scene.view.T_world_depth * rig.T_thermal_depth->inverse();
   const ThermalFrame& frame = scene.frames.thermal.back();
-  ThermalFuser fuser(scene.options.thermal(), *rig.thermal);
+  ThermalFuser fuser(scene.options.thermal(), *rig.thermal, scene.MinWeight());
   ThermalVolume thermal(kMaxBlocks);
   FusionReport report;
   for (auto _ : state) {
