@@ -82,7 +82,7 @@ class ThermalFuser {
   const float min_weight_;
   const int apron_;  ///< Pixels around distances_m_ and celsius_.
   ThermalRectifier rectifier_;
-  Raycaster raycaster_;
+  Raycaster raycaster_{RaycastPrecision::kVisibility};
   SurfaceMaps surface_;                  ///< The model as the thermal camera sees it, in world.
   Image<float> distances_m_;             ///< Of its vertices from the camera, with an apron.
   Image<float> celsius_;                 ///< With an apron.

@@ -27,14 +27,11 @@ constexpr DI di;
 constexpr int kLaneColumnsLog2 = hn::MaxLanes(d) >= 4 ? 2 : 0;
 constexpr int kLaneColumns = 1 << kLaneColumnsLog2;
 
-/// Newton steps from the change of sign to the surface. One or two suffice; at grazing incidence
-/// the interpolated surface can lie a few voxels along the ray beside the nearest voxels' change
-/// of sign.
-constexpr int kMaxRefinements = 4;
+/// At grazing incidence the interpolated surface can lie a few voxels along the ray beside the
+/// nearest voxels' change of sign.
 constexpr float kMaxStepVox = 3.0F;
-/// A last step below this leaves an error of second order; above `kDiverged` there is no surface.
+/// A step below this leaves an error of second order.
 constexpr float kConvergedVox = 0.1F;
-constexpr float kDivergedVox = 0.5F;
 
 struct Point {
   VF x, y, z;
@@ -307,7 +304,7 @@ HWY_INLINE Surface Refine(const RaycastKernelArgs& a, const Bundle& bundle,
                   {zero, zero, zero},
                   crossing.found};
   if (hn::AllFalse(d, crossing.found)) return surface;
-  for (int i = 0; i < kMaxRefinements; ++i) {
+  for (int i = 0; i < a.max_refinements; ++i) {
     surface.depth = hn::Min(hn::Max(surface.depth, bundle.start), bundle.end);
     const Interpolated f = Interpolate(a, rays.At(surface.depth));
     const VF slope = Dot(f.gradient, rays.direction);
@@ -317,7 +314,8 @@ HWY_INLINE Surface Refine(const RaycastKernelArgs& a, const Bundle& bundle,
     surface.gradient = f.gradient;
     surface.valid = hn::And(
         hn::And(crossing.found, f.valid),
-        hn::And(facing, hn::Lt(hn::Abs(newton), hn::Mul(voxel_step, hn::Set(d, kDivergedVox)))));
+        hn::And(facing,
+                hn::Lt(hn::Abs(newton), hn::Mul(voxel_step, hn::Set(d, a.max_last_step_vox)))));
     surface.depth = hn::Add(surface.depth, step);
     // Lanes whose cell is not observed cannot get better.
     const MF open = hn::And(hn::And(crossing.found, f.valid), hn::Gt(hn::Abs(step), converged));

@@ -17,6 +17,8 @@ struct RaycastKernelArgs {
   float low, high[3];               ///< Rays stay inside, half way into the border.
   std::int32_t min_weight_code;     ///< In TsdfVoxel weight units, at least 1.
   float truncation_vox;
+  std::int32_t max_refinements;  ///< Newton steps from the change of sign to the surface.
+  float max_last_step_vox;       ///< Above this there is no surface.
 
   float origin[3];  ///< Camera position.
   float R[9];       ///< World from camera, row-major.

@@ -173,6 +173,9 @@ void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
     args.high[axis] = static_cast<float>(args.last[axis]) - args.low;
   }
   args.min_weight_code = MinWeightCode(min_weight);
+  const bool exact = precision_ == RaycastPrecision::kSurface;
+  args.max_refinements = exact ? 4 : 1;
+  args.max_last_step_vox = exact ? 0.5F : 1.5F;
   args.truncation_vox = static_cast<float>(volume.truncation_distance_m() / grid.voxel_size_m);
   const Eigen::Vector3f origin =
       (grid.ToVoxel(T_world_camera.translation()) + Eigen::Vector3d::Constant(kBlockSide))
