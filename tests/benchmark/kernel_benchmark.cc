@@ -144,8 +144,8 @@ void FuseThermal(benchmark::State& state, ThreadPool& pool) {
   ThermalVolume thermal(kMaxBlocks);
   FusionReport report;
   for (auto _ : state) {
-    report = fuser.Fuse(frame, T_world_thermal, scene.view.maps, scene.view.camera,
-                        scene.view.T_world_depth, *scene.volume, pool, thermal);
+    report = fuser.Fuse(frame, T_world_thermal, scene.view.camera, scene.view.T_world_depth,
+                        *scene.volume, pool, thermal);
   }
   CHECK(report.assigned > 0);
   state.counters["per_pixel"] = PerItem(frame.centikelvin.size());
