@@ -83,15 +83,16 @@ void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
     const VF cosine =
         hn::MulAdd(nx, to_camera_x, hn::MulAdd(ny, to_camera_y, hn::Mul(nz, shortening)));
     const MF facing = hn::Gt(cosine, zero);  // False for NaN.
+    const MF to_plane = a.along_ray ? hn::MaskFromVec(zero) : facing;
     const VF ratio = hn::Div(hn::Set(d, kReferenceDepth), hn::Max(depth, hn::Set(d, 1e-3F)));
     const VF depth_weight = hn::Min(hn::Max(hn::Mul(ratio, ratio), hn::Set(d, kMinWeight)), one);
     const VF weight = hn::Mul(
         depth_weight, hn::IfThenElse(facing, hn::Min(cosine, one), hn::Set(d, kEdgeWeight)));
-    StoreRecords(
-        PackSamples(depth, hn::IfThenElse(facing, nx, to_camera_x),
-                    hn::IfThenElse(facing, ny, to_camera_y), hn::IfThenElse(facing, nz, shortening),
-                    px, py, hn::IfThenElseZero(seen, weight)),
-        static_cast<std::size_t>(a.width - x), samples + x);
+    StoreRecords(PackSamples(depth, hn::IfThenElse(to_plane, nx, to_camera_x),
+                             hn::IfThenElse(to_plane, ny, to_camera_y),
+                             hn::IfThenElse(to_plane, nz, shortening), px, py,
+                             hn::IfThenElseZero(seen, weight)),
+                 static_cast<std::size_t>(a.width - x), samples + x);
   }
 }
 

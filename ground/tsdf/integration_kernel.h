@@ -28,7 +28,8 @@ struct SampleRowArgs {
   const float* nz;
   std::int32_t width;
   float fx, cx;
-  float ray_y;  ///< (row - cy) / fy.
+  float ray_y;     ///< (row - cy) / fy.
+  bool along_ray;  ///< Distances along the line of sight instead of to the plane.
 };
 
 /// Makes the samples of one image row. Where there is no normal the surface is taken to face the

@@ -70,7 +70,8 @@ void TsdfIntegrator::MakeSamples(const PreparedDepth& depth, ThreadPool& pool) {
       const std::span<const float> row = depth.depth_m.Row(y);
       MakeSampleRow(
           {row.data(), maps.nx.Row(y).data(), maps.ny.Row(y).data(), maps.nz.Row(y).data(),
-           camera.width, camera.fx, camera.cx, (static_cast<float>(y) - camera.cy) / camera.fy},
+           camera.width, camera.fx, camera.cx, (static_cast<float>(y) - camera.cy) / camera.fy,
+           options_.distance() == ALONG_RAY},
           samples_.data() + width * static_cast<std::size_t>(y));
       for (std::size_t tile = 0; tile < farthest.size(); ++tile) {
         const auto first = row.begin() + static_cast<std::ptrdiff_t>(tile * kTile);
