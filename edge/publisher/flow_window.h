@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 
 #include "common/time/time_types.h"
@@ -9,29 +11,36 @@
 namespace isotherm {
 
 /// Decides whether another frame may go out before the ground has handled the ones under way
-/// (lossless policy). Pure. Thread-compatible.
+/// (lossless policy). What counts is frames that were published, not frame numbers: numbers that
+/// were left out before publishing are never handled, and to wait for them would be for ever. Pure.
+/// Thread-compatible.
 class FlowWindow {
  public:
-  FlowWindow(std::uint64_t window_frames, Nanoseconds timeout)
+  FlowWindow(std::size_t window_frames, Nanoseconds timeout)
       : window_frames_(window_frames), timeout_(timeout) {}
 
-  /// Nothing of the new session is handled yet.
+  /// Nothing of the new session is under way yet.
   void BeginSession() {
-    handled_ = 0;
+    under_way_.clear();
     progress_.reset();
     given_up_ = false;
+  }
+  /// Numbers must rise.
+  void OnPublished(std::uint64_t frame_number) {
+    under_way_.push_back(frame_number);
+    // Without receipts the newest are enough to know that the window is full.
+    if (under_way_.size() > window_frames_) under_way_.pop_front();
   }
   /// The ground has handled all frames below `handled`.
   void OnReceipt(std::uint64_t handled, SteadyTime now) {
     given_up_ = false;  // It is alive.
-    if (handled <= handled_) return;
-    handled_ = handled;
-    progress_ = now;
+    while (!under_way_.empty() && under_way_.front() < handled) {
+      under_way_.pop_front();
+      progress_ = now;
+    }
   }
 
-  bool HasRoom(std::uint64_t frame_number) const {
-    return given_up_ || frame_number < handled_ + window_frames_;
-  }
+  bool HasRoom() const { return given_up_ || under_way_.size() < window_frames_; }
   /// To be asked while there is no room: true once when the ground made no progress for the
   /// timeout. From then on there is room until the next receipt, so that a ground that hangs costs
   /// the timeout once and not per frame.
@@ -44,10 +53,10 @@ class FlowWindow {
   }
 
  private:
-  const std::uint64_t window_frames_;
+  const std::size_t window_frames_;
   const Nanoseconds timeout_;
-  std::uint64_t handled_ = 0;
-  std::optional<SteadyTime> progress_;  ///< When handled_ last grew, or when waiting began.
+  std::deque<std::uint64_t> under_way_;  ///< Published and not yet handled.
+  std::optional<SteadyTime> progress_;   ///< When frames were last handled, or when waiting began.
   bool given_up_ = false;
 };
 

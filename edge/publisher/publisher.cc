@@ -85,15 +85,14 @@ class DdsPublisher final : public Publisher {
   };
 
   static FlowWindow MakeWindow(const PublisherOptions& options) {
-    return {static_cast<std::uint64_t>(options.flow_window_frames), options.flow_timeout};
+    return {static_cast<std::size_t>(options.flow_window_frames), options.flow_timeout};
   }
 
   template <typename Frame>
   Status PublishFrame(const Frame& frame, Writer<Frame>* writer, Stream* stream,
                       const std::stop_token& stop);
   template <typename Frame>
-  void WaitForRoom(std::uint64_t number, const Writer<Frame>& writer, Stream* stream,
-                   const std::stop_token& stop);
+  void WaitForRoom(const Writer<Frame>& writer, Stream* stream, const std::stop_token& stop);
   /// Messages for other rigs share the topics.
   bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
   void TakeReceipts();
@@ -233,11 +232,11 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
 }
 
 template <typename Frame>
-void DdsPublisher::WaitForRoom(std::uint64_t number, const Writer<Frame>& writer, Stream* stream,
+void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
                                const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   bool waited = false;
-  while (!stream->window.HasRoom(number) && writer.matched_readers() > 0) {
+  while (!stream->window.HasRoom() && writer.matched_readers() > 0) {
     const SteadyTime now = clock_.SteadyNow();
     if (stop.stop_requested()) {
       if (!stop_deadline_) stop_deadline_ = now + kStopPatience;
@@ -262,7 +261,7 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
     return FailedPrecondition(
         fmt::format("frame of session {} without BeginSession", frame.header.session));
   }
-  if (policy_ == PublishPolicy::kLossless) WaitForRoom(number, *writer, stream, stop);
+  if (policy_ == PublishPolicy::kLossless) WaitForRoom(*writer, stream, stop);
   const Status written = writer->Write(options_.edge_id, frame);
   std::scoped_lock lock(mutex_);
   if (!written.ok()) {
@@ -270,6 +269,7 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
     return written;
   }
   ++stream->counts.published;
+  stream->window.OnPublished(number);
   stream->counts.next_frame_number = std::max(stream->counts.next_frame_number, number + 1);
   return OkStatus();
 }
