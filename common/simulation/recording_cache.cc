@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Raise when the same options give another recording: scenes, sensors, noise, clocks or the file's
 /// layout changed.
-constexpr int kRenderVersion = 2;
+constexpr int kRenderVersion = 3;
 
 /// FNV-1a.
 std::uint64_t Hash(const std::string& text) {
@@ -89,7 +89,8 @@ Result<fs::path> CachedRecording(const SimulationOptions& options, const fs::pat
       cache_dir / fmt::format(".{}.{}{}", *name, static_cast<long>(getpid()), kUnfinished);
   RemoveLeftovers(cache_dir);
   fs::remove(unfinished, error);
-  Status status = RenderRecording(options, unfinished, pool, progress, stop);
+  Status status =
+      RenderRecording(options, unfinished, pool, progress, stop, ImageStorage::kViewable);
   if (status.ok()) {
     fs::rename(unfinished, path, error);
     if (!error) return path;

@@ -129,10 +129,12 @@ Status WriteStart(const SimulationOptions& options, const SimulatedScan& scan,
 }  // namespace
 
 Status RenderRecording(const SimulationOptions& options, const std::filesystem::path& path,
-                       ThreadPool& pool, const SimulationProgress& progress, std::stop_token stop) {
+                       ThreadPool& pool, const SimulationProgress& progress, std::stop_token stop,
+                       ImageStorage storage) {
   const Result<std::unique_ptr<SimulatedScan>> scan = SimulatedScan::Create(options);
   if (!scan) return scan.error();
   RecordingOptions recording_options;
+  recording_options.image_storage = storage;
   recording_options.sync = false;  // Can be rendered again.
   Result<std::unique_ptr<RecordingWriter>> writer =
       RecordingWriter::Create(path, recording_options);

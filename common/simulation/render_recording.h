@@ -7,6 +7,7 @@
 
 #include "common/base/status.h"
 #include "common/concurrency/thread_pool.h"
+#include "common/recording/recording.h"
 
 namespace isotherm {
 
@@ -23,9 +24,10 @@ using SimulationProgress = std::function<void(double fraction)>;
 /// with kUnavailable and leaves an incomplete file.
 Status RenderRecording(const SimulationOptions& options, const std::filesystem::path& path,
                        ThreadPool& pool, const SimulationProgress& progress,
-                       std::stop_token stop = {});
+                       std::stop_token stop = {}, ImageStorage storage = ImageStorage::kCompact);
 
-/// Path of the recording that the options describe, rendered only if it is not there yet. It gets
+/// Path of the recording that the options describe, rendered only if it is not there yet. Images
+/// are raw: what replays it should load the machine no more than a camera does. It gets
 /// its name when it is complete, so that an interrupted run leaves nothing that looks like a scan.
 /// Several processes may do this at the same time.
 Result<std::filesystem::path> CachedRecording(const SimulationOptions& options,
