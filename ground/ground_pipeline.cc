@@ -110,6 +110,7 @@ TrackingResult GroundPipeline::Track(const PreparedDepth& depth, CaptureTime tim
 void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
   const StageTimer timer(stage_stats_["raycast"]);
   view_.T_world_depth = T_world_depth;
+  view_.is_young = gate_.bootstrapping();
   raycaster_.Cast(*tsdf_, view_.camera, T_world_depth,
                   static_cast<float>(options_.raycast().min_weight()), pool_, view_.maps);
 }

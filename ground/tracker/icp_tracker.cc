@@ -168,13 +168,15 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
       Eigen::Quaterniond(result.T_world_depth.linear()).normalized().toRotationMatrix();
   result.step_m = TranslationDistance(model.T_world_depth, result.T_world_depth);
   result.step_rad = RotationAngle(model.T_world_depth, result.T_world_depth);
-  return Judge(result);
+  // The normals of a young model are too rough to reject correspondences fairly.
+  constexpr double kYoungShare = 1.0 / 3.0;
+  return Judge(result, options_.min_inlier_ratio() * (model.is_young ? kYoungShare : 1.0));
 }
 
-TrackingResult IcpTracker::Judge(TrackingResult result) const {
+TrackingResult IcpTracker::Judge(TrackingResult result, double min_inlier_ratio) const {
   if (!result.T_world_depth.matrix().allFinite()) {
     result.lost = LostReason::kSingular;
-  } else if (result.inlier_ratio < options_.min_inlier_ratio()) {
+  } else if (result.inlier_ratio < min_inlier_ratio) {
     result.lost = LostReason::kTooFewInliers;
   } else if (result.residual_m > options_.max_residual_m()) {
     result.lost = LostReason::kResidual;

@@ -21,6 +21,7 @@ struct ModelView {
   SurfaceMaps maps;
   CameraModel camera;  ///< Of the maps; may be smaller than the depth image.
   RigidTransform T_world_depth;
+  bool is_young = false;  ///< Little more than one frame's noise: its normals are rough.
 };
 
 struct TrackingResult {
@@ -49,7 +50,7 @@ class IcpTracker {
                        const RigidTransform& guess, ThreadPool& pool) const;
 
  private:
-  TrackingResult Judge(TrackingResult result) const;
+  TrackingResult Judge(TrackingResult result, double min_inlier_ratio) const;
 
   const TrackerOptions options_;
 };

@@ -198,17 +198,16 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
 bool IntegrationGate::Accepts(const std::optional<RigidTransform>& previous,
                               const RigidTransform& T_world_depth) {
   const auto exceeds = [](double value, double bound) { return bound > 0.0 && value > bound; };
-  const bool bootstrapping =
-      accepted_ < static_cast<std::uint64_t>(std::max(0, options_.bootstrap_frames()));
+  const bool young = bootstrapping();
   bool accept = true;
-  if (previous && !bootstrapping) {
+  if (previous && !young) {
     accept =
         !exceeds(TranslationDistance(*previous, T_world_depth), options_.max_step_m()) &&
         !exceeds(RotationAngle(*previous, T_world_depth), options_.max_step_deg() * kRadPerDeg);
   } else if (!previous && last_integrated_) {
     accept = false;  // The motion since the frame before is not known.
   }
-  if (accept && last_integrated_ && !bootstrapping) {
+  if (accept && last_integrated_ && !young) {
     accept =
         TranslationDistance(*last_integrated_, T_world_depth) >= options_.min_step_m() ||
         RotationAngle(*last_integrated_, T_world_depth) >= options_.min_step_deg() * kRadPerDeg;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -57,6 +58,10 @@ class IntegrationGate {
   /// `previous` is the pose of the frame before, if that was tracked.
   bool Accepts(const std::optional<RigidTransform>& previous, const RigidTransform& T_world_depth);
   std::uint64_t accepted() const { return accepted_; }
+  /// Whether the model still has to become better than one frame's noise.
+  bool bootstrapping() const {
+    return accepted_ < static_cast<std::uint64_t>(std::max(0, options_.bootstrap_frames()));
+  }
 
  private:
   const TsdfOptions options_;
