@@ -29,7 +29,7 @@ say() { printf '== %s\n' "$*" >&2; }
 
 say "build (release)"
 cmake --preset release >/dev/null
-targets="codec_benchmark kernel_benchmark pipeline_benchmark isotherm"
+targets="codec_benchmark kernel_benchmark pipeline_benchmark growth_benchmark isotherm"
 if cmake --build "$build" --target help | grep -q '^open3d_benchmark:'; then
   targets="$targets open3d_benchmark"
 else
@@ -61,7 +61,7 @@ medians() {
       key = $1; value = $2; gsub(/[":]/, "", key); sub(/,/, "", value); fields[key] = value
     }
     /^    }/ {
-      sub(/\/min_time.*/, "", name); sub(/\/real_time.*/, "", name)
+      sub(/\/(min_time|iterations|real_time).*/, "", name)
       if (median) for (key in fields) print program "\t" name "\t" key "\t" fields[key]
       split("", fields)
     }' "$out/$1.json" >>"$out/results.tsv"
@@ -104,6 +104,7 @@ run_reconstruct() {
 run_benchmark codec_benchmark common/codec '--benchmark_filter=/(isotherm|png_1)/'
 run_benchmark kernel_benchmark tests/benchmark --benchmark_enable_random_interleaving=true
 run_benchmark pipeline_benchmark tests/benchmark '--benchmark_filter=voxel_mm:2/'
+run_benchmark growth_benchmark tests/benchmark
 [ -z "$scan" ] || run_reconstruct
 case "$targets" in
   *open3d*) run_open3d ${scan:+"$scan"} ${volume_min:+--volume-min "$volume_min"} ;;

@@ -27,13 +27,21 @@ function codecs(    i, name, other, what) {
 # Nanoseconds per pixel, voxel or ray.
 function per(name, unit) { return 1e9 * value["kernel_benchmark", name, "per_" unit] }
 
-function kernels(    i, j, name, other, what, unit, units, common) {
+function kernels(    i, j, name, other, what, unit, units, common, ordered, last) {
   title("kernels, 2 threads, " simd)
   split("pixel voxel ray", units, " ")
   split("AVX2 NEON", common, " ")
+  # They ran in random order.
   for (i = 1; i <= count["kernel_benchmark"]; ++i) {
     name = names["kernel_benchmark", i]
     if (name !~ "/simd:" simd "/threads:2$") continue
+    j = value["kernel_benchmark", name, "family_index"]
+    ordered[j] = name
+    if (j > last) last = j
+  }
+  for (i = 0; i <= last; ++i) {
+    if (!(i in ordered)) continue
+    name = ordered[i]
     for (j in units) if (("kernel_benchmark", name, "per_" units[j]) in value) unit = units[j]
     what = substr(name, 4)
     sub(/\/simd.*/, "", what)
@@ -60,6 +68,13 @@ function line(    i, n, stages, key, run) {
   }
 }
 
+function growth(    key) {
+  title("growth with the scan and the volume")
+  key = "last_period_p50_ms"
+  row("depth frame, 0.96 m", value["growth_benchmark", "BM_Growth/periods:1/length_cm:96", key], "ms", \
+      "3.84 m, 10 x way", value["growth_benchmark", "BM_Growth/periods:10/length_cm:384", key])
+}
+
 function reconstruct(    i, name) {
   title("isotherm reconstruct")
   for (i = 1; i <= count["reconstruct"]; ++i) {
@@ -82,6 +97,7 @@ END {
   codecs()
   kernels()
   line()
+  growth()
   if (count["reconstruct"] > 0) reconstruct()
   if (open3d_rows > 0) title("beside Open3D, frame by frame")
   for (i = 1; i <= open3d_rows; ++i) row(stage[i], ours[i], "ms", "Open3D", theirs[i])
