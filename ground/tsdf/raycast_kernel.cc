@@ -324,17 +324,6 @@ HWY_INLINE Surface Refine(const RaycastKernelArgs& a, const Bundle& bundle,
   return surface;
 }
 
-void ClearTile(SurfaceMaps& maps, int x, int y) {
-  const int columns = maps.width() - x < kRaycastTile ? maps.width() - x : kRaycastTile;
-  const int rows = maps.height() - y < kRaycastTile ? maps.height() - y : kRaycastTile;
-  for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz}) {
-    for (int row = y; row < y + rows; ++row) {
-      for (int i = 0; i < columns; ++i)
-        plane->At(x + i, row) = std::numeric_limits<float>::quiet_NaN();
-    }
-  }
-}
-
 /// Writes what the rays of a bundle met to all planes.
 HWY_INLINE void WriteSurface(const RaycastKernelArgs& a, const Rays& rays, const Surface& surface,
                              int x, int y, SurfaceMaps& maps) {
@@ -368,10 +357,6 @@ HWY_INLINE void WriteSurface(const RaycastKernelArgs& a, const Rays& rays, const
 
 void RaycastTile(const RaycastKernelArgs& a, int tile_x, int tile_y, float near_vox, float far_vox,
                  SurfaceMaps& maps) {
-  if (!(far_vox > near_vox)) {
-    ClearTile(maps, tile_x, tile_y);
-    return;
-  }
   const int width = maps.width();
   const int height = maps.height();
   const int lane_rows = static_cast<int>(hn::Lanes(d)) / kLaneColumns;

@@ -84,6 +84,15 @@ std::int32_t MinWeightCode(float min_weight) {
   return std::max(1, static_cast<std::int32_t>(std::ceil(min_weight * TsdfVoxel::kWeightScale)));
 }
 
+/// No surface in a tile.
+void ClearTile(int tile_x, int tile_y, SurfaceMaps& maps) {
+  const int columns = std::min(kRaycastTile, maps.width() - tile_x);
+  const int end = std::min(tile_y + kRaycastTile, maps.height());
+  for (Image<float>* plane : {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz}) {
+    for (int y = tile_y; y < end; ++y) std::fill_n(plane->Row(y).data() + tile_x, columns, kNan);
+  }
+}
+
 }  // namespace
 
 std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vector3f& p_voxel,
@@ -192,6 +201,10 @@ void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
   args.voxel_m = static_cast<float>(grid.voxel_size_m);
   pool.ParallelFor(range_.tiles_y(), [&](int y) {
     for (int x = 0; x < range_.tiles_x(); ++x) {
+      if (!(range_.far_vox(x, y) > range_.near_vox(x, y))) {
+        ClearTile(x * kRaycastTile, y * kRaycastTile, maps);
+        continue;
+      }
       RaycastTile(args, x * kRaycastTile, y * kRaycastTile, range_.near_vox(x, y),
                   range_.far_vox(x, y), maps);
     }

@@ -227,7 +227,9 @@ std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files) {
       const std::optional<Include> include = ParseInclude(file.lines[i]);
       if (!include) continue;
       std::string message = CheckLibrary(file, include->header);
-      if (message.empty() && shared.contains(file.path) && !file.IsTest()) {
+      // Parts of kernels that several sources share are included once per instruction set.
+      const bool part_of_kernel = file.path.ends_with("-inl.h");
+      if (message.empty() && shared.contains(file.path) && !file.IsTest() && !part_of_kernel) {
         message = CheckWeight(include->header);
       }
       const bool sdk = std::any_of(SdkHomes().begin(), SdkHomes().end(), [&](const auto& home) {

@@ -8,7 +8,8 @@ namespace isotherm::lint {
 
 /// Checks what a reader of the text expects:
 ///   - nothing names a place on one developer's machine (home folders and the like);
-///   - headers have `#pragma once` and no `using namespace`;
+///   - headers have `#pragma once` (parts of SIMD kernels, `-inl.h`, have Highway's guard) and no
+///   `using namespace`;
 ///   - tests are skipped with a reason, never disabled;
 ///   - CMake files list their sources, set no CPU flags, and say what their folder is for;
 ///   - no trailing blanks, no tabs in code;
