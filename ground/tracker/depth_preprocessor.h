@@ -19,7 +19,7 @@ struct PreparedDepth {
   std::array<SurfaceMaps, kPyramidLevels> maps;  ///< Level 0 is full resolution, each next is half.
   /// Standard deviation of depth at 1 m, metres; it grows with the square of the depth.
   float noise_at_1m = 0.0F;
-  int valid_pixels = 0;                          ///< Pixels of level 0 with a depth.
+  int valid_pixels = 0;  ///< Pixels of level 0 with a depth.
 };
 
 Status Validate(const PreprocessorOptions& options);

@@ -31,7 +31,8 @@ struct RaycastKernelArgs {
 inline constexpr int kRaycastTile = 8;
 
 /// Casts the rays of the tile whose first pixel is (x, y), from depth `near_vox` to the greater
-/// `far_vox` along the camera's z, and writes all six planes of `maps` there (world, metres; NaN = no surface).
+/// `far_vox` along the camera's z, and writes all six planes of `maps` there (world, metres; NaN =
+/// no surface).
 void RaycastTile(const RaycastKernelArgs& args, int x, int y, float near_vox, float far_vox,
                  SurfaceMaps& maps);
 
