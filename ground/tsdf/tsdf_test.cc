@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <random>
 
 #include "common/testing/volume_shapes.h"
 #include "ground/tracker/analytic_views_for_test.h"
@@ -15,7 +14,6 @@ namespace {
 
 constexpr double kVoxel = 0.004;
 constexpr double kTruncation = 0.016;
-constexpr double kNoiseAt1m = 0.006;
 
 VolumeOptions SmallVolume() {
   VolumeOptions options;
@@ -215,87 +213,6 @@ TEST_F(TsdfIntegratorTest, SeeingThroughAStrayVoxelClearsIt) {
   const DepthFrame frame = testing::RenderDepth(wall, camera_, testing::FirstPose());
   for (int i = 0; i < 20; ++i) Integrate(frame, testing::FirstPose());
   for (const TsdfVoxel& voxel : volume_.voxels(block)) EXPECT_GT(voxel.tsdf(), 0.5F);
-}
-
-/// What the kernel must do, one voxel at a time and in double precision.
-void ReferenceUpdate(TsdfVoxel& voxel, const Eigen::Vector3d& p, const CameraModel& camera,
-                     const std::vector<DepthSample>& samples, double truncation, float max_weight) {
-  if (p.z() <= 0.0) return;
-  const double u = camera.fx * p.x() / p.z() + camera.cx + 0.5;
-  const double v = camera.fy * p.y() / p.z() + camera.cy + 0.5;
-  if (u < 0.0 || v < 0.0 || u >= camera.width || v >= camera.height) return;
-  const DepthSample& s =
-      samples[static_cast<std::size_t>(static_cast<int>(v) * camera.width + static_cast<int>(u))];
-  const float weight = static_cast<float>(s.normal_z_weight & 0xFFFF) / DepthSample::kWeightScale;
-  if (weight <= 0.0F) return;
-  const double along_ray = s.depth_m - p.z();
-  const double distance =
-      (static_cast<std::int16_t>(s.normal_xy & 0xFFFF) * p.x() + (s.normal_xy >> 16) * p.y() +
-       (s.normal_z_weight >> 16) * p.z() - s.scaled_offset) /
-      DepthSample::kNormalScale;
-  if (along_ray < -2.0 * truncation) return;
-  if (along_ray <= 2.0 * truncation && distance < -truncation) return;
-  const bool is_free = along_ray > 2.0 * truncation;
-  const double tsdf = is_free ? 1.0 : std::min(1.0, distance / truncation);
-  const double noise_reach = std::min(1.0, kNoiseAt1m * s.depth_m * s.depth_m / truncation);
-  const double certain_weight =
-      weight * std::clamp((1.0 + tsdf) / std::max(0.02, 1.0 - noise_reach), 0.02, 1.0);
-  if (std::lrint((voxel.weight() + certain_weight) * TsdfVoxel::kWeightScale) == 0) return;
-  voxel.Update(static_cast<float>(tsdf), static_cast<float>(certain_weight), max_weight);
-}
-
-TEST(IntegrationKernelTest, MatchesTheScalarReferenceOnRandomSamples) {
-  constexpr unsigned kSeed = 20261121;
-  SCOPED_TRACE(kSeed);
-  std::mt19937 random(kSeed);
-  std::uniform_real_distribution<float> unit(-1.0F, 1.0F);
-  CameraModel camera = testing::SmallDepthCamera();
-  std::vector<DepthSample> samples(static_cast<std::size_t>(camera.width * camera.height));
-  for (DepthSample& s : samples) {
-    const Eigen::Vector3f n = Eigen::Vector3f(unit(random), unit(random), -1.5F).normalized();
-    const Eigen::Vector3f p(0.3F * unit(random), 0.3F * unit(random), 0.5F + 0.05F * unit(random));
-    s = DepthSample::Make(n.data(), p.data(), std::max(0.0F, unit(random)));
-  }
-  samples.emplace_back();
-  IntegrationKernelArgs args{};
-  args.samples = samples.data();
-  args.width = camera.width;
-  args.height = camera.height;
-  args.fx = static_cast<float>(camera.fx);
-  args.fy = static_cast<float>(camera.fy);
-  args.cx = static_cast<float>(camera.cx);
-  args.cy = static_cast<float>(camera.cy);
-  for (int i = 0; i < 3; ++i) args.axes[4 * i] = static_cast<float>(kVoxel);
-  args.truncation_m = static_cast<float>(kTruncation);
-  args.max_weight = 3.0F;
-  args.noise_at_1m = static_cast<float>(kNoiseAt1m);
-  int updated = 0;
-  int different = 0;
-  for (int round = 0; round < 200; ++round) {
-    std::array<TsdfVoxel, kBlockVoxels> fast{};
-    std::array<TsdfVoxel, kBlockVoxels> slow{};
-    const Eigen::Vector3f first(0.3F * unit(random), 0.3F * unit(random),
-                                0.5F + 0.1F * unit(random));
-    for (int pass = 0; pass < 4; ++pass) {
-      IntegrateBlock(args, first.data(), &fast.front().bits);
-      for (int i = 0; i < kBlockVoxels; ++i) {
-        const Eigen::Vector3d p =
-            first.cast<double>() + kVoxel * Eigen::Vector3d(i & 7, (i >> 3) & 7, i >> 6);
-        ReferenceUpdate(slow[static_cast<std::size_t>(i)], p, camera, samples, kTruncation,
-                        args.max_weight);
-      }
-    }
-    for (std::size_t i = 0; i < fast.size(); ++i) {
-      updated += slow[i].observed() ? 1 : 0;
-      // Single precision may choose the neighbouring pixel or side of a threshold, rarely.
-      const bool same = fast[i].observed() == slow[i].observed() &&
-                        std::abs(fast[i].tsdf() - slow[i].tsdf()) < 1e-3F &&
-                        std::abs(fast[i].weight() - slow[i].weight()) < 0.05F;
-      different += same ? 0 : 1;
-    }
-  }
-  EXPECT_GT(updated, 10'000);
-  EXPECT_LT(different, updated / 500);
 }
 
 TEST(IntegrationGateTest, AcceptsMotionWithinBoundsAfterTheFirstFrames) {
