@@ -78,9 +78,10 @@ struct Start {
   std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
 };
 
-RigDescription Describe(const Start& start) {
+RigDescription Describe(const EdgeOptions& options, const Start& start) {
   RigDescription description;
   description.session = start.session();
+  description.waits_for_ground = options.source().rate() == 0.0;
   if (!start.rig) return description;
   description.rig = *start.rig;
   const auto mode = [](const std::optional<CameraModel>& camera, Encoding encoding) {
@@ -210,7 +211,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
     LOG(Edge, Error) << spool.error().message();
     return kExitRecording;
   }
-  const Status begun = (*publisher)->BeginSession(Describe(start));
+  const Status begun = (*publisher)->BeginSession(Describe(options, start));
   if (!begun.ok()) return Fail(begun);
   return Capture(options, start, *source, std::move(*spool), account, **publisher, clock, stop);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "common/base/log.h"
 #include "ground/initial_pose.h"
@@ -158,6 +159,10 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   const RigidTransform& T_world_depth = report.tracking.T_world_depth;
   report.integrated =
       gate_.Accepts(last_ ? std::optional(last_->T_world_depth) : std::nullopt, T_world_depth);
+  if (report.integrated && effort_ == Effort::kEverySecond) {
+    report.integrated = std::exchange(integrate_next_, !integrate_next_);
+    if (!report.integrated) ++counts_.depth_behind;
+  }
   if (report.integrated) {
     const StageTimer integrate_timer(stage_stats_["integrate"]);
     integrator_.Integrate(*depth, T_world_depth, pool_, *tsdf_);
@@ -195,6 +200,10 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
     const ThermalFramePtr frame = waiting_thermal_.front();
     waiting_thermal_.pop_front();
     const CaptureTime time = frame->header.capture_time;
+    if (effort_ != Effort::kAll) {
+      LeaveOut("behind");
+      continue;
+    }
     if (!before_last_ || time < before_last_->time) {
       LeaveOut("pose_unknown");
       continue;

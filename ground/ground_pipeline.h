@@ -27,11 +27,20 @@ struct PipelineCounts {
   std::uint64_t depth_in = 0;
   std::uint64_t depth_tracked = 0;
   std::uint64_t depth_integrated = 0;               ///< Of the tracked ones.
+  std::uint64_t depth_behind = 0;                   ///< Not integrated for want of time.
   std::uint64_t depth_refused = 0;                  ///< Wrong size or nothing in it.
   std::map<std::string, std::uint64_t> depth_lost;  ///< By reason.
   std::uint64_t thermal_in = 0;
   std::uint64_t thermal_fused = 0;
   std::map<std::string, std::uint64_t> thermal_left_out;  ///< By reason.
+};
+
+/// How much of the work a pipeline does. What it leaves out costs quality where the next frames do
+/// not see the same again.
+enum class Effort : std::uint8_t {
+  kAll,
+  kNoThermal,    ///< Thermal frames are left out ("behind").
+  kEverySecond,  ///< And only every second depth frame is integrated; all are tracked.
 };
 
 struct DepthReport {
@@ -56,6 +65,8 @@ class GroundPipeline {
   DepthReport ProcessDepth(const DepthFrame& frame);
   /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).
   void ProcessThermal(ThermalFramePtr frame);
+  /// For the frames to come, until said otherwise.
+  void set_effort(Effort effort) { effort_ = effort; }
   /// Thermal frames still waiting are counted as left out.
   void Finish();
 
@@ -106,6 +117,8 @@ class GroundPipeline {
   std::optional<StampedPose> last_,
       before_last_;  ///< Consecutive tracked poses; empty after a lost frame.
   std::deque<ThermalFramePtr> waiting_thermal_;
+  Effort effort_ = Effort::kAll;
+  bool integrate_next_ = true;  ///< With kEverySecond.
   PipelineCounts counts_;
   std::map<std::string, StageStats> stage_stats_;
 };

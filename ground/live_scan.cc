@@ -64,6 +64,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       options_(options),
       session_(rig.session),
       rig_(rig.rig),
+      keeps_up_(options.live().max_wait_s() > 0.0 && !rig.waits_for_ground),
       pipeline_(std::move(pipeline)),
       assembler_(rig.rig.thermal.has_value()) {}
 
@@ -90,11 +91,28 @@ void LiveScan::NoteTurn(const void* frame) {
   const auto arrival = arrivals_.extract(frame);
   constexpr double kMsPerNs = 1e-6;
   if (arrival) {
-    waiting_.Add(kMsPerNs * static_cast<double>((clock_.Now() - arrival.mapped()).count()));
+    const double waited_ms =
+        kMsPerNs * static_cast<double>((clock_.Now() - arrival.mapped()).count());
+    waiting_.Add(waited_ms);
+    if (keeps_up_) KeepUp(waited_ms);
   }
   // Frames that the assembler refused never have a turn.
   constexpr std::size_t kMostHeld = 1024;
   if (arrivals_.size() > kMostHeld) arrivals_.clear();
+}
+
+void LiveScan::KeepUp(double waited_ms) {
+  constexpr double kThermalShare = 0.7;
+  const double share = waited_ms / (1e3 * options_.live().max_wait_s());
+  pipeline_->set_effort(share > 1.0             ? Effort::kEverySecond
+                        : share > kThermalShare ? Effort::kNoThermal
+                                                : Effort::kAll);
+  if (share <= 1.0 || told_behind_) return;
+  told_behind_ = true;
+  LOG(Ground, Warning) << fmt::format(
+      "a frame waited {:.0f} ms for its turn: work is left out to keep up (frames left out as "
+      "\"behind\" in stats.json; the recording has all)",
+      waited_ms);
 }
 
 void LiveScan::Process(const Assembler::Frame& frame) {

@@ -53,12 +53,15 @@ class LiveScan {
            std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
   void NoteTurn(const void* frame);
+  /// Leaves work out while frames wait too long (LiveOptions.max_wait_s).
+  void KeepUp(double waited_ms);
   Feedback MakeFeedback();
 
   const Clock& clock_;
   const GroundOptions options_;
   const std::uint64_t session_;
   const Rig rig_;
+  const bool keeps_up_;
   std::unique_ptr<GroundPipeline> pipeline_;
   Assembler assembler_;
   ViewMaps view_;
@@ -69,6 +72,7 @@ class LiveScan {
   bool nuc_running_ = false;
   std::map<const void*, CaptureTime> arrivals_;  ///< Of frames in the assembler.
   StageStats waiting_;
+  bool told_behind_ = false;
 };
 
 }  // namespace isotherm

@@ -52,6 +52,7 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   depth["in"] = counts.depth_in;
   depth["tracked"] = counts.depth_tracked;
   depth["integrated"] = counts.depth_integrated;
+  depth["not_integrated_behind"] = counts.depth_behind;
   depth["refused"] = counts.depth_refused;
   depth["lost"] = Sum(counts.depth_lost);
   for (const auto& [reason, count] : counts.depth_lost) depth["lost_by_reason"][reason] = count;
@@ -101,10 +102,11 @@ Result<std::string> WriteScan(
   if (!summary) return Err(summary.error());
 
   const PipelineCounts& counts = pipeline.counts();
-  std::string text =
-      fmt::format("depth    {} frames: {} tracked, {} integrated{}{}\n", counts.depth_in,
-                  counts.depth_tracked, counts.depth_integrated,
-                  counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
+  std::string text = fmt::format(
+      "depth    {} frames: {} tracked, {} integrated{}{}{}\n", counts.depth_in,
+      counts.depth_tracked, counts.depth_integrated,
+      counts.depth_behind == 0 ? "" : fmt::format(" ({} left out to keep up)", counts.depth_behind),
+      counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
   text += fmt::format(
       "thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
       counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));

@@ -114,12 +114,14 @@ void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
   CopyText(rig.method, to->method);
   ToWireMode(from.depth, &to->depth_mode);
   ToWireMode(from.thermal, &to->thermal_mode);
+  to->waits_for_ground = from.waits_for_ground;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to) {
   to->session = from.session;
   if (const auto cause = FromWireCalibration(from, &to->rig)) return cause;
   if (const auto cause = FromWireMode(from.depth_mode, &to->depth)) return cause;
+  to->waits_for_ground = from.waits_for_ground;
   return FromWireMode(from.thermal_mode, &to->thermal);
 }
 

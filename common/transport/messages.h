@@ -61,6 +61,8 @@ struct RigDescription {
   Rig rig;
   StreamMode depth;
   StreamMode thermal;
+  /// Frames come as fast as the ground takes them (a replay), not as a camera makes them.
+  bool waits_for_ground = false;
 };
 
 enum class ScanState : std::uint8_t {

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 
+#include "ground/thermal/upsample_kernel.h"
+
 namespace isotherm {
 namespace {
 
@@ -20,6 +22,22 @@ constexpr int kTile = kRowsPerTask;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 float CosineOfDegrees(double degrees) { return static_cast<float>(std::cos(degrees * kRadPerDeg)); }
+
+template <typename Row>
+void ForRows(int height, ThreadPool& pool, const Row& row) {
+  pool.ParallelFor((height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
+    const int end = std::min(height, (task + 1) * kRowsPerTask);
+    for (int y = task * kRowsPerTask; y < end; ++y) row(y);
+  });
+}
+
+/// Every second pixel each way, and one beyond the last.
+CameraModel EverySecondPixel(CameraModel camera) {
+  camera.width = camera.width / 2 + 1;
+  camera.height = camera.height / 2 + 1;
+  for (double* parameter : {&camera.fx, &camera.fy, &camera.cx, &camera.cy}) *parameter *= 0.5;
+  return camera;
+}
 
 /// Smaller is better: good before acceptable.
 int Rank(ConditionClass c) { return static_cast<int>(c); }
@@ -50,6 +68,10 @@ Status Validate(const ThermalOptions& o) {
   if (o.edge_margin_px() < 0 || o.edge_margin_px() > 16) {
     return InvalidArgument(
         fmt::format("thermal.edge_margin_px must be 0..16 pixels, got {}", o.edge_margin_px()));
+  }
+  if (o.visibility_halvings() != 0 && o.visibility_halvings() != 1) {
+    return InvalidArgument(
+        fmt::format("thermal.visibility_halvings must be 0 or 1, got {}", o.visibility_halvings()));
   }
   return OkStatus();
 }
@@ -120,13 +142,10 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, int apro
       picture_.data()[i] = raw == 0 ? kNan : static_cast<float>(raw) * 0.01F - 273.15F;
     }
   });
-  pool.ParallelFor(tasks, [&](int task) {
-    const int end = std::min(height, (task + 1) * kRowsPerTask);
-    for (int v = task * kRowsPerTask; v < end; ++v) {
-      ResampleRow({picture_.data(), width, source_.Row(v).data(), fraction_x_.Row(v).data(),
-                   fraction_y_.Row(v).data(), width},
-                  celsius.Row(v + apron).data() + apron);
-    }
+  ForRows(height, pool, [&](int v) {
+    ResampleRow({picture_.data(), width, source_.Row(v).data(), fraction_x_.Row(v).data(),
+                 fraction_y_.Row(v).data(), width},
+                celsius.Row(v + apron).data() + apron);
   });
 }
 
@@ -146,6 +165,33 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
   const int tiles_y = (height + kTile - 1) / kTile;
   nearest_m_.Resize(tiles_x, tiles_y);
   farthest_m_.Resize(tiles_x, tiles_y);
+}
+
+void ThermalFuser::CastSurface(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf,
+                               ThreadPool& pool) {
+  const CameraModel& camera = rectifier_.ideal_camera();
+  const bool halved = options_.visibility_halvings() == 1;
+  if (halved) {
+    raycaster_.Cast(tsdf, EverySecondPixel(camera), T_world_thermal, min_weight_, pool, coarse_);
+    surface_.Resize(camera.width, camera.height);
+  } else {
+    raycaster_.Cast(tsdf, camera, T_world_thermal, min_weight_, pool, surface_);
+  }
+  UpsampleRowArgs args{};
+  args.coarse = &coarse_;
+  // Half of what counts as an occluder: a corner is bridged, an edge is not.
+  args.max_plane_distance_m = static_cast<float>(0.5 * options_.parallax_tolerance_m());
+  const Eigen::Vector3f position = T_world_thermal.translation().cast<float>();
+  std::copy_n(position.data(), 3, args.position);
+  ForRows(camera.height, pool, [&](int y) {
+    float* distance_m = distances_m_.Row(y + apron_).data() + apron_;
+    if (halved) {
+      UpsampleRow(args, y, surface_, distance_m);
+    } else {
+      DistanceRow(surface_.vx.Row(y).data(), surface_.vy.Row(y).data(), surface_.vz.Row(y).data(),
+                  args.position, camera.width, distance_m);
+    }
+  });
 }
 
 std::int64_t ThermalFuser::MakePixels(const RigidTransform& T_world_thermal,
@@ -182,16 +228,6 @@ std::int64_t ThermalFuser::MakePixels(const RigidTransform& T_world_thermal,
   args.cosine_max_angle = limits_.cosine_max_angle;
 
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
-  const auto for_rows = [&](const auto& row) {
-    pool.ParallelFor(tasks, [&](int task) {
-      const int end = std::min(height, (task + 1) * kRowsPerTask);
-      for (int y = task * kRowsPerTask; y < end; ++y) row(y);
-    });
-  };
-  for_rows([&](int y) {
-    DistanceRow(surface_.vx.Row(y).data(), surface_.vy.Row(y).data(), surface_.vz.Row(y).data(),
-                args.position, width, distances_m_.Row(y + apron_).data() + apron_);
-  });
   std::atomic<std::int64_t> occluded{0};
   pool.ParallelFor(tasks, [&](int task) {
     const std::span<float> nearest = nearest_m_.Row(task);
@@ -266,7 +302,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
   CHECK(frame.valid);
   CHECK(frame.centikelvin.width() == camera.width && frame.centikelvin.height() == camera.height);
   rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
-  raycaster_.Cast(tsdf, camera, T_world_thermal, min_weight_, pool, surface_);
+  CastSurface(T_world_thermal, tsdf, pool);
   FusionReport report;
   report.occluded = MakePixels(T_world_thermal, depth_camera, T_world_depth, pool);
   SelectBlocks(T_world_thermal, tsdf);

@@ -73,6 +73,8 @@ class ThermalFuser {
                     const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal);
 
  private:
+  /// What the thermal camera sees of the model, into surface_ and distances_m_.
+  void CastSurface(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
   std::int64_t MakePixels(const RigidTransform& T_world_thermal, const CameraModel& depth_camera,
                           const RigidTransform& T_world_depth, ThreadPool& pool);
   void SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf);
@@ -83,6 +85,7 @@ class ThermalFuser {
   const int apron_;  ///< Pixels around distances_m_ and celsius_.
   ThermalRectifier rectifier_;
   Raycaster raycaster_{RaycastPrecision::kVisibility};
+  SurfaceMaps coarse_;                   ///< Every second pixel each way.
   SurfaceMaps surface_;                  ///< The model as the thermal camera sees it, in world.
   Image<float> distances_m_;             ///< Of its vertices from the camera, with an apron.
   Image<float> celsius_;                 ///< With an apron.
