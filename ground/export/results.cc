@@ -137,30 +137,33 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
   announce("trajectory.txt", 0.0);
   failure.Add(WriteTrajectory(inputs.trajectory, dir / "trajectory.txt"));
   announce("surface", 0.05);
-  const Surface surface = ExtractSurface(
-      inputs.tsdf, inputs.thermal,
-      {.min_weight = static_cast<float>(options.min_weight()), .triangles = options.mesh()},
-      threads);
-  const ResultSummary summary = SummarizeSurface(surface, inputs.renderer_options);
-  announce("stats.json", 0.4);
-  failure.Add(WriteFile(dir / "stats.json", CompleteStats(inputs, summary).ToText()));
+  ResultSummary summary;
+  {
+    const Surface surface = ExtractSurface(
+        inputs.tsdf, inputs.thermal,
+        {.min_weight = static_cast<float>(options.min_weight()), .triangles = options.mesh()},
+        threads);
+    summary = SummarizeSurface(surface, inputs.renderer_options);
+    announce("stats.json", 0.4);
+    failure.Add(WriteFile(dir / "stats.json", CompleteStats(inputs, summary).ToText()));
+    const ColourTable colours(inputs.renderer_options);
+    const PlyStyle style{
+        .colours = colours,
+        .scale = summary.scale,
+        .palette_name = inputs.renderer_options.palette() == GREY ? "grey" : "coolwarm",
+        .software = kSoftware};
+    if (options.cloud()) {
+      announce("cloud.ply", 0.4);
+      failure.Add(WriteCloudPly(surface, style, dir / "cloud.ply"));
+    }
+    if (options.mesh()) {
+      announce("mesh.ply", 0.65);
+      failure.Add(WriteMeshPly(surface, style, dir / "mesh.ply"));
+    }
+  }  // Pictures need the memory that the surface took.
   if (options.renders() && inputs.view != nullptr) {
-    announce("renders", 0.4);
+    announce("renders", 0.9);
     WriteRenders(inputs, summary.scale, dir / "renders", threads, failure);
-  }
-  const ColourTable colours(inputs.renderer_options);
-  const PlyStyle style{
-      .colours = colours,
-      .scale = summary.scale,
-      .palette_name = inputs.renderer_options.palette() == GREY ? "grey" : "coolwarm",
-      .software = kSoftware};
-  if (options.cloud()) {
-    announce("cloud.ply", 0.5);
-    failure.Add(WriteCloudPly(surface, style, dir / "cloud.ply"));
-  }
-  if (options.mesh()) {
-    announce("mesh.ply", 0.75);
-    failure.Add(WriteMeshPly(surface, style, dir / "mesh.ply"));
   }
   announce("done", 1.0);
   if (!failure.status().ok()) return Err(failure.status());
