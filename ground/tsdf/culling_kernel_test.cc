@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/testing/kernel_checks_for_test.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/ground_options.pb.h"
 #include "ground/tracker/analytic_views_for_test.h"
-#include "ground/tsdf/kernel_checks_for_test.h"
 #include "ground/tsdf/scalar_kernels_for_test.h"
 #include "ground/tsdf/visible_blocks.h"
 

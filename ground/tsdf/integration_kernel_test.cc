@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "ground/tsdf/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks_for_test.h"
 #include "ground/tsdf/scalar_kernels_for_test.h"
 
 namespace isotherm {

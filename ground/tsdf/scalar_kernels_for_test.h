@@ -9,9 +9,9 @@
 #include <set>
 #include <vector>
 
+#include "common/testing/kernel_checks_for_test.h"
 #include "ground/tsdf/culling_kernel.h"
 #include "ground/tsdf/integration_kernel.h"
-#include "ground/tsdf/kernel_checks_for_test.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 // What the kernels of this folder must do, one element at a time and in double precision.
