@@ -38,14 +38,9 @@ void ResampleRow(const ResampleRowArgs& a, float* out) {
   const VF none = hn::Set(d, std::numeric_limits<float>::quiet_NaN());
   for (int x = 0; x < a.width; x += lanes) {
     const auto count = static_cast<std::size_t>(a.width - x);
-    const MF in_row = hn::FirstN(d, count);
-    const bool whole = x + lanes <= a.width;
-    const VI source = whole ? hn::LoadU(di, a.source + x)
-                            : hn::MaskedLoad(hn::FirstN(di, count), di, a.source + x);
-    const VF fx =
-        whole ? hn::LoadU(d, a.fraction_x + x) : hn::MaskedLoad(in_row, d, a.fraction_x + x);
-    const VF fy =
-        whole ? hn::LoadU(d, a.fraction_y + x) : hn::MaskedLoad(in_row, d, a.fraction_y + x);
+    const VI source = hn::IfThenElseZero(hn::FirstN(di, count), hn::LoadU(di, a.source + x));
+    const VF fx = LoadFirst(count, a.fraction_x + x);
+    const VF fy = LoadFirst(count, a.fraction_y + x);
     const MI inside = hn::Gt(source, hn::Set(di, -1));
     const VI upper = hn::IfThenElseZero(inside, source);
     const VI lower = hn::Add(upper, hn::Set(di, a.stride));
@@ -57,11 +52,7 @@ void ResampleRow(const ResampleRowArgs& a, float* out) {
     const VF below = hn::MulAdd(fx, hn::Sub(p11, p01), p01);
     const VF value = hn::IfThenElse(hn::RebindMask(d, inside),
                                     hn::MulAdd(fy, hn::Sub(below, above), above), none);
-    if (whole) {
-      hn::StoreU(value, d, out + x);
-    } else {
-      hn::BlendedStore(value, in_row, d, out + x);
-    }
+    StoreFirst(value, count, out + x);
   }
 }
 
@@ -70,11 +61,9 @@ void DistanceRow(const float* vx, const float* vy, const float* vz, const float*
   const int lanes = static_cast<int>(hn::Lanes(d));
   const VF far = hn::Set(d, std::numeric_limits<float>::max());
   for (int x = 0; x < width; x += lanes) {
-    const MF in_row = hn::FirstN(d, static_cast<std::size_t>(width - x));
-    const bool whole = x + lanes <= width;
+    const auto count = static_cast<std::size_t>(width - x);
     const auto offset = [&](const float* row, int axis) {
-      return hn::Sub(whole ? hn::LoadU(d, row + x) : hn::MaskedLoad(in_row, d, row + x),
-                     hn::Set(d, position[axis]));
+      return hn::Sub(LoadFirst(count, row + x), hn::Set(d, position[axis]));
     };
     const VF dx = offset(vx, 0);
     const VF dy = offset(vy, 1);
@@ -82,11 +71,7 @@ void DistanceRow(const float* vx, const float* vy, const float* vz, const float*
     const VF squared = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
     const VF distance =
         hn::IfThenElse(hn::Ge(squared, hn::Zero(d)), hn::Sqrt(squared), far);  // NaN: far.
-    if (whole) {
-      hn::StoreU(distance, d, distance_m + x);
-    } else {
-      hn::BlendedStore(distance, in_row, d, distance_m + x);
-    }
+    StoreFirst(distance, count, distance_m + x);
   }
 }
 
@@ -106,7 +91,7 @@ std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
     const MF in_row = hn::FirstN(d, count);
     const bool whole = x + lanes <= a.width;
     const auto load = [&](const float* row) {
-      return whole ? hn::LoadU(d, row + x) : hn::MaskedLoad(in_row, d, row + x);
+      return whole ? hn::LoadU(d, row + x) : LoadFirst(count, row + x);
     };
     const VF px = load(a.vx);
     const VF py = load(a.vy);

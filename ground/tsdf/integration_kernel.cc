@@ -62,9 +62,9 @@ void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
   const VF ray_y = hn::Set(d, a.ray_y);
   for (int x = 0; x < a.width; x += lanes) {
     const bool whole = x + lanes <= a.width;
-    const MF in_row = hn::FirstN(d, static_cast<std::size_t>(a.width - x));
+    const auto count = static_cast<std::size_t>(a.width - x);
     const auto load = [&](const float* row) {
-      return whole ? hn::LoadU(d, row + x) : hn::MaskedLoad(in_row, d, row + x);
+      return whole ? hn::LoadU(d, row + x) : LoadFirst(count, row + x);
     };
     const VF depth = load(a.depth_m);
     const MF seen = hn::Gt(depth, zero);
@@ -92,7 +92,7 @@ void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
                              hn::IfThenElse(to_plane, ny, to_camera_y),
                              hn::IfThenElse(to_plane, nz, shortening), px, py,
                              hn::IfThenElseZero(seen, weight)),
-                 static_cast<std::size_t>(a.width - x), samples + x);
+                 count, samples + x);
   }
 }
 

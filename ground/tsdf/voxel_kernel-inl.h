@@ -15,6 +15,30 @@
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
 
+/// The first `count` lanes from any address, zeros in the others. A whole vector must be readable
+/// (Image has slack): without AVX2, a masked load takes aligned addresses only.
+HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> LoadFirst(
+    std::size_t count, const float* p) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<float> d;
+  return hn::IfThenElseZero(hn::FirstN(d, count), hn::LoadU(d, p));
+}
+
+/// Writes the first `count` lanes to any address and nothing behind them, where a blended store
+/// would write what it has read: the next row may be another thread's.
+HWY_INLINE void StoreFirst(hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> v,
+                           std::size_t count, float* p) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<float> d;
+  if (count >= hn::Lanes(d)) {
+    hn::StoreU(v, d, p);
+    return;
+  }
+  HWY_ALIGN float all[hn::MaxLanes(hn::ScalableTag<float>())];
+  hn::Store(v, d, all);
+  std::memcpy(p, all, sizeof(float) * count);
+}
+
 /// 1 / v to about 22 bits.
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> Reciprocal(
     hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> v) {

@@ -1,0 +1,225 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/testing/kernel_checks_for_test.h"
+#include "ground/thermal/thermal_fuser.h"
+#include "ground/thermal/thermal_kernel.h"
+
+namespace isotherm {
+namespace {
+
+using testing::AtLeastZero;
+using testing::Both;
+using testing::Random;
+using testing::Verdict;
+
+/// What FuseBlock must do with one voxel.
+struct ScalarFusion {
+  Verdict considered = Verdict::kNo;
+  Verdict assigned = Verdict::kNo;
+  double code = 0.0;  ///< Of the temperature, before rounding.
+  double slack = 0.0;
+  std::int32_t classes = 0;
+};
+
+ScalarFusion FuseScalarVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p, TsdfVoxel voxel,
+                             ThermalVoxel old) {
+  constexpr double kNearPixelBorder = 2e-3;  // Pixels.
+  constexpr double kSinglePrecision = 1e-6;  // Metres, at up to a metre.
+  ScalarFusion result;
+  if (!voxel.observed() || std::abs(static_cast<std::int32_t>(voxel.bits) >> 16) > a.max_tsdf_code)
+    return result;
+  if (!(p.z() > 0.0)) return result;
+  const double u = a.fx * p.x() / p.z() + a.cx;
+  const double v = a.fy * p.y() / p.z() + a.cy;
+  const double column = std::floor(u + 0.5);
+  const double row = std::floor(v + 0.5);
+  const double to_border =
+      std::min(std::abs(u + 0.5 - std::round(u + 0.5)), std::abs(v + 0.5 - std::round(v + 0.5)));
+  if (to_border < kNearPixelBorder) {
+    result.considered = result.assigned = Verdict::kEither;
+    return result;
+  }
+  if (!(column >= 0.0 && column < a.width && row >= 0.0 && row < a.height)) return result;
+  const ThermalPixel& pixel = a.pixels[static_cast<int>(row) * a.width + static_cast<int>(column)];
+  const Eigen::Vector3d vertex =
+      pixel.depth_m * Eigen::Vector3d((column - a.cx) / a.fx, (row - a.cy) / a.fy, 1.0);
+  if ((pixel.flags & ThermalPixel::kSeen) == 0) return result;
+  result.considered = AtLeastZero(double{a.max_distance_m} - (p - vertex).norm(), kSinglePrecision);
+  if ((pixel.flags & ThermalPixel::kAssignable) == 0) return result;
+  result.classes = pixel.flags & 0xFF;
+  const auto distance = static_cast<ConditionClass>(result.classes >> 4);
+  const auto angle = static_cast<ConditionClass>(result.classes & 0xF);
+  if (a.validate && !ReplacesMeasurement(distance, angle, old)) return result;
+  result.assigned = result.considered;
+  const double slope_u = static_cast<std::int16_t>(pixel.slopes & 0xFFFF);
+  const double slope_v = pixel.slopes >> 16;
+  constexpr double kSlopeScale = ThermalPixel::kSlopeScale;
+  constexpr double kStepsPerKelvin = 1.0 / 0.025;
+  const double celsius =
+      pixel.celsius + (slope_u * (u - column) + slope_v * (v - row)) / kSlopeScale;
+  result.code = std::clamp(1.0 + kStepsPerKelvin * (celsius + 100.0), 1.0, 65535.0);
+  constexpr double kPixelError = 1e-4;  // Of a projection.
+  result.slack =
+      0.52 + kPixelError * kStepsPerKelvin / kSlopeScale * (std::abs(slope_u) + std::abs(slope_v)) +
+      1e-6 * result.code;
+  return result;
+}
+
+class FuseBlockTest : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kVoxels = 512;
+  static constexpr float kVoxel = 0.004F;
+  using Words = std::array<std::uint32_t, kVoxels + 1>;
+
+  /// A camera of any size before a bumpy wall half a metre away, of which a part is not seen.
+  void RearrangePicture(int width, int height) {
+    pixels_.assign(static_cast<std::size_t>(width * height) + 1, ThermalPixel{});
+    for (std::size_t i = 0; i + 1 < pixels_.size(); ++i) {
+      if (random_.Chance(0.1)) continue;
+      ThermalPixel& pixel = pixels_[i];
+      pixel.depth_m = 0.5F + 0.01F * Uniform();
+      pixel.celsius = random_.Chance(0.1) ? 3000.0F * Uniform() : 60.0F * Uniform();
+      pixel.slopes = (random_.Integer(-2000, 2000) << 16) | (random_.Integer(-2000, 2000) & 0xFFFF);
+      pixel.flags = (random_.Integer(0, 2) << 4) | random_.Integer(0, 2);
+      if (random_.Chance(0.9)) pixel.flags |= ThermalPixel::kSeen;
+      if ((pixel.flags & ThermalPixel::kSeen) != 0 && random_.Chance(0.8))
+        pixel.flags |= ThermalPixel::kAssignable;
+    }
+    args_.pixels = pixels_.data();
+    args_.width = width;
+    args_.height = height;
+    args_.fx = random_.Uniform(50.0F, 300.0F);
+    args_.fy = random_.Uniform(50.0F, 300.0F);
+    args_.cx = random_.Uniform(0.0F, static_cast<float>(width));
+    args_.cy = random_.Uniform(0.0F, static_cast<float>(height));
+    args_.max_distance_m = random_.Uniform(0.5F, 3.0F) * kVoxel;
+    args_.max_tsdf_code = random_.Integer(1000, 32767);
+    args_.validate = random_.Chance(0.7);
+  }
+
+  void RearrangeBlock() {
+    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> axes =
+        kVoxel * Eigen::Quaternionf(Uniform(), Uniform(), Uniform(), Uniform())
+                     .normalized()
+                     .toRotationMatrix();
+    std::copy_n(axes.data(), 9, args_.axes);
+    const float z = random_.Chance(0.1) ? random_.Uniform(-0.6F, 0.05F) : 0.5F;
+    const float u = random_.Uniform(0.0F, static_cast<float>(args_.width));
+    const float v = random_.Uniform(0.0F, static_cast<float>(args_.height));
+    first_ = z * Eigen::Vector3f((u - args_.cx) / args_.fx, (v - args_.cy) / args_.fy, 1.0F) -
+             axes * Eigen::Vector3f::Constant(3.5F);
+    for (std::size_t i = 0; i < kVoxels; ++i) {
+      const auto tsdf = static_cast<std::uint32_t>(random_.Integer(-32767, 32767) / 2);
+      tsdf_[i] = (tsdf << 16) |
+                 static_cast<std::uint32_t>(random_.Chance(0.2) ? 0 : random_.Integer(1, 65535));
+      const auto code = static_cast<std::uint32_t>(random_.Integer(1, 65535));
+      const int classes = (random_.Integer(0, 2) << 4) | random_.Integer(0, 2);
+      thermal_[i] = random_.Chance(0.4) ? 0 : (code << 16) | static_cast<std::uint32_t>(classes);
+    }
+    thermal_.back() = static_cast<std::uint32_t>(testing::kCanary);
+  }
+
+  void CompareBlock() {
+    const Words before = thermal_;
+    FusionKernelCounts counts;
+    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts);
+    ASSERT_EQ(thermal_.back(), before.back()) << "wrote beyond the block";
+    const Eigen::Matrix3d axes =
+        Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(args_.axes).cast<double>();
+    FusionKernelCounts least, most;
+    const auto count = [](Verdict v, std::int64_t& low, std::int64_t& high) {
+      low += v == Verdict::kYes ? 1 : 0;
+      high += v != Verdict::kNo ? 1 : 0;
+    };
+    for (std::size_t i = 0; i < kVoxels && !HasFatalFailure(); ++i) {
+      const auto index = static_cast<int>(i);
+      const Eigen::Vector3d p =
+          first_.cast<double>() + axes * Eigen::Vector3d(index & 7, (index >> 3) & 7, index >> 6);
+      const ScalarFusion truth = FuseScalarVoxel(args_, p, {tsdf_[i]}, {before[i]});
+      count(truth.considered, least.considered, most.considered);
+      count(truth.assigned, least.assigned, most.assigned);
+      CompareVoxel(truth, before[i], thermal_[i]);
+    }
+    ASSERT_GE(counts.considered, least.considered);
+    ASSERT_LE(counts.considered, most.considered);
+    ASSERT_GE(counts.assigned, least.assigned);
+    ASSERT_LE(counts.assigned, most.assigned);
+    assigned_ += counts.assigned;
+    kept_ += counts.considered - counts.assigned;
+  }
+  static void CompareVoxel(const ScalarFusion& truth, std::uint32_t before, std::uint32_t after) {
+    if (truth.assigned == Verdict::kNo) {
+      ASSERT_EQ(after, before);
+    }
+    if (truth.assigned != Verdict::kYes) return;
+    ASSERT_NEAR(static_cast<double>(after >> 16), truth.code, truth.slack);
+    ASSERT_EQ(static_cast<std::int32_t>(after & 0xFFFFU), truth.classes);
+  }
+
+  float Uniform() { return random_.Uniform(-1.0F, 1.0F); }
+
+  Random random_;
+  std::vector<ThermalPixel> pixels_;
+  FusionKernelArgs args_{};
+  Eigen::Vector3f first_;
+  Words tsdf_{}, thermal_{};
+  std::int64_t assigned_ = 0;
+  std::int64_t kept_ = 0;
+};
+
+TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyPictureAndPose) {
+  testing::ForEachInstructionSet([&] {
+    assigned_ = kept_ = 0;
+    for (int width = 1; width <= 70; ++width) {
+      RearrangePicture(width, random_.Integer(1, 50));
+      for (int round = 0; round < 6 && !HasFatalFailure(); ++round) {
+        RearrangeBlock();
+        CompareBlock();
+      }
+    }
+    EXPECT_GT(assigned_, 5000);
+    EXPECT_GT(kept_, 5000);
+  });
+}
+
+TEST_F(FuseBlockTest, LeavesTheBlockAloneAtAPositionThatIsNone) {
+  testing::ForEachInstructionSet([&] {
+    RearrangePicture(64, 48);
+    for (const float bad :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+          -std::numeric_limits<float>::infinity(), 1e30F}) {
+      for (int axis = 0; axis < 3; ++axis) {
+        RearrangeBlock();
+        first_[axis] = bad;
+        const Words before = thermal_;
+        FusionKernelCounts counts;
+        FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts);
+        EXPECT_EQ(thermal_, before) << bad << " along axis " << axis;
+        EXPECT_EQ(counts.assigned, 0);
+      }
+    }
+  });
+}
+
+TEST_F(FuseBlockTest, APictureThatShowsNothingChangesNothing) {
+  testing::ForEachInstructionSet([&] {
+    RearrangePicture(64, 48);
+    std::fill(pixels_.begin(), pixels_.end(), ThermalPixel{});
+    RearrangeBlock();
+    const Words before = thermal_;
+    FusionKernelCounts counts;
+    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts);
+    EXPECT_EQ(thermal_, before);
+    EXPECT_EQ(counts.considered, 0);
+  });
+}
+
+}  // namespace
+}  // namespace isotherm
