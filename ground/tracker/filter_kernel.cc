@@ -25,7 +25,7 @@ float FilterPixel(const BilateralRowArgs& a, int x) {
   const int side = 2 * a.radius + 1;
   const float centre = a.rows[a.radius][x];
   if (!(centre > 0.0F)) return 0.0F;
-  const float tau = a.tau_at_1m * centre * centre;
+  const float tau = std::min(a.tau_at_1m * centre * centre, centre);
   const float inverse = 1.0F / (tau * tau);
   float sum = 0.0F;
   float weights = 0.0F;
@@ -59,7 +59,7 @@ void BilateralRow(const BilateralRowArgs& a, std::span<float> filtered) {
       hn::StoreU(zero, d, filtered.data() + column);
       continue;
     }
-    const VF tau = hn::Mul(hn::Set(d, a.tau_at_1m), hn::Mul(centre, centre));
+    const VF tau = hn::Min(hn::Mul(hn::Set(d, a.tau_at_1m), hn::Mul(centre, centre)), centre);
     const VF inverse = hn::Div(one, hn::Max(tau, hn::Set(d, 1e-9F)));
     VF sum = zero;
     VF weights = zero;

@@ -65,8 +65,11 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
                             static_cast<std::size_t>(x);
       const MF in_row = hn::FirstN(d, static_cast<std::size_t>(width - x));
       const bool whole = x + lanes <= width;
+      // A whole vector can be read (Image has slack); without AVX2, a masked load takes aligned
+      // addresses only.
       const auto load = [&](const Image<float>& plane) {
-        return whole ? hn::LoadU(d, plane.data() + i) : hn::MaskedLoad(in_row, d, plane.data() + i);
+        const VF v = hn::LoadU(d, plane.data() + i);
+        return whole ? v : hn::IfThenElseZero(in_row, v);
       };
       const Vector3 p_depth{load(current.vx), load(current.vy), load(current.vz)};
       const Vector3 arm =
@@ -88,6 +91,7 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
           good, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(model.width())))));
       good = hn::And(good, hn::And(hn::Ge(v, zero),
                                    hn::Lt(v, hn::Set(d, static_cast<float>(model.height())))));
+      if (hn::AllFalse(d, good)) continue;  // There may be no model to look at.
       const VI column = hn::ConvertTo(di, hn::IfThenElseZero(good, u));
       const VI row = hn::ConvertTo(di, hn::IfThenElseZero(good, v));
       const VI j = hn::Add(hn::Mul(row, hn::Set(di, model.width())), column);

@@ -67,7 +67,8 @@ void SurfaceMapRow(const SurfaceMapArgs& a, int y, SurfaceMaps& maps) {
     const VF right = hn::LoadU(d, centre_row + x + reach);
     const VF up = hn::LoadU(d, upper_row + x);
     const VF down = hn::LoadU(d, lower_row + x);
-    const VF limit = hn::Mul(z, hn::Set(d, a.max_step));
+    // A pixel without a return is as far away as the depth: no neighbour of any surface.
+    const VF limit = hn::Mul(z, hn::Set(d, std::min(a.max_step, 1.0F)));
     const auto near = [&](VF neighbour) { return hn::Lt(hn::Abs(hn::Sub(neighbour, z)), limit); };
     // A slope steps on both sides alike; a step on one side only is an edge, where differences
     // would give the normal of a bridge across it.
