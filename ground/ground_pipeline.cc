@@ -70,7 +70,8 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       preprocessor_(options.preprocessor(), *rig.depth),
       tracker_(options.tracker()),
       integrator_(options.tsdf()),
-      gate_(options.tsdf()) {
+      gate_(options.tsdf()),
+      uncertainty_(options.tracker().prior_sigma_m_s()) {
   const std::int32_t max_blocks = MaxBlocks(options.volume(), grid);
   tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
   thermal_ = std::make_unique<ThermalVolume>(max_blocks);
@@ -85,15 +86,17 @@ RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
   return PoseFacingCentre(tsdf_->grid(), depth.depth_m);
 }
 
-RigidTransform GroundPipeline::Predict(CaptureTime time) const {
+IcpTracker::Start GroundPipeline::Predict(CaptureTime time) const {
   const RigidTransform& last = view_.T_world_depth;
-  if (!options_.tracker().predict_motion() || !last_ || !before_last_) return last;
-  const double alpha =
-      ToSeconds(time - before_last_->time) / ToSeconds(last_->time - before_last_->time);
-  constexpr double kMaxExtrapolation =
-      3.0;  // Two missing frames; beyond that velocity says little.
-  if (!(alpha >= 1.0 && alpha <= kMaxExtrapolation)) return last;
-  return Interpolate(before_last_->T_world_depth, last_->T_world_depth, alpha);
+  if (!options_.tracker().predict_motion()) return {last, last};
+  return {motion_.Predict(time).value_or(last), motion_.PredictSmoothly(time).value_or(last)};
+}
+
+bool GroundPipeline::IsRepeated(const DepthFrame& frame) {
+  const bool repeated =
+      motion_.last() && std::ranges::equal(frame.depth_raw.pixels(), last_raw_.pixels());
+  if (!repeated) last_raw_ = frame.depth_raw;
+  return repeated;
 }
 
 TrackingResult GroundPipeline::Track(const PreparedDepth& depth, CaptureTime time) {
@@ -140,6 +143,11 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
                          << " height_px=" << frame.depth_raw.height();
     return report;
   }
+  if (IsRepeated(frame)) {
+    ++counts_.depth_repeated;
+    report.repeated = true;
+    return report;
+  }
   const StageTimer timer(stage_stats_["depth_frame"]);
   const PreparedDepth* depth = nullptr;
   {
@@ -151,14 +159,16 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   report.tracked = report.tracking.tracked();
   if (!report.tracked) {
     ++counts_.depth_lost[std::string(ToString(report.tracking.lost))];
-    last_.reset();
-    before_last_.reset();
+    motion_.Clear();
     return report;
   }
   ++counts_.depth_tracked;
   const RigidTransform& T_world_depth = report.tracking.T_world_depth;
+  if (report.tracking.verdict() == Verdict::kDegraded) ++counts_.depth_degraded;
+  const std::optional<StampedPose> last = motion_.last();
+  uncertainty_.Update(report.tracking, last ? ToSeconds(time - last->time) : 0.0);
   report.integrated =
-      gate_.Accepts(last_ ? std::optional(last_->T_world_depth) : std::nullopt, T_world_depth);
+      gate_.Accepts(last ? std::optional(last->T_world_depth) : std::nullopt, T_world_depth);
   if (report.integrated && effort_ == Effort::kEverySecond) {
     report.integrated = std::exchange(integrate_next_, !integrate_next_);
     if (!report.integrated) ++counts_.depth_behind;
@@ -169,9 +179,8 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
     ++counts_.depth_integrated;
   }
   UpdateView(T_world_depth);
-  before_last_ = last_;
-  last_ = StampedPose{time, T_world_depth};
-  trajectory_.push_back(*last_);
+  motion_.Add({time, T_world_depth});
+  trajectory_.push_back({time, T_world_depth});
   return report;
 }
 
@@ -195,6 +204,10 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   }
 }
 
+double GroundPipeline::RegistrationSigmaPx() const {
+  return rig_.thermal->fx * uncertainty_.surface_sigma_m() / uncertainty_.mean_depth_m();
+}
+
 void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
   while (!waiting_thermal_.empty() && waiting_thermal_.front()->header.capture_time <= now) {
     const ThermalFramePtr frame = waiting_thermal_.front();
@@ -204,19 +217,25 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
       LeaveOut("behind");
       continue;
     }
-    if (!before_last_ || time < before_last_->time) {
+    const std::optional<StampedPose> before = motion_.before_last();
+    if (!before || time < before->time) {
       LeaveOut("pose_unknown");
       continue;
     }
-    const double interval_s = ToSeconds(last_->time - before_last_->time);
+    if (RegistrationSigmaPx() > options_.thermal().max_registration_px()) {
+      LeaveOut("pose_uncertain");
+      continue;
+    }
+    const StampedPose after = *motion_.last();
+    const double interval_s = ToSeconds(after.time - before->time);
     if (interval_s > options_.thermal().max_wait_s()) {
       LeaveOut("depth_gap");
       continue;
     }
     const StageTimer timer(stage_stats_["thermal_frame"]);
-    const double alpha = interval_s > 0.0 ? ToSeconds(time - before_last_->time) / interval_s : 1.0;
+    const double alpha = interval_s > 0.0 ? ToSeconds(time - before->time) / interval_s : 1.0;
     const RigidTransform T_world_depth_at_capture =
-        Interpolate(before_last_->T_world_depth, last_->T_world_depth, alpha);
+        Interpolate(before->T_world_depth, after.T_world_depth, alpha);
     const RigidTransform T_world_thermal =
         T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
     fuser_->Fuse(*frame, T_world_thermal, view_.camera, T_world_depth_at_capture, *tsdf_, pool_,

@@ -17,6 +17,8 @@
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/tracker/depth_preprocessor.h"
 #include "ground/tracker/icp_tracker.h"
+#include "ground/tracker/motion_history.h"
+#include "ground/tracker/pose_uncertainty.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
@@ -25,7 +27,9 @@ namespace isotherm {
 /// What the pipeline did with the frames it was given: in = sum of the outcomes.
 struct PipelineCounts {
   std::uint64_t depth_in = 0;
+  std::uint64_t depth_repeated = 0;  ///< The picture of the frame before again.
   std::uint64_t depth_tracked = 0;
+  std::uint64_t depth_degraded = 0;                 ///< Of the tracked ones.
   std::uint64_t depth_integrated = 0;               ///< Of the tracked ones.
   std::uint64_t depth_behind = 0;                   ///< Not integrated for want of time.
   std::uint64_t depth_refused = 0;                  ///< Wrong size or nothing in it.
@@ -45,6 +49,8 @@ enum class Effort : std::uint8_t {
 
 struct DepthReport {
   bool tracked = false;
+  bool repeated =
+      false;  ///< The same picture as before: it says nothing new, and nothing was done.
   bool integrated = false;
   TrackingResult tracking;
 };
@@ -76,6 +82,8 @@ class GroundPipeline {
   const ModelView& view() const { return view_; }
   /// The same at the depth camera's full resolution, cast now.
   SurfaceMaps CastFullView();
+  /// Of the last tracked pose.
+  const PoseUncertainty& uncertainty() const { return uncertainty_; }
   const std::vector<StampedPose>& trajectory() const { return trajectory_; }
   const PipelineCounts& counts() const { return counts_; }
   /// Milliseconds per call by stage, in the order of the line.
@@ -94,9 +102,12 @@ class GroundPipeline {
   DepthReport TrackAndIntegrate(const DepthFrame& frame);
   RigidTransform InitialPose(const PreparedDepth& depth) const;
   TrackingResult Track(const PreparedDepth& depth, CaptureTime time);
-  RigidTransform Predict(CaptureTime time) const;
+  IcpTracker::Start Predict(CaptureTime time) const;
+  bool IsRepeated(const DepthFrame& frame);
   void UpdateView(const RigidTransform& T_world_depth);
   void FuseWaitingThermal(CaptureTime now);
+  /// One standard deviation of the pose, as a shift of the thermal picture on the surface.
+  double RegistrationSigmaPx() const;
   void LeaveOut(const char* reason) { ++counts_.thermal_left_out[reason]; }
 
   const GroundOptions options_;
@@ -114,8 +125,9 @@ class GroundPipeline {
   std::unique_ptr<ThermalFuser> fuser_;
   ModelView view_;
   std::vector<StampedPose> trajectory_;
-  std::optional<StampedPose> last_,
-      before_last_;  ///< Consecutive tracked poses; empty after a lost frame.
+  MotionHistory motion_;  ///< Empty after a lost frame.
+  PoseUncertainty uncertainty_;
+  Image<std::uint16_t> last_raw_;  ///< Picture of the last depth frame.
   std::deque<ThermalFramePtr> waiting_thermal_;
   Effort effort_ = Effort::kAll;
   bool integrate_next_ = true;  ///< With kEverySecond.

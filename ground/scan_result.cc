@@ -50,7 +50,9 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   Json json;
   Json& depth = json["frames"]["depth"];
   depth["in"] = counts.depth_in;
+  depth["repeated"] = counts.depth_repeated;
   depth["tracked"] = counts.depth_tracked;
+  depth["degraded"] = counts.depth_degraded;
   depth["integrated"] = counts.depth_integrated;
   depth["not_integrated_behind"] = counts.depth_behind;
   depth["refused"] = counts.depth_refused;

@@ -69,6 +69,10 @@ Status Validate(const ThermalOptions& o) {
     return InvalidArgument(
         fmt::format("thermal.edge_margin_px must be 0..16 pixels, got {}", o.edge_margin_px()));
   }
+  if (!(o.max_registration_px() > 0.0)) {
+    return InvalidArgument(fmt::format("thermal.max_registration_px must be positive, got {} px",
+                                       o.max_registration_px()));
+  }
   if (o.visibility_halvings() != 0 && o.visibility_halvings() != 1) {
     return InvalidArgument(
         fmt::format("thermal.visibility_halvings must be 0 or 1, got {}", o.visibility_halvings()));

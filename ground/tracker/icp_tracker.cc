@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,6 +40,39 @@ void CopyTransform(const RigidTransform& transform, float* R, float* t) {
   std::copy_n(translation.data(), 3, t);
 }
 
+/// The twist acts about the camera: rotate about its centre, then translate.
+void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth) {
+  const RigidTransform update = TransformFromTwist(twist);
+  T_world_depth.linear() = update.linear() * T_world_depth.linear();
+  T_world_depth.translation() += update.translation();
+}
+
+/// The twist that takes `from` to `to`.
+Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to) {
+  const Eigen::AngleAxisd turn(
+      Eigen::Quaterniond(to.linear() * from.linear().transpose()).normalized());
+  Vector6 twist;
+  twist << to.translation() - from.translation(), turn.angle() * turn.axis();
+  return twist;
+}
+
+/// Noise of neighbouring pixels is not independent: about one of this many counts.
+constexpr double kPixelsPerSample = 25.0;
+
+/// Along the observed axes, from the residual and the normal equations of the last iteration.
+Matrix6 ObservedCovariance(const IcpSums& sums, const TrackingResult& result) {
+  const double weight = sums.H.topLeftCorner<3, 3>().trace();  // Normals have length 1.
+  if (!(weight > 0.0) || result.motion.free_axes == 6) return Matrix6::Zero();
+  const double samples = static_cast<double>(sums.inliers) / kPixelsPerSample;
+  const MotionSpace& motion = result.motion;
+  const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis =
+      motion.scale.asDiagonal() * motion.axes.rightCols(6 - motion.free_axes);
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> information =
+      basis.transpose() * sums.H * basis / weight;
+  return basis * information.inverse() * basis.transpose() *
+         (result.residual_m * result.residual_m / samples);
+}
+
 }  // namespace
 
 std::string_view ToString(LostReason reason) {
@@ -77,6 +109,14 @@ Status Validate(const TrackerOptions& o) {
     return InvalidArgument(
         "tracker: min_inlier_ratio must be 0..1; max_residual_m, max_step_m and max_step_deg must "
         "be positive");
+  }
+  if (!(o.min_observed() >= 0.0 && o.min_observed() <= 0.1)) {
+    return InvalidArgument(fmt::format("tracker.min_observed must be 0 (never hold) to 0.1, got {}",
+                                       o.min_observed()));
+  }
+  if (!(o.prior_sigma_m_s() >= 0.0 && o.prior_sigma_m_s() <= 100.0)) {
+    return InvalidArgument(
+        fmt::format("tracker.prior_sigma_m_s must be 0..100 m/s, got {}", o.prior_sigma_m_s()));
   }
   return OkStatus();
 }
@@ -124,10 +164,10 @@ IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_
 }
 
 TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& model,
-                                 const VoxelGrid& grid, const RigidTransform& guess,
+                                 const VoxelGrid& grid, const Start& start,
                                  ThreadPool& pool) const {
   TrackingResult result;
-  result.T_world_depth = guess;
+  result.T_world_depth = start.guess;
   constexpr int kMinPixels = 1000;
   if (depth.valid_pixels < kMinPixels) {
     result.lost = LostReason::kTooFewPixels;
@@ -136,6 +176,14 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   const IcpLimits limits{
       static_cast<float>(options_.max_distance_m()),
       static_cast<float>(std::cos(options_.max_normal_angle_deg() * kRadPerDeg))};
+  // The normals of a young model are rough, and quantised as the frame's are.
+  result.motion = MeasureMotionSpace(depth.maps[kPyramidLevels - 1], start.guess, model, limits,
+                                     (model.is_young ? 2.0 : 1.0) * options_.min_observed());
+  if (!result.motion.fully_observed()) {
+    ApplyTwist(result.motion.FreePart(TwistBetween(start.guess, start.prior)),
+               result.T_world_depth);
+  }
+  IcpSums last;
   const std::array<int, kPyramidLevels> iterations = {
       options_.iterations_fine(), options_.iterations_middle(), options_.iterations_coarse()};
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
@@ -147,25 +195,23 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
                             static_cast<double>(std::max<std::int64_t>(sums.candidates, 1));
       result.residual_m = std::sqrt(sums.squared_residuals_m2 /
                                     static_cast<double>(std::max<std::int64_t>(sums.inliers, 1)));
-      const Eigen::LDLT<Eigen::Matrix<double, 6, 6>> ldlt(sums.H);
-      if (sums.inliers < 6 || ldlt.info() != Eigen::Success || !ldlt.isPositive() ||
-          ldlt.vectorD().minCoeff() <= 1e-9 * ldlt.vectorD().maxCoeff()) {
+      const std::optional<Vector6> twist =
+          sums.inliers < 6 ? std::nullopt : result.motion.SolveObserved(sums.H, sums.g);
+      if (!twist) {
         result.lost = sums.inliers < 6 ? LostReason::kTooFewInliers : LostReason::kSingular;
         return result;
       }
-      const Eigen::Matrix<double, 6, 1> twist = ldlt.solve(-sums.g);
-      // The twist acts about the camera: rotate about its centre, then translate.
-      const RigidTransform update = TransformFromTwist(twist);
-      result.T_world_depth.linear() = update.linear() * result.T_world_depth.linear();
-      result.T_world_depth.translation() += update.translation();
-      if (twist.head<3>().norm() < options_.min_update_m() &&
-          twist.tail<3>().norm() < options_.min_update_deg() * kRadPerDeg) {
+      last = sums;
+      ApplyTwist(*twist, result.T_world_depth);
+      if (twist->head<3>().norm() < options_.min_update_m() &&
+          twist->tail<3>().norm() < options_.min_update_deg() * kRadPerDeg) {
         break;
       }
     }
   }
   result.T_world_depth.linear() =
       Eigen::Quaterniond(result.T_world_depth.linear()).normalized().toRotationMatrix();
+  result.covariance = ObservedCovariance(last, result);
   result.step_m = TranslationDistance(model.T_world_depth, result.T_world_depth);
   result.step_rad = RotationAngle(model.T_world_depth, result.T_world_depth);
   // The normals of a young model are too rough to reject correspondences fairly.

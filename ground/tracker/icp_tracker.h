@@ -7,6 +7,7 @@
 #include "common/geometry/camera.h"
 #include "ground/ground_options.pb.h"
 #include "ground/tracker/depth_preprocessor.h"
+#include "ground/tracker/motion_space.h"
 #include "ground/tracker/surface_maps.h"
 #include "ground/tsdf/voxel_grid.h"
 
@@ -24,6 +25,13 @@ struct ModelView {
   bool is_young = false;  ///< Little more than one frame's noise: its normals are rough.
 };
 
+/// How far a frame's pose can be trusted.
+enum class Verdict : std::uint8_t {
+  kTracked,
+  kDegraded,  ///< Not all directions are observed: the rest is held by the motion before.
+  kLost,      ///< No pose.
+};
+
 struct TrackingResult {
   LostReason lost = LostReason::kNone;
   RigidTransform T_world_depth;  ///< The best estimate, meaningful only if not lost.
@@ -32,8 +40,16 @@ struct TrackingResult {
   double step_m = 0.0;        ///< Motion since the model view's pose.
   double step_rad = 0.0;
   int iterations = 0;
+  MotionSpace motion;  ///< What of the motion was measured.
+  /// Of T_world_depth: twist (translation, rotation about the camera's position) in `world`, m and
+  /// rad; what this frame measured, so nothing along axes that are not observed (PoseUncertainty).
+  Matrix6 covariance = Matrix6::Zero();
 
   bool tracked() const { return lost == LostReason::kNone; }
+  Verdict verdict() const {
+    if (!tracked()) return Verdict::kLost;
+    return motion.fully_observed() ? Verdict::kTracked : Verdict::kDegraded;
+  }
 };
 
 Status Validate(const TrackerOptions& options);
@@ -44,10 +60,17 @@ class IcpTracker {
  public:
   explicit IcpTracker(const TrackerOptions& options) : options_(options) {}
 
-  /// Finds T_world_depth of `depth` near `guess`. Residuals are weighted by the sensor's depth
-  /// noise (variance grows with the fourth power of the depth).
+  /// Where the search starts, and what holds the directions that the geometry leaves free.
+  struct Start {
+    RigidTransform guess;
+    RigidTransform prior;
+  };
+
+  /// Finds T_world_depth of `depth` near the guess. Residuals are weighted by the sensor's depth
+  /// noise (variance grows with the fourth power of the depth). In directions along which the view
+  /// slides on itself (a plane, a cylinder), the pose is the prior's.
   TrackingResult Track(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
-                       const RigidTransform& guess, ThreadPool& pool) const;
+                       const Start& start, ThreadPool& pool) const;
 
  private:
   TrackingResult Judge(TrackingResult result, double min_inlier_ratio) const;

@@ -128,7 +128,7 @@ class IcpTrackerTest : public ::testing::Test {
     ThreadPool pool(threads);
     DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
     return IcpTracker(options_).Track(preprocessor.Process(frame, pool), view_, grid_,
-                                      view_.T_world_depth, pool);
+                                      {view_.T_world_depth, view_.T_world_depth}, pool);
   }
   DepthFrame Render(const RigidTransform& pose) const {
     return testing::RenderDepth(testing::BallInCorner, camera_, pose);

@@ -1,0 +1,50 @@
+#include "ground/tracker/motion_history.h"
+
+#include <algorithm>
+
+namespace isotherm {
+namespace {
+
+constexpr std::size_t kPoses = 9;
+
+/// Two missing frames; beyond that velocity says little.
+constexpr double kMaxFramesAhead = 3.0;
+
+}  // namespace
+
+void MotionHistory::Add(const StampedPose& pose) {
+  poses_.push_back(pose);
+  if (poses_.size() > kPoses) poses_.pop_front();
+}
+
+std::optional<StampedPose> MotionHistory::last() const {
+  return poses_.empty() ? std::nullopt : std::optional(poses_.back());
+}
+
+std::optional<StampedPose> MotionHistory::before_last() const {
+  return poses_.size() < 2 ? std::nullopt : std::optional(poses_[poses_.size() - 2]);
+}
+
+std::optional<RigidTransform> MotionHistory::Predict(CaptureTime time) const {
+  return poses_.size() < 2 ? std::nullopt : Extrapolate(*before_last(), time);
+}
+
+std::optional<RigidTransform> MotionHistory::PredictSmoothly(CaptureTime time) const {
+  return poses_.size() < 2 ? std::nullopt : Extrapolate(poses_.front(), time);
+}
+
+std::optional<RigidTransform> MotionHistory::Extrapolate(const StampedPose& from,
+                                                         CaptureTime time) const {
+  const StampedPose& to = poses_.back();
+  const double span_s = ToSeconds(to.time - from.time);
+  const double ahead_s = ToSeconds(time - to.time);
+  const double frame_s = ToSeconds(to.time - before_last()->time);
+  if (!(span_s > 0.0 && ahead_s >= 0.0 && ahead_s <= (kMaxFramesAhead - 1.0) * frame_s))
+    return std::nullopt;
+  // The motion over the span, in the rig's own coordinates, goes on from the newest pose.
+  const double share = ahead_s / span_s;
+  const RigidTransform motion = from.T_world_depth.inverse() * to.T_world_depth;
+  return to.T_world_depth * Interpolate(RigidTransform::Identity(), motion, share);
+}
+
+}  // namespace isotherm

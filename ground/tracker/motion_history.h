@@ -1,0 +1,35 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "common/geometry/stamped_pose.h"
+
+namespace isotherm {
+
+/// The rig's motion over the last tracked frames, and where it goes on. Thread-compatible.
+class MotionHistory {
+ public:
+  void Add(const StampedPose& pose);
+  /// After a lost frame: the motion is not known any more.
+  void Clear() { poses_.clear(); }
+
+  /// The newest pose; nullopt after Clear.
+  std::optional<StampedPose> last() const;
+  /// The one before; nullopt if the two are not consecutive.
+  std::optional<StampedPose> before_last() const;
+
+  /// The pose at `time` if the velocity between the last two poses goes on; nullopt if that is not
+  /// known or `time` is too far away.
+  std::optional<RigidTransform> Predict(CaptureTime time) const;
+  /// The same with the mean velocity over the last poses: slower to follow, with less of the
+  /// tracker's noise. For motions that cannot be measured.
+  std::optional<RigidTransform> PredictSmoothly(CaptureTime time) const;
+
+ private:
+  std::optional<RigidTransform> Extrapolate(const StampedPose& from, CaptureTime time) const;
+
+  std::deque<StampedPose> poses_;
+};
+
+}  // namespace isotherm

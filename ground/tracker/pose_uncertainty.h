@@ -1,0 +1,36 @@
+#pragma once
+
+#include "ground/tracker/motion_space.h"
+
+namespace isotherm {
+
+struct TrackingResult;
+
+/// How uncertain the tracked pose is: what the last frame measured, and along directions that it
+/// left free, what was known before, growing with time. Relative to the model. Thread-compatible.
+class PoseUncertainty {
+ public:
+  /// How far off a velocity that goes on unmeasured may be, in metres per second at the scene's
+  /// depth.
+  explicit PoseUncertainty(double speed_sigma_m_s) : speed_sigma_m_s_(speed_sigma_m_s) {}
+
+  /// After each tracked frame, `seconds` after the one before.
+  void Update(const TrackingResult& result, double seconds);
+
+  /// Of T_world_depth: twist (translation, rotation about the camera's position) in `world`, m and
+  /// rad.
+  const Matrix6& covariance() const { return covariance_; }
+  /// One standard deviation of the least certain motion, as the shift of the surface in view,
+  /// metres.
+  double surface_sigma_m() const { return surface_sigma_m_; }
+  /// The depth that is meant, metres.
+  double mean_depth_m() const { return mean_depth_m_; }
+
+ private:
+  const double speed_sigma_m_s_;
+  Matrix6 covariance_ = Matrix6::Zero();
+  double surface_sigma_m_ = 0.0;
+  double mean_depth_m_ = 1.0;
+};
+
+}  // namespace isotherm
