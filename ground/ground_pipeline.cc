@@ -68,17 +68,15 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       thermal_status_(CheckThermalFusion(rig)),
       pool_(ThreadCount(options)),
       preprocessor_(options.preprocessor(), *rig.depth),
-      tracker_(options.tracker()),
+      tracker_(options, rig.depth->WithoutDistortion()),
       integrator_(options.tsdf()),
-      gate_(options.tsdf()),
-      uncertainty_(options.tracker().prior_sigma_m_s()) {
+      gate_(options.tsdf()) {
   const std::int32_t max_blocks = MaxBlocks(options.volume(), grid);
   tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
   thermal_ = std::make_unique<ThermalVolume>(max_blocks);
   if (thermal_status_.ok())
     fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
                                             static_cast<float>(options.raycast().min_weight()));
-  view_.camera = rig.depth->WithoutDistortion().Downscaled(options.raycast().halvings());
 }
 
 RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
@@ -86,43 +84,29 @@ RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
   return PoseFacingCentre(tsdf_->grid(), depth.depth_m);
 }
 
-IcpTracker::Start GroundPipeline::Predict(CaptureTime time) const {
-  const RigidTransform& last = view_.T_world_depth;
-  if (!options_.tracker().predict_motion()) return {last, last};
-  return {motion_.Predict(time).value_or(last), motion_.PredictSmoothly(time).value_or(last)};
-}
-
 bool GroundPipeline::IsRepeated(const DepthFrame& frame) {
   const bool repeated =
-      motion_.last() && std::ranges::equal(frame.depth_raw.pixels(), last_raw_.pixels());
+      tracker_.motion().last() && std::ranges::equal(frame.depth_raw.pixels(), last_raw_.pixels());
   if (!repeated) last_raw_ = frame.depth_raw;
   return repeated;
 }
 
 TrackingResult GroundPipeline::Track(const PreparedDepth& depth, CaptureTime time) {
-  if (trajectory_.empty()) {
-    TrackingResult first;
-    constexpr int kMinPixels = 1000;
-    if (depth.valid_pixels < kMinPixels) first.lost = LostReason::kTooFewPixels;
-    first.T_world_depth = InitialPose(depth);
-    return first;
-  }
-  const StageTimer timer(stage_stats_["track"]);
-  return tracker_.Track(depth, view_, tsdf_->grid(), Predict(time), pool_);
+  if (tsdf_->block_count() == 0) return tracker_.Begin(depth, time, InitialPose(depth));
+  const bool lost = tracker_.state() == RigTracker::State::kLost;
+  const StageTimer timer(stage_stats_[lost ? "relocalise" : "track"]);
+  return tracker_.Track(depth, time, *tsdf_, pool_);
 }
 
 void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
   const StageTimer timer(stage_stats_["raycast"]);
-  view_.T_world_depth = T_world_depth;
-  view_.is_young = gate_.bootstrapping();
-  raycaster_.Cast(*tsdf_, view_.camera, T_world_depth,
-                  static_cast<float>(options_.raycast().min_weight()), pool_, view_.maps);
+  tracker_.LookFrom(T_world_depth, *tsdf_, gate_.bootstrapping(), pool_);
 }
 
 SurfaceMaps GroundPipeline::CastFullView() {
   SurfaceMaps maps;
-  raycaster_.Cast(*tsdf_, rig_.depth->WithoutDistortion(), view_.T_world_depth,
-                  static_cast<float>(options_.raycast().min_weight()), pool_, maps);
+  Raycaster().Cast(*tsdf_, rig_.depth->WithoutDistortion(), view().T_world_depth,
+                   static_cast<float>(options_.raycast().min_weight()), pool_, maps);
   return maps;
 }
 
@@ -159,16 +143,23 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   report.tracked = report.tracking.tracked();
   if (!report.tracked) {
     ++counts_.depth_lost[std::string(ToString(report.tracking.lost))];
-    motion_.Clear();
+    unconfirmed_.clear();
+    return report;
+  }
+  const RigidTransform& T_world_depth = report.tracking.T_world_depth;
+  if (tracker_.state() == RigTracker::State::kConfirming) {
+    ++counts_.depth_unconfirmed;
+    unconfirmed_.push_back({time, T_world_depth});
+    UpdateView(T_world_depth);
+    report.tracked = false;
+    report.unconfirmed = true;
     return report;
   }
   ++counts_.depth_tracked;
-  const RigidTransform& T_world_depth = report.tracking.T_world_depth;
   if (report.tracking.verdict() == Verdict::kDegraded) ++counts_.depth_degraded;
-  const std::optional<StampedPose> last = motion_.last();
-  uncertainty_.Update(report.tracking, last ? ToSeconds(time - last->time) : 0.0);
+  const std::optional<StampedPose> before = tracker_.motion().before_last();
   report.integrated =
-      gate_.Accepts(last ? std::optional(last->T_world_depth) : std::nullopt, T_world_depth);
+      gate_.Accepts(before ? std::optional(before->T_world_depth) : std::nullopt, T_world_depth);
   if (report.integrated && effort_ == Effort::kEverySecond) {
     report.integrated = std::exchange(integrate_next_, !integrate_next_);
     if (!report.integrated) ++counts_.depth_behind;
@@ -179,7 +170,10 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
     ++counts_.depth_integrated;
   }
   UpdateView(T_world_depth);
-  motion_.Add({time, T_world_depth});
+  if (report.integrated && report.tracking.verdict() == Verdict::kTracked)
+    tracker_.Remember(*depth, T_world_depth);
+  trajectory_.insert(trajectory_.end(), unconfirmed_.begin(), unconfirmed_.end());
+  unconfirmed_.clear();
   trajectory_.push_back({time, T_world_depth});
   return report;
 }
@@ -205,7 +199,7 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
 }
 
 double GroundPipeline::RegistrationSigmaPx() const {
-  return rig_.thermal->fx * uncertainty_.surface_sigma_m() / uncertainty_.mean_depth_m();
+  return rig_.thermal->fx * uncertainty().surface_sigma_m() / uncertainty().mean_depth_m();
 }
 
 void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
@@ -217,7 +211,7 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
       LeaveOut("behind");
       continue;
     }
-    const std::optional<StampedPose> before = motion_.before_last();
+    const std::optional<StampedPose> before = tracker_.motion().before_last();
     if (!before || time < before->time) {
       LeaveOut("pose_unknown");
       continue;
@@ -226,7 +220,7 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
       LeaveOut("pose_uncertain");
       continue;
     }
-    const StampedPose after = *motion_.last();
+    const StampedPose after = *tracker_.motion().last();
     const double interval_s = ToSeconds(after.time - before->time);
     if (interval_s > options_.thermal().max_wait_s()) {
       LeaveOut("depth_gap");
@@ -238,7 +232,7 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
         Interpolate(before->T_world_depth, after.T_world_depth, alpha);
     const RigidTransform T_world_thermal =
         T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
-    fuser_->Fuse(*frame, T_world_thermal, view_.camera, T_world_depth_at_capture, *tsdf_, pool_,
+    fuser_->Fuse(*frame, T_world_thermal, view().camera, T_world_depth_at_capture, *tsdf_, pool_,
                  *thermal_);
     ++counts_.thermal_fused;
   }

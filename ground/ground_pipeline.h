@@ -14,12 +14,9 @@
 #include "common/geometry/camera.h"
 #include "common/geometry/stamped_pose.h"
 #include "ground/ground_options.pb.h"
+#include "ground/rig_tracker.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/tracker/depth_preprocessor.h"
-#include "ground/tracker/icp_tracker.h"
-#include "ground/tracker/motion_history.h"
-#include "ground/tracker/pose_uncertainty.h"
-#include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
@@ -30,6 +27,7 @@ struct PipelineCounts {
   std::uint64_t depth_repeated = 0;  ///< The picture of the frame before again.
   std::uint64_t depth_tracked = 0;
   std::uint64_t depth_degraded = 0;                 ///< Of the tracked ones.
+  std::uint64_t depth_unconfirmed = 0;              ///< Found again, but not yet believed.
   std::uint64_t depth_integrated = 0;               ///< Of the tracked ones.
   std::uint64_t depth_behind = 0;                   ///< Not integrated for want of time.
   std::uint64_t depth_refused = 0;                  ///< Wrong size or nothing in it.
@@ -49,6 +47,7 @@ enum class Effort : std::uint8_t {
 
 struct DepthReport {
   bool tracked = false;
+  bool unconfirmed = false;  ///< Has a pose that is not believed yet; counts as not tracked.
   bool repeated =
       false;  ///< The same picture as before: it says nothing new, and nothing was done.
   bool integrated = false;
@@ -79,11 +78,12 @@ class GroundPipeline {
   const TsdfVolume& tsdf() const { return *tsdf_; }
   const ThermalVolume& thermal() const { return *thermal_; }
   /// The model as seen from the last tracked pose; empty maps before the first frame.
-  const ModelView& view() const { return view_; }
+  const ModelView& view() const { return tracker_.view(); }
   /// The same at the depth camera's full resolution, cast now.
   SurfaceMaps CastFullView();
   /// Of the last tracked pose.
-  const PoseUncertainty& uncertainty() const { return uncertainty_; }
+  const PoseUncertainty& uncertainty() const { return tracker_.uncertainty(); }
+  const RigTracker& tracker() const { return tracker_; }
   const std::vector<StampedPose>& trajectory() const { return trajectory_; }
   const PipelineCounts& counts() const { return counts_; }
   /// Milliseconds per call by stage, in the order of the line.
@@ -102,7 +102,6 @@ class GroundPipeline {
   DepthReport TrackAndIntegrate(const DepthFrame& frame);
   RigidTransform InitialPose(const PreparedDepth& depth) const;
   TrackingResult Track(const PreparedDepth& depth, CaptureTime time);
-  IcpTracker::Start Predict(CaptureTime time) const;
   bool IsRepeated(const DepthFrame& frame);
   void UpdateView(const RigidTransform& T_world_depth);
   void FuseWaitingThermal(CaptureTime now);
@@ -116,18 +115,15 @@ class GroundPipeline {
   Status thermal_status_;
   ThreadPool pool_;
   DepthPreprocessor preprocessor_;
-  IcpTracker tracker_;
+  RigTracker tracker_;
   TsdfIntegrator integrator_;
   IntegrationGate gate_;
-  Raycaster raycaster_;
   std::unique_ptr<TsdfVolume> tsdf_;
   std::unique_ptr<ThermalVolume> thermal_;
   std::unique_ptr<ThermalFuser> fuser_;
-  ModelView view_;
   std::vector<StampedPose> trajectory_;
-  MotionHistory motion_;  ///< Empty after a lost frame.
-  PoseUncertainty uncertainty_;
-  Image<std::uint16_t> last_raw_;  ///< Picture of the last depth frame.
+  std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
+  Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.
   std::deque<ThermalFramePtr> waiting_thermal_;
   Effort effort_ = Effort::kAll;
   bool integrate_next_ = true;  ///< With kEverySecond.

@@ -53,6 +53,8 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   depth["repeated"] = counts.depth_repeated;
   depth["tracked"] = counts.depth_tracked;
   depth["degraded"] = counts.depth_degraded;
+  depth["unconfirmed"] = counts.depth_unconfirmed;
+  depth["relocalisations"] = pipeline.tracker().relocalisations();
   depth["integrated"] = counts.depth_integrated;
   depth["not_integrated_behind"] = counts.depth_behind;
   depth["refused"] = counts.depth_refused;

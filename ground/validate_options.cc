@@ -7,6 +7,7 @@
 #include "ground/export/results.h"
 #include "ground/ground_options.pb.h"
 #include "ground/initial_pose.h"
+#include "ground/relocaliser/relocaliser.h"
 #include "ground/renderer/renderer.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/tracker/depth_preprocessor.h"
@@ -50,6 +51,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   check(Validate(options.volume()));
   check(Validate(options.preprocessor()));
   check(Validate(options.tracker()));
+  check(Validate(options.relocaliser()));
   check(Validate(options.tsdf(), options.volume()));
   check(Validate(options.raycast()));
   check(Validate(options.thermal()));

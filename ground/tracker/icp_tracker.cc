@@ -40,13 +40,6 @@ void CopyTransform(const RigidTransform& transform, float* R, float* t) {
   std::copy_n(translation.data(), 3, t);
 }
 
-/// The twist acts about the camera: rotate about its centre, then translate.
-void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth) {
-  const RigidTransform update = TransformFromTwist(twist);
-  T_world_depth.linear() = update.linear() * T_world_depth.linear();
-  T_world_depth.translation() += update.translation();
-}
-
 /// The twist that takes `from` to `to`.
 Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to) {
   const Eigen::AngleAxisd turn(
@@ -75,6 +68,12 @@ Matrix6 ObservedCovariance(const IcpSums& sums, const TrackingResult& result) {
 
 }  // namespace
 
+void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth) {
+  const RigidTransform update = TransformFromTwist(twist);
+  T_world_depth.linear() = update.linear() * T_world_depth.linear();
+  T_world_depth.translation() += update.translation();
+}
+
 std::string_view ToString(LostReason reason) {
   switch (reason) {
     case LostReason::kNone:
@@ -89,6 +88,8 @@ std::string_view ToString(LostReason reason) {
       return "step";
     case LostReason::kSingular:
       return "singular";
+    case LostReason::kNotFound:
+      return "not_found";
   }
   return "unknown";
 }

@@ -14,7 +14,15 @@
 namespace isotherm {
 
 /// Why a frame could not be tracked.
-enum class LostReason { kNone, kTooFewPixels, kTooFewInliers, kResidual, kStep, kSingular };
+enum class LostReason {
+  kNone,
+  kTooFewPixels,
+  kTooFewInliers,
+  kResidual,
+  kStep,
+  kSingular,
+  kNotFound,  ///< Lost before, and nothing convincing since.
+};
 std::string_view ToString(LostReason reason);
 
 /// What the model looks like from a pose: the tracker's reference. Maps in `world`.
@@ -89,6 +97,9 @@ struct IcpSums {
 
   IcpSums& operator+=(const IcpSums& other);
 };
+
+/// Moves a pose by a twist in `world`: rotates about the camera's position, then translates.
+void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth);
 
 struct IcpLimits {
   float max_distance_m;

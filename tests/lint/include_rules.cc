@@ -52,6 +52,7 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
       // looks at.
       {"ground/tracker", with(kCommon, {"ground", "ground/tsdf/voxel_grid.h"})},
       {"ground/tsdf", with(kCommon, {"ground", "ground/tracker"})},
+      {"ground/relocaliser", with(kCommon, {"ground", "ground/tracker", "ground/tsdf"})},
       {"ground/thermal",
        with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/assembler"})},
       {"ground/renderer",

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "common/concurrency/thread_pool.h"
+#include "ground/ground_options.pb.h"
+#include "ground/relocaliser/view_library.h"
+#include "ground/tracker/icp_tracker.h"
+#include "ground/tsdf/raycaster.h"
+#include "ground/tsdf/tsdf_volume.h"
+
+namespace isotherm {
+
+Status Validate(const RelocaliserOptions& options);
+
+/// Finds the camera in a model after tracking was lost: guesses from the views that were tracked,
+/// each refined against the model at low resolution. What it finds is a candidate, for the tracker
+/// to judge at full resolution. Thread-compatible.
+class Relocaliser {
+ public:
+  Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera);
+
+  /// A frame that was tracked well.
+  void Remember(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
+    library_.Add(depth.maps[kPyramidLevels - 1], T_world_depth);
+  }
+
+  /// The pose that explains the frame best, if one explains enough of it. One call takes a few
+  /// milliseconds and looks around some of the known views; the next call goes on with others.
+  std::optional<RigidTransform> Find(const PreparedDepth& depth, const TsdfVolume& volume,
+                                     float min_weight, ThreadPool& pool);
+
+  ViewLibrary& library() { return library_; }
+  const ViewLibrary& library() const { return library_; }
+
+ private:
+  /// Inliers per valid pixel after refinement; `pose` is refined.
+  double Refine(const PreparedDepth& depth, const TsdfVolume& volume, float min_weight,
+                ThreadPool& pool, RigidTransform& pose);
+
+  const RelocaliserOptions options_;
+  ViewLibrary library_;
+  Raycaster raycaster_;
+  ModelView view_;
+};
+
+}  // namespace isotherm

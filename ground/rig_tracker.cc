@@ -1,0 +1,145 @@
+#include "ground/rig_tracker.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace isotherm {
+namespace {
+
+/// A frame is on the wrong surface, whatever the limits say, ...
+constexpr double kUnusualResidual = 4.0;     ///< ... with this many times the usual residual
+constexpr double kLeastUnusualM = 0.002;     ///< (but at least this), ...
+constexpr double kUnusualInlierShare = 0.5;  ///< ... or with this share of the usual inliers.
+
+/// What is believed after having been lost must be nearly as good as usual.
+constexpr double kConvincingResidual = 2.5;
+constexpr double kConvincingInlierShare = 0.75;
+
+constexpr int kFramesToKnow = 5;  ///< Until what is usual is known.
+
+}  // namespace
+
+RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_camera)
+    : options_(options.tracker()),
+      relocaliser_options_(options.relocaliser()),
+      min_weight_(static_cast<float>(options.raycast().min_weight())),
+      tracker_(options.tracker()),
+      relocaliser_(options.relocaliser(), depth_camera),
+      uncertainty_(options.tracker().prior_sigma_m_s()) {
+  view_.camera = depth_camera.Downscaled(options.raycast().halvings());
+  candidate_.camera = view_.camera;
+}
+
+TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
+                                 const RigidTransform& pose) {
+  TrackingResult first;
+  constexpr int kMinPixels = 1000;
+  if (depth.valid_pixels < kMinPixels) first.lost = LostReason::kTooFewPixels;
+  first.T_world_depth = pose;
+  if (first.tracked()) Accept(first, time);
+  return first;
+}
+
+IcpTracker::Start RigTracker::Predict(CaptureTime time) const {
+  const RigidTransform& last = view_.T_world_depth;
+  if (!options_.predict_motion()) return {last, last};
+  return {motion_.Predict(time).value_or(last), motion_.PredictSmoothly(time).value_or(last)};
+}
+
+LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
+  if (usual_.frames < kFramesToKnow) return LostReason::kNone;
+  if (result.residual_m > std::max(kUnusualResidual * usual_.residual_m, kLeastUnusualM))
+    return LostReason::kResidual;
+  if (result.inlier_ratio < kUnusualInlierShare * usual_.inlier_ratio)
+    return LostReason::kTooFewInliers;
+  return LostReason::kNone;
+}
+
+bool RigTracker::IsConvincing(const TrackingResult& result) const {
+  if (result.verdict() != Verdict::kTracked) return false;
+  if (result.inlier_ratio < relocaliser_options_.min_inlier_ratio()) return false;
+  return usual_.frames < kFramesToKnow ||
+         (result.inlier_ratio >= kConvincingInlierShare * usual_.inlier_ratio &&
+          result.residual_m <= std::max(kConvincingResidual * usual_.residual_m, kLeastUnusualM));
+}
+
+TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolume& volume,
+                                      ThreadPool& pool) {
+  TrackingResult result;
+  result.lost = LostReason::kTooFewPixels;
+  if (view_.maps.width() > 0) {
+    // Where it was lost: a hand before the camera, or a rig that swings back.
+    const RigidTransform& last = view_.T_world_depth;
+    result = tracker_.Track(depth, view_, volume.grid(), {last, last}, pool);
+    if (IsConvincing(result)) return result;
+  }
+  if (result.tracked()) result.lost = LostReason::kNotFound;
+  if (!relocaliser_options_.enabled()) return result;
+  const auto pose = relocaliser_.Find(depth, volume, min_weight_, pool);
+  if (!pose) return result;
+  CastView(*pose, volume, pool, candidate_);
+  TrackingResult found = tracker_.Track(depth, candidate_, volume.grid(), {*pose, *pose}, pool);
+  if (!IsConvincing(found)) return result;
+  std::swap(view_, candidate_);
+  return found;
+}
+
+TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time,
+                                 const TsdfVolume& volume, ThreadPool& pool) {
+  if (state_ == State::kLost) {
+    TrackingResult result = LookAround(depth, volume, pool);
+    if (!result.tracked()) return result;
+    state_ = State::kConfirming;
+    to_confirm_ = relocaliser_options_.confirming_frames();
+    Accept(result, time);
+    return result;
+  }
+  TrackingResult result = tracker_.Track(depth, view_, volume.grid(), Predict(time), pool);
+  if (result.tracked()) result.lost = FindAnomaly(result);
+  if (result.tracked() && state_ == State::kConfirming && !IsConvincing(result))
+    result.lost = LostReason::kNotFound;
+  if (!result.tracked()) {
+    state_ = State::kLost;
+    motion_.Clear();
+    return result;
+  }
+  if (state_ == State::kConfirming && --to_confirm_ <= 0) {
+    state_ = State::kFollowing;
+    ++relocalisations_;
+  }
+  Accept(result, time);
+  return result;
+}
+
+void RigTracker::Accept(const TrackingResult& result, CaptureTime time) {
+  const std::optional<StampedPose> last = motion_.last();
+  uncertainty_.Update(result, last ? ToSeconds(time - last->time) : 0.0);
+  motion_.Add({time, result.T_world_depth});
+  if (result.iterations == 0) return;  // Not tracked against anything.
+  constexpr double kNewShare = 0.1;
+  const double share = std::max(kNewShare, 1.0 / (1.0 + usual_.frames));
+  usual_.residual_m += share * (result.residual_m - usual_.residual_m);
+  usual_.inlier_ratio += share * (result.inlier_ratio - usual_.inlier_ratio);
+  ++usual_.frames;
+}
+
+void RigTracker::CastView(const RigidTransform& T_world_depth, const TsdfVolume& volume,
+                          ThreadPool& pool, ModelView& view) {
+  view.T_world_depth = T_world_depth;
+  view.is_young = false;
+  raycaster_.Cast(volume, view.camera, T_world_depth, min_weight_, pool, view.maps);
+}
+
+void RigTracker::LookFrom(const RigidTransform& T_world_depth, const TsdfVolume& volume,
+                          bool is_young, ThreadPool& pool) {
+  CastView(T_world_depth, volume, pool, view_);
+  view_.is_young = is_young;
+}
+
+void RigTracker::Remember(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
+  if (relocaliser_options_.enabled()) relocaliser_.Remember(depth, T_world_depth);
+}
+
+}  // namespace isotherm

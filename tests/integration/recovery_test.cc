@@ -1,0 +1,215 @@
+// Tracking that knows when it is lost, and comes back: rows F52 to F55 of the failure catalogue on
+// simulated scans with truth.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <iostream>
+#include <numbers>
+#include <random>
+
+#include "common/simulation/scene_builder.h"
+#include "common/simulation/simulation_options.pb.h"
+#include "recovery_scan.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::uint64_t kSeed = 11;
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+constexpr double kFrame = 1.0 / 30.0;
+constexpr double kWrongPose = 0.005;  // Metres: more than a voxel off.
+
+using testing::SimulatedRecovery;
+
+RigidTransform Turned(double angle_deg, const Eigen::Vector3d& axis) {
+  return MakeTransform(Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(
+                                                    angle_deg * kRadPerDeg, axis.normalized())));
+}
+
+class RecoveryTest : public ::testing::Test {
+ protected:
+  static constexpr int kFrames = 150;
+
+  RecoveryTest() : staged_(MakeScene(SceneOptions())), scan_(staged_.scene, kSeed) {
+    std::cout << "seed " << kSeed << '\n';
+  }
+  RigidTransform PoseAt(int frame) const { return staged_.path.PoseAt(kFrame * frame); }
+  std::vector<RigidTransform> CheckPoses() const {
+    std::vector<RigidTransform> poses;
+    for (int i = 0; i < kFrames; i += 15) poses.push_back(PoseAt(i));
+    return poses;
+  }
+  static void Print(const char* what, const SimulatedRecovery::ModelError& error) {
+    std::cout << what << ": model median " << 1e3 * error.median_m << " mm, 95 % "
+              << 1e3 * error.p95_m << " mm, covered " << 100.0 * error.covered << " %\n";
+  }
+  /// The path with `disturb` in the place of frame kDisturbed; it shows frames and returns the next
+  /// frame to go on with.
+  static constexpr int kDisturbed = 75;
+  struct Outcome {
+    int until_lost = -1;   ///< Wrong frames that passed for tracked before the loss was noticed.
+    int fused_wrong = 0;   ///< Frames integrated at a wrong pose.
+    int until_found = -1;  ///< Frames from the return to the path until fusion goes on.
+    SimulatedRecovery::ModelError error;
+  };
+  using Disturbance = std::function<int(const std::function<DepthReport(const RigidTransform&)>&)>;
+  Outcome Run(const Disturbance& disturb) {
+    Outcome outcome;
+    scan_.Start(PoseAt(0));
+    bool disturbed = false;
+    int frames_disturbed = 0;
+    const auto show = [&](const RigidTransform& pose) {
+      const DepthReport report = scan_.Show(pose);
+      if (report.integrated && scan_.PositionError(pose) > kWrongPose) ++outcome.fused_wrong;
+      if (disturbed) {
+        if (!report.tracked && outcome.until_lost < 0) outcome.until_lost = frames_disturbed;
+        ++frames_disturbed;
+      }
+      return report;
+    };
+    int next = 0;
+    for (; next < kDisturbed; ++next) show(PoseAt(next));
+    disturbed = true;
+    next = disturb(show);
+    disturbed = false;
+    for (int i = next; i < kFrames; ++i) {
+      const DepthReport report = show(PoseAt(i));
+      if (report.tracked && outcome.until_found < 0) outcome.until_found = i - next;
+    }
+    outcome.error = scan_.CompareModel(CheckPoses());
+    return outcome;
+  }
+
+  const StagedScene staged_;
+  SimulatedRecovery scan_;
+};
+
+TEST_F(RecoveryTest, F52ACoveredCameraIsLostAndFindsItsWayBack) {
+  const Outcome calm = Run([](const auto&) { return kDisturbed; });
+  Print("undisturbed", calm.error);
+  const Outcome outcome = Run([&](const auto&) {
+    for (int i = 0; i < 30; ++i) EXPECT_FALSE(scan_.ShowCovered().tracked);
+    return kDisturbed;
+  });
+  Print("covered for 1 s", outcome.error);
+  EXPECT_EQ(outcome.fused_wrong, 0);
+  EXPECT_LE(outcome.until_found, 30);
+  EXPECT_GE(outcome.until_found, 0);
+  EXPECT_LT(outcome.error.median_m, 1.1 * calm.error.median_m);
+  EXPECT_LT(outcome.error.p95_m, 1.1 * calm.error.p95_m);
+}
+
+TEST_F(RecoveryTest, F52AJumpIsNoticedAndTheScanGoesOnWhenItIsBack) {
+  const Outcome calm = Run([](const auto&) { return kDisturbed; });
+  const RigidTransform jump = MakeTransform({0.2, 0.0, 0.0}, Eigen::Quaterniond::Identity()) *
+                              Turned(20.0, Eigen::Vector3d(0.2, 1.0, 0.1));
+  const Outcome outcome = Run([&](const auto& show) {
+    for (int i = 0; i < 15; ++i) show(PoseAt(kDisturbed + i) * jump);
+    return kDisturbed + 15;
+  });
+  Print("jump of 20 cm and 20 degrees", outcome.error);
+  std::cout << "lost after " << outcome.until_lost << " frames, found after " << outcome.until_found
+            << '\n';
+  EXPECT_LE(outcome.until_lost, 3);
+  EXPECT_EQ(outcome.fused_wrong, 0);
+  EXPECT_GE(outcome.until_found, 0);
+  EXPECT_LE(outcome.until_found, 30);
+  EXPECT_LT(outcome.error.median_m, 1.1 * calm.error.median_m);
+}
+
+TEST_F(RecoveryTest, F52TwoSecondsMissingAreNoticedAndFoundAgain) {
+  const Outcome outcome = Run([&](const auto&) { return kDisturbed + 60; });
+  Print("2 s missing", outcome.error);
+  std::cout << "found after " << outcome.until_found << " frames\n";
+  EXPECT_EQ(outcome.fused_wrong, 0);
+}
+
+TEST_F(RecoveryTest, F53AWhipPanIsNotFusedAtAWrongPose) {
+  const Outcome calm = Run([](const auto&) { return kDisturbed; });
+  const Outcome outcome = Run([&](const auto& show) {
+    constexpr double kPerFrame = 90.0 * kFrame;
+    for (int i = 1; i <= 30; ++i) {
+      const double angle = kPerFrame * (i <= 15 ? i : 30 - i);
+      show(PoseAt(kDisturbed) * Turned(angle, Eigen::Vector3d::UnitY()));
+    }
+    return kDisturbed;
+  });
+  Print("whip pan of 90 degrees/s", outcome.error);
+  std::cout << "lost after " << outcome.until_lost << " frames, found after " << outcome.until_found
+            << '\n';
+  EXPECT_EQ(outcome.fused_wrong, 0);
+  EXPECT_LE(outcome.until_found, 30);
+  EXPECT_LT(outcome.error.median_m, 1.1 * calm.error.median_m);
+}
+
+TEST_F(RecoveryTest, F55RandomStartsInAFinishedModelAreFoundAndNeverElsewhere) {
+  scan_.Start(PoseAt(0));
+  for (int i = 0; i < kFrames; ++i) scan_.Show(PoseAt(i));
+  std::mt19937 random(kSeed);
+  const auto uniform = [&](double limit) {
+    return std::uniform_real_distribution<double>(-limit, limit)(random);
+  };
+  constexpr int kStarts = 100;
+  int found = 0;
+  int wrong = 0;
+  for (int start = 0; start < kStarts; ++start) {
+    for (int i = 0; i < 3; ++i) scan_.ShowCovered();
+    const int frame = std::uniform_int_distribution<int>(0, kFrames - 1)(random);
+    Eigen::Vector3d shift;
+    do shift = {uniform(0.15), uniform(0.15), uniform(0.15)};
+    while (shift.norm() > 0.15);
+    const Eigen::Vector3d axis(uniform(1.0), uniform(1.0), uniform(1.0));
+    const RigidTransform pose =
+        PoseAt(frame) * MakeTransform(shift, Eigen::Quaterniond(Eigen::AngleAxisd(
+                                                 uniform(20.0 * kRadPerDeg), axis.normalized())));
+    bool tracked = false;
+    for (int i = 0; i < 30 && !tracked; ++i) tracked = scan_.Show(pose).tracked;
+    if (!tracked) continue;
+    if (scan_.PositionError(pose) > kWrongPose) {
+      ++wrong;
+    } else {
+      ++found;
+    }
+  }
+  std::cout << found << " of " << kStarts << " found, " << wrong << " found elsewhere\n";
+  EXPECT_GE(found, 95);
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
+  SceneBuilder builder(23.0);
+  builder.UseMaterial({});
+  builder.Box("wall", {-5.0, -5.0, 0.9}, {5.0, 5.0, 1.0});
+  SimulatedRecovery scan(builder.Build("bare wall"), kSeed);
+  VolumeOptions& volume = *scan.options().mutable_volume();
+  volume.set_size_x_m(2.4);
+  volume.set_min_x_m(-0.6);
+  const auto pose = [](int i) {
+    return MakeTransform({0.2 * kFrame * i, 0.5, 0.3}, Eigen::Quaterniond::Identity());
+  };
+  scan.Start(pose(0));
+  constexpr int kSeconds = 5;
+  int degraded = 0;
+  for (int i = 0; i < 30 * kSeconds; ++i) {
+    const DepthReport report = scan.Show(pose(i));
+    ASSERT_TRUE(report.tracked) << i << ' ' << ToString(report.tracking.lost);
+    if (report.tracking.verdict() == Verdict::kDegraded) ++degraded;
+  }
+  // Without any structure the velocity is not known either: the prior is at rest.
+  const RigidTransform truth = pose(30 * kSeconds - 1);
+  const RigidTransform& end = scan.pipeline().trajectory().back().T_world_depth;
+  const double prior_drift = (truth.translation() - pose(0).translation()).norm();
+  const double drift = TranslationDistance(end, truth);
+  std::cout << "drift " << 1e3 * drift << " mm of " << 1e3 * prior_drift << " mm, across "
+            << 1e3 * std::abs(end.translation().z() - truth.translation().z()) << " mm, turned "
+            << RotationAngle(end, truth) / kRadPerDeg << " degrees, degraded " << degraded << '\n';
+  EXPECT_LE(drift, 1.02 * prior_drift);
+  EXPECT_LT(std::abs(end.translation().z() - truth.translation().z()), 0.002);
+  EXPECT_LT(RotationAngle(end, truth), 1.0 * kRadPerDeg);
+  EXPECT_GE(degraded, 30 * kSeconds - 10);
+  EXPECT_GT(scan.pipeline().uncertainty().surface_sigma_m(), 0.05);
+}
+
+}  // namespace
+}  // namespace isotherm
