@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "common/testing/volume_shapes.h"
 #include "ground/thermal/thermal_fuser.h"
@@ -255,6 +256,24 @@ TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
           .Fuse(frame, T_world_thermal_, depth_camera_, T_world_depth_, *tsdf_, pool_, *thermal_);
   EXPECT_EQ(report.assigned, 0);
   EXPECT_GT(report.considered, 0);
+}
+
+TEST_F(ThermalFuserTest, APoseThatIsNoneAssignsNothing) {
+  const ThermalFrame frame = Picture(T_world_thermal_);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    const int first = std::isnan(bad) ? 0 : 9;  // An infinite translation.
+    for (int i = first; i < 12; ++i) {
+      for (const bool of_thermal : {false, true}) {
+        RigidTransform T_world_thermal = T_world_thermal_;
+        RigidTransform T_world_depth = T_world_depth_;
+        (of_thermal ? T_world_thermal : T_world_depth).matrix()(i % 3, i / 3) = bad;
+        const FusionReport report = ThermalFuser(ThermalOptions(), thermal_camera_, 0.0F)
+                                        .Fuse(frame, T_world_thermal, depth_camera_, T_world_depth,
+                                              *tsdf_, pool_, *thermal_);
+        ASSERT_EQ(report.assigned, 0) << bad << " at " << i;
+      }
+    }
+  }
 }
 
 }  // namespace

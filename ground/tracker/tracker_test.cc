@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -179,6 +180,31 @@ TEST_F(IcpTrackerTest, AnotherSceneIsLost) {
   };
   const TrackingResult result = Track(testing::RenderDepth(other, camera_, testing::FirstPose()));
   EXPECT_FALSE(result.tracked());
+}
+
+TEST_F(IcpTrackerTest, APoseThatIsNoneIsLost) {
+  const DepthFrame frame = Render(testing::FirstPose());
+  DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
+  const PreparedDepth& depth = preprocessor.Process(frame, pool_);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, 1e30}) {
+    for (int i = 0; i < 36; ++i) {  // Each entry of the guess, the prior and the model's pose.
+      IcpTracker::Start start{testing::FirstPose(), testing::FirstPose()};
+      view_.T_world_depth = testing::FirstPose();
+      RigidTransform* const poses[] = {&start.guess, &view_.T_world_depth, &start.prior};
+      poses[i / 12]->matrix()(i % 3, i % 12 / 3) = bad;
+      const TrackingResult result = IcpTracker(options_).Track(depth, view_, grid_, start, pool_);
+      // All directions are observed here: what the prior says must not matter.
+      ASSERT_EQ(result.tracked(), i >= 24) << bad << " at " << i;
+      if (result.tracked()) {
+        ASSERT_TRUE(result.T_world_depth.matrix().allFinite());
+      }
+    }
+  }
+}
+
+TEST_F(IcpTrackerTest, AModelThatWasNeverCastIsLost) {
+  view_.maps = SurfaceMaps();
+  EXPECT_EQ(Track(Render(testing::FirstPose())).lost, LostReason::kTooFewInliers);
 }
 
 TEST_F(IcpTrackerTest, AJumpBeyondTheStepLimitIsLost) {

@@ -1,7 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "common/testing/volume_shapes.h"
 #include "ground/tracker/analytic_views_for_test.h"
@@ -49,6 +53,50 @@ TEST(VoxelGridTest, F71HugeVolumeIsRefusedWithWhatWouldFit) {
     EXPECT_NE(grid.error().message().find("GiB"), std::string::npos);
     EXPECT_NE(grid.error().message().find("use voxels of"), std::string::npos);
   }
+}
+
+TEST(VoxelGridTest, F71WhatIsSaidToFitFits) {
+  for (const auto& [x_m, y_m, z_m] : {std::array{100.0, 100.0, 100.0}, std::array{1e6, 0.01, 0.01},
+                                      std::array{3e3, 2e2, 0.1}, std::array{1e12, 1e12, 1e12}}) {
+    SCOPED_TRACE(::testing::Message() << x_m << " x " << y_m << " x " << z_m << " m");
+    VolumeOptions options;
+    options.set_size_x_m(x_m);
+    options.set_size_y_m(y_m);
+    options.set_size_z_m(z_m);
+    options.set_voxel_size_m(1e-4);
+    options.set_max_memory_bytes(1 << 20);
+    const std::string message = MakeVoxelGrid(options).error().message();
+    const std::string_view before = "use voxels of ";
+    const std::size_t at = message.find(before);
+    ASSERT_NE(at, std::string::npos) << message;
+    const double voxel_m = std::stod(message.substr(at + before.size()));
+    options.set_voxel_size_m(voxel_m);
+    EXPECT_TRUE(MakeVoxelGrid(options).has_value()) << message;
+    options.set_voxel_size_m(0.9 * voxel_m);
+    EXPECT_FALSE(MakeVoxelGrid(options).has_value()) << message;
+  }
+}
+
+/// Whatever memory there is: kernels number the table's entries with 31 bits.
+TEST(VoxelGridTest, F71MoreBlocksThanCanBeNumberedAreRefused) {
+  constexpr double kBlock = 0.008;
+  VolumeOptions options;
+  options.set_voxel_size_m(0.001);
+  options.set_max_memory_bytes(std::uint64_t{1} << 50);
+  const auto make = [&](int blocks) {
+    options.set_size_x_m(blocks * kBlock);
+    options.set_size_y_m(blocks * kBlock);
+    options.set_size_z_m(blocks * kBlock);
+    return MakeVoxelGrid(options);
+  };
+  EXPECT_TRUE(make(1288).has_value());  // 1290^3 with the border, below 2^31 = 1290.2^3.
+  EXPECT_EQ(make(1289).error().code(), StatusCode::kResourceExhausted);
+}
+
+TEST(VoxelGridTest, F71WithoutMemoryNothingFits) {
+  VolumeOptions options;
+  options.set_max_memory_bytes(0);
+  EXPECT_EQ(MakeVoxelGrid(options).error().code(), StatusCode::kResourceExhausted);
 }
 
 TEST(VoxelGridTest, NonFiniteAndEmptyVolumesAreRefused) {
@@ -157,6 +205,18 @@ TEST_F(RaycasterTest, ASurfaceSeenFromBehindIsNone) {
   for (const float x : maps.vx.pixels()) ASSERT_TRUE(std::isnan(x));
 }
 
+TEST_F(RaycasterTest, FromAPoseThatIsNoneNothingIsSeen) {
+  const RigidTransform pose = pose_;
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, 1e30}) {
+    for (int i = 0; i < 12; ++i) {
+      pose_ = pose;
+      pose_.matrix()(i % 3, i / 3) = bad;
+      const SurfaceMaps maps = Cast(1);
+      for (const float x : maps.vx.pixels()) ASSERT_TRUE(std::isnan(x)) << bad << " at " << i;
+    }
+  }
+}
+
 class TsdfIntegratorTest : public ::testing::Test {
  protected:
   TsdfIntegratorTest() : volume_(MakeVolume()) { preprocessing_.set_bilateral_radius_px(0); }
@@ -204,6 +264,29 @@ TEST_F(TsdfIntegratorTest, F12PixelsWithoutReturnLeaveNoTrace) {
   for (int x = 0; x < camera_.width; ++x) frame.depth_raw.At(x, 10) = kNoDepth;
   Integrate(frame, testing::FirstPose());
   EXPECT_EQ(volume_.block_count(), 0);
+}
+
+TEST_F(TsdfIntegratorTest, APoseThatIsNoneLeavesTheModelAlone) {
+  const auto wall = [](const Eigen::Vector3d& p) { return 0.5 - p.z(); };
+  const DepthFrame frame = testing::RenderDepth(wall, camera_, testing::FirstPose());
+  Integrate(frame, testing::FirstPose());
+  const auto model = [&] {
+    std::vector<std::uint32_t> bits;
+    for (std::int32_t block = 0; block < volume_.block_count(); ++block) {
+      for (const TsdfVoxel& voxel : volume_.voxels(block)) bits.push_back(voxel.bits);
+    }
+    return bits;
+  };
+  const std::vector<std::uint32_t> before = model();
+  ASSERT_FALSE(before.empty());
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, 1e30}) {
+    for (int i = 0; i < 12; ++i) {
+      RigidTransform pose = testing::FirstPose();
+      pose.matrix()(i % 3, i / 3) = bad;
+      Integrate(frame, pose);
+      ASSERT_EQ(model(), before) << bad << " at " << i;
+    }
+  }
 }
 
 TEST_F(TsdfIntegratorTest, SeeingThroughAStrayVoxelClearsIt) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "ground/ground_options.pb.h"
 #include "ground/tsdf/tsdf_volume.h"
@@ -15,6 +16,37 @@ constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
 /// The block table may take this share of the memory limit; the rest is for voxels.
 constexpr double kTableShare = 0.25;
+
+/// Entries of the table are numbered with 31 bits.
+constexpr double kMostTableBytes =
+    sizeof(std::int32_t) * static_cast<double>(std::numeric_limits<std::int32_t>::max());
+
+Eigen::Vector3d BlocksAlongAxes(const VolumeOptions& o, double voxel_size_m) {
+  // A tiny tolerance keeps 0.96 / 0.016 from rounding up to 61 blocks.
+  return (Eigen::Vector3d(o.size_x_m(), o.size_y_m(), o.size_z_m()) / (voxel_size_m * kBlockSide) -
+          Eigen::Vector3d::Constant(1e-6))
+      .array()
+      .ceil()
+      .max(1.0);
+}
+
+/// With the border of TsdfVolume's table.
+double TableBytes(const Eigen::Vector3d& blocks) {
+  return sizeof(std::int32_t) * (blocks.array() + 2.0).prod();
+}
+
+/// About the smallest voxels with which the table fits.
+double FittingVoxel(const VolumeOptions& o, double allowed_bytes) {
+  constexpr double kRounding = 1.001;  // When printed with four digits.
+  constexpr double kMostGrowth = 1e6;
+  double voxel_m = o.voxel_size_m();
+  while (std::isfinite(voxel_m)) {
+    const double table_bytes = TableBytes(BlocksAlongAxes(o, voxel_m));
+    if (table_bytes <= allowed_bytes) break;
+    voxel_m *= std::clamp(std::cbrt(table_bytes / allowed_bytes), kRounding, kMostGrowth);
+  }
+  return voxel_m * kRounding;
+}
 
 std::string DescribeSize(const VolumeOptions& o) {
   return fmt::format("{} x {} x {} m with {} m voxels", o.size_x_m(), o.size_y_m(), o.size_z_m(),
@@ -43,23 +75,17 @@ Status Validate(const VolumeOptions& o) {
 }
 
 Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
-  const double block_m = o.voxel_size_m() * kBlockSide;
-  // A tiny tolerance keeps 0.96 / 0.016 from rounding up to 61 blocks.
-  const Eigen::Vector3d blocks =
-      (Eigen::Vector3d(o.size_x_m(), o.size_y_m(), o.size_z_m()) / block_m -
-       Eigen::Vector3d::Constant(1e-6))
-          .array()
-          .ceil()
-          .max(1.0);
-  const double table_bytes = blocks.prod() * sizeof(std::int32_t);
-  const double allowed_bytes = static_cast<double>(o.max_memory_bytes()) * kTableShare;
+  const Eigen::Vector3d blocks = BlocksAlongAxes(o, o.voxel_size_m());
+  const double table_bytes = TableBytes(blocks);
+  const double allowed_bytes =
+      std::min(static_cast<double>(o.max_memory_bytes()) * kTableShare, kMostTableBytes);
   if (!(table_bytes <= allowed_bytes)) {
-    const double fitting_voxel_m = o.voxel_size_m() * std::cbrt(table_bytes / allowed_bytes);
     return Err(ResourceExhausted(fmt::format(
         "a volume of {} needs {:.1f} GiB for its block table alone, {:.2f} GiB are allowed "
-        "(a quarter of volume.max_memory_bytes): use voxels of {:.4f} m or more, or a smaller "
-        "volume",
-        DescribeSize(o), table_bytes / kGibibyte, allowed_bytes / kGibibyte, fitting_voxel_m)));
+        "(a quarter of volume.max_memory_bytes, 8 GiB at most): use voxels of {:.4g} m or more, or "
+        "a smaller volume",
+        DescribeSize(o), table_bytes / kGibibyte, allowed_bytes / kGibibyte,
+        FittingVoxel(o, allowed_bytes))));
   }
   VoxelGrid grid;
   grid.min_m = {o.min_x_m(), o.min_y_m(), o.min_z_m()};
