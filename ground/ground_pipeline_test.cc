@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "ground/initial_pose.h"
 #include "ground/tracker/analytic_views_for_test.h"
@@ -191,6 +193,125 @@ TEST_F(GroundPipelineTest, OptionsOutOfRangeAreNamed) {
   rig_.depth.reset();
   options_.clear_tsdf();
   EXPECT_FALSE(GroundPipeline::Create(options_, rig_, std::nullopt).has_value());
+}
+
+TEST_F(GroundPipelineTest, F12EmptyFramesAreLostAndLeaveNothing) {
+  DepthFrame empty;
+  empty.depth_raw = Image<std::uint16_t>(rig_.depth->width, rig_.depth->height, kNoDepth);
+  for (int i = 0; i < 3; ++i) {
+    empty.header.capture_time = Time(i);
+    EXPECT_FALSE(pipeline_->ProcessDepth(empty).tracked);
+  }
+  Thermal(0.5);
+  EXPECT_EQ(pipeline_->tsdf().block_count(), 0);
+  EXPECT_TRUE(pipeline_->trajectory().empty());
+  EXPECT_EQ(pipeline_->counts().depth_lost.at("too_few_pixels"), 3U);
+  EXPECT_TRUE(Depth(3).tracked) << "the scan begins with the first frame that shows something";
+  EXPECT_EQ(LeftOut("pose_unknown"), 1U);
+}
+
+TEST_F(GroundPipelineTest, F11FramesWithoutPixelsAreRefusedAndCounted) {
+  DepthFrame none;
+  EXPECT_FALSE(pipeline_->ProcessDepth(none).tracked);
+  EXPECT_EQ(pipeline_->counts().depth_refused, 1U);
+  auto thermal = std::make_shared<ThermalFrame>();
+  thermal->valid = true;
+  pipeline_->ProcessThermal(thermal);
+  EXPECT_EQ(LeftOut("wrong_size"), 1U);
+  EXPECT_TRUE(Depth(0).tracked);
+}
+
+TEST_F(GroundPipelineTest, F12AScaleThatIsNoneIsLostAndLeavesNothing) {
+  DepthFrame frame = testing::RenderDepth(testing::BallInCorner, *rig_.depth, TruePose(0));
+  for (const double bad : {std::nan(""), 0.0, -1000.0, std::numeric_limits<double>::infinity()}) {
+    frame.depth_scale = bad;
+    EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked) << bad;
+  }
+  EXPECT_EQ(pipeline_->tsdf().block_count(), 0);
+}
+
+TEST_F(GroundPipelineTest, F56ACameraWithoutPixelsIsNamed) {
+  for (const auto& [width, height] : {std::pair{0, 240}, std::pair{320, 0}, std::pair{0, 0}}) {
+    Rig rig = rig_;
+    rig.depth->width = width;
+    rig.depth->height = height;
+    const auto created = GroundPipeline::Create(options_, rig, std::nullopt);
+    ASSERT_FALSE(created.has_value());
+    EXPECT_EQ(created.error().code(), StatusCode::kInvalidArgument);
+    EXPECT_NE(created.error().message().find("depth: width and height"), std::string::npos);
+    rig = rig_;
+    rig.thermal->width = width;
+    rig.thermal->height = height;
+    EXPECT_NE(GroundPipeline::Create(options_, rig, std::nullopt)
+                  .error()
+                  .message()
+                  .find("thermal: width and height"),
+              std::string::npos);
+  }
+}
+
+TEST_F(GroundPipelineTest, F71AVolumeThatIsNoneOrTooLargeIsRefusedWithTheReason) {
+  options_.mutable_volume()->set_size_z_m(0.0);
+  const auto none = GroundPipeline::Create(options_, rig_, std::nullopt);
+  ASSERT_FALSE(none.has_value());
+  EXPECT_NE(none.error().message().find("must be positive, got 0.64 x 0.64 x 0 m"),
+            std::string::npos)
+      << none.error().message();
+  VolumeOptions& volume = *options_.mutable_volume();
+  volume.set_size_x_m(100.0);
+  volume.set_size_y_m(100.0);
+  volume.set_size_z_m(100.0);
+  volume.set_voxel_size_m(0.001);
+  const auto huge = GroundPipeline::Create(options_, rig_, std::nullopt);
+  ASSERT_FALSE(huge.has_value());
+  EXPECT_EQ(huge.error().code(), StatusCode::kResourceExhausted);
+  // 12502^3 blocks of 4 bytes; 1 GiB holds 645^3, of 8 voxels each.
+  EXPECT_NE(huge.error().message().find("needs 7279.5 GiB"), std::string::npos)
+      << huge.error().message();
+  EXPECT_NE(huge.error().message().find("use voxels of 0.019"), std::string::npos)
+      << huge.error().message();
+}
+
+TEST_F(GroundPipelineTest, WithoutTimeForThermalItIsLeftOutAndCounted) {
+  Depth(0);
+  pipeline_->set_effort(Effort::kNoThermal);
+  Thermal(0.5);
+  Depth(1);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_EQ(LeftOut("behind"), 1U);
+  EXPECT_EQ(pipeline_->counts().depth_integrated, 2U);
+  EXPECT_EQ(pipeline_->counts().depth_behind, 0U);
+  pipeline_->set_effort(Effort::kAll);
+  Thermal(1.5);
+  Depth(2);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
+  EXPECT_EQ(LeftOut("behind"), 1U);
+}
+
+TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
+  constexpr double kMaxError = 0.002;  // Metres: half a voxel.
+  constexpr int kFrames = 8;
+  Depth(0);
+  pipeline_->set_effort(Effort::kEverySecond);
+  for (int i = 1; i <= kFrames; ++i) {
+    Thermal(i - 0.5);
+    const DepthReport report = Depth(i);
+    ASSERT_TRUE(report.tracked) << i;
+    EXPECT_EQ(report.integrated, i % 2 == 1) << i;
+    EXPECT_LT(TranslationDistance(report.tracking.T_world_depth, TruePose(i)), kMaxError) << i;
+  }
+  const PipelineCounts& counts = pipeline_->counts();
+  EXPECT_EQ(counts.depth_tracked, 1U + kFrames);
+  EXPECT_EQ(counts.depth_integrated, 1U + kFrames / 2);
+  EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
+  EXPECT_EQ(LeftOut("behind"), 0U + kFrames);
+  pipeline_->set_effort(Effort::kAll);
+  for (int i = kFrames + 1; i <= kFrames + 3; ++i) {
+    Thermal(i - 0.5);
+    EXPECT_TRUE(Depth(i).integrated) << i;
+  }
+  EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
+  EXPECT_EQ(counts.thermal_fused, 3U);
 }
 
 }  // namespace

@@ -1,0 +1,144 @@
+#include "ground/live_scan.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "ground/tracker/analytic_views_for_test.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Frames of a moving rig that wait for their turn as long as the test says.
+class LiveScanTest : public ::testing::Test {
+ protected:
+  LiveScanTest() {
+    rig_.session = 7;
+    rig_.rig.depth = testing::SmallDepthCamera();
+    rig_.rig.thermal = rig_.rig.depth;
+    rig_.rig.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+    VolumeOptions& volume = *options_.mutable_volume();
+    volume.set_size_x_m(0.64);
+    volume.set_size_y_m(0.64);
+    volume.set_size_z_m(0.64);
+    volume.set_voxel_size_m(0.004);
+    volume.set_initial_pose("0.30 0.26 0 0 0 0 1");  // FirstPose().
+    options_.mutable_tsdf()->set_truncation_distance_m(0.016);
+    options_.mutable_live()->set_max_wait_s(0.1);
+    options_.set_threads(2);
+  }
+  void Start() {
+    auto created = LiveScan::Create(clock_, options_, rig_);
+    ASSERT_TRUE(created.has_value()) << created.error().message();
+    scan_ = std::move(*created);
+  }
+
+  static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
+
+  /// A depth frame whose turn comes `wait` after its arrival.
+  void Depth(int i, Nanoseconds wait) {
+    constexpr double kStep = 0.003;  // Metres per frame.
+    auto frame = std::make_shared<DepthFrame>(testing::RenderDepth(
+        testing::BallInCorner, *rig_.rig.depth,
+        testing::FirstPose() *
+            MakeTransform({kStep * i, 0.5 * kStep * i, 0.0}, Eigen::Quaterniond::Identity())));
+    frame->header.capture_time = Time(i);
+    const CaptureTime arrival = clock_.Now();
+    clock_.Advance(wait);
+    scan_->Add(ReceivedDepth{frame, nullptr, arrival});
+  }
+  void Thermal(double at) {
+    auto frame = std::make_shared<ThermalFrame>();
+    frame->header.capture_time = Time(at);
+    frame->centikelvin = Image<std::uint16_t>(rig_.rig.thermal->width, rig_.rig.thermal->height,
+                                              32'315);  // 50 °C.
+    frame->valid = true;
+    scan_->Add(ReceivedThermal{frame, nullptr, clock_.Now()});
+  }
+  /// Depth frames `first` .. `last`, a thermal frame before each but the first of all.
+  void Run(int first, int last, Nanoseconds wait) {
+    for (int i = first; i <= last; ++i) {
+      if (i > 0) Thermal(i - 0.5);
+      Depth(i, wait);
+    }
+  }
+
+  const PipelineCounts& counts() { return scan_->pipeline().counts(); }
+  std::uint64_t ThermalBehind() {
+    const auto found = counts().thermal_left_out.find("behind");
+    return found == counts().thermal_left_out.end() ? 0 : found->second;
+  }
+
+  FakeClock clock_{CaptureTime(FromSeconds(1000.0))};
+  GroundOptions options_;
+  RigDescription rig_;
+  std::unique_ptr<LiveScan> scan_;
+};
+
+TEST_F(LiveScanTest, FramesInTimeAreAllUsed) {
+  Start();
+  Run(0, 6, 60ms);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_integrated, 7U);
+  EXPECT_EQ(counts().depth_behind, 0U);
+  EXPECT_EQ(counts().thermal_fused, 6U);
+  EXPECT_EQ(scan_->waiting().count(), 13U);
+}
+
+TEST_F(LiveScanTest, BeyondMostOfTheLongestWaitThermalFramesAreLeftOut) {
+  Start();
+  Run(0, 6, 80ms);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_integrated, 7U);
+  EXPECT_EQ(counts().depth_behind, 0U);
+  EXPECT_EQ(counts().thermal_fused, 0U);
+  EXPECT_EQ(ThermalBehind(), 6U);
+}
+
+TEST_F(LiveScanTest, BeyondTheLongestWaitEverySecondDepthFrameIsNotIntegratedEither) {
+  Start();
+  Run(0, 7, 150ms);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_tracked, 8U);
+  EXPECT_EQ(counts().depth_integrated, 4U);
+  EXPECT_EQ(counts().depth_behind, 4U);
+  EXPECT_EQ(ThermalBehind(), 7U);
+}
+
+TEST_F(LiveScanTest, OnceCaughtUpAllIsDoneAgain) {
+  Start();
+  Run(0, 3, 150ms);
+  Run(4, 8, 10ms);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_tracked, 9U);
+  EXPECT_EQ(counts().depth_behind, 2U);  // Frames 1 and 3.
+  EXPECT_EQ(counts().depth_integrated, 7U);
+  EXPECT_EQ(ThermalBehind(), 3U);
+  EXPECT_EQ(counts().thermal_fused, 5U);  // From the one before frame 4 on.
+}
+
+TEST_F(LiveScanTest, AReplayThatWaitsForTheGroundLosesNothing) {
+  rig_.waits_for_ground = true;
+  Start();
+  Run(0, 6, 10s);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_integrated, 7U);
+  EXPECT_EQ(counts().depth_behind, 0U);
+  EXPECT_EQ(counts().thermal_fused, 6U);
+  EXPECT_EQ(ThermalBehind(), 0U);
+}
+
+TEST_F(LiveScanTest, ALongestWaitOfZeroNeverLeavesAnythingOut) {
+  options_.mutable_live()->set_max_wait_s(0.0);
+  Start();
+  Run(0, 6, 10s);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_integrated, 7U);
+  EXPECT_EQ(counts().depth_behind, 0U);
+  EXPECT_EQ(counts().thermal_fused, 6U);
+}
+
+}  // namespace
+}  // namespace isotherm
