@@ -16,6 +16,7 @@ constexpr double kUnusualInlierShare = 0.5;  ///< ... or with this share of the 
 /// What is believed after having been lost must be nearly as good as usual.
 constexpr double kConvincingResidual = 2.5;
 constexpr double kConvincingInlierShare = 0.75;
+constexpr double kConvincingStrengthShare = 0.25;
 
 constexpr int kFramesToKnow = 5;  ///< Until what is usual is known.
 
@@ -58,7 +59,11 @@ LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
 }
 
 bool RigTracker::IsConvincing(const TrackingResult& result) const {
-  if (result.verdict() != Verdict::kTracked) return false;
+  // A weak direction may be held for one frame; a plane or a cylinder says nothing at all.
+  if (!result.tracked() ||
+      result.motion.strength(0) < kConvincingStrengthShare * options_.min_observed()) {
+    return false;
+  }
   if (result.inlier_ratio < relocaliser_options_.min_inlier_ratio()) return false;
   return usual_.frames < kFramesToKnow ||
          (result.inlier_ratio >= kConvincingInlierShare * usual_.inlier_ratio &&

@@ -70,6 +70,8 @@ double Relocaliser::Refine(const PreparedDepth& depth, const TsdfVolume& volume,
       constexpr double kConverged = 1e-4;
       if (twist->norm() < kConverged) break;
     }
+    constexpr double kHopeless = 0.4;
+    if (inlier_ratio < kHopeless) return 0.0;
   }
   return inlier_ratio;
 }

@@ -18,7 +18,7 @@ constexpr double kNewViewRad = 10.0 * kRadPerDeg;
 constexpr double kSameGuessM = 0.04;
 constexpr double kSameGuessRad = 6.0 * kRadPerDeg;
 
-constexpr std::size_t kViewsPerCall = 24;
+constexpr std::size_t kViewsPerCall = 12;
 
 bool IsNear(const RigidTransform& a, const RigidTransform& b, double max_m, double max_rad) {
   return TranslationDistance(a, b) < max_m && RotationAngle(a, b) < max_rad;
@@ -58,6 +58,22 @@ std::vector<RigidTransform> MakeOffsets() {
     }
   }
   return offsets;
+}
+
+/// The best, best first, none near another.
+std::vector<PoseGuess> ChooseDistinct(std::vector<PoseGuess> guesses, std::size_t count) {
+  std::sort(guesses.begin(), guesses.end(),
+            [](const PoseGuess& a, const PoseGuess& b) { return a.disagreement < b.disagreement; });
+  std::vector<PoseGuess> best;
+  for (const PoseGuess& guess : guesses) {
+    constexpr float kHopeless = 0.7F;
+    if (guess.disagreement > kHopeless || best.size() == count) break;
+    const bool known = std::any_of(best.begin(), best.end(), [&](const PoseGuess& other) {
+      return IsNear(other.T_world_depth, guess.T_world_depth, kSameGuessM, kSameGuessRad);
+    });
+    if (!known) best.push_back(guess);
+  }
+  return best;
 }
 
 }  // namespace
@@ -159,6 +175,35 @@ Thumbnail ViewLibrary::Look(const KnownView& view, const RigidTransform& T_look_
   return picture;
 }
 
+PoseGuess ViewLibrary::Improve(const Thumbnail& picture, const KnownView& view,
+                               PoseGuess guess) const {
+  constexpr int kRounds = 4;
+  double step_m = 0.045;
+  double step_rad = 7.0 * kRadPerDeg;
+  for (int round = 0; round < kRounds; ++round) {
+    bool better = false;
+    for (int axis = 0; axis < 6; ++axis) {
+      for (const double sign : {-1.0, 1.0}) {
+        const Eigen::Vector3d unit = sign * Eigen::Vector3d::Unit(axis % 3);
+        const RigidTransform offset =
+            axis < 3 ? MakeTransform(step_m * unit, Eigen::Quaterniond::Identity())
+                     : MakeTransform(Eigen::Vector3d::Zero(),
+                                     Eigen::Quaterniond(Eigen::AngleAxisd(step_rad, unit)));
+        const RigidTransform pose = guess.T_world_depth * offset;
+        const float disagreement =
+            Disagreement(picture, Look(view, pose.inverse() * view.T_world_depth));
+        if (disagreement >= guess.disagreement) continue;
+        guess = {pose, disagreement, guess.view};
+        better = true;
+      }
+    }
+    if (better) continue;
+    step_m *= 0.5;
+    step_rad *= 0.5;
+  }
+  return guess;
+}
+
 std::vector<PoseGuess> ViewLibrary::Guess(const Thumbnail& picture, int max_guesses,
                                           ThreadPool& pool) {
   if (views_.empty()) return {};
@@ -166,26 +211,22 @@ std::vector<PoseGuess> ViewLibrary::Guess(const Thumbnail& picture, int max_gues
   std::vector<PoseGuess> all(count * offsets_.size());
   pool.ParallelFor(static_cast<int>(count), [&](int task) {
     const auto i = static_cast<std::size_t>(task);
-    const KnownView& view = views_[(next_view_ + i) % views_.size()];
+    const std::size_t index = (next_view_ + i) % views_.size();
+    const KnownView& view = views_[index];
     for (std::size_t k = 0; k < offsets_.size(); ++k) {
       all[i * offsets_.size() + k] = {view.T_world_depth * offsets_[k],
-                                      Disagreement(picture, Look(view, offsets_[k].inverse()))};
+                                      Disagreement(picture, Look(view, offsets_[k].inverse())),
+                                      index};
     }
   });
   next_view_ = (next_view_ + count) % views_.size();
-  std::sort(all.begin(), all.end(),
-            [](const PoseGuess& a, const PoseGuess& b) { return a.disagreement < b.disagreement; });
-  std::vector<PoseGuess> best;
-  for (const PoseGuess& guess : all) {
-    constexpr float kHopeless = 0.6F;
-    if (guess.disagreement > kHopeless || best.size() == static_cast<std::size_t>(max_guesses))
-      break;
-    const bool known = std::any_of(best.begin(), best.end(), [&](const PoseGuess& other) {
-      return IsNear(other.T_world_depth, guess.T_world_depth, kSameGuessM, kSameGuessRad);
-    });
-    if (!known) best.push_back(guess);
-  }
-  return best;
+  constexpr std::size_t kImproved = 16;
+  std::vector<PoseGuess> best = ChooseDistinct(std::move(all), kImproved);
+  pool.ParallelFor(static_cast<int>(best.size()), [&](int task) {
+    PoseGuess& guess = best[static_cast<std::size_t>(task)];
+    guess = Improve(picture, views_[guess.view], guess);
+  });
+  return ChooseDistinct(std::move(best), static_cast<std::size_t>(max_guesses));
 }
 
 }  // namespace isotherm

@@ -34,6 +34,7 @@ struct KnownView {
 struct PoseGuess {
   RigidTransform T_world_depth;
   float disagreement = 1.0F;
+  std::size_t view = 0;  ///< Whose cloud it was compared with.
 };
 
 /// Views that were tracked well, kept as the scan grows, and where a picture may have been taken:
@@ -54,6 +55,9 @@ class ViewLibrary {
   std::vector<PoseGuess> Guess(const Thumbnail& picture, int max_guesses, ThreadPool& pool);
 
  private:
+  /// Moves a guess step by step to where it disagrees least.
+  PoseGuess Improve(const Thumbnail& picture, const KnownView& view, PoseGuess guess) const;
+  /// What the view's cloud looks like from elsewhere.
   Thumbnail Look(const KnownView& view, const RigidTransform& T_look_view) const;
 
   const CameraModel camera_;  ///< Of a thumbnail.
