@@ -50,6 +50,8 @@ Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
         FailedPrecondition("the rig calibration has no depth intrinsics: nothing can be "
                            "reconstructed without a depth camera"));
   }
+  if (initial_pose && !IsRigid(*initial_pose))
+    return Err(InvalidArgument("the first frame's pose is not a rigid motion with finite numbers"));
   if (!initial_pose && !options.volume().initial_pose().empty()) {
     const Result<RigidTransform> pose = ParsePose(options.volume().initial_pose());
     if (!pose) return Err(pose.error().WithContext("volume.initial_pose"));
@@ -158,12 +160,12 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   ++counts_.depth_tracked;
   if (report.tracking.verdict() == Verdict::kDegraded) ++counts_.depth_degraded;
   const std::optional<StampedPose> before = tracker_.motion().before_last();
+  const bool skips =
+      effort_ == Effort::kEverySecond && !std::exchange(integrate_next_, !integrate_next_);
+  if (skips) ++counts_.depth_behind;
   report.integrated =
+      !skips &&
       gate_.Accepts(before ? std::optional(before->T_world_depth) : std::nullopt, T_world_depth);
-  if (report.integrated && effort_ == Effort::kEverySecond) {
-    report.integrated = std::exchange(integrate_next_, !integrate_next_);
-    if (!report.integrated) ++counts_.depth_behind;
-  }
   if (report.integrated) {
     const StageTimer integrate_timer(stage_stats_["integrate"]);
     integrator_.Integrate(*depth, T_world_depth, pool_, *tsdf_);
@@ -171,7 +173,7 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   }
   UpdateView(T_world_depth);
   if (report.integrated && report.tracking.verdict() == Verdict::kTracked)
-    tracker_.Remember(*depth, T_world_depth);
+    tracker_.Remember(T_world_depth);
   trajectory_.insert(trajectory_.end(), unconfirmed_.begin(), unconfirmed_.end());
   unconfirmed_.clear();
   trajectory_.push_back({time, T_world_depth});

@@ -115,8 +115,13 @@ TEST_F(GroundPipelineTest, ACoveredCameraLeavesTheModelAloneAndTrackingComesBack
   for (int i = 4; i < 7; ++i) EXPECT_FALSE(Covered(i).tracked);
   EXPECT_EQ(pipeline_->counts().depth_integrated, integrated);
   EXPECT_EQ(pipeline_->counts().depth_lost.at("too_few_pixels"), 3U);
-  EXPECT_TRUE(Depth(4).tracked);
-  EXPECT_EQ(pipeline_->trajectory().size(), 5U);
+  // Found again, but believed and fused only when two more frames agree.
+  EXPECT_TRUE(Depth(4).unconfirmed);
+  EXPECT_TRUE(Depth(5).unconfirmed);
+  EXPECT_EQ(pipeline_->trajectory().size(), 4U);
+  EXPECT_EQ(pipeline_->counts().depth_integrated, integrated);
+  EXPECT_TRUE(Depth(6).tracked);
+  EXPECT_EQ(pipeline_->trajectory().size(), 7U);
 }
 
 TEST_F(GroundPipelineTest, ThermalFramesWaitForTheDepthFrameBehindThem) {
@@ -144,8 +149,8 @@ TEST_F(GroundPipelineTest, EachThermalFrameIsAccountedFor) {
   Depth(1);
   Thermal(1.5);
   Covered(2);
-  Depth(3);  // The motion between the frames around 1.5 is not known.
-  Thermal(3.5);
+  for (int i = 3; i < 6; ++i) Depth(i);  // Found again; the motion around 1.5 is not known.
+  Thermal(5.5);
   pipeline_->Finish();
   const PipelineCounts& counts = pipeline_->counts();
   EXPECT_EQ(counts.thermal_in, 5U);

@@ -169,8 +169,8 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
       WriteScan(**pipeline, request.options, std::move(stats), request.output_dir, progress);
   if (!text) return Err(text.error());
   const PipelineCounts& counts = (*pipeline)->counts();
-  return ReconstructSummary{counts.depth_in, counts.depth_tracked, counts.thermal_in,
-                            counts.thermal_fused, *text};
+  return ReconstructSummary{counts.depth_in,   counts.depth_repeated, counts.depth_tracked,
+                            counts.thermal_in, counts.thermal_fused,  *text};
 }
 
 }  // namespace isotherm

@@ -24,6 +24,7 @@ struct ReconstructRequest {
 
 struct ReconstructSummary {
   std::uint64_t depth_frames = 0;
+  std::uint64_t repeated_frames = 0;
   std::uint64_t tracked_frames = 0;
   std::uint64_t thermal_frames = 0;
   std::uint64_t fused_thermal_frames = 0;

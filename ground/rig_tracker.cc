@@ -9,13 +9,13 @@ namespace isotherm {
 namespace {
 
 /// A frame is on the wrong surface, whatever the limits say, ...
-constexpr double kUnusualResidual = 4.0;     ///< ... with this many times the usual residual
-constexpr double kLeastUnusualM = 0.002;     ///< (but at least this), ...
-constexpr double kUnusualInlierShare = 0.5;  ///< ... or with this share of the usual inliers.
+constexpr double kUnusualResidual = 4.0;   ///< ... with this many times the usual residual
+constexpr double kLeastUnusualM = 0.002;   ///< (but at least this), ...
+constexpr double kUnusualAgreement = 0.5;  ///< ... or with this share of the usual agreement.
 
 /// What is believed after having been lost must be nearly as good as usual.
 constexpr double kConvincingResidual = 2.5;
-constexpr double kConvincingInlierShare = 0.75;
+constexpr double kConvincingAgreement = 0.8;
 constexpr double kConvincingStrengthShare = 0.25;
 
 constexpr int kFramesToKnow = 5;  ///< Until what is usual is known.
@@ -53,8 +53,7 @@ LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
   if (usual_.frames < kFramesToKnow) return LostReason::kNone;
   if (result.residual_m > std::max(kUnusualResidual * usual_.residual_m, kLeastUnusualM))
     return LostReason::kResidual;
-  if (result.inlier_ratio < kUnusualInlierShare * usual_.inlier_ratio)
-    return LostReason::kTooFewInliers;
+  if (result.agreement < kUnusualAgreement * usual_.agreement) return LostReason::kTooFewInliers;
   return LostReason::kNone;
 }
 
@@ -64,9 +63,12 @@ bool RigTracker::IsConvincing(const TrackingResult& result) const {
       result.motion.strength(0) < kConvincingStrengthShare * options_.min_observed()) {
     return false;
   }
-  if (result.inlier_ratio < relocaliser_options_.min_inlier_ratio()) return false;
+  if (result.agreement < relocaliser_options_.min_agreement() ||
+      result.overlap_ratio < relocaliser_options_.min_overlap()) {
+    return false;
+  }
   return usual_.frames < kFramesToKnow ||
-         (result.inlier_ratio >= kConvincingInlierShare * usual_.inlier_ratio &&
+         (result.agreement >= kConvincingAgreement * usual_.agreement &&
           result.residual_m <= std::max(kConvincingResidual * usual_.residual_m, kLeastUnusualM));
 }
 
@@ -74,14 +76,19 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolu
                                       ThreadPool& pool) {
   TrackingResult result;
   result.lost = LostReason::kTooFewPixels;
-  if (view_.maps.width() > 0) {
+  looks_back_ = !looks_back_ || !relocaliser_options_.enabled();
+  if (looks_back_ && view_.maps.width() > 0) {
     // Where it was lost: a hand before the camera, or a rig that swings back.
     const RigidTransform& last = view_.T_world_depth;
     result = tracker_.Track(depth, view_, volume.grid(), {last, last}, pool);
-    if (IsConvincing(result)) return result;
+    if (result.tracked() && !IsConvincing(result)) result.lost = LostReason::kNotFound;
+    return result;
   }
-  if (result.tracked()) result.lost = LostReason::kNotFound;
-  if (!relocaliser_options_.enabled()) return result;
+  constexpr int kMinPixels = 1000;
+  if (depth.valid_pixels < kMinPixels) return result;
+  result.lost = LostReason::kNotFound;
+  if (!knows_model_) relocaliser_.Begin(volume);
+  knows_model_ = true;
   const auto pose = relocaliser_.Find(depth, volume, min_weight_, pool);
   if (!pose) return result;
   CastView(*pose, volume, pool, candidate_);
@@ -96,6 +103,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time,
   if (state_ == State::kLost) {
     TrackingResult result = LookAround(depth, volume, pool);
     if (!result.tracked()) return result;
+    knows_model_ = false;
     state_ = State::kConfirming;
     to_confirm_ = relocaliser_options_.confirming_frames();
     Accept(result, time);
@@ -126,7 +134,7 @@ void RigTracker::Accept(const TrackingResult& result, CaptureTime time) {
   constexpr double kNewShare = 0.1;
   const double share = std::max(kNewShare, 1.0 / (1.0 + usual_.frames));
   usual_.residual_m += share * (result.residual_m - usual_.residual_m);
-  usual_.inlier_ratio += share * (result.inlier_ratio - usual_.inlier_ratio);
+  usual_.agreement += share * (result.agreement - usual_.agreement);
   ++usual_.frames;
 }
 
@@ -143,8 +151,8 @@ void RigTracker::LookFrom(const RigidTransform& T_world_depth, const TsdfVolume&
   view_.is_young = is_young;
 }
 
-void RigTracker::Remember(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
-  if (relocaliser_options_.enabled()) relocaliser_.Remember(depth, T_world_depth);
+void RigTracker::Remember(const RigidTransform& T_world_depth) {
+  if (relocaliser_options_.enabled()) relocaliser_.Remember(T_world_depth);
 }
 
 }  // namespace isotherm

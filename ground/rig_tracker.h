@@ -40,7 +40,7 @@ class RigTracker {
   void LookFrom(const RigidTransform& T_world_depth, const TsdfVolume& volume, bool is_young,
                 ThreadPool& pool);
   /// Of a frame that was fused: a view to come back to.
-  void Remember(const PreparedDepth& depth, const RigidTransform& T_world_depth);
+  void Remember(const RigidTransform& T_world_depth);
 
   State state() const { return state_; }
   /// Times that the rig was found again.
@@ -55,7 +55,7 @@ class RigTracker {
   /// What frames usually look like: a frame that differs is not on the right surface.
   struct Usual {
     double residual_m = 0.0;
-    double inlier_ratio = 0.0;
+    double agreement = 0.0;
     int frames = 0;
   };
 
@@ -82,6 +82,8 @@ class RigTracker {
   Usual usual_;
   State state_ = State::kFollowing;
   int to_confirm_ = 0;
+  bool looks_back_ = false;   ///< Lost frames take turns: back at the last view, and all around.
+  bool knows_model_ = false;  ///< The relocaliser does, as it is since tracking was lost.
   std::uint64_t relocalisations_ = 0;
 };
 

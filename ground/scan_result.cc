@@ -43,6 +43,20 @@ std::string List(const std::map<std::string, std::uint64_t>& counts) {
   return text;
 }
 
+/// What was out of the ordinary with depth frames; a line, or nothing.
+std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t relocalisations) {
+  std::string text;
+  const auto add = [&text](std::uint64_t count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
+  };
+  add(counts.depth_repeated, "repeated");
+  add(counts.depth_degraded, "with directions that the view leaves free");
+  add(relocalisations, "times found again after a loss");
+  add(counts.depth_unconfirmed, "not yet believed after it");
+  add(counts.depth_behind, "not integrated to keep up");
+  return text.empty() ? text : fmt::format("         {}\n", text);
+}
+
 }  // namespace
 
 Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig) {
@@ -106,11 +120,11 @@ Result<std::string> WriteScan(
   if (!summary) return Err(summary.error());
 
   const PipelineCounts& counts = pipeline.counts();
-  std::string text = fmt::format(
-      "depth    {} frames: {} tracked, {} integrated{}{}{}\n", counts.depth_in,
-      counts.depth_tracked, counts.depth_integrated,
-      counts.depth_behind == 0 ? "" : fmt::format(" ({} left out to keep up)", counts.depth_behind),
-      counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
+  std::string text =
+      fmt::format("depth    {} frames: {} tracked, {} integrated{}{}\n", counts.depth_in,
+                  counts.depth_tracked, counts.depth_integrated,
+                  counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
+  text += DescribeIncidents(counts, pipeline.tracker().relocalisations());
   text += fmt::format(
       "thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
       counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));

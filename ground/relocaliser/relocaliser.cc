@@ -11,24 +11,26 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// Of the depth image's size, for refinement.
-constexpr int kHalvings = 2;
-
-/// Correspondences get stricter as the pose gets better.
+/// One step of refinement: the model is cast anew, and correspondences get stricter as the pose
+/// gets better.
 struct RefinementStage {
+  int halvings;  ///< Of the depth image's size.
   float max_distance_m;
   double max_angle_deg;
   int iterations;
 };
-constexpr RefinementStage kStages[] = {{0.12F, 60.0, 6}, {0.05F, 40.0, 6}, {0.025F, 30.0, 4}};
+constexpr RefinementStage kFirstStage = {3, 0.12F, 60.0, 6};
+constexpr RefinementStage kSecondStage = {3, 0.05F, 40.0, 6};
+constexpr RefinementStage kLastStage = {2, 0.025F, 30.0, 4};
 
 }  // namespace
 
 Status Validate(const RelocaliserOptions& o) {
-  if (!(o.min_inlier_ratio() > 0.0 && o.min_inlier_ratio() <= 1.0)) {
-    return InvalidArgument(
-        fmt::format("relocaliser.min_inlier_ratio must be above 0 and at most 1, got {}",
-                    o.min_inlier_ratio()));
+  if (!(o.min_agreement() > 0.0 && o.min_agreement() <= 1.0 && o.min_overlap() > 0.0 &&
+        o.min_overlap() <= 1.0)) {
+    return InvalidArgument(fmt::format(
+        "relocaliser: min_agreement and min_overlap must be above 0 and at most 1, got {} and {}",
+        o.min_agreement(), o.min_overlap()));
   }
   if (o.max_views() < 1 || o.max_views() > 100'000 || o.guesses_per_frame() < 1 ||
       o.guesses_per_frame() > 100) {
@@ -44,53 +46,84 @@ Status Validate(const RelocaliserOptions& o) {
   return OkStatus();
 }
 
-Relocaliser::Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera)
-    : options_(options), library_(depth_camera, options.max_views()) {
-  view_.camera = depth_camera.Downscaled(kHalvings);
-}
+class Relocaliser::Refinement {
+ public:
+  Refinement(Relocaliser& relocaliser, const PreparedDepth& depth, const TsdfVolume& volume,
+             float min_weight, ThreadPool& pool)
+      : relocaliser_(relocaliser),
+        depth_(depth),
+        volume_(volume),
+        min_weight_(min_weight),
+        pool_(pool) {}
 
-double Relocaliser::Refine(const PreparedDepth& depth, const TsdfVolume& volume, float min_weight,
-                           ThreadPool& pool, RigidTransform& pose) {
-  double inlier_ratio = 0.0;
-  for (const RefinementStage& stage : kStages) {
-    view_.T_world_depth = pose;
-    raycaster_.Cast(volume, view_.camera, pose, min_weight, pool, view_.maps);
+  /// How well the frame fits, and where.
+  struct Fit {
+    RigidTransform pose;
+    double agreement = 0.0;
+    double overlap = 0.0;
+
+    /// Of poses that agree equally well, the one that explains more.
+    double score() const { return agreement * (1.0 + overlap); }
+  };
+
+  /// No agreement if there is nothing to align.
+  Fit Run(const RefinementStage& stage, RigidTransform pose) {
+    ModelView& view = relocaliser_.view_;
+    view.camera = relocaliser_.camera_.Downscaled(stage.halvings);
+    view.T_world_depth = pose;
+    relocaliser_.raycaster_.Cast(volume_, view.camera, pose, min_weight_, pool_, view.maps);
     const IcpLimits limits{stage.max_distance_m,
                            static_cast<float>(std::cos(stage.max_angle_deg * kRadPerDeg))};
+    Fit fit;
     for (int i = 0; i < stage.iterations; ++i) {
       const IcpSums sums =
-          AccumulateIcp(depth.maps[kPyramidLevels - 1], pose, view_, volume.grid(), limits, pool);
-      inlier_ratio = static_cast<double>(sums.inliers) /
-                     static_cast<double>(std::max<std::int64_t>(sums.candidates, 1));
+          AccumulateIcp(depth_.maps[kPyramidLevels - 1], pose, view, volume_.grid(), limits, pool_);
       constexpr std::int64_t kFewest = 200;
-      if (sums.inliers < kFewest) return 0.0;
+      if (sums.inliers < kFewest) return {};
       const auto twist = MotionSpace().SolveObserved(sums.H, sums.g);
-      if (!twist || !twist->allFinite()) return 0.0;
+      if (!twist || !twist->allFinite()) return {};
       ApplyTwist(*twist, pose);
+      fit = {pose, sums.agreement(), sums.overlap_ratio()};
       constexpr double kConverged = 1e-4;
       if (twist->norm() < kConverged) break;
     }
-    constexpr double kHopeless = 0.4;
-    if (inlier_ratio < kHopeless) return 0.0;
+    return fit;
   }
-  return inlier_ratio;
+
+ private:
+  Relocaliser& relocaliser_;
+  const PreparedDepth& depth_;
+  const TsdfVolume& volume_;
+  const float min_weight_;
+  ThreadPool& pool_;
+};
+
+Relocaliser::Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera)
+    : options_(options), camera_(depth_camera), library_(depth_camera, options.max_views()) {}
+
+void Relocaliser::Begin(const TsdfVolume& volume) {
+  constexpr std::size_t kMaxPoints = 5000;
+  library_.SetCloud(MakeSurfaceCloud(volume, kMaxPoints));
 }
 
 std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
                                                 const TsdfVolume& volume, float min_weight,
                                                 ThreadPool& pool) {
-  const std::vector<PoseGuess> guesses =
-      library_.Guess(MakeThumbnail(depth.depth_m), options_.guesses_per_frame(), pool);
-  std::optional<RigidTransform> best;
-  double best_ratio = options_.min_inlier_ratio();
-  for (const PoseGuess& guess : guesses) {
-    RigidTransform pose = guess.T_world_depth;
-    const double ratio = Refine(depth, volume, min_weight, pool, pose);
-    if (ratio < best_ratio) continue;
-    best_ratio = ratio;
-    best = pose;
+  Refinement refinement(*this, depth, volume, min_weight, pool);
+  Refinement::Fit best;
+  for (const PoseGuess& guess :
+       library_.Guess(MakeThumbnail(depth.depth_m), options_.guesses_per_frame(), pool)) {
+    const Refinement::Fit fit = refinement.Run(kFirstStage, guess.T_world_depth);
+    if (fit.score() > best.score()) best = fit;
   }
-  return best;
+  for (const RefinementStage& stage : {kSecondStage, kLastStage}) {
+    constexpr double kHopeless = 0.4;
+    if (best.agreement < kHopeless) return std::nullopt;
+    best = refinement.Run(stage, best.pose);
+  }
+  if (best.agreement < options_.min_agreement() || best.overlap < options_.min_overlap())
+    return std::nullopt;
+  return best.pose;
 }
 
 }  // namespace isotherm

@@ -20,10 +20,11 @@ class Relocaliser {
  public:
   Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera);
 
-  /// A frame that was tracked well.
-  void Remember(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
-    library_.Add(depth.maps[kPyramidLevels - 1], T_world_depth);
-  }
+  /// A pose that was tracked well.
+  void Remember(const RigidTransform& T_world_depth) { library_.Add(T_world_depth); }
+
+  /// Must be called once after tracking was lost: what there is to find.
+  void Begin(const TsdfVolume& volume);
 
   /// The pose that explains the frame best, if one explains enough of it. One call takes a few
   /// milliseconds and looks around some of the known views; the next call goes on with others.
@@ -34,11 +35,10 @@ class Relocaliser {
   const ViewLibrary& library() const { return library_; }
 
  private:
-  /// Inliers per valid pixel after refinement; `pose` is refined.
-  double Refine(const PreparedDepth& depth, const TsdfVolume& volume, float min_weight,
-                ThreadPool& pool, RigidTransform& pose);
+  class Refinement;
 
   const RelocaliserOptions options_;
+  const CameraModel camera_;
   ViewLibrary library_;
   Raycaster raycaster_;
   ModelView view_;

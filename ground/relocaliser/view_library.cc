@@ -18,7 +18,7 @@ constexpr double kNewViewRad = 10.0 * kRadPerDeg;
 constexpr double kSameGuessM = 0.04;
 constexpr double kSameGuessRad = 6.0 * kRadPerDeg;
 
-constexpr std::size_t kViewsPerCall = 12;
+constexpr std::size_t kPosesPerCall = 4;
 
 bool IsNear(const RigidTransform& a, const RigidTransform& b, double max_m, double max_rad) {
   return TranslationDistance(a, b) < max_m && RotationAngle(a, b) < max_rad;
@@ -37,10 +37,14 @@ CameraModel ThumbnailCamera(const CameraModel& depth) {
   return camera;
 }
 
-/// Where an operator may have come back to: beside, before and behind a view, looking elsewhere.
-std::vector<RigidTransform> MakeOffsets() {
+/// Where an operator may have come back to, seen from a known pose: beside, before and behind it,
+/// looking elsewhere; or around what was looked at there, at `distance_m`.
+std::vector<RigidTransform> MakeOffsets(double distance_m) {
+  const auto turn = [](double yaw_deg, double pitch_deg) -> Eigen::Quaterniond {
+    return Eigen::AngleAxisd(yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
+           Eigen::AngleAxisd(pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitX());
+  };
   constexpr double kStepM = 0.09;
-  constexpr double kStepRad = 12.0 * kRadPerDeg;
   std::vector<Eigen::Vector3d> shifts = {Eigen::Vector3d::Zero()};
   for (int axis = 0; axis < 3; ++axis) {
     for (const double step : {-kStepM, kStepM})
@@ -48,16 +52,34 @@ std::vector<RigidTransform> MakeOffsets() {
   }
   std::vector<RigidTransform> offsets;
   for (const Eigen::Vector3d& shift : shifts) {
-    for (int yaw = -1; yaw <= 1; ++yaw) {
-      for (int pitch = -1; pitch <= 1; ++pitch) {
-        const Eigen::Quaterniond turn =
-            Eigen::AngleAxisd(kStepRad * yaw, Eigen::Vector3d::UnitY()) *
-            Eigen::AngleAxisd(kStepRad * pitch, Eigen::Vector3d::UnitX());
-        offsets.push_back(MakeTransform(shift, turn));
+    for (const double yaw : {-12.0, 0.0, 12.0}) {
+      for (const double pitch : {-12.0, 0.0, 12.0})
+        offsets.push_back(MakeTransform(shift, turn(yaw, pitch)));
+    }
+  }
+  for (const double yaw : {-36.0, -18.0, 0.0, 18.0, 36.0}) {
+    for (const double pitch : {-24.0, 0.0, 24.0}) {
+      for (const double farther : {-0.25, 0.0, 0.35}) {
+        const RigidTransform orbit =
+            MakeTransform({0.0, 0.0, distance_m}, turn(yaw, pitch)) *
+            MakeTransform({0.0, 0.0, -(1.0 + farther) * distance_m}, turn(0.0, 0.0));
+        offsets.push_back(orbit);
       }
     }
   }
   return offsets;
+}
+
+/// Median of what is seen; 0 = nothing.
+double MedianDepth(const Thumbnail& picture) {
+  std::vector<float> seen;
+  for (const float z : picture.depth_m) {
+    if (z > 0.0F) seen.push_back(z);
+  }
+  if (seen.empty()) return 0.0;
+  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+  std::nth_element(seen.begin(), middle, seen.end());
+  return static_cast<double>(*middle);
 }
 
 /// The best, best first, none near another.
@@ -125,39 +147,73 @@ float Disagreement(const Thumbnail& picture, const Thumbnail& expected) {
   return both < kMinCells ? 1.0F : sum / weight;
 }
 
-ViewLibrary::ViewLibrary(const CameraModel& depth_camera, int max_views)
-    : camera_(ThumbnailCamera(depth_camera)),
-      max_views_(static_cast<std::size_t>(max_views)),
-      offsets_(MakeOffsets()) {}
-
-void ViewLibrary::Add(const SurfaceMaps& maps, const RigidTransform& T_world_depth) {
-  if (views_.size() >= max_views_) return;
-  // The newest views are the likeliest to be near.
-  const bool known = std::any_of(views_.rbegin(), views_.rend(), [&](const KnownView& view) {
-    return IsNear(view.T_world_depth, T_world_depth, kNewViewM, kNewViewRad);
-  });
-  if (known) return;
-  KnownView view;
-  view.T_world_depth = T_world_depth;
-  const int step = std::max(1, maps.width() / (2 * Thumbnail::kWidth));
-  for (int y = step / 2; y < maps.height(); y += step) {
-    for (int x = step / 2; x < maps.width(); x += step) {
-      const float z = maps.vz.At(x, y);
-      if (z > 0.0F) view.points.emplace_back(maps.vx.At(x, y), maps.vy.At(x, y), z);
+std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::size_t max_points) {
+  constexpr int kCellSide = kBlockSide / 2;  // Voxels.
+  const VoxelGrid& grid = volume.grid();
+  // Voxels within about one of the surface.
+  const double near = 1.1 * grid.voxel_size_m / volume.truncation_distance_m();
+  std::vector<Eigen::Vector3f> points;
+  for (std::int32_t block = 0; block < volume.block_count(); ++block) {
+    if (!volume.may_end_rays(block)) continue;
+    const GridIndex first = volume.block_coordinates(block) * kBlockSide;
+    std::array<Eigen::Vector3i, 8> sums;
+    sums.fill(Eigen::Vector3i::Zero());
+    std::array<int, 8> counts{};
+    int i = 0;
+    for (const TsdfVoxel voxel : volume.voxels(block)) {
+      const GridIndex local(i & 7, (i >> 3) & 7, i >> 6);
+      ++i;
+      if (voxel.weight() < 1.0F || std::abs(voxel.tsdf()) > near) continue;
+      const GridIndex cell = local / kCellSide;
+      const auto k = static_cast<std::size_t>(cell.x() + 2 * cell.y() + 4 * cell.z());
+      sums[k] += local;
+      ++counts[k];
+    }
+    for (std::size_t k = 0; k < counts.size(); ++k) {
+      if (counts[k] == 0) continue;
+      const Eigen::Vector3d mean = sums[k].cast<double>() / counts[k] + first.cast<double>();
+      points.push_back(
+          (grid.min_m + (mean.array() + 0.5).matrix() * grid.voxel_size_m).cast<float>());
     }
   }
-  views_.push_back(std::move(view));
+  // Thinned out evenly: one point per cell of a grid that gets coarser until it is enough.
+  for (double spacing = 1.4 * kCellSide * grid.voxel_size_m; points.size() > max_points;
+       spacing *= 1.4) {
+    const auto cell_of = [&](const Eigen::Vector3f& p) -> std::array<int, 3> {
+      const Eigen::Vector3i cell = (p.cast<double>() / spacing).array().floor().cast<int>();
+      return {cell.x(), cell.y(), cell.z()};
+    };
+    std::sort(points.begin(), points.end(),
+              [&](const auto& a, const auto& b) { return cell_of(a) < cell_of(b); });
+    points.erase(
+        std::unique(points.begin(), points.end(),
+                    [&](const auto& a, const auto& b) { return cell_of(a) == cell_of(b); }),
+        points.end());
+  }
+  return points;
 }
 
-Thumbnail ViewLibrary::Look(const KnownView& view, const RigidTransform& T_look_view) const {
+ViewLibrary::ViewLibrary(const CameraModel& depth_camera, int max_views)
+    : camera_(ThumbnailCamera(depth_camera)), max_views_(static_cast<std::size_t>(max_views)) {}
+
+void ViewLibrary::Add(const RigidTransform& T_world_depth) {
+  if (poses_.size() >= max_views_) return;
+  // The newest are the likeliest to be near.
+  const bool known = std::any_of(poses_.rbegin(), poses_.rend(), [&](const RigidTransform& pose) {
+    return IsNear(pose, T_world_depth, kNewViewM, kNewViewRad);
+  });
+  if (!known) poses_.push_back(T_world_depth);
+}
+
+Thumbnail ViewLibrary::Look(const RigidTransform& T_world_depth) const {
   Thumbnail picture;
-  const Eigen::Matrix<float, 3, 4> T = T_look_view.matrix().topRows<3>().cast<float>();
+  const Eigen::Matrix<float, 3, 4> T = T_world_depth.inverse().matrix().topRows<3>().cast<float>();
   const auto fx = static_cast<float>(camera_.fx);
   const auto fy = static_cast<float>(camera_.fy);
   const auto cx = static_cast<float>(camera_.cx) + 0.5F;
   const auto cy = static_cast<float>(camera_.cy) + 0.5F;
   constexpr float kNearestM = 0.1F;
-  for (const Eigen::Vector3f& p : view.points) {
+  for (const Eigen::Vector3f& p : cloud_) {
     const float z = T(2, 0) * p.x() + T(2, 1) * p.y() + T(2, 2) * p.z() + T(2, 3);
     if (z < kNearestM) continue;
     const float x = T(0, 0) * p.x() + T(0, 1) * p.y() + T(0, 2) * p.z() + T(0, 3);
@@ -175,9 +231,8 @@ Thumbnail ViewLibrary::Look(const KnownView& view, const RigidTransform& T_look_
   return picture;
 }
 
-PoseGuess ViewLibrary::Improve(const Thumbnail& picture, const KnownView& view,
-                               PoseGuess guess) const {
-  constexpr int kRounds = 4;
+PoseGuess ViewLibrary::Improve(const Thumbnail& picture, PoseGuess guess) const {
+  constexpr int kRounds = 3;
   double step_m = 0.045;
   double step_rad = 7.0 * kRadPerDeg;
   for (int round = 0; round < kRounds; ++round) {
@@ -190,10 +245,9 @@ PoseGuess ViewLibrary::Improve(const Thumbnail& picture, const KnownView& view,
                      : MakeTransform(Eigen::Vector3d::Zero(),
                                      Eigen::Quaterniond(Eigen::AngleAxisd(step_rad, unit)));
         const RigidTransform pose = guess.T_world_depth * offset;
-        const float disagreement =
-            Disagreement(picture, Look(view, pose.inverse() * view.T_world_depth));
+        const float disagreement = Disagreement(picture, Look(pose));
         if (disagreement >= guess.disagreement) continue;
-        guess = {pose, disagreement, guess.view};
+        guess = {pose, disagreement};
         better = true;
       }
     }
@@ -206,25 +260,23 @@ PoseGuess ViewLibrary::Improve(const Thumbnail& picture, const KnownView& view,
 
 std::vector<PoseGuess> ViewLibrary::Guess(const Thumbnail& picture, int max_guesses,
                                           ThreadPool& pool) {
-  if (views_.empty()) return {};
-  const std::size_t count = std::min(views_.size(), kViewsPerCall);
-  std::vector<PoseGuess> all(count * offsets_.size());
-  pool.ParallelFor(static_cast<int>(count), [&](int task) {
+  const double distance_m = MedianDepth(picture);
+  if (poses_.empty() || cloud_.empty() || distance_m == 0.0) return {};
+  const std::vector<RigidTransform> offsets = MakeOffsets(distance_m);
+  const std::size_t count = std::min(poses_.size(), kPosesPerCall);
+  std::vector<PoseGuess> all(count * offsets.size());
+  pool.ParallelFor(static_cast<int>(all.size()), [&](int task) {
     const auto i = static_cast<std::size_t>(task);
-    const std::size_t index = (next_view_ + i) % views_.size();
-    const KnownView& view = views_[index];
-    for (std::size_t k = 0; k < offsets_.size(); ++k) {
-      all[i * offsets_.size() + k] = {view.T_world_depth * offsets_[k],
-                                      Disagreement(picture, Look(view, offsets_[k].inverse())),
-                                      index};
-    }
+    const RigidTransform& pose = poses_[(next_pose_ + i / offsets.size()) % poses_.size()];
+    const RigidTransform guess = pose * offsets[i % offsets.size()];
+    all[i] = {guess, Disagreement(picture, Look(guess))};
   });
-  next_view_ = (next_view_ + count) % views_.size();
-  constexpr std::size_t kImproved = 16;
+  next_pose_ = (next_pose_ + count) % poses_.size();
+  constexpr std::size_t kImproved = 6;
   std::vector<PoseGuess> best = ChooseDistinct(std::move(all), kImproved);
   pool.ParallelFor(static_cast<int>(best.size()), [&](int task) {
     PoseGuess& guess = best[static_cast<std::size_t>(task)];
-    guess = Improve(picture, views_[guess.view], guess);
+    guess = Improve(picture, guess);
   });
   return ChooseDistinct(std::move(best), static_cast<std::size_t>(max_guesses));
 }

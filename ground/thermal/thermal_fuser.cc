@@ -304,6 +304,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
                                 ThreadPool& pool, ThermalVolume& thermal) {
   const CameraModel& camera = rectifier_.ideal_camera();
   CHECK(frame.valid);
+  CHECK(IsRigid(T_world_thermal) && IsRigid(T_world_depth));
   CHECK(frame.centikelvin.width() == camera.width && frame.centikelvin.height() == camera.height);
   rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
   CastSurface(T_world_thermal, tsdf, pool);

@@ -100,6 +100,8 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
                       hn::GatherIndex(d, model.vy.data(), j),
                       hn::GatherIndex(d, model.vz.data(), j)};
       const Vector3 difference{hn::Sub(p.x, q.x), hn::Sub(p.y, q.y), hn::Sub(p.z, q.z)};
+      // The model has a surface where the pixel looks, near or not.
+      out.overlap += static_cast<std::int64_t>(hn::CountTrue(d, hn::And(good, hn::Eq(q.x, q.x))));
       good =
           hn::And(good, hn::Lt(Dot(difference, difference), hn::Set(d, a.max_squared_distance_m2)));
       if (hn::AllFalse(d, good)) continue;

@@ -29,6 +29,7 @@ IcpSums ToIcpSums(const IcpKernelSums& strip) {
   result.squared_residuals_m2 = strip.sums[k];
   result.inliers = strip.inliers;
   result.candidates = strip.candidates;
+  result.overlap = strip.overlap;
   return result;
 }
 
@@ -128,6 +129,7 @@ IcpSums& IcpSums::operator+=(const IcpSums& other) {
   squared_residuals_m2 += other.squared_residuals_m2;
   inliers += other.inliers;
   candidates += other.candidates;
+  overlap += other.overlap;
   return *this;
 }
 
@@ -192,8 +194,9 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
       const IcpSums sums =
           AccumulateIcp(depth.maps[level], result.T_world_depth, model, grid, limits, pool);
       ++result.iterations;
-      result.inlier_ratio = static_cast<double>(sums.inliers) /
-                            static_cast<double>(std::max<std::int64_t>(sums.candidates, 1));
+      result.inlier_ratio = sums.inlier_ratio();
+      result.overlap_ratio = sums.overlap_ratio();
+      result.agreement = sums.agreement();
       result.residual_m = std::sqrt(sums.squared_residuals_m2 /
                                     static_cast<double>(std::max<std::int64_t>(sums.inliers, 1)));
       const std::optional<Vector6> twist =

@@ -43,9 +43,11 @@ enum class Verdict : std::uint8_t {
 struct TrackingResult {
   LostReason lost = LostReason::kNone;
   RigidTransform T_world_depth;  ///< The best estimate, meaningful only if not lost.
-  double inlier_ratio = 0.0;  ///< Correspondences / valid pixels inside the volume, finest level.
-  double residual_m = 0.0;    ///< RMS point-to-plane distance of the inliers.
-  double step_m = 0.0;        ///< Motion since the model view's pose.
+  double inlier_ratio = 0.0;   ///< Correspondences / valid pixels inside the volume, finest level.
+  double overlap_ratio = 0.0;  ///< Pixels where the model has a surface / the same pixels.
+  double agreement = 0.0;      ///< Correspondences / pixels where the model has a surface.
+  double residual_m = 0.0;     ///< RMS point-to-plane distance of the inliers.
+  double step_m = 0.0;         ///< Motion since the model view's pose.
   double step_rad = 0.0;
   int iterations = 0;
   MotionSpace motion;  ///< What of the motion was measured.
@@ -93,9 +95,18 @@ struct IcpSums {
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
   double squared_residuals_m2 = 0.0;  ///< Unweighted.
   std::int64_t inliers = 0;
-  std::int64_t candidates = 0;  ///< Valid pixels inside the volume.
+  std::int64_t candidates = 0;  ///< Valid pixels inside the volume, ...
+  std::int64_t overlap = 0;     ///< ... of which the model has a surface in the same direction.
 
+  double inlier_ratio() const { return Share(inliers, candidates); }
+  double overlap_ratio() const { return Share(overlap, candidates); }
+  double agreement() const { return Share(inliers, overlap); }
   IcpSums& operator+=(const IcpSums& other);
+
+ private:
+  static double Share(std::int64_t part, std::int64_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
+  }
 };
 
 /// Moves a pose by a twist in `world`: rotates about the camera's position, then translates.

@@ -1,4 +1,4 @@
-#include "recovery_scan.h"
+#include "tests/integration/recovery_scan.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,7 +10,7 @@
 
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
-#include "recovery_scan.h"
+#include "tests/integration/recovery_scan.h"
 
 namespace isotherm {
 namespace {
