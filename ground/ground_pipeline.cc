@@ -81,6 +81,21 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
                                             static_cast<float>(options.raycast().min_weight()));
 }
 
+Status GroundPipeline::Continue(const ModelFile& model) {
+  CHECK(tsdf_->block_count() == 0);
+  if (Status status = model.CheckRig(rig_); !status.ok()) return status;
+  if (Status status = model.ReadBlocks(*tsdf_, *thermal_); !status.ok()) return status;
+  if (tsdf_->block_count() == 0) return OkStatus();
+  for (const RigidTransform& pose : model.known_poses()) tracker_.Remember(pose);
+  tracker_.BeginLost();
+  gate_.EndBootstrap();
+  return OkStatus();
+}
+
+Status GroundPipeline::Save(const std::filesystem::path& path) const {
+  return SaveModel(path, *tsdf_, *thermal_, rig_, tracker_.relocaliser().library().poses());
+}
+
 RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
   if (initial_pose_) return *initial_pose_;
   return PoseFacingCentre(tsdf_->grid(), depth.depth_m);

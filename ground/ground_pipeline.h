@@ -14,6 +14,7 @@
 #include "common/geometry/camera.h"
 #include "common/geometry/stamped_pose.h"
 #include "ground/ground_options.pb.h"
+#include "ground/model/model_file.h"
 #include "ground/rig_tracker.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/tracker/depth_preprocessor.h"
@@ -66,6 +67,13 @@ class GroundPipeline {
   static Result<std::unique_ptr<GroundPipeline>> Create(const GroundOptions& options,
                                                         const Rig& rig,
                                                         std::optional<RigidTransform> initial_pose);
+
+  /// Before the first frame: goes on with a saved model, whose volume the options must have
+  /// (ModelFile::AdoptVolume). The rig is looked for around the poses it knows. After a failure the
+  /// pipeline must not be used.
+  Status Continue(const ModelFile& model);
+  /// Everything that Continue needs.
+  Status Save(const std::filesystem::path& path) const;
 
   DepthReport ProcessDepth(const DepthFrame& frame);
   /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).

@@ -139,9 +139,20 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   if (Status status = CheckHasDepth(info, request.recording); !status.ok()) return Err(status);
   const Result<Rig> rig = (*reader)->ReadRig();
   if (!rig) return Err(rig.error().WithContext(request.recording.string()));
+  GroundOptions options = request.options;
+  std::unique_ptr<ModelFile> model;
+  if (!request.model.empty()) {
+    Result<std::unique_ptr<ModelFile>> opened = ModelFile::Open(request.model);
+    if (!opened) return Err(opened.error());
+    model = std::move(*opened);
+    if (Status status = model->AdoptVolume(options); !status.ok()) return Err(status);
+  }
   Result<std::unique_ptr<GroundPipeline>> pipeline =
-      GroundPipeline::Create(request.options, *rig, request.initial_pose);
+      GroundPipeline::Create(options, *rig, request.initial_pose);
   if (!pipeline) return Err(pipeline.error());
+  if (model) {
+    if (Status status = (*pipeline)->Continue(*model); !status.ok()) return Err(status);
+  }
   if (Status status = PrepareOutputDir(request.output_dir); !status.ok()) return Err(status);
 
   if (info.bytes_ignored > 0) {
@@ -154,7 +165,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   if (Status status = driver.Run(); !status.ok()) return Err(status);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
-  Json stats = DescribeScan(**pipeline, request.options, *rig);
+  Json stats = DescribeScan(**pipeline, options, *rig);
   stats["source"]["recording"] = request.recording.filename().string();
   stats["source"]["complete"] = info.complete;
   stats["source"]["bytes_ignored"] = info.bytes_ignored;
@@ -166,7 +177,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
     if (request.progress) request.progress(kFramesShare + (1.0 - kFramesShare) * share, what);
   };
   const Result<std::string> text =
-      WriteScan(**pipeline, request.options, std::move(stats), request.output_dir, progress);
+      WriteScan(**pipeline, options, std::move(stats), request.output_dir, progress);
   if (!text) return Err(text.error());
   const PipelineCounts& counts = (*pipeline)->counts();
   return ReconstructSummary{counts.depth_in,   counts.depth_repeated, counts.depth_tracked,

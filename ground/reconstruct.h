@@ -18,6 +18,8 @@ struct ReconstructRequest {
   std::filesystem::path output_dir;
   GroundOptions options;
   std::optional<RigidTransform> initial_pose;  ///< T_world_depth of the first depth frame.
+  /// A saved model to go on with; empty: a new one. Its volume replaces that of the options.
+  std::filesystem::path model;
   /// Called now and then with the share done (0..1) and what is being done.
   std::function<void(double fraction, std::string_view text)> progress;
 };

@@ -118,6 +118,9 @@ Result<std::string> WriteScan(
                             std::move(stats)};
   const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
   if (!summary) return Err(summary.error());
+  if (options.export_().model()) {
+    if (Status status = pipeline.Save(dir / "model.iso"); !status.ok()) return Err(status);
+  }
 
   const PipelineCounts& counts = pipeline.counts();
   std::string text =

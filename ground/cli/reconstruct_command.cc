@@ -22,16 +22,19 @@ T_world_depth of the first depth frame; without one the volume's centre lies on 
 frame's optical axis at the median depth. Options come from the defaults, the configuration
 file, --set and the other options, the later ones winning.
 
-DIR gets trajectory.txt, cloud.ply, mesh.ply, renders/*.png and stats.json.
+DIR gets trajectory.txt, cloud.ply, mesh.ply, renders/*.png, stats.json and model.iso. With
+--continue the volume and `world` are the model's, and the rig is looked for around the poses of the
+earlier scan.
 
 Examples:
   isotherm reconstruct scan.mcap -o out
   isotherm reconstruct room.mcap -o out --volume "4 3 4" --voxel 0.006 --set tsdf.truncation_distance_m=0.03
   isotherm reconstruct door.mcap -o out --volume 0.96 --volume-min "-0.48 -0.48 -0.48" \
-      --initial-pose-from groundtruth.txt)";
+      --initial-pose-from groundtruth.txt
+  isotherm reconstruct next_day.mcap -o out2 --continue out/model.iso)";
 
 struct Arguments {
-  std::string recording, output, config, volume, volume_min, initial_pose, initial_pose_from;
+  std::string recording, output, model, config, volume, volume_min, initial_pose, initial_pose_from;
   std::optional<double> voxel;
   std::optional<int> threads;
   std::vector<std::string> overrides;
@@ -99,6 +102,7 @@ int Run(const Arguments& arguments) {
   request.initial_pose = *pose;
   request.recording = arguments.recording;
   request.output_dir = arguments.output;
+  request.model = arguments.model;
   std::optional<ProgressBar> progress;
   request.progress = [&](double fraction, std::string_view) {
     if (!progress) progress.emplace("reconstructing", 0, "");
@@ -119,6 +123,9 @@ void AddReconstructCommand(CLI::App& app, CommandBody& body) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
+  CLI::Option* model =
+      command->add_option("--continue", arguments->model,
+                          "Go on with the model of an earlier scan (model.iso) of the same place");
   command->add_option("--config", arguments->config,
                       "Configuration file (text format of isotherm.GroundOptions)");
   command->add_option("--volume", arguments->volume,
@@ -132,7 +139,8 @@ void AddReconstructCommand(CLI::App& app, CommandBody& body) {
   command
       ->add_option("--initial-pose-from", arguments->initial_pose_from,
                    "Take it from this trajectory, or from the ground truth in a recording (.mcap)")
-      ->excludes(pose);
+      ->excludes(pose)
+      ->excludes(model);
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
       ->take_all()

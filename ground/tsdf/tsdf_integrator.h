@@ -58,15 +58,19 @@ class IntegrationGate {
   /// `previous` is the pose of the frame before, if that was tracked.
   bool Accepts(const std::optional<RigidTransform>& previous, const RigidTransform& T_world_depth);
   std::uint64_t accepted() const { return accepted_; }
+  /// The model is good already.
+  void EndBootstrap() { bootstrap_ended_ = true; }
   /// Whether the model still has to become better than one frame's noise.
   bool bootstrapping() const {
-    return accepted_ < static_cast<std::uint64_t>(std::max(0, options_.bootstrap_frames()));
+    return !bootstrap_ended_ &&
+           accepted_ < static_cast<std::uint64_t>(std::max(0, options_.bootstrap_frames()));
   }
 
  private:
   const TsdfOptions options_;
   std::optional<RigidTransform> last_integrated_;
   std::uint64_t accepted_ = 0;
+  bool bootstrap_ended_ = false;
 };
 
 }  // namespace isotherm

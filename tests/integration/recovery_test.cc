@@ -10,6 +10,7 @@
 
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
+#include "common/testing/temporary_directory.h"
 #include "tests/integration/recovery_scan.h"
 
 namespace isotherm {
@@ -178,6 +179,36 @@ TEST_F(RecoveryTest, F55RandomStartsInAFinishedModelAreFoundAndNeverElsewhere) {
             << " ms\n";
   EXPECT_GE(found, 95);
   EXPECT_EQ(wrong, 0);
+}
+
+TEST_F(RecoveryTest, ASavedModelIsFoundAgainAndGoneOnWith) {
+  const testing::TemporaryDirectory folder;
+  scan_.Start(PoseAt(0));
+  for (int i = 0; i < kFrames / 2; ++i) scan_.Show(PoseAt(i));
+  ASSERT_TRUE(scan_.pipeline().Save(folder.path() / "model.iso").ok());
+  const auto before = scan_.CompareModel(CheckPoses());
+
+  // Another scan of the same place, from somewhere else on the way, without any initial pose.
+  const auto model = ModelFile::Open(folder.path() / "model.iso");
+  ASSERT_TRUE(model.has_value());
+  scan_.Start(RigidTransform::Identity());
+  ASSERT_TRUE(scan_.pipeline().Continue(**model).ok());
+  int until_found = -1;
+  for (int i = 0; i < kFrames; ++i) {
+    const int frame = kFrames / 3 + i < kFrames ? kFrames / 3 + i : kFrames - 1;
+    const DepthReport report = scan_.Show(PoseAt(frame));
+    if (!report.tracked) continue;
+    if (until_found < 0) until_found = i;
+    ASSERT_LT(scan_.PositionError(PoseAt(frame)), kWrongPose) << frame;
+  }
+  const auto after = scan_.CompareModel(CheckPoses());
+  std::cout << "found after " << until_found << " frames\n";
+  Print("saved", before);
+  Print("gone on with", after);
+  EXPECT_GE(until_found, 0);
+  EXPECT_LE(until_found, 30);
+  EXPECT_GT(after.covered, before.covered);
+  EXPECT_LT(after.median_m, 1.2 * before.median_m);
 }
 
 TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {

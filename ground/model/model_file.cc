@@ -1,0 +1,324 @@
+#include "ground/model/model_file.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "common/recording/byte_stream.h"
+#include "ground/export/output_file.h"
+#include "ground/model/model.pb.h"
+
+namespace isotherm {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "files are little-endian");
+
+constexpr std::string_view kMagic = "ISOMODEL";
+constexpr std::string_view kEnd = "LEDOMOSI";
+constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kMaxHeaderBytes = 1 << 24;
+constexpr int kBlocksPerChunk = 256;
+constexpr int kCompression = 1;
+
+/// Coordinates, distances and temperatures of one block.
+constexpr std::size_t kCoordinateBytes = 3 * sizeof(std::int32_t);
+constexpr std::size_t kVoxelBytes = kBlockVoxels * sizeof(std::uint32_t);
+constexpr std::size_t kBlockBytes = kCoordinateBytes + 2 * kVoxelBytes;
+
+struct ChunkHead {
+  std::uint32_t blocks;
+  std::uint32_t bytes;  ///< Compressed.
+  std::uint32_t crc;    ///< Of the compressed bytes.
+};
+
+std::uint32_t Crc(std::span<const std::uint8_t> bytes) {
+  return static_cast<std::uint32_t>(crc32_z(crc32_z(0, nullptr, 0), bytes.data(), bytes.size()));
+}
+
+std::string_view AsText(std::span<const std::uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+template <typename T>
+std::string_view BytesOf(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof(value)};
+}
+
+void AddPose(const RigidTransform& pose, google::protobuf::RepeatedField<double>* out) {
+  const Eigen::Quaterniond q(pose.linear());
+  for (const double v : {pose.translation().x(), pose.translation().y(), pose.translation().z(),
+                         q.x(), q.y(), q.z(), q.w()}) {
+    out->Add(v);
+  }
+}
+
+constexpr int kPoseNumbers = 7;
+
+/// Numbers of a pose starting at `first`; nullopt if they are none.
+std::optional<RigidTransform> PoseAt(const google::protobuf::RepeatedField<double>& numbers,
+                                     int first) {
+  const auto at = [&](int i) { return numbers.Get(first + i); };
+  const Eigen::Quaterniond q(at(6), at(3), at(4), at(5));
+  const Eigen::Vector3d t(at(0), at(1), at(2));
+  constexpr double kUnitTolerance = 1e-3;
+  if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < kUnitTolerance)) return std::nullopt;
+  return MakeTransform(t, q);
+}
+
+SavedCamera ToSaved(const CameraModel& camera) {
+  SavedCamera saved;
+  saved.set_width(camera.width);
+  saved.set_height(camera.height);
+  saved.set_fx(camera.fx);
+  saved.set_fy(camera.fy);
+  saved.set_cx(camera.cx);
+  saved.set_cy(camera.cy);
+  for (const double k : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3})
+    saved.add_distortion(k);
+  return saved;
+}
+
+/// How a rig's camera differs from a saved one; empty if it does not.
+std::string Difference(const char* name, const SavedCamera& saved,
+                       const std::optional<CameraModel>& camera) {
+  if (!camera) return saved.has_width() ? fmt::format("it has no {} camera", name) : "";
+  const SavedCamera now = ToSaved(*camera);
+  if (now.SerializeAsString() == saved.SerializeAsString()) return "";
+  return fmt::format(
+      "its {} camera has {} x {} px, fx {:.2f} px, the model's {} x {} px, fx {:.2f} px", name,
+      now.width(), now.height(), now.fx(), saved.width(), saved.height(), saved.fx());
+}
+
+/// The block's bytes beside those of the others of its chunk.
+void PackBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, std::int32_t block,
+               std::uint8_t* out) {
+  std::memcpy(out, tsdf.block_coordinates(block).data(), kCoordinateBytes);
+  std::memcpy(out + kCoordinateBytes, tsdf.voxels(block).data(), kVoxelBytes);
+  std::memcpy(out + kCoordinateBytes + kVoxelBytes, thermal.voxels(block).data(), kVoxelBytes);
+}
+
+}  // namespace
+
+Status SaveModel(const std::filesystem::path& path, const TsdfVolume& tsdf,
+                 const ThermalVolume& thermal, const Rig& rig,
+                 std::span<const RigidTransform> known_poses) {
+  const VoxelGrid& grid = tsdf.grid();
+  ModelHeader header;
+  header.set_software("Isotherm");
+  header.set_min_x_m(grid.min_m.x());
+  header.set_min_y_m(grid.min_m.y());
+  header.set_min_z_m(grid.min_m.z());
+  header.set_voxel_size_m(grid.voxel_size_m);
+  header.set_blocks_x(grid.blocks.x());
+  header.set_blocks_y(grid.blocks.y());
+  header.set_blocks_z(grid.blocks.z());
+  header.set_truncation_distance_m(tsdf.truncation_distance_m());
+  header.set_block_count(tsdf.block_count());
+  if (rig.depth) *header.mutable_depth() = ToSaved(*rig.depth);
+  if (rig.thermal) *header.mutable_thermal() = ToSaved(*rig.thermal);
+  if (rig.T_thermal_depth) AddPose(*rig.T_thermal_depth, header.mutable_t_thermal_depth());
+  for (const RigidTransform& pose : known_poses) AddPose(pose, header.mutable_known_poses());
+  const std::string head = header.SerializeAsString();
+
+  OutputFile file(path);
+  file.Write(kMagic);
+  file.Write(BytesOf(kVersion));
+  file.Write(BytesOf(static_cast<std::uint32_t>(head.size())));
+  file.Write(BytesOf(Crc({reinterpret_cast<const std::uint8_t*>(head.data()), head.size()})));
+  file.Write(head);
+  std::vector<std::uint8_t> plain, packed;
+  for (std::int32_t first = 0; first < tsdf.block_count(); first += kBlocksPerChunk) {
+    const std::int32_t end = std::min(tsdf.block_count(), first + kBlocksPerChunk);
+    plain.resize(static_cast<std::size_t>(end - first) * kBlockBytes);
+    for (std::int32_t block = first; block < end; ++block) {
+      PackBlock(tsdf, thermal, block,
+                plain.data() + static_cast<std::size_t>(block - first) * kBlockBytes);
+    }
+    packed.resize(ZSTD_compressBound(plain.size()));
+    const std::size_t bytes =
+        ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), kCompression);
+    if (ZSTD_isError(bytes) != 0)
+      return Internal(path.string() + ": compression failed: " + ZSTD_getErrorName(bytes));
+    packed.resize(bytes);
+    file.Write(BytesOf(ChunkHead{static_cast<std::uint32_t>(end - first),
+                                 static_cast<std::uint32_t>(bytes), Crc(packed)}));
+    file.Write(AsText(packed));
+  }
+  file.Write(kEnd);
+  return file.Commit();
+}
+
+struct ModelFile::Content {
+  std::string name;
+  std::unique_ptr<ByteSource> source;
+  ModelHeader header;
+  std::vector<RigidTransform> known_poses;
+  std::uint64_t first_chunk = 0;
+
+  Status Damaged(std::string_view what) const {
+    return DataLoss(fmt::format("{}: the model file is damaged: {}", name, what));
+  }
+  /// The next bytes, or that the file ends before them.
+  Status Read(std::uint64_t& offset, std::span<std::uint8_t> bytes) const {
+    if (bytes.size() > source->size() - offset) return Damaged("it ends too early");
+    if (Status status = source->Read(offset, bytes); !status.ok()) return status;
+    offset += bytes.size();
+    return OkStatus();
+  }
+  template <typename T>
+  Status ReadValue(std::uint64_t& offset, T& value) const {
+    return Read(offset, {reinterpret_cast<std::uint8_t*>(&value), sizeof(value)});
+  }
+
+  Status ReadHead();
+  Status CheckHead();
+};
+
+Status ModelFile::Content::ReadHead() {
+  std::uint64_t offset = 0;
+  std::array<std::uint8_t, kMagic.size()> magic{};
+  if (Status status = Read(offset, magic); !status.ok() || AsText(magic) != kMagic)
+    return InvalidArgument(name + ": not an Isotherm model (model.iso)");
+  std::uint32_t version = 0, bytes = 0, crc = 0;
+  for (std::uint32_t* value : {&version, &bytes, &crc}) {
+    if (Status status = ReadValue(offset, *value); !status.ok()) return status;
+  }
+  if (version != kVersion) {
+    return InvalidArgument(
+        fmt::format("{}: model format {}, this program reads {}", name, version, kVersion));
+  }
+  if (bytes > kMaxHeaderBytes) return Damaged("its head has an impossible size");
+  std::vector<std::uint8_t> head(bytes);
+  if (Status status = Read(offset, head); !status.ok()) return status;
+  if (Crc(head) != crc || !header.ParseFromArray(head.data(), static_cast<int>(head.size())))
+    return Damaged("its head has a wrong checksum");
+  first_chunk = offset;
+  return CheckHead();
+}
+
+Status ModelFile::Content::CheckHead() {
+  if (header.block_count() < 0 || header.blocks_x() < 1 || header.blocks_y() < 1 ||
+      header.blocks_z() < 1 || header.known_poses_size() % kPoseNumbers != 0) {
+    return Damaged("its head makes no sense");
+  }
+  for (int i = 0; i < header.known_poses_size(); i += kPoseNumbers) {
+    const auto pose = PoseAt(header.known_poses(), i);
+    if (!pose) return Damaged("a pose in it is none");
+    known_poses.push_back(*pose);
+  }
+  return OkStatus();
+}
+
+ModelFile::ModelFile(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+ModelFile::~ModelFile() = default;
+
+Result<std::unique_ptr<ModelFile>> ModelFile::Open(const std::filesystem::path& path) {
+  Result<std::unique_ptr<ByteSource>> source = OpenFileSource(path);
+  if (!source) return Err(source.error());
+  auto content = std::make_unique<Content>();
+  content->name = path.string();
+  content->source = std::move(*source);
+  if (Status status = content->ReadHead(); !status.ok()) return Err(status);
+  return std::unique_ptr<ModelFile>(new ModelFile(std::move(content)));
+}
+
+const std::vector<RigidTransform>& ModelFile::known_poses() const { return content_->known_poses; }
+
+Status ModelFile::AdoptVolume(GroundOptions& options) const {
+  const ModelHeader& header = content_->header;
+  VolumeOptions& volume = *options.mutable_volume();
+  TsdfOptions& tsdf = *options.mutable_tsdf();
+  const auto differs = [](double a, double b) { return std::abs(a - b) > 1e-9; };
+  const auto refuse = [&](const char* option, double set, double has) {
+    return FailedPrecondition(fmt::format(
+        "{}: the model was made with {} = {} m, and {} m was asked for: leave the option "
+        "out to go on with the model",
+        content_->name, option, has, set));
+  };
+  if (volume.has_voxel_size_m() && differs(volume.voxel_size_m(), header.voxel_size_m()))
+    return refuse("volume.voxel_size_m", volume.voxel_size_m(), header.voxel_size_m());
+  if (tsdf.has_truncation_distance_m() &&
+      differs(tsdf.truncation_distance_m(), header.truncation_distance_m())) {
+    return refuse("tsdf.truncation_distance_m", tsdf.truncation_distance_m(),
+                  header.truncation_distance_m());
+  }
+  const double block_m = header.voxel_size_m() * kBlockSide;
+  volume.set_voxel_size_m(header.voxel_size_m());
+  volume.set_size_x_m(header.blocks_x() * block_m);
+  volume.set_size_y_m(header.blocks_y() * block_m);
+  volume.set_size_z_m(header.blocks_z() * block_m);
+  volume.set_min_x_m(header.min_x_m());
+  volume.set_min_y_m(header.min_y_m());
+  volume.set_min_z_m(header.min_z_m());
+  tsdf.set_truncation_distance_m(header.truncation_distance_m());
+  return OkStatus();
+}
+
+Status ModelFile::CheckRig(const Rig& rig) const {
+  for (const std::string& difference :
+       {Difference("depth", content_->header.depth(), rig.depth),
+        Difference("thermal", content_->header.thermal(), rig.thermal)}) {
+    if (!difference.empty()) {
+      return FailedPrecondition(
+          fmt::format("{}: the model was made with another rig: the recording's: {}",
+                      content_->name, difference));
+    }
+  }
+  return OkStatus();
+}
+
+Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
+  const Content& content = *content_;
+  std::uint64_t offset = content.first_chunk;
+  std::vector<std::uint8_t> packed, plain;
+  while (tsdf.block_count() < content.header.block_count()) {
+    ChunkHead head{};
+    if (Status status = content.ReadValue(offset, head); !status.ok()) return status;
+    const auto missing =
+        static_cast<std::uint32_t>(content.header.block_count() - tsdf.block_count());
+    if (head.blocks == 0 || head.blocks > kBlocksPerChunk || head.blocks > missing ||
+        head.bytes > ZSTD_compressBound(kBlocksPerChunk * kBlockBytes)) {
+      return content.Damaged("a part has an impossible size");
+    }
+    packed.resize(head.bytes);
+    if (Status status = content.Read(offset, packed); !status.ok()) return status;
+    plain.resize(head.blocks * kBlockBytes);
+    if (Crc(packed) != head.crc ||
+        ZSTD_decompress(plain.data(), plain.size(), packed.data(), packed.size()) != plain.size()) {
+      return content.Damaged("a part has a wrong checksum");
+    }
+    for (std::uint32_t i = 0; i < head.blocks; ++i) {
+      const std::uint8_t* in = plain.data() + i * kBlockBytes;
+      GridIndex coordinates;
+      std::memcpy(coordinates.data(), in, kCoordinateBytes);
+      if (!tsdf.InGrid(coordinates) || tsdf.Find(coordinates) != TsdfVolume::kNoBlock)
+        return content.Damaged("a block lies outside the volume, or twice in it");
+      const std::int32_t block = tsdf.FindOrAllocate(coordinates);
+      if (block == TsdfVolume::kNoBlock) {
+        return ResourceExhausted(content.name +
+                                 ": the model needs more than volume.max_memory_bytes");
+      }
+      std::memcpy(tsdf.voxels(block).data(), in + kCoordinateBytes, kVoxelBytes);
+      std::memcpy(thermal.voxels(block).data(), in + kCoordinateBytes + kVoxelBytes, kVoxelBytes);
+      const auto voxels = tsdf.voxels(block);
+      tsdf.set_may_end_rays(block, std::any_of(voxels.begin(), voxels.end(), [](TsdfVoxel v) {
+                              return v.observed() && v.tsdf() <= 0.0F;
+                            }));
+    }
+  }
+  std::array<std::uint8_t, kEnd.size()> end{};
+  if (Status status = content.Read(offset, end); !status.ok()) return status;
+  if (AsText(end) != kEnd || offset != content.source->size())
+    return content.Damaged("it does not end where it should");
+  return OkStatus();
+}
+
+}  // namespace isotherm
