@@ -87,7 +87,7 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolu
   constexpr int kMinPixels = 1000;
   if (depth.valid_pixels < kMinPixels) return result;
   result.lost = LostReason::kNotFound;
-  if (!knows_model_) relocaliser_.Begin(volume);
+  if (!knows_model_) relocaliser_.Begin(volume, pool);
   knows_model_ = true;
   const auto pose = relocaliser_.Find(depth, volume, min_weight_, pool);
   if (!pose) return result;

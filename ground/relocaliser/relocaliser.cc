@@ -101,9 +101,9 @@ class Relocaliser::Refinement {
 Relocaliser::Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera)
     : options_(options), camera_(depth_camera), library_(depth_camera, options.max_views()) {}
 
-void Relocaliser::Begin(const TsdfVolume& volume) {
-  constexpr std::size_t kMaxPoints = 5000;
-  library_.SetCloud(MakeSurfaceCloud(volume, kMaxPoints));
+void Relocaliser::Begin(const TsdfVolume& volume, ThreadPool& pool) {
+  constexpr std::size_t kMaxPoints = 3000;
+  library_.SetCloud(MakeSurfaceCloud(volume, kMaxPoints, pool));
 }
 
 std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,

@@ -24,7 +24,7 @@ class Relocaliser {
   void Remember(const RigidTransform& T_world_depth) { library_.Add(T_world_depth); }
 
   /// Must be called once after tracking was lost: what there is to find.
-  void Begin(const TsdfVolume& volume);
+  void Begin(const TsdfVolume& volume, ThreadPool& pool);
 
   /// The pose that explains the frame best, if one explains enough of it. One call takes a few
   /// milliseconds and looks around some of the known views; the next call goes on with others.

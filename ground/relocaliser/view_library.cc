@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 namespace isotherm {
 namespace {
@@ -18,7 +19,7 @@ constexpr double kNewViewRad = 10.0 * kRadPerDeg;
 constexpr double kSameGuessM = 0.04;
 constexpr double kSameGuessRad = 6.0 * kRadPerDeg;
 
-constexpr std::size_t kPosesPerCall = 4;
+constexpr std::size_t kPosesPerCall = 3;
 
 bool IsNear(const RigidTransform& a, const RigidTransform& b, double max_m, double max_rad) {
   return TranslationDistance(a, b) < max_m && RotationAngle(a, b) < max_rad;
@@ -98,6 +99,61 @@ std::vector<PoseGuess> ChooseDistinct(std::vector<PoseGuess> guesses, std::size_
   return best;
 }
 
+constexpr int kCellSide = kBlockSide / 2;  ///< Voxels that make a point of the cloud.
+constexpr std::int32_t kBlocksPerTask = 256;
+
+/// The mean of the voxels near the surface in each eighth of a block.
+void AddSurfacePoints(const TsdfVolume& volume, std::int32_t block,
+                      std::vector<Eigen::Vector3f>& points) {
+  const VoxelGrid& grid = volume.grid();
+  // Within about a voxel of the surface, and seen at least once at full weight.
+  const auto near = static_cast<float>(1.1 * grid.voxel_size_m / volume.truncation_distance_m());
+  std::array<Eigen::Vector3i, 8> sums;
+  sums.fill(Eigen::Vector3i::Zero());
+  std::array<int, 8> counts{};
+  const auto voxels = volume.voxels(block);
+  std::size_t i = 0;
+  for (int z = 0; z < kBlockSide; ++z) {
+    for (int y = 0; y < kBlockSide; ++y) {
+      for (int x = 0; x < kBlockSide; ++x, ++i) {
+        if (std::abs(voxels[i].tsdf()) > near || voxels[i].weight() < 1.0F) continue;
+        const auto k =
+            static_cast<std::size_t>(x / kCellSide + 2 * (y / kCellSide) + 4 * (z / kCellSide));
+        sums[k] += Eigen::Vector3i(x, y, z);
+        ++counts[k];
+      }
+    }
+  }
+  const Eigen::Vector3d first = grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide);
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (counts[k] == 0) continue;
+    const Eigen::Vector3d mean = sums[k].cast<double>() / counts[k];
+    points.push_back((first + grid.voxel_size_m * mean).cast<float>());
+  }
+}
+
+/// The first point in each cell of a grid.
+std::vector<Eigen::Vector3f> OnePerCell(const std::vector<Eigen::Vector3f>& points,
+                                        const Eigen::Vector3f& origin, float cells_per_metre) {
+  constexpr int kBits = 21;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+  keys.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float cell = std::max(0.0F, (points[i][axis] - origin[axis]) * cells_per_metre);
+      key = (key << kBits) | static_cast<std::uint64_t>(cell);
+    }
+    keys.emplace_back(key, static_cast<std::uint32_t>(i));
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Eigen::Vector3f> kept;
+  for (std::size_t i = 0; i < keys.size(); ++i) {
+    if (i == 0 || keys[i].first != keys[i - 1].first) kept.push_back(points[keys[i].second]);
+  }
+  return kept;
+}
+
 }  // namespace
 
 Thumbnail MakeThumbnail(const Image<float>& depth_m) {
@@ -147,48 +203,25 @@ float Disagreement(const Thumbnail& picture, const Thumbnail& expected) {
   return both < kMinCells ? 1.0F : sum / weight;
 }
 
-std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::size_t max_points) {
-  constexpr int kCellSide = kBlockSide / 2;  // Voxels.
-  const VoxelGrid& grid = volume.grid();
-  // Voxels within about one of the surface.
-  const double near = 1.1 * grid.voxel_size_m / volume.truncation_distance_m();
+std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::size_t max_points,
+                                              ThreadPool& pool) {
+  std::vector<std::vector<Eigen::Vector3f>> by_task(
+      static_cast<std::size_t>((volume.block_count() + kBlocksPerTask - 1) / kBlocksPerTask));
+  pool.ParallelFor(static_cast<int>(by_task.size()), [&](int task) {
+    const std::int32_t end = std::min(volume.block_count(), (task + 1) * kBlocksPerTask);
+    for (std::int32_t block = task * kBlocksPerTask; block < end; ++block) {
+      if (volume.may_end_rays(block))
+        AddSurfacePoints(volume, block, by_task[static_cast<std::size_t>(task)]);
+    }
+  });
   std::vector<Eigen::Vector3f> points;
-  for (std::int32_t block = 0; block < volume.block_count(); ++block) {
-    if (!volume.may_end_rays(block)) continue;
-    const GridIndex first = volume.block_coordinates(block) * kBlockSide;
-    std::array<Eigen::Vector3i, 8> sums;
-    sums.fill(Eigen::Vector3i::Zero());
-    std::array<int, 8> counts{};
-    int i = 0;
-    for (const TsdfVoxel voxel : volume.voxels(block)) {
-      const GridIndex local(i & 7, (i >> 3) & 7, i >> 6);
-      ++i;
-      if (voxel.weight() < 1.0F || std::abs(voxel.tsdf()) > near) continue;
-      const GridIndex cell = local / kCellSide;
-      const auto k = static_cast<std::size_t>(cell.x() + 2 * cell.y() + 4 * cell.z());
-      sums[k] += local;
-      ++counts[k];
-    }
-    for (std::size_t k = 0; k < counts.size(); ++k) {
-      if (counts[k] == 0) continue;
-      const Eigen::Vector3d mean = sums[k].cast<double>() / counts[k] + first.cast<double>();
-      points.push_back(
-          (grid.min_m + (mean.array() + 0.5).matrix() * grid.voxel_size_m).cast<float>());
-    }
-  }
+  for (const auto& part : by_task) points.insert(points.end(), part.begin(), part.end());
   // Thinned out evenly: one point per cell of a grid that gets coarser until it is enough.
-  for (double spacing = 1.4 * kCellSide * grid.voxel_size_m; points.size() > max_points;
-       spacing *= 1.4) {
-    const auto cell_of = [&](const Eigen::Vector3f& p) -> std::array<int, 3> {
-      const Eigen::Vector3i cell = (p.cast<double>() / spacing).array().floor().cast<int>();
-      return {cell.x(), cell.y(), cell.z()};
-    };
-    std::sort(points.begin(), points.end(),
-              [&](const auto& a, const auto& b) { return cell_of(a) < cell_of(b); });
-    points.erase(
-        std::unique(points.begin(), points.end(),
-                    [&](const auto& a, const auto& b) { return cell_of(a) == cell_of(b); }),
-        points.end());
+  const VoxelGrid& grid = volume.grid();
+  for (double spacing = kCellSide * grid.voxel_size_m; points.size() > max_points;) {
+    spacing *= std::max(
+        1.2, std::sqrt(static_cast<double>(points.size()) / static_cast<double>(max_points)));
+    points = OnePerCell(points, grid.min_m.cast<float>(), static_cast<float>(1.0 / spacing));
   }
   return points;
 }
@@ -205,6 +238,12 @@ void ViewLibrary::Add(const RigidTransform& T_world_depth) {
   if (!known) poses_.push_back(T_world_depth);
 }
 
+void ViewLibrary::SetCloud(const std::vector<Eigen::Vector3f>& cloud) {
+  cloud_.resize(static_cast<Eigen::Index>(cloud.size()), 3);
+  for (Eigen::Index i = 0; i < cloud_.rows(); ++i)
+    cloud_.row(i) = cloud[static_cast<std::size_t>(i)].transpose();
+}
+
 Thumbnail ViewLibrary::Look(const RigidTransform& T_world_depth) const {
   Thumbnail picture;
   const Eigen::Matrix<float, 3, 4> T = T_world_depth.inverse().matrix().topRows<3>().cast<float>();
@@ -213,20 +252,28 @@ Thumbnail ViewLibrary::Look(const RigidTransform& T_world_depth) const {
   const auto cx = static_cast<float>(camera_.cx) + 0.5F;
   const auto cy = static_cast<float>(camera_.cy) + 0.5F;
   constexpr float kNearestM = 0.1F;
-  for (const Eigen::Vector3f& p : cloud_) {
-    const float z = T(2, 0) * p.x() + T(2, 1) * p.y() + T(2, 2) * p.z() + T(2, 3);
-    if (z < kNearestM) continue;
-    const float x = T(0, 0) * p.x() + T(0, 1) * p.y() + T(0, 2) * p.z() + T(0, 3);
-    const float y = T(1, 0) * p.x() + T(1, 1) * p.y() + T(1, 2) * p.z() + T(1, 3);
-    const float u = fx * x / z + cx;
-    const float v = fy * y / z + cy;
-    if (!(u >= 0.0F && v >= 0.0F && u < static_cast<float>(Thumbnail::kWidth) &&
-          v < static_cast<float>(Thumbnail::kHeight))) {
-      continue;
+  constexpr Eigen::Index kChunk = 256;  // Stays in the nearest cache.
+  using Column = Eigen::Array<float, Eigen::Dynamic, 1, 0, kChunk, 1>;
+  for (Eigen::Index first = 0; first < cloud_.rows(); first += kChunk) {
+    const Eigen::Index count = std::min(kChunk, cloud_.rows() - first);
+    const auto along = [&](int row) -> Column {
+      return T(row, 0) * cloud_.col(0).segment(first, count) +
+             T(row, 1) * cloud_.col(1).segment(first, count) +
+             T(row, 2) * cloud_.col(2).segment(first, count) + T(row, 3);
+    };
+    const Column z = along(2);
+    const Column u = fx * along(0) / z + cx;
+    const Column v = fy * along(1) / z + cy;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (!(z(i) > kNearestM && u(i) >= 0.0F && v(i) >= 0.0F &&
+            u(i) < static_cast<float>(Thumbnail::kWidth) &&
+            v(i) < static_cast<float>(Thumbnail::kHeight))) {
+        continue;
+      }
+      float& cell = picture.depth_m[static_cast<std::size_t>(
+          static_cast<int>(v(i)) * Thumbnail::kWidth + static_cast<int>(u(i)))];
+      if (cell == 0.0F || z(i) < cell) cell = z(i);
     }
-    float& cell = picture.depth_m[static_cast<std::size_t>(static_cast<int>(v) * Thumbnail::kWidth +
-                                                           static_cast<int>(u))];
-    if (cell == 0.0F || z < cell) cell = z;
   }
   return picture;
 }
@@ -261,7 +308,7 @@ PoseGuess ViewLibrary::Improve(const Thumbnail& picture, PoseGuess guess) const 
 std::vector<PoseGuess> ViewLibrary::Guess(const Thumbnail& picture, int max_guesses,
                                           ThreadPool& pool) {
   const double distance_m = MedianDepth(picture);
-  if (poses_.empty() || cloud_.empty() || distance_m == 0.0) return {};
+  if (poses_.empty() || cloud_.rows() == 0 || distance_m == 0.0) return {};
   const std::vector<RigidTransform> offsets = MakeOffsets(distance_m);
   const std::size_t count = std::min(poses_.size(), kPosesPerCall);
   std::vector<PoseGuess> all(count * offsets.size());

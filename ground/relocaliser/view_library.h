@@ -33,7 +33,8 @@ struct PoseGuess {
 
 /// Points on the model's surface in `world`, metres, evenly spread and at most `max_points`; the
 /// spacing is at least half a block.
-std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::size_t max_points);
+std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::size_t max_points,
+                                              ThreadPool& pool);
 
 /// Poses that were tracked well, kept as the scan grows, and where a picture may have been taken: a
 /// coarse cloud of the model is looked at from poses all around them and compared with the picture.
@@ -47,7 +48,7 @@ class ViewLibrary {
   const std::vector<RigidTransform>& poses() const { return poses_; }
 
   /// What is looked at from now on.
-  void SetCloud(std::vector<Eigen::Vector3f> cloud) { cloud_ = std::move(cloud); }
+  void SetCloud(const std::vector<Eigen::Vector3f>& cloud);
 
   /// The best guesses, best first, none close to another. Looks from around some of the known poses
   /// only; the next call goes on with others.
@@ -62,7 +63,7 @@ class ViewLibrary {
   const CameraModel camera_;  ///< Of a thumbnail.
   const std::size_t max_views_;
   std::vector<RigidTransform> poses_;
-  std::vector<Eigen::Vector3f> cloud_;
+  Eigen::ArrayX3f cloud_;  ///< A point per row.
   std::size_t next_pose_ = 0;
 };
 
