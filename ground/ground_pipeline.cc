@@ -39,8 +39,8 @@ Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
     const GroundOptions& options, const Rig& rig, std::optional<RigidTransform> initial_pose) {
   for (const Status& status :
        {Validate(options.volume()), Validate(options.preprocessor()), Validate(options.tracker()),
-        Validate(options.tsdf(), options.volume()), Validate(options.raycast()),
-        Validate(options.thermal())}) {
+        Validate(options.relocaliser()), Validate(options.tsdf(), options.volume()),
+        Validate(options.raycast()), Validate(options.thermal())}) {
     if (!status.ok()) return Err(status);
   }
   if (Status status = Validate(rig); !status.ok())
@@ -133,6 +133,12 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   return report;
 }
 
+bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
+  const StageTimer timer(stage_stats_["integrate"]);
+  integrator_.Integrate(depth, T_world_depth, pool_, *tsdf_);
+  return tsdf_->block_count() > 0;
+}
+
 DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   ++counts_.depth_in;
   DepthReport report;
@@ -172,6 +178,14 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
     report.unconfirmed = true;
     return report;
   }
+  // The first surface decides whether there is anything to track against.
+  const bool is_first = tsdf_->block_count() == 0;
+  if (is_first && !Integrate(*depth, T_world_depth)) {
+    ++counts_.depth_lost["outside_volume"];
+    tracker_.Forget();
+    report.tracked = false;
+    return report;
+  }
   ++counts_.depth_tracked;
   if (report.tracking.verdict() == Verdict::kDegraded) ++counts_.depth_degraded;
   const std::optional<StampedPose> before = tracker_.motion().before_last();
@@ -181,11 +195,8 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   report.integrated =
       !skips &&
       gate_.Accepts(before ? std::optional(before->T_world_depth) : std::nullopt, T_world_depth);
-  if (report.integrated) {
-    const StageTimer integrate_timer(stage_stats_["integrate"]);
-    integrator_.Integrate(*depth, T_world_depth, pool_, *tsdf_);
-    ++counts_.depth_integrated;
-  }
+  if (report.integrated && !is_first) Integrate(*depth, T_world_depth);
+  counts_.depth_integrated += report.integrated ? 1 : 0;
   UpdateView(T_world_depth);
   if (report.integrated && report.tracking.verdict() == Verdict::kTracked)
     tracker_.Remember(T_world_depth);

@@ -31,7 +31,7 @@ struct PipelineCounts {
   std::uint64_t depth_unconfirmed = 0;              ///< Found again, but not yet believed.
   std::uint64_t depth_integrated = 0;               ///< Of the tracked ones.
   std::uint64_t depth_behind = 0;                   ///< Not integrated for want of time.
-  std::uint64_t depth_refused = 0;                  ///< Wrong size or nothing in it.
+  std::uint64_t depth_refused = 0;                  ///< Of another size than the calibration's.
   std::map<std::string, std::uint64_t> depth_lost;  ///< By reason.
   std::uint64_t thermal_in = 0;
   std::uint64_t thermal_fused = 0;
@@ -111,6 +111,8 @@ class GroundPipeline {
   RigidTransform InitialPose(const PreparedDepth& depth) const;
   TrackingResult Track(const PreparedDepth& depth, CaptureTime time);
   bool IsRepeated(const DepthFrame& frame);
+  /// False if the model is still empty: nothing of the surface lies in the volume.
+  bool Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth);
   void UpdateView(const RigidTransform& T_world_depth);
   void FuseWaitingThermal(CaptureTime now);
   /// One standard deviation of the pose, as a shift of the thermal picture on the surface.

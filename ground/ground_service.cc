@@ -285,6 +285,8 @@ class Distributor {
     return 0;
   }
   void Send(Item item) {
+    if (auto* depth = std::get_if<ReceivedDepth>(&item)) depth->queued = clock_.Now();
+    if (auto* thermal = std::get_if<ReceivedThermal>(&item)) thermal->queued = clock_.Now();
     recording_.Push(item, {});
     reconstruction_.Push(std::move(item), stop_);
   }

@@ -69,6 +69,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       assembler_(rig.rig.thermal.has_value()) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
+  if (keeps_up_) KeepUp(clock_.Now() - depth.queued);
   arrivals_[depth.frame.get()] = depth.arrival;
   assembler_.Add(depth.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -91,28 +92,27 @@ void LiveScan::NoteTurn(const void* frame) {
   const auto arrival = arrivals_.extract(frame);
   constexpr double kMsPerNs = 1e-6;
   if (arrival) {
-    const double waited_ms =
-        kMsPerNs * static_cast<double>((clock_.Now() - arrival.mapped()).count());
-    waiting_.Add(waited_ms);
-    if (keeps_up_) KeepUp(waited_ms);
+    waiting_.Add(kMsPerNs * static_cast<double>((clock_.Now() - arrival.mapped()).count()));
   }
   // Frames that the assembler refused never have a turn.
   constexpr std::size_t kMostHeld = 1024;
   if (arrivals_.size() > kMostHeld) arrivals_.clear();
 }
 
-void LiveScan::KeepUp(double waited_ms) {
-  constexpr double kThermalShare = 0.7;
-  const double share = waited_ms / (1e3 * options_.live().max_wait_s());
-  pipeline_->set_effort(share > 1.0             ? Effort::kEverySecond
-                        : share > kThermalShare ? Effort::kNoThermal
-                                                : Effort::kAll);
-  if (share <= 1.0 || told_behind_) return;
+void LiveScan::KeepUp(Nanoseconds queued) {
+  // The rest is for the other stream's next frame.
+  constexpr double kThermalShare = 0.4;
+  constexpr double kIntegrationShare = 0.7;
+  const double share = ToSeconds(queued) / options_.live().max_wait_s();
+  pipeline_->set_effort(share > kIntegrationShare ? Effort::kEverySecond
+                        : share > kThermalShare   ? Effort::kNoThermal
+                                                  : Effort::kAll);
+  if (share <= kIntegrationShare || told_behind_) return;
   told_behind_ = true;
   LOG(Ground, Warning) << fmt::format(
       "a frame waited {:.0f} ms for its turn: work is left out to keep up (frames left out as "
       "\"behind\" in stats.json; the recording has all)",
-      waited_ms);
+      1e3 * ToSeconds(queued));
 }
 
 void LiveScan::Process(const Assembler::Frame& frame) {
@@ -123,7 +123,9 @@ void LiveScan::Process(const Assembler::Frame& frame) {
   }
   const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
   NoteTurn(&depth);
-  newest_report_ = pipeline_->ProcessDepth(depth);
+  const DepthReport report = pipeline_->ProcessDepth(depth);
+  if (report.repeated) return;  // Says nothing new.
+  newest_report_ = report;
   newest_header_ = depth.header;
   const CaptureTime time = depth.header.capture_time;
   if (!next_feedback_ || time >= *next_feedback_) {
@@ -144,8 +146,9 @@ Feedback LiveScan::MakeFeedback() {
   feedback.frame_number = newest_header_.frame_number;
   feedback.capture_time = newest_header_.capture_time;
   const TrackingResult& tracking = newest_report_->tracking;
-  feedback.tracking_state =
-      newest_report_->tracked ? TrackingState::kTracked : TrackingState::kLost;
+  feedback.tracking_state = !newest_report_->tracked                   ? TrackingState::kLost
+                            : tracking.verdict() == Verdict::kDegraded ? TrackingState::kDegraded
+                                                                       : TrackingState::kTracked;
   if (newest_report_->tracked) feedback.T_world_depth = tracking.T_world_depth;
 
   const ModelView& model = pipeline_->view();

@@ -53,8 +53,8 @@ class LiveScan {
            std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
   void NoteTurn(const void* frame);
-  /// Leaves work out while frames wait too long (LiveOptions.max_wait_s).
-  void KeepUp(double waited_ms);
+  /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
+  void KeepUp(Nanoseconds queued);
   Feedback MakeFeedback();
 
   const Clock& clock_;

@@ -47,7 +47,7 @@ class LiveScanTest : public ::testing::Test {
     frame->header.capture_time = Time(i);
     const CaptureTime arrival = clock_.Now();
     clock_.Advance(wait);
-    scan_->Add(ReceivedDepth{frame, nullptr, arrival});
+    scan_->Add(ReceivedDepth{frame, nullptr, arrival, arrival});
   }
   void Thermal(double at) {
     auto frame = std::make_shared<ThermalFrame>();
@@ -55,7 +55,7 @@ class LiveScanTest : public ::testing::Test {
     frame->centikelvin = Image<std::uint16_t>(rig_.rig.thermal->width, rig_.rig.thermal->height,
                                               32'315);  // 50 °C.
     frame->valid = true;
-    scan_->Add(ReceivedThermal{frame, nullptr, clock_.Now()});
+    scan_->Add(ReceivedThermal{frame, nullptr, clock_.Now(), clock_.Now()});
   }
   /// Depth frames `first` .. `last`, a thermal frame before each but the first of all.
   void Run(int first, int last, Nanoseconds wait) {
@@ -79,7 +79,7 @@ class LiveScanTest : public ::testing::Test {
 
 TEST_F(LiveScanTest, FramesInTimeAreAllUsed) {
   Start();
-  Run(0, 6, 60ms);
+  Run(0, 6, 30ms);
   scan_->FinishFrames();
   EXPECT_EQ(counts().depth_integrated, 7U);
   EXPECT_EQ(counts().depth_behind, 0U);
@@ -89,7 +89,7 @@ TEST_F(LiveScanTest, FramesInTimeAreAllUsed) {
 
 TEST_F(LiveScanTest, BeyondMostOfTheLongestWaitThermalFramesAreLeftOut) {
   Start();
-  Run(0, 6, 80ms);
+  Run(0, 6, 50ms);
   scan_->FinishFrames();
   EXPECT_EQ(counts().depth_integrated, 7U);
   EXPECT_EQ(counts().depth_behind, 0U);
@@ -117,6 +117,29 @@ TEST_F(LiveScanTest, OnceCaughtUpAllIsDoneAgain) {
   EXPECT_EQ(counts().depth_integrated, 7U);
   EXPECT_EQ(ThermalBehind(), 3U);
   EXPECT_EQ(counts().thermal_fused, 5U);  // From the one before frame 4 on.
+}
+
+TEST_F(LiveScanTest, WhatWaitsForTheOtherStreamIsNotBehind) {
+  Start();
+  Depth(0, 10ms);
+  clock_.Advance(2s);  // No thermal frame comes; the depth frame is held back.
+  Run(1, 6, 10ms);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_behind, 0U);
+  EXPECT_EQ(ThermalBehind(), 0U);
+  EXPECT_GT(scan_->waiting().Percentile(100), 2000.0);
+}
+
+TEST_F(LiveScanTest, APictureThatComesTwiceIsNotALoss) {
+  options_.mutable_live()->set_feedback_hz(30.0);
+  Start();
+  Run(0, 3, 10ms);
+  scan_->FinishFrames();
+  EXPECT_EQ(scan_->TakeFeedback()->tracking_state, TrackingState::kTracked);
+  Depth(3, 10ms);  // The same again.
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_repeated, 1U);
+  EXPECT_FALSE(scan_->TakeFeedback().has_value());
 }
 
 TEST_F(LiveScanTest, AReplayThatWaitsForTheGroundLosesNothing) {

@@ -18,6 +18,9 @@ constexpr double kConvincingResidual = 2.5;
 constexpr double kConvincingAgreement = 0.8;
 constexpr double kConvincingStrengthShare = 0.25;
 
+/// How fast a rig may be whose speed was never measured, m/s at the scene's depth.
+constexpr double kUnknownSpeed = 0.3;
+
 constexpr int kFramesToKnow = 5;  ///< Until what is usual is known.
 
 }  // namespace
@@ -27,8 +30,7 @@ RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_ca
       relocaliser_options_(options.relocaliser()),
       min_weight_(static_cast<float>(options.raycast().min_weight())),
       tracker_(options.tracker()),
-      relocaliser_(options.relocaliser(), depth_camera),
-      uncertainty_(options.tracker().prior_sigma_m_s()) {
+      relocaliser_(options.relocaliser(), depth_camera) {
   view_.camera = depth_camera.Downscaled(options.raycast().halvings());
   candidate_.camera = view_.camera;
 }
@@ -36,10 +38,12 @@ RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_ca
 TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
                                  const RigidTransform& pose) {
   TrackingResult first;
-  constexpr int kMinPixels = 1000;
-  if (depth.valid_pixels < kMinPixels) first.lost = LostReason::kTooFewPixels;
+  if (depth.valid_pixels < kMinTrackedPixels) first.lost = LostReason::kTooFewPixels;
   first.T_world_depth = pose;
-  if (first.tracked()) Accept(first, time);
+  if (first.tracked()) {
+    motion_.Add({time, pose});
+    Trust(first, time);
+  }
   return first;
 }
 
@@ -49,17 +53,22 @@ IcpTracker::Start RigTracker::Predict(CaptureTime time) const {
   return {motion_.Predict(time).value_or(last), motion_.PredictSmoothly(time).value_or(last)};
 }
 
+double RigTracker::ResidualLimit(const TrackingResult& result, double times_usual) const {
+  // A depth camera's noise grows with the square of the depth.
+  const double depth_m = result.motion.mean_depth_m;
+  return std::max(times_usual * usual_.residual_per_m * depth_m * depth_m, kLeastUnusualM);
+}
+
 LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
   if (usual_.frames < kFramesToKnow) return LostReason::kNone;
-  if (result.residual_m > std::max(kUnusualResidual * usual_.residual_m, kLeastUnusualM))
-    return LostReason::kResidual;
+  if (result.residual_m > ResidualLimit(result, kUnusualResidual)) return LostReason::kResidual;
   if (result.agreement < kUnusualAgreement * usual_.agreement) return LostReason::kTooFewInliers;
   return LostReason::kNone;
 }
 
 bool RigTracker::IsConvincing(const TrackingResult& result) const {
   // A weak direction may be held for one frame; a plane or a cylinder says nothing at all.
-  if (!result.tracked() ||
+  if (!result.tracked() || !result.motion.measured ||
       result.motion.strength(0) < kConvincingStrengthShare * options_.min_observed()) {
     return false;
   }
@@ -69,23 +78,23 @@ bool RigTracker::IsConvincing(const TrackingResult& result) const {
   }
   return usual_.frames < kFramesToKnow ||
          (result.agreement >= kConvincingAgreement * usual_.agreement &&
-          result.residual_m <= std::max(kConvincingResidual * usual_.residual_m, kLeastUnusualM));
+          result.residual_m <= ResidualLimit(result, kConvincingResidual));
 }
 
 TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolume& volume,
                                       ThreadPool& pool) {
   TrackingResult result;
   result.lost = LostReason::kTooFewPixels;
-  looks_back_ = !looks_back_ || !relocaliser_options_.enabled();
-  if (looks_back_ && view_.maps.width() > 0) {
+  constexpr int kTurns = 4;
+  const bool looks_back = lost_frames_++ % kTurns == 0 || !relocaliser_options_.enabled();
+  if (looks_back && view_.maps.width() > 0) {
     // Where it was lost: a hand before the camera, or a rig that swings back.
     const RigidTransform& last = view_.T_world_depth;
     result = tracker_.Track(depth, view_, volume.grid(), {last, last}, pool);
     if (result.tracked() && !IsConvincing(result)) result.lost = LostReason::kNotFound;
     return result;
   }
-  constexpr int kMinPixels = 1000;
-  if (depth.valid_pixels < kMinPixels) return result;
+  if (!relocaliser_options_.enabled() || depth.valid_pixels < kMinTrackedPixels) return result;
   result.lost = LostReason::kNotFound;
   if (!knows_model_) relocaliser_.Begin(volume, pool);
   knows_model_ = true;
@@ -100,42 +109,62 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolu
 
 TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time,
                                  const TsdfVolume& volume, ThreadPool& pool) {
+  TrackingResult result;
   if (state_ == State::kLost) {
-    TrackingResult result = LookAround(depth, volume, pool);
+    result = LookAround(depth, volume, pool);
     if (!result.tracked()) return result;
-    knows_model_ = false;
     state_ = State::kConfirming;
     to_confirm_ = relocaliser_options_.confirming_frames();
-    Accept(result, time);
-    return result;
+  } else {
+    result = tracker_.Track(depth, view_, volume.grid(), Predict(time), pool);
+    if (result.tracked()) result.lost = FindAnomaly(result);
+    if (result.tracked() && state_ == State::kConfirming) {
+      --to_confirm_;
+      if (!IsConvincing(result)) result.lost = LostReason::kNotFound;
+    }
   }
-  TrackingResult result = tracker_.Track(depth, view_, volume.grid(), Predict(time), pool);
-  if (result.tracked()) result.lost = FindAnomaly(result);
-  if (result.tracked() && state_ == State::kConfirming && !IsConvincing(result))
-    result.lost = LostReason::kNotFound;
   if (!result.tracked()) {
+    // What was not confirmed is the wrong place to look back at.
+    if (state_ == State::kConfirming && has_trusted_pose_)
+      CastView(trusted_pose_, volume, pool, view_);
     state_ = State::kLost;
+    lost_frames_ = 0;
     motion_.Clear();
+    speed_is_known_ = false;
     return result;
   }
-  if (state_ == State::kConfirming && --to_confirm_ <= 0) {
+  motion_.Add({time, result.T_world_depth});
+  if (state_ == State::kConfirming && to_confirm_ <= 0) {
     state_ = State::kFollowing;
+    knows_model_ = false;
     ++relocalisations_;
   }
-  Accept(result, time);
+  if (state_ == State::kFollowing) Trust(result, time);
   return result;
 }
 
-void RigTracker::Accept(const TrackingResult& result, CaptureTime time) {
-  const std::optional<StampedPose> last = motion_.last();
-  uncertainty_.Update(result, last ? ToSeconds(time - last->time) : 0.0);
-  motion_.Add({time, result.T_world_depth});
+void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
+  const double seconds = has_trusted_pose_ ? ToSeconds(time - trusted_time_) : 0.0;
+  uncertainty_.Update(result, seconds,
+                      speed_is_known_ ? options_.prior_sigma_m_s() : kUnknownSpeed);
+  trusted_pose_ = result.T_world_depth;
+  trusted_time_ = time;
+  has_trusted_pose_ = true;
   if (result.iterations == 0) return;  // Not tracked against anything.
+  if (motion_.before_last() && result.verdict() == Verdict::kTracked) speed_is_known_ = true;
   constexpr double kNewShare = 0.1;
   const double share = std::max(kNewShare, 1.0 / (1.0 + usual_.frames));
-  usual_.residual_m += share * (result.residual_m - usual_.residual_m);
+  const double depth_m = result.motion.mean_depth_m;
+  usual_.residual_per_m +=
+      share * (result.residual_m / (depth_m * depth_m) - usual_.residual_per_m);
   usual_.agreement += share * (result.agreement - usual_.agreement);
   ++usual_.frames;
+}
+
+void RigTracker::Forget() {
+  motion_.Clear();
+  has_trusted_pose_ = false;
+  speed_is_known_ = false;
 }
 
 void RigTracker::CastView(const RigidTransform& T_world_depth, const TsdfVolume& volume,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "common/concurrency/thread_pool.h"
@@ -14,7 +15,7 @@
 namespace isotherm {
 
 /// Where the rig is, frame by frame: follows it against the model, says when it is lost, and looks
-/// for it until it is found again (failure catalogue F52, F54, F55). Never changes the model.
+/// for it until it is found again. Never changes the model.
 /// Thread-bound.
 class RigTracker {
  public:
@@ -39,6 +40,8 @@ class RigTracker {
   /// `is_young`: the model is little more than one frame's noise.
   void LookFrom(const RigidTransform& T_world_depth, const TsdfVolume& volume, bool is_young,
                 ThreadPool& pool);
+  /// The first frame's pose was of no use: as before it.
+  void Forget();
   /// Of a frame that was fused: a view to come back to.
   void Remember(const RigidTransform& T_world_depth);
 
@@ -48,13 +51,12 @@ class RigTracker {
   const ModelView& view() const { return view_; }
   const MotionHistory& motion() const { return motion_; }
   const PoseUncertainty& uncertainty() const { return uncertainty_; }
-  Relocaliser& relocaliser() { return relocaliser_; }
   const Relocaliser& relocaliser() const { return relocaliser_; }
 
  private:
   /// What frames usually look like: a frame that differs is not on the right surface.
   struct Usual {
-    double residual_m = 0.0;
+    double residual_per_m = 0.0;  ///< Over the square of the depth.
     double agreement = 0.0;
     int frames = 0;
   };
@@ -65,7 +67,10 @@ class RigTracker {
   /// Good enough to believe after having been lost.
   bool IsConvincing(const TrackingResult& result) const;
   TrackingResult LookAround(const PreparedDepth& depth, const TsdfVolume& volume, ThreadPool& pool);
-  void Accept(const TrackingResult& result, CaptureTime time);
+  /// The largest residual in metres that is this many times the usual one at most.
+  double ResidualLimit(const TrackingResult& result, double times_usual) const;
+  /// The frame is where it seems to be: learns from it.
+  void Trust(const TrackingResult& result, CaptureTime time);
   void CastView(const RigidTransform& T_world_depth, const TsdfVolume& volume, ThreadPool& pool,
                 ModelView& view);
 
@@ -82,8 +87,12 @@ class RigTracker {
   Usual usual_;
   State state_ = State::kFollowing;
   int to_confirm_ = 0;
-  bool looks_back_ = false;   ///< Lost frames take turns: back at the last view, and all around.
-  bool knows_model_ = false;  ///< The relocaliser does, as it is since tracking was lost.
+  RigidTransform trusted_pose_ = RigidTransform::Identity();  ///< The last one while following.
+  CaptureTime trusted_time_;
+  bool has_trusted_pose_ = false;
+  bool speed_is_known_ = false;  ///< Two frames in a row were fully observed since the last loss.
+  int lost_frames_ = 0;          ///< They take turns: back at the last view once, then all around.
+  bool knows_model_ = false;     ///< The relocaliser does, as it is since tracking was lost.
   std::uint64_t relocalisations_ = 0;
 };
 

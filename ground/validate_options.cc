@@ -35,9 +35,10 @@ Status Validate(const LiveOptions& o) {
     return InvalidArgument(
         fmt::format("live.reorder_window_s must be 0..0.2 s, got {}", o.reorder_window_s()));
   }
-  if (!(o.max_wait_s() >= 0.0 && o.max_wait_s() <= 10.0)) {
-    return InvalidArgument(fmt::format(
-        "live.max_wait_s must be 0 (never leave work out) to 10 s, got {}", o.max_wait_s()));
+  if (!(o.max_wait_s() == 0.0 || (o.max_wait_s() >= 0.05 && o.max_wait_s() <= 10.0))) {
+    return InvalidArgument(
+        fmt::format("live.max_wait_s must be 0 (never leave work out) or 0.05 to 10 s, got {}",
+                    o.max_wait_s()));
   }
   if (o.output_dir().empty()) return InvalidArgument("live.output_dir must name a folder");
   return OkStatus();

@@ -23,7 +23,8 @@ class Relocaliser {
   /// A pose that was tracked well.
   void Remember(const RigidTransform& T_world_depth) { library_.Add(T_world_depth); }
 
-  /// Must be called once after tracking was lost: what there is to find.
+  /// Must be called once after tracking was lost: what there is to find. Goes through the whole
+  /// model: some ten milliseconds.
   void Begin(const TsdfVolume& volume, ThreadPool& pool);
 
   /// The pose that explains the frame best, if one explains enough of it. One call takes a few
@@ -31,7 +32,6 @@ class Relocaliser {
   std::optional<RigidTransform> Find(const PreparedDepth& depth, const TsdfVolume& volume,
                                      float min_weight, ThreadPool& pool);
 
-  ViewLibrary& library() { return library_; }
   const ViewLibrary& library() const { return library_; }
 
  private:

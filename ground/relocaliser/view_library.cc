@@ -29,8 +29,9 @@ CameraModel ThumbnailCamera(const CameraModel& depth) {
   CameraModel camera;
   camera.width = Thumbnail::kWidth;
   camera.height = Thumbnail::kHeight;
-  const double scale_x = static_cast<double>(camera.width) / depth.width;
-  const double scale_y = static_cast<double>(camera.height) / depth.height;
+  // Cells are whole pixels; what is left over at the right and below is not looked at.
+  const double scale_x = 1.0 / std::max(1, depth.width / camera.width);
+  const double scale_y = 1.0 / std::max(1, depth.height / camera.height);
   camera.fx = depth.fx * scale_x;
   camera.fy = depth.fy * scale_y;
   camera.cx = (depth.cx + 0.5) * scale_x - 0.5;
@@ -311,14 +312,16 @@ std::vector<PoseGuess> ViewLibrary::Guess(const Thumbnail& picture, int max_gues
   if (poses_.empty() || cloud_.rows() == 0 || distance_m == 0.0) return {};
   const std::vector<RigidTransform> offsets = MakeOffsets(distance_m);
   const std::size_t count = std::min(poses_.size(), kPosesPerCall);
+  const std::size_t apart = (poses_.size() + count - 1) / count;
   std::vector<PoseGuess> all(count * offsets.size());
   pool.ParallelFor(static_cast<int>(all.size()), [&](int task) {
     const auto i = static_cast<std::size_t>(task);
-    const RigidTransform& pose = poses_[(next_pose_ + i / offsets.size()) % poses_.size()];
+    // Far apart along the way, so that each call looks everywhere a little.
+    const RigidTransform& pose = poses_[(next_pose_ + i / offsets.size() * apart) % poses_.size()];
     const RigidTransform guess = pose * offsets[i % offsets.size()];
     all[i] = {guess, Disagreement(picture, Look(guess))};
   });
-  next_pose_ = (next_pose_ + count) % poses_.size();
+  next_pose_ = (next_pose_ + 1) % apart;
   constexpr std::size_t kImproved = 6;
   std::vector<PoseGuess> best = ChooseDistinct(std::move(all), kImproved);
   pool.ParallelFor(static_cast<int>(best.size()), [&](int task) {

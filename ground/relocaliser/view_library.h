@@ -18,7 +18,8 @@ struct Thumbnail {
   std::array<float, kWidth * kHeight> depth_m{};
 };
 
-/// Means of the depths in each cell that has enough of them.
+/// Means of the depths in each cell that has enough of them. Nothing is seen of an image smaller
+/// than a thumbnail.
 Thumbnail MakeThumbnail(const Image<float>& depth_m);
 
 /// How badly two thumbnails agree: 0 = the same, 1 = nowhere. Of cells that only one of them sees,
@@ -32,7 +33,7 @@ struct PoseGuess {
 };
 
 /// Points on the model's surface in `world`, metres, evenly spread and at most `max_points`; the
-/// spacing is at least half a block.
+/// spacing is about half a block or more.
 std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::size_t max_points,
                                               ThreadPool& pool);
 

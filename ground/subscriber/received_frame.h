@@ -10,12 +10,14 @@ namespace isotherm {
 struct ReceivedDepth {
   DepthFramePtr frame;
   std::shared_ptr<const EncodedDepthFrame> encoded;
-  CaptureTime arrival;  ///< Ground wall clock.
+  CaptureTime arrival;   ///< Ground wall clock.
+  CaptureTime queued{};  ///< When it was handed to the reconstruction, by the same clock.
 };
 struct ReceivedThermal {
   ThermalFramePtr frame;
   std::shared_ptr<const EncodedThermalFrame> encoded;
-  CaptureTime arrival;  ///< Ground wall clock.
+  CaptureTime arrival;   ///< Ground wall clock.
+  CaptureTime queued{};  ///< When it was handed to the reconstruction, by the same clock.
 };
 
 }  // namespace isotherm

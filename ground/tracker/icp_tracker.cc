@@ -171,8 +171,7 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
                                  ThreadPool& pool) const {
   TrackingResult result;
   result.T_world_depth = start.guess;
-  constexpr int kMinPixels = 1000;
-  if (depth.valid_pixels < kMinPixels) {
+  if (depth.valid_pixels < kMinTrackedPixels) {
     result.lost = LostReason::kTooFewPixels;
     return result;
   }

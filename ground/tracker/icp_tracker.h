@@ -40,6 +40,9 @@ enum class Verdict : std::uint8_t {
   kLost,      ///< No pose.
 };
 
+/// Frames with fewer pixels that have a depth are lost.
+inline constexpr int kMinTrackedPixels = 1000;
+
 struct TrackingResult {
   LostReason lost = LostReason::kNone;
   RigidTransform T_world_depth;  ///< The best estimate, meaningful only if not lost.

@@ -7,8 +7,8 @@ namespace {
 
 constexpr std::size_t kPoses = 9;
 
-/// Two missing frames; beyond that velocity says little.
-constexpr double kMaxFramesAhead = 3.0;
+/// One missing frame; beyond that velocity says little.
+constexpr double kMaxFramesAhead = 2.0;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ std::optional<RigidTransform> MotionHistory::Extrapolate(const StampedPose& from
   const double span_s = ToSeconds(to.time - from.time);
   const double ahead_s = ToSeconds(time - to.time);
   const double frame_s = ToSeconds(to.time - before_last()->time);
-  if (!(span_s > 0.0 && ahead_s >= 0.0 && ahead_s <= (kMaxFramesAhead - 1.0) * frame_s))
+  if (!(span_s > 0.0 && ahead_s >= 0.0 && ahead_s <= kMaxFramesAhead * frame_s))
     return std::nullopt;
   // The motion over the span, in the rig's own coordinates, goes on from the newest pose.
   const double share = ahead_s / span_s;

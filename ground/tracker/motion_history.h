@@ -16,7 +16,7 @@ class MotionHistory {
 
   /// The newest pose; nullopt after Clear.
   std::optional<StampedPose> last() const;
-  /// The one before; nullopt if the two are not consecutive.
+  /// The one before; nullopt if fewer than two were tracked since the last Clear.
   std::optional<StampedPose> before_last() const;
 
   /// The pose at `time` if the velocity between the last two poses goes on; nullopt if that is not

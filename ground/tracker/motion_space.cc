@@ -65,12 +65,13 @@ MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_world_
 }  // namespace
 
 Vector6 MotionSpace::FreePart(const Vector6& twist) const {
-  const auto free = axes.leftCols(free_axes);
+  const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> slides = axes.leftCols(free_axes);
   const Vector6 motion = twist.cwiseQuotient(scale);
-  return scale.cwiseProduct(free * (free.transpose() * motion));
+  return scale.cwiseProduct(slides * (slides.transpose() * motion));
 }
 
 std::optional<Vector6> MotionSpace::SolveObserved(const Matrix6& H, const Vector6& g) const {
+  if (free_axes == 6) return std::nullopt;
   const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis =
       scale.asDiagonal() * axes.rightCols(6 - free_axes);
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> reduced =
@@ -88,8 +89,11 @@ MotionSpace MeasureMotionSpace(const SurfaceMaps& current, const RigidTransform&
                                double min_strength) {
   MotionSpace space;
   const MotionSums sums = Accumulate(current, T_world_depth, model, limits);
-  constexpr int kMinAssociations = 300;
-  if (sums.count < kMinAssociations) return space;
+  // A share of the pixels that are looked at.
+  constexpr double kMinShare = 0.05;
+  const double looked_at =
+      static_cast<double>(current.width()) * current.height() / (kStride * kStride);
+  if (sums.count < kMinShare * looked_at) return space;
   space.mean_depth_m = sums.depth / sums.weight;
   space.scale.tail<3>().setConstant(1.0 / space.mean_depth_m);
   const Matrix6 symmetric = 0.5 / sums.weight * (sums.H + sums.H.transpose());
@@ -98,7 +102,10 @@ MotionSpace MeasureMotionSpace(const SurfaceMaps& current, const RigidTransform&
   if (solver.info() != Eigen::Success) return space;
   space.axes = solver.eigenvectors();
   space.strength = solver.eigenvalues();
-  while (space.free_axes < 6 && space.strength(space.free_axes) < min_strength) ++space.free_axes;
+  space.measured = true;
+  while (min_strength > 0.0 && space.free_axes < 6 &&
+         space.strength(space.free_axes) < min_strength)
+    ++space.free_axes;
   return space;
 }
 

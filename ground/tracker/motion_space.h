@@ -22,6 +22,7 @@ struct MotionSpace {
   Matrix6 axes = Matrix6::Identity();  ///< Orthonormal columns, the least observed first.
   Vector6 strength = Vector6::Ones();  ///< Per axis: mean square of the change of a residual per
                                        ///< motion, 0 = slides along the surface.
+  bool measured = false;               ///< There was enough to tell.
   int free_axes = 0;                   ///< The first ones, which are not observed.
   double mean_depth_m = 1.0;
 

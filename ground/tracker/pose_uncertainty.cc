@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-void PoseUncertainty::Update(const TrackingResult& result, double seconds) {
+void PoseUncertainty::Update(const TrackingResult& result, double seconds, double speed_sigma_m_s) {
   const MotionSpace& motion = result.motion;
   const Vector6 to_motion = motion.scale.cwiseInverse();
   Matrix6 covariance = result.covariance;
@@ -16,7 +16,7 @@ void PoseUncertainty::Update(const TrackingResult& result, double seconds) {
     const Vector6 axis = motion.axes.col(i);
     const Vector6 weighted = to_motion.cwiseProduct(axis);
     const double known = std::sqrt(std::max(0.0, weighted.dot(covariance_ * weighted)));
-    const double sigma = known + speed_sigma_m_s_ * std::max(0.0, seconds);
+    const double sigma = known + speed_sigma_m_s * std::max(0.0, seconds);
     const Vector6 twist = motion.scale.cwiseProduct(axis);
     covariance += sigma * sigma * twist * twist.transpose();
   }

@@ -10,12 +10,9 @@ struct TrackingResult;
 /// left free, what was known before, growing with time. Relative to the model. Thread-compatible.
 class PoseUncertainty {
  public:
-  /// How far off a velocity that goes on unmeasured may be, in metres per second at the scene's
-  /// depth.
-  explicit PoseUncertainty(double speed_sigma_m_s) : speed_sigma_m_s_(speed_sigma_m_s) {}
-
-  /// After each tracked frame, `seconds` after the one before.
-  void Update(const TrackingResult& result, double seconds);
+  /// After each tracked frame, `seconds` after the one before. `speed_sigma_m_s` is how far off the
+  /// motion along free directions may be, in metres per second at the scene's depth.
+  void Update(const TrackingResult& result, double seconds, double speed_sigma_m_s);
 
   /// Of T_world_depth: twist (translation, rotation about the camera's position) in `world`, m and
   /// rad.
@@ -27,7 +24,6 @@ class PoseUncertainty {
   double mean_depth_m() const { return mean_depth_m_; }
 
  private:
-  const double speed_sigma_m_s_;
   Matrix6 covariance_ = Matrix6::Zero();
   double surface_sigma_m_ = 0.0;
   double mean_depth_m_ = 1.0;

@@ -11,7 +11,7 @@
 
 namespace isotherm::testing {
 
-SimulatedRecovery::SimulatedRecovery(Scene scene, std::uint64_t seed)
+RecoveryScan::RecoveryScan(Scene scene, std::uint64_t seed)
     : scene_(std::move(scene)), seed_(seed) {
   rig_.depth = DefaultSimulatedRig().depth->WithoutDistortion().Downscaled(1);
   VolumeOptions& volume = *options_.mutable_volume();
@@ -25,13 +25,13 @@ SimulatedRecovery::SimulatedRecovery(Scene scene, std::uint64_t seed)
   sensor_ = std::make_unique<DepthSensor>(*rig_.depth, camera);
 }
 
-void SimulatedRecovery::Start(const RigidTransform& first_pose) {
+void RecoveryScan::Start(const RigidTransform& first_pose) {
   auto created = GroundPipeline::Create(options_, rig_, first_pose);
   CHECK(created.has_value());
   pipeline_ = std::move(*created);
 }
 
-DepthFrame SimulatedRecovery::Render(const RigidTransform& pose) {
+DepthFrame RecoveryScan::Render(const RigidTransform& pose) {
   DepthFrame frame;
   frame.header.frame_number = frame_;
   frame.header.capture_time = CaptureTime(FromSeconds(100.0 + static_cast<double>(frame_) / 30.0));
@@ -40,21 +40,21 @@ DepthFrame SimulatedRecovery::Render(const RigidTransform& pose) {
   return frame;
 }
 
-DepthReport SimulatedRecovery::Show(const RigidTransform& pose) {
+DepthReport RecoveryScan::Show(const RigidTransform& pose) {
   return pipeline_->ProcessDepth(Render(pose));
 }
 
-DepthReport SimulatedRecovery::ShowCovered() {
+DepthReport RecoveryScan::ShowCovered() {
   DepthFrame frame = Render(RigidTransform::Identity());
   frame.depth_raw.Fill(0);
   return pipeline_->ProcessDepth(frame);
 }
 
-double SimulatedRecovery::PositionError(const RigidTransform& truth) const {
+double RecoveryScan::PositionError(const RigidTransform& truth) const {
   return TranslationDistance(pipeline_->trajectory().back().T_world_depth, truth);
 }
 
-SimulatedRecovery::ModelError SimulatedRecovery::CompareModel(
+RecoveryScan::ModelError RecoveryScan::CompareModel(
     const std::vector<RigidTransform>& poses) const {
   const CameraModel camera = rig_.depth->Downscaled(1);
   ThreadPool pool(2);

@@ -13,10 +13,10 @@ namespace isotherm::testing {
 
 /// A scan of an analytic scene with the noise of a real depth camera, frame by frame, with the true
 /// pose of each frame at hand.
-class SimulatedRecovery {
+class RecoveryScan {
  public:
   /// `seed` decides all noise. At half of the depth camera's size and 4 mm voxels, for speed.
-  SimulatedRecovery(Scene scene, std::uint64_t seed);
+  RecoveryScan(Scene scene, std::uint64_t seed);
 
   GroundOptions& options() { return options_; }
   /// Starts (again) with an empty model.

@@ -21,7 +21,7 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kFrame = 1.0 / 30.0;
 constexpr double kWrongPose = 0.005;  // Metres: more than a voxel off.
 
-using testing::SimulatedRecovery;
+using testing::RecoveryScan;
 
 RigidTransform Turned(double angle_deg, const Eigen::Vector3d& axis) {
   return MakeTransform(Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(
@@ -41,7 +41,7 @@ class RecoveryTest : public ::testing::Test {
     for (int i = 0; i < kFrames; i += 15) poses.push_back(PoseAt(i));
     return poses;
   }
-  static void Print(const char* what, const SimulatedRecovery::ModelError& error) {
+  static void Print(const char* what, const RecoveryScan::ModelError& error) {
     std::cout << what << ": model median " << 1e3 * error.median_m << " mm, 95 % "
               << 1e3 * error.p95_m << " mm, covered " << 100.0 * error.covered << " %\n";
   }
@@ -52,7 +52,7 @@ class RecoveryTest : public ::testing::Test {
     int until_lost = -1;   ///< Wrong frames that passed for tracked before the loss was noticed.
     int fused_wrong = 0;   ///< Frames integrated at a wrong pose.
     int until_found = -1;  ///< Frames from the return to the path until fusion goes on.
-    SimulatedRecovery::ModelError error;
+    RecoveryScan::ModelError error;
   };
   using Disturbance = std::function<int(const std::function<DepthReport(const RigidTransform&)>&)>;
   Outcome Run(const Disturbance& disturb) {
@@ -83,7 +83,7 @@ class RecoveryTest : public ::testing::Test {
   }
 
   const StagedScene staged_;
-  SimulatedRecovery scan_;
+  RecoveryScan scan_;
 };
 
 TEST_F(RecoveryTest, F52ACoveredCameraIsLostAndFindsItsWayBack) {
@@ -112,6 +112,7 @@ TEST_F(RecoveryTest, F52AJumpIsNoticedAndTheScanGoesOnWhenItIsBack) {
   Print("jump of 20 cm and 20 degrees", outcome.error);
   std::cout << "lost after " << outcome.until_lost << " frames, found after " << outcome.until_found
             << '\n';
+  EXPECT_GE(outcome.until_lost, 0);
   EXPECT_LE(outcome.until_lost, 3);
   EXPECT_EQ(outcome.fused_wrong, 0);
   EXPECT_GE(outcome.until_found, 0);
@@ -140,6 +141,7 @@ TEST_F(RecoveryTest, F53AWhipPanIsNotFusedAtAWrongPose) {
   std::cout << "lost after " << outcome.until_lost << " frames, found after " << outcome.until_found
             << '\n';
   EXPECT_EQ(outcome.fused_wrong, 0);
+  EXPECT_GE(outcome.until_found, 0);
   EXPECT_LE(outcome.until_found, 30);
   EXPECT_LT(outcome.error.median_m, 1.1 * calm.error.median_m);
 }
@@ -215,7 +217,7 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
   SceneBuilder builder(23.0);
   builder.UseMaterial({});
   builder.Box("wall", {-5.0, -5.0, 0.9}, {5.0, 5.0, 1.0});
-  SimulatedRecovery scan(builder.Build("bare wall"), kSeed);
+  RecoveryScan scan(builder.Build("bare wall"), kSeed);
   VolumeOptions& volume = *scan.options().mutable_volume();
   volume.set_size_x_m(2.4);
   volume.set_min_x_m(-0.6);
@@ -242,7 +244,7 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
   EXPECT_LT(std::abs(end.translation().z() - truth.translation().z()), 0.002);
   EXPECT_LT(RotationAngle(end, truth), 1.0 * kRadPerDeg);
   EXPECT_GE(degraded, 30 * kSeconds - 10);
-  EXPECT_GT(scan.pipeline().uncertainty().surface_sigma_m(), 0.05);
+  EXPECT_GT(scan.pipeline().uncertainty().surface_sigma_m(), drift / 3.0);
 }
 
 }  // namespace
