@@ -72,10 +72,12 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       preprocessor_(options.preprocessor(), *rig.depth),
       tracker_(options, rig.depth->WithoutDistortion()),
       integrator_(options.tsdf()),
-      gate_(options.tsdf()) {
+      gate_(options.tsdf()),
+      spiller_(MaxResidentBlocks(options.volume(), grid)) {
   const std::int32_t max_blocks = MaxBlocks(options.volume(), grid);
-  tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks);
-  thermal_ = std::make_unique<ThermalVolume>(max_blocks);
+  tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks,
+                                       options.volume().spill_dir());
+  thermal_ = std::make_unique<ThermalVolume>(max_blocks, options.volume().spill_dir());
   if (thermal_status_.ok())
     fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
                                             static_cast<float>(options.raycast().min_weight()));
@@ -84,6 +86,8 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
 Status GroundPipeline::Continue(const ModelFile& model) {
   CHECK(tsdf_->block_count() == 0);
   if (Status status = model.CheckRig(rig_); !status.ok()) return status;
+  if (!thermal_->Back(std::min(tsdf_->max_blocks(), model.block_count())))
+    return ResourceExhausted("no room for the model in volume.spill_dir");
   if (Status status = model.ReadBlocks(*tsdf_, *thermal_); !status.ok()) return status;
   if (tsdf_->block_count() == 0) return OkStatus();
   for (const RigidTransform& pose : model.known_poses()) tracker_.Remember(pose);
@@ -136,6 +140,16 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
 bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
   const StageTimer timer(stage_stats_["integrate"]);
   integrator_.Integrate(depth, T_world_depth, pool_, *tsdf_);
+  has_room_ = thermal_->Back(tsdf_->block_count());
+  spiller_.Touch(integrator_.updated_blocks());
+  const std::uint64_t before = spiller_.spilled();
+  spiller_.Trim(*tsdf_, *thermal_);
+  if (before == 0 && spiller_.spilled() > 0) {
+    LOG(Ground, Info)
+        << "the model has outgrown volume.max_memory_bytes: what is far from the view "
+           "goes to "
+        << options_.volume().spill_dir();
+  }
   return tsdf_->block_count() > 0;
 }
 
@@ -242,6 +256,10 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
     const std::optional<StampedPose> before = tracker_.motion().before_last();
     if (!before || time < before->time) {
       LeaveOut("pose_unknown");
+      continue;
+    }
+    if (!has_room_) {
+      LeaveOut("disk_full");
       continue;
     }
     if (RegistrationSigmaPx() > options_.thermal().max_registration_px()) {

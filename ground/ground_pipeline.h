@@ -13,6 +13,7 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/stamped_pose.h"
+#include "ground/block_spiller.h"
 #include "ground/ground_options.pb.h"
 #include "ground/model/model_file.h"
 #include "ground/rig_tracker.h"
@@ -98,6 +99,7 @@ class GroundPipeline {
   const std::map<std::string, StageStats>& stage_stats() const { return stage_stats_; }
   /// Why thermal frames are not fused at all, or ok.
   const Status& thermal_status() const { return thermal_status_; }
+  const BlockSpiller& spiller() const { return spiller_; }
   int threads() const { return pool_.threads(); }
   /// For work between frames (views, results).
   ThreadPool& pool() { return pool_; }
@@ -131,6 +133,8 @@ class GroundPipeline {
   std::unique_ptr<TsdfVolume> tsdf_;
   std::unique_ptr<ThermalVolume> thermal_;
   std::unique_ptr<ThermalFuser> fuser_;
+  BlockSpiller spiller_;
+  bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   std::vector<StampedPose> trajectory_;
   std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
   Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.

@@ -90,6 +90,7 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   }
   volume["voxel_size_m"] = grid.voxel_size_m;
   volume["blocks"] = pipeline.tsdf().block_count();
+  volume["blocks_spilled"] = pipeline.spiller().spilled();
   volume["blocks_refused_for_memory"] = pipeline.tsdf().refused_blocks();
   volume["memory_bytes"] =
       pipeline.tsdf().memory_bytes() +

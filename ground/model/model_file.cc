@@ -232,6 +232,8 @@ Result<std::unique_ptr<ModelFile>> ModelFile::Open(const std::filesystem::path& 
 
 const std::vector<RigidTransform>& ModelFile::known_poses() const { return content_->known_poses; }
 
+std::int32_t ModelFile::block_count() const { return content_->header.block_count(); }
+
 Status ModelFile::AdoptVolume(GroundOptions& options) const {
   const ModelHeader& header = content_->header;
   VolumeOptions& volume = *options.mutable_volume();

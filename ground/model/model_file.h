@@ -33,6 +33,7 @@ class ModelFile {
   /// Refuses a rig whose cameras differ from those that made the model.
   Status CheckRig(const Rig& rig) const;
   const std::vector<RigidTransform>& known_poses() const;
+  std::int32_t block_count() const;
 
   /// Fills empty volumes of the same grid. Reads in pieces; on failure they hold a part.
   Status ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const;

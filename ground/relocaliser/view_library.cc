@@ -322,7 +322,7 @@ std::vector<PoseGuess> ViewLibrary::Guess(const Thumbnail& picture, int max_gues
     all[i] = {guess, Disagreement(picture, Look(guess))};
   });
   next_pose_ = (next_pose_ + 1) % apart;
-  constexpr std::size_t kImproved = 6;
+  constexpr std::size_t kImproved = 8;
   std::vector<PoseGuess> best = ChooseDistinct(std::move(all), kImproved);
   pool.ParallelFor(static_cast<int>(best.size()), [&](int task) {
     PoseGuess& guess = best[static_cast<std::size_t>(task)];

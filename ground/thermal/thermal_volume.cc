@@ -15,8 +15,9 @@ ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, Conditio
   return voxel;
 }
 
-ThermalVolume::ThermalVolume(std::int32_t max_blocks)
-    : arena_(static_cast<std::size_t>(max_blocks) * kBlockVoxels * sizeof(ThermalVoxel)) {}
+ThermalVolume::ThermalVolume(std::int32_t max_blocks, const std::filesystem::path& spill_dir)
+    : arena_(static_cast<std::size_t>(max_blocks) * kBlockVoxels * sizeof(ThermalVoxel),
+             spill_dir) {}
 
 namespace {
 

@@ -42,7 +42,20 @@ static_assert(sizeof(ThermalVoxel) == 4);
 /// Thread-compatible; different blocks may be written by different threads.
 class ThermalVolume {
  public:
-  explicit ThermalVolume(std::int32_t max_blocks);
+  /// With a `spill_dir`, memory can be given back (GrowingArena).
+  explicit ThermalVolume(std::int32_t max_blocks, const std::filesystem::path& spill_dir = {});
+
+  /// To be called before blocks up to this number are written. False if the disk is full.
+  bool Back(std::int32_t blocks) {
+    return arena_.Back(static_cast<std::size_t>(blocks) * kBlockVoxels * sizeof(ThermalVoxel));
+  }
+  /// Gives the memory of blocks back until they are touched again; does nothing without a spill
+  /// folder.
+  void GiveBack(std::int32_t first_block, std::int32_t count) const {
+    constexpr std::size_t kBlockBytes = kBlockVoxels * sizeof(ThermalVoxel);
+    arena_.GiveBack(static_cast<std::size_t>(first_block) * kBlockBytes,
+                    static_cast<std::size_t>(count) * kBlockBytes);
+  }
 
   std::span<ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) {
     return std::span<ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,

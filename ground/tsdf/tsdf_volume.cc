@@ -1,14 +1,26 @@
 #include "ground/tsdf/tsdf_volume.h"
 
+#include <fcntl.h>
 #include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <new>
 
 #include "common/base/check.h"
 
 namespace isotherm {
+namespace {
+
+constexpr std::size_t kBlockBytes = kBlockVoxels * sizeof(TsdfVoxel);
+
+}  // namespace
 
 void TsdfVoxel::Update(float new_tsdf, float observation_weight, float max_weight) {
   const float old_weight = weight();
@@ -20,9 +32,15 @@ void TsdfVoxel::Update(float new_tsdf, float observation_weight, float max_weigh
   bits = (static_cast<std::uint32_t>(tsdf_code) << 16) | weight_code;
 }
 
-GrowingArena::GrowingArena(std::size_t reserve_bytes) : bytes_(reserve_bytes) {
-  void* memory = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE,
-                      MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+GrowingArena::GrowingArena(std::size_t reserve_bytes, const std::filesystem::path& spill_dir)
+    : bytes_(reserve_bytes) {
+  int flags = MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE;
+  if (!spill_dir.empty()) {
+    file_ = open(spill_dir.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
+    if (file_ < 0 || ftruncate(file_, static_cast<off_t>(bytes_)) != 0) throw std::bad_alloc();
+    flags = MAP_SHARED | MAP_NORESERVE;
+  }
+  void* memory = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, flags, file_, 0);
   if (memory == MAP_FAILED) throw std::bad_alloc();
   data_ = static_cast<std::byte*>(memory);
   // Kernels look voxels up all over the arena: large pages save most misses of the address cache.
@@ -30,18 +48,56 @@ GrowingArena::GrowingArena(std::size_t reserve_bytes) : bytes_(reserve_bytes) {
   madvise(memory, bytes_, MADV_HUGEPAGE);
 }
 
-GrowingArena::~GrowingArena() { munmap(data_, bytes_); }
+GrowingArena::~GrowingArena() {
+  munmap(data_, bytes_);
+  if (file_ >= 0) close(file_);
+}
 
-TsdfVolume::TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std::int32_t max_blocks)
+bool GrowingArena::Back(std::size_t bytes) {
+  constexpr std::size_t kStep = std::size_t{16} << 20;
+  if (file_ < 0 || bytes <= backed_bytes_) return true;
+  const std::size_t wanted = std::min(bytes_, (bytes + kStep - 1) / kStep * kStep);
+  if (posix_fallocate(file_, static_cast<off_t>(backed_bytes_),
+                      static_cast<off_t>(wanted - backed_bytes_)) != 0) {
+    return false;
+  }
+  backed_bytes_ = wanted;
+  return true;
+}
+
+void GrowingArena::GiveBack(std::size_t offset, std::size_t bytes) const {
+  if (file_ < 0) return;
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t begin = (offset + page - 1) / page * page;
+  const std::size_t end = (offset + bytes) / page * page;
+  // Of a shared file mapping this drops the pages from the process only: the file keeps them.
+  if (begin < end) madvise(data_ + begin, end - begin, MADV_DONTNEED);
+}
+
+Status CheckSpillDir(const std::filesystem::path& dir) {
+  if (dir.empty()) return OkStatus();
+  const int file = open(dir.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) {
+    return IoError(fmt::format("volume.spill_dir: no file can be made in {}: {}", dir.string(),
+                               std::strerror(errno)));
+  }
+  close(file);
+  return OkStatus();
+}
+
+TsdfVolume::TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std::int32_t max_blocks,
+                       const std::filesystem::path& spill_dir)
     : grid_(grid),
       truncation_distance_m_(truncation_distance_m),
       max_blocks_(max_blocks),
-      arena_((static_cast<std::size_t>(max_blocks) + 1) * kBlockVoxels * sizeof(TsdfVoxel)),
+      arena_((static_cast<std::size_t>(max_blocks) + 1) * kBlockVoxels * sizeof(TsdfVoxel),
+             spill_dir),
       table_(static_cast<std::size_t>(grid.blocks.x() + 2) *
                  static_cast<std::size_t>(grid.blocks.y() + 2) *
                  static_cast<std::size_t>(grid.blocks.z() + 2),
              kNoBlock) {
   CHECK(max_blocks > 0 && max_blocks <= kMaxAddressableBlocks);
+  if (!arena_.Back(kBlockBytes)) throw std::bad_alloc();
 }
 
 std::int32_t TsdfVolume::FindOrAllocate(const GridIndex& b) {
@@ -51,7 +107,8 @@ std::int32_t TsdfVolume::FindOrAllocate(const GridIndex& b) {
 std::int32_t TsdfVolume::FindOrAllocateEntry(std::int32_t entry) {
   std::int32_t& block = table_[static_cast<std::size_t>(entry)];
   if (block != kNoBlock) return block;
-  if (block_count() == max_blocks_) {
+  if (block_count() == max_blocks_ ||
+      !arena_.Back((static_cast<std::size_t>(block_count()) + 2) * kBlockBytes)) {
     ++refused_blocks_;
     return kNoBlock;
   }
@@ -61,6 +118,11 @@ std::int32_t TsdfVolume::FindOrAllocateEntry(std::int32_t entry) {
                             entry / table_stride_z() - 1);
   may_end_rays_.push_back(1);
   return block;
+}
+
+void TsdfVolume::GiveBack(std::int32_t first_block, std::int32_t count) const {
+  arena_.GiveBack((static_cast<std::size_t>(first_block) + 1) * kBlockBytes,
+                  static_cast<std::size_t>(count) * kBlockBytes);
 }
 
 TsdfVoxel TsdfVolume::VoxelAt(const GridIndex& voxel) const {

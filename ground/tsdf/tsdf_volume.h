@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <vector>
 
+#include "common/base/status.h"
 #include "ground/tsdf/voxel_grid.h"
 
 namespace isotherm {
@@ -30,21 +32,33 @@ struct TsdfVoxel {
 };
 static_assert(sizeof(TsdfVoxel) == 4);
 
-/// Anonymous memory that grows without moving: address space is reserved once, pages are taken as
-/// they are used.
+/// Memory that grows without moving: address space is reserved once, pages are taken as they are
+/// used. With a folder to spill to, the pages belong to a nameless file there, and can be given
+/// back without losing what is in them.
 class GrowingArena {
  public:
-  explicit GrowingArena(std::size_t reserve_bytes);
+  /// Throws std::bad_alloc if there is no address space, or no file can be made in `spill_dir`.
+  explicit GrowingArena(std::size_t reserve_bytes, const std::filesystem::path& spill_dir = {});
   ~GrowingArena();
   GrowingArena(const GrowingArena&) = delete;
   GrowingArena& operator=(const GrowingArena&) = delete;
   std::byte* data() const { return data_; }
-  std::size_t reserved_bytes() const { return bytes_; }
+  /// Makes sure that the first `bytes` can be written: a file on a full disk cannot grow. False if
+  /// not.
+  bool Back(std::size_t bytes);
+  /// Gives the memory of whole pages within a part back; touching it brings it back from the file.
+  /// Does nothing without a file.
+  void GiveBack(std::size_t offset, std::size_t bytes) const;
 
  private:
   std::byte* data_ = nullptr;
   std::size_t bytes_ = 0;
+  std::size_t backed_bytes_ = 0;
+  int file_ = -1;
 };
+
+/// Whether a folder can take the files of arenas; the message names it. Empty is fine.
+Status CheckSpillDir(const std::filesystem::path& dir);
 
 /// Truncated signed distances in sparse 8^3 blocks inside the scan volume. A direct table over the
 /// volume's blocks finds a block by its coordinates. Blocks never move, so `voxels` of a block
@@ -56,8 +70,10 @@ class TsdfVolume {
  public:
   static constexpr std::int32_t kNoBlock = -1;
 
-  /// `max_blocks` bounds memory; allocation beyond it fails and is counted.
-  TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std::int32_t max_blocks);
+  /// `max_blocks` bounds memory; allocation beyond it fails and is counted. With a `spill_dir`, it
+  /// bounds the file there.
+  TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std::int32_t max_blocks,
+             const std::filesystem::path& spill_dir = {});
 
   const VoxelGrid& grid() const { return grid_; }
   double truncation_distance_m() const { return truncation_distance_m_; }
@@ -86,6 +102,9 @@ class TsdfVolume {
     return std::span<const TsdfVoxel, kBlockVoxels>(base() + std::ptrdiff_t{kBlockVoxels} * block,
                                                     kBlockVoxels);
   }
+  /// Gives the memory of blocks back until they are touched again; does nothing without a spill
+  /// folder.
+  void GiveBack(std::int32_t first_block, std::int32_t count) const;
   /// The voxel at voxel coordinates; a never observed voxel where there is no block.
   TsdfVoxel VoxelAt(const GridIndex& voxel) const;
 

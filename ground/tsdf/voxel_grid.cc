@@ -70,6 +70,7 @@ Status Validate(const VolumeOptions& o) {
     if (!std::isfinite(corner))
       return InvalidArgument("volume: min_x_m, min_y_m and min_z_m must be finite");
   }
+  if (Status status = CheckSpillDir(o.spill_dir()); !status.ok()) return status;
   const Result<VoxelGrid> grid = MakeVoxelGrid(o);
   return grid ? OkStatus() : grid.error();
 }
@@ -94,7 +95,7 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
   return grid;
 }
 
-std::int32_t MaxBlocks(const VolumeOptions& options, const VoxelGrid& grid) {
+std::int32_t MaxResidentBlocks(const VolumeOptions& options, const VoxelGrid& grid) {
   const double table_bytes = static_cast<double>(grid.block_count()) * sizeof(std::int32_t);
   const double block_bytes = kBlockVoxels * (sizeof(TsdfVoxel) + sizeof(std::uint32_t));
   const double fitting =
@@ -102,6 +103,12 @@ std::int32_t MaxBlocks(const VolumeOptions& options, const VoxelGrid& grid) {
   const double limit = std::min(static_cast<double>(grid.block_count()), fitting);
   return static_cast<std::int32_t>(
       std::clamp(limit, 1.0, static_cast<double>(kMaxAddressableBlocks)));
+}
+
+std::int32_t MaxBlocks(const VolumeOptions& options, const VoxelGrid& grid) {
+  if (options.spill_dir().empty()) return MaxResidentBlocks(options, grid);
+  return static_cast<std::int32_t>(
+      std::min<std::int64_t>(grid.block_count(), kMaxAddressableBlocks));
 }
 
 }  // namespace isotherm

@@ -48,6 +48,9 @@ inline constexpr std::int32_t kMaxAddressableBlocks = 1 << 22;
 
 /// Blocks that fit into the options' memory limit beside the block table (TSDF and thermal voxels
 /// together).
+std::int32_t MaxResidentBlocks(const VolumeOptions& options, const VoxelGrid& grid);
+
+/// Blocks that a volume may have: the same, or, with a folder to spill to, any number.
 std::int32_t MaxBlocks(const VolumeOptions& options, const VoxelGrid& grid);
 
 }  // namespace isotherm

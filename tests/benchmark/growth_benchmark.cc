@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -59,6 +61,24 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
+/// Memory of the process that is in use now.
+double ResidentMib() {
+  std::ifstream status("/proc/self/statm");
+  double size = 0.0, resident = 0.0;
+  status >> size >> resident;
+  constexpr double kPageMib = 4096.0 / (1 << 20);
+  return resident * kPageMib;
+}
+
+/// The same for equal voxels. Touches them all.
+double VoxelSum(const TsdfVolume& volume) {
+  double sum = 0.0;
+  for (std::int32_t block = 0; block < volume.block_count(); ++block) {
+    for (const TsdfVoxel voxel : volume.voxels(block)) sum += voxel.bits % 65521;
+  }
+  return sum;
+}
+
 void BM_Growth(benchmark::State& state) {
   const int periods = static_cast<int>(state.range(0));
   GroundOptions options;
@@ -67,6 +87,10 @@ void BM_Growth(benchmark::State& state) {
   volume.set_min_x_m(-0.48);
   volume.set_min_y_m(-0.48);
   volume.set_min_z_m(0.24);
+  if (state.range(2) > 0) {
+    volume.set_max_memory_bytes(static_cast<std::uint64_t>(state.range(2)) << 20);
+    volume.set_spill_dir(std::filesystem::temp_directory_path().string());
+  }
   options.set_threads(2);
   Rig rig;
   rig.depth = Camera();
@@ -89,6 +113,9 @@ void BM_Growth(benchmark::State& state) {
     state.counters["tracked"] = static_cast<double>((*pipeline)->counts().depth_tracked);
     state.counters["drift_mm"] =
         1e3 * (end.translation() - Eigen::Vector3d((frames - 1) * kStep, 0.0, 0.0)).norm();
+    state.counters["resident_mib"] = ResidentMib();
+    state.counters["spilled"] = static_cast<double>((*pipeline)->spiller().spilled());
+    state.counters["voxel_sum"] = VoxelSum((*pipeline)->tsdf());
     state.counters["blocks"] = static_cast<double>((*pipeline)->tsdf().block_count());
     state.counters["last_period_p50_ms"] = Median(last_period_ms);
     for (const auto& [stage, stats] : (*pipeline)->stage_stats())
@@ -96,11 +123,21 @@ void BM_Growth(benchmark::State& state) {
   }
 }
 
+// Six metres of wall, without and with a limit: the same voxels.
+BENCHMARK(BM_Growth)
+    ->Name("BM_LongWall")
+    ->ArgNames({"periods", "length_cm", "limit_mib"})
+    ->Args({25, 696, 0})
+    ->Args({25, 696, 100})
+    ->Iterations(1)
+    ->Unit(benchmark::kSecond)
+    ->UseRealTime();
+
 // Ten times the way in four times the volume.
 BENCHMARK(BM_Growth)
-    ->ArgNames({"periods", "length_cm"})
-    ->Args({1, 96})
-    ->Args({10, 384})
+    ->ArgNames({"periods", "length_cm", "limit_mib"})
+    ->Args({1, 96, 0})
+    ->Args({10, 384, 0})
     ->Iterations(1)
     ->Repetitions(3)
     ->ReportAggregatesOnly()

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "ground/thermal/thermal_volume.h"
+#include "ground/tsdf/tsdf_volume.h"
+
+namespace isotherm {
+
+/// Keeps the memory of both volumes within a limit, if they have files to spill to: parts that were
+/// not in view for longest are given back, and come back from the file when they are touched
+/// again. Values are never changed. Thread-bound.
+class BlockSpiller {
+ public:
+  /// At most `max_resident_blocks` of each volume stay in memory, but for what is in view.
+  explicit BlockSpiller(std::int32_t max_resident_blocks) : max_resident_(max_resident_blocks) {}
+
+  /// After each depth frame: the blocks that it saw.
+  void Touch(std::span<const std::int32_t> blocks);
+  /// Gives back what is too much; a few system calls every few frames.
+  void Trim(const TsdfVolume& tsdf, const ThermalVolume& thermal);
+
+  std::int64_t resident_blocks() const { return resident_parts_ * kBlocksPerPart; }
+  /// Blocks that were given back, counted each time.
+  std::uint64_t spilled() const { return spilled_; }
+
+ private:
+  static constexpr std::int32_t kBlocksPerPart = 64;
+
+  /// Blocks that were allocated one after the other, so mostly beside each other.
+  struct Part {
+    std::uint64_t last_seen = 0;
+    bool resident = false;
+  };
+
+  const std::int64_t max_resident_;
+  std::vector<Part> parts_;
+  std::uint64_t frame_ = 0;
+  std::int64_t resident_parts_ = 0;
+  std::uint64_t spilled_ = 0;
+};
+
+}  // namespace isotherm
