@@ -1,0 +1,312 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <cmath>
+#include <random>
+
+#include "common/testing/volume_shapes.h"
+#include "ground/tracker/analytic_views_for_test.h"
+#include "ground/tracker/depth_preprocessor.h"
+#include "ground/tracker/icp_tracker.h"
+#include "ground/tracker/motion_space.h"
+#include "ground/tracker/pose_uncertainty.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kRounding = 1e-9;
+
+Matrix6 RandomMatrix(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Matrix6::NullaryExpr([&] { return normal(random); });
+}
+
+Vector6 RandomVector(std::mt19937& random) { return RandomMatrix(random).col(0); }
+
+/// Any orthonormal axes, at a depth of `mean_depth_m`.
+MotionSpace RandomSpace(std::mt19937& random, int free_axes, double mean_depth_m = 0.5) {
+  MotionSpace space;
+  space.axes = RandomMatrix(random).householderQr().householderQ();
+  space.mean_depth_m = mean_depth_m;
+  space.scale.tail<3>().setConstant(1.0 / mean_depth_m);
+  space.free_axes = free_axes;
+  return space;
+}
+
+class MeasureMotionSpaceTest : public ::testing::Test {
+ protected:
+  static double TiltedPlane(const Eigen::Vector3d& p) {
+    return Normal().dot(p - Eigen::Vector3d(0.30, 0.26, 0.45));
+  }
+  static Eigen::Vector3d Normal() { return Eigen::Vector3d(0.3, -0.2, -1.0).normalized(); }
+  /// About a vertical axis through (0.3, 0.4), in x and z.
+  static double Cylinder(const Eigen::Vector3d& p) {
+    return std::hypot(p.x() - 0.30, p.z() - 0.52) - 0.12;
+  }
+
+  /// What the scene looks like in the model, and in a frame from the same pose.
+  void Look(const testing::SignedDistance& scene) {
+    VolumeOptions options;
+    options.set_size_x_m(0.64);
+    options.set_size_y_m(0.64);
+    options.set_size_z_m(0.64);
+    options.set_voxel_size_m(0.004);
+    const VoxelGrid grid = MakeVoxelGrid(options).value();
+    TsdfVolume volume(grid, 0.016, MaxBlocks(options, grid));
+    testing::FillVolume(volume, scene);
+    view_.camera = testing::SmallDepthCamera();
+    view_.T_world_depth = testing::FirstPose();
+    Raycaster().Cast(volume, view_.camera, view_.T_world_depth, 0.0F, pool_, view_.maps);
+    DepthPreprocessor preprocessor(PreprocessorOptions(), view_.camera);
+    const DepthFrame frame = testing::RenderDepth(scene, view_.camera, view_.T_world_depth);
+    current_ = preprocessor.Process(frame, pool_).maps[kPyramidLevels - 1];
+  }
+  MotionSpace Measure(double min_strength) const {
+    return MeasureMotionSpace(current_, view_.T_world_depth, view_, kLimits, min_strength);
+  }
+  /// Turns each normal by itself.
+  static void Roughen(SurfaceMaps& maps, std::mt19937& random) {
+    std::normal_distribution<float> noise(0.0F, 0.1F);
+    for (int y = 0; y < maps.height(); ++y) {
+      for (int x = 0; x < maps.width(); ++x) {
+        Eigen::Vector3f n(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y));
+        n = (n + Eigen::Vector3f(noise(random), noise(random), noise(random))).normalized();
+        maps.nx.At(x, y) = n.x();
+        maps.ny.At(x, y) = n.y();
+        maps.nz.At(x, y) = n.z();
+      }
+    }
+  }
+  /// How much of a twist is said to be free, 0..1.
+  static double FreeShare(const MotionSpace& space, const Vector6& twist) {
+    return space.FreePart(twist).cwiseQuotient(space.scale).norm() /
+           twist.cwiseQuotient(space.scale).norm();
+  }
+  static Vector6 Twist(const Eigen::Vector3d& translation_m, const Eigen::Vector3d& rotation_rad) {
+    Vector6 twist;
+    twist << translation_m, rotation_rad;
+    return twist;
+  }
+
+  static constexpr IcpLimits kLimits{0.03F, 0.9F};
+  static constexpr double kMinStrength = 0.001;  ///< As the tracker's default.
+  ThreadPool pool_{2};
+  ModelView view_;
+  SurfaceMaps current_;
+};
+
+TEST_F(MeasureMotionSpaceTest, APlaneLeavesItsThreeSlidesFree) {
+  Look(TiltedPlane);
+  const MotionSpace space = Measure(kMinStrength);
+  ASSERT_TRUE(space.measured);
+  EXPECT_EQ(space.free_axes, 3);
+  const Eigen::Vector3d n = Normal();
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d along = n.unitOrthogonal();
+  EXPECT_GT(FreeShare(space, Twist(along, zero)), 0.99);
+  EXPECT_GT(FreeShare(space, Twist(n.cross(along), zero)), 0.99);
+  EXPECT_GT(FreeShare(space, Twist(zero, n)), 0.99);
+  EXPECT_LT(FreeShare(space, Twist(n, zero)), 0.05);
+  EXPECT_LT(FreeShare(space, Twist(zero, along)), 0.9);  // Turns about a point, slides elsewhere.
+}
+
+TEST_F(MeasureMotionSpaceTest, ACylinderLeavesItsTwoSlidesFree) {
+  Look(Cylinder);
+  const MotionSpace space = Measure(kMinStrength);
+  ASSERT_TRUE(space.measured);
+  EXPECT_EQ(space.free_axes, 2);
+  const Eigen::Vector3d axis = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d camera_from_axis =
+      testing::FirstPose().translation() - Eigen::Vector3d(0.30, 0.26, 0.52);
+  EXPECT_GT(FreeShare(space, Twist(axis, Eigen::Vector3d::Zero())), 0.99);
+  EXPECT_GT(FreeShare(space, Twist(axis.cross(camera_from_axis), axis)), 0.99);
+  EXPECT_LT(FreeShare(space, Twist(Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero())), 0.05);
+  EXPECT_LT(FreeShare(space, Twist(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ())), 0.05);
+}
+
+TEST_F(MeasureMotionSpaceTest, ABallInACornerLeavesNothingFree) {
+  Look(testing::BallInCorner);
+  const MotionSpace space = Measure(kMinStrength);
+  ASSERT_TRUE(space.measured);
+  EXPECT_TRUE(space.fully_observed());
+  EXPECT_GT(space.mean_depth_m, 0.3);
+  EXPECT_LT(space.mean_depth_m, 0.62);
+}
+
+TEST_F(MeasureMotionSpaceTest, IndependentNoiseOfTheNormalsIsNoStructure) {
+  constexpr unsigned kSeed = 5;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  Look(TiltedPlane);
+  Roughen(current_, random);
+  Roughen(view_.maps, random);
+  const MotionSpace space = Measure(kMinStrength);
+  ASSERT_TRUE(space.measured);
+  EXPECT_EQ(space.free_axes, 3) << "strength " << space.strength.transpose();
+}
+
+TEST_F(MeasureMotionSpaceTest, StrengthIsTheMeanSquareOfAResidualsChange) {
+  Look([](const Eigen::Vector3d& p) { return 0.5 - p.z(); });
+  const MotionSpace space = Measure(kMinStrength);
+  EXPECT_NEAR(space.mean_depth_m, 0.5, 0.001);
+  EXPECT_NEAR(space.strength(5), 1.0, 0.001);  // Towards the wall, all of it.
+  // Rotations about the image's axes: (y / z)^2 and (x / z)^2, evenly over the image.
+  const CameraModel camera = testing::SmallDepthCamera();
+  const double half_x = 0.5 * camera.width / camera.fx;
+  const double half_y = 0.5 * camera.height / camera.fy;
+  constexpr double kTolerance = 0.05;  // Of it: normals at the image's border are missing.
+  EXPECT_NEAR(space.strength(4), half_x * half_x / 3.0, kTolerance * half_x * half_x);
+  EXPECT_NEAR(space.strength(3), half_y * half_y / 3.0, kTolerance * half_y * half_y);
+}
+
+TEST_F(MeasureMotionSpaceTest, WithoutAMinimumNothingIsFree) {
+  Look(TiltedPlane);
+  const MotionSpace space = Measure(0.0);
+  EXPECT_TRUE(space.measured);
+  EXPECT_TRUE(space.fully_observed());
+}
+
+TEST_F(MeasureMotionSpaceTest, WithoutAssociationsNothingIsMeasuredAndNothingFree) {
+  Look(TiltedPlane);
+  for (Image<float>* plane : {&view_.maps.vx, &view_.maps.vy, &view_.maps.vz}) {
+    *plane = Image<float>(view_.maps.width(), view_.maps.height(), std::nanf(""));
+  }
+  EXPECT_FALSE(Measure(kMinStrength).measured);
+  EXPECT_TRUE(Measure(kMinStrength).fully_observed());
+  view_.maps = SurfaceMaps();
+  EXPECT_FALSE(Measure(kMinStrength).measured);
+  current_ = SurfaceMaps();
+  EXPECT_TRUE(Measure(kMinStrength).fully_observed());
+}
+
+class MotionSpaceTest : public ::testing::Test {
+ protected:
+  static constexpr unsigned kSeed = 11;
+  ::testing::ScopedTrace trace_{__FILE__, __LINE__, kSeed};
+  std::mt19937 random_{kSeed};
+};
+
+TEST_F(MotionSpaceTest, FreePartAndItsComplementAreTheTwist) {
+  for (int free_axes = 0; free_axes <= 6; ++free_axes) {
+    const MotionSpace space = RandomSpace(random_, free_axes);
+    const Vector6 twist = RandomVector(random_);
+    const Vector6 free = space.FreePart(twist);
+    const Vector6 held = twist - free;
+    EXPECT_LT((space.FreePart(free) - free).norm(), kRounding);
+    EXPECT_LT(space.FreePart(held).norm(), kRounding);
+    // As motions, the two are orthogonal, and each lies along its own axes only.
+    const Vector6 free_motion = space.axes.transpose() * free.cwiseQuotient(space.scale);
+    const Vector6 held_motion = space.axes.transpose() * held.cwiseQuotient(space.scale);
+    EXPECT_LT(free_motion.tail(6 - free_axes).norm(), kRounding);
+    EXPECT_LT(held_motion.head(free_axes).norm(), kRounding);
+  }
+}
+
+TEST_F(MotionSpaceTest, SolvesAsUsualIfAllIsObserved) {
+  const Matrix6 J = RandomMatrix(random_);
+  const Matrix6 H = J * J.transpose() + Matrix6::Identity();
+  const Vector6 g = RandomVector(random_);
+  const Vector6 expected = H.ldlt().solve(-g);
+  for (const MotionSpace& space : {MotionSpace(), RandomSpace(random_, 0)}) {
+    const auto twist = space.SolveObserved(H, g);
+    ASSERT_TRUE(twist.has_value());
+    EXPECT_LT((*twist - expected).norm(), kRounding);
+  }
+}
+
+TEST_F(MotionSpaceTest, SolutionIsTheBestWithoutAPartAlongFreeAxes) {
+  const Matrix6 J = RandomMatrix(random_);
+  const Matrix6 H = J * J.transpose() + Matrix6::Identity();
+  const Vector6 g = RandomVector(random_);
+  for (int free_axes = 1; free_axes < 6; ++free_axes) {
+    const MotionSpace space = RandomSpace(random_, free_axes);
+    const auto twist = space.SolveObserved(H, g);
+    ASSERT_TRUE(twist.has_value());
+    EXPECT_GT(twist->norm(), 1e-3);
+    EXPECT_LT(space.FreePart(*twist).norm(), kRounding);
+    // What is left of the gradient cannot be reduced along observed axes.
+    const Vector6 gradient = space.scale.cwiseProduct(H * *twist + g);
+    EXPECT_LT((space.axes.rightCols(6 - free_axes).transpose() * gradient).norm(), 1e-8);
+  }
+}
+
+TEST_F(MotionSpaceTest, WhatCannotBeSolvedIsNot) {
+  const Vector6 g = RandomVector(random_);
+  EXPECT_FALSE(RandomSpace(random_, 6).SolveObserved(Matrix6::Identity(), g).has_value());
+  MotionSpace space;
+  Matrix6 H = Matrix6::Identity();
+  H(0, 0) = 0.0;
+  EXPECT_FALSE(space.SolveObserved(H, g).has_value());
+  space.free_axes = 1;  // The singular direction is not asked for.
+  EXPECT_TRUE(space.SolveObserved(H, g).has_value());
+}
+
+class PoseUncertaintyTest : public ::testing::Test {
+ protected:
+  static constexpr double kFrameS = 1.0 / 30.0;
+  static constexpr double kSpeed = 0.02;
+  static constexpr double kDepth = 0.4;
+
+  /// `measured_sigma_m` along each observed axis.
+  TrackingResult Result(int free_axes, double measured_sigma_m) {
+    std::mt19937 random(3);
+    TrackingResult result;
+    result.motion = RandomSpace(random, free_axes, kDepth);
+    const Eigen::MatrixXd twists =
+        result.motion.scale.asDiagonal() * result.motion.axes.rightCols(6 - free_axes);
+    result.covariance = measured_sigma_m * measured_sigma_m * twists * twists.transpose();
+    return result;
+  }
+  /// The covariance as motions along the space's axes.
+  Matrix6 AlongAxes(const MotionSpace& space) const {
+    const Matrix6 to_axes = space.axes.transpose() * space.scale.cwiseInverse().asDiagonal();
+    return to_axes * uncertainty_.covariance() * to_axes.transpose();
+  }
+
+  PoseUncertainty uncertainty_;
+};
+
+TEST_F(PoseUncertaintyTest, GrowsWithTimeAlongEachFreeAxis) {
+  constexpr double kMeasured = 1e-4;
+  constexpr int kFrames = 60;
+  for (int free_axes = 1; free_axes <= 6; ++free_axes) {
+    SCOPED_TRACE(free_axes);
+    uncertainty_ = PoseUncertainty();
+    const TrackingResult result = Result(free_axes, kMeasured);
+    for (int i = 0; i < kFrames; ++i) uncertainty_.Update(result, kFrameS, kSpeed);
+    const double sigma = kSpeed * kFrames * kFrameS;
+    EXPECT_NEAR(uncertainty_.surface_sigma_m(), sigma, 1e-9);
+    EXPECT_EQ(uncertainty_.mean_depth_m(), kDepth);
+    Vector6 expected = Vector6::Constant(kMeasured * kMeasured);
+    expected.head(free_axes).setConstant(sigma * sigma);
+    const Matrix6 covariance = AlongAxes(result.motion);
+    EXPECT_LT((covariance - Matrix6(expected.asDiagonal())).norm(), 1e-12);
+  }
+}
+
+TEST_F(PoseUncertaintyTest, FallsToWhatIsMeasuredOnceAllIsObserved) {
+  constexpr double kMeasured = 2e-4;
+  for (int i = 0; i < 60; ++i) uncertainty_.Update(Result(3, kMeasured), kFrameS, kSpeed);
+  ASSERT_GT(uncertainty_.surface_sigma_m(), 0.03);
+  uncertainty_.Update(Result(0, kMeasured), kFrameS, kSpeed);
+  EXPECT_NEAR(uncertainty_.surface_sigma_m(), kMeasured, kRounding);
+  EXPECT_LT((uncertainty_.covariance() - Result(0, kMeasured).covariance).norm(), 1e-15);
+}
+
+TEST_F(PoseUncertaintyTest, StartsFromWhatWasMeasuredBefore) {
+  constexpr double kMeasured = 5e-4;
+  uncertainty_.Update(Result(0, kMeasured), kFrameS, kSpeed);
+  uncertainty_.Update(Result(2, kMeasured), kFrameS, kSpeed);
+  EXPECT_NEAR(uncertainty_.surface_sigma_m(), kMeasured + kSpeed * kFrameS, kRounding);
+}
+
+TEST_F(PoseUncertaintyTest, DoesNotShrinkIfTimeStandsStillOrGoesBack) {
+  for (const double seconds : {kFrameS, 0.0, -1.0})
+    uncertainty_.Update(Result(1, 0.0), seconds, kSpeed);
+  EXPECT_NEAR(uncertainty_.surface_sigma_m(), kSpeed * kFrameS, kRounding);
+}
+
+}  // namespace
+}  // namespace isotherm
