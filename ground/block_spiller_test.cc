@@ -87,6 +87,14 @@ TEST_F(BlockSpillerTest, WhatIsInViewStaysHoweverMuchItIs) {
   EXPECT_EQ(spiller_->spilled(), 0U);
 }
 
+TEST_F(BlockSpillerTest, APartIsNotGivenBackTwice) {
+  spiller_.emplace(0);
+  See({0});
+  for (int i = 0; i < 100; ++i) See({kPart});
+  EXPECT_EQ(spiller_->resident_blocks(), kPart);
+  EXPECT_EQ(spiller_->spilled(), 1U * kPart);
+}
+
 TEST_F(BlockSpillerTest, PartsAreCountedOnceAndOnlyIfTheyWereSeen) {
   EXPECT_EQ(spiller_->resident_blocks(), 0);
   See({3 * kPart, 3 * kPart + 1, 4 * kPart - 1});
