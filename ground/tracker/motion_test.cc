@@ -181,6 +181,16 @@ TEST_F(MeasureMotionSpaceTest, WithoutAssociationsNothingIsMeasuredAndNothingFre
   EXPECT_TRUE(Measure(kMinStrength).fully_observed());
 }
 
+TEST_F(MeasureMotionSpaceTest, AFewAssociationsMeasureNothing) {
+  Look(TiltedPlane);
+  for (int y = 0; y < view_.maps.height(); ++y) {
+    if (y >= 100 && y < 108) continue;  // A thirtieth of the image is left.
+    for (int x = 0; x < view_.maps.width(); ++x) view_.maps.vx.At(x, y) = std::nanf("");
+  }
+  EXPECT_FALSE(Measure(kMinStrength).measured);
+  EXPECT_TRUE(Measure(kMinStrength).fully_observed());
+}
+
 class MotionSpaceTest : public ::testing::Test {
  protected:
   static constexpr unsigned kSeed = 11;
