@@ -86,16 +86,16 @@ TEST(MakeThumbnailTest, AConstantImageStaysConstant) {
 }
 
 TEST(MakeThumbnailTest, CellsAreMeansOfWhatIsSeenInThem) {
-  Image<float> image(60, 45, 0.0F);  // Cells of 3 x 3 pixels, of which three must be seen.
+  Image<float> image(60, 60, 0.0F);  // Cells of 3 x 4 pixels, of which four must be seen.
   image.At(0, 0) = 0.4F;
   image.At(2, 1) = 0.5F;
-  image.At(1, 2) = 0.9F;
-  image.At(3, 3) = 0.4F;
-  image.At(5, 5) = 0.4F;
-  image.At(58, 43) = image.At(59, 43) = image.At(59, 44) = 1.5F;
+  image.At(1, 2) = 0.7F;
+  image.At(2, 3) = 0.8F;
+  image.At(3, 4) = image.At(4, 5) = image.At(5, 7) = 0.4F;
+  image.At(58, 58) = image.At(59, 58) = image.At(58, 59) = image.At(59, 59) = 1.5F;
   const Thumbnail thumbnail = MakeThumbnail(image);
   EXPECT_FLOAT_EQ(thumbnail.depth_m.front(), 0.6F);
-  EXPECT_EQ(thumbnail.depth_m[Thumbnail::kWidth + 1], 0.0F) << "two pixels are too few";
+  EXPECT_EQ(thumbnail.depth_m[Thumbnail::kWidth + 1], 0.0F) << "three pixels are too few";
   EXPECT_FLOAT_EQ(thumbnail.depth_m.back(), 1.5F);
 }
 
