@@ -16,7 +16,6 @@ constexpr double kUnusualAgreement = 0.5;  ///< ... or with this share of the us
 /// What is believed after having been lost must be nearly as good as usual.
 constexpr double kConvincingResidual = 2.5;
 constexpr double kConvincingAgreement = 0.8;
-constexpr double kConvincingStrengthShare = 0.25;
 
 /// How fast a rig may be whose speed was never measured, m/s at the scene's depth.
 constexpr double kUnknownSpeed = 0.3;
@@ -67,11 +66,8 @@ LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
 }
 
 bool RigTracker::IsConvincing(const TrackingResult& result) const {
-  // A weak direction may be held for one frame; a plane or a cylinder says nothing at all.
-  if (!result.tracked() || !result.motion.measured ||
-      result.motion.strength(0) < kConvincingStrengthShare * options_.min_observed()) {
-    return false;
-  }
+  // In front of a plane or a cylinder the rig may be anywhere along it.
+  if (result.verdict() != Verdict::kTracked || !result.motion.measured) return false;
   if (result.agreement < relocaliser_options_.min_agreement() ||
       result.overlap_ratio < relocaliser_options_.min_overlap()) {
     return false;
