@@ -1,7 +1,6 @@
 #include "ground/rig_tracker.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/base/log.h"
 
@@ -98,9 +97,7 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolu
   if (!pose) return result;
   CastView(*pose, volume, pool, candidate_);
   TrackingResult found = tracker_.Track(depth, candidate_, volume.grid(), {*pose, *pose}, pool);
-  if (!IsConvincing(found)) return result;
-  std::swap(view_, candidate_);
-  return found;
+  return IsConvincing(found) ? found : result;
 }
 
 TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time,

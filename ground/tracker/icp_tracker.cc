@@ -16,9 +16,6 @@ namespace {
 constexpr int kRowsPerTask = 8;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// Depth at which an observation has weight 1, metres.
-constexpr float kReferenceDepth = 0.5F;
-
 IcpSums ToIcpSums(const IcpKernelSums& strip) {
   IcpSums result;
   std::size_t k = 0;
@@ -152,7 +149,7 @@ IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_
   std::copy_n(volume_max.data(), 3, args.volume_max);
   args.max_squared_distance_m2 = limits.max_distance_m * limits.max_distance_m;
   args.min_normal_cosine = limits.min_normal_cosine;
-  args.reference_depth_m = kReferenceDepth;
+  args.reference_depth_m = kIcpReferenceDepth;
 
   const int height = current.height();
   const int strips = (height + kRowsPerTask - 1) / kRowsPerTask;

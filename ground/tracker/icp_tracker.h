@@ -40,6 +40,9 @@ enum class Verdict : std::uint8_t {
   kLost,      ///< No pose.
 };
 
+/// Depth at which an observation has weight 1, metres; the weight falls with its fourth power.
+inline constexpr float kIcpReferenceDepth = 0.5F;
+
 /// Frames with fewer pixels that have a depth are lost.
 inline constexpr int kMinTrackedPixels = 1000;
 

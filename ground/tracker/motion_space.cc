@@ -9,8 +9,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kReferenceDepth = 0.5;  ///< Metres, as ICP's weights.
-constexpr int kStride = 2;               ///< Of the pixels that are looked at.
+constexpr int kStride = 2;  ///< Of the pixels that are looked at.
 
 struct MotionSums {
   Matrix6 H = Matrix6::Zero();  ///< Of J of the model's normals times J of the current ones.
@@ -52,7 +51,7 @@ MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_world_
       model_J << n, arm.cross(n);
       Vector6 current_J;
       current_J << n_current, arm.cross(n_current);
-      const double weight = std::pow(kReferenceDepth / p_depth.z(), 4);
+      const double weight = std::pow(kIcpReferenceDepth / p_depth.z(), 4);
       sums.H.noalias() += (weight * model_J) * current_J.transpose();
       sums.weight += weight;
       sums.depth += weight * p_depth.z();
