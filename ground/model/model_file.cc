@@ -86,6 +86,19 @@ SavedCamera ToSaved(const CameraModel& camera) {
   return saved;
 }
 
+/// nullopt: there was no such camera. Distortion coefficients that are missing are 0.
+std::optional<CameraModel> FromSaved(const SavedCamera& saved) {
+  if (!saved.has_width()) return std::nullopt;
+  CameraModel camera{saved.width(), saved.height(), saved.fx(), saved.fy(), saved.cx(), saved.cy()};
+  const auto k = [&](int i) { return i < saved.distortion_size() ? saved.distortion(i) : 0.0; };
+  camera.k1 = k(0);
+  camera.k2 = k(1);
+  camera.p1 = k(2);
+  camera.p2 = k(3);
+  camera.k3 = k(4);
+  return camera;
+}
+
 /// How a rig's camera differs from a saved one; empty if it does not.
 std::string Difference(const char* name, const SavedCamera& saved,
                        const std::optional<CameraModel>& camera) {
@@ -160,6 +173,7 @@ struct ModelFile::Content {
   std::string name;
   std::unique_ptr<ByteSource> source;
   ModelHeader header;
+  Rig rig;
   std::vector<RigidTransform> known_poses;
   std::uint64_t first_chunk = 0;
 
@@ -209,6 +223,12 @@ Status ModelFile::Content::CheckHead() {
       header.blocks_z() < 1 || header.known_poses_size() % kPoseNumbers != 0) {
     return Damaged("its head makes no sense");
   }
+  rig.depth = FromSaved(header.depth());
+  rig.thermal = FromSaved(header.thermal());
+  if (header.t_thermal_depth_size() == kPoseNumbers)
+    rig.T_thermal_depth = PoseAt(header.t_thermal_depth(), 0);
+  if (Status status = Validate(rig); !status.ok())
+    return Damaged("its calibration makes no sense: " + status.message());
   for (int i = 0; i < header.known_poses_size(); i += kPoseNumbers) {
     const auto pose = PoseAt(header.known_poses(), i);
     if (!pose) return Damaged("a pose in it is none");
@@ -229,6 +249,8 @@ Result<std::unique_ptr<ModelFile>> ModelFile::Open(const std::filesystem::path& 
   if (Status status = content->ReadHead(); !status.ok()) return Err(status);
   return std::unique_ptr<ModelFile>(new ModelFile(std::move(content)));
 }
+
+Rig ModelFile::rig() const { return content_->rig; }
 
 const std::vector<RigidTransform>& ModelFile::known_poses() const { return content_->known_poses; }
 

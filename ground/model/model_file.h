@@ -32,6 +32,8 @@ class ModelFile {
   Status AdoptVolume(GroundOptions& options) const;
   /// Refuses a rig whose cameras differ from those that made the model.
   Status CheckRig(const Rig& rig) const;
+  /// The cameras that made the model and T_thermal_depth, as far as it has them.
+  Rig rig() const;
   const std::vector<RigidTransform>& known_poses() const;
   std::int32_t block_count() const;
 
