@@ -53,10 +53,12 @@ ScalarFusion FuseScalarVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   if ((pixel.flags & ThermalPixel::kSeen) == 0) return result;
   result.considered = AtLeastZero(double{a.max_distance_m} - (p - vertex).norm(), kSinglePrecision);
   if ((pixel.flags & ThermalPixel::kAssignable) == 0) return result;
-  result.classes = pixel.flags & 0xFF;
-  const auto distance = static_cast<ConditionClass>(result.classes >> 4);
-  const auto angle = static_cast<ConditionClass>(result.classes & 0xF);
-  if (a.validate && !ReplacesMeasurement(distance, angle, old)) return result;
+  result.classes = pixel.flags & 0xF0FF;
+  const ThermalVoxel conditions{static_cast<std::uint32_t>(result.classes)};
+  if (a.validate && !ReplacesMeasurement(conditions.distance_class(), conditions.angle_class(),
+                                         conditions.motion_class(), old)) {
+    return result;
+  }
   result.assigned = result.considered;
   const double slope_u = static_cast<std::int16_t>(pixel.slopes & 0xFFFF);
   const double slope_v = pixel.slopes >> 16;
@@ -77,6 +79,8 @@ class FuseBlockTest : public ::testing::Test {
   static constexpr std::size_t kVoxels = 512;
   static constexpr float kVoxel = 0.004F;
   using Words = std::array<std::uint32_t, kVoxels + 1>;
+  /// Unchecked, acceptable, good: smeared pixels are never assignable.
+  static constexpr std::array kMotionCodes = {0, 2 << 12, 3 << 12};
 
   /// A camera of any size before a bumpy wall half a metre away, of which a part is not seen.
   void RearrangePicture(int width, int height) {
@@ -87,7 +91,8 @@ class FuseBlockTest : public ::testing::Test {
       pixel.depth_m = 0.5F + 0.01F * Uniform();
       pixel.celsius = random_.Chance(0.1) ? 3000.0F * Uniform() : 60.0F * Uniform();
       pixel.slopes = (random_.Integer(-2000, 2000) << 16) | (random_.Integer(-2000, 2000) & 0xFFFF);
-      pixel.flags = (random_.Integer(0, 2) << 4) | random_.Integer(0, 2);
+      pixel.flags = kMotionCodes[random_.Integer(0, 2)] | (random_.Integer(0, 2) << 4) |
+                    random_.Integer(0, 2);
       if (random_.Chance(0.9)) pixel.flags |= ThermalPixel::kSeen;
       if ((pixel.flags & ThermalPixel::kSeen) != 0 && random_.Chance(0.8))
         pixel.flags |= ThermalPixel::kAssignable;
@@ -120,7 +125,8 @@ class FuseBlockTest : public ::testing::Test {
       tsdf_[i] = (tsdf << 16) |
                  static_cast<std::uint32_t>(random_.Chance(0.2) ? 0 : random_.Integer(1, 65535));
       const auto code = static_cast<std::uint32_t>(random_.Integer(1, 65535));
-      const int classes = (random_.Integer(0, 2) << 4) | random_.Integer(0, 2);
+      const int classes = kMotionCodes[random_.Integer(0, 2)] | (random_.Integer(0, 3) << 8) |
+                          (random_.Integer(0, 2) << 4) | random_.Integer(0, 2);
       thermal_[i] = random_.Chance(0.4) ? 0 : (code << 16) | static_cast<std::uint32_t>(classes);
     }
     thermal_.back() = static_cast<std::uint32_t>(testing::kCanary);

@@ -39,7 +39,7 @@ CameraModel EverySecondPixel(CameraModel camera) {
   return camera;
 }
 
-/// Smaller is better: good before acceptable.
+/// Smaller is better: good before acceptable before unchecked.
 int Rank(ConditionClass c) { return static_cast<int>(c); }
 
 }  // namespace
@@ -98,14 +98,17 @@ ConditionClass ConditionLimits::ClassifyAngle(float cosine) const {
   return cosine >= cosine_good_angle ? ConditionClass::kGood : ConditionClass::kAcceptable;
 }
 
-bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle, ThermalVoxel old) {
+bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
+                         ConditionClass new_motion, ThermalVoxel old) {
   const auto valid = [](ConditionClass distance, ConditionClass angle) {
     return distance != ConditionClass::kBad && angle != ConditionClass::kBad;
   };
+  if (new_motion == ConditionClass::kBad) return false;
   if (!old.measured() || !valid(old.distance_class(), old.angle_class())) return true;
   if (!valid(new_distance, new_angle)) return false;
   if (new_distance != old.distance_class()) return Rank(new_distance) < Rank(old.distance_class());
-  return Rank(new_angle) <= Rank(old.angle_class());
+  if (new_angle != old.angle_class()) return Rank(new_angle) < Rank(old.angle_class());
+  return Rank(new_motion) <= Rank(old.motion_class());
 }
 
 ThermalRectifier::ThermalRectifier(const CameraModel& camera)

@@ -30,7 +30,10 @@ struct ConditionLimits {
 };
 
 /// Algorithm 6: whether a measurement under the new classes replaces one under the old classes.
-bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle, ThermalVoxel old);
+/// Under equal distance and angle classes the motion classes decide; a smeared measurement (kBad)
+/// replaces nothing.
+bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
+                         ConditionClass new_motion, ThermalVoxel old);
 
 /// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the
 /// picture or where the frame has no value. Bilinear. Keeps scratch memory. Thread-compatible.

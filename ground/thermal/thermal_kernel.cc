@@ -176,14 +176,23 @@ std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
   return hidden;
 }
 
+// ThermalVoxel's classes of one measurement: motion, distance and angle.
+constexpr std::int32_t kConditionBits = 0xF0FF;
+
 /// Where a voxel's new temperature is no better than the one it has (algorithm 6).
-HWY_INLINE MI KeepsOld(VI old_key, VI key) {
+HWY_INLINE MI KeepsOld(VI old_word, VI word) {
   const auto both_valid = [&](VI classes) {
     return hn::And(hn::Ne(hn::And(classes, hn::Set(di, 0x0F)), hn::Zero(di)),
                    hn::Ne(hn::And(classes, hn::Set(di, 0xF0)), hn::Zero(di)));
   };
+  // Smaller is better: distance, then angle, then motion (whose code grows the better it is).
+  const auto order = [&](VI classes) {
+    return hn::Sub(hn::ShiftLeft<4>(hn::And(classes, hn::Set(di, 0xFF))),
+                   hn::And(hn::ShiftRight<12>(classes), hn::Set(di, 0xF)));
+  };
   // A voxel never measured has no valid classes either.
-  return hn::And(both_valid(old_key), hn::Or(hn::Not(both_valid(key)), hn::Gt(key, old_key)));
+  return hn::And(both_valid(old_word),
+                 hn::Or(hn::Not(both_valid(word)), hn::Gt(order(word), order(old_word))));
 }
 
 void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
@@ -254,9 +263,9 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
     const MI on_surface = hn::And(hn::RebindMask(di, hn::And(inside, hn::Lt(squared, max_squared))),
                                   has(ThermalPixel::kSeen));
     const VI old = hn::LoadU(di, temperatures + i);
-    const VI key = hn::And(flags, hn::Set(di, 0xFF));
+    const VI classes = hn::And(flags, hn::Set(di, kConditionBits));
     MI assign = hn::And(on_surface, has(ThermalPixel::kAssignable));
-    if (a.validate) assign = hn::AndNot(KeepsOld(hn::And(old, hn::Set(di, 0xFF)), key), assign);
+    if (a.validate) assign = hn::AndNot(KeepsOld(old, classes), assign);
     counts.considered += static_cast<std::int64_t>(hn::CountTrue(di, on_surface));
     counts.assigned += static_cast<std::int64_t>(hn::CountTrue(di, assign));
     if (hn::AllFalse(di, assign)) continue;
@@ -270,7 +279,7 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
     const VF code =
         hn::MulAdd(hn::Sub(celsius, hn::Set(d, kMinCelsius)), hn::Set(d, kStepsPerKelvin), one);
     const VI stored = hn::NearestInt(hn::Min(hn::Max(code, one), hn::Set(d, kMaxCode)));
-    hn::StoreU(hn::IfThenElse(assign, hn::Or(hn::ShiftLeft<16>(stored), key), old), di,
+    hn::StoreU(hn::IfThenElse(assign, hn::Or(hn::ShiftLeft<16>(stored), classes), old), di,
                temperatures + i);
   }
 }

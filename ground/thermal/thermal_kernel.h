@@ -13,7 +13,7 @@ struct ThermalPixel {
   float depth_m;        ///< Of the model's surface along the thermal camera's z; 0 = none.
   float celsius;        ///< At the pixel's centre.
   std::int32_t slopes;  ///< d celsius / dv << 16 | d celsius / du, signed, in 1 / kSlopeScale K/px.
-  std::int32_t flags;   ///< kSeen, kAssignable, and distance class << 4 | angle class.
+  std::int32_t flags;   ///< kSeen, kAssignable, and classes where ThermalVoxel has them.
 };
 static_assert(sizeof(ThermalPixel) == 16);
 

@@ -26,6 +26,23 @@ TEST(ThermalVoxelTest, KeepsTemperatureToHalfAStepAndBothClasses) {
   EXPECT_EQ(ThermalVoxel::Make(20.0F, kAcceptable, kGood).bits & 0xFFFFU, 0x21U);
 }
 
+TEST(ThermalVoxelTest, MotionAndDisagreementHaveFourBitsEachOfWhichZeroIsUnchecked) {
+  const ThermalVoxel old{0x8000'0021U};
+  EXPECT_EQ(old.motion_class(), kUnchecked);
+  EXPECT_EQ(old.disagreement_class(), kUnchecked);
+  EXPECT_EQ(ThermalVoxel::Make(20.0F, kAcceptable, kGood, kGood, kBad).bits & 0xFFFFU, 0x3121U);
+  for (const auto motion : {kBad, kGood, kAcceptable, kUnchecked}) {
+    for (const auto disagreement : {kBad, kGood, kAcceptable, kUnchecked}) {
+      ThermalVoxel voxel = ThermalVoxel::Make(20.0F, kAcceptable, kGood, motion, disagreement);
+      EXPECT_EQ(voxel.motion_class(), motion);
+      EXPECT_EQ(voxel.disagreement_class(), disagreement);
+      voxel.set_disagreement_class(kAcceptable);
+      EXPECT_EQ(voxel.bits,
+                ThermalVoxel::Make(20.0F, kAcceptable, kGood, motion, kAcceptable).bits);
+    }
+  }
+}
+
 TEST(ConditionLimitsTest, ClassesChangeAtTheLimitsOfEquation63) {
   ThermalOptions options;
   options.set_angle_min_deg(15);
@@ -70,17 +87,36 @@ TEST(ReplacesMeasurementTest, FollowsAlgorithm6ForAllClassPairs) {
   };
   for (const auto d : {kBad, kGood, kAcceptable}) {
     for (const auto a : {kBad, kGood, kAcceptable}) {
-      EXPECT_TRUE(ReplacesMeasurement(d, a, ThermalVoxel())) << "nothing was measured before";
+      EXPECT_TRUE(ReplacesMeasurement(d, a, kGood, ThermalVoxel()))
+          << "nothing was measured before";
       for (const auto old_d : {kBad, kGood, kAcceptable}) {
         for (const auto old_a : {kBad, kGood, kAcceptable}) {
-          EXPECT_EQ(ReplacesMeasurement(d, a, ThermalVoxel::Make(20.0F, old_d, old_a)),
-                    algorithm6(d, a, old_d, old_a))
+          EXPECT_EQ(
+              ReplacesMeasurement(d, a, kGood, ThermalVoxel::Make(20.0F, old_d, old_a, kGood)),
+              algorithm6(d, a, old_d, old_a))
               << static_cast<int>(d) << static_cast<int>(a) << static_cast<int>(old_d)
               << static_cast<int>(old_a);
         }
       }
     }
   }
+}
+
+TEST(ReplacesMeasurementTest, MotionDecidesBetweenEqualClassesOfDistanceAndAngle) {
+  const auto replaces = [](ConditionClass motion, ConditionClass old_motion) {
+    return ReplacesMeasurement(kGood, kAcceptable, motion,
+                               ThermalVoxel::Make(20.0F, kGood, kAcceptable, old_motion));
+  };
+  EXPECT_TRUE(replaces(kGood, kAcceptable));
+  EXPECT_FALSE(replaces(kAcceptable, kGood));
+  EXPECT_TRUE(replaces(kAcceptable, kAcceptable));
+  EXPECT_TRUE(replaces(kAcceptable, kUnchecked)) << "what is known is better";
+  EXPECT_FALSE(replaces(kUnchecked, kAcceptable));
+  EXPECT_TRUE(ReplacesMeasurement(kGood, kGood, kAcceptable,
+                                  ThermalVoxel::Make(20.0F, kGood, kAcceptable, kGood)))
+      << "a better angle comes first";
+  EXPECT_FALSE(ReplacesMeasurement(kGood, kGood, kBad, ThermalVoxel()))
+      << "a smeared measurement is none";
 }
 
 CameraModel ThermalCameraModel() {

@@ -5,12 +5,14 @@
 
 namespace isotherm {
 
-ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, ConditionClass angle) {
+ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, ConditionClass angle,
+                                ConditionClass motion, ConditionClass disagreement) {
   constexpr float kMaxCode = 65535.0F;
   const float code =
       std::clamp(1.0F + std::round((celsius - kMinCelsius) / kStepKelvin), 1.0F, kMaxCode);
   ThermalVoxel voxel;
-  voxel.bits = (static_cast<std::uint32_t>(code) << 16) |
+  voxel.bits = (static_cast<std::uint32_t>(code) << 16) | (Encode(motion) << kMotionShift) |
+               (Encode(disagreement) << kDisagreementShift) |
                (static_cast<std::uint32_t>(distance) << 4) | static_cast<std::uint32_t>(angle);
   return voxel;
 }

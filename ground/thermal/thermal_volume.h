@@ -8,17 +8,22 @@
 
 namespace isotherm {
 
-/// Class of a measurement condition (eq. 6.3a-b) as stored in a voxel and exported.
-enum class ConditionClass : std::uint8_t { kBad = 0, kGood = 1, kAcceptable = 2 };
-
 /// Exported where a point was never assigned a temperature.
 inline constexpr std::uint8_t kNeverMeasured = 255;
 
-/// One thermal voxel in 32 bits (thesis fig. 6.9):
+/// Class of a measurement condition (eq. 6.3a-b) as it is exported.
+enum class ConditionClass : std::uint8_t {
+  kBad = 0,
+  kGood = 1,
+  kAcceptable = 2,
+  kUnchecked = kNeverMeasured,  ///< Motion and disagreement only: not known.
+};
+
+/// One thermal voxel in 32 bits (thesis fig. 6.9; the table is in docs/model-format.md):
 ///   bits 31..16  temperature code: 0 = never measured, else 1 + (celsius + 100) / 0.025 (steps of
-///   0.025 K
-///                from -100 to 1538 °C)
-///   bits 15..8   reserved (motion and disagreement classes)
+///                0.025 K from -100 to 1538 °C)
+///   bits 15..12  motion class, bits 11..8 disagreement class, each as 0 unchecked, 1 bad,
+///                2 acceptable, 3 good: the zeros of a voxel from before these checks are right
 ///   bits  7..4   distance class, bits 3..0 angle class (ConditionClass)
 struct ThermalVoxel {
   static constexpr float kMinCelsius = -100.0F;
@@ -26,7 +31,9 @@ struct ThermalVoxel {
 
   std::uint32_t bits = 0;
 
-  static ThermalVoxel Make(float celsius, ConditionClass distance, ConditionClass angle);
+  static ThermalVoxel Make(float celsius, ConditionClass distance, ConditionClass angle,
+                           ConditionClass motion = ConditionClass::kUnchecked,
+                           ConditionClass disagreement = ConditionClass::kUnchecked);
   bool measured() const { return (bits >> 16) != 0; }
   /// °C; NaN = never measured.
   float celsius() const {
@@ -35,6 +42,26 @@ struct ThermalVoxel {
   }
   ConditionClass distance_class() const { return static_cast<ConditionClass>((bits >> 4) & 0xFU); }
   ConditionClass angle_class() const { return static_cast<ConditionClass>(bits & 0xFU); }
+  /// How much the picture was smeared when the temperature was measured.
+  ConditionClass motion_class() const { return Decode(bits >> kMotionShift); }
+  /// How far measurements under good conditions contradict each other.
+  ConditionClass disagreement_class() const { return Decode(bits >> kDisagreementShift); }
+  void set_disagreement_class(ConditionClass c) {
+    bits = (bits & ~(0xFU << kDisagreementShift)) | (Encode(c) << kDisagreementShift);
+  }
+
+  static constexpr int kMotionShift = 12;
+  static constexpr int kDisagreementShift = 8;
+  /// The four bits of a motion or disagreement class: more is better.
+  static constexpr std::uint32_t Encode(ConditionClass c) {
+    constexpr std::uint32_t kCodes[] = {1, 3, 2};
+    return c == ConditionClass::kUnchecked ? 0 : kCodes[static_cast<std::size_t>(c)];
+  }
+  static constexpr ConditionClass Decode(std::uint32_t code) {
+    constexpr ConditionClass kClasses[] = {ConditionClass::kUnchecked, ConditionClass::kBad,
+                                           ConditionClass::kAcceptable, ConditionClass::kGood};
+    return kClasses[code & 0x3U];
+  }
 };
 static_assert(sizeof(ThermalVoxel) == 4);
 
