@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 #include <string_view>
 
 namespace isotherm {
@@ -68,6 +69,11 @@ std::string_view ToText(Advice advice) {
 
 std::string FeedbackText(const Feedback& feedback) {
   std::string text = fmt::format("{}", ToText(feedback.tracking_state));
+  if (feedback.pose_covariance) {
+    const PoseSigma sigma = LargestSigma(*feedback.pose_covariance);
+    text += fmt::format(" within {:.1f} mm {:.2f} deg", 1e3 * sigma.translation_m,
+                        sigma.rotation_rad * 180.0 / std::numbers::pi);
+  }
   if (std::isfinite(feedback.model.good)) {
     text += fmt::format(", {:.0f} % measured well", 100.0 * feedback.model.good);
   }

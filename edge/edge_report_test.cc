@@ -74,6 +74,9 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   feedback.advice = {Advice::kGoBackToRelocalise};
   EXPECT_THAT(StatusLine({}, account_, true, feedback),
               HasSubstr("LOST, 34 % measured well, go back to relocalise"));
+  feedback.tracking_state = TrackingState::kDegraded;
+  feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
+  EXPECT_THAT(StatusLine({}, account_, true, feedback), HasSubstr(" within 1.0 mm 0.06 deg, 34 %"));
   EXPECT_THAT(StatusLine({}, account_, false, feedback), HasSubstr("ground: absent"));
   EXPECT_THAT(StatusLine({}, account_, true, std::nullopt), HasSubstr("no feedback yet"));
 }

@@ -217,6 +217,7 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   trajectory_.insert(trajectory_.end(), unconfirmed_.begin(), unconfirmed_.end());
   unconfirmed_.clear();
   trajectory_.push_back({time, T_world_depth});
+  trajectory_sigmas_.resize(trajectory_.size(), LargestSigma(uncertainty().covariance()));
   return report;
 }
 

@@ -12,6 +12,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/pose_covariance.h"
 #include "common/geometry/stamped_pose.h"
 #include "ground/block_spiller.h"
 #include "ground/ground_options.pb.h"
@@ -94,6 +95,8 @@ class GroundPipeline {
   const PoseUncertainty& uncertainty() const { return tracker_.uncertainty(); }
   const RigTracker& tracker() const { return tracker_; }
   const std::vector<StampedPose>& trajectory() const { return trajectory_; }
+  /// One standard deviation of each pose of the trajectory, relative to the model.
+  const std::vector<PoseSigma>& trajectory_sigmas() const { return trajectory_sigmas_; }
   const PipelineCounts& counts() const { return counts_; }
   /// Milliseconds per call by stage, in the order of the line.
   const std::map<std::string, StageStats>& stage_stats() const { return stage_stats_; }
@@ -136,6 +139,7 @@ class GroundPipeline {
   BlockSpiller spiller_;
   bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   std::vector<StampedPose> trajectory_;
+  std::vector<PoseSigma> trajectory_sigmas_;
   std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
   Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.
   std::deque<ThermalFramePtr> waiting_thermal_;

@@ -149,7 +149,10 @@ Feedback LiveScan::MakeFeedback() {
   feedback.tracking_state = !newest_report_->tracked                   ? TrackingState::kLost
                             : tracking.verdict() == Verdict::kDegraded ? TrackingState::kDegraded
                                                                        : TrackingState::kTracked;
-  if (newest_report_->tracked) feedback.T_world_depth = tracking.T_world_depth;
+  if (newest_report_->tracked) {
+    feedback.T_world_depth = tracking.T_world_depth;
+    feedback.pose_covariance = pipeline_->uncertainty().covariance();
+  }
 
   const ModelView& model = pipeline_->view();
   CoverageSummary coverage;

@@ -87,6 +87,20 @@ TEST_F(LiveScanTest, FramesInTimeAreAllUsed) {
   EXPECT_EQ(scan_->waiting().count(), 13U);
 }
 
+TEST_F(LiveScanTest, FeedbackSaysHowUncertainThePoseIs) {
+  Start();
+  Run(0, 6, 30ms);
+  const std::optional<Feedback> feedback = scan_->TakeFeedback();
+  ASSERT_TRUE(feedback && feedback->T_world_depth && feedback->pose_covariance);
+  EXPECT_EQ(*feedback->pose_covariance, scan_->pipeline().uncertainty().covariance());
+  EXPECT_TRUE(IsCovariance(*feedback->pose_covariance));
+  const PoseSigma sigma = LargestSigma(*feedback->pose_covariance);
+  EXPECT_GT(sigma.translation_m, 0.0);
+  EXPECT_LT(sigma.translation_m, 0.001) << "a ball in a corner holds the rig in all directions";
+  EXPECT_EQ(scan_->pipeline().trajectory_sigmas().size(), scan_->pipeline().trajectory().size());
+  EXPECT_EQ(scan_->pipeline().trajectory_sigmas().back().rotation_rad, sigma.rotation_rad);
+}
+
 TEST_F(LiveScanTest, BeyondMostOfTheLongestWaitThermalFramesAreLeftOut) {
   Start();
   Run(0, 6, 50ms);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "common/config/text_proto.h"
@@ -43,6 +45,31 @@ std::string List(const std::map<std::string, std::uint64_t>& counts) {
   return text;
 }
 
+/// One-sigma figures of the trajectory's poses, relative to the model: median, 95 % and largest.
+struct SigmaFigures {
+  static constexpr std::array<std::string_view, 3> kNames = {"p50", "p95", "max"};
+  std::array<double, 3> translation_mm{};
+  std::array<double, 3> rotation_deg{};
+};
+
+std::array<double, 3> Figures(std::vector<double> sigmas) {
+  std::sort(sigmas.begin(), sigmas.end());
+  const std::size_t last = sigmas.size() - 1;
+  return {sigmas[last / 2], sigmas[last * 95 / 100], sigmas[last]};
+}
+
+/// nullopt without a trajectory.
+std::optional<SigmaFigures> Figures(const std::vector<PoseSigma>& sigmas) {
+  if (sigmas.empty()) return std::nullopt;
+  std::vector<double> translations_mm;
+  std::vector<double> rotations_deg;
+  for (const PoseSigma& sigma : sigmas) {
+    translations_mm.push_back(1e3 * sigma.translation_m);
+    rotations_deg.push_back(sigma.rotation_rad * 180.0 / std::numbers::pi);
+  }
+  return SigmaFigures{Figures(std::move(translations_mm)), Figures(std::move(rotations_deg))};
+}
+
 /// What was out of the ordinary with depth frames; a line, or nothing.
 std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t relocalisations) {
   std::string text;
@@ -74,6 +101,13 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   depth["refused"] = counts.depth_refused;
   depth["lost"] = Sum(counts.depth_lost);
   for (const auto& [reason, count] : counts.depth_lost) depth["lost_by_reason"][reason] = count;
+  if (const auto sigma = Figures(pipeline.trajectory_sigmas())) {
+    for (std::size_t i = 0; i < SigmaFigures::kNames.size(); ++i) {
+      const std::string name(SigmaFigures::kNames[i]);
+      json["pose_sigma"]["translation_mm"][name] = sigma->translation_mm[i];
+      json["pose_sigma"]["rotation_deg"][name] = sigma->rotation_deg[i];
+    }
+  }
   Json& thermal = json["frames"]["thermal"];
   thermal["in"] = counts.thermal_in;
   thermal["fused"] = counts.thermal_fused;
@@ -129,6 +163,13 @@ Result<std::string> WriteScan(
                   counts.depth_tracked, counts.depth_integrated,
                   counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
   text += DescribeIncidents(counts, pipeline.tracker().relocalisations());
+  if (const auto sigma = Figures(pipeline.trajectory_sigmas())) {
+    text += fmt::format(
+        "         pose within {:.2f} mm and {:.3f} deg of the model (one sigma, median), at worst "
+        "{:.2f} mm and {:.3f} deg\n",
+        sigma->translation_mm[0], sigma->rotation_deg[0], sigma->translation_mm[2],
+        sigma->rotation_deg[2]);
+  }
   text += fmt::format(
       "thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
       counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));

@@ -109,6 +109,23 @@ std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Fe
   return std::nullopt;
 }
 
+/// The upper triangle, row by row.
+void ToWireCovariance(const PoseCovariance& from, double (&to)[21]) {
+  std::size_t k = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) to[k++] = from(i, j);
+  }
+}
+
+PoseCovariance FromWireCovariance(const double (&from)[21]) {
+  PoseCovariance to;
+  std::size_t k = 0;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) to(i, j) = to(j, i) = from[k++];
+  }
+  return to;
+}
+
 std::optional<RefusalCause> FromWireLists(const isotherm_wire_Feedback& from, Feedback* to) {
   for (const std::uint8_t advice : Elements(from.advice)) {
     if (const auto cause = CheckEnum(advice, Advice::kDone)) return cause;
@@ -238,6 +255,8 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to) {
     latencies[i].p50_s = from.latencies[i].p50_s;
     latencies[i].p99_s = from.latencies[i].p99_s;
   }
+  to->has_pose_covariance = from.pose_covariance.has_value();
+  if (from.pose_covariance) ToWireCovariance(*from.pose_covariance, to->pose_covariance);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to) {
@@ -251,6 +270,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->covered_area_m2 = from.covered_area_m2;
   to->model = FromWireShares(from.model);
   to->view = FromWireShares(from.view);
+  if (from.has_pose_covariance) to->pose_covariance = FromWireCovariance(from.pose_covariance);
   return CheckFeedback(*to);
 }
 

@@ -227,6 +227,13 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
   sent.advice = {Advice::kSlower, Advice::kMoveCloser};
   sent.picture.assign(kMaxPictureBytes, 0xAB);
   sent.latencies = {{"track", 0.006F, 0.012F}};
+  sent.pose_covariance.emplace();  // Each of its 21 numbers another one, diagonally dominant.
+  for (int i = 0; i < 6; ++i) {
+    for (int j = 0; j <= i; ++j) {
+      (*sent.pose_covariance)(i, j) = (*sent.pose_covariance)(j, i) =
+          i == j ? 100.0 + i : 1.0 + 6 * i + j;
+    }
+  }
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
   const Feedback& feedback = received->message;
@@ -239,6 +246,11 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
   EXPECT_EQ(feedback.picture, sent.picture);
   ASSERT_EQ(feedback.latencies.size(), 1U);
   EXPECT_EQ(feedback.latencies[0].stage, "track");
+  ASSERT_TRUE(feedback.pose_covariance.has_value());
+  EXPECT_EQ(*feedback.pose_covariance, *sent.pose_covariance);
+  const auto without = RoundTrip(Feedback());
+  ASSERT_TRUE(without.has_value());
+  EXPECT_FALSE(without->message.pose_covariance.has_value());
 }
 
 TEST_F(EndpointsTest, LateJoinerGetsTheRigAndTheNewestFrames) {

@@ -8,6 +8,7 @@
 
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/pose_covariance.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/time/time_types.h"
 
@@ -19,7 +20,7 @@ namespace isotherm {
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
 /// Major: they do not, and say so (CheckCompatible()).
 inline constexpr std::uint16_t kWireMajor = 1;
-inline constexpr std::uint16_t kWireMinor = 0;
+inline constexpr std::uint16_t kWireMinor = 1;
 
 inline constexpr std::size_t kMaxIdBytes = 32;     ///< edge_id, serial numbers, names of stages.
 inline constexpr std::size_t kMaxTextBytes = 256;  ///< Sentences.
@@ -208,6 +209,8 @@ struct Feedback {
   std::vector<std::uint8_t>
       picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
   std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
+  /// Of T_world_depth, relative to the model; absent while lost and from a ground before wire 1.1.
+  std::optional<PoseCovariance> pose_covariance;
 };
 
 }  // namespace isotherm

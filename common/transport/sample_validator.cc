@@ -118,6 +118,9 @@ std::optional<RefusalCause> CheckFeedback(const Feedback& feedback) {
   for (const StageLatency& latency : feedback.latencies) {
     if (const auto cause = CheckFinite({latency.p50_s, latency.p99_s})) return cause;
   }
+  if (!feedback.pose_covariance) return std::nullopt;
+  if (!feedback.pose_covariance->allFinite()) return RefusalCause::kNotFinite;
+  if (!IsCovariance(*feedback.pose_covariance)) return RefusalCause::kOutOfRange;
   return std::nullopt;
 }
 

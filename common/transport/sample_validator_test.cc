@@ -141,6 +141,13 @@ TEST(SampleValidatorTest, F60FeedbackMustBeFinite) {
   feedback = {};
   feedback.capture_time = CaptureTimeFromNanoseconds(-5);
   EXPECT_EQ(CheckFeedback(feedback), RefusalCause::kNegativeTime);
+  feedback = {};
+  feedback.pose_covariance = PoseCovariance::Identity();
+  EXPECT_EQ(CheckFeedback(feedback), std::nullopt);
+  (*feedback.pose_covariance)(4, 4) = kNan;
+  EXPECT_EQ(CheckFeedback(feedback), RefusalCause::kNotFinite);
+  (*feedback.pose_covariance)(4, 4) = -1.0;
+  EXPECT_EQ(CheckFeedback(feedback), RefusalCause::kOutOfRange);
 }
 
 TEST(RefusalCounterTest, F60EachCauseIsCountedAndLoggedOnce) {
