@@ -19,7 +19,7 @@ namespace {
 RgbImage Picture(const Image<float>& values, const RendererOptions& options,
                  const std::string& title, const std::string& unit) {
   const ColourTable colours(options);
-  const std::optional<TemperatureScale> scale = ChooseScale(options, Summarize(values.pixels()));
+  const std::optional<TemperatureScale> scale = ChooseScale(options, values.pixels());
   RgbImage picture(values.width(), values.height());
   for (int y = 0; y < values.height(); ++y) {
     for (int x = 0; x < values.width(); ++x) {
@@ -32,8 +32,8 @@ RgbImage Picture(const Image<float>& values, const RendererOptions& options,
   legend.title = title;
   legend.scale = scale;
   legend.rule = ScaleRuleName(options);
-  legend.unit = unit;
-  return WithLegend(picture, legend, colours);
+  legend.unit.name = unit;
+  return WithLegend(picture, legend, [&](double value) { return colours.At(scale->Share(value)); });
 }
 
 Status WritePng(const RgbImage& picture, const std::filesystem::path& path) {

@@ -15,7 +15,7 @@ namespace isotherm {
 struct PlyStyle {
   const ColourTable& colours;
   std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured.
-  std::string palette_name;               ///< "coolwarm" or "grey".
+  std::string palette_name;               ///< As PaletteName gives it.
   std::string software;                   ///< Name and version.
 };
 

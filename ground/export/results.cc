@@ -54,7 +54,7 @@ ResultSummary SummarizeSurface(const Surface& surface, const RendererOptions& op
     if (point.distance_class == kGood && point.angle_class == kGood) ++summary.good_points;
   }
   summary.temperatures = Summarize(celsius);
-  summary.scale = ChooseScale(options, summary.temperatures);
+  summary.scale = ChooseScale(options, celsius);
   return summary;
 }
 
@@ -86,10 +86,15 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
   ViewMaps view;
   SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
   const Renderer renderer(inputs.renderer_options, inputs.thermal_options);
-  failure.Add(WritePng(renderer.Thermal(view, scale), folder / "thermal.png"));
-  failure.Add(WritePng(renderer.Distance(view), folder / "distance.png"));
-  failure.Add(WritePng(renderer.Angle(view), folder / "angle.png"));
-  failure.Add(WritePng(renderer.Geometry(view), folder / "geometry.png"));
+  std::optional<ContourField> contours;
+  if (renderer.draws_lines()) {
+    contours = SampleContours(*inputs.view, inputs.tsdf, inputs.thermal,
+                              inputs.renderer_options.isotherm_smoothing_px(), threads);
+  }
+  for (const RenderLayer layer : AllLayers()) {
+    const RgbImage picture = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);
+    failure.Add(WritePng(picture, folder / fmt::format("{}.png", LayerName(layer))));
+  }
 }
 
 Json CompleteStats(const ResultInputs& inputs, const ResultSummary& summary) {
@@ -147,11 +152,10 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
     announce("stats.json", 0.4);
     failure.Add(WriteFile(dir / "stats.json", CompleteStats(inputs, summary).ToText()));
     const ColourTable colours(inputs.renderer_options);
-    const PlyStyle style{
-        .colours = colours,
-        .scale = summary.scale,
-        .palette_name = inputs.renderer_options.palette() == GREY ? "grey" : "coolwarm",
-        .software = kSoftware};
+    const PlyStyle style{.colours = colours,
+                         .scale = summary.scale,
+                         .palette_name = PaletteName(inputs.renderer_options.palette()),
+                         .software = kSoftware};
     if (options.cloud()) {
       announce("cloud.ply", 0.4);
       failure.Add(WriteCloudPly(surface, style, dir / "cloud.ply"));

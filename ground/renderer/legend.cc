@@ -20,14 +20,16 @@ constexpr Rgb8 kOutline{110, 116, 126};
 constexpr double kReferenceHeight = 480.0;
 constexpr double kLetterPx = 9.0;
 constexpr double kPanelPx = 156.0;
-constexpr int kLeastHeight = 240;
+constexpr double kLeastHeight = 240.0;
+constexpr double kRowPx = 18.0;
 
 /// A picture with room for a panel, and the panel's measures in pixels.
 struct Panel {
-  explicit Panel(const RgbImage& picture)
+  /// At least `height_px` high at the reference height.
+  explicit Panel(const RgbImage& picture, double height_px = kLeastHeight)
       : factor(std::clamp(picture.height() / kReferenceHeight, 0.9, 4.0)),
         left(picture.width()),
-        image(picture.width() + Px(kPanelPx), std::max(picture.height(), kLeastHeight),
+        image(picture.width() + Px(kPanelPx), std::max(picture.height(), Px(height_px)),
               kBackground) {
     const int top = (image.height() - picture.height()) / 2;
     for (int y = 0; y < picture.height(); ++y) {
@@ -57,27 +59,45 @@ int DrawTitle(Panel& panel, Canvas& canvas, const std::string& title) {
   return y;
 }
 
-void DrawScaleBar(Panel& panel, Canvas& canvas, const TemperatureScale& scale,
-                  const ColourTable& colours, int top, int bottom) {
+void DrawMarks(Panel& panel, Canvas& canvas, const ScaleLegend& legend, int top, int bottom) {
+  const int x = panel.left + panel.Px(18);
+  const int width = panel.Px(22);
+  const int thick = std::max(panel.Px(1), 1);
+  for (const ScaleMark& mark : legend.marks) {
+    const double share = legend.scale->Share(mark.value);
+    if (!(share >= 0.0 && share <= 1.0)) continue;
+    const int y = static_cast<int>(std::lround(bottom - share * (bottom - top))) - thick / 2;
+    canvas.FillRectangle(x, y - 1, width, thick + 2, kOutline);
+    canvas.FillRectangle(x, y, width, thick, mark.colour);
+  }
+}
+
+void DrawScaleBar(Panel& panel, Canvas& canvas, const ScaleLegend& legend,
+                  const ValueColour& colour, int top, int bottom) {
+  const TemperatureScale& scale = *legend.scale;
   const int x = panel.left + panel.Px(18);
   const int width = panel.Px(22);
   for (int y = top; y < bottom; ++y) {
     const double share = (bottom - 0.5 - y) / (bottom - top);
-    canvas.FillRectangle(x, y, width, 1, colours.At(share));
+    canvas.FillRectangle(
+        x, y, width, 1,
+        colour(scale.min_celsius + share * (scale.max_celsius - scale.min_celsius)));
   }
   canvas.Frame(x - 1, top - 1, width + 2, bottom - top + 2, kOutline);
   const double tip = panel.Px(11);
   if (scale.values_above) {
     canvas.FillTriangle(x, top - 3, x + width - 1, top - 3, x + width / 2.0, top - 3 - tip,
-                        colours.At(1.0));
+                        colour(scale.max_celsius));
   }
   if (scale.values_below) {
     canvas.FillTriangle(x, bottom + 2, x + width - 1, bottom + 2, x + width / 2.0, bottom + 2 + tip,
-                        colours.At(0.0));
+                        colour(scale.min_celsius));
   }
+  DrawMarks(panel, canvas, legend, top, bottom);
   const int max_ticks = std::clamp((bottom - top) / panel.Px(26), 2, 12);
-  for (const Tick& tick : RoundTicks(scale.min_celsius, scale.max_celsius, max_ticks)) {
-    const double y = bottom - scale.Share(tick.value) * (bottom - top);
+  const double low = legend.unit.Of(scale.min_celsius), high = legend.unit.Of(scale.max_celsius);
+  for (const Tick& tick : RoundTicks(low, high, max_ticks)) {
+    const double y = bottom - (tick.value - low) / (high - low) * (bottom - top);
     canvas.FillRectangle(x + width + 1, static_cast<int>(std::min(y, bottom - 1.0)), panel.Px(6), 1,
                          kText);
     canvas.Text(x + width + panel.Px(12), y, tick.label, panel.letter(), kText);
@@ -107,22 +127,35 @@ Rgb8 NeverMeasuredColour(int x, int y, double cos_view) {
   return {value, value, value};
 }
 
-RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend,
-                    const ColourTable& colours) {
-  Panel panel(picture);
+RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const ValueColour& colour) {
+  const auto lines = static_cast<double>(legend.rows.size() + legend.notes.size());
+  Panel panel(picture, kLeastHeight + kRowPx * lines);
   Canvas canvas(panel.image);
+  const int left = panel.left + panel.Px(16);
   const int below_title = DrawTitle(panel, canvas, legend.title);
-  canvas.Text(panel.left + panel.Px(16), below_title,
-              legend.scale ? "in " + legend.unit : "none measured", panel.letter(), kDimText);
+  canvas.Text(left, below_title, legend.scale ? "in " + legend.unit.name : "none measured",
+              panel.letter(), kDimText);
   int bottom = panel.image.height() - panel.Px(22);
+  for (auto note = legend.notes.rbegin(); note != legend.notes.rend(); ++note) {
+    canvas.Text(left, bottom, *note, panel.Fitting(*note, left, panel.letter() * 0.9), kText);
+    bottom -= panel.Px(kRowPx);
+  }
   if (legend.never_measured) {
     DrawNeverMeasuredKey(panel, canvas, bottom);
     bottom -= panel.Px(24);
   }
+  for (auto row = legend.rows.rbegin(); row != legend.rows.rend(); ++row) {
+    const int side = panel.Px(12);
+    const double text_x = left + panel.Px(24);
+    canvas.FillRectangle(left + panel.Px(3), bottom - side / 2, side, side, row->colour);
+    canvas.Frame(left + panel.Px(3), bottom - side / 2, side, side, kOutline);
+    canvas.Text(text_x, bottom, row->name, panel.Fitting(row->name, text_x, panel.letter() * 0.95),
+                kDimText);
+    bottom -= panel.Px(kRowPx);
+  }
   if (legend.scale) {
-    canvas.Text(panel.left + panel.Px(16), bottom, legend.rule, panel.letter() * 0.9, kDimText);
-    DrawScaleBar(panel, canvas, *legend.scale, colours, below_title + panel.Px(32),
-                 bottom - panel.Px(28));
+    canvas.Text(left, bottom, legend.rule, panel.letter() * 0.9, kDimText);
+    DrawScaleBar(panel, canvas, legend, colour, below_title + panel.Px(32), bottom - panel.Px(28));
   }
   return std::move(panel.image);
 }

@@ -1,25 +1,18 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "ground/renderer/palette.h"
+#include "ground/renderer/rgb.h"
 #include "ground/renderer/temperature_scale.h"
+#include "ground/renderer/temperature_unit.h"
 
 namespace isotherm {
 
 /// Colour of the panel and of pixels without a surface.
 inline constexpr Rgb8 kBackground{38, 42, 50};
-
-/// What the panel beside a thermal picture says.
-struct ScaleLegend {
-  std::string title;                      ///< E.g. "apparent temperature"; spaces break lines.
-  std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured, no bar is drawn.
-  std::string rule;                       ///< How the scale was chosen.
-  bool never_measured = true;    ///< Explain the pattern of surfaces without a temperature.
-  std::string unit = "\u00B0C";  ///< Of the scale.
-};
 
 /// One row of the panel beside a class layer.
 struct LegendRow {
@@ -29,13 +22,34 @@ struct LegendRow {
   std::string share;   ///< E.g. "62 %"; may be empty.
 };
 
+/// A line across the bar of a scale.
+struct ScaleMark {
+  double value = 0.0;
+  Rgb8 colour;
+};
+
+/// What the panel beside a picture of values says.
+struct ScaleLegend {
+  std::string title;                      ///< E.g. "apparent temperature"; spaces break lines.
+  std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured, no bar is drawn.
+  std::string rule;                       ///< How the scale was chosen.
+  bool never_measured = true;             ///< Explain the pattern of surfaces without a value.
+  DisplayUnit unit;                       ///< In which values are written.
+  std::vector<ScaleMark> marks;           ///< E.g. isotherms; outside the scale they are left out.
+  std::vector<LegendRow> rows;            ///< Below the bar; colour and name only.
+  std::vector<std::string> notes;         ///< Lines at the very bottom.
+};
+
+/// The colour that a value has in the picture.
+using ValueColour = std::function<Rgb8(double value)>;
+
 struct ClassLegend {
   std::string title;
   std::vector<LegendRow> rows;
 };
 
 /// `picture` with a panel to its right; higher than `picture` if the panel needs it.
-RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const ColourTable& colours);
+RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const ValueColour& colour);
 RgbImage WithLegend(const RgbImage& picture, const ClassLegend& legend);
 
 /// Surface without a temperature in thermal pictures: dim grey, brightness by `cos_view`, with

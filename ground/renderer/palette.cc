@@ -3,10 +3,10 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <iterator>
 #include <numbers>
-
-#include "ground/ground_options.pb.h"
 
 namespace isotherm {
 namespace {
@@ -50,6 +50,11 @@ Msh MshFromRgb(const Rgb8& rgb) {
   return {m, std::acos(lab.x() / m), std::atan2(lab.z(), lab.y())};
 }
 
+/// A share of full intensity as 8 bits, cut off outside [0, 1].
+std::uint8_t Channel(double value) {
+  return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
+}
+
 /// The way back; colours outside sRGB are cut off per channel.
 Rgb8 RgbFromMsh(const Msh& msh) {
   const double lightness = msh.m * std::cos(msh.s);
@@ -59,10 +64,7 @@ Rgb8 RgbFromMsh(const Msh& msh) {
   const Eigen::Vector3d f(fy + a / 500.0, fy, fy - b / 200.0);
   const Eigen::Vector3d xyz = f.unaryExpr(&LabInverse).cwiseProduct(kWhiteXyz);
   const Eigen::Vector3d linear = XyzFromLinear().inverse() * xyz;
-  const auto channel = [](double value) {
-    return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(Srgb(value), 0.0, 1.0)));
-  };
-  return {channel(linear.x()), channel(linear.y()), channel(linear.z())};
+  return {Channel(Srgb(linear.x())), Channel(Srgb(linear.y())), Channel(Srgb(linear.z()))};
 }
 
 /// The hue an unsaturated colour gets, so that the path to `saturated` bends least (Moreland 2009,
@@ -74,6 +76,21 @@ double AdjustedHue(const Msh& saturated, double unsaturated_m) {
                       (saturated.m * std::sin(saturated.s));
   return saturated.h > -std::numbers::pi / 3.0 ? saturated.h + spin : saturated.h - spin;
 }
+
+struct InfernoEntry {
+  int entry;  ///< 0..255
+  Rgb8 colour;
+};
+
+// Denser where the colour turns.
+constexpr InfernoEntry kInferno[] = {
+    {0, {0, 0, 4}},         {15, {10, 7, 34}},      {30, {30, 12, 69}},     {45, {56, 9, 98}},
+    {60, {81, 14, 108}},    {75, {105, 22, 110}},   {90, {128, 31, 108}},   {105, {152, 39, 102}},
+    {120, {176, 49, 91}},   {135, {198, 61, 77}},   {150, {217, 77, 61}},   {165, {233, 97, 43}},
+    {180, {244, 121, 24}},  {187, {248, 133, 15}},  {195, {250, 148, 7}},   {202, {252, 161, 8}},
+    {210, {252, 176, 20}},  {217, {251, 190, 35}},  {225, {248, 205, 55}},  {232, {245, 219, 76}},
+    {240, {242, 234, 105}}, {247, {243, 245, 134}}, {255, {252, 255, 164}},
+};
 
 }  // namespace
 
@@ -90,17 +107,70 @@ Rgb8 CoolwarmColour(double share) {
   return RgbFromMsh({mix(end.m, middle.m), mix(end.s, middle.s), mix(end.h, middle.h)});
 }
 
-Rgb8 GreyColour(double share) {
-  const auto value = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(share, 0.0, 1.0)));
-  return {value, value, value};
+Rgb8 GreyColour(double share) { return {Channel(share), Channel(share), Channel(share)}; }
+
+Rgb8 IronColour(double share) {
+  const double x = std::clamp(share, 0.0, 1.0);
+  const double blue = x < 0.25   ? 4.0 * x
+                      : x < 0.42 ? 1.0
+                      : x < 0.92 ? 1.84 - 2.0 * x
+                                 : x / 0.08 - 11.5;
+  return {Channel(x / 0.32 - 0.78125), Channel(2.0 * x - 0.84), Channel(blue)};
+}
+
+Rgb8 RainbowColour(double share) {
+  const double x = std::clamp(share, 0.0, 1.0);
+  return {Channel(std::abs(2.0 * x - 0.5)), Channel(std::sin(std::numbers::pi * x)),
+          Channel(std::cos(std::numbers::pi / 2.0 * x))};
+}
+
+Rgb8 InfernoColour(double share) {
+  const double entry = 255.0 * std::clamp(share, 0.0, 1.0);
+  const auto* next = std::ranges::lower_bound(kInferno, entry, {}, &InfernoEntry::entry);
+  if (next == std::begin(kInferno)) return next->colour;
+  const InfernoEntry& before = *(next - 1);
+  const double part = (entry - before.entry) / (next->entry - before.entry);
+  const auto mix = [part](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround(a + part * (b - a)));
+  };
+  return {mix(before.colour.r, next->colour.r), mix(before.colour.g, next->colour.g),
+          mix(before.colour.b, next->colour.b)};
+}
+
+Rgb8 PaletteColour(Palette palette, double share) {
+  switch (palette) {
+    case COOLWARM:
+      return CoolwarmColour(share);
+    case GREY:
+      return GreyColour(share);
+    case IRON:
+      return IronColour(share);
+    case RAINBOW:
+      return RainbowColour(share);
+    case INFERNO:
+      return InfernoColour(share);
+  }
+  return GreyColour(share);
+}
+
+std::string PaletteName(Palette palette) {
+  std::string name = Palette_Name(palette);
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+  return name;
+}
+
+std::optional<Palette> PaletteFromName(std::string_view name) {
+  std::string upper(name);
+  std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
+  Palette palette;
+  return Palette_Parse(upper, &palette) ? std::optional(palette) : std::nullopt;
 }
 
 ColourTable::ColourTable(const RendererOptions& options) {
   constexpr int kEntries = 1025;  // Odd, so that the middle of the palette is an entry.
   colours_.reserve(kEntries);
   for (int i = 0; i < kEntries; ++i) {
-    const double share = static_cast<double>(i) / (kEntries - 1);
-    colours_.push_back(options.palette() == GREY ? GreyColour(share) : CoolwarmColour(share));
+    colours_.push_back(PaletteColour(options.palette(), static_cast<double>(i) / (kEntries - 1)));
   }
 }
 

@@ -36,12 +36,75 @@ TEST(CoolwarmTest, AgreesWithThePublishedTable) {
   }
 }
 
-TEST(CoolwarmTest, HasNoJumpsBetweenNeighbouringEntries) {
-  for (int i = 0; i < 1000; ++i) {
-    const Rgb8 a = CoolwarmColour(i / 1000.0);
-    const Rgb8 b = CoolwarmColour((i + 1) / 1000.0);
-    EXPECT_LE(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), 6) << i;
+// Entries of matplotlib's table (256 colours) between those that ours has: share = entry / 255.
+constexpr Anchor kPublishedInferno[] = {
+    {7 / 255.0, 3, 2, 16},       {37 / 255.0, 41, 11, 85},     {52 / 255.0, 67, 10, 104},
+    {82 / 255.0, 116, 26, 110},  {128 / 255.0, 188, 55, 84},   {142 / 255.0, 207, 68, 70},
+    {172 / 255.0, 239, 108, 36}, {192 / 255.0, 249, 142, 9},   {206 / 255.0, 252, 168, 13},
+    {222 / 255.0, 249, 199, 47}, {243 / 255.0, 241, 239, 117}, {251 / 255.0, 246, 250, 150},
+};
+constexpr int kInterpolation = 3;  // 8-bit steps, as promised beside InfernoColour.
+
+TEST(InfernoTest, AgreesWithThePublishedTableBetweenItsOwnEntries) {
+  for (const Anchor& anchor : kPublishedInferno) {
+    const Rgb8 colour = InfernoColour(anchor.share);
+    EXPECT_NEAR(colour.r, anchor.r, kInterpolation) << anchor.share;
+    EXPECT_NEAR(colour.g, anchor.g, kInterpolation) << anchor.share;
+    EXPECT_NEAR(colour.b, anchor.b, kInterpolation) << anchor.share;
   }
+  EXPECT_EQ(InfernoColour(0.0), (Rgb8{0, 0, 4}));
+  EXPECT_EQ(InfernoColour(1.0), (Rgb8{252, 255, 164}));
+}
+
+TEST(IronTest, GoesFromBlackOverBlueVioletAndYellowToWhite) {
+  EXPECT_EQ(IronColour(0.0), (Rgb8{0, 0, 0}));
+  EXPECT_EQ(IronColour(0.25), (Rgb8{0, 0, 255}));
+  // Red is full from 0.57 on; green 1.2 - 0.84, blue 1.84 - 1.2.
+  EXPECT_EQ(IronColour(0.6), (Rgb8{255, 92, 163}));
+  EXPECT_EQ(IronColour(0.92), (Rgb8{255, 255, 0}));
+  EXPECT_EQ(IronColour(1.0), (Rgb8{255, 255, 255}));
+}
+
+TEST(RainbowTest, GoesFromBlueOverGreenToRed) {
+  EXPECT_EQ(RainbowColour(0.0), (Rgb8{128, 0, 255}));
+  EXPECT_EQ(RainbowColour(0.25), (Rgb8{0, 180, 236}));   // sin 45 deg, cos 22.5 deg.
+  EXPECT_EQ(RainbowColour(0.5), (Rgb8{128, 255, 180}));  // cos 45 deg.
+  EXPECT_EQ(RainbowColour(1.0), (Rgb8{255, 0, 0}));
+}
+
+/// Luma of ITU-R BT.601.
+double Brightness(Rgb8 colour) { return 0.299 * colour.r + 0.587 * colour.g + 0.114 * colour.b; }
+
+TEST(PaletteTest, BrightnessRisesWhereItIsSaidTo) {
+  for (const Palette palette : {GREY, IRON, INFERNO}) {
+    for (int i = 0; i < 100; ++i) {
+      const double before = Brightness(PaletteColour(palette, i / 100.0));
+      const double after = Brightness(PaletteColour(palette, (i + 1) / 100.0));
+      // Iron's blue falls as its red rises: by up to half a step where channels are rounded.
+      EXPECT_GT(after, before - 0.5) << PaletteName(palette) << " " << i;
+    }
+  }
+}
+
+TEST(PaletteTest, HasNoJumpsBetweenNeighbouringColours) {
+  constexpr int kLargestStep = 13;  // Of three channels; iron's blue rises by 12.5 per permille.
+  for (const Palette palette : {COOLWARM, GREY, IRON, RAINBOW, INFERNO}) {
+    for (int i = 0; i < 1000; ++i) {
+      const Rgb8 a = PaletteColour(palette, i / 1000.0);
+      const Rgb8 b = PaletteColour(palette, (i + 1) / 1000.0);
+      EXPECT_LE(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), kLargestStep)
+          << PaletteName(palette) << " " << i;
+    }
+  }
+}
+
+TEST(PaletteTest, IsFoundByItsNameInAnyCase) {
+  for (const Palette palette : {COOLWARM, GREY, IRON, RAINBOW, INFERNO}) {
+    EXPECT_EQ(PaletteFromName(PaletteName(palette)), palette);
+  }
+  EXPECT_EQ(PaletteFromName("Inferno"), INFERNO);
+  EXPECT_EQ(PaletteName(COOLWARM), "coolwarm");
+  EXPECT_FALSE(PaletteFromName("jet"));
 }
 
 TEST(ColourTableTest, EndsStandForEverythingOutside) {

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
-#include <vector>
 
 #include "common/base/check.h"
-#include "common/frame/frame.h"
-#include "ground/ground_options.pb.h"
-#include "ground/renderer/legend.h"
+#include "common/base/log.h"
 
 namespace isotherm {
 namespace {
@@ -18,6 +16,15 @@ constexpr Rgb8 kAcceptableColour{255, 255, 0};
 constexpr Rgb8 kBadColour{255, 0, 0};
 constexpr Rgb8 kNeverMeasuredClassColour{0, 0, 0};
 constexpr Rgb8 kGeometryColour{224, 226, 230};
+// Coverage: what is done recedes, what is missing shines.
+constexpr Rgb8 kMeasuredWellColour{186, 192, 196};
+constexpr Rgb8 kMeasuredAcceptablyColour{120, 140, 150};
+constexpr Rgb8 kOnlyBadlyColour{255, 150, 0};
+constexpr Rgb8 kMissingColour{255, 0, 200};
+// A dark edge of this width on both sides keeps isotherms visible on light colours.
+constexpr double kCasingPx = 1.0;
+constexpr Rgb8 kCasingColour{16, 18, 22};
+constexpr double kCasingOpacity = 0.6;
 
 /// Algorithm 7, line 12.
 Rgb8 Shaded(Rgb8 colour, double brightness) {
@@ -25,6 +32,20 @@ Rgb8 Shaded(Rgb8 colour, double brightness) {
     return static_cast<std::uint8_t>(std::lround(value * brightness));
   };
   return {scaled(colour.r), scaled(colour.g), scaled(colour.b)};
+}
+
+Rgb8 Mixed(Rgb8 from, Rgb8 to, double share) {
+  const auto mix = [share](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround(a + share * (b - a)));
+  };
+  return {mix(from.r, to.r), mix(from.g, to.g), mix(from.b, to.b)};
+}
+
+/// Without its colour, as bright as before (luma of ITU-R BT.601).
+Rgb8 Greyed(Rgb8 colour) {
+  const auto value = static_cast<std::uint8_t>(
+      std::lround(0.299 * colour.r + 0.587 * colour.g + 0.114 * colour.b));
+  return {value, value, value};
 }
 
 Rgb8 ClassColour(std::uint8_t condition) {
@@ -52,128 +73,239 @@ RgbImage DrawSurface(const ViewMaps& view, const Function& colour) {
   return picture;
 }
 
-std::string Percent(std::size_t part, std::size_t whole) {
-  if (whole == 0) return "";
-  return fmt::format("{:.0f} % of view",
-                     100.0 * static_cast<double>(part) / static_cast<double>(whole));
+/// Fills in the legend's shares by counting the rows' colours among those that `colour(x, y)`
+/// gives.
+template <typename Function>
+void CountShares(const ViewMaps& view, const Function& colour, ClassLegend& legend) {
+  std::vector<std::size_t> counts(legend.rows.size(), 0);
+  std::size_t all = 0;
+  for (int y = 0; y < view.height(); ++y) {
+    for (int x = 0; x < view.width(); ++x) {
+      if (!view.HasSurface(x, y)) continue;
+      ++all;
+      const Rgb8 pixel = colour(x, y);
+      for (std::size_t i = 0; i < counts.size(); ++i) {
+        if (legend.rows[i].colour == pixel) ++counts[i];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < counts.size() && all > 0; ++i) {
+    legend.rows[i].share = fmt::format(
+        "{:.0f} % of view", 100.0 * static_cast<double>(counts[i]) / static_cast<double>(all));
+  }
+}
+
+void DrawLine(const Image<float>& cover, Rgb8 colour, double opacity, RgbImage& picture) {
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      const double share = opacity * static_cast<double>(cover.At(x, y));
+      if (share > 0.0) picture.At(x, y) = Mixed(picture.At(x, y), colour, share);
+    }
+  }
+}
+
+ClassLegend LegendOfClasses(std::string title, std::string good, std::string acceptable,
+                            std::string bad) {
+  return {std::move(title),
+          {{kGoodColour, "good", std::move(good), ""},
+           {kAcceptableColour, "acceptable", std::move(acceptable), ""},
+           {kBadColour, "bad", std::move(bad), ""},
+           {kNeverMeasuredClassColour, "not measured", "", ""}}};
+}
+
+std::string BandName(const TemperatureBand& band, const DisplayUnit& unit) {
+  const auto written = [&](double celsius) { return fmt::format("{:.4g}", unit.Of(celsius)); };
+  if (std::isinf(band.from_celsius))
+    return fmt::format("up to {} {}", written(band.to_celsius), unit.name);
+  if (std::isinf(band.to_celsius))
+    return fmt::format("from {} {}", written(band.from_celsius), unit.name);
+  return fmt::format("{} to {} {}", written(band.from_celsius), written(band.to_celsius),
+                     unit.name);
+}
+
+Status CheckRange(const char* low_name, double low, const char* high_name, double high) {
+  if (std::isfinite(low) && std::isfinite(high) && low < high) return OkStatus();
+  return InvalidArgument(fmt::format("renderer.{} ({}) must be a number below renderer.{} ({})",
+                                     low_name, low, high_name, high));
 }
 
 }  // namespace
 
-/// Words of one class layer's legend.
-struct Renderer::Layer {
-  std::string title, good, acceptable, bad;
-};
-
 Status Validate(const RendererOptions& options) {
-  const double min = options.scale_min_celsius();
-  const double max = options.scale_max_celsius();
-  if (!std::isfinite(min) || !std::isfinite(max) || min >= max) {
+  ISOTHERM_RETURN_IF_ERROR(CheckRange("scale_min_celsius", options.scale_min_celsius(),
+                                      "scale_max_celsius", options.scale_max_celsius()));
+  ISOTHERM_RETURN_IF_ERROR(CheckRange("percentile_low", options.percentile_low(), "percentile_high",
+                                      options.percentile_high()));
+  if (options.percentile_low() < 0.0 || options.percentile_high() > 100.0) {
     return InvalidArgument(fmt::format(
-        "renderer.scale_min_celsius ({}) must be a number below renderer.scale_max_celsius ({})",
-        min, max));
+        "renderer.percentile_low ({}) and renderer.percentile_high ({}) must be 0..100 %",
+        options.percentile_low(), options.percentile_high()));
   }
+  constexpr double kWidest = 50.0;
+  if (!(options.isotherm_width_px() > 0.0 && options.isotherm_width_px() <= kWidest)) {
+    return InvalidArgument(
+        fmt::format("renderer.isotherm_width_px is {}, must be above 0 and at most {} px",
+                    options.isotherm_width_px(), kWidest));
+  }
+  constexpr double kSmoothest = 10.0;
+  if (!(options.isotherm_smoothing_px() >= 0.0 && options.isotherm_smoothing_px() <= kSmoothest)) {
+    return InvalidArgument(fmt::format("renderer.isotherm_smoothing_px is {}, must be 0..{} px",
+                                       options.isotherm_smoothing_px(), kSmoothest));
+  }
+  if (const auto lines = ParseIsotherms(options.isotherms()); !lines)
+    return lines.error().WithContext("renderer.isotherms");
+  if (const auto bands = ParseBands(options.bands()); !bands)
+    return bands.error().WithContext("renderer.bands");
   return OkStatus();
 }
 
 Renderer::Renderer(const RendererOptions& options, const ThermalOptions& thermal)
-    : options_(std::make_unique<RendererOptions>(options)), colours_(options) {
-  const auto metres = [](double from, double to) { return fmt::format("{:g}-{:g} m", from, to); };
-  const auto degrees = [](double from, double to) {
-    return fmt::format("{:g}-{:g}\u00B0", from, to);
-  };
-  distance_ = std::make_unique<Layer>(
-      Layer{"measurement distance", metres(thermal.distance_min_m(), thermal.distance_good_m()),
-            metres(thermal.distance_good_m(), thermal.distance_max_m()),
-            fmt::format("< {:g} or > {:g} m", thermal.distance_min_m(), thermal.distance_max_m())});
-  const std::string too_frontal =
-      thermal.angle_min_deg() > 0.0 ? fmt::format("< {:g}\u00B0 or ", thermal.angle_min_deg()) : "";
-  angle_ = std::make_unique<Layer>(
-      Layer{"emission angle", degrees(thermal.angle_min_deg(), thermal.angle_good_deg()),
-            degrees(thermal.angle_good_deg(), thermal.angle_max_deg()),
-            too_frontal + fmt::format("> {:g}\u00B0", thermal.angle_max_deg())});
+    : options_(options), thermal_(thermal), colours_(options) {
+  auto lines = ParseIsotherms(options.isotherms());
+  auto bands = ParseBands(options.bands());
+  CHECK(lines && bands);
+  lines_ = std::move(*lines);
+  bands_ = std::move(*bands);
+  if (options.palette() == GREY && options.shading()) {
+    LOG(Renderer, Warning) << "palette grey with shading: brightness stands for temperature and "
+                              "for the angle to the viewer; renderer.shading=false removes the "
+                              "latter";
+  }
 }
-
-Renderer::~Renderer() = default;
-Renderer::Renderer(Renderer&&) noexcept = default;
 
 std::optional<TemperatureScale> Renderer::ScaleFor(const ViewMaps& view) const {
-  return ChooseScale(*options_, Summarize(view.celsius.pixels()));
+  return ChooseScale(options_, view.celsius.pixels());
 }
 
-RgbImage Renderer::Thermal(const ViewMaps& view,
-                           const std::optional<TemperatureScale>& scale) const {
-  const bool shading = options_->shading();
-  const RgbImage picture = DrawSurface(view, [&](int x, int y) {
+RgbImage Renderer::Draw(RenderLayer layer, const ViewMaps& view,
+                        const std::optional<TemperatureScale>& scale,
+                        const ContourField* contours) const {
+  switch (layer) {
+    case RenderLayer::kThermal:
+      return Thermal(view, scale, contours);
+    case RenderLayer::kDistance:
+      return Distance(view);
+    case RenderLayer::kAngle:
+      return Angle(view);
+    case RenderLayer::kCoverage:
+      return Coverage(view);
+    case RenderLayer::kGeometry:
+      break;
+  }
+  return Geometry(view);
+}
+
+Rgb8 Renderer::ColourOf(double celsius, const TemperatureScale& scale) const {
+  const Rgb8 colour = colours_.At(scale.Share(celsius));
+  bool highlights = false;
+  for (const TemperatureBand& band : bands_) {
+    if (band.Contains(celsius)) return band.colour.value_or(colour);
+    highlights = highlights || !band.colour;
+  }
+  return highlights ? Greyed(colour) : colour;
+}
+
+ScaleLegend Renderer::ThermalLegend(const std::optional<TemperatureScale>& scale,
+                                    bool with_lines) const {
+  ScaleLegend legend;
+  legend.title = "apparent temperature";
+  legend.scale = scale;
+  legend.rule = "scale: " + ScaleRuleName(options_);
+  legend.unit = DisplayUnitOf(options_.unit());
+  if (options_.palette() == GREY && options_.shading()) {
+    legend.notes = {"grey: shading darkens", "too, do not read values"};
+  }
+  if (!scale) return legend;
+  for (const TemperatureBand& band : bands_) {
+    const double middle = std::isinf(band.from_celsius) ? band.to_celsius
+                          : std::isinf(band.to_celsius)
+                              ? band.from_celsius
+                              : (band.from_celsius + band.to_celsius) / 2.0;
+    legend.rows.push_back({ColourOf(middle, *scale), BandName(band, legend.unit), "", ""});
+  }
+  if (!with_lines) return legend;
+  for (const IsothermLine& line : lines_) {
+    legend.marks.push_back({line.celsius, line.colour});
+    legend.rows.push_back(
+        {line.colour, fmt::format("line {:.4g} {}", legend.unit.Of(line.celsius), legend.unit.name),
+         "", ""});
+  }
+  return legend;
+}
+
+RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<TemperatureScale>& scale,
+                           const ContourField* contours) const {
+  const bool shading = options_.shading();
+  RgbImage picture = DrawSurface(view, [&](int x, int y) {
     const double cos_view = shading ? view.cos_view.At(x, y) : 1.0;
     const double celsius = view.celsius.At(x, y);
     if (std::isnan(celsius) || !scale) return NeverMeasuredColour(x, y, cos_view);
-    return Shaded(colours_.At(scale->Share(celsius)), cos_view);
+    return Shaded(ColourOf(celsius, *scale), cos_view);
   });
-  if (!options_->legend()) return picture;
-  return WithLegend(picture,
-                    {"apparent temperature", scale, "scale: " + ScaleRuleName(*options_), true},
-                    colours_);
+  if (contours != nullptr) {
+    for (const IsothermLine& line : lines_) {
+      const double width = options_.isotherm_width_px();
+      DrawLine(IsothermCover(*contours, line.celsius, width + 2.0 * kCasingPx), kCasingColour,
+               kCasingOpacity, picture);
+      DrawLine(IsothermCover(*contours, line.celsius, width), line.colour, 1.0, picture);
+    }
+  }
+  if (!options_.legend()) return picture;
+  return WithLegend(picture, ThermalLegend(scale, contours != nullptr),
+                    [&](double celsius) { return ColourOf(celsius, *scale); });
 }
 
 RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& classes,
-                           const Layer& layer) const {
-  const bool shading = options_->shading();
-  std::size_t good = 0, acceptable = 0, bad = 0, never = 0;
+                           const ClassLegend& legend) const {
+  const auto colour = [&](int x, int y) { return ClassColour(classes.At(x, y)); };
   const RgbImage picture = DrawSurface(view, [&](int x, int y) {
-    const Rgb8 colour = ClassColour(classes.At(x, y));
-    ++(colour == kGoodColour         ? good
-       : colour == kAcceptableColour ? acceptable
-       : colour == kBadColour        ? bad
-                                     : never);
-    return Shaded(colour, shading ? view.cos_view.At(x, y) : 1.0);
+    return Shaded(colour(x, y), options_.shading() ? view.cos_view.At(x, y) : 1.0);
   });
-  if (!options_->legend()) return picture;
-  const std::size_t all = good + acceptable + bad + never;
-  return WithLegend(picture,
-                    {layer.title,
-                     {{kGoodColour, "good", layer.good, Percent(good, all)},
-                      {kAcceptableColour, "acceptable", layer.acceptable, Percent(acceptable, all)},
-                      {kBadColour, "bad", layer.bad, Percent(bad, all)},
-                      {kNeverMeasuredClassColour, "not measured", "", Percent(never, all)}}});
+  if (!options_.legend()) return picture;
+  ClassLegend counted = legend;
+  CountShares(view, colour, counted);
+  return WithLegend(picture, counted);
 }
 
 RgbImage Renderer::Distance(const ViewMaps& view) const {
-  return Classes(view, view.distance_class, *distance_);
+  const double min = thermal_.distance_min_m(), good = thermal_.distance_good_m(),
+               max = thermal_.distance_max_m();
+  return Classes(view, view.distance_class,
+                 LegendOfClasses("measurement distance", fmt::format("{:g}-{:g} m", min, good),
+                                 fmt::format("{:g}-{:g} m", good, max),
+                                 fmt::format("< {:g} or > {:g} m", min, max)));
 }
 
 RgbImage Renderer::Angle(const ViewMaps& view) const {
-  return Classes(view, view.angle_class, *angle_);
+  const double min = thermal_.angle_min_deg(), good = thermal_.angle_good_deg(),
+               max = thermal_.angle_max_deg();
+  const std::string too_frontal = min > 0.0 ? fmt::format("< {:g}\u00B0 or ", min) : "";
+  return Classes(view, view.angle_class,
+                 LegendOfClasses("emission angle", fmt::format("{:g}-{:g}\u00B0", min, good),
+                                 fmt::format("{:g}-{:g}\u00B0", good, max),
+                                 too_frontal + fmt::format("> {:g}\u00B0", max)));
+}
+
+RgbImage Renderer::Coverage(const ViewMaps& view) const {
+  ClassLegend legend{"coverage",
+                     {{kMeasuredWellColour, "measured well", "", ""},
+                      {kMeasuredAcceptablyColour, "acceptable", "", ""},
+                      {kOnlyBadlyColour, "only badly", "measure again", ""},
+                      {kMissingColour, "not measured", "only seen by depth", ""}}};
+  const auto colour = [&](int x, int y) {
+    return legend.rows[static_cast<std::size_t>(QualityAt(view, x, y))].colour;
+  };
+  const RgbImage picture = DrawSurface(view, [&](int x, int y) {
+    return Shaded(colour(x, y), options_.shading() ? view.cos_view.At(x, y) : 1.0);
+  });
+  if (!options_.legend()) return picture;
+  CountShares(view, colour, legend);
+  return WithLegend(picture, legend);
 }
 
 RgbImage Renderer::Geometry(const ViewMaps& view) const {
   return DrawSurface(view,
                      [&](int x, int y) { return Shaded(kGeometryColour, view.cos_view.At(x, y)); });
-}
-
-RgbImage RenderThermalFrame(const Image<std::uint16_t>& centikelvin,
-                            const RendererOptions& options) {
-  std::vector<float> celsius;
-  celsius.reserve(centikelvin.size());
-  bool all_measured = true;
-  for (const std::uint16_t raw : centikelvin.pixels()) {
-    celsius.push_back(raw == 0 ? kUnknownCelsius : CentikelvinToCelsius(raw));
-    all_measured = all_measured && raw != 0;
-  }
-  const ColourTable colours(options);
-  const std::optional<TemperatureScale> scale = ChooseScale(options, Summarize(celsius));
-  RgbImage picture(centikelvin.width(), centikelvin.height());
-  std::size_t i = 0;
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x, ++i) {
-      picture.At(x, y) = std::isnan(celsius[i]) || !scale ? NeverMeasuredColour(x, y, 1.0)
-                                                          : colours.At(scale->Share(celsius[i]));
-    }
-  }
-  if (!options.legend()) return picture;
-  return WithLegend(
-      picture, {"apparent temperature", scale, "scale: " + ScaleRuleName(options), !all_measured},
-      colours);
 }
 
 }  // namespace isotherm

@@ -98,6 +98,104 @@ TEST(RendererTest, ClassLayersUseTheThesisColours) {
   EXPECT_EQ(renderer.Angle(view).At(0, 0), (Rgb8{255, 0, 0}));
 }
 
+TEST(RendererTest, CoverageShowsWhatIsMissing) {
+  ViewMaps view = EmptyView(6, 1);
+  const std::uint8_t classes[][2] = {{kGood, kGood},
+                                     {kGood, kAcceptable},
+                                     {kGood, kBad},
+                                     {kAcceptable, kAcceptable},
+                                     {kNeverMeasured, kNeverMeasured}};
+  for (int x = 0; x < 5; ++x) {
+    view.distance_class.At(x, 0) = classes[x][0];
+    view.angle_class.At(x, 0) = classes[x][1];
+    view.cos_view.At(x, 0) = 1.0F;
+  }
+  EXPECT_EQ(QualityAt(view, 0, 0), MeasurementQuality::kGood);
+  EXPECT_EQ(QualityAt(view, 1, 0), MeasurementQuality::kAcceptable);
+  EXPECT_EQ(QualityAt(view, 2, 0), MeasurementQuality::kBad);
+  EXPECT_EQ(QualityAt(view, 3, 0), MeasurementQuality::kAcceptable);
+  EXPECT_EQ(QualityAt(view, 4, 0), MeasurementQuality::kNever);
+  const RgbImage picture = MakeRenderer(FixedScale(false)).Coverage(view);
+  EXPECT_EQ(picture.At(2, 0), (Rgb8{255, 150, 0}));
+  EXPECT_EQ(picture.At(4, 0), (Rgb8{255, 0, 200}));
+  EXPECT_EQ(picture.At(1, 0), picture.At(3, 0));
+  EXPECT_EQ(picture.At(5, 0), kBackground);
+  for (const int x : {0, 1}) {  // Recedes: no hue to speak of.
+    EXPECT_LE(picture.At(x, 0).b - picture.At(x, 0).r, 30);
+  }
+}
+
+TEST(RendererTest, EveryLayerCanBeDrawnByItsName) {
+  ViewMaps view = EmptyView(8, 8);
+  view.cos_view.At(4, 4) = 1.0F;
+  const Renderer renderer = MakeRenderer(FixedScale(false));
+  std::set<std::string_view> names;
+  for (const RenderLayer layer : AllLayers()) {
+    names.insert(LayerName(layer));
+    EXPECT_EQ(LayerFromName(LayerName(layer)), layer);
+    const RgbImage picture = renderer.Draw(layer, view, std::nullopt);
+    EXPECT_NE(picture.At(4, 4), kBackground) << LayerName(layer);
+  }
+  EXPECT_EQ(names.size(), AllLayers().size());
+  EXPECT_FALSE(LayerFromName("heat"));
+}
+
+TEST(RendererTest, BandsPaintOrTakeColourFromTheRest) {
+  ViewMaps view = EmptyView(4, 1);
+  const float celsius[] = {30.0F, 60.0F, 80.0F, 99.0F};
+  for (int x = 0; x < 4; ++x) {
+    view.celsius.At(x, 0) = celsius[x];
+    view.cos_view.At(x, 0) = 1.0F;
+  }
+  RendererOptions options = FixedScale(false);
+  const RgbImage plain = MakeRenderer(options).Thermal(view);
+  options.set_bands("75..85#12ab34");
+  const RgbImage painted = MakeRenderer(options).Thermal(view);
+  EXPECT_EQ(painted.At(2, 0), (Rgb8{0x12, 0xab, 0x34}));
+  for (const int x : {0, 1, 3}) EXPECT_EQ(painted.At(x, 0), plain.At(x, 0));
+  options.set_bands("75..85#12ab34, 90..");
+  const RgbImage highlighted = MakeRenderer(options).Thermal(view);
+  EXPECT_EQ(highlighted.At(2, 0), (Rgb8{0x12, 0xab, 0x34}));
+  EXPECT_EQ(highlighted.At(3, 0), plain.At(3, 0));
+  const Rgb8 grey = highlighted.At(0, 0);
+  EXPECT_TRUE(grey.r == grey.g && grey.g == grey.b);
+  EXPECT_NE(plain.At(0, 0).r, plain.At(0, 0).b);
+}
+
+/// Whether the panel to the right of column `left` looks different in two pictures, per row.
+std::size_t DifferingPixels(const RgbImage& a, const RgbImage& b, int left) {
+  std::size_t count = 0;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = left; x < a.width(); ++x) count += a.At(x, y) == b.At(x, y) ? 0 : 1;
+  }
+  return count;
+}
+
+TEST(RendererTest, UnitChangesTheLegendOnly) {
+  ViewMaps view = EmptyView(64, 480);
+  view.celsius.At(3, 4) = 60.0F;
+  view.cos_view.At(3, 4) = 1.0F;
+  RendererOptions options = FixedScale(true);
+  const RgbImage celsius = MakeRenderer(options).Thermal(view);
+  for (const TemperatureUnit unit : {FAHRENHEIT, KELVIN}) {
+    options.set_unit(unit);
+    const RgbImage other = MakeRenderer(options).Thermal(view);
+    ASSERT_EQ(other.width(), celsius.width());
+    EXPECT_EQ(other.At(3, 4), celsius.At(3, 4));
+    EXPECT_GT(DifferingPixels(celsius, other, 64), 50U);
+  }
+}
+
+TEST(RendererTest, ShadedGreyWarnsInTheLegend) {
+  const ViewMaps view = EmptyView(64, 480);
+  RendererOptions options = FixedScale(true);
+  options.set_palette(GREY);
+  const RgbImage shaded = MakeRenderer(options).Thermal(view);
+  options.set_shading(false);
+  const RgbImage flat = MakeRenderer(options).Thermal(view);
+  EXPECT_GT(DifferingPixels(shaded, flat, 64), 50U);
+}
+
 TEST(RendererTest, GeometryIsGreyAndShaded) {
   ViewMaps view = EmptyView(2, 1);
   view.cos_view.At(0, 0) = 0.5F;
@@ -195,17 +293,6 @@ TEST(SampleViewTest, ReadsTemperatureClassesAngleAndDistanceFromTheModel) {
   EXPECT_TRUE(view.HasSurface(2, 0));
   EXPECT_EQ(view.angle_class.At(2, 0), kNeverMeasured);
   EXPECT_FALSE(view.HasSurface(3, 0));
-}
-
-TEST(RenderThermalFrameTest, ShowsRawCentikelvinInThePalette) {
-  Image<std::uint16_t> frame(3, 1);
-  frame.At(0, 0) = 29315;  // 20.00 degC.
-  frame.At(1, 0) = 33315;  // 60.00 degC.
-  frame.At(2, 0) = 0;      // No value.
-  const RgbImage picture = RenderThermalFrame(frame, FixedScale(false));
-  EXPECT_EQ(picture.At(0, 0), (Rgb8{59, 76, 192}));
-  EXPECT_EQ(picture.At(1, 0), (Rgb8{221, 221, 221}));
-  EXPECT_EQ(picture.At(2, 0), NeverMeasuredColour(2, 0, 1.0));
 }
 
 TEST(EncodePngTest, WritesThePngSignatureAndRefusesAnEmptyPicture) {

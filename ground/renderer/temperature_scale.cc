@@ -1,9 +1,15 @@
 #include "ground/renderer/temperature_scale.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
 
 #include "ground/ground_options.pb.h"
+#include "ground/renderer/temperature_unit.h"
 
 namespace isotherm {
 namespace {
@@ -33,8 +39,24 @@ TemperatureStatistics Summarize(std::span<const float> celsius) {
   return result;
 }
 
+std::optional<double> Percentile(std::span<const float> values, double percent) {
+  std::vector<float> sorted;
+  sorted.reserve(values.size());
+  std::ranges::copy_if(values, std::back_inserter(sorted), [](float v) { return !std::isnan(v); });
+  if (sorted.empty()) return std::nullopt;
+  const double rank =
+      std::clamp(percent, 0.0, 100.0) / 100.0 * static_cast<double>(sorted.size() - 1);
+  const auto lower = sorted.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::ranges::nth_element(sorted, lower);
+  const double value = *lower;
+  if (lower + 1 == sorted.end()) return value;
+  const double next = *std::min_element(lower + 1, sorted.end());
+  return value + (rank - std::floor(rank)) * (next - value);
+}
+
 std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
-                                            const TemperatureStatistics& statistics) {
+                                            std::span<const float> celsius) {
+  const TemperatureStatistics statistics = Summarize(celsius);
   TemperatureScale scale;
   if (options.scale() == FIXED) {
     scale.min_celsius = options.scale_min_celsius();
@@ -43,7 +65,10 @@ std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
     if (statistics.count == 0) return std::nullopt;
     scale.min_celsius = statistics.min_celsius;
     scale.max_celsius = statistics.max_celsius;
-    if (options.scale() != MIN_MAX) {
+    if (options.scale() == PERCENTILE) {
+      scale.min_celsius = *Percentile(celsius, options.percentile_low());
+      scale.max_celsius = *Percentile(celsius, options.percentile_high());
+    } else if (options.scale() != MIN_MAX) {
       const double reach = (options.scale() == ONE_SIGMA ? 1.0 : 3.0) * statistics.sigma_kelvin;
       scale.min_celsius = std::max(scale.min_celsius, statistics.mean_celsius - reach);
       scale.max_celsius = std::min(scale.max_celsius, statistics.mean_celsius + reach);
@@ -69,8 +94,44 @@ std::string ScaleRuleName(const RendererOptions& options) {
       return "3 sigma";
     case FIXED:
       return "fixed";
+    case PERCENTILE:
+      return fmt::format("{:g} to {:g} %", options.percentile_low(), options.percentile_high());
   }
   return "";
+}
+
+Status ParseScale(std::string_view text, RendererOptions& options) {
+  constexpr std::pair<std::string_view, ScaleRule> kRules[] = {{"min-max", MIN_MAX},
+                                                               {"1-sigma", ONE_SIGMA},
+                                                               {"3-sigma", THREE_SIGMA},
+                                                               {"percentile", PERCENTILE}};
+  for (const auto& [name, rule] : kRules) {
+    if (text != name) continue;
+    options.set_scale(rule);
+    return OkStatus();
+  }
+  const std::size_t dots = text.find("..");
+  if (dots == std::string_view::npos) {
+    return InvalidArgument(
+        fmt::format("'{}' is no scale: min-max, 1-sigma, 3-sigma, percentile, 2..98% or, for fixed "
+                    "temperatures, 20..100",
+                    text));
+  }
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  const Result<double> low = ParseCelsius(text.substr(0, dots));
+  const Result<double> high = ParseCelsius(text.substr(dots + 2));
+  if (!low) return low.error();
+  if (!high) return high.error();
+  options.set_scale(percent ? PERCENTILE : FIXED);
+  if (percent) {
+    options.set_percentile_low(*low);
+    options.set_percentile_high(*high);
+  } else {
+    options.set_scale_min_celsius(*low);
+    options.set_scale_max_celsius(*high);
+  }
+  return OkStatus();
 }
 
 }  // namespace isotherm

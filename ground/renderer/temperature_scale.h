@@ -4,6 +4,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+
+#include "common/base/status.h"
 
 namespace isotherm {
 
@@ -32,13 +35,22 @@ struct TemperatureScale {
   }
 };
 
-/// Applies the scale rule: the extremes, or mean +- 1 or 3 standard deviations but never wider than
-/// the extremes, or the fixed limits. At least 0.1 K wide. nullopt: no temperature to derive it
-/// from.
+/// Applies the scale rule to temperatures in °C, of which NaN is left out: the extremes, or mean +-
+/// 1 or 3 standard deviations but never wider than the extremes, or two percentiles, or the fixed
+/// limits. At least 0.1 K wide. nullopt: no temperature to derive it from.
 std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
-                                            const TemperatureStatistics& statistics);
+                                            std::span<const float> celsius);
+
+/// The value below which `percent` of the values lie, interpolated between neighbours in order (R.
+/// Hyndman and Y. Fan, "Sample quantiles in statistical packages", 1996, definition 7). NaN is left
+/// out; nullopt: nothing else is there.
+std::optional<double> Percentile(std::span<const float> values, double percent);
 
 /// The scale rule in words for a legend or a header, e.g. "3 sigma".
 std::string ScaleRuleName(const RendererOptions& options);
+
+/// Sets the scale by one text: "min-max", "1-sigma", "3-sigma", "percentile", "2..98%"
+/// (percentiles) or "20..100" (fixed limits as in ParseCelsius).
+Status ParseScale(std::string_view text, RendererOptions& options);
 
 }  // namespace isotherm

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "ground/ground_options.pb.h"
@@ -42,7 +44,7 @@ TEST(TemperatureStatisticsTest, AgreesWithTheClosedFormAndLeavesOutNan) {
 }
 
 TEST(TemperatureScaleTest, MinMaxSpansTheExtremes) {
-  const auto scale = ChooseScale(Options(MIN_MAX), Summarize(Ramp()));
+  const auto scale = ChooseScale(Options(MIN_MAX), Ramp());
   ASSERT_TRUE(scale);
   EXPECT_EQ(scale->min_celsius, 1.0);
   EXPECT_EQ(scale->max_celsius, 101.0);
@@ -51,7 +53,7 @@ TEST(TemperatureScaleTest, MinMaxSpansTheExtremes) {
 }
 
 TEST(TemperatureScaleTest, OneSigmaReachesOneSigma) {
-  const auto scale = ChooseScale(Options(ONE_SIGMA), Summarize(Ramp()));
+  const auto scale = ChooseScale(Options(ONE_SIGMA), Ramp());
   ASSERT_TRUE(scale);
   EXPECT_NEAR(scale->min_celsius, 51.0 - kRampSigma, kExact);
   EXPECT_NEAR(scale->max_celsius, 51.0 + kRampSigma, kExact);
@@ -61,7 +63,7 @@ TEST(TemperatureScaleTest, OneSigmaReachesOneSigma) {
 TEST(TemperatureScaleTest, ThreeSigmaCutsOutliersButIsNeverWiderThanTheExtremes) {
   std::vector<float> celsius(999, 20.0F);
   celsius.push_back(1020.0F);  // Mean 21, sigma = sqrt(0.001 * 0.999) * 1000 = 31.6.
-  const auto scale = ChooseScale(Options(THREE_SIGMA), Summarize(celsius));
+  const auto scale = ChooseScale(Options(THREE_SIGMA), celsius);
   ASSERT_TRUE(scale);
   EXPECT_EQ(scale->min_celsius, 20.0);
   EXPECT_NEAR(scale->max_celsius, 21.0 + 3.0 * 1000.0 * std::sqrt(0.001 * 0.999), 1e-6);
@@ -81,10 +83,87 @@ TEST(TemperatureScaleTest, IsNothingYetWithoutTemperatures) {
 }
 
 TEST(TemperatureScaleTest, UniformTemperatureIsInTheMiddle) {
-  const auto scale = ChooseScale(Options(MIN_MAX), Summarize(std::vector<float>(5, 40.0F)));
+  const auto scale = ChooseScale(Options(MIN_MAX), std::vector<float>(5, 40.0F));
   ASSERT_TRUE(scale);
   EXPECT_NEAR(scale->Share(40.0), 0.5, kExact);
   EXPECT_NEAR(scale->max_celsius - scale->min_celsius, 0.1, kExact);
+}
+
+TEST(PercentileTest, IsExactOnARamp) {
+  // 1..101: the p-th percentile is 1 + p. In any order, and with NaN in between.
+  std::vector<float> values = Ramp();
+  std::mt19937 random(7);
+  std::shuffle(values.begin(), values.end(), random);
+  for (const double percent : {0.0, 2.0, 2.5, 50.0, 97.75, 100.0}) {
+    EXPECT_NEAR(*Percentile(values, percent), 1.0 + percent, kExact) << percent;
+  }
+  EXPECT_EQ(*Percentile(std::vector<float>{4.0F}, 30.0), 4.0);
+  EXPECT_NEAR(*Percentile(std::vector<float>{10.0F, 0.0F}, 25.0), 2.5, kExact);
+  EXPECT_FALSE(Percentile(std::vector<float>(3, NAN), 50.0));
+}
+
+TEST(TemperatureScaleTest, PercentilesCutBothEnds) {
+  RendererOptions options = Options(PERCENTILE);
+  options.set_percentile_low(10);
+  options.set_percentile_high(75);
+  const auto scale = ChooseScale(options, Ramp());
+  ASSERT_TRUE(scale);
+  EXPECT_NEAR(scale->min_celsius, 11.0, kExact);
+  EXPECT_NEAR(scale->max_celsius, 76.0, kExact);
+  EXPECT_TRUE(scale->values_below && scale->values_above);
+  EXPECT_EQ(ScaleRuleName(options), "10 to 75 %");
+}
+
+TEST(ParseScaleTest, OneTextSetsRuleAndLimits) {
+  RendererOptions options;
+  ASSERT_TRUE(ParseScale("1-sigma", options).ok());
+  EXPECT_EQ(options.scale(), ONE_SIGMA);
+  ASSERT_TRUE(ParseScale("-20..68F", options).ok());
+  EXPECT_EQ(options.scale(), FIXED);
+  EXPECT_EQ(options.scale_min_celsius(), -20.0);
+  EXPECT_NEAR(options.scale_max_celsius(), 20.0, kExact);
+  ASSERT_TRUE(ParseScale("5..99.5%", options).ok());
+  EXPECT_EQ(options.scale(), PERCENTILE);
+  EXPECT_EQ(options.percentile_low(), 5.0);
+  EXPECT_EQ(options.percentile_high(), 99.5);
+  for (const char* wrong : {"", "wide", "20", "20..", "a..b"}) {
+    EXPECT_EQ(ParseScale(wrong, options).code(), StatusCode::kInvalidArgument) << wrong;
+  }
+}
+
+TEST(DisplayUnitTest, ConvertsAsDefined) {
+  EXPECT_EQ(DisplayUnitOf(CELSIUS).Of(36.6), 36.6);
+  EXPECT_NEAR(DisplayUnitOf(FAHRENHEIT).Of(100.0), 212.0, kExact);
+  EXPECT_NEAR(DisplayUnitOf(FAHRENHEIT).Of(-40.0), -40.0, kExact);
+  EXPECT_NEAR(DisplayUnitOf(KELVIN).Of(0.0), 273.15, kExact);
+  EXPECT_EQ(DisplayUnitOf(KELVIN).name, "K");
+}
+
+TEST(ParseCelsiusTest, TakesUnitsAndRefusesWhatIsNoTemperature) {
+  EXPECT_EQ(*ParseCelsius(" 60 "), 60.0);
+  EXPECT_EQ(*ParseCelsius("-12.5C"), -12.5);
+  EXPECT_NEAR(*ParseCelsius("212 F"), 100.0, kExact);
+  EXPECT_NEAR(*ParseCelsius("373.15K"), 100.0, kExact);
+  for (const char* wrong : {"", "F", "hot", "1 2", "12Q", "inf", "nan", "-274", "-1K", "-460F"}) {
+    EXPECT_FALSE(ParseCelsius(wrong)) << wrong;
+  }
+}
+
+TEST(RendererOptionsTest, EachNewOptionIsChecked) {
+  const auto refused = [](auto set, const char* field) {
+    RendererOptions options;
+    set(options);
+    const Status status = Validate(options);
+    EXPECT_EQ(status.code(), StatusCode::kInvalidArgument) << field;
+    EXPECT_NE(status.message().find(field), std::string::npos) << status.message();
+  };
+  refused([](auto& o) { o.set_percentile_low(98); }, "percentile_low");
+  refused([](auto& o) { o.set_percentile_low(-1); }, "percentile_low");
+  refused([](auto& o) { o.set_percentile_high(101); }, "percentile_high");
+  refused([](auto& o) { o.set_isotherm_width_px(0); }, "isotherm_width_px");
+  refused([](auto& o) { o.set_isotherm_smoothing_px(-0.1); }, "isotherm_smoothing_px");
+  refused([](auto& o) { o.set_isotherms("60, warm"); }, "isotherms");
+  refused([](auto& o) { o.set_bands("80..60"); }, "bands");
 }
 
 TEST(RendererOptionsTest, DefaultsAreValidAndLimitsMustBeInOrder) {

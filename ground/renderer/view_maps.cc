@@ -1,5 +1,6 @@
 #include "ground/renderer/view_maps.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/concurrency/thread_pool.h"
@@ -38,6 +39,18 @@ void ViewMaps::Resize(int width, int height) {
   angle_class.Resize(width, height);
   cos_view.Resize(width, height);
   distance_m.Resize(width, height);
+}
+
+MeasurementQuality QualityAt(const ViewMaps& view, int x, int y) {
+  auto worst = MeasurementQuality::kGood;
+  for (const std::uint8_t condition : {view.distance_class.At(x, y), view.angle_class.At(x, y)}) {
+    if (condition == kNeverMeasured) return MeasurementQuality::kNever;
+    const auto as = static_cast<ConditionClass>(condition);
+    worst = std::max(worst, as == ConditionClass::kGood         ? MeasurementQuality::kGood
+                            : as == ConditionClass::kAcceptable ? MeasurementQuality::kAcceptable
+                                                                : MeasurementQuality::kBad);
+  }
+  return worst;
 }
 
 void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,

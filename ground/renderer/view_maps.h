@@ -28,6 +28,13 @@ struct ViewMaps {
   bool HasSurface(int x, int y) const { return cos_view.At(x, y) == cos_view.At(x, y); }
 };
 
+/// How well what a pixel shows has been measured, by all conditions together; in the order of what
+/// is left to do.
+enum class MeasurementQuality : std::uint8_t { kGood, kAcceptable, kBad, kNever };
+
+/// Of a pixel with a surface: good if all classes are, bad if one is.
+MeasurementQuality QualityAt(const ViewMaps& view, int x, int y);
+
 /// Looks up the surface in the thermal volume (algorithms 7-9, lines 4-7 and 9-10). `maps` in
 /// `world`; `viewer_world` is where the ray-casting camera stood, metres. Rows in parallel; the
 /// result does not depend on the number of threads.

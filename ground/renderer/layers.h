@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace isotherm {
+
+/// What a picture shows on the surface of the model.
+enum class RenderLayer : std::uint8_t {
+  kThermal,   ///< Palette colour of the apparent temperature (algorithm 7).
+  kDistance,  ///< Class of the measurement distance (algorithm 8).
+  kAngle,     ///< Class of the emission angle (algorithm 9).
+  kCoverage,  ///< Seen by depth, but never measured well.
+  kGeometry,  ///< The surface only.
+};
+
+/// In the order in which they are explained and written.
+std::span<const RenderLayer> AllLayers();
+
+/// As in options and file names: "thermal".
+std::string_view LayerName(RenderLayer layer);
+
+std::optional<RenderLayer> LayerFromName(std::string_view name);
+
+}  // namespace isotherm
