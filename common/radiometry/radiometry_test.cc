@@ -3,10 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <iostream>
 #include <numbers>
 #include <random>
+
+#include "common/radiometry/fresnel_for_test.h"
 
 namespace isotherm {
 namespace {
@@ -98,24 +99,13 @@ TEST(BandRadianceTest, OutsideTheRangeIsNan) {
   EXPECT_TRUE(std::isnan(band.CelsiusFromRadiance(-1.0)));
 }
 
-/// Textbook amplitudes with a complex index (Born and Wolf), nothing in common with B.2's real
-/// arithmetic.
-double ComplexFresnel(double theta, std::complex<double> index) {
-  const double cosine = std::cos(theta);
-  const std::complex<double> transmitted =
-      std::sqrt(index * index - std::sin(theta) * std::sin(theta));
-  const auto r_s = (cosine - transmitted) / (cosine + transmitted);
-  const auto r_p = (index * index * cosine - transmitted) / (index * index * cosine + transmitted);
-  return (std::norm(r_s) + std::norm(r_p)) / 2.0;
-}
-
 TEST(FresnelTest, AgreesWithTheComplexAmplitudes) {
   for (const double n : {0.2, 1.0, 1.5, 2.4, 14.0}) {
     for (const double kappa : {0.0, 0.1, 1.7, 60.0}) {
       for (double degrees = 0.0; degrees < 90.0; degrees += 0.7) {
         if (n < 1.0 && kappa == 0.0) continue;  // Total reflection: no real surface.
         EXPECT_NEAR(FresnelReflectivity(degrees * kDegree, n, kappa),
-                    ComplexFresnel(degrees * kDegree, {n, kappa}), 1e-10)
+                    testing::ComplexFresnel(degrees * kDegree, {n, kappa}), 1e-10)
             << n << " " << kappa << " " << degrees;
       }
     }

@@ -20,6 +20,7 @@ constexpr const char* kFooter =
   isotherm inspect scan.mcap                        what is in it
   isotherm reconstruct scan.mcap -o out             the 3D thermogram: out/cloud.ply, out/mesh.ply, ...
   isotherm evaluate out --groundtruth poses.txt     how far it is from the truth
+  isotherm limits --material paint --tolerance 2%   from where a surface can be measured
 `isotherm COMMAND --help` explains each of them.
 
 Exit status:
@@ -45,6 +46,7 @@ int Main(int argc, char** argv) {
   AddReconstructCommand(app, body);
   AddEvaluateCommand(app, body);
   AddSimulateCommand(app, body);
+  AddLimitsCommand(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -76,7 +76,7 @@ TEST_F(ToolTest, HelpTeachesAndVersionNamesTheProgram) {
   EXPECT_EQ(Run("").out, help.out);
   EXPECT_THAT(Run("--version").out, HasSubstr("isotherm 0."));
   for (const std::string name :
-       {"demo", "import", "inspect", "reconstruct", "evaluate", "simulate"}) {
+       {"demo", "import", "inspect", "reconstruct", "evaluate", "simulate", "limits"}) {
     EXPECT_THAT(help.out, HasSubstr(name));
     const Outcome each = Run(name + " --help");
     EXPECT_EQ(each.status, 0);
@@ -162,6 +162,30 @@ TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
                                   HasSubstr("\"good\"")));
   EXPECT_THAT(Run("evaluate out --groundtruth scan.mcap").out, HasSubstr("rigidly aligned"));
   EXPECT_EQ(Run("evaluate out --groundtruth scan.mcap --emissivity 0.9").status, kUsage);
+}
+
+TEST_F(ToolTest, LimitsComeAsOptionsOrAsOneSentence) {
+  const Outcome angles = Run("limits --material aluminium-oxidised --tolerance 2%");
+  EXPECT_EQ(angles.status, 0) << angles.err;
+  EXPECT_THAT(angles.out, AllOf(HasSubstr("--set thermal.angle_max_deg="), HasSubstr("thermal {")));
+  const Outcome distances =
+      Run("limits --focal-length 10mm --f-number 1 --focus 0.5m --pitch 25um --detail 2mm");
+  EXPECT_EQ(distances.status, 0) << distances.err;
+  EXPECT_THAT(distances.out, HasSubstr("--set thermal.distance_min_m=0.446"));
+  EXPECT_THAT(Run("limits --list").out, HasSubstr("firebrick"));
+
+  const Outcome unknown = Run("limits --material aluminum");
+  EXPECT_EQ(unknown.status, kUsage);
+  EXPECT_THAT(unknown.err,
+              AllOf(HasSubstr("no material 'aluminum'"), HasSubstr("Did you mean 'aluminium'?")));
+  const Outcome blurred =
+      Run("limits --focal-length 10mm --f-number 1 --focus 0.5m --pitch 25um --detail 1mm");
+  EXPECT_EQ(blurred.status, kData);
+  EXPECT_THAT(blurred.err, HasSubstr("contradict each other"));
+  EXPECT_EQ(Run("limits --material paint --tolerance 2").status, kUsage);
+  EXPECT_EQ(Run("limits --material paint --good-tolerance 5% --tolerance 1%").status, kUsage);
+  EXPECT_EQ(Run("limits --near 0.9m --far 0.3m").status, kUsage);
+  EXPECT_EQ(Run("limits").status, kUsage);
 }
 
 TEST_F(ToolTest, F44TornRecordingIsInspectedUpToItsLastGoodPart) {

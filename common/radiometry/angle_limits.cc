@@ -1,0 +1,95 @@
+#include "common/radiometry/angle_limits.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace isotherm {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// NaN (no temperature fits) is beyond every tolerance.
+bool Within(const EmissionError& error, const ErrorTolerance& tolerance) {
+  return std::abs(tolerance.in_kelvin ? error.kelvin : error.relative) <= tolerance.value;
+}
+
+}  // namespace
+
+EmissionCurve::EmissionCurve(std::span<const IndexSample> material, const SpectralBand& band,
+                             const EmissionConditions& conditions)
+    : conditions_(conditions),
+      emissivity_(material, band, conditions.object_celsius),
+      radiance_(band),
+      along_normal_(emissivity_.At(0.0)) {}
+
+EmissionError EmissionCurve::ErrorOf(double emissivity, double reflected_radiance) const {
+  const double object = radiance_.RadianceFromCelsius(conditions_.object_celsius);
+  const double assumed = radiance_.RadianceFromCelsius(conditions_.reflected_celsius);
+  // (3.1) forward with what is there, and back with what is assumed.
+  const double seen = emissivity * object + (1.0 - emissivity) * reflected_radiance;
+  const double interpreted = (seen - (1.0 - along_normal_) * assumed) / along_normal_;
+  EmissionError error{};
+  error.emissivity = emissivity;
+  error.relative = (interpreted - object) / (object - assumed);
+  error.kelvin = radiance_.CelsiusFromRadiance(interpreted) - conditions_.object_celsius;
+  return error;
+}
+
+EmissionError EmissionCurve::At(double angle_rad) const {
+  EmissionError error = ErrorOf(emissivity_.At(angle_rad),
+                                radiance_.RadianceFromCelsius(conditions_.reflected_celsius));
+  // The same as above, and defined for an object as warm as its surroundings.
+  error.relative = error.emissivity / along_normal_ - 1.0;
+  return error;
+}
+
+EmissionError EmissionCurve::WithOperatorMirrored() const {
+  return ErrorOf(along_normal_, radiance_.RadianceFromCelsius(conditions_.operator_celsius));
+}
+
+double EmissionCurve::LargestAngle(const ErrorTolerance& tolerance) const {
+  constexpr double kStepDeg = 0.1;
+  constexpr double kLastDeg = 89.9;
+  double within_deg = 0.0;
+  for (int i = 1; i * kStepDeg <= kLastDeg; ++i) {
+    if (!Within(At(i * kStepDeg * kDegree), tolerance)) break;
+    within_deg = i * kStepDeg;
+  }
+  return within_deg * kDegree;
+}
+
+Result<AngleLimits> EmissionCurve::Limits(const ErrorTolerance& good,
+                                          const ErrorTolerance& acceptable) const {
+  for (const ErrorTolerance& tolerance : {good, acceptable}) {
+    if (!(tolerance.value > 0.0 && std::isfinite(tolerance.value))) {
+      return Err(InvalidArgument(
+          fmt::format("the tolerated error must be positive, got {}", tolerance.value)));
+    }
+  }
+  AngleLimits limits{0.0, LargestAngle(good), LargestAngle(acceptable)};
+  if (limits.good_rad > limits.max_rad) {
+    return Err(InvalidArgument(
+        fmt::format("the limits contradict each other: the error of a good angle (up to {:.1f} "
+                    "degrees) must be at most that of an acceptable one (up to {:.1f} degrees)",
+                    limits.good_rad / kDegree, limits.max_rad / kDegree)));
+  }
+  if (!Within(WithOperatorMirrored(), good)) {
+    limits.min_rad = OperatorMirrorAngle(conditions_.operator_half_width_m, conditions_.distance_m);
+  }
+  if (limits.min_rad >= limits.good_rad) {
+    return Err(FailedPrecondition(fmt::format(
+        "the limits contradict each other: the operator is mirrored below {:.1f} degrees, and the "
+        "error is too large for a good angle above {:.1f} degrees; tolerate a larger error, or go "
+        "farther away",
+        limits.min_rad / kDegree, limits.good_rad / kDegree)));
+  }
+  return limits;
+}
+
+double OperatorMirrorAngle(double half_width_m, double distance_m) {
+  return std::atan2(half_width_m, distance_m) / 2.0;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,81 @@
+#include "ground/cli/limits_report.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <numbers>
+
+#include "common/config/text_proto.h"
+#include "common/radiometry/materials.h"
+#include "ground/ground_options.pb.h"
+#include "ground/thermal/thermal_fuser.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+LimitOptions SomeLimits() {
+  LimitOptions limits;
+  limits.angle = AngleLimits{15.41 * kDegree, 41.29 * kDegree, 55.0 * kDegree};
+  limits.distance_min_m = 0.4452;
+  limits.distance_good_m = 0.5339;
+  limits.distance_max_m = 0.57;
+  return limits;
+}
+
+TEST(LimitsReportTest, SnippetIsAConfigurationThatValidates) {
+  const std::string text = DescribeOptions(SomeLimits());
+  GroundOptions options;
+  const Status parsed = ParseTextProto(text.substr(text.find("thermal {")), "limits", options);
+  ASSERT_TRUE(parsed.ok()) << parsed.message();
+  EXPECT_TRUE(Validate(options.thermal()).ok());
+  // Cut to the safe side.
+  EXPECT_EQ(options.thermal().angle_min_deg(), 15.5);
+  EXPECT_EQ(options.thermal().angle_good_deg(), 41.2);
+  EXPECT_EQ(options.thermal().angle_max_deg(), 55.0);
+  EXPECT_EQ(options.thermal().distance_min_m(), 0.446);
+  EXPECT_EQ(options.thermal().distance_good_m(), 0.533);
+  EXPECT_EQ(options.thermal().distance_max_m(), 0.57);
+}
+
+TEST(LimitsReportTest, OverridesSayTheSame) {
+  std::string text = DescribeOptions(SomeLimits());
+  GroundOptions options;
+  const std::string_view kSet = "--set ";
+  std::size_t place = 0;
+  int count = 0;
+  while ((place = text.find(kSet, place)) != std::string::npos) {
+    place += kSet.size();
+    ASSERT_TRUE(
+        ApplyOverride(text.substr(place, text.find_first_of(" \n", place) - place), options).ok());
+    ++count;
+  }
+  EXPECT_EQ(count, 6);
+  EXPECT_EQ(options.thermal().distance_good_m(), 0.533);
+}
+
+TEST(LimitsReportTest, WhatIsUnknownIsLeftOut) {
+  LimitOptions limits;
+  EXPECT_EQ(DescribeOptions(limits), "");
+  limits.distance_max_m = 2.0;
+  const std::string text = DescribeOptions(limits);
+  EXPECT_NE(text.find("distance_max_m: 2.000"), std::string::npos);
+  EXPECT_EQ(text.find("angle"), std::string::npos);
+  EXPECT_EQ(text.find("distance_min_m"), std::string::npos);
+}
+
+TEST(LimitsReportTest, EveryMaterialIsDocumented) {
+  std::ifstream file(ISOTHERM_SOURCE_DIR "/docs/materials.md");
+  const std::string document{std::istreambuf_iterator<char>(file), {}};
+  const std::string list = ListMaterials({});
+  for (const OpticalMaterial& material : OpticalMaterials()) {
+    EXPECT_NE(document.find("`" + std::string(material.name) + "`"), std::string::npos)
+        << material.name;
+    EXPECT_NE(list.find(material.name), std::string::npos) << material.name;
+  }
+}
+
+}  // namespace
+}  // namespace isotherm
