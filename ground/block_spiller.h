@@ -22,6 +22,12 @@ class BlockSpiller {
   /// Gives back what is too much; a few system calls every few frames.
   void Trim(const TsdfVolume& tsdf, const ThermalVolume& thermal);
 
+  /// For other volumes, of which nothing is in memory yet.
+  void Restart() {
+    parts_.clear();
+    resident_parts_ = 0;
+  }
+
   std::int64_t resident_blocks() const { return resident_parts_ * kBlocksPerPart; }
   /// Blocks that were given back, counted each time.
   std::uint64_t spilled() const { return spilled_; }

@@ -1,5 +1,7 @@
 #include "ground/ground_pipeline.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
@@ -39,8 +41,9 @@ Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
     const GroundOptions& options, const Rig& rig, std::optional<RigidTransform> initial_pose) {
   for (const Status& status :
        {Validate(options.volume()), Validate(options.preprocessor()), Validate(options.tracker()),
-        Validate(options.relocaliser()), Validate(options.tsdf(), options.volume()),
-        Validate(options.raycast()), Validate(options.thermal())}) {
+        Validate(options.relocaliser()), Validate(options.submaps()),
+        Validate(options.tsdf(), options.volume()), Validate(options.raycast()),
+        Validate(options.thermal())}) {
     if (!status.ok()) return Err(status);
   }
   if (Status status = Validate(rig); !status.ok())
@@ -73,36 +76,42 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       tracker_(options, rig.depth->WithoutDistortion()),
       integrator_(options.tsdf()),
       gate_(options.tsdf()),
+      atlas_(options, rig.depth->WithoutDistortion(), grid),
+      loop_closer_(options, atlas_, tracker_),
       spiller_(MaxResidentBlocks(options.volume(), grid)) {
-  const std::int32_t max_blocks = MaxBlocks(options.volume(), grid);
-  tsdf_ = std::make_unique<TsdfVolume>(grid, options.tsdf().truncation_distance_m(), max_blocks,
-                                       options.volume().spill_dir());
-  thermal_ = std::make_unique<ThermalVolume>(max_blocks, options.volume().spill_dir());
   if (thermal_status_.ok())
     fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
                                             static_cast<float>(options.raycast().min_weight()));
 }
 
 Status GroundPipeline::Continue(const ModelFile& model) {
-  CHECK(tsdf_->block_count() == 0);
+  SubMap& map = atlas_.active();
+  CHECK(map.tsdf->block_count() == 0);
   if (Status status = model.CheckRig(rig_); !status.ok()) return status;
-  if (!thermal_->Back(std::min(tsdf_->max_blocks(), model.block_count())))
+  if (!map.thermal->Back(std::min(map.tsdf->max_blocks(), model.block_count())))
     return ResourceExhausted("no room for the model in volume.spill_dir");
-  if (Status status = model.ReadBlocks(*tsdf_, *thermal_); !status.ok()) return status;
-  if (tsdf_->block_count() == 0) return OkStatus();
-  for (const RigidTransform& pose : model.known_poses()) tracker_.Remember(pose);
+  if (Status status = model.ReadBlocks(*map.tsdf, *map.thermal); !status.ok()) return status;
+  if (map.tsdf->block_count() == 0) return OkStatus();
+  for (const RigidTransform& pose : model.known_poses()) map.relocaliser->Remember(pose);
+  map.anchors = model.known_poses();
   tracker_.BeginLost();
   gate_.EndBootstrap();
   return OkStatus();
 }
 
-Status GroundPipeline::Save(const std::filesystem::path& path) const {
-  return SaveModel(path, *tsdf_, *thermal_, rig_, tracker_.relocaliser().library().poses());
+Status GroundPipeline::Save(const std::filesystem::path& path, int index) const {
+  const SubMap& map = atlas_.map(index);
+  return SaveModel(path, *map.tsdf, *map.thermal, rig_, map.relocaliser->library().poses());
+}
+
+std::optional<RigidTransform> GroundPipeline::ToWorld(const RigidTransform& T_map_depth) const {
+  if (!atlas_.active().joined) return std::nullopt;
+  return atlas_.active().T_world_map * T_map_depth;
 }
 
 RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
-  if (initial_pose_) return *initial_pose_;
-  return PoseFacingCentre(tsdf_->grid(), depth.depth_m);
+  if (initial_pose_ && atlas_.size() == 1) return *initial_pose_;
+  return PoseFacingCentre(tsdf().grid(), depth.depth_m);
 }
 
 bool GroundPipeline::IsRepeated(const DepthFrame& frame) {
@@ -113,20 +122,57 @@ bool GroundPipeline::IsRepeated(const DepthFrame& frame) {
 }
 
 TrackingResult GroundPipeline::Track(const PreparedDepth& depth, CaptureTime time) {
-  if (tsdf_->block_count() == 0) return tracker_.Begin(depth, time, InitialPose(depth));
+  if (tsdf().block_count() == 0) return tracker_.Begin(depth, time, InitialPose(depth));
   const bool lost = tracker_.state() == RigTracker::State::kLost;
   const StageTimer timer(stage_stats_[lost ? "relocalise" : "track"]);
-  return tracker_.Track(depth, time, *tsdf_, pool_);
+  if (!lost) searched_ = atlas_.active_index();
+  TrackingResult result =
+      tracker_.Track(depth, time, atlas_.active(), atlas_.map(searched_), pool_);
+  if (tracker_.found_elsewhere()) {
+    Activate(searched_);
+  } else if (lost) {
+    searched_ = (searched_ + 1) % atlas_.size();
+  }
+  if (result.tracked()) {
+    lost_since_.reset();
+  } else if (!lost_since_) {
+    lost_since_ = time;
+  } else if (BeginElsewhere(depth, time)) {
+    return tracker_.Begin(depth, time, InitialPose(depth));
+  }
+  return result;
+}
+
+bool GroundPipeline::BeginElsewhere(const PreparedDepth& depth, CaptureTime time) {
+  const double limit_s = options_.submaps().start_after_lost_s();
+  // A hand before the camera is no place to begin at.
+  constexpr int kFewestPixels = 10 * kMinTrackedPixels;
+  if (limit_s <= 0.0 || ToSeconds(time - *lost_since_) < limit_s ||
+      depth.valid_pixels < kFewestPixels || !atlas_.BeginElsewhere()) {
+    return false;
+  }
+  LOG(Ground, Warning) << fmt::format(
+      "lost for {:.1f} s: the scan goes on in sub-map {}, which is joined when the rig sees both",
+      ToSeconds(time - *lost_since_), atlas_.size());
+  lost_since_.reset();
+  spiller_.Restart();
+  gate_.Restart();
+  return true;
+}
+
+void GroundPipeline::Activate(int index) {
+  atlas_.Activate(index);
+  spiller_.Restart();
 }
 
 void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
   const StageTimer timer(stage_stats_["raycast"]);
-  tracker_.LookFrom(T_world_depth, *tsdf_, gate_.bootstrapping(), pool_);
+  tracker_.LookFrom(T_world_depth, tsdf(), gate_.bootstrapping(), pool_);
 }
 
 SurfaceMaps GroundPipeline::CastFullView() {
   SurfaceMaps maps;
-  Raycaster().Cast(*tsdf_, rig_.depth->WithoutDistortion(), view().T_world_depth,
+  Raycaster().Cast(tsdf(), rig_.depth->WithoutDistortion(), view().T_world_depth,
                    static_cast<float>(options_.raycast().min_weight()), pool_, maps);
   return maps;
 }
@@ -139,18 +185,21 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
 
 bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
   const StageTimer timer(stage_stats_["integrate"]);
-  integrator_.Integrate(depth, T_world_depth, pool_, *tsdf_);
-  has_room_ = thermal_->Back(tsdf_->block_count());
+  SubMap& map = atlas_.active();
+  integrator_.Integrate(depth, T_world_depth, pool_, *map.tsdf);
+  has_room_ = map.thermal->Back(map.tsdf->block_count());
+  ++map.integrated;
+  if (map.anchors.empty()) map.anchors.push_back(T_world_depth);
   spiller_.Touch(integrator_.updated_blocks());
   const std::uint64_t before = spiller_.spilled();
-  spiller_.Trim(*tsdf_, *thermal_);
+  spiller_.Trim(*map.tsdf, *map.thermal);
   if (before == 0 && spiller_.spilled() > 0) {
     LOG(Ground, Info)
         << "the model has outgrown volume.max_memory_bytes: what is far from the view "
            "goes to "
         << options_.volume().spill_dir();
   }
-  return tsdf_->block_count() > 0;
+  return map.tsdf->block_count() > 0;
 }
 
 DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
@@ -193,7 +242,7 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
     return report;
   }
   // The first surface decides whether there is anything to track against.
-  const bool is_first = tsdf_->block_count() == 0;
+  const bool is_first = tsdf().block_count() == 0;
   if (is_first && !Integrate(*depth, T_world_depth)) {
     ++counts_.depth_lost["outside_volume"];
     tracker_.Forget();
@@ -211,13 +260,15 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
       gate_.Accepts(before ? std::optional(before->T_world_depth) : std::nullopt, T_world_depth);
   if (report.integrated && !is_first) Integrate(*depth, T_world_depth);
   counts_.depth_integrated += report.integrated ? 1 : 0;
-  UpdateView(T_world_depth);
-  if (report.integrated && report.tracking.verdict() == Verdict::kTracked)
-    tracker_.Remember(T_world_depth);
-  trajectory_.insert(trajectory_.end(), unconfirmed_.begin(), unconfirmed_.end());
+  for (const StampedPose& pose : unconfirmed_) AddToTrajectory(pose);
   unconfirmed_.clear();
-  trajectory_.push_back({time, T_world_depth});
-  trajectory_sigmas_.resize(trajectory_.size(), LargestSigma(uncertainty().covariance()));
+  AddToTrajectory({time, T_world_depth});
+  if (report.integrated && report.tracking.verdict() == Verdict::kTracked) {
+    atlas_.active().relocaliser->Remember(T_world_depth);
+    KeepSubMaps(*depth, T_world_depth);
+    report.tracking.T_world_depth = tracker_.motion().last()->T_world_depth;
+  }
+  UpdateView(report.tracking.T_world_depth);
   return report;
 }
 
@@ -238,6 +289,30 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
       waiting_thermal_.pop_front();
       LeaveOut("no_depth");
     }
+  }
+}
+
+void GroundPipeline::AddToTrajectory(const StampedPose& pose) {
+  tracked_.push_back({pose, LargestSigma(uncertainty().covariance()), atlas_.active_index()});
+  if (atlas_.active().joined) AppendToTrajectory(tracked_.back());
+}
+
+void GroundPipeline::AppendToTrajectory(const MapPose& tracked) {
+  const RigidTransform& T_world_map = atlas_.map(tracked.map).T_world_map;
+  trajectory_.push_back({tracked.pose.time, T_world_map * tracked.pose.T_world_depth});
+  trajectory_sigmas_.push_back(tracked.sigma);
+}
+
+void GroundPipeline::KeepSubMaps(const PreparedDepth& depth, const RigidTransform& T_map_depth) {
+  const StageTimer timer(stage_stats_["submaps"]);
+  const LoopCloser::Change change =
+      loop_closer_.Update(depth, T_map_depth, integrator_.updated_blocks(), pool_);
+  if (change.switched) spiller_.Restart();
+  if (!change.linked) return;
+  trajectory_.clear();
+  trajectory_sigmas_.clear();
+  for (const MapPose& tracked : tracked_) {
+    if (atlas_.map(tracked.map).joined) AppendToTrajectory(tracked);
   }
 }
 
@@ -279,15 +354,28 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
         Interpolate(before->T_world_depth, after.T_world_depth, alpha);
     const RigidTransform T_world_thermal =
         T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
-    fuser_->Fuse(*frame, T_world_thermal, view().camera, T_world_depth_at_capture, *tsdf_, pool_,
-                 *thermal_);
+    fuser_->Fuse(*frame, T_world_thermal, view().camera, T_world_depth_at_capture, tsdf(), pool_,
+                 *atlas_.active().thermal);
     ++counts_.thermal_fused;
   }
 }
 
-void GroundPipeline::Finish() {
+void GroundPipeline::Finish(const std::function<void(double)>& progress) {
   for (std::size_t i = 0; i < waiting_thermal_.size(); ++i) LeaveOut("no_depth_after");
   waiting_thermal_.clear();
+  if (atlas_.size() == 1) return;
+  const StageTimer timer(stage_stats_["merge"]);
+  const RigidTransform T_world_map = atlas_.active().T_world_map;
+  const bool joined = atlas_.active().joined;
+  if (!atlas_.Merge(options_.tsdf().max_weight(), pool_, progress)) {
+    LOG(Ground, Warning) << "volume.spill_dir is full: temperatures of some sub-maps are left out";
+  }
+  if (joined) {
+    tracker_.Rebase(T_world_map);
+    UpdateView(view().T_world_depth);
+  } else if (!trajectory_.empty()) {
+    UpdateView(trajectory_.back().T_world_depth);
+  }
 }
 
 }  // namespace isotherm

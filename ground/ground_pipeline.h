@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,8 +15,10 @@
 #include "common/geometry/camera.h"
 #include "common/geometry/pose_covariance.h"
 #include "common/geometry/stamped_pose.h"
+#include "ground/atlas/atlas.h"
 #include "ground/block_spiller.h"
 #include "ground/ground_options.pb.h"
+#include "ground/loop_closer.h"
 #include "ground/model/model_file.h"
 #include "ground/rig_tracker.h"
 #include "ground/thermal/thermal_fuser.h"
@@ -54,7 +57,7 @@ struct DepthReport {
   bool repeated =
       false;  ///< The same picture as before: it says nothing new, and nothing was done.
   bool integrated = false;
-  TrackingResult tracking;
+  TrackingResult tracking;  ///< In the coordinates of the active sub-map.
 };
 
 /// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame
@@ -75,18 +78,25 @@ class GroundPipeline {
   /// pipeline must not be used.
   Status Continue(const ModelFile& model);
   /// Everything that Continue needs.
-  Status Save(const std::filesystem::path& path) const;
+  Status Save(const std::filesystem::path& path) const { return Save(path, 0); }
+  /// The same of a sub-map that was never joined, 1 <= index < atlas().size() after Finish.
+  Status Save(const std::filesystem::path& path, int index) const;
 
   DepthReport ProcessDepth(const DepthFrame& frame);
   /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).
   void ProcessThermal(ThermalFramePtr frame);
   /// For the frames to come, until said otherwise.
   void set_effort(Effort effort) { effort_ = effort; }
-  /// Thermal frames still waiting are counted as left out.
-  void Finish();
+  /// Thermal frames still waiting are counted as left out, and sub-maps become one model, but for
+  /// those that were never joined. `progress` gets a share 0..1.
+  void Finish(const std::function<void(double)>& progress = {});
 
-  const TsdfVolume& tsdf() const { return *tsdf_; }
-  const ThermalVolume& thermal() const { return *thermal_; }
+  /// Of the active sub-map, in its coordinates; the whole model in `world` after Finish.
+  const TsdfVolume& tsdf() const { return *atlas_.active().tsdf; }
+  const ThermalVolume& thermal() const { return *atlas_.active().thermal; }
+  const Atlas& atlas() const { return atlas_; }
+  /// A pose in the active sub-map's coordinates in `world`; nullopt while it is not joined.
+  std::optional<RigidTransform> ToWorld(const RigidTransform& T_map_depth) const;
   /// The model as seen from the last tracked pose; empty maps before the first frame.
   const ModelView& view() const { return tracker_.view(); }
   /// The same at the depth camera's full resolution, cast now.
@@ -94,6 +104,8 @@ class GroundPipeline {
   /// Of the last tracked pose.
   const PoseUncertainty& uncertainty() const { return tracker_.uncertainty(); }
   const RigTracker& tracker() const { return tracker_; }
+  /// In `world`, as far as the sub-maps are joined, and as it is known by now: closing a loop moves
+  /// what came before.
   const std::vector<StampedPose>& trajectory() const { return trajectory_; }
   /// One standard deviation of each pose of the trajectory, relative to the model.
   const std::vector<PoseSigma>& trajectory_sigmas() const { return trajectory_sigmas_; }
@@ -108,6 +120,13 @@ class GroundPipeline {
   ThreadPool& pool() { return pool_; }
 
  private:
+  /// A pose in the coordinates of a sub-map.
+  struct MapPose {
+    StampedPose pose;
+    PoseSigma sigma;
+    int map = 0;
+  };
+
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
                  std::optional<RigidTransform> initial_pose);
 
@@ -115,6 +134,14 @@ class GroundPipeline {
   DepthReport TrackAndIntegrate(const DepthFrame& frame);
   RigidTransform InitialPose(const PreparedDepth& depth) const;
   TrackingResult Track(const PreparedDepth& depth, CaptureTime time);
+  /// Lost for long, with something in view: goes on in a sub-map of its own.
+  bool BeginElsewhere(const PreparedDepth& depth, CaptureTime time);
+  /// Goes on in another sub-map.
+  void Activate(int index);
+  void AddToTrajectory(const StampedPose& pose);
+  void AppendToTrajectory(const MapPose& tracked);
+  /// Closes loops and begins sub-maps; may change the active one, and the tracker's coordinates.
+  void KeepSubMaps(const PreparedDepth& depth, const RigidTransform& T_map_depth);
   bool IsRepeated(const DepthFrame& frame);
   /// False if the model is still empty: nothing of the surface lies in the volume.
   bool Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth);
@@ -133,13 +160,16 @@ class GroundPipeline {
   RigTracker tracker_;
   TsdfIntegrator integrator_;
   IntegrationGate gate_;
-  std::unique_ptr<TsdfVolume> tsdf_;
-  std::unique_ptr<ThermalVolume> thermal_;
+  Atlas atlas_;
+  LoopCloser loop_closer_;
   std::unique_ptr<ThermalFuser> fuser_;
   BlockSpiller spiller_;
   bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
-  std::vector<StampedPose> trajectory_;
+  std::vector<MapPose> tracked_;
+  std::vector<StampedPose> trajectory_;  ///< Of tracked_ what is joined, in world.
   std::vector<PoseSigma> trajectory_sigmas_;
+  std::optional<CaptureTime> lost_since_;
+  int searched_ = 0;                      ///< The sub-map a lost rig is looked for in.
   std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
   Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.
   std::deque<ThermalFramePtr> waiting_thermal_;

@@ -150,7 +150,7 @@ Feedback LiveScan::MakeFeedback() {
                             : tracking.verdict() == Verdict::kDegraded ? TrackingState::kDegraded
                                                                        : TrackingState::kTracked;
   if (newest_report_->tracked) {
-    feedback.T_world_depth = tracking.T_world_depth;
+    feedback.T_world_depth = pipeline_->ToWorld(tracking.T_world_depth);
     feedback.pose_covariance = pipeline_->uncertainty().covariance();
   }
 

@@ -48,7 +48,10 @@ class InlineDriver {
       Report();
     }
     while (const auto frame = assembler_.Flush()) Process(*frame);
-    pipeline_.Finish();
+    pipeline_.Finish([this](double share) {
+      if (request_.progress)
+        request_.progress(kFramesShare + (1.0 - kFramesShare) * share, "putting sub-maps together");
+    });
     return OkStatus();
   }
 

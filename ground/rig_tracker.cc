@@ -27,8 +27,7 @@ RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_ca
     : options_(options.tracker()),
       relocaliser_options_(options.relocaliser()),
       min_weight_(static_cast<float>(options.raycast().min_weight())),
-      tracker_(options.tracker()),
-      relocaliser_(options.relocaliser(), depth_camera) {
+      tracker_(options.tracker()) {
   view_.camera = depth_camera.Downscaled(options.raycast().halvings());
   candidate_.camera = view_.camera;
 }
@@ -38,6 +37,8 @@ TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
   TrackingResult first;
   if (depth.valid_pixels < kMinTrackedPixels) first.lost = LostReason::kTooFewPixels;
   first.T_world_depth = pose;
+  Forget();
+  state_ = State::kFollowing;
   if (first.tracked()) {
     motion_.Add({time, pose});
     Trust(first, time);
@@ -76,8 +77,17 @@ bool RigTracker::IsConvincing(const TrackingResult& result) const {
           result.residual_m <= ResidualLimit(result, kConvincingResidual));
 }
 
-TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolume& volume,
-                                      ThreadPool& pool) {
+TrackingResult RigTracker::Recognise(const PreparedDepth& depth, const RigidTransform& T_map_depth,
+                                     const SubMap& map, ThreadPool& pool) {
+  CastView(T_map_depth, *map.tsdf, pool, candidate_);
+  TrackingResult result =
+      tracker_.Track(depth, candidate_, map.tsdf->grid(), {T_map_depth, T_map_depth}, pool);
+  if (result.tracked() && !IsConvincing(result)) result.lost = LostReason::kNotFound;
+  return result;
+}
+
+TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const SubMap& here,
+                                      const SubMap& searched, ThreadPool& pool) {
   TrackingResult result;
   result.lost = LostReason::kTooFewPixels;
   constexpr int kTurns = 4;
@@ -85,31 +95,32 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const TsdfVolu
   if (looks_back && view_.maps.width() > 0) {
     // Where it was lost: a hand before the camera, or a rig that swings back.
     const RigidTransform& last = view_.T_world_depth;
-    result = tracker_.Track(depth, view_, volume.grid(), {last, last}, pool);
+    result = tracker_.Track(depth, view_, here.tsdf->grid(), {last, last}, pool);
     if (result.tracked() && !IsConvincing(result)) result.lost = LostReason::kNotFound;
     return result;
   }
   if (!relocaliser_options_.enabled() || depth.valid_pixels < kMinTrackedPixels) return result;
   result.lost = LostReason::kNotFound;
-  if (!knows_model_) relocaliser_.Begin(volume, pool);
-  knows_model_ = true;
-  const auto pose = relocaliser_.Find(depth, volume, min_weight_, pool);
+  const auto pose = searched.relocaliser->Find(depth, *searched.tsdf, min_weight_, pool);
   if (!pose) return result;
-  CastView(*pose, volume, pool, candidate_);
-  TrackingResult found = tracker_.Track(depth, candidate_, volume.grid(), {*pose, *pose}, pool);
-  return IsConvincing(found) ? found : result;
+  const TrackingResult found = Recognise(depth, *pose, searched, pool);
+  if (!found.tracked()) return result;
+  found_elsewhere_ = &searched != &here;
+  return found;
 }
 
-TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time,
-                                 const TsdfVolume& volume, ThreadPool& pool) {
+TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, const SubMap& here,
+                                 const SubMap& searched, ThreadPool& pool) {
   TrackingResult result;
+  found_elsewhere_ = false;
   if (state_ == State::kLost) {
-    result = LookAround(depth, volume, pool);
+    result = LookAround(depth, here, searched, pool);
     if (!result.tracked()) return result;
+    if (found_elsewhere_) Forget();
     state_ = State::kConfirming;
     to_confirm_ = relocaliser_options_.confirming_frames();
   } else {
-    result = tracker_.Track(depth, view_, volume.grid(), Predict(time), pool);
+    result = tracker_.Track(depth, view_, here.tsdf->grid(), Predict(time), pool);
     if (result.tracked()) result.lost = FindAnomaly(result);
     if (result.tracked() && state_ == State::kConfirming) {
       --to_confirm_;
@@ -119,7 +130,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time,
   if (!result.tracked()) {
     // What was not confirmed is the wrong place to look back at.
     if (state_ == State::kConfirming && has_trusted_pose_)
-      CastView(trusted_pose_, volume, pool, view_);
+      CastView(trusted_pose_, *here.tsdf, pool, view_);
     state_ = State::kLost;
     lost_frames_ = 0;
     motion_.Clear();
@@ -129,7 +140,6 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time,
   motion_.Add({time, result.T_world_depth});
   if (state_ == State::kConfirming && to_confirm_ <= 0) {
     state_ = State::kFollowing;
-    knows_model_ = false;
     ++relocalisations_;
   }
   if (state_ == State::kFollowing) Trust(result, time);
@@ -160,6 +170,13 @@ void RigTracker::Forget() {
   speed_is_known_ = false;
 }
 
+void RigTracker::Rebase(const RigidTransform& T_new_old) {
+  motion_.Transform(T_new_old);
+  trusted_pose_ = T_new_old * trusted_pose_;
+  view_.T_world_depth = T_new_old * view_.T_world_depth;
+  uncertainty_.Rotate(T_new_old.linear());
+}
+
 void RigTracker::CastView(const RigidTransform& T_world_depth, const TsdfVolume& volume,
                           ThreadPool& pool, ModelView& view) {
   view.T_world_depth = T_world_depth;
@@ -171,10 +188,6 @@ void RigTracker::LookFrom(const RigidTransform& T_world_depth, const TsdfVolume&
                           bool is_young, ThreadPool& pool) {
   CastView(T_world_depth, volume, pool, view_);
   view_.is_young = is_young;
-}
-
-void RigTracker::Remember(const RigidTransform& T_world_depth) {
-  if (relocaliser_options_.enabled()) relocaliser_.Remember(T_world_depth);
 }
 
 }  // namespace isotherm

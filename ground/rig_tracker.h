@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "common/concurrency/thread_pool.h"
+#include "ground/atlas/sub_map.h"
 #include "ground/ground_options.pb.h"
-#include "ground/relocaliser/relocaliser.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tracker/motion_history.h"
 #include "ground/tracker/pose_uncertainty.h"
@@ -14,8 +14,9 @@
 
 namespace isotherm {
 
-/// Where the rig is, frame by frame: follows it against the model, says when it is lost, and looks
-/// for it until it is found again. Never changes the model.
+/// Where the rig is, frame by frame: follows it against a sub-map, says when it is lost, and looks
+/// for it until it is found again. All poses are in the coordinates of the sub-map that is tracked
+/// against. Never changes a sub-map's surface.
 /// Thread-bound.
 class RigTracker {
  public:
@@ -27,14 +28,25 @@ class RigTracker {
 
   RigTracker(const GroundOptions& options, const CameraModel& depth_camera);
 
-  /// The first frame's pose is given, and nothing is tracked against yet.
+  /// The first frame of a sub-map: its pose is given, and nothing is tracked against yet.
   TrackingResult Begin(const PreparedDepth& depth, CaptureTime time, const RigidTransform& pose);
   /// The scan goes on in a model that is there already, from anywhere near a known view.
   void BeginLost() { state_ = State::kLost; }
 
-  /// The pose of the next frame against `volume`.
-  TrackingResult Track(const PreparedDepth& depth, CaptureTime time, const TsdfVolume& volume,
-                       ThreadPool& pool);
+  /// The pose of the next frame against `here`. While lost, the rig is also looked for in
+  /// `searched`, which may be the same; then found_elsewhere() tells whether it was there.
+  TrackingResult Track(const PreparedDepth& depth, CaptureTime time, const SubMap& here,
+                       const SubMap& searched, ThreadPool& pool);
+  /// The last frame was found in `searched`: its pose is in those coordinates, and so must be all
+  /// that comes.
+  bool found_elsewhere() const { return found_elsewhere_; }
+  /// Goes on in another sub-map's coordinates. LookFrom must follow.
+  void Rebase(const RigidTransform& T_new_old);
+
+  /// Whether a frame fits a sub-map near `T_map_depth` as well as frames usually do; the result is
+  /// not tracked if not. Changes nothing.
+  TrackingResult Recognise(const PreparedDepth& depth, const RigidTransform& T_map_depth,
+                           const SubMap& map, ThreadPool& pool);
 
   /// After each tracked frame, with what it changed: the model from its pose, to track against.
   /// `is_young`: the model is little more than one frame's noise.
@@ -42,8 +54,6 @@ class RigTracker {
                 ThreadPool& pool);
   /// The first frame's pose was of no use: as before it.
   void Forget();
-  /// Of a frame that was fused: a view to come back to.
-  void Remember(const RigidTransform& T_world_depth);
 
   State state() const { return state_; }
   /// Times that the rig was found again.
@@ -51,7 +61,6 @@ class RigTracker {
   const ModelView& view() const { return view_; }
   const MotionHistory& motion() const { return motion_; }
   const PoseUncertainty& uncertainty() const { return uncertainty_; }
-  const Relocaliser& relocaliser() const { return relocaliser_; }
 
  private:
   /// What frames usually look like: a frame that differs is not on the right surface.
@@ -66,7 +75,8 @@ class RigTracker {
   LostReason FindAnomaly(const TrackingResult& result) const;
   /// Good enough to believe after having been lost.
   bool IsConvincing(const TrackingResult& result) const;
-  TrackingResult LookAround(const PreparedDepth& depth, const TsdfVolume& volume, ThreadPool& pool);
+  TrackingResult LookAround(const PreparedDepth& depth, const SubMap& here, const SubMap& searched,
+                            ThreadPool& pool);
   /// The largest residual in metres that is this many times the usual one at most.
   double ResidualLimit(const TrackingResult& result, double times_usual) const;
   /// The frame is where it seems to be: learns from it.
@@ -78,7 +88,6 @@ class RigTracker {
   const RelocaliserOptions relocaliser_options_;
   const float min_weight_;
   IcpTracker tracker_;
-  Relocaliser relocaliser_;
   Raycaster raycaster_;
   ModelView view_;
   ModelView candidate_;  ///< The model from a pose where the rig may be.
@@ -92,7 +101,7 @@ class RigTracker {
   bool has_trusted_pose_ = false;
   bool speed_is_known_ = false;  ///< Two frames in a row were fully observed since the last loss.
   int lost_frames_ = 0;          ///< They take turns: back at the last view once, then all around.
-  bool knows_model_ = false;     ///< The relocaliser does, as it is since tracking was lost.
+  bool found_elsewhere_ = false;
   std::uint64_t relocalisations_ = 0;
 };
 

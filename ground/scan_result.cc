@@ -84,6 +84,23 @@ std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t reloca
   return text.empty() ? text : fmt::format("         {}\n", text);
 }
 
+/// Lines on closed loops and on what was not joined, or nothing.
+std::string DescribeSubMaps(const Atlas& atlas) {
+  std::string text;
+  const DriftReport& drift = atlas.drift();
+  if (drift.closures > 0) {
+    text +=
+        fmt::format("drift    {} loops closed, missed by {:.1f} mm at most before it was spread\n",
+                    drift.closures, 1e3 * drift.largest_gap_m);
+  }
+  for (int i = 1; i < atlas.size(); ++i) {
+    text += fmt::format(
+        "         {} frames were fused after a loss, nowhere near the rest: model-{}.iso\n",
+        atlas.map(i).integrated, i + 1);
+  }
+  return text;
+}
+
 }  // namespace
 
 Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig) {
@@ -116,6 +133,12 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   json["stages"] = DescribeStages(pipeline);
   json["threads"] = pipeline.threads();
 
+  Json& drift = json["drift"];
+  drift["loops_closed"] = pipeline.atlas().drift().closures;
+  drift["largest_gap_m"] = pipeline.atlas().drift().largest_gap_m;
+  drift["last_gap_m"] = pipeline.atlas().drift().last_gap_m;
+  drift["last_gap_rad"] = pipeline.atlas().drift().last_gap_rad;
+  drift["maps_never_joined"] = pipeline.atlas().size() - 1;
   const VoxelGrid& grid = pipeline.tsdf().grid();
   Json& volume = json["volume"];
   for (int axis = 0; axis < 3; ++axis) {
@@ -154,7 +177,10 @@ Result<std::string> WriteScan(
   const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
   if (!summary) return Err(summary.error());
   if (options.export_().model()) {
-    if (Status status = pipeline.Save(dir / "model.iso"); !status.ok()) return Err(status);
+    for (int i = 0; i < pipeline.atlas().size(); ++i) {
+      const std::string name = i == 0 ? "model.iso" : fmt::format("model-{}.iso", i + 1);
+      if (Status status = pipeline.Save(dir / name, i); !status.ok()) return Err(status);
+    }
   }
 
   const PipelineCounts& counts = pipeline.counts();
@@ -170,6 +196,7 @@ Result<std::string> WriteScan(
         sigma->translation_mm[0], sigma->rotation_deg[0], sigma->translation_mm[2],
         sigma->rotation_deg[2]);
   }
+  text += DescribeSubMaps(pipeline.atlas());
   text += fmt::format(
       "thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
       counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));

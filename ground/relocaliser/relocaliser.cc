@@ -101,14 +101,14 @@ class Relocaliser::Refinement {
 Relocaliser::Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera)
     : options_(options), camera_(depth_camera), library_(depth_camera, options.max_views()) {}
 
-void Relocaliser::Begin(const TsdfVolume& volume, ThreadPool& pool) {
-  constexpr std::size_t kMaxPoints = 3000;
-  library_.SetCloud(MakeSurfaceCloud(volume, kMaxPoints, pool));
-}
-
 std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
                                                 const TsdfVolume& volume, float min_weight,
                                                 ThreadPool& pool) {
+  if (!knows_model_) {
+    constexpr std::size_t kMaxPoints = 3000;
+    library_.SetCloud(MakeSurfaceCloud(volume, kMaxPoints, pool));
+    knows_model_ = true;
+  }
   Refinement refinement(*this, depth, volume, min_weight, pool);
   Refinement::Fit best;
   for (const PoseGuess& guess :

@@ -20,15 +20,15 @@ class Relocaliser {
  public:
   Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera);
 
-  /// A pose that was tracked well.
-  void Remember(const RigidTransform& T_world_depth) { library_.Add(T_world_depth); }
-
-  /// Must be called once after tracking was lost: what there is to find. Goes through the whole
-  /// model: some ten milliseconds.
-  void Begin(const TsdfVolume& volume, ThreadPool& pool);
+  /// A pose that was tracked well, and fused: the model has changed since it was looked through.
+  void Remember(const RigidTransform& T_world_depth) {
+    library_.Add(T_world_depth);
+    knows_model_ = false;
+  }
 
   /// The pose that explains the frame best, if one explains enough of it. One call takes a few
-  /// milliseconds and looks around some of the known views; the next call goes on with others.
+  /// milliseconds and looks around some of the known views; the next call goes on with others. The
+  /// first call after the model has changed also goes through all of it: some ten milliseconds.
   std::optional<RigidTransform> Find(const PreparedDepth& depth, const TsdfVolume& volume,
                                      float min_weight, ThreadPool& pool);
 
@@ -40,6 +40,7 @@ class Relocaliser {
   const RelocaliserOptions options_;
   const CameraModel camera_;
   ViewLibrary library_;
+  bool knows_model_ = false;  ///< The library has a cloud of the model as it is.
   Raycaster raycaster_;
   ModelView view_;
 };

@@ -288,7 +288,6 @@ TEST_F(RelocaliserTest, FindsAPoseBesideAKnownOne) {
   constexpr double kMaxError = 0.002;  // Metres, for the tracker to go on from.
   constexpr double kMaxAngle = 0.5 * kRadPerDeg;
   relocaliser_.Remember(testing::FirstPose());
-  relocaliser_.Begin(volume_, pool_);
   for (const RigidTransform& truth :
        {Moved({0.03, -0.02, 0.02}, 4.0, -3.0), Moved({-0.04, 0.01, -0.03}, -5.0, 2.0),
         Moved({0.01, 0.04, 0.0}, 0.0, 5.0)}) {
@@ -304,13 +303,11 @@ TEST_F(RelocaliserTest, FindsNothingBeforeItKnowsAViewAndTheModel) {
   EXPECT_FALSE(Find(depth).has_value());
   relocaliser_.Remember(testing::FirstPose());
   EXPECT_FALSE(Find(depth).has_value());
-  relocaliser_.Begin(volume_, pool_);
   EXPECT_TRUE(Find(depth).has_value());
 }
 
 TEST_F(RelocaliserTest, FindsNothingInAnotherScene) {
   relocaliser_.Remember(testing::FirstPose());
-  relocaliser_.Begin(volume_, pool_);
   const auto balls = [](const Eigen::Vector3d& p) {
     return std::min((p - Eigen::Vector3d(0.2, 0.3, 0.3)).norm() - 0.05,
                     (p - Eigen::Vector3d(0.4, 0.2, 0.5)).norm() - 0.08);
@@ -320,7 +317,6 @@ TEST_F(RelocaliserTest, FindsNothingInAnotherScene) {
 
 TEST_F(RelocaliserTest, FindsNothingOfAModelThatIsTooLight) {
   relocaliser_.Remember(testing::FirstPose());
-  relocaliser_.Begin(volume_, pool_);
   const PreparedDepth& depth = Picture(testing::FirstPose());
   EXPECT_TRUE(relocaliser_.Find(depth, volume_, 9.0F, pool_).has_value());
   EXPECT_FALSE(relocaliser_.Find(depth, volume_, 11.0F, pool_).has_value());

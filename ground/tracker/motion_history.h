@@ -13,6 +13,10 @@ class MotionHistory {
   void Add(const StampedPose& pose);
   /// After a lost frame: the motion is not known any more.
   void Clear() { poses_.clear(); }
+  /// To other coordinates: every pose becomes T_new_old * pose.
+  void Transform(const RigidTransform& T_new_old) {
+    for (StampedPose& pose : poses_) pose.T_world_depth = T_new_old * pose.T_world_depth;
+  }
 
   /// The newest pose; nullopt after Clear.
   std::optional<StampedPose> last() const;

@@ -27,4 +27,11 @@ void PoseUncertainty::Update(const TrackingResult& result, double seconds, doubl
   surface_sigma_m_ = std::sqrt(std::max(0.0, solver.eigenvalues()(5)));
 }
 
+void PoseUncertainty::Rotate(const Eigen::Matrix3d& R) {
+  Matrix6 turn = Matrix6::Zero();
+  turn.topLeftCorner<3, 3>() = R;
+  turn.bottomRightCorner<3, 3>() = R;
+  covariance_ = turn * covariance_ * turn.transpose();
+}
+
 }  // namespace isotherm

@@ -14,6 +14,9 @@ class PoseUncertainty {
   /// motion along free directions may be, in metres per second at the scene's depth.
   void Update(const TrackingResult& result, double seconds, double speed_sigma_m_s);
 
+  /// To coordinates whose axes are turned: `R` maps from the old ones.
+  void Rotate(const Eigen::Matrix3d& R);
+
   /// Of T_world_depth: twist (translation, rotation about the camera's position) in `world`, m and
   /// rad.
   const Matrix6& covariance() const { return covariance_; }

@@ -60,6 +60,12 @@ class IntegrationGate {
   std::uint64_t accepted() const { return accepted_; }
   /// The model is good already.
   void EndBootstrap() { bootstrap_ended_ = true; }
+  /// An empty model again.
+  void Restart() {
+    last_integrated_.reset();
+    accepted_ = 0;
+    bootstrap_ended_ = false;
+  }
   /// Whether the model still has to become better than one frame's noise.
   bool bootstrapping() const {
     return !bootstrap_ended_ &&

@@ -89,6 +89,7 @@ TsdfVolume::TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std:
                        const std::filesystem::path& spill_dir)
     : grid_(grid),
       truncation_distance_m_(truncation_distance_m),
+      reserved_blocks_(max_blocks),
       max_blocks_(max_blocks),
       arena_((static_cast<std::size_t>(max_blocks) + 1) * kBlockVoxels * sizeof(TsdfVoxel),
              spill_dir),
@@ -107,7 +108,7 @@ std::int32_t TsdfVolume::FindOrAllocate(const GridIndex& b) {
 std::int32_t TsdfVolume::FindOrAllocateEntry(std::int32_t entry) {
   std::int32_t& block = table_[static_cast<std::size_t>(entry)];
   if (block != kNoBlock) return block;
-  if (block_count() == max_blocks_ ||
+  if (block_count() >= max_blocks_ ||
       !arena_.Back((static_cast<std::size_t>(block_count()) + 2) * kBlockBytes)) {
     ++refused_blocks_;
     return kNoBlock;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -80,6 +81,10 @@ class TsdfVolume {
 
   std::int32_t block_count() const { return static_cast<std::int32_t>(coordinates_.size()); }
   std::int32_t max_blocks() const { return max_blocks_; }
+  /// Lowers the limit, or raises it again up to that of the constructor.
+  void LimitBlocks(std::int32_t max_blocks) {
+    max_blocks_ = std::min(max_blocks, reserved_blocks_);
+  }
   std::uint64_t refused_blocks() const { return refused_blocks_; }
   const GridIndex& block_coordinates(std::int32_t block) const { return coordinates_[block]; }
   bool InGrid(const GridIndex& b) const {
@@ -131,7 +136,8 @@ class TsdfVolume {
 
   const VoxelGrid grid_;
   const double truncation_distance_m_;
-  const std::int32_t max_blocks_;
+  const std::int32_t reserved_blocks_;
+  std::int32_t max_blocks_;
   GrowingArena arena_;
   std::vector<std::int32_t> table_;
   std::vector<GridIndex> coordinates_;

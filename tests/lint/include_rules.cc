@@ -53,6 +53,8 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
       {"ground/tracker", with(kCommon, {"ground", "ground/tsdf/voxel_grid.h"})},
       {"ground/tsdf", with(kCommon, {"ground", "ground/tracker"})},
       {"ground/relocaliser", with(kCommon, {"ground", "ground/tracker", "ground/tsdf"})},
+      {"ground/atlas", with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal",
+                                      "ground/relocaliser"})},
       {"ground/thermal",
        with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/assembler"})},
       {"ground/renderer",

@@ -1,0 +1,204 @@
+#include "ground/atlas/atlas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "ground/atlas/map_merger.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+
+/// How much a tracker drifts over a sub-map, and how well a view is recognised in another one. Only
+/// their ratio matters to how a mismatch is spread.
+constexpr double kDriftM = 0.003;
+constexpr double kDriftRad = 0.004;
+constexpr double kRecognisedM = 0.0003;
+constexpr double kRecognisedRad = 0.0005;
+
+/// A view looks at much the same as one that is nearer than this.
+constexpr double kNearViewM = 0.3;
+constexpr double kNearViewRad = 30.0 * kRadPerDeg;
+
+}  // namespace
+
+Status Validate(const SubMapOptions& o) {
+  if (!(o.max_turn_deg() >= 0.0 && o.max_turn_deg() <= 180.0 && o.max_travel_m() >= 0.0 &&
+        o.start_after_lost_s() >= 0.0)) {
+    return InvalidArgument(fmt::format(
+        "submaps: max_turn_deg must be 0..180 degrees, max_travel_m and start_after_lost_s not "
+        "negative, got {}, {} m and {} s",
+        o.max_turn_deg(), o.max_travel_m(), o.start_after_lost_s()));
+  }
+  if (o.max_maps() < 1 || o.max_maps() > 1000)
+    return InvalidArgument(fmt::format("submaps.max_maps must be 1..1000, got {}", o.max_maps()));
+  return OkStatus();
+}
+
+Atlas::Atlas(const GroundOptions& options, const CameraModel& depth_camera, const VoxelGrid& grid)
+    : options_(options),
+      depth_camera_(depth_camera),
+      grid_(grid),
+      max_blocks_(MaxBlocks(options.volume(), grid)) {
+  maps_.push_back(MakeMap());
+  maps_.front()->joined = true;
+}
+
+std::unique_ptr<SubMap> Atlas::MakeMap() const {
+  const std::int32_t max_blocks = std::max(1, BlocksLeft());
+  const std::string& spill_dir = options_.volume().spill_dir();
+  auto map = std::make_unique<SubMap>();
+  map->tsdf = std::make_unique<TsdfVolume>(grid_, options_.tsdf().truncation_distance_m(),
+                                           max_blocks, spill_dir);
+  map->thermal = std::make_unique<ThermalVolume>(max_blocks, spill_dir);
+  map->relocaliser = std::make_unique<Relocaliser>(options_.relocaliser(), depth_camera_);
+  return map;
+}
+
+std::int32_t Atlas::BlocksLeft() const {
+  // What is spilled takes no memory, and each sub-map has files of its own.
+  if (!options_.volume().spill_dir().empty()) return max_blocks_;
+  std::int32_t left = max_blocks_;
+  for (const auto& map : maps_) left -= map ? map->tsdf->block_count() : 0;
+  return std::max(0, left);
+}
+
+bool Atlas::IsFar(int index, const RigidTransform& T_map_depth) const {
+  const SubMapOptions& limits = options_.submaps();
+  return std::ranges::all_of(map(index).anchors, [&](const RigidTransform& anchor) {
+    return (limits.max_turn_deg() > 0.0 &&
+            RotationAngle(anchor, T_map_depth) > limits.max_turn_deg() * kRadPerDeg) ||
+           (limits.max_travel_m() > 0.0 &&
+            TranslationDistance(anchor, T_map_depth) > limits.max_travel_m());
+  });
+}
+
+bool Atlas::Split(const RigidTransform& T_map_depth, std::span<const std::int32_t> blocks_in_view) {
+  if (size() >= options_.submaps().max_maps()) return false;
+  const int before = active_;
+  std::unique_ptr<SubMap> map = MakeMap();
+  map->T_world_map = active().T_world_map;
+  map->joined = active().joined;
+  map->anchors = {T_map_depth};
+  map->relocaliser->Remember(T_map_depth);
+  const SubMap& from = active();
+  if (!map->thermal->Back(static_cast<std::int32_t>(blocks_in_view.size()))) return false;
+  for (const std::int32_t block : blocks_in_view) {
+    const std::int32_t copy = map->tsdf->FindOrAllocate(from.tsdf->block_coordinates(block));
+    if (copy == TsdfVolume::kNoBlock) return false;
+    std::ranges::copy(from.tsdf->voxels(block), map->tsdf->voxels(copy).begin());
+    std::ranges::copy(from.thermal->voxels(block), map->thermal->voxels(copy).begin());
+    map->tsdf->set_may_end_rays(copy, from.tsdf->may_end_rays(block));
+  }
+  maps_.push_back(std::move(map));
+  links_.push_back({before, size() - 1, T_map_depth, T_map_depth, kDriftM, kDriftRad});
+  Activate(size() - 1);
+  return true;
+}
+
+bool Atlas::BeginElsewhere() {
+  if (size() >= options_.submaps().max_maps()) return false;
+  maps_.push_back(MakeMap());
+  Activate(size() - 1);
+  return true;
+}
+
+void Atlas::Activate(int index) {
+  CHECK(index >= 0 && index < size());
+  active().tsdf->GiveBack(0, active().tsdf->block_count());
+  active().thermal->GiveBack(0, active().tsdf->block_count());
+  active_ = index;
+  active().tsdf->LimitBlocks(active().tsdf->block_count() + BlocksLeft());
+}
+
+std::optional<RigidTransform> Atlas::PoseIn(int index, const RigidTransform& T_active_depth) const {
+  if (!active().joined || !map(index).joined) return std::nullopt;
+  return map(index).T_world_map.inverse() * active().T_world_map * T_active_depth;
+}
+
+bool Atlas::IsLinked(int a, int b) const {
+  return std::ranges::any_of(links_, [&](const MapLink& link) {
+    return (link.a == a && link.b == b) || (link.a == b && link.b == a);
+  });
+}
+
+bool Atlas::IsNearView(int index, const RigidTransform& T_map_depth) const {
+  return std::ranges::any_of(map(index).relocaliser->library().poses(),
+                             [&](const RigidTransform& view) {
+                               return TranslationDistance(view, T_map_depth) < kNearViewM &&
+                                      RotationAngle(view, T_map_depth) < kNearViewRad;
+                             });
+}
+
+std::vector<int> Atlas::ToRecognise(const RigidTransform& T_map_depth) const {
+  std::vector<int> candidates;
+  for (int i = 0; i < size(); ++i) {
+    if (i == active_ || IsLinked(i, active_)) continue;
+    const auto pose = PoseIn(i, T_map_depth);
+    if (!pose || IsNearView(i, *pose)) candidates.push_back(i);
+  }
+  return candidates;
+}
+
+void Atlas::Link(int other, const RigidTransform& T_active_depth,
+                 const RigidTransform& T_other_depth) {
+  const MapLink link{active_, other, T_active_depth, T_other_depth, kRecognisedM, kRecognisedRad};
+  std::vector<RigidTransform> T_world_map;
+  for (const auto& map : maps_) T_world_map.push_back(map->T_world_map);
+  if (active().joined && map(other).joined) {
+    const RigidTransform gap = Mismatch(link, T_world_map[link.a], T_world_map[link.b]);
+    drift_.last_gap_m = gap.translation().norm();
+    drift_.last_gap_rad = RotationAngle(gap, RigidTransform::Identity());
+    drift_.largest_gap_m = std::max(drift_.largest_gap_m, drift_.last_gap_m);
+    ++drift_.closures;
+  }
+  links_.push_back(link);
+  // A first guess for what has had no place so far; the optimiser starts from there.
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const MapLink& known : links_) {
+      SubMap& a = *maps_[known.a];
+      SubMap& b = *maps_[known.b];
+      if (a.joined == b.joined) continue;
+      if (a.joined) {
+        T_world_map[known.b] = T_world_map[known.a] * known.T_a_depth * known.T_b_depth.inverse();
+      } else {
+        T_world_map[known.a] = T_world_map[known.b] * known.T_b_depth * known.T_a_depth.inverse();
+      }
+      a.joined = b.joined = grows = true;
+    }
+  }
+  SpreadMismatch(links_, T_world_map);
+  for (int i = 0; i < size(); ++i) maps_[i]->T_world_map = T_world_map[i];
+}
+
+bool Atlas::Merge(double max_weight, ThreadPool& pool,
+                  const std::function<void(double)>& progress) {
+  bool has_room = true;
+  SubMap& world = *maps_.front();
+  for (int i = 1; i < size(); ++i) {
+    const SubMap& map = *maps_[i];
+    if (!map.joined) continue;
+    world.tsdf->LimitBlocks(world.tsdf->block_count() + BlocksLeft());
+    has_room = MergeVolume({*map.tsdf, *map.thermal, map.T_world_map},
+                           static_cast<float>(max_weight), pool, *world.tsdf, *world.thermal) &&
+               has_room;
+    for (const RigidTransform& pose : map.relocaliser->library().poses())
+      world.relocaliser->Remember(map.T_world_map * pose);
+    world.integrated += map.integrated;
+    maps_[i].reset();
+    // From here on the map's place is empty; it is taken out below.
+    if (progress) progress(static_cast<double>(i) / size());
+  }
+  std::erase(maps_, nullptr);
+  links_.clear();
+  active_ = 0;
+  return has_room;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,144 @@
+#include "ground/atlas/map_merger.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "ground/thermal/thermal_fuser.h"
+
+namespace isotherm {
+namespace {
+
+GridIndex BlockOf(const GridIndex& voxel) {
+  // Rounds down for negative indices too.
+  return voxel.unaryExpr([](int v) { return v >> 3; });
+}
+
+std::size_t OffsetInBlock(const GridIndex& voxel) {
+  return static_cast<std::size_t>((voxel.x() & 7) +
+                                  kBlockSide * ((voxel.y() & 7) + kBlockSide * (voxel.z() & 7)));
+}
+
+struct Sample {
+  float tsdf = 0.0F;
+  float weight = 0.0F;
+};
+
+/// Distance at continuous voxel coordinates; nullopt where a neighbour that counts was never
+/// observed. The weight is the neighbours' smallest.
+std::optional<Sample> SampleDistance(const TsdfVolume& volume, const Eigen::Vector3d& voxel) {
+  const GridIndex low = voxel.array().floor().cast<int>();
+  const Eigen::Vector3d fraction = voxel - low.cast<double>();
+  double tsdf = 0.0;
+  float weight = std::numeric_limits<float>::max();
+  for (int corner = 0; corner < 8; ++corner) {
+    const GridIndex step(corner & 1, (corner >> 1) & 1, corner >> 2);
+    double share = 1.0;
+    for (int axis = 0; axis < 3; ++axis)
+      share *= step[axis] == 1 ? fraction[axis] : 1.0 - fraction[axis];
+    constexpr double kNothing = 1e-6;  // On a voxel's centre but for rounding.
+    if (share < kNothing) continue;
+    const TsdfVoxel neighbour = volume.VoxelAt(low + step);
+    if (!neighbour.observed()) return std::nullopt;
+    tsdf += share * neighbour.tsdf();
+    weight = std::min(weight, neighbour.weight());
+  }
+  return Sample{static_cast<float>(tsdf), weight};
+}
+
+/// Blocks of the target that the source's blocks reach, allocated.
+std::vector<std::int32_t> AllocateReached(const PlacedVolume& source, TsdfVolume& target) {
+  std::vector<std::int32_t> reached;
+  std::vector<bool> known(static_cast<std::size_t>(target.grid().block_count()), false);
+  const VoxelGrid& grid = source.tsdf.grid();
+  for (std::int32_t block = 0; block < source.tsdf.block_count(); ++block) {
+    Eigen::AlignedBox3d box;
+    for (int corner = 0; corner < 8; ++corner) {
+      const GridIndex step(corner & 1, (corner >> 1) & 1, corner >> 2);
+      const GridIndex voxel = (source.tsdf.block_coordinates(block) + step) * kBlockSide - step;
+      box.extend(target.grid().ToVoxel(source.T_target_source * grid.VoxelCentre(voxel)));
+    }
+    // Half a voxel of rounding must not reach for blocks that nothing of the source touches.
+    constexpr double kRounding = 1e-6;
+    const GridIndex first = BlockOf((box.min().array() + kRounding).ceil().cast<int>());
+    const GridIndex last = BlockOf((box.max().array() + kRounding).floor().cast<int>());
+    for (int z = first.z(); z <= last.z(); ++z) {
+      for (int y = first.y(); y <= last.y(); ++y) {
+        for (int x = first.x(); x <= last.x(); ++x) {
+          const GridIndex b(x, y, z);
+          if (!target.InGrid(b)) continue;
+          const auto place = static_cast<std::size_t>(
+              x + target.grid().blocks.x() * (y + std::ptrdiff_t{target.grid().blocks.y()} * z));
+          if (known[place]) continue;
+          known[place] = true;
+          const std::int32_t allocated = target.FindOrAllocate(b);
+          if (allocated != TsdfVolume::kNoBlock) reached.push_back(allocated);
+        }
+      }
+    }
+  }
+  return reached;
+}
+
+GridIndex VoxelOf(const TsdfVolume& volume, std::int32_t block, int i) {
+  return volume.block_coordinates(block) * kBlockSide +
+         GridIndex(i % kBlockSide, i / kBlockSide % kBlockSide, i / (kBlockSide * kBlockSide));
+}
+
+/// Voxels of the thermal volume by their coordinates.
+ThermalVoxel ThermalAt(const PlacedVolume& source, const GridIndex& voxel) {
+  const std::int32_t block = source.tsdf.Find(BlockOf(voxel));
+  return block == TsdfVolume::kNoBlock ? ThermalVoxel()
+                                       : source.thermal.voxels(block)[OffsetInBlock(voxel)];
+}
+
+void MergeDistances(const PlacedVolume& source, float max_weight, std::int32_t block,
+                    TsdfVolume& tsdf) {
+  const RigidTransform T_source_target = source.T_target_source.inverse();
+  const auto voxels = tsdf.voxels(block);
+  for (int i = 0; i < kBlockVoxels; ++i) {
+    const Eigen::Vector3d at = source.tsdf.grid().ToVoxel(
+        T_source_target * tsdf.grid().VoxelCentre(VoxelOf(tsdf, block, i)));
+    if (const auto sample = SampleDistance(source.tsdf, at))
+      voxels[i].Update(sample->tsdf, sample->weight, max_weight);
+  }
+}
+
+void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const TsdfVolume& tsdf,
+                       ThermalVolume& thermal) {
+  const RigidTransform T_source_target = source.T_target_source.inverse();
+  const auto voxels = thermal.voxels(block);
+  for (int i = 0; i < kBlockVoxels; ++i) {
+    const Eigen::Vector3d at = source.tsdf.grid().ToVoxel(
+        T_source_target * tsdf.grid().VoxelCentre(VoxelOf(tsdf, block, i)));
+    const ThermalVoxel other = ThermalAt(source, (at.array() + 0.5).floor().cast<int>());
+    if (other.measured() &&
+        ReplacesMeasurement(other.distance_class(), other.angle_class(), voxels[i])) {
+      voxels[i] = other;
+    }
+  }
+}
+
+}  // namespace
+
+bool MergeVolume(const PlacedVolume& source, float max_weight, ThreadPool& pool, TsdfVolume& tsdf,
+                 ThermalVolume& thermal) {
+  CHECK(source.tsdf.grid().voxel_size_m == tsdf.grid().voxel_size_m);
+  const std::vector<std::int32_t> reached = AllocateReached(source, tsdf);
+  const bool has_room = thermal.Back(tsdf.block_count());
+  constexpr int kBlocksPerTask = 16;
+  const int count = static_cast<int>(reached.size());
+  pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
+    const int end = std::min(count, (task + 1) * kBlocksPerTask);
+    for (int i = task * kBlocksPerTask; i < end; ++i) {
+      MergeDistances(source, max_weight, reached[i], tsdf);
+      if (has_room) MergeTemperatures(source, reached[i], tsdf, thermal);
+    }
+  });
+  for (const std::int32_t block : reached) tsdf.set_may_end_rays(block, true);
+  return has_room;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,103 @@
+#include "ground/atlas/pose_graph.h"
+
+#include <Eigen/Dense>
+#include <cstddef>
+
+namespace isotherm {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Jacobian6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr int kIterations = 20;
+constexpr double kConverged = 1e-9;
+
+/// Metres and radians over their standard deviations.
+Vector6 Residual(const MapLink& link, const RigidTransform& T_world_a,
+                 const RigidTransform& T_world_b) {
+  const RigidTransform mismatch = Mismatch(link, T_world_a, T_world_b);
+  const Eigen::AngleAxisd rotation(mismatch.linear());
+  Vector6 residual;
+  residual << mismatch.translation() / link.sigma_m,
+      rotation.angle() * rotation.axis() / link.sigma_rad;
+  return residual;
+}
+
+/// Change of the residual when one of the two sub-maps moves; central differences, exact enough
+/// for a handful of links.
+template <typename ResidualOf>
+Jacobian6 Differentiate(const RigidTransform& T_world_map, const ResidualOf& residual_of) {
+  constexpr double kStep = 1e-6;
+  Jacobian6 jacobian;
+  for (int axis = 0; axis < 6; ++axis) {
+    const Vector6 step = kStep * Vector6::Unit(axis);
+    jacobian.col(axis) = (residual_of(T_world_map * TransformFromTwist(step)) -
+                          residual_of(T_world_map * TransformFromTwist(-step))) /
+                         (2.0 * kStep);
+  }
+  return jacobian;
+}
+
+/// Place of each sub-map among the unknowns, -1 = does not move.
+std::vector<int> MovingMaps(std::span<const MapLink> links, std::size_t count) {
+  std::vector<bool> connected(count, false);
+  connected[0] = true;
+  for (bool grows = true; grows;) {
+    grows = false;
+    for (const MapLink& link : links) {
+      if (connected[link.a] == connected[link.b]) continue;
+      connected[link.a] = connected[link.b] = grows = true;
+    }
+  }
+  std::vector<int> place(count, -1);
+  int next = 0;
+  for (std::size_t i = 1; i < count; ++i) {
+    if (connected[i]) place[i] = next++;
+  }
+  return place;
+}
+
+}  // namespace
+
+RigidTransform Mismatch(const MapLink& link, const RigidTransform& T_world_a,
+                        const RigidTransform& T_world_b) {
+  return (T_world_a * link.T_a_depth).inverse() * (T_world_b * link.T_b_depth);
+}
+
+void SpreadMismatch(std::span<const MapLink> links, std::vector<RigidTransform>& T_world_map) {
+  if (T_world_map.empty()) return;
+  const std::vector<int> place = MovingMaps(links, T_world_map.size());
+  Eigen::Index unknowns = 0;
+  for (const int p : place) unknowns += p >= 0 ? 6 : 0;
+  if (unknowns == 0) return;
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(unknowns);
+    for (const MapLink& link : links) {
+      const RigidTransform& a = T_world_map[link.a];
+      const RigidTransform& b = T_world_map[link.b];
+      const Vector6 residual = Residual(link, a, b);
+      const std::array<Jacobian6, 2> jacobians = {
+          Differentiate(a, [&](const RigidTransform& moved) { return Residual(link, moved, b); }),
+          Differentiate(b, [&](const RigidTransform& moved) { return Residual(link, a, moved); })};
+      const std::array<int, 2> places = {place[link.a], place[link.b]};
+      for (int i = 0; i < 2; ++i) {
+        if (places[i] < 0) continue;
+        g.segment<6>(6 * places[i]) += jacobians[i].transpose() * residual;
+        for (int j = 0; j < 2; ++j) {
+          if (places[j] < 0) continue;
+          H.block<6, 6>(6 * places[i], 6 * places[j]) += jacobians[i].transpose() * jacobians[j];
+        }
+      }
+    }
+    const Eigen::VectorXd step = H.ldlt().solve(-g);
+    if (!step.allFinite()) return;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      if (place[i] < 0) continue;
+      T_world_map[i] = T_world_map[i] * TransformFromTwist(step.segment<6>(6 * place[i]));
+    }
+    if (step.norm() < kConverged) return;
+  }
+}
+
+}  // namespace isotherm
