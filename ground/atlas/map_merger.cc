@@ -114,8 +114,8 @@ void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const Tsd
     const Eigen::Vector3d at = source.tsdf.grid().ToVoxel(
         T_source_target * tsdf.grid().VoxelCentre(VoxelOf(tsdf, block, i)));
     const ThermalVoxel other = ThermalAt(source, (at.array() + 0.5).floor().cast<int>());
-    if (other.measured() &&
-        ReplacesMeasurement(other.distance_class(), other.angle_class(), voxels[i])) {
+    if (other.measured() && ReplacesMeasurement(other.distance_class(), other.angle_class(),
+                                                other.motion_class(), voxels[i])) {
       voxels[i] = other;
     }
   }
