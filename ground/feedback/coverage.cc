@@ -17,23 +17,6 @@ constexpr double kWorthSaying = 0.15;
 constexpr double kDone = 0.90;
 constexpr double kSurfaceNeeded = 0.02;
 
-enum class Quality { kGood, kAcceptable, kBad, kNever };
-
-Quality QualityAt(const ViewMaps& view, int x, int y) {
-  const std::uint8_t distance = view.distance_class.At(x, y);
-  const std::uint8_t angle = view.angle_class.At(x, y);
-  const auto is = [&](std::uint8_t value, ConditionClass condition) {
-    return value == static_cast<std::uint8_t>(condition);
-  };
-  if (distance == kNeverMeasured || angle == kNeverMeasured) return Quality::kNever;
-  if (is(distance, ConditionClass::kGood) && is(angle, ConditionClass::kGood))
-    return Quality::kGood;
-  const auto usable = [&](std::uint8_t value) {
-    return is(value, ConditionClass::kGood) || is(value, ConditionClass::kAcceptable);
-  };
-  return usable(distance) && usable(angle) ? Quality::kAcceptable : Quality::kBad;
-}
-
 }  // namespace
 
 CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& limits) {
@@ -43,12 +26,12 @@ CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& li
     for (int x = 0; x < view.width(); ++x) {
       if (!view.HasSurface(x, y)) continue;
       counts.surface += 1.0;
-      const Quality quality = QualityAt(view, x, y);
-      counts.good += quality == Quality::kGood ? 1.0 : 0.0;
-      counts.acceptable += quality == Quality::kAcceptable ? 1.0 : 0.0;
-      counts.bad += quality == Quality::kBad ? 1.0 : 0.0;
-      counts.never_measured += quality == Quality::kNever ? 1.0 : 0.0;
-      if (quality == Quality::kGood || quality == Quality::kAcceptable) continue;
+      const MeasurementQuality quality = QualityAt(view, x, y);
+      counts.good += quality == MeasurementQuality::kGood ? 1.0 : 0.0;
+      counts.acceptable += quality == MeasurementQuality::kAcceptable ? 1.0 : 0.0;
+      counts.bad += quality == MeasurementQuality::kBad ? 1.0 : 0.0;
+      counts.never_measured += quality == MeasurementQuality::kNever ? 1.0 : 0.0;
+      if (quality == MeasurementQuality::kGood || quality == MeasurementQuality::kAcceptable) continue;
       const double distance_m = view.distance_m.At(x, y);
       counts.too_near += distance_m < limits.distance_min_m() ? 1.0 : 0.0;
       counts.too_far += distance_m > limits.distance_max_m() ? 1.0 : 0.0;
