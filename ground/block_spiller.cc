@@ -9,6 +9,9 @@ namespace {
 constexpr std::uint64_t kFramesKept = 15;
 constexpr std::uint64_t kFramesBetweenTrims = 10;
 
+/// 64 blocks of both volumes are 256 kB: at most 4 MB are read ahead at a time.
+constexpr int kMostFetchedParts = 16;
+
 }  // namespace
 
 void BlockSpiller::Touch(std::span<const std::int32_t> blocks) {
@@ -38,8 +41,24 @@ void BlockSpiller::Trim(const TsdfVolume& tsdf, const ThermalVolume& thermal) {
     tsdf.GiveBack(first, kBlocksPerPart);
     thermal.GiveBack(first, kBlocksPerPart);
     parts_[i].resident = false;
+    parts_[i].fetched = false;
     --resident_parts_;
     spilled_ += kBlocksPerPart;
+  }
+}
+
+void BlockSpiller::Expect(std::span<const std::int32_t> blocks, const TsdfVolume& tsdf,
+                          const ThermalVolume& thermal) {
+  int left = kMostFetchedParts;
+  for (const std::int32_t block : blocks) {
+    const auto i = static_cast<std::size_t>(block / kBlocksPerPart);
+    if (i >= parts_.size() || parts_[i].resident || parts_[i].fetched) continue;
+    if (left-- == 0) return;
+    const auto first = static_cast<std::int32_t>(i) * kBlocksPerPart;
+    tsdf.Fetch(first, kBlocksPerPart);
+    thermal.Fetch(first, kBlocksPerPart);
+    parts_[i].fetched = true;
+    fetched_ += kBlocksPerPart;
   }
 }
 

@@ -22,6 +22,11 @@ class BlockSpiller {
   /// Gives back what is too much; a few system calls every few frames.
   void Trim(const TsdfVolume& tsdf, const ThermalVolume& thermal);
 
+  /// Blocks that will be in view soon: what of them was given back is read in the background, a
+  /// bounded number of them each time.
+  void Expect(std::span<const std::int32_t> blocks, const TsdfVolume& tsdf,
+              const ThermalVolume& thermal);
+
   /// For other volumes, of which nothing is in memory yet.
   void Restart() {
     parts_.clear();
@@ -31,6 +36,8 @@ class BlockSpiller {
   std::int64_t resident_blocks() const { return resident_parts_ * kBlocksPerPart; }
   /// Blocks that were given back, counted each time.
   std::uint64_t spilled() const { return spilled_; }
+  /// Blocks that were read ahead, counted each time.
+  std::uint64_t fetched() const { return fetched_; }
 
  private:
   static constexpr std::int32_t kBlocksPerPart = 64;
@@ -39,6 +46,7 @@ class BlockSpiller {
   struct Part {
     std::uint64_t last_seen = 0;
     bool resident = false;
+    bool fetched = false;  ///< Since it was given back.
   };
 
   const std::int64_t max_resident_;
@@ -46,6 +54,7 @@ class BlockSpiller {
   std::uint64_t frame_ = 0;
   std::int64_t resident_parts_ = 0;
   std::uint64_t spilled_ = 0;
+  std::uint64_t fetched_ = 0;
 };
 
 }  // namespace isotherm

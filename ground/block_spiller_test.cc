@@ -113,6 +113,24 @@ TEST_F(BlockSpillerTest, APartThatComesBackIsCountedAgain) {
   }
 }
 
+TEST_F(BlockSpillerTest, OnlyWhatWasGivenBackIsReadAheadAndOnce) {
+  spiller_.emplace(kPart);
+  See({0});
+  See({kPart});
+  SeeNothingUntilFrame(50);
+  ASSERT_EQ(spiller_->resident_blocks(), kPart);  // Part 1; part 0 was given back.
+  const std::vector<std::int32_t> near = {0, 1, kPart, 3 * kPart};
+  spiller_->Expect(near, tsdf_, thermal_);
+  EXPECT_EQ(spiller_->fetched(), 1U * kPart);
+  spiller_->Expect(near, tsdf_, thermal_);
+  EXPECT_EQ(spiller_->fetched(), 1U * kPart);
+  See({0});
+  See({kPart});
+  SeeNothingUntilFrame(100);
+  spiller_->Expect(near, tsdf_, thermal_);
+  EXPECT_EQ(spiller_->fetched(), 2U * kPart);
+}
+
 TEST_F(BlockSpillerTest, ValuesOutliveBeingGivenBack) {
   spiller_.emplace(0);
   ASSERT_TRUE(thermal_.Back(kPart));

@@ -199,7 +199,20 @@ bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform&
            "goes to "
         << options_.volume().spill_dir();
   }
+  if (spiller_.spilled() > 0) FetchNearView(T_world_depth);
   return map.tsdf->block_count() > 0;
+}
+
+void GroundPipeline::FetchNearView(const RigidTransform& T_world_depth) {
+  constexpr std::uint64_t kEvery = 5;
+  if (counts_.depth_in % kEvery != 0) return;
+  // As if the camera saw half as much again on each side: some ten frames ahead at the speed at
+  // which frames are integrated.
+  constexpr double kZoom = 0.5;
+  CameraModel camera = view().camera;
+  camera.fx *= kZoom;
+  camera.fy *= kZoom;
+  spiller_.Expect(near_view_.Find(tsdf(), camera, T_world_depth), tsdf(), thermal());
 }
 
 DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {

@@ -146,6 +146,8 @@ class GroundPipeline {
   /// False if the model is still empty: nothing of the surface lies in the volume.
   bool Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth);
   void UpdateView(const RigidTransform& T_world_depth);
+  /// Has what was spilled and comes into view read in the background.
+  void FetchNearView(const RigidTransform& T_world_depth);
   void FuseWaitingThermal(CaptureTime now);
   /// One standard deviation of the pose, as a shift of the thermal picture on the surface.
   double RegistrationSigmaPx() const;
@@ -164,6 +166,7 @@ class GroundPipeline {
   LoopCloser loop_closer_;
   std::unique_ptr<ThermalFuser> fuser_;
   BlockSpiller spiller_;
+  VisibleBlocks near_view_;
   bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   std::vector<MapPose> tracked_;
   std::vector<StampedPose> trajectory_;  ///< Of tracked_ what is joined, in world.

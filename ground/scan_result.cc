@@ -147,6 +147,7 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   }
   volume["voxel_size_m"] = grid.voxel_size_m;
   volume["blocks"] = pipeline.tsdf().block_count();
+  volume["blocks_read_ahead"] = pipeline.spiller().fetched();
   volume["blocks_spilled"] = pipeline.spiller().spilled();
   volume["blocks_refused_for_memory"] = pipeline.tsdf().refused_blocks();
   volume["memory_bytes"] =
@@ -215,6 +216,12 @@ Result<std::string> WriteScan(
     text += fmt::format("         {:.1f} to {:.1f} °C, mean {:.1f} °C (apparent temperature)\n",
                         summary->temperatures.min_celsius, summary->temperatures.max_celsius,
                         summary->temperatures.mean_celsius);
+  }
+  if (pipeline.spiller().spilled() > 0) {
+    text += fmt::format(
+        "memory   the model has outgrown volume.max_memory_bytes: {} blocks went to {}, and came "
+        "back when seen again\n",
+        pipeline.spiller().spilled(), options.volume().spill_dir());
   }
   if (pipeline.tsdf().refused_blocks() > 0) {
     text += "         volume.max_memory_bytes was reached: parts of the surface are missing\n";

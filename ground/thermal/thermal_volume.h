@@ -84,6 +84,13 @@ class ThermalVolume {
                     static_cast<std::size_t>(count) * kBlockBytes);
   }
 
+  /// Has blocks that were given back read in the background.
+  void Fetch(std::int32_t first_block, std::int32_t count) const {
+    constexpr std::size_t kBlockBytes = kBlockVoxels * sizeof(ThermalVoxel);
+    arena_.Fetch(static_cast<std::size_t>(first_block) * kBlockBytes,
+                 static_cast<std::size_t>(count) * kBlockBytes);
+  }
+
   std::span<ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) {
     return std::span<ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
                                                  kBlockVoxels);

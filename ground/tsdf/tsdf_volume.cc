@@ -74,6 +74,15 @@ void GrowingArena::GiveBack(std::size_t offset, std::size_t bytes) const {
   if (begin < end) madvise(data_ + begin, end - begin, MADV_DONTNEED);
 }
 
+void GrowingArena::Fetch(std::size_t offset, std::size_t bytes) const {
+  if (file_ < 0) return;
+  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  const std::size_t begin = offset / page * page;
+  const std::size_t end = std::min(bytes_, offset + bytes);
+  // Advice: what cannot be read ahead is read when it is touched.
+  if (begin < end) madvise(data_ + begin, end - begin, MADV_WILLNEED);
+}
+
 Status CheckSpillDir(const std::filesystem::path& dir) {
   if (dir.empty()) return OkStatus();
   const int file = open(dir.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
@@ -124,6 +133,11 @@ std::int32_t TsdfVolume::FindOrAllocateEntry(std::int32_t entry) {
 void TsdfVolume::GiveBack(std::int32_t first_block, std::int32_t count) const {
   arena_.GiveBack((static_cast<std::size_t>(first_block) + 1) * kBlockBytes,
                   static_cast<std::size_t>(count) * kBlockBytes);
+}
+
+void TsdfVolume::Fetch(std::int32_t first_block, std::int32_t count) const {
+  arena_.Fetch((static_cast<std::size_t>(first_block) + 1) * kBlockBytes,
+               static_cast<std::size_t>(count) * kBlockBytes);
 }
 
 TsdfVoxel TsdfVolume::VoxelAt(const GridIndex& voxel) const {

@@ -50,6 +50,9 @@ class GrowingArena {
   /// Gives the memory of whole pages within a part back; touching it brings it back from the file.
   /// Does nothing without a file.
   void GiveBack(std::size_t offset, std::size_t bytes) const;
+  /// Has the file's pages read in the background, so that touching them soon does not wait for the
+  /// disk. Does nothing without a file.
+  void Fetch(std::size_t offset, std::size_t bytes) const;
 
  private:
   std::byte* data_ = nullptr;
@@ -110,6 +113,8 @@ class TsdfVolume {
   /// Gives the memory of blocks back until they are touched again; does nothing without a spill
   /// folder.
   void GiveBack(std::int32_t first_block, std::int32_t count) const;
+  /// Has blocks that were given back read in the background.
+  void Fetch(std::int32_t first_block, std::int32_t count) const;
   /// The voxel at voxel coordinates; a never observed voxel where there is no block.
   TsdfVoxel VoxelAt(const GridIndex& voxel) const;
 
