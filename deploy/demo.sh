@@ -36,7 +36,7 @@ if [ "$headless" = 0 ]; then
   cat <<TEXT
   cloud.ply   points with temperature and measurement classes: open in CloudCompare or MeshLab
   mesh.ply    the same as a triangle mesh
-  renders/    pictures: thermal, distance, angle, coverage, geometry
+  renders/    pictures: temperature, measurement classes, coverage; others: isotherm render out/demo -o PICTURE.png
   stats.json  what was measured and how long it took
 The web console is not part of this version.
 TEXT

@@ -28,6 +28,7 @@ std::string_view SoftwareName();
 void AddImportCommand(CLI::App& app, CommandBody& body);
 void AddInspectCommand(CLI::App& app, CommandBody& body);
 void AddReconstructCommand(CLI::App& app, CommandBody& body);
+void AddRenderCommand(CLI::App& app, CommandBody& body);
 void AddEvaluateCommand(CLI::App& app, CommandBody& body);
 void AddSimulateCommand(CLI::App& app, CommandBody& body);
 void AddLimitsCommand(CLI::App& app, CommandBody& body);

@@ -5,11 +5,10 @@
 #include <cmath>
 
 #include "common/codec/codec.h"
-#include "ground/export/output_file.h"
+#include "ground/export/png_file.h"
 #include "ground/ground_options.pb.h"
 #include "ground/renderer/legend.h"
 #include "ground/renderer/palette.h"
-#include "ground/renderer/png.h"
 #include "ground/renderer/temperature_scale.h"
 
 namespace isotherm {
@@ -34,12 +33,6 @@ RgbImage Picture(const Image<float>& values, const RendererOptions& options,
   legend.rule = ScaleRuleName(options);
   legend.unit.name = unit;
   return WithLegend(picture, legend, [&](double value) { return colours.At(scale->Share(value)); });
-}
-
-Status WritePng(const RgbImage& picture, const std::filesystem::path& path) {
-  const Result<std::vector<std::uint8_t>> bytes = EncodePng(picture);
-  if (!bytes) return bytes.error();
-  return WriteFile(path, std::as_bytes(std::span(*bytes)));
 }
 
 Result<RgbImage> PictureOf(const RecordedItem& item) {

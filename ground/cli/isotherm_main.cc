@@ -19,6 +19,7 @@ constexpr const char* kFooter =
   isotherm import --from tum FOLDER -o scan.mcap    your own images and time stamps
   isotherm inspect scan.mcap                        what is in it
   isotherm reconstruct scan.mcap -o out             the 3D thermogram: out/cloud.ply, out/mesh.ply, ...
+  isotherm render out -o door.png                   pictures of it, from anywhere
   isotherm evaluate out --groundtruth poses.txt     how far it is from the truth
   isotherm limits --material paint --tolerance 2%   from where a surface can be measured
 `isotherm COMMAND --help` explains each of them.
@@ -44,6 +45,7 @@ int Main(int argc, char** argv) {
   AddImportCommand(app, body);
   AddInspectCommand(app, body);
   AddReconstructCommand(app, body);
+  AddRenderCommand(app, body);
   AddEvaluateCommand(app, body);
   AddSimulateCommand(app, body);
   AddLimitsCommand(app, body);

@@ -65,6 +65,53 @@ class ToolTest : public testing::Test {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
 
+  // Pictures of the result in `out`.
+  void RenderResult() const {
+    const Outcome one =
+        Run("render out -o one.png --scale 20..60 --unit fahrenheit --size 320x240");
+    ASSERT_EQ(one.status, 0) << one.err;
+    EXPECT_THAT(one.out, AllOf(HasSubstr("the whole model"), HasSubstr("68.0 to 140.0 \u00B0F"),
+                               HasSubstr("one.png")));
+    EXPECT_THAT(ReadAll(folder_ / "one.png"), testing::StartsWith("\x89PNG"));
+    // The pose that it says gives the same picture again, from the model's file as well.
+    const std::size_t pose = one.out.find("--view \"");
+    ASSERT_NE(pose, std::string::npos);
+    const Outcome again =
+        Run("render out/model.iso -o folder/again.png --scale 20..60 --unit F " +
+            one.out.substr(pose, one.out.find('\n', pose) - pose) + " --size 320x240");
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_TRUE(fs::exists(folder_ / "folder" / "again.png"));
+    const Outcome orbit = Run("render out -o orbit --orbit 3 --layer all --size 64x48");
+    ASSERT_EQ(orbit.status, 0) << orbit.err;
+    for (const char* name : {"thermal_000.png", "coverage_001.png", "disagreement_002.png"})
+      EXPECT_TRUE(fs::exists(folder_ / "orbit" / name)) << name;
+    EXPECT_THAT(orbit.err, HasSubstr("rendering"));
+    EXPECT_THAT(Run("render out -o last.png --view last --size 64x48").out, HasSubstr("last pose"));
+    const Outcome away =
+        Run("render out -o away.png --view-from \"0 0 -9\" --look-at \"0 0 -10\" --size 64x48");
+    EXPECT_EQ(away.status, 0);
+    EXPECT_THAT(away.err, HasSubstr("show nothing of the model"));
+    RefusedRenders();
+  }
+
+  void RefusedRenders() const {
+    const auto refused = [&](const std::string& arguments, int status, const std::string& says) {
+      const Outcome outcome = Run("render " + arguments);
+      EXPECT_EQ(outcome.status, status) << arguments << ": " << outcome.err;
+      EXPECT_THAT(outcome.err, HasSubstr(says)) << arguments;
+    };
+    refused("nowhere -o x.png", kNoInput, "no such model or result folder");
+    refused(". -o x.png", kNoInput, "has no model.iso");
+    refused("scan.mcap -o x.png", kUsage, "not an Isotherm model");
+    refused("out -o x.png --layer all", kUsage, "pictures do not fit into one file");
+    refused("out -o x.png --layer heat", kUsage, "there is no layer 'heat'");
+    refused("out -o x.png --size 3x4", kUsage, "--size");
+    refused("out -o x.png --view \"1 2 3\"", kUsage, "--view");
+    refused("out -o x.png --look-at \"1 2 3\"", kUsage, "--view-from");
+    refused("out -o x.png --palette jet --scale wide --isotherms warm", kConfiguration, "'jet'");
+    refused("out -o x.png --isotherms warm", kConfiguration, "'warm' is no temperature");
+  }
+
   fs::path folder_;
 };
 
@@ -76,7 +123,7 @@ TEST_F(ToolTest, HelpTeachesAndVersionNamesTheProgram) {
   EXPECT_EQ(Run("").out, help.out);
   EXPECT_THAT(Run("--version").out, HasSubstr("isotherm 0."));
   for (const std::string name :
-       {"demo", "import", "inspect", "reconstruct", "evaluate", "simulate", "limits"}) {
+       {"demo", "import", "inspect", "reconstruct", "render", "evaluate", "simulate", "limits"}) {
     EXPECT_THAT(help.out, HasSubstr(name));
     const Outcome each = Run(name + " --help");
     EXPECT_EQ(each.status, 0);
@@ -162,6 +209,7 @@ TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
                                   HasSubstr("\"good\"")));
   EXPECT_THAT(Run("evaluate out --groundtruth scan.mcap").out, HasSubstr("rigidly aligned"));
   EXPECT_EQ(Run("evaluate out --groundtruth scan.mcap --emissivity 0.9").status, kUsage);
+  RenderResult();
 }
 
 TEST_F(ToolTest, LimitsComeAsOptionsOrAsOneSentence) {

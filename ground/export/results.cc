@@ -9,10 +9,10 @@
 #include "common/concurrency/thread_pool.h"
 #include "ground/export/output_file.h"
 #include "ground/export/ply.h"
+#include "ground/export/png_file.h"
 #include "ground/export/surface.h"
 #include "ground/export/trajectory.h"
 #include "ground/ground_options.pb.h"
-#include "ground/renderer/png.h"
 #include "ground/renderer/renderer.h"
 
 namespace isotherm {
@@ -21,12 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSoftware = "Isotherm " ISOTHERM_VERSION;
-
-Status WritePng(const RgbImage& picture, const fs::path& path) {
-  const Result<std::vector<std::uint8_t>> png = EncodePng(picture);
-  if (!png) return png.error().WithContext(path.string());
-  return WriteFile(path, std::as_bytes(std::span(*png)));
-}
 
 /// Keeps the first failure and lets the rest go on.
 class FirstFailure {

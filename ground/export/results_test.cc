@@ -88,11 +88,17 @@ class ResultsTest : public ::testing::Test {
   const testing::TemporaryDirectory folder_;
 };
 
-constexpr const char* kFiles[] = {"cloud.ply",           "mesh.ply",
-                                  "trajectory.txt",      "stats.json",
-                                  "renders/angle.png",   "renders/distance.png",
-                                  "renders/thermal.png", "renders/geometry.png",
-                                  "renders/coverage.png"};
+constexpr const char* kFiles[] = {"cloud.ply",
+                                  "mesh.ply",
+                                  "trajectory.txt",
+                                  "stats.json",
+                                  "renders/angle.png",
+                                  "renders/distance.png",
+                                  "renders/thermal.png",
+                                  "renders/geometry.png",
+                                  "renders/coverage.png",
+                                  "renders/motion.png",
+                                  "renders/disagreement.png"};
 
 TEST_F(ResultsTest, WritesEveryFileOfTheContract) {
   const fs::path dir = folder_.path() / "a" / "b";
@@ -106,7 +112,7 @@ TEST_F(ResultsTest, WritesEveryFileOfTheContract) {
   EXPECT_EQ(summary->good_points, summary->points);
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(dir)) files += entry.is_regular_file();
-  EXPECT_EQ(files, 9);  // Nothing partial is left.
+  EXPECT_EQ(files, 11);  // Nothing partial is left.
 }
 
 TEST_F(ResultsTest, SameInputsGiveTheSameBytesWhateverTheThreads) {

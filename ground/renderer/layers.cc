@@ -6,9 +6,9 @@
 namespace isotherm {
 namespace {
 
-constexpr RenderLayer kLayers[] = {RenderLayer::kThermal, RenderLayer::kDistance,
-                                   RenderLayer::kAngle, RenderLayer::kCoverage,
-                                   RenderLayer::kGeometry};
+constexpr RenderLayer kLayers[] = {
+    RenderLayer::kThermal,      RenderLayer::kDistance, RenderLayer::kAngle,   RenderLayer::kMotion,
+    RenderLayer::kDisagreement, RenderLayer::kCoverage, RenderLayer::kGeometry};
 
 }  // namespace
 
@@ -22,6 +22,10 @@ std::string_view LayerName(RenderLayer layer) {
       return "distance";
     case RenderLayer::kAngle:
       return "angle";
+    case RenderLayer::kMotion:
+      return "motion";
+    case RenderLayer::kDisagreement:
+      return "disagreement";
     case RenderLayer::kCoverage:
       return "coverage";
     case RenderLayer::kGeometry:

@@ -9,11 +9,13 @@ namespace isotherm {
 
 /// What a picture shows on the surface of the model.
 enum class RenderLayer : std::uint8_t {
-  kThermal,   ///< Palette colour of the apparent temperature (algorithm 7).
-  kDistance,  ///< Class of the measurement distance (algorithm 8).
-  kAngle,     ///< Class of the emission angle (algorithm 9).
-  kCoverage,  ///< Seen by depth, but never measured well.
-  kGeometry,  ///< The surface only.
+  kThermal,       ///< Palette colour of the apparent temperature (algorithm 7).
+  kDistance,      ///< Class of the measurement distance (algorithm 8).
+  kAngle,         ///< Class of the emission angle (algorithm 9).
+  kMotion,        ///< Class of the smear while the temperature was measured.
+  kDisagreement,  ///< Class of how far measurements under good conditions contradict each other.
+  kCoverage,      ///< Seen by depth, but never measured well.
+  kGeometry,      ///< The surface only.
 };
 
 /// In the order in which they are explained and written.

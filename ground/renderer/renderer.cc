@@ -15,6 +15,7 @@ constexpr Rgb8 kGoodColour{0, 255, 0};
 constexpr Rgb8 kAcceptableColour{255, 255, 0};
 constexpr Rgb8 kBadColour{255, 0, 0};
 constexpr Rgb8 kNeverMeasuredClassColour{0, 0, 0};
+constexpr Rgb8 kUncheckedColour{96, 84, 128};
 constexpr Rgb8 kGeometryColour{224, 226, 230};
 // Coverage: what is done recedes, what is missing shines.
 constexpr Rgb8 kMeasuredWellColour{186, 192, 196};
@@ -187,6 +188,10 @@ RgbImage Renderer::Draw(RenderLayer layer, const ViewMaps& view,
       return Distance(view);
     case RenderLayer::kAngle:
       return Angle(view);
+    case RenderLayer::kMotion:
+      return Motion(view);
+    case RenderLayer::kDisagreement:
+      return Disagreement(view);
     case RenderLayer::kCoverage:
       return Coverage(view);
     case RenderLayer::kGeometry:
@@ -257,7 +262,11 @@ RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<Temperature
 
 RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& classes,
                            const ClassLegend& legend) const {
-  const auto colour = [&](int x, int y) { return ClassColour(classes.At(x, y)); };
+  const auto colour = [&](int x, int y) {
+    const std::uint8_t condition = classes.At(x, y);
+    const bool unchecked = condition == kNeverMeasured && !std::isnan(view.celsius.At(x, y));
+    return unchecked ? kUncheckedColour : ClassColour(condition);
+  };
   const RgbImage picture = DrawSurface(view, [&](int x, int y) {
     return Shaded(colour(x, y), options_.shading() ? view.cos_view.At(x, y) : 1.0);
   });
@@ -284,6 +293,19 @@ RgbImage Renderer::Angle(const ViewMaps& view) const {
                  LegendOfClasses("emission angle", fmt::format("{:g}-{:g}\u00B0", min, good),
                                  fmt::format("{:g}-{:g}\u00B0", good, max),
                                  too_frontal + fmt::format("> {:g}\u00B0", max)));
+}
+
+RgbImage Renderer::Motion(const ViewMaps& view) const {
+  ClassLegend legend = LegendOfClasses("camera motion", "sharp", "slightly smeared", "smeared");
+  legend.rows.push_back({kUncheckedColour, "not checked", "", ""});
+  return Classes(view, view.motion_class, legend);
+}
+
+RgbImage Renderer::Disagreement(const ViewMaps& view) const {
+  ClassLegend legend = LegendOfClasses("disagreement", "measurements agree", "differ somewhat",
+                                       "contradict: reflection?");
+  legend.rows.push_back({kUncheckedColour, "not checked", "too few to compare", ""});
+  return Classes(view, view.disagreement_class, legend);
 }
 
 RgbImage Renderer::Coverage(const ViewMaps& view) const {

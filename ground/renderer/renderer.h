@@ -22,7 +22,7 @@ Status Validate(const RendererOptions& options);
 /// Draws what a view of the model shows (algorithms 7-9), each layer x cos_view:
 ///   thermal    palette colour; never measured surface dim grey with diagonal lines; isotherms
 ///   distance   green, yellow, red = good, acceptable, bad; black = never measured
-///   angle      the same for the emission angle
+///   angle, motion, disagreement  the same; dim violet = measured, but not checked
 ///   coverage   grey where measured well, orange where only badly, magenta where never
 ///   geometry   light grey
 /// Pixels without a surface have kBackground. With the legend option a panel is added to the right;
@@ -48,6 +48,8 @@ class Renderer {
                    const ContourField* contours = nullptr) const;
   RgbImage Distance(const ViewMaps& view) const;
   RgbImage Angle(const ViewMaps& view) const;
+  RgbImage Motion(const ViewMaps& view) const;
+  RgbImage Disagreement(const ViewMaps& view) const;
   RgbImage Coverage(const ViewMaps& view) const;
   RgbImage Geometry(const ViewMaps& view) const;
 

@@ -27,6 +27,8 @@ ViewMaps EmptyView(int width, int height) {
   view.celsius.Fill(NAN);
   view.distance_class.Fill(kNeverMeasured);
   view.angle_class.Fill(kNeverMeasured);
+  view.motion_class.Fill(kNeverMeasured);
+  view.disagreement_class.Fill(kNeverMeasured);
   view.cos_view.Fill(NAN);
   view.distance_m.Fill(NAN);
   return view;
@@ -96,6 +98,39 @@ TEST(RendererTest, ClassLayersUseTheThesisColours) {
   EXPECT_EQ(distance.At(3, 0), (Rgb8{0, 0, 0}));
   EXPECT_EQ(distance.At(4, 0), kBackground);
   EXPECT_EQ(renderer.Angle(view).At(0, 0), (Rgb8{255, 0, 0}));
+}
+
+TEST(RendererTest, MotionAndDisagreementTellUncheckedFromNeverMeasured) {
+  ViewMaps view = EmptyView(5, 1);
+  const std::uint8_t classes[] = {kGood, kAcceptable, kBad, kNeverMeasured, kNeverMeasured};
+  for (int x = 0; x < 5; ++x) {
+    view.cos_view.At(x, 0) = 1.0F;
+    view.celsius.At(x, 0) = x == 4 ? NAN : 40.0F;
+    view.motion_class.At(x, 0) = classes[x];
+    view.disagreement_class.At(x, 0) = classes[4 - x];
+  }
+  const Renderer renderer = MakeRenderer(FixedScale(false));
+  const RgbImage motion = renderer.Motion(view);
+  EXPECT_EQ(motion.At(0, 0), (Rgb8{0, 255, 0}));
+  EXPECT_EQ(motion.At(1, 0), (Rgb8{255, 255, 0}));
+  EXPECT_EQ(motion.At(2, 0), (Rgb8{255, 0, 0}));
+  EXPECT_EQ(motion.At(3, 0), (Rgb8{96, 84, 128}));
+  EXPECT_EQ(motion.At(4, 0), (Rgb8{0, 0, 0}));
+  const RgbImage disagreement = renderer.Disagreement(view);
+  EXPECT_EQ(disagreement.At(0, 0), (Rgb8{96, 84, 128}));
+  EXPECT_EQ(disagreement.At(2, 0), (Rgb8{255, 0, 0}));
+  EXPECT_EQ(disagreement.At(3, 0), (Rgb8{255, 255, 0}));
+}
+
+TEST(RendererTest, SmearMakesAMeasurementWorse) {
+  ViewMaps view = EmptyView(1, 1);
+  view.cos_view.At(0, 0) = 1.0F;
+  view.distance_class.At(0, 0) = view.angle_class.At(0, 0) = kGood;
+  EXPECT_EQ(QualityAt(view, 0, 0), MeasurementQuality::kGood);
+  view.motion_class.At(0, 0) = kAcceptable;
+  EXPECT_EQ(QualityAt(view, 0, 0), MeasurementQuality::kAcceptable);
+  view.motion_class.At(0, 0) = kBad;
+  EXPECT_EQ(QualityAt(view, 0, 0), MeasurementQuality::kBad);
 }
 
 TEST(RendererTest, CoverageShowsWhatIsMissing) {
@@ -258,7 +293,8 @@ TEST(SampleViewTest, ReadsTemperatureClassesAngleAndDistanceFromTheModel) {
   testing::FillThermal(tsdf, thermal, [](const Eigen::Vector3d& p) {
     if (p.y() > 0.064) return ThermalVoxel{};
     return ThermalVoxel::Make(p.x() < 0.064 ? 30.0F : 90.0F, ConditionClass::kGood,
-                              ConditionClass::kAcceptable);
+                              ConditionClass::kAcceptable, ConditionClass::kGood,
+                              ConditionClass::kBad);
   });
   // Three points seen from a viewer 0.5 m in front of the first.
   const Eigen::Vector3d viewer(0.02, 0.02, point.z() - 0.5);
@@ -284,6 +320,8 @@ TEST(SampleViewTest, ReadsTemperatureClassesAngleAndDistanceFromTheModel) {
   EXPECT_NEAR(view.celsius.At(1, 0), 90.0F, kHalfStep);
   EXPECT_EQ(view.distance_class.At(0, 0), kGood);
   EXPECT_EQ(view.angle_class.At(0, 0), kAcceptable);
+  EXPECT_EQ(view.motion_class.At(0, 0), kGood);
+  EXPECT_EQ(view.disagreement_class.At(0, 0), kBad);
   EXPECT_NEAR(view.cos_view.At(0, 0), 1.0, 1e-6);
   EXPECT_NEAR(view.distance_m.At(0, 0), 0.5, 1e-6);
   const double distance_m = std::hypot(0.5, 0.08);

@@ -19,6 +19,8 @@ void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
   view.celsius.At(x, y) = NAN;
   view.distance_class.At(x, y) = kNeverMeasured;
   view.angle_class.At(x, y) = kNeverMeasured;
+  view.motion_class.At(x, y) = kNeverMeasured;
+  view.disagreement_class.At(x, y) = kNeverMeasured;
   view.cos_view.At(x, y) = NAN;
   view.distance_m.At(x, y) = NAN;
   if (!std::isfinite(cosine)) return;
@@ -29,6 +31,8 @@ void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
   view.celsius.At(x, y) = voxel.celsius();
   view.distance_class.At(x, y) = static_cast<std::uint8_t>(voxel.distance_class());
   view.angle_class.At(x, y) = static_cast<std::uint8_t>(voxel.angle_class());
+  view.motion_class.At(x, y) = static_cast<std::uint8_t>(voxel.motion_class());
+  view.disagreement_class.At(x, y) = static_cast<std::uint8_t>(voxel.disagreement_class());
 }
 
 }  // namespace
@@ -37,20 +41,30 @@ void ViewMaps::Resize(int width, int height) {
   celsius.Resize(width, height);
   distance_class.Resize(width, height);
   angle_class.Resize(width, height);
+  motion_class.Resize(width, height);
+  disagreement_class.Resize(width, height);
   cos_view.Resize(width, height);
   distance_m.Resize(width, height);
 }
 
 MeasurementQuality QualityAt(const ViewMaps& view, int x, int y) {
-  auto worst = MeasurementQuality::kGood;
-  for (const std::uint8_t condition : {view.distance_class.At(x, y), view.angle_class.At(x, y)}) {
-    if (condition == kNeverMeasured) return MeasurementQuality::kNever;
-    const auto as = static_cast<ConditionClass>(condition);
-    worst = std::max(worst, as == ConditionClass::kGood         ? MeasurementQuality::kGood
-                            : as == ConditionClass::kAcceptable ? MeasurementQuality::kAcceptable
-                                                                : MeasurementQuality::kBad);
-  }
-  return worst;
+  const auto quality = [](std::uint8_t condition) {
+    switch (static_cast<ConditionClass>(condition)) {
+      case ConditionClass::kGood:
+        return MeasurementQuality::kGood;
+      case ConditionClass::kAcceptable:
+        return MeasurementQuality::kAcceptable;
+      case ConditionClass::kUnchecked:
+        return MeasurementQuality::kNever;
+      case ConditionClass::kBad:
+        break;
+    }
+    return MeasurementQuality::kBad;
+  };
+  const auto measured =
+      std::max(quality(view.distance_class.At(x, y)), quality(view.angle_class.At(x, y)));
+  const auto motion = quality(view.motion_class.At(x, y));
+  return motion == MeasurementQuality::kNever ? measured : std::max(measured, motion);
 }
 
 void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,

@@ -17,7 +17,9 @@ struct ViewMaps {
   Image<float> celsius;  ///< Apparent temperature; NaN = never measured or no surface.
   Image<std::uint8_t>
       distance_class;  ///< ConditionClass; kNeverMeasured = never measured or no surface.
-  Image<std::uint8_t> angle_class;  ///< The same for the emission angle.
+  Image<std::uint8_t> angle_class;   ///< The same for the emission angle.
+  Image<std::uint8_t> motion_class;  ///< The same for the smear; kNeverMeasured also = unchecked.
+  Image<std::uint8_t> disagreement_class;  ///< The same for measurements against each other.
   Image<float>
       cos_view;  ///< |cos| of the angle between normal and line of sight; NaN = no surface.
   Image<float> distance_m;  ///< From the viewer to the surface; NaN = no surface.
@@ -32,7 +34,8 @@ struct ViewMaps {
 /// is left to do.
 enum class MeasurementQuality : std::uint8_t { kGood, kAcceptable, kBad, kNever };
 
-/// Of a pixel with a surface: good if all classes are, bad if one is.
+/// Of a pixel with a surface: good if distance, angle and, as far as it was checked, motion are;
+/// bad if one of them is.
 MeasurementQuality QualityAt(const ViewMaps& view, int x, int y);
 
 /// Looks up the surface in the thermal volume (algorithms 7-9, lines 4-7 and 9-10). `maps` in

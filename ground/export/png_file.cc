@@ -1,0 +1,17 @@
+#include "ground/export/png_file.h"
+
+#include <span>
+#include <vector>
+
+#include "ground/export/output_file.h"
+#include "ground/renderer/png.h"
+
+namespace isotherm {
+
+Status WritePng(const RgbImage& picture, const std::filesystem::path& path) {
+  const Result<std::vector<std::uint8_t>> png = EncodePng(picture);
+  if (!png) return png.error().WithContext(path.string());
+  return WriteFile(path, std::as_bytes(std::span(*png)));
+}
+
+}  // namespace isotherm

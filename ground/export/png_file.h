@@ -1,0 +1,13 @@
+#pragma once
+
+#include <filesystem>
+
+#include "common/base/status.h"
+#include "ground/renderer/rgb.h"
+
+namespace isotherm {
+
+/// Writes a picture as PNG; the file appears only when it is complete. Messages name it.
+Status WritePng(const RgbImage& picture, const std::filesystem::path& path);
+
+}  // namespace isotherm
