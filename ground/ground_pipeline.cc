@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/geometry/pose_text.h"
 #include "ground/initial_pose.h"
 
 namespace isotherm {

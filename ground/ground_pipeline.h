@@ -85,6 +85,9 @@ class GroundPipeline {
   DepthReport ProcessDepth(const DepthFrame& frame);
   /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).
   void ProcessThermal(ThermalFramePtr frame);
+  /// Where a source outside says that the rig was. In order of capture time, ideally before the
+  /// first depth frame that is not older; late ones help the frames to come.
+  void ProcessOutsidePose(const OutsidePose& pose) { tracker_.AddOutsidePose(pose); }
   /// For the frames to come, until said otherwise.
   void set_effort(Effort effort) { effort_ = effort; }
   /// Thermal frames still waiting are counted as left out, and sub-maps become one model, but for

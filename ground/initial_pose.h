@@ -1,16 +1,10 @@
 #pragma once
 
-#include <string_view>
-
-#include "common/base/status.h"
 #include "common/frame/image.h"
 #include "common/geometry/rigid_transform.h"
 #include "ground/tsdf/voxel_grid.h"
 
 namespace isotherm {
-
-/// "x y z qx qy qz qw": metres and a quaternion, which must have unit length within 1 %.
-Result<RigidTransform> ParsePose(std::string_view text);
 
 /// T_world_depth that puts the volume's centre on the optical axis at the image's median depth,
 /// axes parallel to the camera's. `depth_m`: 0 = no return.

@@ -27,7 +27,8 @@ RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_ca
     : options_(options.tracker()),
       relocaliser_options_(options.relocaliser()),
       min_weight_(static_cast<float>(options.raycast().min_weight())),
-      tracker_(options.tracker()) {
+      tracker_(options.tracker()),
+      outside_(options.tracker().outside()) {
   view_.camera = depth_camera.Downscaled(options.raycast().halvings());
   candidate_.camera = view_.camera;
 }
@@ -41,6 +42,7 @@ TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
   state_ = State::kFollowing;
   if (first.tracked()) {
     motion_.Add({time, pose});
+    outside_.Note(first, time, uncertainty_.covariance(), /*used=*/false);
     Trust(first, time);
   }
   return first;
@@ -50,6 +52,40 @@ IcpTracker::Start RigTracker::Predict(CaptureTime time) const {
   const RigidTransform& last = view_.T_world_depth;
   if (!options_.predict_motion()) return {last, last};
   return {motion_.Predict(time).value_or(last), motion_.PredictSmoothly(time).value_or(last)};
+}
+
+PriorError RigTracker::InertialError(CaptureTime time, double mean_depth_m) const {
+  const double seconds = has_trusted_pose_ ? ToSeconds(time - trusted_time_) : 0.0;
+  return ConstantVelocityError(speed_is_known_ ? options_.prior_sigma_m_s() : kUnknownSpeed,
+                               seconds, mean_depth_m);
+}
+
+TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
+                                  const TsdfVolume& volume, ThreadPool& pool) {
+  const auto track = [&](const IcpTracker::Start& start) {
+    TrackingResult result = tracker_.Track(depth, view_, volume.grid(), start, pool);
+    if (result.tracked()) result.lost = FindAnomaly(result);
+    return result;
+  };
+  const IcpTracker::Start inertial = Predict(time);
+  const Matrix6& known = uncertainty_.covariance();
+  std::optional<OutsidePrior::Prediction> outside;
+  if (const auto last = motion_.last())
+    outside = outside_.Predict(*last, time, inertial.guess,
+                               InertialError(time, uncertainty_.mean_depth_m()));
+  if (outside) {
+    const TrackingResult result = track({outside->T_world_depth, outside->T_world_depth});
+    // If the camera sees nothing, another start would not help.
+    if (result.lost == LostReason::kTooFewPixels) return result;
+    if (result.tracked() && !outside_.Contradicts(result, time, known)) {
+      outside_.Note(result, time, known, /*used=*/true);
+      outside_error_ = outside->error;
+      return result;
+    }
+  }
+  const TrackingResult result = track(inertial);
+  if (result.tracked()) outside_.Note(result, time, known, /*used=*/false);
+  return result;
 }
 
 double RigTracker::ResidualLimit(const TrackingResult& result, double times_usual) const {
@@ -113,15 +149,16 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
                                  const SubMap& searched, ThreadPool& pool) {
   TrackingResult result;
   found_elsewhere_ = false;
+  outside_error_.reset();
   if (state_ == State::kLost) {
     result = LookAround(depth, here, searched, pool);
     if (!result.tracked()) return result;
     if (found_elsewhere_) Forget();
+    outside_.Note(result, time, uncertainty_.covariance(), /*used=*/false);
     state_ = State::kConfirming;
     to_confirm_ = relocaliser_options_.confirming_frames();
   } else {
-    result = tracker_.Track(depth, view_, here.tsdf->grid(), Predict(time), pool);
-    if (result.tracked()) result.lost = FindAnomaly(result);
+    result = Follow(depth, time, *here.tsdf, pool);
     if (result.tracked() && state_ == State::kConfirming) {
       --to_confirm_;
       if (!IsConvincing(result)) result.lost = LostReason::kNotFound;
@@ -134,6 +171,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
     state_ = State::kLost;
     lost_frames_ = 0;
     motion_.Clear();
+    outside_.Reset();
     speed_is_known_ = false;
     return result;
   }
@@ -147,9 +185,8 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
 }
 
 void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
-  const double seconds = has_trusted_pose_ ? ToSeconds(time - trusted_time_) : 0.0;
-  uncertainty_.Update(result, seconds,
-                      speed_is_known_ ? options_.prior_sigma_m_s() : kUnknownSpeed);
+  uncertainty_.Update(result,
+                      outside_error_.value_or(InertialError(time, result.motion.mean_depth_m)));
   trusted_pose_ = result.T_world_depth;
   trusted_time_ = time;
   has_trusted_pose_ = true;
@@ -166,12 +203,14 @@ void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
 
 void RigTracker::Forget() {
   motion_.Clear();
+  outside_.Reset();
   has_trusted_pose_ = false;
   speed_is_known_ = false;
 }
 
 void RigTracker::Rebase(const RigidTransform& T_new_old) {
   motion_.Transform(T_new_old);
+  outside_.Transform(T_new_old);
   trusted_pose_ = T_new_old * trusted_pose_;
   view_.T_world_depth = T_new_old * view_.T_world_depth;
   uncertainty_.Rotate(T_new_old.linear());

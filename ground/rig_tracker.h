@@ -8,6 +8,7 @@
 #include "ground/ground_options.pb.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tracker/motion_history.h"
+#include "ground/tracker/outside_prior.h"
 #include "ground/tracker/pose_uncertainty.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_volume.h"
@@ -27,6 +28,10 @@ class RigTracker {
   };
 
   RigTracker(const GroundOptions& options, const CameraModel& depth_camera);
+
+  /// What a source outside says about the rig's motion, in order of capture time, ideally before
+  /// the first depth frame that is not older.
+  void AddOutsidePose(const OutsidePose& pose) { outside_.Add(pose); }
 
   /// The first frame of a sub-map: its pose is given, and nothing is tracked against yet.
   TrackingResult Begin(const PreparedDepth& depth, CaptureTime time, const RigidTransform& pose);
@@ -61,6 +66,7 @@ class RigTracker {
   const ModelView& view() const { return view_; }
   const MotionHistory& motion() const { return motion_; }
   const PoseUncertainty& uncertainty() const { return uncertainty_; }
+  const OutsidePrior& outside() const { return outside_; }
 
  private:
   /// What frames usually look like: a frame that differs is not on the right surface.
@@ -71,6 +77,12 @@ class RigTracker {
   };
 
   IcpTracker::Start Predict(CaptureTime time) const;
+  /// Tracks the frame after one that was tracked: from where a source outside says that the rig is,
+  /// or else, and if that does not fit, from constant velocity.
+  TrackingResult Follow(const PreparedDepth& depth, CaptureTime time, const TsdfVolume& volume,
+                        ThreadPool& pool);
+  /// Of constant velocity since the last trusted frame.
+  PriorError InertialError(CaptureTime time, double mean_depth_m) const;
   /// Unlike the frames before, although within all limits.
   LostReason FindAnomaly(const TrackingResult& result) const;
   /// Good enough to believe after having been lost.
@@ -92,6 +104,8 @@ class RigTracker {
   ModelView view_;
   ModelView candidate_;  ///< The model from a pose where the rig may be.
   MotionHistory motion_;
+  OutsidePrior outside_;
+  std::optional<PriorError> outside_error_;  ///< If the newest frame started from outside poses.
   PoseUncertainty uncertainty_;
   Usual usual_;
   State state_ = State::kFollowing;

@@ -70,6 +70,40 @@ std::optional<SigmaFigures> Figures(const std::vector<PoseSigma>& sigmas) {
   return SigmaFigures{Figures(std::move(translations_mm)), Figures(std::move(rotations_deg))};
 }
 
+/// What poses from outside were and did.
+Json DescribeOutside(const OutsidePrior& outside) {
+  Json json;
+  const OutsideStreamCounts& samples = outside.stream().counts();
+  json["source"] = outside.stream().source();
+  json["in"] = samples.in;
+  json["accepted"] = samples.accepted;
+  for (const auto& [reason, count] : samples.refused) json["refused_by_reason"][reason] = count;
+  json["gaps"] = samples.gaps;
+  json["restarts"] = samples.restarts;
+  Json& frames = json["depth_frames"];
+  frames["used"] = outside.counts().used;
+  frames["missing"] = outside.counts().missing;
+  frames["contradicted"] = outside.counts().contradicted;
+  frames["distrusted"] = outside.counts().distrusted;
+  return json;
+}
+
+/// The same in a line, or nothing.
+std::string DescribeOutsideInWords(const OutsidePrior& outside) {
+  const OutsideStreamCounts& samples = outside.stream().counts();
+  if (samples.in == 0) return {};
+  std::string text = fmt::format(
+      "outside  {} poses of \"{}\"{}{}; {} depth frames started from them", samples.in,
+      outside.stream().source(),
+      samples.refused.empty() ? "" : ", refused: ", List(samples.refused), outside.counts().used);
+  if (outside.counts().missing > 0) text += fmt::format(", {} had none", outside.counts().missing);
+  if (outside.counts().contradicted > 0) {
+    text += fmt::format(", {} contradicted them ({} more distrusted them)",
+                        outside.counts().contradicted, outside.counts().distrusted);
+  }
+  return text + "\n";
+}
+
 /// What was out of the ordinary with depth frames; a line, or nothing.
 std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t relocalisations) {
   std::string text;
@@ -125,6 +159,8 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
       json["pose_sigma"]["rotation_deg"][name] = sigma->rotation_deg[i];
     }
   }
+  if (pipeline.tracker().outside().stream().counts().in > 0)
+    json["outside_poses"] = DescribeOutside(pipeline.tracker().outside());
   Json& thermal = json["frames"]["thermal"];
   thermal["in"] = counts.thermal_in;
   thermal["fused"] = counts.thermal_fused;
@@ -198,6 +234,7 @@ Result<std::string> WriteScan(
         sigma->rotation_deg[2]);
   }
   text += DescribeSubMaps(pipeline.atlas());
+  text += DescribeOutsideInWords(pipeline.tracker().outside());
   text += fmt::format(
       "thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
       counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));

@@ -4,9 +4,9 @@
 
 #include <utility>
 
+#include "common/geometry/pose_text.h"
 #include "ground/export/results.h"
 #include "ground/ground_options.pb.h"
-#include "ground/initial_pose.h"
 #include "ground/relocaliser/relocaliser.h"
 #include "ground/renderer/renderer.h"
 #include "ground/thermal/thermal_fuser.h"

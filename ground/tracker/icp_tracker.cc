@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "ground/tracker/icp_kernel.h"
+#include "ground/tracker/outside_stream.h"
 
 namespace isotherm {
 namespace {
@@ -38,15 +39,6 @@ void CopyTransform(const RigidTransform& transform, float* R, float* t) {
   std::copy_n(translation.data(), 3, t);
 }
 
-/// The twist that takes `from` to `to`.
-Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to) {
-  const Eigen::AngleAxisd turn(
-      Eigen::Quaterniond(to.linear() * from.linear().transpose()).normalized());
-  Vector6 twist;
-  twist << to.translation() - from.translation(), turn.angle() * turn.axis();
-  return twist;
-}
-
 /// Noise of neighbouring pixels is not independent: about one of this many counts.
 constexpr double kPixelsPerSample = 25.0;
 
@@ -65,6 +57,14 @@ Matrix6 ObservedCovariance(const IcpSums& sums, const TrackingResult& result) {
 }
 
 }  // namespace
+
+Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to) {
+  const Eigen::AngleAxisd turn(
+      Eigen::Quaterniond(to.linear() * from.linear().transpose()).normalized());
+  Vector6 twist;
+  twist << to.translation() - from.translation(), turn.angle() * turn.axis();
+  return twist;
+}
 
 void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth) {
   const RigidTransform update = TransformFromTwist(twist);
@@ -117,7 +117,7 @@ Status Validate(const TrackerOptions& o) {
     return InvalidArgument(
         fmt::format("tracker.prior_sigma_m_s must be 0..100 m/s, got {}", o.prior_sigma_m_s()));
   }
-  return OkStatus();
+  return Validate(o.outside());
 }
 
 IcpSums& IcpSums::operator+=(const IcpSums& other) {

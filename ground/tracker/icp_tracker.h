@@ -115,6 +115,9 @@ struct IcpSums {
   }
 };
 
+/// The twist that takes `from` to `to`, both T_world_depth.
+Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to);
+
 /// Moves a pose by a twist in `world`: rotates about the camera's position, then translates.
 void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth);
 

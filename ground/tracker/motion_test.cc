@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -269,6 +270,9 @@ class PoseUncertaintyTest : public ::testing::Test {
     result.covariance = measured_sigma_m * measured_sigma_m * twists * twists.transpose();
     return result;
   }
+  static PriorError Inertial(double seconds) {
+    return ConstantVelocityError(kSpeed, seconds, kDepth);
+  }
   /// The covariance as motions along the space's axes.
   Matrix6 AlongAxes(const MotionSpace& space) const {
     const Matrix6 to_axes = space.axes.transpose() * space.scale.cwiseInverse().asDiagonal();
@@ -285,7 +289,7 @@ TEST_F(PoseUncertaintyTest, GrowsWithTimeAlongEachFreeAxis) {
     SCOPED_TRACE(free_axes);
     uncertainty_ = PoseUncertainty();
     const TrackingResult result = Result(free_axes, kMeasured);
-    for (int i = 0; i < kFrames; ++i) uncertainty_.Update(result, kFrameS, kSpeed);
+    for (int i = 0; i < kFrames; ++i) uncertainty_.Update(result, Inertial(kFrameS));
     const double sigma = kSpeed * kFrames * kFrameS;
     EXPECT_NEAR(uncertainty_.surface_sigma_m(), sigma, 1e-9);
     EXPECT_EQ(uncertainty_.mean_depth_m(), kDepth);
@@ -298,24 +302,64 @@ TEST_F(PoseUncertaintyTest, GrowsWithTimeAlongEachFreeAxis) {
 
 TEST_F(PoseUncertaintyTest, FallsToWhatIsMeasuredOnceAllIsObserved) {
   constexpr double kMeasured = 2e-4;
-  for (int i = 0; i < 60; ++i) uncertainty_.Update(Result(3, kMeasured), kFrameS, kSpeed);
+  for (int i = 0; i < 60; ++i) uncertainty_.Update(Result(3, kMeasured), Inertial(kFrameS));
   ASSERT_GT(uncertainty_.surface_sigma_m(), 0.03);
-  uncertainty_.Update(Result(0, kMeasured), kFrameS, kSpeed);
+  uncertainty_.Update(Result(0, kMeasured), Inertial(kFrameS));
   EXPECT_NEAR(uncertainty_.surface_sigma_m(), kMeasured, kRounding);
   EXPECT_LT((uncertainty_.covariance() - Result(0, kMeasured).covariance).norm(), 1e-15);
 }
 
 TEST_F(PoseUncertaintyTest, StartsFromWhatWasMeasuredBefore) {
   constexpr double kMeasured = 5e-4;
-  uncertainty_.Update(Result(0, kMeasured), kFrameS, kSpeed);
-  uncertainty_.Update(Result(2, kMeasured), kFrameS, kSpeed);
+  uncertainty_.Update(Result(0, kMeasured), Inertial(kFrameS));
+  uncertainty_.Update(Result(2, kMeasured), Inertial(kFrameS));
   EXPECT_NEAR(uncertainty_.surface_sigma_m(), kMeasured + kSpeed * kFrameS, kRounding);
 }
 
 TEST_F(PoseUncertaintyTest, DoesNotShrinkIfTimeStandsStillOrGoesBack) {
   for (const double seconds : {kFrameS, 0.0, -1.0})
-    uncertainty_.Update(Result(1, 0.0), seconds, kSpeed);
+    uncertainty_.Update(Result(1, 0.0), Inertial(seconds));
   EXPECT_NEAR(uncertainty_.surface_sigma_m(), kSpeed * kFrameS, kRounding);
+}
+
+/// Jitter of poses from outside shows in each pose, but the path does not wander with it; drift
+/// adds up.
+TEST_F(PoseUncertaintyTest, NoiseOfASourceDoesNotAddUpWhileItGoesOnAndItsDriftDoes) {
+  constexpr double kGrowth = 1e-4;
+  constexpr double kNoise = 1e-3;
+  constexpr int kFrames = 50;
+  // The same in any direction at the scene's depth.
+  PriorError prior{.translation_growth_m = kGrowth,
+                   .rotation_growth_rad = kGrowth / kDepth,
+                   .translation_noise_m = kNoise,
+                   .rotation_noise_rad = kNoise / kDepth};
+  for (int i = 0; i < kFrames; ++i) {
+    uncertainty_.Update(Result(2, 0.0), prior);
+    prior.continues = true;
+  }
+  const double drift = kFrames * kGrowth;
+  EXPECT_NEAR(uncertainty_.surface_sigma_m(), std::hypot(drift, kNoise), kRounding);
+  // Once something else holds the direction, the noise of the last pose stays in.
+  uncertainty_.Update(Result(2, 0.0), Inertial(kFrameS));
+  EXPECT_NEAR(uncertainty_.surface_sigma_m(), std::hypot(drift, kNoise) + kSpeed * kFrameS,
+              kRounding);
+}
+
+/// Of three free axes along x, y and the turn about z, only the turn is uncertain if only the
+/// rotation is.
+TEST_F(PoseUncertaintyTest, RotationAndTranslationErrorsCountWhereTheyBelong) {
+  TrackingResult result;
+  result.motion.mean_depth_m = kDepth;
+  result.motion.scale.tail<3>().setConstant(1.0 / kDepth);
+  result.motion.axes.setZero();
+  const std::array<int, 6> order = {0, 1, 5, 2, 3, 4};
+  for (int i = 0; i < 6; ++i) result.motion.axes(order[i], i) = 1.0;
+  result.motion.free_axes = 3;
+  uncertainty_.Update(result, {.translation_growth_m = 0.01, .rotation_growth_rad = 0.02});
+  const Matrix6& covariance = uncertainty_.covariance();
+  EXPECT_NEAR(std::sqrt(covariance(0, 0)), 0.01, kRounding);
+  EXPECT_NEAR(std::sqrt(covariance(5, 5)), 0.02, kRounding);
+  EXPECT_EQ(covariance(3, 3), 0.0);
 }
 
 }  // namespace

@@ -8,22 +8,31 @@
 
 namespace isotherm {
 
-void PoseUncertainty::Update(const TrackingResult& result, double seconds, double speed_sigma_m_s) {
+void PoseUncertainty::Update(const TrackingResult& result, const PriorError& prior) {
   const MotionSpace& motion = result.motion;
   const Vector6 to_motion = motion.scale.cwiseInverse();
-  Matrix6 covariance = result.covariance;
+  const Matrix6 before = prior.continues ? without_noise_ : covariance_;
+  without_noise_ = result.covariance;
+  Matrix6 noise = Matrix6::Zero();
   for (int i = 0; i < motion.free_axes; ++i) {
     const Vector6 axis = motion.axes.col(i);
+    const auto along_axis = [&](double translation_m, double rotation_rad) {
+      return std::hypot(translation_m * axis.head<3>().norm(),
+                        rotation_rad * motion.mean_depth_m * axis.tail<3>().norm());
+    };
     const Vector6 weighted = to_motion.cwiseProduct(axis);
-    const double known = std::sqrt(std::max(0.0, weighted.dot(covariance_ * weighted)));
-    const double sigma = known + speed_sigma_m_s * std::max(0.0, seconds);
+    const double known = std::sqrt(std::max(0.0, weighted.dot(before * weighted)));
+    const double sigma = known + along_axis(prior.translation_growth_m, prior.rotation_growth_rad);
+    const double jitter = along_axis(prior.translation_noise_m, prior.rotation_noise_rad);
     const Vector6 twist = motion.scale.cwiseProduct(axis);
-    covariance += sigma * sigma * twist * twist.transpose();
+    const Matrix6 direction = twist * twist.transpose();
+    without_noise_ += sigma * sigma * direction;
+    noise += jitter * jitter * direction;
   }
-  covariance_ = covariance;
+  covariance_ = without_noise_ + noise;
   mean_depth_m_ = motion.mean_depth_m;
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(
-      to_motion.asDiagonal() * covariance * to_motion.asDiagonal(), Eigen::EigenvaluesOnly);
+      to_motion.asDiagonal() * covariance_ * to_motion.asDiagonal(), Eigen::EigenvaluesOnly);
   surface_sigma_m_ = std::sqrt(std::max(0.0, solver.eigenvalues()(5)));
 }
 
@@ -32,6 +41,7 @@ void PoseUncertainty::Rotate(const Eigen::Matrix3d& R) {
   turn.topLeftCorner<3, 3>() = R;
   turn.bottomRightCorner<3, 3>() = R;
   covariance_ = turn * covariance_ * turn.transpose();
+  without_noise_ = turn * without_noise_ * turn.transpose();
 }
 
 }  // namespace isotherm

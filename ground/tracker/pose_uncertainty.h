@@ -1,18 +1,19 @@
 #pragma once
 
 #include "ground/tracker/motion_space.h"
+#include "ground/tracker/prior_error.h"
 
 namespace isotherm {
 
 struct TrackingResult;
 
 /// How uncertain the tracked pose is: what the last frame measured, and along directions that it
-/// left free, what was known before, growing with time. Relative to the model. Thread-compatible.
+/// left free, what was known before, growing with the error of what held them. Relative to the
+/// model. Thread-compatible.
 class PoseUncertainty {
  public:
-  /// After each tracked frame, `seconds` after the one before. `speed_sigma_m_s` is how far off the
-  /// motion along free directions may be, in metres per second at the scene's depth.
-  void Update(const TrackingResult& result, double seconds, double speed_sigma_m_s);
+  /// After each tracked frame, with the error of the prior that held its free directions.
+  void Update(const TrackingResult& result, const PriorError& prior);
 
   /// To coordinates whose axes are turned: `R` maps from the old ones.
   void Rotate(const Eigen::Matrix3d& R);
@@ -28,6 +29,7 @@ class PoseUncertainty {
 
  private:
   Matrix6 covariance_ = Matrix6::Zero();
+  Matrix6 without_noise_ = Matrix6::Zero();  ///< Of the newest pose alone, along free axes.
   double surface_sigma_m_ = 0.0;
   double mean_depth_m_ = 1.0;
 };

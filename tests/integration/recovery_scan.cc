@@ -31,10 +31,14 @@ void RecoveryScan::Start(const RigidTransform& first_pose) {
   pipeline_ = std::move(*created);
 }
 
+CaptureTime RecoveryScan::next_time() const {
+  return CaptureTime(FromSeconds(100.0 + static_cast<double>(frame_) / 30.0));
+}
+
 DepthFrame RecoveryScan::Render(const RigidTransform& pose) {
   DepthFrame frame;
   frame.header.frame_number = frame_;
-  frame.header.capture_time = CaptureTime(FromSeconds(100.0 + static_cast<double>(frame_) / 30.0));
+  frame.header.capture_time = next_time();
   frame.depth_raw = sensor_->Render(scene_, pose, NoiseStream(seed_, 0, frame_), scratch_);
   ++frame_;
   return frame;

@@ -27,6 +27,9 @@ class RecoveryScan {
   DepthReport ShowCovered();
   DepthFrame Render(const RigidTransform& pose);
 
+  /// Capture time of the next frame that is shown.
+  CaptureTime next_time() const;
+
   GroundPipeline& pipeline() { return *pipeline_; }
   const CameraModel& camera() const { return *rig_.depth; }
   /// Distance between the newest pose of the trajectory and `truth`, metres.
