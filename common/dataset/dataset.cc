@@ -77,6 +77,20 @@ Result<Rig> ReadRig(const DatasetOptions& options, const std::vector<std::string
   return rig;
 }
 
+Status ReadOutsidePoses(const fs::path& path, std::vector<OutsidePose>& poses) {
+  const Result<std::vector<StampedPose>> read = ReadTrajectory(path);
+  if (!read) return read.error();
+  constexpr std::size_t kMaxSourceBytes = 32;
+  for (const StampedPose& stamped : *read) {
+    OutsidePose& pose = poses.emplace_back();
+    pose.source = path.stem().string().substr(0, kMaxSourceBytes);
+    pose.time = stamped.time;
+    pose.translation_m = stamped.T_world_depth.translation();
+    pose.rotation = Eigen::Quaterniond(stamped.T_world_depth.linear());
+  }
+  return OkStatus();
+}
+
 // An absent list is fine unless something says that there should be one: intrinsics, a folder of
 // images or a name that looks like a typing error.
 Status CheckAbsentList(const fs::path& folder, const std::string& sensor, bool has_intrinsics,
@@ -202,6 +216,10 @@ Result<Dataset> OpenDataset(const DatasetOptions& options) {
   if (status.ok()) {
     status = ReadOptional(options.folder / "groundtruth.txt", names, ParseTrajectory,
                           dataset.groundtruth, dataset.notes);
+  }
+  if (status.ok() && options.outside_poses) {
+    status =
+        ReadOutsidePoses(Resolve(*options.outside_poses, options.folder), dataset.outside_poses);
   }
   if (!status.ok()) return Err(std::move(status));
   if (dataset.depth.empty()) {

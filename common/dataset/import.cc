@@ -32,7 +32,8 @@ class Importer {
  private:
   bool Done() const {
     return depth_ == dataset_.depth.size() && thermal_ == dataset_.thermal.size() &&
-           pose_ == dataset_.groundtruth.size() && event_ == dataset_.nuc.size();
+           pose_ == dataset_.groundtruth.size() && event_ == dataset_.nuc.size() &&
+           outside_ == dataset_.outside_poses.size();
   }
 
   Status WriteHeader() {
@@ -46,18 +47,21 @@ class Importer {
          {"software", request_.software}});
   }
 
-  // The earliest of the four streams; events and poses before the frames of the same time.
+  // The earliest of the streams; events and poses before the frames of the same time.
   Status WriteNext() {
     constexpr CaptureTime kNever = CaptureTime::max();
     const CaptureTime event = event_ < dataset_.nuc.size() ? dataset_.nuc[event_].start : kNever;
     const CaptureTime pose =
         pose_ < dataset_.groundtruth.size() ? dataset_.groundtruth[pose_].time : kNever;
+    const CaptureTime outside =
+        outside_ < dataset_.outside_poses.size() ? dataset_.outside_poses[outside_].time : kNever;
     const CaptureTime depth = depth_ < dataset_.depth.size() ? dataset_.depth[depth_].time : kNever;
     const CaptureTime thermal =
         thermal_ < dataset_.thermal.size() ? dataset_.thermal[thermal_].time : kNever;
-    const CaptureTime first = std::min({event, pose, depth, thermal});
+    const CaptureTime first = std::min({event, pose, outside, depth, thermal});
     if (event == first) return WriteEvent();
     if (pose == first) return WritePose();
+    if (outside == first) return WriteOutsidePose();
     if (request_.progress) request_.progress(Fraction());
     return depth == first ? WriteDepth() : WriteThermal();
   }
@@ -76,6 +80,11 @@ class Importer {
     const StampedPose& pose = dataset_.groundtruth[pose_++];
     ++summary_.groundtruth_poses;
     return writer_.WritePose("groundtruth", pose);
+  }
+
+  Status WriteOutsidePose() {
+    ++summary_.outside_poses;
+    return writer_.Write(dataset_.outside_poses[outside_++]);
   }
 
   FrameHeader Header(const ImageEntry& entry, std::size_t index) const {
@@ -154,7 +163,8 @@ class Importer {
   DepthEncoder depth_encoder_;
   ThermalEncoder thermal_encoder_;
   ImportSummary summary_;
-  std::size_t depth_ = 0, thermal_ = 0, pose_ = 0, event_ = 0;  // Next of each stream.
+  std::size_t depth_ = 0, thermal_ = 0, pose_ = 0, event_ = 0,
+              outside_ = 0;  // Next of each stream.
 };
 
 Status CheckTarget(const fs::path& target, bool overwrite) {

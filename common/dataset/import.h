@@ -29,6 +29,7 @@ struct ImportSummary {
   std::uint64_t thermal_frames_in_nuc = 0;  ///< Recorded as invalid.
   std::uint64_t skipped_images = 0;
   std::uint64_t groundtruth_poses = 0;
+  std::uint64_t outside_poses = 0;
   std::uint64_t image_bytes = 0;  ///< Raw pixels.
   std::uint64_t recording_bytes = 0;
   std::vector<std::string> notes;

@@ -22,6 +22,7 @@ struct Content {
   std::vector<RecordedThermal> thermal;
   std::vector<NucEvent> events;
   std::vector<RecordedPose> poses;
+  std::vector<OutsidePose> outside_poses;
   std::vector<CaptureTime> order;
 };
 
@@ -39,6 +40,9 @@ Content ReadBack(RecordingReader& reader) {
       content.thermal.push_back(std::move(*thermal));
     } else if (auto* event = std::get_if<NucEvent>(&**item)) {
       content.events.push_back(*event);
+    } else if (auto* outside = std::get_if<OutsidePose>(&**item)) {
+      content.order.push_back(outside->time);
+      content.outside_poses.push_back(std::move(*outside));
     } else {
       content.poses.push_back(std::get<RecordedPose>(**item));
     }
@@ -99,6 +103,33 @@ TEST_F(ImportTest, RecordingHasWhatTheFolderHad) {
     EXPECT_NEAR(content.poses[1].pose.T_world_depth.translation().x(), 0.01, 1e-12);
     EXPECT_EQ(content.events.size(), 1U);
   }
+}
+
+TEST_F(ImportTest, PosesFromOutsideComeAlongInOrderOfTime) {
+  folder_.Write(
+      "vio.txt",
+      "# any reference frame\n100.090 5 6 7 0 0 0 1\n100.120 5.01 6 7 0 0 0.1 0.99498744\n"
+      "100.150 5.02 6 7 0 0 0 1\n");
+  request_.dataset.outside_poses = "vio.txt";
+  const auto summary = ImportDataset(request_);
+  ASSERT_TRUE(summary) << summary.error().message();
+  EXPECT_EQ(summary->outside_poses, 3U);
+  const Content content = ReadBack(**RecordingReader::Open(request_.recording));
+  EXPECT_TRUE(std::is_sorted(content.order.begin(), content.order.end()));
+  ASSERT_EQ(content.outside_poses.size(), 3U);
+  const OutsidePose& pose = content.outside_poses[1];
+  EXPECT_EQ(pose.source, "vio");
+  EXPECT_EQ(ToNanoseconds(pose.time), 100'120'000'000);
+  EXPECT_NEAR(pose.translation_m.x(), 5.01, 1e-12);
+  EXPECT_NEAR(pose.rotation.z(), 0.1, 1e-6);
+  EXPECT_TRUE(std::isnan(pose.position_sigma_m)) << "a trajectory file does not say";
+}
+
+TEST_F(ImportTest, BadPosesFromOutsideNameTheirFileAndLine) {
+  request_.dataset.outside_poses = "vio.txt";
+  EXPECT_THAT(Error(), HasSubstr("vio.txt"));
+  folder_.Write("vio.txt", "100.1 0 0 0 0 0 0 1\n100.2 0 0 0 0 0 0 2\n");
+  EXPECT_THAT(Error(), AllOf(HasSubstr("vio.txt:2"), HasSubstr("unit quaternion")));
 }
 
 TEST_F(ImportTest, FramesInsideNucIntervalsStayButAreInvalid) {

@@ -12,6 +12,7 @@
 #include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/outside_pose.h"
 #include "common/geometry/stamped_pose.h"
 
 namespace isotherm {
@@ -61,6 +62,8 @@ class RecordingWriter {
   virtual Status Write(const EncodedThermalFrame& frame,
                        const std::optional<CaptureTime>& arrival) = 0;
   virtual Status Write(const NucEvent& event) = 0;
+  /// As it came, right or wrong; written as foxglove.PoseInFrame.
+  virtual Status Write(const OutsidePose& pose) = 0;
   /// `stream`: "groundtruth" or "trajectory"; written as foxglove.FrameTransform world -> depth.
   virtual Status WritePose(std::string_view stream, const StampedPose& pose) = 0;
   /// Free text kept as MCAP metadata: `configuration`, `software`, `origin`, ...
@@ -91,7 +94,8 @@ struct RecordedPose {
   std::string stream;
   StampedPose pose;
 };
-using RecordedItem = std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose>;
+using RecordedItem =
+    std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose, OutsidePose>;
 
 /// What is known about a recording without reading its frames (from the summary, or rebuilt by one
 /// pass over the chunk headers if the file has none).

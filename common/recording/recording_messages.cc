@@ -37,6 +37,24 @@ std::optional<CaptureTime> ToTime(const Timestamp& message) {
   return CaptureTimeFromNanoseconds(message.seconds() * kNanosecondsPerSecond + message.nanos());
 }
 
+void SetVector(const Eigen::Vector3d& from, foxglove::Vector3& to) {
+  to.set_x(from.x());
+  to.set_y(from.y());
+  to.set_z(from.z());
+}
+
+void SetQuaternion(const Eigen::Quaterniond& from, foxglove::Quaternion& to) {
+  to.set_x(from.x());
+  to.set_y(from.y());
+  to.set_z(from.z());
+  to.set_w(from.w());
+}
+
+Eigen::Vector3d ToVector(const foxglove::Vector3& v) { return {v.x(), v.y(), v.z()}; }
+Eigen::Quaterniond ToQuaternion(const foxglove::Quaternion& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
 /// The number as the enumerator, or `kUnknown` for one that this program does not know.
 template <typename Enum>
 Enum KnownOr(std::uint32_t value, Enum last, Enum unknown) {
@@ -213,20 +231,26 @@ foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_i
   return message;
 }
 
+foxglove::PoseInFrame ToMessage(const OutsidePose& pose) {
+  foxglove::PoseInFrame message;
+  SetTime(pose.time, *message.mutable_timestamp());
+  message.set_frame_id(pose.source);
+  SetVector(pose.translation_m, *message.mutable_pose()->mutable_position());
+  SetQuaternion(pose.rotation, *message.mutable_pose()->mutable_orientation());
+  OutsidePoseInfo& info = *message.mutable_outside();
+  info.set_time_sigma_ns(pose.time_sigma.count());
+  if (!std::isnan(pose.position_sigma_m)) info.set_position_sigma_m(pose.position_sigma_m);
+  if (!std::isnan(pose.rotation_sigma_rad)) info.set_rotation_sigma_rad(pose.rotation_sigma_rad);
+  return message;
+}
+
 foxglove::FrameTransform ToMessage(const StampedPose& pose) {
   foxglove::FrameTransform message;
   SetTime(pose.time, *message.mutable_timestamp());
   message.set_parent_frame_id(std::string(kWorldFrame));
   message.set_child_frame_id(std::string(kDepthFrame));
-  const Eigen::Vector3d translation = pose.T_world_depth.translation();
-  const Eigen::Quaterniond rotation(pose.T_world_depth.linear());
-  message.mutable_translation()->set_x(translation.x());
-  message.mutable_translation()->set_y(translation.y());
-  message.mutable_translation()->set_z(translation.z());
-  message.mutable_rotation()->set_x(rotation.x());
-  message.mutable_rotation()->set_y(rotation.y());
-  message.mutable_rotation()->set_z(rotation.z());
-  message.mutable_rotation()->set_w(rotation.w());
+  SetVector(pose.T_world_depth.translation(), *message.mutable_translation());
+  SetQuaternion(Eigen::Quaterniond(pose.T_world_depth.linear()), *message.mutable_rotation());
   return message;
 }
 
@@ -297,16 +321,29 @@ Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uin
 Result<StampedPose> FromMessage(const foxglove::FrameTransform& message) {
   const std::optional<CaptureTime> time = ToTime(message.timestamp());
   if (!time) return Err(DataLoss("its timestamp is out of range"));
-  const foxglove::Vector3& t = message.translation();
-  const foxglove::Quaternion& q = message.rotation();
-  const Eigen::Vector3d translation(t.x(), t.y(), t.z());
-  const Eigen::Quaterniond rotation(q.w(), q.x(), q.y(), q.z());
+  const Eigen::Vector3d translation = ToVector(message.translation());
+  const Eigen::Quaterniond rotation = ToQuaternion(message.rotation());
   constexpr double kLeastNorm = 1e-6;
   if (!translation.allFinite() || !(rotation.norm() > kLeastNorm) ||
       !std::isfinite(rotation.norm())) {
     return Err(DataLoss("its pose is not finite"));
   }
   return StampedPose{.time = *time, .T_world_depth = MakeTransform(translation, rotation)};
+}
+
+Result<OutsidePose> FromMessage(const foxglove::PoseInFrame& message) {
+  const std::optional<CaptureTime> time = ToTime(message.timestamp());
+  if (!time) return Err(DataLoss("its timestamp is out of range"));
+  OutsidePose pose;
+  pose.source = message.frame_id();
+  pose.time = *time;
+  pose.translation_m = ToVector(message.pose().position());
+  pose.rotation = ToQuaternion(message.pose().orientation());
+  const OutsidePoseInfo& info = message.outside();
+  pose.time_sigma = Nanoseconds(info.time_sigma_ns());
+  if (info.has_position_sigma_m()) pose.position_sigma_m = info.position_sigma_m();
+  if (info.has_rotation_sigma_rad()) pose.rotation_sigma_rad = info.rotation_sigma_rad();
+  return pose;
 }
 
 Result<NucEvent> FromMessage(const NucRecord& message) {

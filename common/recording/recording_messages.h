@@ -19,6 +19,7 @@ inline constexpr std::string_view kThermalInfoTopic = "/thermal/camera_info";
 inline constexpr std::string_view kNucTopic = "/nuc";
 inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
 inline constexpr std::string_view kTrajectoryTopic = "/trajectory";
+inline constexpr std::string_view kOutsidePoseTopic = "/outside_pose";
 inline constexpr std::string_view kLogTopic = "/log";
 
 /// FileDescriptorSet of the message's file and all that it imports, as MCAP wants schemas.
@@ -36,6 +37,7 @@ void SetImageData(EncodedImage&& image, foxglove::RawImage& message);
 foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_id,
                                       const CameraModel& camera);
 foxglove::FrameTransform ToMessage(const StampedPose& pose);
+foxglove::PoseInFrame ToMessage(const OutsidePose& pose);
 NucRecord ToMessage(const NucEvent& event);
 RigRecord ToMessage(CaptureTime time, const Rig& rig);
 foxglove::Log ToLogMessage(CaptureTime time, std::string_view level, std::string_view text);
@@ -47,6 +49,8 @@ Result<RecordedDepth> ToDepth(Image& message, CaptureTime log_time, std::uint32_
 template <typename Image>
 Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uint32_t sequence);
 Result<StampedPose> FromMessage(const foxglove::FrameTransform& message);
+/// Checks nothing but the time: what the numbers are worth is judged where they are used.
+Result<OutsidePose> FromMessage(const foxglove::PoseInFrame& message);
 Result<NucEvent> FromMessage(const NucRecord& message);
 
 }  // namespace isotherm::recording

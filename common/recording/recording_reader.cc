@@ -23,6 +23,7 @@ enum class Content {
   kCompressedThermal,
   kNuc,
   kPose,
+  kOutsidePose,
   kRig
 };
 
@@ -41,6 +42,8 @@ Content ContentOf(std::string_view topic, std::string_view schema_name) {
     if (Is<foxglove::CompressedImage>(schema_name)) return Content::kCompressedThermal;
   }
   if (topic == rec::kNucTopic && Is<rec::NucRecord>(schema_name)) return Content::kNuc;
+  if (topic == rec::kOutsidePoseTopic && Is<foxglove::PoseInFrame>(schema_name))
+    return Content::kOutsidePose;
   if (topic == rec::kRigTopic && Is<rec::RigRecord>(schema_name)) return Content::kRig;
   if ((topic == rec::kGroundtruthTopic || topic == rec::kTrajectoryTopic) &&
       Is<foxglove::FrameTransform>(schema_name)) {
@@ -181,6 +184,9 @@ class McapRecordingReader final : public RecordingReader {
       case Content::kNuc:
         return ParseItem<rec::NucRecord>(
             message, [](const rec::NucRecord& record) { return rec::FromMessage(record); });
+      case Content::kOutsidePose:
+        return ParseItem<foxglove::PoseInFrame>(
+            message, [](const foxglove::PoseInFrame& pose) { return rec::FromMessage(pose); });
       default:
         return ParsePose(message);
     }

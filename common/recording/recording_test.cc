@@ -238,5 +238,42 @@ TEST(RecordingOptionsTest, ImpossibleOptionsAreRefused) {
   EXPECT_NE(WriterTo(disk, {.flush_interval = 1000ms}), nullptr);
 }
 
+/// What a source outside said is evidence: it is kept as it came, right or wrong.
+TEST(RecordingTest, PosesFromOutsideComeBackAsTheyWere) {
+  OutsidePose pose;
+  pose.source = "vio";
+  pose.time = kScanStart + 7ms;
+  pose.time_sigma = Nanoseconds(3000);
+  pose.translation_m = {1.5, -2.0, std::numeric_limits<double>::quiet_NaN()};
+  pose.rotation.coeffs() = Eigen::Vector4d(0.1, 0.2, 0.3, 2.0);
+  pose.position_sigma_m = 0.01;
+  pose.rotation_sigma_rad = 0.002;
+  OutsidePose attitude;
+  attitude.source = "imu";
+  attitude.time = kScanStart + 8ms;
+  attitude.position_sigma_m = OutsidePose::kNotMeasured;
+  auto disk = std::make_shared<MemorySink::Disk>();
+  auto writer = WriterTo(disk);
+  ASSERT_TRUE(writer->Write(MakeDepth(0, kScanStart), std::nullopt).ok());
+  ASSERT_TRUE(writer->Write(pose).ok());
+  ASSERT_TRUE(writer->Write(attitude).ok());
+  ASSERT_TRUE(writer->Close().ok());
+  auto reader = ReaderOf(disk->bytes);
+  ASSERT_TRUE(reader.has_value());
+  EXPECT_EQ((*reader)->info().messages_by_topic.at("/outside_pose"), 2U);
+  const std::vector<OutsidePose> read = ReadAll(**reader).All<OutsidePose>();
+  ASSERT_EQ(read.size(), 2U);
+  EXPECT_EQ(read[0].source, "vio");
+  EXPECT_EQ(read[0].time, pose.time);
+  EXPECT_EQ(read[0].time_sigma, pose.time_sigma);
+  EXPECT_EQ(read[0].translation_m.head<2>(), pose.translation_m.head<2>());
+  EXPECT_TRUE(std::isnan(read[0].translation_m.z()));
+  EXPECT_EQ(read[0].rotation.coeffs(), pose.rotation.coeffs());
+  EXPECT_EQ(read[0].position_sigma_m, 0.01);
+  EXPECT_EQ(read[0].rotation_sigma_rad, 0.002);
+  EXPECT_FALSE(read[1].has_position());
+  EXPECT_TRUE(std::isnan(read[1].rotation_sigma_rad));
+}
+
 }  // namespace
 }  // namespace isotherm

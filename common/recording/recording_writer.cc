@@ -44,6 +44,10 @@ class McapRecordingWriter final : public RecordingWriter {
     return Append(rec::kNucTopic, event.start, event.start, rec::ToMessage(event));
   }
 
+  Status Write(const OutsidePose& pose) override {
+    return Append(rec::kOutsidePoseTopic, pose.time, pose.time, rec::ToMessage(pose));
+  }
+
   Status WritePose(std::string_view stream, const StampedPose& pose) override {
     const std::string topic = fmt::format("/{}", stream);
     if (topic != rec::kGroundtruthTopic && topic != rec::kTrajectoryTopic) {

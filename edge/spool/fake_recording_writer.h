@@ -15,6 +15,7 @@ struct FakeRecording {
   std::vector<std::uint64_t> depth_frames;
   std::vector<std::uint64_t> thermal_frames;
   std::vector<NucEvent> nuc_events;
+  std::vector<OutsidePose> outside_poses;
   int writes_after_failure = 0;
   bool closed = false;
 };
@@ -34,6 +35,10 @@ class FakeRecordingWriter final : public RecordingWriter {
   }
   Status Write(const NucEvent& event) override {
     recording_.nuc_events.push_back(event);
+    return OkStatus();
+  }
+  Status Write(const OutsidePose& pose) override {
+    recording_.outside_poses.push_back(pose);
     return OkStatus();
   }
   Status WritePose(std::string_view, const StampedPose&) override { return OkStatus(); }

@@ -18,12 +18,13 @@ thermal/*.png, nuc.txt and groundtruth.txt. Lists have 'timestamp_s filename' pe
 are 16-bit PNG (raw depth, centi-kelvin). Frames inside the intervals of nuc.txt are recorded as
 invalid. The recording appears under its name only when it is complete.
 
-Example:
-  isotherm import --from tum ~/scans/door -o door.mcap)";
+Examples:
+  isotherm import --from tum ~/scans/door -o door.mcap
+  isotherm import --from tum ~/scans/door --outside-poses vio.txt -o door.mcap)";
 
 struct Arguments {
   std::string format = "tum";
-  std::string folder, output, thermal_list, rig;
+  std::string folder, output, thermal_list, rig, outside_poses;
   ImageStorage storage = ImageStorage::kCompact;
   bool force = false;
   bool skip_bad = false;
@@ -35,6 +36,7 @@ void Print(const ImportSummary& summary, const std::string& output) {
   if (summary.thermal_frames_in_nuc > 0)
     fmt::print(" ({} with the shutter closed)", summary.thermal_frames_in_nuc);
   if (summary.groundtruth_poses > 0) fmt::print(", {} true poses", summary.groundtruth_poses);
+  if (summary.outside_poses > 0) fmt::print(", {} poses from outside", summary.outside_poses);
   fmt::print("; {:.1f} MB", 1e-6 * static_cast<double>(summary.recording_bytes));
   if (summary.image_bytes > 0) {
     fmt::print(", {:.1f} % of the raw images", 100.0 *
@@ -52,6 +54,7 @@ int Run(const Arguments& arguments) {
   request.dataset.folder = arguments.folder;
   if (!arguments.thermal_list.empty()) request.dataset.thermal_list = arguments.thermal_list;
   if (!arguments.rig.empty()) request.dataset.rig = arguments.rig;
+  if (!arguments.outside_poses.empty()) request.dataset.outside_poses = arguments.outside_poses;
   request.recording = arguments.output;
   request.storage = arguments.storage;
   request.overwrite = arguments.force;
@@ -85,6 +88,9 @@ void AddImportCommand(CLI::App& app, CommandBody& body) {
                       "Another list of thermal stamps than thermal.txt");
   command->add_option("--rig", arguments->rig,
                       "Another calibration than the folder's rig.textproto");
+  command->add_option("--outside-poses", arguments->outside_poses,
+                      "Poses that something outside measured (visual-inertial odometry, motion "
+                      "capture), TUM format, on the clock of the lists");
   command
       ->add_option("--encoding", arguments->storage,
                    "compact (default, smallest) or viewable (larger; MCAP viewers show the images)")

@@ -129,6 +129,8 @@ void AppendRig(const RecordingReport& report, std::string& text) {
 void AppendOther(const RecordingReport& report, std::string& text) {
   for (const auto& [stream, count] : report.summary.poses)
     text += fmt::format("{:<14}{} poses\n", stream, count);
+  for (const auto& [source, count] : report.summary.outside_poses)
+    text += fmt::format("{:<14}{} poses of \"{}\"\n", "outside", count, source);
   for (const auto& [topic, count] : report.info.messages_by_topic) {
     text += fmt::format("{:<22}{} messages\n", topic, count);
   }
@@ -238,6 +240,8 @@ Json ToJson(const RecordingReport& report) {
   json["thermal"] = StreamJson(report.summary.thermal);
   json["nuc"] = NucJson(report.summary);
   for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
+  for (const auto& [source, count] : report.summary.outside_poses)
+    json["outside_poses"][source] = count;
   for (const auto& [topic, count] : report.info.messages_by_topic) json["messages"][topic] = count;
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) json["metadata"][name][key] = value;

@@ -127,6 +127,8 @@ void RecordingSummarizer::Add(const RecordedItem& item) {
     summary_.nuc_events.push_back(*event);
   } else if (const auto* pose = std::get_if<RecordedPose>(&item)) {
     ++summary_.poses[pose->stream];
+  } else if (const auto* outside = std::get_if<OutsidePose>(&item)) {
+    ++summary_.outside_poses[outside->source];
   }
 }
 

@@ -43,11 +43,12 @@ struct RecordingSummary {
   StreamSummary depth;
   StreamSummary thermal;
   std::uint64_t valid_thermal = 0;
-  std::map<std::string, std::uint64_t> nuc_states;  ///< Thermal frames by state.
-  std::vector<NucRun> nuc_runs;                     ///< Shutter closed, from the frames.
-  std::vector<NucEvent> nuc_events;                 ///< As recorded.
-  std::map<std::string, std::uint64_t> poses;       ///< By stream: groundtruth, trajectory.
-  std::uint64_t unreadable = 0;                     ///< Messages that could not be read.
+  std::map<std::string, std::uint64_t> nuc_states;     ///< Thermal frames by state.
+  std::vector<NucRun> nuc_runs;                        ///< Shutter closed, from the frames.
+  std::vector<NucEvent> nuc_events;                    ///< As recorded.
+  std::map<std::string, std::uint64_t> poses;          ///< By stream: groundtruth, trajectory.
+  std::map<std::string, std::uint64_t> outside_poses;  ///< By source.
+  std::uint64_t unreadable = 0;                        ///< Messages that could not be read.
 };
 
 /// Collects a summary in constant memory per frame (its number and time). Thread-compatible.
