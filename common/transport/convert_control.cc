@@ -106,6 +106,10 @@ std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Fe
     to->T_world_depth_next = FromWirePose(from.t_world_depth_next);
     if (!to->T_world_depth_next) return RefusalCause::kOutOfRange;
   }
+  if (from.has_next_in_depth) {
+    to->T_depth_next = FromWirePose(from.t_depth_next);
+    if (!to->T_depth_next) return RefusalCause::kOutOfRange;
+  }
   return std::nullopt;
 }
 
@@ -156,6 +160,9 @@ void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
   to->clock_error_s = from.clock_error_s;
   to->disk_free_bytes = from.disk_free_bytes;
   to->cpu_temperature_celsius = from.cpu_temperature_celsius;
+  to->feedback_count = from.feedback.count;
+  to->feedback_latency_p50_s = from.feedback.p50_s;
+  to->feedback_latency_p99_s = from.feedback.p99_s;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
@@ -163,8 +170,9 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   if (const auto cause = CheckEnum(from.scan_state, ScanState::kEnded)) return cause;
   if (const auto cause = CheckEnum(from.publish_policy, PublishPolicy::kLossless)) return cause;
   if (const auto cause = CheckEnum(from.nuc_state, NucState::kError)) return cause;
-  const auto infinite = CheckFiniteOrUnknown({from.spool_fill_ratio, from.clock_offset_s,
-                                              from.clock_error_s, from.cpu_temperature_celsius});
+  const auto infinite = CheckFiniteOrUnknown(
+      {from.spool_fill_ratio, from.clock_offset_s, from.clock_error_s, from.cpu_temperature_celsius,
+       from.feedback_latency_p50_s, from.feedback_latency_p99_s});
   if (infinite) return infinite;
   if (const auto cause = FromWireStream(from.depth, &to->depth)) return cause;
   if (const auto cause = FromWireStream(from.thermal, &to->thermal)) return cause;
@@ -179,6 +187,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   to->clock_error_s = from.clock_error_s;
   to->disk_free_bytes = from.disk_free_bytes;
   to->cpu_temperature_celsius = from.cpu_temperature_celsius;
+  to->feedback = {from.feedback_count, from.feedback_latency_p50_s, from.feedback_latency_p99_s};
   return std::nullopt;
 }
 
@@ -257,6 +266,11 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to) {
   }
   to->has_pose_covariance = from.pose_covariance.has_value();
   if (from.pose_covariance) ToWireCovariance(*from.pose_covariance, to->pose_covariance);
+  CopyText(from.advice_reason, to->advice_reason);
+  to->done = from.done;
+  to->has_next_in_depth = from.T_depth_next.has_value();
+  if (from.T_depth_next) to->t_depth_next = ToWirePose(*from.T_depth_next);
+  to->next_gain_m2 = from.next_gain_m2;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to) {
@@ -271,6 +285,9 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->model = FromWireShares(from.model);
   to->view = FromWireShares(from.view);
   if (from.has_pose_covariance) to->pose_covariance = FromWireCovariance(from.pose_covariance);
+  to->advice_reason = ReadText(from.advice_reason);
+  to->done = from.done;
+  to->next_gain_m2 = from.next_gain_m2;
   return CheckFeedback(*to);
 }
 

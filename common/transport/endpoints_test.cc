@@ -179,6 +179,7 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   sent.depth.next_frame_number = 103;
   sent.depth.dropped = {{"queue full", 2}, {"clock model warming up", 1}};
   sent.clock_error_s = 0.002;
+  sent.feedback = {.count = 50, .p50_s = 0.05, .p99_s = 0.11};
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
   const EdgeStatus& status = received->message;
@@ -188,6 +189,9 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   EXPECT_EQ(status.depth.dropped[1].reason, "clock model warming up");
   EXPECT_EQ(status.depth.dropped[0].frames, 2U);
   EXPECT_EQ(status.clock_error_s, 0.002);
+  EXPECT_EQ(status.feedback.count, 50U);
+  EXPECT_EQ(status.feedback.p50_s, 0.05);
+  EXPECT_EQ(status.feedback.p99_s, 0.11);
   EXPECT_TRUE(std::isnan(status.cpu_temperature_celsius));
 }
 
@@ -234,6 +238,10 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
           i == j ? 100.0 + i : 1.0 + 6 * i + j;
     }
   }
+  sent.advice_reason = "0.45 m/s, the model follows up to 0.30 m/s";
+  sent.done = true;
+  sent.T_depth_next = MakeTransform({0.1, 0, 0.2}, Eigen::Quaterniond(0.5, -0.5, 0.5, 0.5));
+  sent.next_gain_m2 = 0.25;
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
   const Feedback& feedback = received->message;
@@ -251,6 +259,11 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
   const auto without = RoundTrip(Feedback());
   ASSERT_TRUE(without.has_value());
   EXPECT_FALSE(without->message.pose_covariance.has_value());
+  EXPECT_EQ(feedback.advice_reason, sent.advice_reason);
+  EXPECT_TRUE(feedback.done);
+  ASSERT_TRUE(feedback.T_depth_next.has_value());
+  EXPECT_TRUE(feedback.T_depth_next->isApprox(*sent.T_depth_next, 1e-12));
+  EXPECT_EQ(feedback.next_gain_m2, 0.25);
 }
 
 TEST_F(EndpointsTest, LateJoinerGetsTheRigAndTheNewestFrames) {

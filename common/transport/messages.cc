@@ -16,6 +16,42 @@ std::string Describe(const Hello& hello) {
 
 }  // namespace
 
+std::string_view ToString(TrackingState state) {
+  switch (state) {
+    case TrackingState::kWaiting:
+      return "waiting";
+    case TrackingState::kTracked:
+      return "tracked";
+    case TrackingState::kDegraded:
+      return "degraded";
+    case TrackingState::kLost:
+      return "LOST";
+  }
+  return "?";
+}
+
+std::string_view ToString(Advice advice) {
+  switch (advice) {
+    case Advice::kMoveCloser:
+      return "closer";
+    case Advice::kMoveFarther:
+      return "farther";
+    case Advice::kLessOblique:
+      return "less oblique";
+    case Advice::kMoreOblique:
+      return "more oblique";
+    case Advice::kSlower:
+      return "slower";
+    case Advice::kHoldForNuc:
+      return "wait for NUC";
+    case Advice::kGoBackToRelocalise:
+      return "go back";
+    case Advice::kDone:
+      return "done";
+  }
+  return "?";
+}
+
 Status CheckCompatible(const Hello& own, const Hello& peer) {
   if (own.wire_major == peer.wire_major) return OkStatus();
   const Hello& old = own.wire_major < peer.wire_major ? own : peer;

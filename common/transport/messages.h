@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/frame/frame.h"
@@ -99,6 +100,14 @@ struct StreamStatus {
   std::vector<DropCount> dropped{};  ///< At most kMaxDropReasons.
 };
 
+/// How old depth frames were, from their capture time to the arrival of the feedback on them, both
+/// on the edge. NaN = no feedback yet, or the edge replays with times of its own.
+struct FeedbackLatency {
+  std::uint64_t count = 0;  ///< Messages of feedback.
+  double p50_s = std::numeric_limits<double>::quiet_NaN();
+  double p99_s = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// State of the edge at 1 Hz and at each change of scan_state; the last one is kept for late
 /// joiners. NaN = not known.
 struct EdgeStatus {
@@ -116,6 +125,7 @@ struct EdgeStatus {
       std::numeric_limits<double>::quiet_NaN();  ///< Bound of the offset's error.
   std::uint64_t disk_free_bytes = 0;
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
+  FeedbackLatency feedback;  ///< Of this session.
 };
 
 enum class CommandKind : std::uint8_t {
@@ -167,6 +177,7 @@ struct Receipt {
 };
 
 enum class TrackingState : std::uint8_t { kWaiting = 0, kTracked = 1, kDegraded = 2, kLost = 3 };
+std::string_view ToString(TrackingState state);
 
 enum class Advice : std::uint8_t {
   kMoveCloser = 0,
@@ -176,8 +187,10 @@ enum class Advice : std::uint8_t {
   kSlower = 4,
   kHoldForNuc = 5,
   kGoBackToRelocalise = 6,
-  kDone = 7,
+  kDone = 7,  ///< Enough of the whole surface is measured well.
 };
+/// In the operator's words.
+std::string_view ToString(Advice advice);
 
 /// Parts of a surface by the best conditions under which it was measured; they add up to 1. NaN =
 /// no surface yet.
@@ -200,17 +213,23 @@ struct Feedback {
   std::uint64_t frame_number = 0;  ///< Depth frame this is about, ...
   CaptureTime capture_time{};  ///< ... and its capture time: the age of the feedback on the edge.
   TrackingState tracking_state = TrackingState::kWaiting;
-  std::optional<RigidTransform> T_world_depth;       ///< Absent while lost.
-  double covered_area_m2 = 0.0;                      ///< Surface in the model.
-  CoverageShares model;                              ///< Of the whole surface.
-  CoverageShares view;                               ///< Of the surface in view.
-  std::vector<Advice> advice{};                      ///< Most urgent first; at most kMaxAdvice.
-  std::optional<RigidTransform> T_world_depth_next;  ///< Where to go next.
+  std::optional<RigidTransform> T_world_depth;  ///< Absent while lost.
+  double covered_area_m2 = 0.0;                 ///< Surface in the model.
+  CoverageShares model;                         ///< Of the whole surface.
+  CoverageShares view;                          ///< Of the surface in view.
+  std::vector<Advice> advice{};                 ///< Most urgent first; at most kMaxAdvice.
+  /// Where to go next; while lost, where tracking last worked.
+  std::optional<RigidTransform> T_world_depth_next;
   std::vector<std::uint8_t>
       picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
   std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
   /// Of T_world_depth, relative to the model; absent while lost and from a ground before wire 1.1.
   std::optional<PoseCovariance> pose_covariance;
+  std::string advice_reason{};  ///< Why, or what to do, with numbers; at most kMaxTextBytes.
+  bool done = false;            ///< Enough of the whole surface is measured well.
+  /// The next pose as seen from the depth camera now; absent while lost.
+  std::optional<RigidTransform> T_depth_next;
+  double next_gain_m2 = 0.0;  ///< Surface that the next view would measure well for the first time.
 };
 
 }  // namespace isotherm

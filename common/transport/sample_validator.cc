@@ -112,7 +112,8 @@ std::optional<RefusalCause> CheckStreamReceipt(const StreamReceipt& receipt) {
 
 std::optional<RefusalCause> CheckFeedback(const Feedback& feedback) {
   if (ToNanoseconds(feedback.capture_time) < 0) return RefusalCause::kNegativeTime;
-  if (const auto cause = CheckFinite({feedback.covered_area_m2})) return cause;
+  if (const auto cause = CheckFinite({feedback.covered_area_m2, feedback.next_gain_m2}))
+    return cause;
   if (const auto cause = CheckShares(feedback.model)) return cause;
   if (const auto cause = CheckShares(feedback.view)) return cause;
   for (const StageLatency& latency : feedback.latencies) {
