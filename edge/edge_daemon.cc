@@ -162,8 +162,8 @@ int Capture(const EdgeOptions& options, const Start& start, SupervisedSource& so
             const Clock& clock, const std::stop_token& stop) {
   const bool recording = spool != nullptr;
   const std::filesystem::path disk = recording ? spool->path() : ".";
-  EdgePipeline pipeline(options, {source, publisher, account, std::move(spool), start.session(),
-                                  start.rig_thermal_delay_s});
+  EdgePipeline pipeline(options, {source, publisher, account, clock, std::move(spool),
+                                  start.session(), start.rig_thermal_delay_s});
   pipeline.StartReceiving();
   NotifyReady(fmt::format("capturing from {}", source.name()));
   LOG(Edge, Info) << "started: " << source.name() << ", edge_id=" << options.link().edge_id()
@@ -171,7 +171,8 @@ int Capture(const EdgeOptions& options, const Start& start, SupervisedSource& so
   if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
 
   pipeline.StartCapture();
-  Housekeeping housekeeping(clock, pipeline, publisher, account, disk);
+  Housekeeping housekeeping(clock, pipeline, publisher, account, disk,
+                            options.display().picture_file());
   RunUntilStopped(options, pipeline, housekeeping, stop);
 
   NotifyStopping();
@@ -180,7 +181,9 @@ int Capture(const EdgeOptions& options, const Start& start, SupervisedSource& so
   if (!Drain(publisher, options.link(), clock, stop)) {
     LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
   }
-  std::fputs(Summary(account, recording, publisher.receipt()).c_str(), stdout);
+  std::fputs(
+      Summary(account, recording, publisher.receipt(), pipeline.feedback().latency()).c_str(),
+      stdout);
   return recorded.ok() ? 0 : kExitRecording;
 }
 

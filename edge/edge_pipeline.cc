@@ -12,6 +12,11 @@ OverflowPolicy PolicyFor(const EdgeOptions& options) {
   return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
 }
 
+TimeBase TimeBaseOf(const SourceOptions& options) {
+  if (options.rate() != 1.0) return TimeBase::kOther;
+  return options.rebase() ? TimeBase::kWallClock : TimeBase::kShifted;
+}
+
 auto CountDropsAs(FrameFate fate, FrameAccount& account) {
   return [fate, &account](const EncodedFramePtr& frame) { account.Count(frame->sensor(), fate); };
 }
@@ -22,6 +27,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
     : source_(parts.source),
       publisher_(parts.publisher),
       account_(parts.account),
+      clock_(parts.clock),
       spool_(std::move(parts.spool)),
       session_(parts.session),
       depth_timestamper_(options.timestamper().depth_window(),
@@ -30,6 +36,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
           options.timestamper().thermal_window(),
           FromSeconds(options.timestamper().thermal_delay_s() + parts.rig_thermal_delay_s)),
       nuc_supervisor_(options.nuc()),
+      feedback_(TimeBaseOf(options.source())),
       spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
       spool_queue_(spool_capacity_, PolicyFor(options),
                    CountDropsAs(FrameFate::kRecordQueueFull, account_)),
@@ -40,7 +47,13 @@ EdgePipeline::~EdgePipeline() { static_cast<void>(Stop()); }
 
 void EdgePipeline::StartReceiving() {
   receive_thread_ = std::jthread([this](const std::stop_token& stop) {
-    publisher_.Run(stop, [this, &stop](const Command& command) { commands_.Push(command, stop); });
+    PublisherHandlers handlers;
+    handlers.command = [this, &stop](const Command& command) { commands_.Push(command, stop); };
+    handlers.feedback = [this, &stop](const Feedback& feedback, CaptureTime arrival) {
+      feedback_.Add(feedback, arrival);
+      if (spool_) feedback_to_record_.Push({feedback, arrival}, stop);
+    };
+    publisher_.Run(stop, handlers);
   });
 }
 
@@ -58,7 +71,12 @@ Status EdgePipeline::Stop() {
     thread->request_stop();
     if (thread->joinable()) thread->join();
   }
-  if (spool_) recording_status_ = spool_->Close();
+  if (!spool_) return recording_status_;
+  RecordFeedback();
+  if (feedback_to_record_.dropped() > 0) {
+    LOG(Spool, Warning) << "feedback not recorded, messages=" << feedback_to_record_.dropped();
+  }
+  recording_status_ = spool_->Close();
   return recording_status_;
 }
 
@@ -96,6 +114,7 @@ void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
 
 void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
   const Stamp stamp = depth_timestamper_.Process(raw.device_ticks, raw.arrival_wall);
+  feedback_.NoteCapture(stamp.time, clock_.Now());
   EncodedDepthFrame frame;
   frame.header = Header(raw, stamp);
   frame.depth_scale = raw.depth_scale;
@@ -133,7 +152,17 @@ void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
 }
 
 void EdgePipeline::Record(const std::stop_token& stop) {
-  while (const std::optional<EncodedFramePtr> frame = spool_queue_.Pop(stop)) spool_->Add(**frame);
+  while (const std::optional<EncodedFramePtr> frame = spool_queue_.Pop(stop)) {
+    RecordFeedback();
+    spool_->Add(**frame);
+  }
+}
+
+void EdgePipeline::RecordFeedback() {
+  while (feedback_to_record_.size() > 0) {
+    const std::optional<ReceivedFeedback> received = feedback_to_record_.Pop({});
+    spool_->Add(received->feedback, received->arrival);
+  }
 }
 
 void EdgePipeline::Publish(const std::stop_token& stop) {

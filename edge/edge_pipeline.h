@@ -9,8 +9,10 @@
 
 #include "common/codec/codec.h"
 #include "common/concurrency/bounded_queue.h"
+#include "common/time/clock.h"
 #include "common/transport/messages.h"
 #include "edge/encoded_frame.h"
+#include "edge/feedback_monitor.h"
 #include "edge/frame_account.h"
 #include "edge/nuc/nuc_supervisor.h"
 #include "edge/publisher/publisher.h"
@@ -27,6 +29,7 @@ struct EdgeParts {
   FrameSource& source;  ///< Opened; bad frames are already out (SupervisedSource).
   Publisher& publisher;
   FrameAccount& account;
+  const Clock& clock;
   std::unique_ptr<Spool> spool;  ///< Null: no recording.
   std::uint64_t session = 0;
   double rig_thermal_delay_s = 0.0;
@@ -60,6 +63,8 @@ class EdgePipeline {
   bool finished() const;
   /// The newest thermal frame's NUC state. Thread-safe.
   NucState nuc_state() const { return nuc_state_; }
+  /// What the ground says. Thread-safe.
+  const FeedbackMonitor& feedback() const { return feedback_; }
   /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
   double spool_fill_ratio() const;
 
@@ -71,12 +76,14 @@ class EdgePipeline {
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
   FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
   void Record(const std::stop_token& stop);
+  void RecordFeedback();
   void Publish(const std::stop_token& stop);
   CommandResult Obey(const Command& command);
 
   FrameSource& source_;
   Publisher& publisher_;
   FrameAccount& account_;
+  const Clock& clock_;
   const std::unique_ptr<Spool> spool_;
   const std::uint64_t session_;
 
@@ -91,6 +98,13 @@ class EdgePipeline {
   bool stopped_ = false;
   Status recording_status_;
 
+  struct ReceivedFeedback {
+    Feedback feedback;
+    CaptureTime arrival;
+  };
+  FeedbackMonitor feedback_;
+  /// Of several seconds, for the spool thread to take along with the frames.
+  BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
   BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest};
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;

@@ -34,6 +34,7 @@ class EdgePipelineTest : public testing::Test {
         options_, EdgeParts{.source = *source_,
                             .publisher = publisher_,
                             .account = account_,
+                            .clock = clock_,
                             .spool = std::move(spool),
                             .session = kSession,
                             .rig_thermal_delay_s = rig_thermal_delay_s_});
@@ -63,6 +64,17 @@ class EdgePipelineTest : public testing::Test {
   std::unique_ptr<SupervisedSource> source_;
   std::unique_ptr<EdgePipeline> pipeline_;
 };
+
+TEST_F(EdgePipelineTest, FeedbackIsKeptAndRecordedWithTheScan) {
+  Feedback feedback;
+  feedback.frame_number = 3;
+  publisher_.feedback = {{feedback, CaptureTime{}}, {feedback, CaptureTime{}}};
+  Start("5*d");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  EXPECT_EQ(pipeline_->feedback().newest()->frame_number, 3U);
+  EXPECT_EQ(pipeline_->feedback().latency().count, 2U);
+  EXPECT_EQ(recording_.messages.size(), 2U);
+}
 
 TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
   Start("100*d 130*t 50*d");

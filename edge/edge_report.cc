@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <numbers>
 #include <string_view>
+
+#include "edge/feedback_text.h"
 
 namespace isotherm {
 namespace {
@@ -29,56 +29,6 @@ std::string_view ToText(NucState state) {
       return "error";
   }
   return "?";
-}
-
-std::string_view ToText(TrackingState state) {
-  switch (state) {
-    case TrackingState::kWaiting:
-      return "waiting";
-    case TrackingState::kTracked:
-      return "tracked";
-    case TrackingState::kDegraded:
-      return "degraded";
-    case TrackingState::kLost:
-      return "LOST";
-  }
-  return "?";
-}
-
-std::string_view ToText(Advice advice) {
-  switch (advice) {
-    case Advice::kMoveCloser:
-      return "closer";
-    case Advice::kMoveFarther:
-      return "farther";
-    case Advice::kLessOblique:
-      return "less oblique";
-    case Advice::kMoreOblique:
-      return "more oblique";
-    case Advice::kSlower:
-      return "slower";
-    case Advice::kHoldForNuc:
-      return "hold for NUC";
-    case Advice::kGoBackToRelocalise:
-      return "go back to relocalise";
-    case Advice::kDone:
-      return "done";
-  }
-  return "?";
-}
-
-std::string FeedbackText(const Feedback& feedback) {
-  std::string text = fmt::format("{}", ToText(feedback.tracking_state));
-  if (feedback.pose_covariance) {
-    const PoseSigma sigma = LargestSigma(*feedback.pose_covariance);
-    text += fmt::format(" within {:.1f} mm {:.2f} deg", 1e3 * sigma.translation_m,
-                        sigma.rotation_rad * 180.0 / std::numbers::pi);
-  }
-  if (std::isfinite(feedback.model.good)) {
-    text += fmt::format(", {:.0f} % measured well", 100.0 * feedback.model.good);
-  }
-  for (const Advice advice : feedback.advice) text += fmt::format(", {}", ToText(advice));
-  return text;
 }
 
 std::uint64_t Dropped(const SensorAccount& account) {
@@ -137,17 +87,18 @@ std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bo
   const SensorAccount depth = account.Get(Sensor::kDepth);
   const SensorAccount thermal = account.Get(Sensor::kThermal);
   return fmt::format(
-      "depth {:.1f}/s  thermal {:.1f}/s  recorded {}  published {}  dropped {}  NUC {}  ground: {}",
-      status.depth.rate_hz, status.thermal.rate_hz, depth.recorded + thermal.recorded,
-      depth.published + thermal.published, Dropped(depth) + Dropped(thermal),
-      ToText(status.nuc_state),
+      "ground: {} | depth {:.1f}/s  thermal {:.1f}/s  NUC {}  recorded {}  published {}  dropped "
+      "{}",
       !ground_present ? "absent"
       : feedback      ? FeedbackText(*feedback)
-                      : "no feedback yet");
+                      : "no feedback yet",
+      status.depth.rate_hz, status.thermal.rate_hz, ToText(status.nuc_state),
+      depth.recorded + thermal.recorded, depth.published + thermal.published,
+      Dropped(depth) + Dropped(thermal));
 }
 
 std::string Summary(const FrameAccount& account, bool recording,
-                    const std::optional<Receipt>& receipt) {
+                    const std::optional<Receipt>& receipt, const FeedbackLatency& feedback) {
   std::string text;
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
     const bool is_depth = sensor == Sensor::kDepth;
@@ -166,6 +117,8 @@ std::string Summary(const FrameAccount& account, bool recording,
           fmt::format("{}  {}\n", name, ReceiptText(is_depth ? receipt->depth : receipt->thermal));
     }
   }
+  text += fmt::format("feedback {} messages, depth capture to arrival {}\n", feedback.count,
+                      LatencyText(feedback));
   return text;
 }
 

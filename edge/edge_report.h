@@ -27,12 +27,13 @@ StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz);
 /// The host's part.
 void AddHostStatus(const HostStatus& host, EdgeStatus& status);
 
-/// One line for the operator: rates, drops, NUC, what the ground says.
+/// One line for the operator: what the ground says, then rates, drops and NUC.
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
                        const std::optional<Feedback>& feedback);
 
-/// What became of every frame, printed at exit. `recording`: whether there was one.
+/// What became of every frame, and how soon the ground answered, printed at exit. `recording`:
+/// whether there was one.
 std::string Summary(const FrameAccount& account, bool recording,
-                    const std::optional<Receipt>& receipt);
+                    const std::optional<Receipt>& receipt, const FeedbackLatency& feedback);
 
 }  // namespace isotherm

@@ -36,7 +36,7 @@ TEST_F(EdgeReportTest, SummaryIsTheAccountAsAnEquation) {
   Count(Sensor::kDepth, FrameFate::kRecorded, 8);
   Count(Sensor::kDepth, FrameFate::kRecordQueueFull, 2);
   Count(Sensor::kDepth, FrameFate::kPublished, 10);
-  const std::string text = Summary(account_, true, std::nullopt);
+  const std::string text = Summary(account_, true, std::nullopt, {});
   EXPECT_THAT(text, HasSubstr("captured 10 = recorded 8 + rejected 0 + queue full 2 + failed 0\n"));
   EXPECT_THAT(text,
               HasSubstr("captured 10 = published 10 + rejected 0 + queue full 0 + failed 0\n"));
@@ -46,14 +46,21 @@ TEST_F(EdgeReportTest, SummaryIsTheAccountAsAnEquation) {
 TEST_F(EdgeReportTest, SummarySaysWhatTheGroundHas) {
   Receipt receipt;
   receipt.depth = {.next = 10, .handled = 10, .received = 9};
-  EXPECT_THAT(Summary(account_, false, receipt),
+  EXPECT_THAT(Summary(account_, false, receipt, {}),
               HasSubstr("depth    ground received 9, missing 1"));
+}
+
+TEST_F(EdgeReportTest, SummarySaysHowSoonTheGroundAnswered) {
+  EXPECT_THAT(
+      Summary(account_, false, std::nullopt, {.count = 12, .p50_s = 0.048, .p99_s = 0.0924}),
+      HasSubstr("feedback 12 messages, depth capture to arrival p50 48 ms, p99 92 ms\n"));
+  EXPECT_THAT(Summary(account_, false, std::nullopt, {}), HasSubstr("arrival unknown"));
 }
 
 TEST_F(EdgeReportTest, AnAccountThatDoesNotCloseIsNotHidden) {
   Count(Sensor::kThermal, FrameFate::kCaptured, 5);
   Count(Sensor::kThermal, FrameFate::kPublished, 4);
-  EXPECT_THAT(Summary(account_, false, std::nullopt), HasSubstr("unaccounted 1"));
+  EXPECT_THAT(Summary(account_, false, std::nullopt, {}), HasSubstr("unaccounted 1"));
 }
 
 TEST_F(EdgeReportTest, StreamStatusAddsUp) {
@@ -71,12 +78,14 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   Feedback feedback;
   feedback.tracking_state = TrackingState::kLost;
   feedback.model.good = 0.34F;
+  feedback.covered_area_m2 = 0.5;
   feedback.advice = {Advice::kGoBackToRelocalise};
   EXPECT_THAT(StatusLine({}, account_, true, feedback),
-              HasSubstr("LOST, 34 % measured well, go back to relocalise"));
+              HasSubstr("ground: LOST, all 34 % of 0.50 m2, go back"));
   feedback.tracking_state = TrackingState::kDegraded;
   feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
-  EXPECT_THAT(StatusLine({}, account_, true, feedback), HasSubstr(" within 1.0 mm 0.06 deg, 34 %"));
+  EXPECT_THAT(StatusLine({}, account_, true, feedback),
+              HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
   EXPECT_THAT(StatusLine({}, account_, false, feedback), HasSubstr("ground: absent"));
   EXPECT_THAT(StatusLine({}, account_, true, std::nullopt), HasSubstr("no feedback yet"));
 }

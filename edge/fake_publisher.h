@@ -3,6 +3,7 @@
 #include <atomic>
 #include <mutex>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "edge/publisher/publisher.h"
@@ -13,8 +14,9 @@ namespace isotherm {
 /// Thread-safe.
 class FakePublisher final : public Publisher {
  public:
-  void Run(std::stop_token stop, std::function<void(const Command&)> on_command) override {
-    for (const Command& command : commands) on_command(command);
+  void Run(std::stop_token stop, const PublisherHandlers& handlers) override {
+    for (const Command& command : commands) handlers.command(command);
+    for (const auto& [message, arrival] : feedback) handlers.feedback(message, arrival);
     std::unique_lock lock(mutex_);
     changed_.wait(lock, stop, [] { return false; });
   }
@@ -35,11 +37,11 @@ class FakePublisher final : public Publisher {
   bool Drain(Nanoseconds) override { return true; }
   void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
   PublisherStats stats() const override { return {}; }
-  LatestValue<Feedback>& feedback() override { return feedback_; }
   std::optional<Receipt> receipt() const override { return std::nullopt; }
 
-  /// Commands that the ground sends at the start of Run.
+  /// Commands and feedback, with its arrival, that the ground sends at the start of Run.
   std::vector<Command> commands;
+  std::vector<std::pair<Feedback, CaptureTime>> feedback;
 
   void Break() { broken_ = true; }
   /// Publish waits from now on until it is released or stop is requested.
@@ -84,7 +86,6 @@ class FakePublisher final : public Publisher {
   std::vector<EncodedDepthFrame> depth_;
   std::vector<EncodedThermalFrame> thermal_;
   std::vector<CommandResult> answers_;
-  LatestValue<Feedback> feedback_;
 };
 
 }  // namespace isotherm

@@ -1,5 +1,6 @@
 #include "edge/housekeeping.h"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -8,6 +9,8 @@
 
 #include "common/base/log.h"
 #include "common/base/service.h"
+#include "common/transport/bounded_text.h"
+#include "edge/picture_file.h"
 
 namespace isotherm {
 namespace {
@@ -18,12 +21,14 @@ constexpr Nanoseconds kLogInterval = std::chrono::seconds(10);
 }  // namespace
 
 Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-                           const FrameAccount& account, std::filesystem::path disk)
+                           const FrameAccount& account, std::filesystem::path disk,
+                           std::filesystem::path picture_file)
     : clock_(clock),
       pipeline_(pipeline),
       publisher_(publisher),
       account_(account),
       disk_(std::move(disk)),
+      picture_file_(std::move(picture_file)),
       terminal_(isatty(STDERR_FILENO) == 1),
       next_status_(clock.SteadyNow()),
       next_log_(next_status_ + kLogInterval),
@@ -34,15 +39,17 @@ void Housekeeping::Tick() {
   pipeline_.AnswerCommands();
   const SteadyTime now = clock_.SteadyNow();
   FeedWatchdog(now);
+  ShowFeedback();
   if (now < next_status_) return;
   next_status_ += kStatusInterval;
   const bool ended = pipeline_.finished();
-  const EdgeStatus status = MakeStatus(ended ? ScanState::kEnded : ScanState::kScanning, now);
-  const Status published = publisher_.Publish(status);
+  status_ = MakeStatus(ended ? ScanState::kEnded : ScanState::kScanning, now);
+  const Status published = publisher_.Publish(status_);
   if (!published.ok()) {
     LOG(Edge, Debug) << "status not published: " << published.message();
   }
-  Show(status);
+  if (terminal_) ShowLine();
+  Log();
 }
 
 void Housekeeping::PublishEnd() {
@@ -62,21 +69,49 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.depth = ToStreamStatus(depth, depth_rate_.Update(depth.captured, now));
   status.thermal = ToStreamStatus(thermal, thermal_rate_.Update(thermal.captured, now));
   status.nuc_state = pipeline_.nuc_state();
+  status.feedback = pipeline_.feedback().latency();
   status.spool_fill_ratio = pipeline_.spool_fill_ratio();
   AddHostStatus(ReadHostStatus(disk_), status);
   return status;
 }
 
-void Housekeeping::Show(const EdgeStatus& status) {
-  const std::string line =
-      StatusLine(status, account_, publisher_.stats().ground_present, publisher_.feedback().Get());
-  if (terminal_) {
-    // The cursor stays at the start of the line, so that a log line covers it.
-    std::fprintf(stderr, "\033[2K%s\r", line.c_str());
-    std::fflush(stderr);
+void Housekeeping::ShowFeedback() {
+  const std::uint64_t count = pipeline_.feedback().latency().count;
+  if (count == feedback_shown_) return;
+  feedback_shown_ = count;
+  const std::optional<Feedback> feedback = pipeline_.feedback().newest();
+  if (!picture_file_.empty() && !feedback->picture.empty()) {
+    const Status written = ReplaceFile(picture_file_, feedback->picture);
+    if (!written.ok() && !picture_fails_) {
+      LOG(Edge, Warning) << "no confidence picture: " << written.message();
+    }
+    picture_fails_ = !written.ok();
   }
+  const std::optional<std::string> news = narrator_.Tell(*feedback);
+  if (terminal_) {
+    ShowLine();
+  } else if (news) {
+    LOG(Edge, Info) << "ground: " << *news;
+  }
+}
+
+void Housekeeping::ShowLine() {
+  const std::string line = StatusLine(status_, account_, publisher_.stats().ground_present,
+                                      pipeline_.feedback().newest());
+  // A line that wraps cannot be overwritten. The cursor stays at its start, so that a log line
+  // covers it.
+  winsize size{};
+  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+  const std::size_t columns = known ? size.ws_col - 1U : line.size();
+  std::fprintf(stderr, "\033[2K%s\r", std::string(CutText(line, columns)).c_str());
+  std::fflush(stderr);
+}
+
+void Housekeeping::Log() {
   if (clock_.SteadyNow() < next_log_) return;
   next_log_ += kLogInterval;
+  const std::string line = StatusLine(status_, account_, publisher_.stats().ground_present,
+                                      pipeline_.feedback().newest());
   if (!terminal_) {
     LOG(Edge, Info) << line;
   }

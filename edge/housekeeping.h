@@ -7,6 +7,7 @@
 #include "common/time/clock.h"
 #include "edge/edge_pipeline.h"
 #include "edge/edge_report.h"
+#include "edge/feedback_text.h"
 #include "edge/frame_account.h"
 #include "edge/publisher/publisher.h"
 
@@ -16,9 +17,11 @@ namespace isotherm {
 /// a second, tells the operator and the service manager. Thread-bound.
 class Housekeeping {
  public:
-  /// All must outlive it. `disk` is where the recording goes.
+  /// All must outlive it. `disk` is where the recording goes, `picture_file` the confidence picture
+  /// (empty: nowhere).
   Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-               const FrameAccount& account, std::filesystem::path disk);
+               const FrameAccount& account, std::filesystem::path disk,
+               std::filesystem::path picture_file);
 
   /// Does what is due; call it often.
   void Tick();
@@ -27,7 +30,10 @@ class Housekeeping {
 
  private:
   EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
-  void Show(const EdgeStatus& status);
+  /// The newest feedback, if it was not shown yet: picture, status line or journal.
+  void ShowFeedback();
+  void ShowLine();
+  void Log();
   void FeedWatchdog(SteadyTime now);
 
   const Clock& clock_;
@@ -35,6 +41,7 @@ class Housekeeping {
   Publisher& publisher_;
   const FrameAccount& account_;
   const std::filesystem::path disk_;
+  const std::filesystem::path picture_file_;
   const bool terminal_;
   SteadyTime next_status_;
   SteadyTime next_log_;
@@ -43,6 +50,10 @@ class Housekeeping {
   RateMeter depth_rate_;
   RateMeter thermal_rate_;
   std::uint64_t captured_at_last_feed_ = 0;
+  EdgeStatus status_;  ///< The last one published.
+  std::uint64_t feedback_shown_ = 0;
+  FeedbackNarrator narrator_;
+  bool picture_fails_ = false;
 };
 
 }  // namespace isotherm

@@ -99,6 +99,10 @@ Status Validate(const EdgeOptions& options) {
   problems.CheckRange("settle_time_s", options.nuc().settle_time_s(), 0.0, 60.0);
   CheckSpool(options.spool(), problems);
   CheckLink(options.link(), problems);
+  problems.Stage("display");
+  const std::string& picture = options.display().picture_file();
+  if (!picture.empty() && picture.back() == '/')
+    problems.Add("picture_file", fmt::format("is \"{}\", must name a file", picture));
   return problems.ToStatus();
 }
 

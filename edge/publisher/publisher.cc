@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "common/base/log.h"
+#include "common/concurrency/latest_value.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/qos.h"
 #include "common/transport/wait_set.h"
@@ -59,7 +60,7 @@ class DdsPublisher final : public Publisher {
 
   Status Open(const Participant& participant);
 
-  void Run(std::stop_token stop, std::function<void(const Command&)> on_command) override;
+  void Run(std::stop_token stop, const PublisherHandlers& handlers) override;
   bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
   Status BeginSession(const RigDescription& rig) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
@@ -75,7 +76,6 @@ class DdsPublisher final : public Publisher {
   bool Drain(Nanoseconds timeout) override;
   void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
   PublisherStats stats() const override;
-  LatestValue<Feedback>& feedback() override { return feedback_; }
   std::optional<Receipt> receipt() const override { return receipt_.Get(); }
 
  private:
@@ -112,7 +112,6 @@ class DdsPublisher final : public Publisher {
   RefusalCounter refusals_;
   EdgeEndpoints ends_;
   std::mutex receipts_mutex_;  // Run() takes receipts, and so does Drain(), before or after Run().
-  LatestValue<Feedback> feedback_;
   LatestValue<Receipt> receipt_;
   std::atomic<PublishPolicy> policy_;
 
@@ -147,17 +146,18 @@ Status DdsPublisher::Open(const Participant& participant) {
   return ends_.hello.Write(options_.edge_id, own_hello_);
 }
 
-void DdsPublisher::Run(std::stop_token stop, std::function<void(const Command&)> on_command) {
+void DdsPublisher::Run(std::stop_token stop, const PublisherHandlers& handlers) {
   const std::stop_callback wake(stop, [this] { ends_.wait_set.Wake(); });
   while (!stop.stop_requested()) {
     ends_.wait_set.Wait(kPresenceInterval);
     ends_.peers.Take([&](Received<Hello>&& peer) { OnPeer(peer); });
     TakeReceipts();
     ends_.feedback.Take([&](Received<Feedback>&& feedback) {
-      if (IsOurs(feedback.edge_id)) feedback_.Set(std::move(feedback.message));
+      if (handlers.feedback && IsOurs(feedback.edge_id) && feedback.message.session == session())
+        handlers.feedback(feedback.message, clock_.Now());
     });
     ends_.commands.Take([&](Received<Command>&& command) {
-      if (IsOurs(command.edge_id)) on_command(command.message);
+      if (handlers.command && IsOurs(command.edge_id)) handlers.command(command.message);
     });
     LookForGround();
   }

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "common/base/status.h"
-#include "common/concurrency/latest_value.h"
 #include "common/frame/frame.h"
 #include "common/time/clock.h"
 #include "common/transport/messages.h"
@@ -30,6 +29,13 @@ struct PublisherOptions {
 };
 
 Status Validate(const PublisherOptions& options);
+
+/// Called on the thread that runs the publisher: they must only take note. Empty ones are skipped.
+struct PublisherHandlers {
+  std::function<void(const Command&)> command;
+  /// `arrival` on the edge's wall clock.
+  std::function<void(const Feedback&, CaptureTime arrival)> feedback;
+};
 
 struct StreamPublished {
   std::uint64_t published = 0;
@@ -57,10 +63,9 @@ class Publisher {
                                                    const PublisherOptions& options);
   virtual ~Publisher() = default;
 
-  /// Receives commands, receipts and feedback until stop is requested; `on_command` is called on
-  /// this thread and must only enqueue. Needed for WaitForGround() and for
-  /// PublishPolicy::kLossless.
-  virtual void Run(std::stop_token stop, std::function<void(const Command&)> on_command) = 0;
+  /// Receives commands, receipts and feedback until stop is requested. Needed for WaitForGround()
+  /// and for PublishPolicy::kLossless.
+  virtual void Run(std::stop_token stop, const PublisherHandlers& handlers) = 0;
 
   /// Waits until a compatible ground station reads our frames; true if it is there. Returns at once
   /// with what is known when `timeout` is zero.
@@ -85,8 +90,7 @@ class Publisher {
 
   virtual void SetPolicy(PublishPolicy policy) = 0;
   virtual PublisherStats stats() const = 0;
-  /// Newest feedback and receipt from the ground.
-  virtual LatestValue<Feedback>& feedback() = 0;
+  /// Newest receipt from the ground.
   virtual std::optional<Receipt> receipt() const = 0;
 };
 

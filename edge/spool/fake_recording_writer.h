@@ -4,6 +4,7 @@
 #include <map>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/recording/recording.h"
@@ -16,6 +17,7 @@ struct FakeRecording {
   std::vector<std::uint64_t> thermal_frames;
   std::vector<NucEvent> nuc_events;
   std::vector<OutsidePose> outside_poses;
+  std::vector<std::pair<std::string, CaptureTime>> messages;  ///< By topic.
   int writes_after_failure = 0;
   bool closed = false;
 };
@@ -46,8 +48,9 @@ class FakeRecordingWriter final : public RecordingWriter {
     return OkStatus();
   }
   Status WriteLog(CaptureTime, std::string_view, std::string_view) override { return OkStatus(); }
-  Status WriteMessage(std::string_view, std::string_view, std::string_view, CaptureTime,
+  Status WriteMessage(std::string_view topic, std::string_view, std::string_view, CaptureTime time,
                       std::string_view) override {
+    recording_.messages.emplace_back(topic, time);
     return OkStatus();
   }
   Status Flush() override { return OkStatus(); }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/transport/feedback_record.h"
 #include "edge/edge_options.pb.h"
 
 namespace isotherm {
@@ -47,6 +48,10 @@ void Spool::Add(const EncodedFrame& frame) {
   ++offered_[static_cast<std::size_t>(frame.sensor())];
   if (first_error_.ok()) NoteError(WriteFrame(frame));
   UpdateAccount();
+}
+
+void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
+  if (first_error_.ok()) NoteError(WriteFeedback(feedback, arrival, *writer_));
 }
 
 Status Spool::WriteFrame(const EncodedFrame& frame) {

@@ -11,6 +11,7 @@
 #include "common/base/status.h"
 #include "common/recording/recording.h"
 #include "common/time/time_types.h"
+#include "common/transport/messages.h"
 #include "edge/encoded_frame.h"
 #include "edge/frame_account.h"
 
@@ -37,6 +38,8 @@ class Spool {
   Spool(std::filesystem::path path, std::unique_ptr<RecordingWriter> writer, FrameAccount& account);
 
   void Add(const EncodedFrame& frame);
+  /// `arrival` on the edge's wall clock.
+  void Add(const Feedback& feedback, CaptureTime arrival);
   /// Writes the summary. The first error of the whole recording, or ok.
   Status Close();
 

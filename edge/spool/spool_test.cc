@@ -72,6 +72,20 @@ TEST_F(SpoolTest, AShutterEventIsRecordedWhenTheShutterOpens) {
   EXPECT_EQ(recording_.nuc_events[0].source, NucSource::kInBand);
 }
 
+TEST_F(SpoolTest, FeedbackLiesAtTheTimeOfItsDepthFrameWithItsPicture) {
+  Start();
+  Feedback feedback;
+  feedback.capture_time = CaptureTime{std::chrono::seconds(100)};
+  spool_->Add(feedback, feedback.capture_time + milliseconds(70));
+  feedback.picture = {1, 2, 3};
+  spool_->Add(feedback, feedback.capture_time + milliseconds(170));
+  ASSERT_EQ(recording_.messages.size(), 3U);
+  EXPECT_EQ(recording_.messages[0].first, "/feedback");
+  EXPECT_EQ(recording_.messages[0].second, feedback.capture_time);
+  EXPECT_EQ(recording_.messages[1].first, "/feedback");
+  EXPECT_EQ(recording_.messages[2].first, "/feedback/picture");
+}
+
 TEST(SpoolPathTest, OffMeansNoFile) { EXPECT_EQ(SpoolPath("off", {}), std::nullopt); }
 
 TEST(SpoolPathTest, AFileIsTakenAsGiven) { EXPECT_EQ(SpoolPath("a/b.mcap", {}), "a/b.mcap"); }

@@ -68,8 +68,7 @@ class EdgeSide {
     options.edge_id = "test-edge";
     options.policy = plan.policy;
     publisher_ = std::move(*Publisher::Create(*participant_, clock, options));
-    receiver_ = std::jthread(
-        [this](const std::stop_token& stop) { publisher_->Run(stop, [](const Command&) {}); });
+    receiver_ = std::jthread([this](const std::stop_token& stop) { publisher_->Run(stop, {}); });
   }
 
   Publisher& publisher() { return *publisher_; }

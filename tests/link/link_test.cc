@@ -305,15 +305,22 @@ TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
   PublisherOptions options;
   options.edge_id = "test-edge";
   const auto publisher = std::move(*Publisher::Create(*participant, clock_, options));
+  RigDescription rig;
+  rig.session = 5;
+  ASSERT_TRUE(publisher->BeginSession(rig).ok());
+  LatestValue<Feedback> newest;
   std::jthread receiver([&](const std::stop_token& stop) {
-    publisher->Run(stop, [&](const Command& command) {
+    PublisherHandlers handlers;
+    handlers.command = [&](const Command& command) {
       EXPECT_EQ(command.kind, CommandKind::kTriggerNuc);
       EXPECT_TRUE(publisher
                       ->Answer({.number = command.number,
                                 .outcome = CommandOutcome::kRefused,
                                 .text = "no shutter"})
                       .ok());
-    });
+    };
+    handlers.feedback = [&](const Feedback& feedback, CaptureTime) { newest.Set(feedback); };
+    publisher->Run(stop, handlers);
   });
   ASSERT_TRUE(publisher->WaitForGround(kLinkPatience, {}));
   const auto number = ground->subscriber().Send({.kind = CommandKind::kTriggerNuc});
@@ -324,14 +331,13 @@ TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
   EXPECT_EQ(result->text, "no shutter");
 
   Feedback feedback;
+  feedback.session = rig.session;
   feedback.frame_number = 12;
   ASSERT_TRUE(ground->subscriber().Publish(feedback).ok());
   const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
-  while (!publisher->feedback().Get() && std::chrono::steady_clock::now() < deadline) {
-    std::this_thread::yield();
-  }
-  ASSERT_TRUE(publisher->feedback().Get().has_value());
-  EXPECT_EQ(publisher->feedback().Get()->frame_number, 12U);
+  while (!newest.Get() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();
+  ASSERT_TRUE(newest.Get().has_value());
+  EXPECT_EQ(newest.Get()->frame_number, 12U);
 }
 
 }  // namespace
