@@ -20,6 +20,7 @@
 #include "common/concurrency/bounded_queue.h"
 #include "common/transport/participant.h"
 #include "ground/export/results.h"
+#include "ground/link_account.h"
 #include "ground/live_scan.h"
 #include "ground/scan_recorder.h"
 #include "ground/scan_result.h"
@@ -44,7 +45,7 @@ struct SessionStart {
   std::shared_future<RecordingOutcome> recording;
 };
 
-using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, SessionAccount>;
+using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, SessionAccount, Feedback>;
 using ItemQueue = BoundedQueue<Item>;
 
 bool IsFrame(const Item& item) {
@@ -78,9 +79,14 @@ class RecordingLoop {
       return;
     }
     recorder_ = std::move(*recorder);
+    session_ = start.rig.session;
     recorder_->Write(start.rig);
   }
   void Handle(const SessionAccount& /*account*/) { End(); }
+  void Handle(const Feedback& feedback) {
+    // The reconstruction may be behind, and still speak of the session before.
+    if (recorder_ && feedback.session == session_) recorder_->Write(feedback);
+  }
   template <typename Frame>
   void Handle(const Frame& frame) {
     if (recorder_) recorder_->Write(frame);
@@ -102,32 +108,26 @@ class RecordingLoop {
 
   const GroundOptions& options_;
   std::unique_ptr<ScanRecorder> recorder_;
+  std::uint64_t session_ = 0;
   std::shared_ptr<std::promise<RecordingOutcome>> promise_;
   Status status_;
 };
 
-void AddStream(Json& json, const StreamAccount& account, std::uint64_t recorded) {
-  json["published"] = account.published;
-  json["received"] = account.received;
-  json["missing"] = account.missing;
-  json["late"] = account.late;
-  json["duplicates"] = account.duplicates;
-  json["refused"] = account.refused;
-  json["recorded"] = recorded;
-}
-
 /// Reconstructs one session after the other. Runs on the reconstruction thread.
 class ReconstructionLoop {
  public:
-  ReconstructionLoop(const GroundOptions& options, bool single_scan, const Clock& clock,
-                     Subscriber& subscriber, StopSignal& signal)
+  /// `recording` gets the feedback.
+  ReconstructionLoop(const GroundOptions& options, const ServiceMode& mode, const Clock& clock,
+                     Subscriber& subscriber, ItemQueue& recording, StopSignal& signal)
       : clock_(clock),
         options_(options),
-        single_scan_(single_scan),
+        mode_(mode),
         subscriber_(subscriber),
+        recording_(recording),
         signal_(signal) {}
 
   void Run(ItemQueue& queue, const std::stop_token& stop) {
+    stop_ = stop;
     while (std::optional<Item> item = queue.Pop(stop)) {
       if (stop.stop_requested() && IsFrame(*item)) {
         ++unprocessed_;
@@ -144,7 +144,8 @@ class ReconstructionLoop {
   void Handle(const SessionStart& start) {
     End(last_account_);
     start_ = start;
-    Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
+    Result<std::unique_ptr<LiveScan>> scan =
+        LiveScan::Create(clock_, options_, mode_.feedback, start.rig);
     if (!scan) {
       LOG(Ground, Error) << "session " << start.rig.session
                          << " is recorded only: " << scan.error().message();
@@ -162,7 +163,7 @@ class ReconstructionLoop {
   void Handle(const SessionAccount& account) {
     last_account_ = account;
     End(account);
-    if (single_scan_) signal_.Request();
+    if (mode_.single_scan) signal_.Request();
   }
 
   template <typename Frame>
@@ -170,12 +171,15 @@ class ReconstructionLoop {
     if (!scan_) return;
     scan_->Add(frame);
     ++processed_;
-    if (const std::optional<Feedback> feedback = scan_->TakeFeedback()) {
-      if (const Status status = subscriber_.Publish(*feedback); !status.ok()) {
-        LOG(Ground, Debug) << "feedback not sent: " << status.message();
-      }
+    const std::optional<Feedback> feedback = scan_->TakeFeedback();
+    if (!feedback) return;
+    if (const Status status = subscriber_.Publish(*feedback); !status.ok()) {
+      LOG(Ground, Debug) << "feedback not sent: " << status.message();
     }
+    recording_.Push(*feedback, stop_);
+    scan_->ThinkAhead();
   }
+  void Handle(const Feedback& /*feedback*/) {}  // Comes from here.
 
   void End(const SessionAccount& account) {
     if (!scan_) return;
@@ -190,9 +194,8 @@ class ReconstructionLoop {
     RecordingOutcome recording;
     if (start_.recording.wait_for(1s) == std::future_status::ready)
       recording = start_.recording.get();
-    AddStream(link["depth"], account.depth, recording.stats.depth_frames);
-    AddStream(link["thermal"], account.thermal, recording.stats.thermal_frames);
-    link["recording_failed_frames"] = recording.stats.failed;
+    DescribeAccount(account, recording.stats, link);
+    stats["feedback"] = scan_->DescribeFeedback();
     const Result<std::string> text =
         WriteScan(scan_->pipeline(), options_, std::move(stats), start_.folder, nullptr);
     scan_.reset();
@@ -201,21 +204,18 @@ class ReconstructionLoop {
       LOG(Ground, Error) << status_.message();
       return;
     }
-    const auto line = [](const char* name, const StreamAccount& a, std::uint64_t recorded) {
-      return fmt::format("{:<8} {} published = {} received + {} missing; {} recorded\n", name,
-                         a.published, a.received, a.missing, recorded);
-    };
-    const std::string summary = *text + line("link", account.depth, recording.stats.depth_frames) +
-                                line("", account.thermal, recording.stats.thermal_frames);
+    const std::string summary = *text + AccountText(account, recording.stats);
     std::fputs(summary.c_str(), stdout);
     std::fflush(stdout);
   }
 
   const Clock& clock_;
   const GroundOptions& options_;
-  const bool single_scan_;
+  const ServiceMode mode_;
   Subscriber& subscriber_;
+  ItemQueue& recording_;
   StopSignal& signal_;
+  std::stop_token stop_;
   SessionStart start_;
   std::unique_ptr<LiveScan> scan_;
   SessionAccount last_account_;
@@ -352,7 +352,7 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
   if (!subscriber) return Fail(subscriber.error());
 
   RecordingLoop recording(options);
-  ReconstructionLoop reconstruction(options, mode.single_scan, clock, **subscriber, signal);
+  ReconstructionLoop reconstruction(options, mode, clock, **subscriber, to_recording, signal);
   {
     std::jthread recording_thread(
         [&](const std::stop_token& stop) { recording.Run(to_recording, stop); });

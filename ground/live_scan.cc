@@ -8,36 +8,13 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "ground/scan_result.h"
 
 namespace isotherm {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-/// Depth frames per second for the speed that advice is about, if the rig does not say.
-constexpr double kNominalDepthHz = 30.0;
-
-std::optional<Advice> ToWire(AdviceKind kind) {
-  switch (kind) {
-    case AdviceKind::kNone:
-      return std::nullopt;
-    case AdviceKind::kDone:
-      return Advice::kDone;
-    case AdviceKind::kCloser:
-      return Advice::kMoveCloser;
-    case AdviceKind::kFarther:
-      return Advice::kMoveFarther;
-    case AdviceKind::kLessOblique:
-      return Advice::kLessOblique;
-    case AdviceKind::kSlower:
-      return Advice::kSlower;
-    case AdviceKind::kHoldForNuc:
-      return Advice::kHoldForNuc;
-    case AdviceKind::kGoBack:
-      return Advice::kGoBackToRelocalise;
-  }
-  return std::nullopt;
-}
+constexpr double kMsPerS = 1e3;
 
 }  // namespace
 
@@ -51,14 +28,17 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
 }
 
 Result<std::unique_ptr<LiveScan>> LiveScan::Create(const Clock& clock, const GroundOptions& options,
+                                                   const FeedbackOptions& feedback,
                                                    const RigDescription& rig) {
   Result<std::unique_ptr<GroundPipeline>> pipeline =
       GroundPipeline::Create(options, rig.rig, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
-  return std::unique_ptr<LiveScan>(new LiveScan(clock, options, rig, std::move(*pipeline)));
+  return std::unique_ptr<LiveScan>(
+      new LiveScan(clock, options, feedback, rig, std::move(*pipeline)));
 }
 
-LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
+LiveScan::LiveScan(const Clock& clock, const GroundOptions& options,
+                   const FeedbackOptions& feedback, const RigDescription& rig,
                    std::unique_ptr<GroundPipeline> pipeline)
     : clock_(clock),
       options_(options),
@@ -66,7 +46,9 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       rig_(rig.rig),
       keeps_up_(options.live().max_wait_s() > 0.0 && !rig.waits_for_ground),
       pipeline_(std::move(pipeline)),
-      assembler_(rig.rig.thermal.has_value()) {}
+      assembler_(rig.rig.thermal.has_value()),
+      done_share_(feedback.done_share()),
+      feedback_(options, feedback, rig) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
   if (keeps_up_) KeepUp(clock_.Now() - depth.queued);
@@ -77,7 +59,7 @@ void LiveScan::Add(const ReceivedDepth& depth) {
 
 void LiveScan::Add(const ReceivedThermal& thermal) {
   const NucState state = thermal.frame->nuc_state;
-  nuc_running_ = state == NucState::kInProgress || state == NucState::kSettling;
+  moment_.nuc_running = state == NucState::kInProgress || state == NucState::kSettling;
   arrivals_[thermal.frame.get()] = thermal.arrival;
   assembler_.Add(thermal.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -104,6 +86,7 @@ void LiveScan::KeepUp(Nanoseconds queued) {
   constexpr double kThermalShare = 0.4;
   constexpr double kIntegrationShare = 0.7;
   const double share = ToSeconds(queued) / options_.live().max_wait_s();
+  is_behind_ = share > kThermalShare;
   pipeline_->set_effort(share > kIntegrationShare ? Effort::kEverySecond
                         : share > kThermalShare   ? Effort::kNoThermal
                                                   : Effort::kAll);
@@ -125,55 +108,79 @@ void LiveScan::Process(const Assembler::Frame& frame) {
   NoteTurn(&depth);
   const DepthReport report = pipeline_->ProcessDepth(depth);
   if (report.repeated) return;  // Says nothing new.
-  newest_report_ = report;
-  newest_header_ = depth.header;
   const CaptureTime time = depth.header.capture_time;
-  if (!next_feedback_ || time >= *next_feedback_) {
-    feedback_waiting_ = true;
-    next_feedback_ = time + FromSeconds(1.0 / options_.live().feedback_hz());
+  NoteMotion(report, time);
+  moment_.report = report;
+  moment_.header = depth.header;
+  if (next_feedback_ && time < *next_feedback_) return;
+  feedback_waiting_ = true;
+  // From the deadline before, so that jitter does not lower the rate; after a gap, from now.
+  const Nanoseconds period = FromSeconds(1.0 / options_.live().feedback_hz());
+  const CaptureTime due = next_feedback_.value_or(time) + period;
+  next_feedback_ = due > time ? due : time + period;
+}
+
+void LiveScan::NoteMotion(const DepthReport& report, CaptureTime time) {
+  if (!motion_since_) {
+    motion_since_ = time;
+    return;
   }
+  ++frames_;
+  if (report.tracked) {
+    path_m_ += report.tracking.step_m;
+    turned_rad_ += report.tracking.step_rad;
+  }
+  const double elapsed_s = ToSeconds(time - *motion_since_);
+  if (elapsed_s <= 0.0) return;
+  moment_.speed_m_s = path_m_ / elapsed_s;
+  moment_.turn_rate_deg_s = turned_rad_ * kDegPerRad / elapsed_s;
+  moment_.frame_interval_s = elapsed_s / frames_;
 }
 
 std::optional<Feedback> LiveScan::TakeFeedback() {
   if (!feedback_waiting_) return std::nullopt;
   feedback_waiting_ = false;
-  return MakeFeedback();
+  const SteadyTime start = clock_.SteadyNow();
+  Feedback feedback = feedback_.Make(moment_, *pipeline_);
+  making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
+  motion_since_ = moment_.header.capture_time;
+  path_m_ = 0.0;
+  turned_rad_ = 0.0;
+  frames_ = 0;
+  TellWhenDone();
+  return feedback;
 }
 
-Feedback LiveScan::MakeFeedback() {
-  Feedback feedback;
-  feedback.session = session_;
-  feedback.frame_number = newest_header_.frame_number;
-  feedback.capture_time = newest_header_.capture_time;
-  const TrackingResult& tracking = newest_report_->tracking;
-  feedback.tracking_state = !newest_report_->tracked                   ? TrackingState::kLost
-                            : tracking.verdict() == Verdict::kDegraded ? TrackingState::kDegraded
-                                                                       : TrackingState::kTracked;
-  if (newest_report_->tracked) {
-    feedback.T_world_depth = pipeline_->ToWorld(tracking.T_world_depth);
-    feedback.pose_covariance = pipeline_->uncertainty().covariance();
-  }
+void LiveScan::TellWhenDone() {
+  if (feedback_.done() == told_done_) return;
+  told_done_ = feedback_.done();
+  const SurfaceAreas areas = feedback_.areas();
+  LOG(Ground, Info) << fmt::format(
+      "{}: {:.1f} % of {:.3f} m2 of surface are measured well, {:.1f} % are asked for",
+      told_done_ ? "the scan is done" : "the scan is not done any more: there is more surface",
+      100.0 * areas.good_m2 / areas.total_m2(), areas.total_m2(), 100.0 * done_share_);
+}
 
-  const ModelView& model = pipeline_->view();
-  CoverageSummary coverage;
-  if (model.maps.width() > 0) {
-    SampleView(model.maps, model.T_world_depth.translation(), pipeline_->tsdf(),
-               pipeline_->thermal(), pipeline_->pool(), view_);
-    coverage = SummarizeCoverage(view_, options_.thermal());
-  }
-  feedback.view = {static_cast<float>(coverage.good), static_cast<float>(coverage.acceptable),
-                   static_cast<float>(coverage.bad), static_cast<float>(coverage.never_measured)};
-  ScanSituation situation;
-  situation.tracking_lost = !newest_report_->tracked;
-  situation.nuc_running = nuc_running_;
-  situation.speed_m_s = tracking.step_m * kNominalDepthHz;
-  situation.turn_rate_deg_s = tracking.step_rad * kDegPerRad * kNominalDepthHz;
-  situation.max_speed_m_s = options_.tsdf().max_step_m() * kNominalDepthHz;
-  situation.max_turn_rate_deg_s = options_.tsdf().max_step_deg() * kNominalDepthHz;
-  if (const auto advice = ToWire(AdviseOperator(coverage, situation, options_.thermal()).advice)) {
-    feedback.advice.push_back(*advice);
-  }
-  return feedback;
+void LiveScan::ThinkAhead() {
+  if (is_behind_) return;
+  const SteadyTime start = clock_.SteadyNow();
+  feedback_.ThinkAhead(*pipeline_);
+  thinking_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
+}
+
+Json LiveScan::DescribeFeedback() const {
+  const SurfaceAreas areas = feedback_.areas();
+  Json json;
+  json["messages"] = feedback_.messages();
+  json["done"] = feedback_.done();
+  json["surface_m2"] = areas.total_m2();
+  json["good_m2"] = areas.good_m2;
+  json["acceptable_m2"] = areas.acceptable_m2;
+  json["bad_m2"] = areas.bad_m2;
+  json["never_measured_m2"] = areas.never_m2;
+  json["making"] = DescribeStage(making_);
+  json["thinking_ahead"] = DescribeStage(thinking_);
+  return json;
 }
 
 }  // namespace isotherm

@@ -13,7 +13,8 @@
 #include "common/time/clock.h"
 #include "common/transport/messages.h"
 #include "ground/assembler/assembler.h"
-#include "ground/feedback/coverage.h"
+#include "ground/export/json.h"
+#include "ground/feedback_maker.h"
 #include "ground/ground_options.pb.h"
 #include "ground/ground_pipeline.h"
 #include "ground/subscriber/received_frame.h"
@@ -30,6 +31,7 @@ class LiveScan {
  public:
   /// `clock` must outlive the scan; it is only asked how long frames waited.
   static Result<std::unique_ptr<LiveScan>> Create(const Clock& clock, const GroundOptions& options,
+                                                  const FeedbackOptions& feedback,
                                                   const RigDescription& rig);
 
   void Add(const ReceivedDepth& depth);
@@ -39,6 +41,10 @@ class LiveScan {
 
   /// Feedback on the newest depth frame if one is due (LiveOptions.feedback_hz, by capture time).
   std::optional<Feedback> TakeFeedback();
+  /// To be called when that was sent: prepares the next. Left out while frames wait.
+  void ThinkAhead();
+  /// Coverage of the whole model as it goes into stats.json.
+  Json DescribeFeedback() const;
 
   /// From a frame's arrival to its turn: in queues, and for the other stream.
   const StageStats& waiting() const { return waiting_; }
@@ -49,13 +55,15 @@ class LiveScan {
   const Rig& rig() const { return rig_; }
 
  private:
-  LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
-           std::unique_ptr<GroundPipeline> pipeline);
+  LiveScan(const Clock& clock, const GroundOptions& options, const FeedbackOptions& feedback,
+           const RigDescription& rig, std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
   void NoteTurn(const void* frame);
   /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
   void KeepUp(Nanoseconds queued);
-  Feedback MakeFeedback();
+  /// What the rig did since the last feedback.
+  void NoteMotion(const DepthReport& report, CaptureTime time);
+  void TellWhenDone();
 
   const Clock& clock_;
   const GroundOptions options_;
@@ -64,14 +72,20 @@ class LiveScan {
   const bool keeps_up_;
   std::unique_ptr<GroundPipeline> pipeline_;
   Assembler assembler_;
-  ViewMaps view_;
-  std::optional<DepthReport> newest_report_;
-  FrameHeader newest_header_;
+  const double done_share_;
+  FeedbackMaker feedback_;
+  FeedbackMoment moment_;  ///< Of the newest depth frame.
   bool feedback_waiting_ = false;
   std::optional<CaptureTime> next_feedback_;
-  bool nuc_running_ = false;
+  std::optional<CaptureTime> motion_since_;  ///< Of the last frame before those summed up here.
+  double path_m_ = 0.0;
+  double turned_rad_ = 0.0;
+  int frames_ = 0;
+  bool is_behind_ = false;
+  bool told_done_ = false;
   std::map<const void*, CaptureTime> arrivals_;  ///< Of frames in the assembler.
   StageStats waiting_;
+  StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
   bool told_behind_ = false;
 };
 

@@ -30,21 +30,21 @@ class LiveScanTest : public ::testing::Test {
     options_.set_threads(2);
   }
   void Start() {
-    auto created = LiveScan::Create(clock_, options_, rig_);
+    auto created = LiveScan::Create(clock_, options_, feedback_options_, rig_);
     ASSERT_TRUE(created.has_value()) << created.error().message();
     scan_ = std::move(*created);
   }
 
   static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
 
-  /// A depth frame whose turn comes `wait` after its arrival.
-  void Depth(int i, Nanoseconds wait) {
+  /// A depth frame whose turn comes `wait` after its arrival, dated `jitter` frames off.
+  void Depth(int i, Nanoseconds wait, double jitter = 0.0) {
     constexpr double kStep = 0.003;  // Metres per frame.
     auto frame = std::make_shared<DepthFrame>(testing::RenderDepth(
         testing::BallInCorner, *rig_.rig.depth,
         testing::FirstPose() *
             MakeTransform({kStep * i, 0.5 * kStep * i, 0.0}, Eigen::Quaterniond::Identity())));
-    frame->header.capture_time = Time(i);
+    frame->header.capture_time = Time(i + jitter);
     const CaptureTime arrival = clock_.Now();
     clock_.Advance(wait);
     scan_->Add(ReceivedDepth{frame, nullptr, arrival, arrival});
@@ -73,6 +73,7 @@ class LiveScanTest : public ::testing::Test {
 
   FakeClock clock_{CaptureTime(FromSeconds(1000.0))};
   GroundOptions options_;
+  FeedbackOptions feedback_options_;
   RigDescription rig_;
   std::unique_ptr<LiveScan> scan_;
 };
@@ -175,6 +176,109 @@ TEST_F(LiveScanTest, ALongestWaitOfZeroNeverLeavesAnythingOut) {
   EXPECT_EQ(counts().depth_integrated, 7U);
   EXPECT_EQ(counts().depth_behind, 0U);
   EXPECT_EQ(counts().thermal_fused, 6U);
+}
+
+TEST_F(LiveScanTest, FeedbackKeepsItsRateWhenFramesJitter) {
+  options_.mutable_live()->set_feedback_hz(10.0);
+  Start();
+  int messages = 0;
+  constexpr int kFrames = 31;  // One second.
+  for (int i = 0; i < kFrames; ++i) {
+    if (i > 0) Thermal(i - 0.5);
+    Depth(i, 1ms, i % 3 == 0 ? -0.01 : 0.0);  // A deadline is met a little early.
+    if (scan_->TakeFeedback()) ++messages;
+  }
+  EXPECT_GE(messages, 10);
+  EXPECT_LE(messages, 11);
+}
+
+TEST_F(LiveScanTest, FeedbackSaysHowWellViewAndModelAreMeasured) {
+  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  Start();
+  std::optional<Feedback> feedback;
+  for (int i = 0; i < 8; ++i) {
+    if (i > 0) Thermal(i - 0.5);
+    Depth(i, 1ms);
+    if (auto next = scan_->TakeFeedback()) feedback = std::move(next);
+    scan_->ThinkAhead();
+  }
+  ASSERT_TRUE(feedback.has_value());
+  EXPECT_EQ(feedback->session, rig_.session);
+  EXPECT_EQ(feedback->tracking_state, TrackingState::kTracked);
+  const auto sum = [](const CoverageShares& shares) {
+    return shares.good + shares.acceptable + shares.bad + shares.never_measured;
+  };
+  EXPECT_NEAR(sum(feedback->view), 1.0, 1e-5);
+  EXPECT_NEAR(sum(feedback->model), 1.0, 1e-5);
+  // The ball is 0.33 m away and faces the camera; the walls behind it are 0.62 m away.
+  EXPECT_GT(feedback->view.good, 0.02);
+  EXPECT_LT(feedback->view.good, 0.6);
+  EXPECT_GT(feedback->view.acceptable, 0.2);
+  EXPECT_GT(feedback->covered_area_m2, 0.1);
+  EXPECT_LT(feedback->covered_area_m2, 0.6);
+  ASSERT_FALSE(feedback->picture.empty());
+  EXPECT_LE(feedback->picture.size(), kMaxPictureBytes);
+  EXPECT_EQ(scan_->DescribeFeedback().ToText().find("\"messages\": 0"), std::string::npos);
+}
+
+TEST_F(LiveScanTest, TheNextViewIsGivenInWorldAndFromTheRig) {
+  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  Start();
+  std::optional<Feedback> feedback;
+  for (int i = 0; i < 12; ++i) {
+    Depth(i, 1ms);
+    Thermal(i + 0.5);
+    if (auto next = scan_->TakeFeedback()) feedback = std::move(next);
+    for (int k = 0; k < 5; ++k) scan_->ThinkAhead();
+  }
+  ASSERT_TRUE(feedback.has_value());
+  ASSERT_TRUE(feedback->T_world_depth_next.has_value());
+  EXPECT_GT(feedback->next_gain_m2, feedback_options_.min_gain_m2());
+  ASSERT_TRUE(feedback->T_depth_next.has_value());
+  EXPECT_TRUE((*feedback->T_world_depth * *feedback->T_depth_next)
+                  .isApprox(*feedback->T_world_depth_next, 1e-9));
+}
+
+TEST_F(LiveScanTest, EnoughOfTheSurfaceMeasuredWellIsDone) {
+  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  feedback_options_.set_done_share(0.01);
+  feedback_options_.set_settle_s(0.0);
+  Start();
+  std::optional<Feedback> feedback;
+  for (int i = 0; i < 10; ++i) {
+    if (i > 0) Thermal(i - 0.5);
+    Depth(i, 1ms);
+    if (auto next = scan_->TakeFeedback()) feedback = std::move(next);
+    scan_->ThinkAhead();
+  }
+  ASSERT_TRUE(feedback.has_value());
+  EXPECT_TRUE(feedback->done);
+  ASSERT_EQ(feedback->advice.size(), 1U);
+  EXPECT_EQ(feedback->advice[0], Advice::kDone);
+  EXPECT_FALSE(feedback->T_world_depth_next.has_value()) << "there is nothing more to go to";
+}
+
+TEST_F(LiveScanTest, ALostTrackIsSentBackToWhereItWorked) {
+  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  Start();
+  Run(0, 6, 1ms);
+  scan_->FinishFrames();
+  const RigidTransform last = *scan_->TakeFeedback()->T_world_depth;
+  auto nothing = std::make_shared<DepthFrame>();  // The camera is covered.
+  nothing->header.capture_time = Time(7);
+  nothing->depth_scale = 1000.0;
+  nothing->depth_raw = Image<std::uint16_t>(rig_.rig.depth->width, rig_.rig.depth->height, 0);
+  scan_->Add(ReceivedDepth{nothing, nullptr, clock_.Now(), clock_.Now()});
+  scan_->FinishFrames();
+  const std::optional<Feedback> feedback = scan_->TakeFeedback();
+  ASSERT_TRUE(feedback.has_value());
+  EXPECT_EQ(feedback->tracking_state, TrackingState::kLost);
+  ASSERT_EQ(feedback->advice.size(), 1U);
+  EXPECT_EQ(feedback->advice[0], Advice::kGoBackToRelocalise);
+  ASSERT_TRUE(feedback->T_world_depth_next.has_value());
+  EXPECT_TRUE(feedback->T_world_depth_next->isApprox(last, 1e-9));
+  EXPECT_FALSE(feedback->T_depth_next.has_value()) << "nobody knows where the rig is";
+  EXPECT_FALSE(feedback->T_world_depth.has_value());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include "common/base/log.h"
 #include "common/config/text_proto.h"
+#include "common/transport/feedback_record.h"
 
 namespace isotherm {
 
@@ -30,6 +31,10 @@ void ScanRecorder::Write(const ReceivedDepth& depth) {
 }
 void ScanRecorder::Write(const ReceivedThermal& thermal) {
   Note(writer_->Write(*thermal.encoded, thermal.arrival));
+}
+
+void ScanRecorder::Write(const Feedback& feedback) {
+  Note(WriteFeedback(feedback, std::nullopt, *writer_));
 }
 
 Status ScanRecorder::Close() {

@@ -23,6 +23,7 @@ class ScanRecorder {
   void Write(const RigDescription& rig);
   void Write(const ReceivedDepth& depth);
   void Write(const ReceivedThermal& thermal);
+  void Write(const Feedback& feedback);
   /// Writes index and footer. The first error of the recording, or ok. Idempotent.
   Status Close();
 

@@ -21,6 +21,7 @@ ViewMaps Row(int surface, int empty, double distance_m, double angle_deg) {
   view.celsius.Fill(NAN);
   view.distance_class.Fill(kNeverMeasured);
   view.angle_class.Fill(kNeverMeasured);
+  view.motion_class.Fill(kNeverMeasured);  // Unchecked.
   view.cos_view.Fill(NAN);
   view.distance_m.Fill(NAN);
   for (int x = 0; x < surface; ++x) {
@@ -34,10 +35,6 @@ void Measure(ViewMaps& view, int x, std::uint8_t distance, std::uint8_t angle) {
   view.celsius.At(x, 0) = 20.0F;
   view.distance_class.At(x, 0) = distance;
   view.angle_class.At(x, 0) = angle;
-}
-
-OperatorAdvice AdviceFor(const ViewMaps& view, const ScanSituation& situation = {}) {
-  return AdviseOperator(SummarizeCoverage(view, ThermalOptions()), situation, ThermalOptions());
 }
 
 TEST(CoverageTest, SharesAreOfTheSurfaceAndAddUpToOne) {
@@ -63,34 +60,20 @@ TEST(CoverageTest, IsZeroWithoutASurface) {
   EXPECT_EQ(SummarizeCoverage(ViewMaps(), ThermalOptions()).surface, 0.0);
 }
 
-TEST(AdviceTest, FollowsFromWhatHindersMost) {
-  EXPECT_EQ(AdviceFor(Row(10, 0, 1.2, 20.0)).advice, AdviceKind::kCloser);
-  EXPECT_EQ(AdviceFor(Row(10, 0, 0.2, 20.0)).advice, AdviceKind::kFarther);
-  EXPECT_EQ(AdviceFor(Row(10, 0, 0.5, 75.0)).advice, AdviceKind::kLessOblique);
-  EXPECT_EQ(AdviceFor(Row(10, 0, 0.5, 20.0)).advice, AdviceKind::kNone);
-}
-
-TEST(AdviceTest, SurfaceThatIsMeasuredWellNeedsNothing) {
-  ViewMaps view = Row(10, 0, 1.2, 20.0);
-  for (int x = 0; x < 9; ++x) Measure(view, x, kGood, kAcceptable);
-  EXPECT_EQ(AdviceFor(view).advice, AdviceKind::kDone);
-  EXPECT_NE(AdviceFor(view).reason.find("90 %"), std::string::npos);
-}
-
-TEST(AdviceTest, TrackingComesBeforeNucBeforeMotion) {
-  const ViewMaps view = Row(10, 0, 1.2, 20.0);
-  ScanSituation situation{.speed_m_s = 0.5, .max_speed_m_s = 0.3};
-  EXPECT_EQ(AdviceFor(view, situation).advice, AdviceKind::kSlower);
-  situation.nuc_running = true;
-  EXPECT_EQ(AdviceFor(view, situation).advice, AdviceKind::kHoldForNuc);
-  situation.tracking_lost = true;
-  EXPECT_EQ(AdviceFor(view, situation).advice, AdviceKind::kGoBack);
-}
-
-TEST(AdviceTest, EveryAdviceButNoneGivesAReason) {
-  EXPECT_TRUE(AdviceFor(Row(10, 0, 0.5, 20.0)).reason.empty());
-  EXPECT_NE(AdviceFor(Row(10, 0, 1.2, 20.0)).reason.find("0.90 m"), std::string::npos);
-  EXPECT_FALSE(AdviceFor(Row(0, 10, 0.5, 0.0)).reason.empty());
+TEST(CoverageTest, WhatHindersIsSaidOfWhatIsNotYetGood) {
+  ThermalOptions limits;  // 0.30 to 0.60 m, up to 40 degrees.
+  limits.set_angle_min_deg(10);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.61, 20.0), limits).too_far, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.59, 20.0), limits).too_far, 0.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.29, 20.0), limits).too_near, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 41.0), limits).too_oblique, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 39.0), limits).too_oblique, 0.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 9.0), limits).too_frontal, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 11.0), limits).too_frontal, 0.0);
+  ViewMaps view = Row(4, 0, 0.61, 20.0);
+  Measure(view, 0, kGood, kGood);
+  Measure(view, 1, kAcceptable, kGood);
+  EXPECT_DOUBLE_EQ(SummarizeCoverage(view, limits).too_far, 3.0 / 4.0);
 }
 
 }  // namespace

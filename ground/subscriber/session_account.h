@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "common/transport/messages.h"
+
 namespace isotherm {
 
 /// published = received + missing, always. `received` are distinct frames that were good; late ones
@@ -23,6 +25,7 @@ struct SessionAccount {
   bool closed = false;  ///< ... and everything has arrived or was given up.
   StreamAccount depth;
   StreamAccount thermal;
+  FeedbackLatency feedback;  ///< As the edge measured it.
 };
 
 }  // namespace isotherm

@@ -49,6 +49,7 @@ void SessionBook::OnStatus(const EdgeStatus& status, SteadyTime now) {
   Entry& entry = Touch(status.session, now);
   entry.depth_published = status.depth.published;
   entry.thermal_published = status.thermal.published;
+  entry.feedback = status.feedback;
   entry.ended = status.scan_state == ScanState::kEnded;
 }
 
@@ -65,6 +66,7 @@ SessionAccount SessionBook::Account(const StreamTally& depth, const StreamTally&
   if (entry == nullptr) entry = &unknown;
   account.ended = entry->ended;
   account.closed = entry->closed;
+  account.feedback = entry->feedback;
   account.depth = MakeAccount(depth, entry->depth_published, entry->ended);
   account.thermal = MakeAccount(thermal, entry->thermal_published, entry->ended);
   return account;

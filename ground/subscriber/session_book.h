@@ -43,6 +43,7 @@ class SessionBook {
     std::uint64_t session = 0;
     std::uint64_t depth_published = 0;
     std::uint64_t thermal_published = 0;
+    FeedbackLatency feedback{};
     bool ended = false;
     bool closed = false;
     SteadyTime last_activity{};

@@ -50,6 +50,18 @@ TEST_F(SessionBookTest, F19PublishedIsReceivedPlusMissingAtTheEnd) {
   EXPECT_EQ(account.depth.missing, 1U);
 }
 
+TEST_F(SessionBookTest, TheLastStatusSaysHowSoonFeedbackArrived) {
+  EdgeStatus status = Status(1, ScanState::kScanning, 9, 5);
+  status.feedback = {.count = 10, .p50_s = 0.05, .p99_s = 0.10};
+  book_.OnStatus(status, now_);
+  status.scan_state = ScanState::kEnded;
+  status.feedback = {.count = 20, .p50_s = 0.06, .p99_s = 0.12};
+  book_.OnStatus(status, now_);
+  const SessionAccount account = book_.Account(Tally(1, 9, 9), Tally(1, 5, 5));
+  EXPECT_EQ(account.feedback.count, 20U);
+  EXPECT_EQ(account.feedback.p99_s, 0.12);
+}
+
 TEST_F(SessionBookTest, ACompleteSessionClosesAtOnceAndOnce) {
   book_.OnFrame(1, now_);
   book_.OnStatus(Status(1, ScanState::kEnded, 10, 5), now_);

@@ -183,6 +183,46 @@ TEST_F(DaemonsTest, F38SigtermEndsBothSoonWithEverythingFlushed) {
       << received.thermal.size() << " of " << sent.thermal.size();
 }
 
+/// Messages of a topic in a recording.
+std::uint64_t Messages(const std::filesystem::path& recording, const std::string& topic) {
+  const auto reader = RecordingReader::Open(recording);
+  if (!reader) return 0;
+  const auto& counts = (*reader)->info().messages_by_topic;
+  return counts.contains(topic) ? counts.at(topic) : 0;
+}
+
+TEST_F(DaemonsTest, FeedbackReachesTheEdgeAndItsAgeIsKnown) {
+  Process ground(Ground({"--once"}));
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  const Finished edge = RunToEnd(Edge({"--wait-for-ground", "--exit-at-end", "--set",
+                                       "display.picture_file=" + Path("confidence.png").string()}),
+                                 kPatience);
+  EXPECT_EQ(edge.status, 0) << edge.output;
+  EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+
+  // Two seconds at 10 Hz; a computer that is busy with other things may skip some.
+  constexpr double kLeastMessages = 5;
+  // Anything above is not an age, but another clock.
+  constexpr double kMostAge_ms = 3000;
+  const auto stats = ReadStats(Path("ground"));
+  const double received = NumberAt(stats, {"link", "feedback", "received_by_edge"});
+  EXPECT_GE(received, kLeastMessages) << edge.output;
+  EXPECT_LE(received, NumberAt(stats, {"feedback", "messages"}));
+  const double p50_ms = NumberAt(stats, {"link", "feedback", "latency_p50_ms"});
+  const double p99_ms = NumberAt(stats, {"link", "feedback", "latency_p99_ms"});
+  EXPECT_GT(p50_ms, 0.0);
+  EXPECT_GE(p99_ms, p50_ms);
+  EXPECT_LT(p99_ms, kMostAge_ms);
+  std::cout << "feedback: " << received << " messages, p50 " << p50_ms << " ms, p99 " << p99_ms
+            << " ms\n";
+  EXPECT_THAT(edge.output, HasSubstr("depth capture to arrival p50"));
+  EXPECT_THAT(edge.output, HasSubstr("ground: tracked")) << "a change of state, in the journal";
+  EXPECT_EQ(static_cast<double>(Messages(Path("edge.mcap"), "/feedback")), received);
+  EXPECT_GE(static_cast<double>(Messages(Path("ground/scan.mcap"), "/feedback")), received);
+  ASSERT_TRUE(std::filesystem::exists(Path("confidence.png")));
+  EXPECT_LE(std::filesystem::file_size(Path("confidence.png")), 20'000U);
+}
+
 TEST_F(DaemonsTest, TheEdgeRecordsEverythingWithoutAGround) {
   const Finished edge =
       RunToEnd(Edge({"--rate", "4", "--exit-at-end", "--set", "link.linger_s=0"}), kPatience);

@@ -1,0 +1,198 @@
+#include "ground/feedback/advice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace isotherm {
+namespace {
+
+// A view with less surface than the first, as a share of the picture, shows too little to judge; it
+// does again from the second on.
+constexpr double kTooLittleSurface = 0.02;
+constexpr double kEnoughSurface = 0.04;
+// Of the fastest motion that the model follows, what ends "slower".
+constexpr double kSlowEnough = 0.8;
+// The stop criterion is given up when the share falls so far below it: new surface came into view.
+constexpr double kDoneSlack = 0.03;
+// A hindrance takes the place of another one that is still due when it is so much larger.
+constexpr double kClearlyLarger = 1.3;
+
+double Percent(double share) { return 100.0 * share; }
+
+double Share(AdviceKind kind, const CoverageSummary& view) {
+  switch (kind) {
+    case AdviceKind::kCloser:
+      return view.too_far;
+    case AdviceKind::kFarther:
+      return view.too_near;
+    case AdviceKind::kLessOblique:
+      return view.too_oblique;
+    case AdviceKind::kMoreOblique:
+      return view.too_frontal;
+    default:
+      return 0.0;
+  }
+}
+
+/// Share of the fastest motion that the model follows, 0 without a limit.
+double Hurry(const ScanSituation& s) {
+  const auto ratio = [](double value, double limit) { return limit > 0.0 ? value / limit : 0.0; };
+  return std::max(ratio(s.speed_m_s, s.max_speed_m_s),
+                  ratio(s.turn_rate_deg_s, s.max_turn_rate_deg_s));
+}
+
+constexpr AdviceKind kHindrances[] = {AdviceKind::kCloser, AdviceKind::kFarther,
+                                      AdviceKind::kLessOblique, AdviceKind::kMoreOblique};
+
+bool IsHindrance(AdviceKind kind) {
+  return std::ranges::find(kHindrances, kind) != std::end(kHindrances);
+}
+
+/// Not to be waited for.
+bool IsAlarm(AdviceKind kind) {
+  return kind == AdviceKind::kGoBack || kind == AdviceKind::kHoldForNuc;
+}
+
+}  // namespace
+
+Status Validate(const FeedbackOptions& o) {
+  if (!(o.done_share() > 0.0 && o.done_share() <= 1.0)) {
+    return InvalidArgument(fmt::format(
+        "feedback.done_share must be above 0 and at most 1 (a share), got {}", o.done_share()));
+  }
+  if (!(o.withdraw_share() >= 0.0 && o.withdraw_share() <= o.advise_share() &&
+        o.advise_share() <= 1.0)) {
+    return InvalidArgument(
+        fmt::format("feedback: need 0 <= withdraw_share <= advise_share <= 1, got {} and {}",
+                    o.withdraw_share(), o.advise_share()));
+  }
+  if (!(o.settle_s() >= 0.0 && o.settle_s() <= 10.0 && o.show_s() >= 0.0 && o.show_s() <= 10.0)) {
+    return InvalidArgument(
+        fmt::format("feedback.settle_s and feedback.show_s must be 0..10 s, got {} and {}",
+                    o.settle_s(), o.show_s()));
+  }
+  if (o.blocks_per_message() < 1 || o.blocks_per_message() > 1'000'000) {
+    return InvalidArgument(fmt::format("feedback.blocks_per_message must be 1..1000000, got {}",
+                                       o.blocks_per_message()));
+  }
+  if (o.views_per_message() < 0 || o.views_per_message() > 100) {
+    return InvalidArgument(
+        fmt::format("feedback.views_per_message must be 0 (no next view) to 100, got {}",
+                    o.views_per_message()));
+  }
+  if (!(o.min_gain_m2() > 0.0)) {
+    return InvalidArgument(
+        fmt::format("feedback.min_gain_m2 must be positive, got {} m2", o.min_gain_m2()));
+  }
+  if (o.picture_width_px() != 0 && (o.picture_width_px() < 40 || o.picture_width_px() > 640)) {
+    return InvalidArgument(
+        fmt::format("feedback.picture_width_px must be 0 (no picture) or 40..640 pixels, got {}",
+                    o.picture_width_px()));
+  }
+  return OkStatus();
+}
+
+OperatorAdviser::OperatorAdviser(const FeedbackOptions& options, const ThermalOptions& limits)
+    : options_(options), limits_(limits) {}
+
+void OperatorAdviser::Trigger(AdviceKind kind, double value, double on, double off) {
+  bool& due = Due(kind);
+  due = due ? value >= off : value >= on;
+}
+
+void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSituation& s) {
+  if (s.tracking_lost) {
+    Due(AdviceKind::kGoBack) = true;
+  } else {
+    Trigger(AdviceKind::kGoBack, -view.surface, -kTooLittleSurface, -kEnoughSurface);
+  }
+  Due(AdviceKind::kHoldForNuc) = s.nuc_running;
+  if (s.model_good) {
+    Trigger(AdviceKind::kDone, *s.model_good, options_.done_share(),
+            options_.done_share() - kDoneSlack);
+  }
+  if (!s.tracking_lost) Trigger(AdviceKind::kSlower, Hurry(s), 1.0, kSlowEnough);
+  for (const AdviceKind kind : kHindrances) {
+    Trigger(kind, Share(kind, view), options_.advise_share(), options_.withdraw_share());
+  }
+}
+
+AdviceKind OperatorAdviser::MostUrgent(const CoverageSummary& view) const {
+  const auto is_due = [this](AdviceKind kind) { return due_[static_cast<std::size_t>(kind)]; };
+  for (const AdviceKind kind :
+       {AdviceKind::kGoBack, AdviceKind::kHoldForNuc, AdviceKind::kDone, AdviceKind::kSlower}) {
+    if (is_due(kind)) return kind;
+  }
+  AdviceKind most = AdviceKind::kNone;
+  double most_share = 0.0;
+  for (const AdviceKind kind : kHindrances) {
+    const double share = Share(kind, view) * (kind == said_ ? kClearlyLarger : 1.0);
+    if (!is_due(kind) || share <= most_share) continue;
+    most = kind;
+    most_share = share;
+  }
+  return most;
+}
+
+OperatorAdvice OperatorAdviser::Update(CaptureTime now, const CoverageSummary& view,
+                                       const ScanSituation& situation) {
+  UpdateTriggers(view, situation);
+  const AdviceKind candidate = MostUrgent(view);
+  if (!candidate_since_ || candidate != candidate_) {
+    candidate_ = candidate;
+    candidate_since_ = now;
+  }
+  const bool settled = now - *candidate_since_ >= FromSeconds(options_.settle_s());
+  const bool shown = !said_since_ || said_ == AdviceKind::kNone ||
+                     now - *said_since_ >= FromSeconds(options_.show_s());
+  // Hindrances come and go as the rig moves; what makes them pointless need not wait for them.
+  const bool overrides = !IsHindrance(candidate) && candidate < said_;
+  if (candidate != said_ && (IsAlarm(candidate) || (settled && (shown || overrides)))) {
+    said_ = candidate;
+    said_since_ = now;
+  }
+  // What is only shown a little longer keeps the numbers that it was said for.
+  if (said_ == AdviceKind::kNone || due_[static_cast<std::size_t>(said_)])
+    reason_ = Reason(said_, view, situation);
+  return {said_, reason_};
+}
+
+std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view,
+                                    const ScanSituation& s) const {
+  switch (kind) {
+    case AdviceKind::kGoBack:
+      if (s.tracking_lost) return "tracking is lost: return to where it worked";
+      return "no surface of the model in view: point at the object";
+    case AdviceKind::kHoldForNuc:
+      return "the thermal camera is correcting itself: hold still";
+    case AdviceKind::kDone:
+      return fmt::format("{:.0f} % of the surface is measured well, {:.0f} % were asked for",
+                         Percent(s.model_good.value_or(0.0)), Percent(options_.done_share()));
+    case AdviceKind::kSlower:
+      if (s.max_speed_m_s > 0.0 && s.speed_m_s / s.max_speed_m_s >= Hurry(s)) {
+        return fmt::format("{:.2f} m/s, the model follows up to {:.2f} m/s", s.speed_m_s,
+                           s.max_speed_m_s);
+      }
+      return fmt::format("turning at {:.0f} deg/s, the model follows up to {:.0f} deg/s",
+                         s.turn_rate_deg_s, s.max_turn_rate_deg_s);
+    case AdviceKind::kCloser:
+      return fmt::format("{:.0f} % of the surface is farther than {:.2f} m", Percent(view.too_far),
+                         limits_.distance_good_m());
+    case AdviceKind::kFarther:
+      return fmt::format("{:.0f} % of the surface is nearer than {:.2f} m", Percent(view.too_near),
+                         limits_.distance_min_m());
+    case AdviceKind::kLessOblique:
+      return fmt::format("{:.0f} % of the surface is seen at more than {:.0f} deg",
+                         Percent(view.too_oblique), limits_.angle_good_deg());
+    case AdviceKind::kMoreOblique:
+      return fmt::format("{:.0f} % of the surface is seen at less than {:.0f} deg and reflects you",
+                         Percent(view.too_frontal), limits_.angle_min_deg());
+    case AdviceKind::kNone:
+      break;
+  }
+  if (view.good < options_.done_share()) return "";
+  return fmt::format("{:.0f} % in view is measured well: go on", Percent(view.good));
+}
+
+}  // namespace isotherm

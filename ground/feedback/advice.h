@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/base/status.h"
+#include "common/time/time_types.h"
+#include "ground/feedback/coverage.h"
+#include "ground/feedback/feedback_options.pb.h"
+#include "ground/ground_options.pb.h"
+
+namespace isotherm {
+
+/// In the order of urgency: what comes first makes the rest useless.
+enum class AdviceKind {
+  kGoBack,      ///< Tracking is lost, or nothing of the model is in view.
+  kHoldForNuc,  ///< No temperature is valid now.
+  kDone,        ///< Enough of the whole surface is measured well.
+  kSlower,
+  kCloser,
+  kFarther,
+  kLessOblique,
+  kMoreOblique,  ///< The operator is reflected.
+  kNone,         ///< Carry on.
+};
+
+/// What advice depends on besides the coverage of the view.
+struct ScanSituation {
+  bool tracking_lost = false;
+  bool nuc_running = false;  ///< Shutter closed or settling: no temperature is valid.
+  double speed_m_s = 0.0;    ///< Of the depth camera.
+  double turn_rate_deg_s = 0.0;
+  double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.
+  double max_turn_rate_deg_s = 0.0;
+  /// Share of the whole surface that is measured well; nullopt while that is not yet known.
+  std::optional<double> model_good;
+};
+
+/// One thing to do, and the sentence that says why, with its numbers.
+struct OperatorAdvice {
+  AdviceKind kind = AdviceKind::kNone;
+  std::string reason;
+};
+
+Status Validate(const FeedbackOptions& options);
+
+/// Chooses the one advice that the operator gets, and keeps it from flickering: each cause becomes
+/// due above one threshold and stays so until a lower one; it must be due for a while before it is
+/// said, and what is said stays for a while. A lost track and a closed shutter are said at once.
+/// Thread-compatible.
+class OperatorAdviser {
+ public:
+  OperatorAdviser(const FeedbackOptions& options, const ThermalOptions& limits);
+
+  /// `now` must not go back.
+  OperatorAdvice Update(CaptureTime now, const CoverageSummary& view,
+                        const ScanSituation& situation);
+  /// The stop criterion is met.
+  bool done() const { return due_[static_cast<std::size_t>(AdviceKind::kDone)]; }
+
+ private:
+  static constexpr std::size_t kKinds = static_cast<std::size_t>(AdviceKind::kNone);
+
+  bool& Due(AdviceKind kind) { return due_[static_cast<std::size_t>(kind)]; }
+  /// Due from `on`, until below `off`.
+  void Trigger(AdviceKind kind, double value, double on, double off);
+  void UpdateTriggers(const CoverageSummary& view, const ScanSituation& situation);
+  /// What would be said without regard to time.
+  AdviceKind MostUrgent(const CoverageSummary& view) const;
+  std::string Reason(AdviceKind kind, const CoverageSummary& view,
+                     const ScanSituation& situation) const;
+
+  const FeedbackOptions options_;
+  const ThermalOptions limits_;
+  std::array<bool, kKinds> due_{};
+  AdviceKind said_ = AdviceKind::kNone;
+  std::string reason_;
+  AdviceKind candidate_ = AdviceKind::kNone;
+  std::optional<CaptureTime> said_since_, candidate_since_;
+};
+
+}  // namespace isotherm

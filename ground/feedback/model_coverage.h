@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <functional>
+#include <unordered_map>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "ground/feedback/quality.h"
+#include "ground/thermal/thermal_volume.h"
+#include "ground/tsdf/tsdf_volume.h"
+
+namespace isotherm {
+
+/// Surface by MeasurementQuality, square metres.
+struct SurfaceAreas {
+  double good_m2 = 0.0;
+  double acceptable_m2 = 0.0;
+  double bad_m2 = 0.0;
+  double never_m2 = 0.0;
+
+  double total_m2() const { return good_m2 + acceptable_m2 + bad_m2 + never_m2; }
+  void Add(MeasurementQuality quality, double area_m2);
+  SurfaceAreas& operator+=(const SurfaceAreas& other);
+  SurfaceAreas& operator-=(const SurfaceAreas& other);
+};
+
+/// The surface within one block: where the distance changes sign between neighbouring voxels of
+/// which at least the first is the block's. What is not measured well is summed up with its area as
+/// weight, to know where it is and which way it faces.
+struct BlockSurface {
+  SurfaceAreas areas;
+  Eigen::Vector3d lacking_position = Eigen::Vector3d::Zero();  ///< m2 times `world`.
+  Eigen::Vector3d lacking_normal = Eigen::Vector3d::Zero();    ///< m2 times the outward normal.
+
+  double lacking_m2() const { return areas.total_m2() - areas.good_m2; }
+};
+
+/// Voxels lighter than `min_weight` do not count as observed. By the slope of the distances, the
+/// border between free space and what lies unseen behind an edge is told from a surface, as in the
+/// exported cloud.
+BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, std::int32_t block,
+                          float min_weight);
+
+/// Surface that is not yet measured well and faces the same way, about a hand in size.
+struct LackingSurface {
+  Eigen::Vector3d position_world;
+  Eigen::Vector3d normal_world;  ///< Unit, towards the free side.
+  double area_m2 = 0.0;
+};
+
+/// How well the whole model is measured, brought up to date a part at a time so that it costs the
+/// same whatever the model's size. Thread-compatible.
+class ModelCoverage {
+ public:
+  explicit ModelCoverage(float min_weight) : min_weight_(min_weight) {}
+
+  /// Measures the next `max_blocks` blocks with a surface, in turns. Blocks for which `is_spilled`
+  /// keep what they had: looking at them would bring them back from the disk.
+  void Update(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+              const std::function<bool(std::int32_t block)>& is_spilled, int max_blocks,
+              ThreadPool& pool);
+
+  const SurfaceAreas& areas() const { return areas_; }
+  /// Each block was measured at least once since the model was empty.
+  bool complete() const { return turns_ > 0; }
+  /// Where most is lacking, largest first.
+  std::vector<LackingSurface> Lacking(std::size_t max_count) const;
+
+ private:
+  struct Cell {
+    double area_m2 = 0.0;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< As in BlockSurface.
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  };
+
+  void Replace(std::int32_t block, const GridIndex& at, const BlockSurface& surface);
+  void AddToCell(const GridIndex& block, const BlockSurface& surface, double sign);
+
+  const float min_weight_;
+  std::vector<BlockSurface> blocks_;
+  SurfaceAreas areas_;
+  std::unordered_map<std::uint64_t, Cell> cells_;
+  std::int32_t next_ = 0;
+  std::uint64_t turns_ = 0;
+  std::vector<std::int32_t> chosen_;
+  std::vector<BlockSurface> measured_;
+};
+
+}  // namespace isotherm

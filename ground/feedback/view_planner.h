@@ -1,0 +1,72 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/geometry/camera.h"
+#include "ground/feedback/feedback_options.pb.h"
+#include "ground/feedback/model_coverage.h"
+#include "ground/ground_options.pb.h"
+#include "ground/thermal/thermal_fuser.h"
+#include "ground/tracker/surface_maps.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+
+/// A view worth taking.
+struct NextView {
+  RigidTransform T_world_depth;
+  double gain_m2 = 0.0;  ///< Surface that it would measure well and that is not yet.
+};
+
+/// Finds the next best view: the pose from which most surface would be measured well that is not
+/// yet. Candidates look at what is lacking from a good distance along its normal and from askew;
+/// what each would see is decided by casting the model coarsely from there. A few candidates are
+/// tried per step; the best so far is tried again each time, as the model grows.
+/// Thread-compatible.
+class ViewPlanner {
+ public:
+  /// `rig` must have a thermal camera and its pose (CHECK). Voxels lighter than `min_weight` do not
+  /// count as observed.
+  ViewPlanner(const FeedbackOptions& options, const ThermalOptions& limits, const Rig& rig,
+              float min_weight);
+
+  /// `T_world_depth` is where the rig is: views are turned as it is held, and one that it has
+  /// reached without any gain is not proposed again.
+  void Step(const TsdfVolume& tsdf, const ThermalVolume& thermal, const ModelCoverage& coverage,
+            const RigidTransform& T_world_depth, ThreadPool& pool);
+
+  const std::optional<NextView>& best() const { return best_; }
+
+  /// Surface that a view would measure well and that is not yet, square metres; 0 where the camera
+  /// would be inside or too close to something.
+  double Gain(const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
+              const ThermalVolume& thermal, ThreadPool& pool);
+
+ private:
+  void MakeCandidates(const ModelCoverage& coverage, const RigidTransform& T_world_depth);
+  /// Looks at `target` from the direction `towards_camera` (unit).
+  RigidTransform LookAt(const Eigen::Vector3d& target, const Eigen::Vector3d& towards_camera,
+                        const RigidTransform& T_world_depth) const;
+  bool IsDepthInView(const Eigen::Vector3d& p_depth) const;
+  void NotePose(const RigidTransform& T_world_depth);
+  bool IsExhausted(const RigidTransform& T_world_depth) const;
+
+  const FeedbackOptions options_;
+  const ConditionLimits limits_;
+  const double angle_min_rad_, angle_good_rad_;
+  const float min_weight_;
+  const CameraModel depth_camera_;
+  const CameraModel thermal_camera_;  ///< Of the coarse cast.
+  const RigidTransform T_thermal_depth_;
+  Raycaster raycaster_{RaycastPrecision::kVisibility};
+  SurfaceMaps maps_;
+  std::deque<RigidTransform> candidates_;  ///< T_world_depth.
+  std::optional<NextView> best_;
+  int steps_at_best_ = 0;                 ///< That the rig has been there.
+  std::deque<RigidTransform> exhausted_;  ///< Views that were taken and gave nothing.
+};
+
+}  // namespace isotherm

@@ -1,0 +1,169 @@
+#include "ground/feedback/view_planner.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "common/testing/volume_shapes.h"
+
+namespace isotherm {
+namespace {
+
+using enum ConditionClass;
+using Eigen::Vector3d;
+
+const auto kNothingSpilled = [](std::int32_t) { return false; };
+
+/// A rig before analytic surfaces of which a known part was never measured.
+class ViewPlannerTest : public ::testing::Test {
+ protected:
+  ViewPlannerTest() {
+    CameraModel camera;
+    camera.width = 320;
+    camera.height = 240;
+    camera.fx = camera.fy = 285.0;
+    camera.cx = 159.5;
+    camera.cy = 119.5;
+    rig_.depth = camera;
+    rig_.thermal = camera;
+    rig_.T_thermal_depth = MakeTransform({-0.05, 0, 0}, Eigen::Quaterniond::Identity());
+    options_.set_views_per_message(4);
+  }
+
+  static VoxelGrid Grid() {
+    return {.min_m = Vector3d::Zero(), .voxel_size_m = 0.008, .blocks = {16, 16, 16}};
+  }
+  const Vector3d centre_{0.51, 0.51, 0.51};
+
+  /// All is measured well but where `is_missing`.
+  template <typename IsMissing>
+  void Measure(const IsMissing& is_missing) {
+    testing::FillThermal(tsdf_, thermal_, [&](const Vector3d& p) {
+      return is_missing(p) ? ThermalVoxel() : ThermalVoxel::Make(20.0F, kGood, kGood);
+    });
+    coverage_.Update(tsdf_, thermal_, kNothingSpilled, tsdf_.block_count() + 1, pool_);
+  }
+  /// The best view after so many steps with the rig in front of the scene, looking along z.
+  std::optional<NextView> Plan(ViewPlanner& planner, int steps = 60) {
+    const RigidTransform here = MakeTransform({0.5, 0.5, -0.1}, Eigen::Quaterniond::Identity());
+    for (int i = 0; i < steps; ++i) planner.Step(tsdf_, thermal_, coverage_, here, pool_);
+    return planner.best();
+  }
+  ViewPlanner Planner() { return {options_, limits_, rig_, 1.0F}; }
+  RigidTransform Thermal(const NextView& view) const {
+    return view.T_world_depth * rig_.T_thermal_depth->inverse();
+  }
+  static double AngleDeg(const Vector3d& a, const Vector3d& b) {
+    return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)) * 180.0 /
+           std::numbers::pi;
+  }
+
+  FeedbackOptions options_;
+  ThermalOptions limits_;
+  Rig rig_;
+  ThreadPool pool_{2};
+  TsdfVolume tsdf_{Grid(), 0.032, 4096};
+  ThermalVolume thermal_{4096};
+  ModelCoverage coverage_{1.0F};
+};
+
+TEST_F(ViewPlannerTest, TheBestViewLooksAtTheSideThatIsMissing) {
+  testing::FillSphere(tsdf_, centre_, 0.2);
+  for (const Vector3d& side :
+       {Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)}) {
+    // A cap of 35 degrees around `side`: a third of a metre wide.
+    Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, side) < 35.0; });
+    ViewPlanner planner = Planner();
+    const std::optional<NextView> view = Plan(planner);
+    ASSERT_TRUE(view.has_value()) << side.transpose();
+    const RigidTransform T_world_thermal = Thermal(*view);
+    // From the missing side, towards it, at a good distance.
+    EXPECT_LT(AngleDeg(T_world_thermal.translation() - centre_, side), 30.0) << side.transpose();
+    EXPECT_LT(AngleDeg(-T_world_thermal.linear().col(2), side), 30.0) << side.transpose();
+    const double distance_m = (T_world_thermal.translation() - (centre_ + 0.2 * side)).norm();
+    EXPECT_GT(distance_m, limits_.distance_min_m());
+    EXPECT_LT(distance_m, limits_.distance_good_m());
+  }
+}
+
+TEST_F(ViewPlannerTest, TheGainIsTheAreaThatWouldBecomeGood) {
+  // A wall that faces -z, of which a square of 0.2 m was never measured.
+  testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
+  const auto in_square = [](const Vector3d& p) {
+    return std::abs(p.x() - 0.5) < 0.1 && std::abs(p.y() - 0.5) < 0.1;
+  };
+  Measure(in_square);
+  ViewPlanner planner = Planner();
+  const auto from = [&](double z) {
+    return MakeTransform({0.5, 0.5, z}, Eigen::Quaterniond::Identity()) * *rig_.T_thermal_depth;
+  };
+  // The edge of the square falls between coarse rays, and a voxel counts for its neighbours.
+  constexpr double kTolerance_m2 = 0.15 * 0.04;
+  EXPECT_NEAR(planner.Gain(from(0.25), tsdf_, thermal_, pool_), 0.04, kTolerance_m2);
+  EXPECT_EQ(planner.Gain(from(0.0), tsdf_, thermal_, pool_), 0.0) << "0.70 m is not good";
+  EXPECT_EQ(planner.Gain(from(0.45), tsdf_, thermal_, pool_), 0.0) << "0.25 m is too close";
+  EXPECT_EQ(planner.Gain(from(0.72), tsdf_, thermal_, pool_), 0.0) << "inside the wall";
+  Measure([](const Vector3d&) { return false; });
+  EXPECT_EQ(planner.Gain(from(0.25), tsdf_, thermal_, pool_), 0.0) << "nothing is missing";
+}
+
+TEST_F(ViewPlannerTest, WhatHidesTheSurfaceIsLookedAround) {
+  // A post stands before the missing square: from straight ahead it hides all of it.
+  const auto scene = [](const Vector3d& p) {
+    const double wall = 0.80 - p.z();
+    const Vector3d d = (p - Vector3d(0.5, 0.5, 0.68)).cwiseAbs() - Vector3d(0.035, 0.3, 0.02);
+    const double post = d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
+    return std::min(wall, post);
+  };
+  testing::FillVolume(tsdf_, scene);
+  const auto missing = [](const Vector3d& p) {
+    return p.z() > 0.75 && std::abs(p.x() - 0.5) < 0.04 && std::abs(p.y() - 0.5) < 0.04;
+  };
+  Measure(missing);
+  ViewPlanner planner = Planner();
+  const RigidTransform straight =
+      MakeTransform({0.5, 0.5, 0.35}, Eigen::Quaterniond::Identity()) * *rig_.T_thermal_depth;
+  EXPECT_EQ(planner.Gain(straight, tsdf_, thermal_, pool_), 0.0);
+  const std::optional<NextView> view = Plan(planner, 120);
+  ASSERT_TRUE(view.has_value());
+  EXPECT_GT(view->gain_m2, 0.3 * 0.08 * 0.08);
+  EXPECT_GT(std::abs(Thermal(*view).translation().x() - 0.5), 0.09) << "beside the post";
+}
+
+TEST_F(ViewPlannerTest, AViewThatWasTakenInVainIsNotProposedAgain) {
+  testing::FillSphere(tsdf_, centre_, 0.2);
+  Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, {-1, 0, 0}) < 20.0; });
+  ViewPlanner planner = Planner();
+  const std::optional<NextView> first = Plan(planner);
+  ASSERT_TRUE(first.has_value());
+  for (int i = 0; i < 25; ++i) {  // The rig is there, and nothing gets better.
+    planner.Step(tsdf_, thermal_, coverage_, first->T_world_depth, pool_);
+  }
+  const std::optional<NextView> second = planner.best();
+  if (!second) return;
+  const bool same =
+      (second->T_world_depth.translation() - first->T_world_depth.translation()).norm() < 0.05;
+  EXPECT_FALSE(same);
+}
+
+TEST_F(ViewPlannerTest, WhereTheOperatorWouldBeReflectedViewsAreAskew) {
+  limits_.set_angle_min_deg(15);
+  testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
+  Measure([](const Vector3d& p) { return (p - Vector3d(0.5, 0.5, 0.7)).norm() < 0.05; });
+  ViewPlanner planner = Planner();
+  const std::optional<NextView> view = Plan(planner);
+  ASSERT_TRUE(view.has_value());
+  const double angle = AngleDeg(-Thermal(*view).linear().col(2), {0, 0, -1});
+  EXPECT_GT(angle, 15.0);
+  EXPECT_LT(angle, 40.0);
+}
+
+TEST_F(ViewPlannerTest, AModelThatIsMeasuredWellNeedsNoView) {
+  testing::FillSphere(tsdf_, centre_, 0.2);
+  Measure([](const Vector3d&) { return false; });
+  ViewPlanner planner = Planner();
+  EXPECT_FALSE(Plan(planner).has_value());
+}
+
+}  // namespace
+}  // namespace isotherm

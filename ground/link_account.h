@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "common/recording/recording.h"
+#include "ground/export/json.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+/// What became of a session's frames and how soon feedback reached the edge, as it goes into
+/// stats.json.
+void DescribeAccount(const SessionAccount& account, const RecordingStats& recorded, Json& link);
+
+/// The same for the user: a line per stream, and one about feedback if its age is known.
+std::string AccountText(const SessionAccount& account, const RecordingStats& recorded);
+
+}  // namespace isotherm
