@@ -8,12 +8,12 @@
 
 #include "common/base/progress.h"
 #include "common/config/text_proto.h"
+#include "common/geometry/pose_text.h"
 #include "ground/cli/command.h"
 #include "ground/cli/model_pictures.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/result_folder.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/initial_pose.h"
 #include "ground/renderer/palette.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/viewpoint.h"
