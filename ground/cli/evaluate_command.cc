@@ -24,7 +24,7 @@ Example:
 
 struct Arguments {
   EvaluationRequest request;
-  std::string result_dir, groundtruth, surface, repeats, volume_box;
+  std::string result_dir, groundtruth, surface, repeats, volume_box, rig;
   bool json = false;
 };
 
@@ -44,6 +44,7 @@ int Run(const Arguments& arguments) {
   request.result_dir = arguments.result_dir;
   request.groundtruth = arguments.groundtruth;
   if (!arguments.surface.empty()) request.surface = arguments.surface;
+  if (!arguments.rig.empty()) request.rig = arguments.rig;
   if (!arguments.repeats.empty()) request.skip_repeats = arguments.repeats;
   if (!arguments.volume_box.empty()) {
     const auto box = ParseBox(arguments.volume_box);
@@ -78,6 +79,13 @@ void AddEvaluateCommand(CLI::App& app, CommandBody& body) {
                       "True surface (.ply: x y z nx ny nz scalar_temperature seen)");
   command->add_option("--emissivity", request.emissivity,
                       "Compare temperatures, for this emissivity (0..1)");
+  command->add_option("--refractive-index", request.refractive_index,
+                      "The emissivity falls with the angle of each measurement as that of a smooth "
+                      "surface with this index");
+  command->add_option(
+      "--rig", arguments->rig,
+      "Calibration (rig.textproto): also say how much of what the thermal camera saw "
+      "well has a temperature");
   command->add_option("--ambient", request.ambient_celsius, "Temperature of the surroundings, °C")
       ->capture_default_str();
   command->add_option(

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "common/config/rig_calibration.h"
 #include "common/dataset/trajectory.h"
 #include "ground/cli/truth.h"
 #include "ground/evaluation/point_sets.h"
@@ -35,6 +39,30 @@ Result<TrajectoryErrors> CompareTrajectory(const EvaluationRequest& request) {
   return EvaluateTrajectory(*estimated, *truth, options);
 }
 
+/// About this many poses stand for the whole path.
+constexpr std::size_t kPosesForCoverage = 40;
+constexpr float kCoveredWithin_m = 0.005F;
+
+Result<ThermalCoverage> CompareCoverage(const EvaluationRequest& request, const TrueSurface& truth,
+                                        const MeasuredCloud& cloud,
+                                        const std::vector<Eigen::Vector3f>& positions) {
+  const auto rig = LoadRigCalibration(*request.rig);
+  if (!rig) return Err(rig.error());
+  if (Status status = CheckThermalFusion(*rig); !status.ok()) return Err(std::move(status));
+  const auto poses = ReadTruePoses(request.groundtruth);
+  if (!poses) return Err(poses.error());
+  std::vector<RigidTransform> T_truth_thermal;
+  const std::size_t step = std::max<std::size_t>(1, poses->size() / kPosesForCoverage);
+  for (std::size_t i = 0; i < poses->size(); i += step)
+    T_truth_thermal.push_back((*poses)[i].T_world_depth * rig->T_thermal_depth->inverse());
+  std::vector<Eigen::Vector3f> assigned;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (std::isfinite(cloud.celsius[i])) assigned.push_back(positions[i]);
+  }
+  return EvaluateThermalCoverage(truth, *rig->thermal, T_truth_thermal, {}, assigned,
+                                 kCoveredWithin_m);
+}
+
 void KeepInside(const Eigen::AlignedBox3f& box, TruePoints& points) {
   TruePoints kept;
   for (std::size_t i = 0; i < points.positions_m.size(); ++i) {
@@ -65,10 +93,15 @@ Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) 
   if (!request.emissivity) return OkStatus();
   TemperatureEvaluationOptions options;
   options.emissivity = *request.emissivity;
+  options.refractive_index = request.refractive_index;
   options.ambient_celsius = request.ambient_celsius;
   const auto temperature = EvaluateTemperatures(*cloud, positions, truth, options);
   if (!temperature) return temperature.error();
   report.temperature = *temperature;
+  if (!request.rig) return OkStatus();
+  const auto coverage = CompareCoverage(request, truth, *cloud, positions);
+  if (!coverage) return coverage.error();
+  report.coverage = *coverage;
   return OkStatus();
 }
 
@@ -161,6 +194,16 @@ std::string ToText(const EvaluationReport& report) {
         "completeness", 100.0 * s.completeness, s.surface_points, 100.0 * s.fitted_completeness);
   }
   if (report.temperature) text += TemperatureText(*report.temperature);
+  if (report.coverage) {
+    text += fmt::format(
+        "  {:<26}{:.2f} % of {} true points seen by the thermal camera from 0.3 to 0.9 m at up to "
+        "60 "
+        "degrees have a temperature within 5 mm\n",
+        "coverage",
+        100.0 * static_cast<double>(report.coverage->covered) /
+            static_cast<double>(std::max<std::size_t>(1, report.coverage->well_seen)),
+        report.coverage->well_seen);
+  }
   return text;
 }
 
@@ -192,6 +235,10 @@ Json ToJson(const EvaluationReport& report) {
     temperature["acceptable"] = ClassJson(report.temperature->acceptable);
     temperature["bad"] = ClassJson(report.temperature->bad);
     temperature["all"] = ClassJson(report.temperature->any);
+  }
+  if (report.coverage) {
+    json["coverage"]["well_seen"] = report.coverage->well_seen;
+    json["coverage"]["covered"] = report.coverage->covered;
   }
   return json;
 }

@@ -6,6 +6,7 @@
 
 #include "ground/evaluation/surface_evaluation.h"
 #include "ground/evaluation/temperature_evaluation.h"
+#include "ground/evaluation/thermal_coverage.h"
 #include "ground/evaluation/trajectory_evaluation.h"
 #include "ground/export/json.h"
 
@@ -16,8 +17,10 @@ struct EvaluationRequest {
   std::filesystem::path result_dir;   ///< With trajectory.txt and cloud.ply.
   std::filesystem::path groundtruth;  ///< Trajectory file, or recording with ground truth.
   std::optional<std::filesystem::path> surface;
-  std::optional<double> emissivity;  ///< Absent: temperatures are not compared.
+  std::optional<double> emissivity;        ///< Absent: temperatures are not compared.
+  std::optional<double> refractive_index;  ///< Absent: emissivity does not depend on the angle.
   double ambient_celsius = 23.0;
+  std::optional<std::filesystem::path> rig;  ///< Absent: coverage is not evaluated.
   std::size_t first = 0;
   std::optional<std::filesystem::path>
       skip_repeats;  ///< Recording whose repeated frames are left out.
@@ -31,6 +34,7 @@ struct EvaluationReport {
   std::optional<SurfaceErrors> surface;
   std::size_t cloud_points = 0;
   std::optional<TemperatureReport> temperature;
+  std::optional<ThermalCoverage> coverage;
 };
 
 Result<EvaluationReport> Evaluate(const EvaluationRequest& request);

@@ -53,6 +53,7 @@ Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path) {
   cloud.celsius = Converted<float>(vertices->Find("scalar_temperature"));
   cloud.distance_class = Converted<std::uint8_t>(vertices->Find("distance_class"));
   cloud.angle_class = Converted<std::uint8_t>(vertices->Find("angle_class"));
+  cloud.measured_angle_deg = Converted<float>(vertices->Find("measured_angle"));
   return cloud;
 }
 

@@ -17,6 +17,8 @@ struct MeasuredCloud {
   std::vector<std::uint8_t>
       distance_class;  ///< 0 bad, 1 good, 2 acceptable, 255 never measured; or empty.
   std::vector<std::uint8_t> angle_class;  ///< The same.
+  std::vector<float> measured_angle_deg;  ///< Emission angle of the measurement; NaN = not known,
+                                          ///< or empty.
 };
 
 /// Samples of the true surface, in the truth's world.
@@ -30,7 +32,8 @@ struct TruePoints {
       primitive;  ///< Shape the point belongs to; all 0 if the file does not say.
 };
 
-/// Properties are found by their names: x y z, scalar_temperature, distance_class, angle_class.
+/// Properties are found by their names: x y z, scalar_temperature, distance_class, angle_class,
+/// measured_angle.
 Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path);
 /// x y z nx ny nz, scalar_temperature, seen, primitive. Normals must have unit length.
 Result<TruePoints> ReadTruePoints(const std::filesystem::path& path);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/base/check.h"
 #include "common/radiometry/radiometry.h"
@@ -53,6 +54,16 @@ ClassErrors Describe(const Errors& errors, double gross_kelvin) {
   return {Describe(errors.all, gross_kelvin), Describe(errors.away_from_edges, gross_kelvin)};
 }
 
+/// Of point `i` at the angle it was measured at.
+double EmissivityOf(const MeasuredCloud& cloud, std::size_t i,
+                    const TemperatureEvaluationOptions& options) {
+  if (!options.refractive_index || !std::isfinite(cloud.measured_angle_deg[i]))
+    return options.emissivity;
+  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+  return DirectionalEmissivity(kRadPerDeg * static_cast<double>(cloud.measured_angle_deg[i]),
+                               options.emissivity, *options.refractive_index, 0.0);
+}
+
 Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
                   const TemperatureEvaluationOptions& options) {
   if (!(options.emissivity > 0.0 && options.emissivity <= 1.0)) {
@@ -71,6 +82,14 @@ Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
   if (cloud.celsius.empty() || cloud.distance_class.empty() || cloud.angle_class.empty()) {
     return FailedPrecondition(
         "the cloud has no temperatures (scalar_temperature distance_class angle_class)");
+  }
+  if (options.refractive_index) {
+    if (!(*options.refractive_index >= 1.0)) {
+      return InvalidArgument(
+          fmt::format("refractive index must be at least 1, got {}", *options.refractive_index));
+    }
+    if (cloud.measured_angle_deg.empty())
+      return FailedPrecondition("the cloud has no angles of measurement (measured_angle)");
   }
   return OkStatus();
 }
@@ -94,8 +113,8 @@ Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
       continue;
     }
     const double true_celsius = truth.CelsiusAt(positions[i], foot->nearest);
-    const double expected =
-        ApparentCelsius(band, true_celsius, options.emissivity, options.ambient_celsius);
+    const double expected = ApparentCelsius(band, true_celsius, EmissivityOf(cloud, i, options),
+                                            options.ambient_celsius);
     const double error = cloud.celsius[i] - expected;
     if (!std::isfinite(error)) continue;
     Errors& errors = by_class[ClassOf(cloud.distance_class[i], cloud.angle_class[i])];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "common/base/status.h"
 #include "ground/evaluation/error_statistics.h"
 #include "ground/evaluation/true_surface.h"
@@ -7,7 +9,10 @@
 namespace isotherm {
 
 struct TemperatureEvaluationOptions {
-  double emissivity = 1.0;        ///< At normal incidence, (0, 1].
+  double emissivity = 1.0;  ///< At normal incidence, (0, 1].
+  /// Of a smooth surface: the emissivity falls with the angle of each measurement (Fresnel; thesis
+  /// B.2). nullopt: it is that along the normal, whatever the angle.
+  std::optional<double> refractive_index;
   double ambient_celsius = 23.0;  ///< Of the surroundings that the surface reflects.
   /// Points are near a temperature edge if true temperatures differ by more than `edge_kelvin`
   /// within this radius.
@@ -39,9 +44,8 @@ struct TemperatureReport {
 };
 
 /// Compares temperatures of the cloud with the apparent temperature that the true temperature of
-/// the nearest surface implies for a black-body camera (thesis eq. 3.1 with the emissivity at
-/// normal incidence, whatever the angle it was measured at). `positions`: the cloud's points in the
-/// truth's world.
+/// the nearest surface implies for a black-body camera (thesis eq. 3.1). `positions`: the cloud's
+/// points in the truth's world.
 Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
                                                const std::vector<Eigen::Vector3f>& positions,
                                                const TrueSurface& truth,

@@ -1,0 +1,67 @@
+#include "ground/evaluation/thermal_coverage.h"
+
+#include <gtest/gtest.h>
+
+namespace isotherm {
+namespace {
+
+/// A wall 0.6 m before the camera, 0.3 m x 0.2 m, and a plate 0.1 m wide 0.1 m before its middle.
+class ThermalCoverageTest : public ::testing::Test {
+ protected:
+  static constexpr float kSpacing_m = 0.002F;
+
+  ThermalCoverageTest() : camera_{160, 120, 150.0, 150.0, 79.5, 59.5} {
+    TruePoints points;
+    AddPlate(0.15F, 0.6F, points);
+    AddPlate(0.05F, 0.5F, points);
+    truth_.emplace(std::move(points));
+  }
+  static void AddPlate(float half_width_m, float z, TruePoints& points) {
+    for (float x = -half_width_m; x <= half_width_m; x += kSpacing_m) {
+      for (float y = -0.1F; y <= 0.1F; y += kSpacing_m) {
+        points.positions_m.emplace_back(x, y, z);
+        points.normals.emplace_back(0.0F, 0.0F, -1.0F);
+        points.primitive.push_back(0);
+      }
+    }
+  }
+  ThermalCoverage Evaluate(const WellSeenLimits& limits = {}) const {
+    return EvaluateThermalCoverage(*truth_, camera_, poses_, limits, assigned_, 0.003F);
+  }
+  double Share(std::size_t count) const {
+    return static_cast<double>(count) / static_cast<double>(truth_->points().positions_m.size());
+  }
+
+  CameraModel camera_;
+  std::vector<RigidTransform> poses_{RigidTransform::Identity()};
+  std::vector<Eigen::Vector3f> assigned_;
+  std::optional<TrueSurface> truth_;
+};
+
+constexpr double kEdges = 0.02;  // Half a pixel along silhouettes, of 0.3 m.
+
+TEST_F(ThermalCoverageTest, WhatAForegroundHidesDoesNotCount) {
+  // The plate hides 0.12 m of the wall's 0.3 m; both together are 0.4 m wide.
+  EXPECT_NEAR(Share(Evaluate().well_seen), 0.28 / 0.4, kEdges);
+  EXPECT_EQ(Evaluate().covered, 0U);
+  poses_.push_back(MakeTransform(
+      {0.5, 0.0, 0.2}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.9, Eigen::Vector3d::UnitY()))));
+  EXPECT_GT(Share(Evaluate().well_seen), 0.85) << "another pose sees behind it";
+}
+
+TEST_F(ThermalCoverageTest, DistanceAndAngleLimitWhatCounts) {
+  EXPECT_NEAR(Share(Evaluate({.max_distance_m = 0.55}).well_seen), 0.1 / 0.4, kEdges);
+  EXPECT_NEAR(Share(Evaluate({.min_distance_m = 0.55}).well_seen), 0.18 / 0.4, kEdges);
+  EXPECT_LT(Evaluate({.max_angle_deg = 5.0}).well_seen, Evaluate().well_seen / 2);
+}
+
+TEST_F(ThermalCoverageTest, CoveredIsWhatHasAnAssignedPointNearBy) {
+  for (const Eigen::Vector3f& p : truth_->points().positions_m) {
+    if (p.z() < 0.55F) assigned_.push_back(p + Eigen::Vector3f(0.001F, 0.0F, 0.001F));
+  }
+  const ThermalCoverage coverage = Evaluate();
+  EXPECT_NEAR(Share(coverage.covered), 0.1 / 0.4, kEdges);
+}
+
+}  // namespace
+}  // namespace isotherm
