@@ -80,9 +80,10 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       atlas_(options, rig.depth->WithoutDistortion(), grid),
       loop_closer_(options, atlas_, tracker_),
       spiller_(MaxResidentBlocks(options.volume(), grid)) {
-  if (thermal_status_.ok())
-    fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
-                                            static_cast<float>(options.raycast().min_weight()));
+  if (!thermal_status_.ok()) return;
+  fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
+                                          static_cast<float>(options.raycast().min_weight()));
+  near_holes_.emplace(options.thermal(), fuser_->ideal_camera(), *rig.T_thermal_depth);
 }
 
 Status GroundPipeline::Continue(const ModelFile& model) {
@@ -236,7 +237,7 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   const PreparedDepth* depth = nullptr;
   {
     const StageTimer preprocess_timer(stage_stats_["preprocess"]);
-    depth = &preprocessor_.Process(frame, pool_);
+    depth = last_depth_ = &preprocessor_.Process(frame, pool_);
   }
   const CaptureTime time = frame.header.capture_time;
   report.tracking = Track(*depth, time);
@@ -288,6 +289,7 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
 
 void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   ++counts_.thermal_in;
+  const NucAge nuc = nuc_epochs_.Follow(*frame);
   if (!fuser_) {
     LeaveOut("no_calibration");
   } else if (!frame->valid) {
@@ -296,7 +298,7 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
              frame->centikelvin.height() != rig_.thermal->height) {
     LeaveOut("wrong_size");
   } else {
-    waiting_thermal_.push_back(std::move(frame));
+    waiting_thermal_.push_back({std::move(frame), nuc});
     // A depth stream that stopped must not make the buffer grow.
     constexpr std::size_t kMaxWaiting = 64;
     if (waiting_thermal_.size() > kMaxWaiting) {
@@ -334,50 +336,61 @@ double GroundPipeline::RegistrationSigmaPx() const {
   return rig_.thermal->fx * uncertainty().surface_sigma_m() / uncertainty().mean_depth_m();
 }
 
+const char* GroundPipeline::WhyLeftOut(CaptureTime time) const {
+  if (effort_ != Effort::kAll) return "behind";
+  const std::optional<StampedPose> before = tracker_.motion().before_last();
+  if (!before || time < before->time) return "pose_unknown";
+  if (!has_room_) return "disk_full";
+  if (RegistrationSigmaPx() > options_.thermal().max_registration_px()) return "pose_uncertain";
+  const double interval_s = ToSeconds(tracker_.motion().last()->time - before->time);
+  return interval_s > options_.thermal().max_wait_s() ? "depth_gap" : nullptr;
+}
+
+void GroundPipeline::Fuse(const WaitingThermal& waiting) {
+  const StageTimer timer(stage_stats_["thermal_frame"]);
+  const CaptureTime time = waiting.frame->header.capture_time;
+  const StampedPose before = *tracker_.motion().before_last();
+  const StampedPose after = *tracker_.motion().last();
+  const double interval_s = ToSeconds(after.time - before.time);
+  const double alpha = interval_s > 0.0 ? ToSeconds(time - before.time) / interval_s : 1.0;
+  const RigidTransform T_world_depth_at_capture =
+      Interpolate(before.T_world_depth, after.T_world_depth, alpha);
+  const RigidTransform T_depth_thermal = rig_.T_thermal_depth->inverse();
+  const CaptureConditions capture{
+      .motion = MotionBetween(before.T_world_depth * T_depth_thermal,
+                              after.T_world_depth * T_depth_thermal, interval_s),
+      .registration_px = RegistrationSigmaPx(),
+      .holes = &*near_holes_,
+      .nuc = waiting.nuc};
+  counts_.fusion +=
+      fuser_->Fuse(*waiting.frame, T_world_depth_at_capture * T_depth_thermal, view().camera,
+                   T_world_depth_at_capture, tsdf(), pool_, *atlas_.active().thermal, capture);
+  ++counts_.thermal_fused;
+}
+
 void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
-  while (!waiting_thermal_.empty() && waiting_thermal_.front()->header.capture_time <= now) {
-    const ThermalFramePtr frame = waiting_thermal_.front();
+  bool holes_are_current = false;
+  while (!waiting_thermal_.empty() && waiting_thermal_.front().frame->header.capture_time <= now) {
+    const WaitingThermal waiting = std::move(waiting_thermal_.front());
     waiting_thermal_.pop_front();
-    const CaptureTime time = frame->header.capture_time;
-    if (effort_ != Effort::kAll) {
-      LeaveOut("behind");
+    if (const char* reason = WhyLeftOut(waiting.frame->header.capture_time)) {
+      LeaveOut(reason);
       continue;
     }
-    const std::optional<StampedPose> before = tracker_.motion().before_last();
-    if (!before || time < before->time) {
-      LeaveOut("pose_unknown");
-      continue;
-    }
-    if (!has_room_) {
-      LeaveOut("disk_full");
-      continue;
-    }
-    if (RegistrationSigmaPx() > options_.thermal().max_registration_px()) {
-      LeaveOut("pose_uncertain");
-      continue;
-    }
-    const StampedPose after = *tracker_.motion().last();
-    const double interval_s = ToSeconds(after.time - before->time);
-    if (interval_s > options_.thermal().max_wait_s()) {
-      LeaveOut("depth_gap");
-      continue;
-    }
-    const StageTimer timer(stage_stats_["thermal_frame"]);
-    const double alpha = interval_s > 0.0 ? ToSeconds(time - before->time) / interval_s : 1.0;
-    const RigidTransform T_world_depth_at_capture =
-        Interpolate(before->T_world_depth, after.T_world_depth, alpha);
-    const RigidTransform T_world_thermal =
-        T_world_depth_at_capture * rig_.T_thermal_depth->inverse();
-    fuser_->Fuse(*frame, T_world_thermal, view().camera, T_world_depth_at_capture, tsdf(), pool_,
-                 *atlas_.active().thermal);
-    ++counts_.thermal_fused;
+    if (!std::exchange(holes_are_current, true))
+      near_holes_->Update(last_depth_->depth_m, view().maps, view().camera);
+    Fuse(waiting);
   }
 }
 
 void GroundPipeline::Finish(const std::function<void(double)>& progress) {
   for (std::size_t i = 0; i < waiting_thermal_.size(); ++i) LeaveOut("no_depth_after");
   waiting_thermal_.clear();
-  if (atlas_.size() == 1) return;
+  if (atlas_.size() > 1) MergeMaps(progress);
+  if (fuser_) counts_.fusion.dropped += fuser_->ReviewAll(tsdf(), *atlas_.active().thermal, pool_);
+}
+
+void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
   const StageTimer timer(stage_stats_["merge"]);
   const RigidTransform T_world_map = atlas_.active().T_world_map;
   const bool joined = atlas_.active().joined;

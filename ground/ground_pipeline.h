@@ -41,6 +41,7 @@ struct PipelineCounts {
   std::uint64_t thermal_in = 0;
   std::uint64_t thermal_fused = 0;
   std::map<std::string, std::uint64_t> thermal_left_out;  ///< By reason.
+  FusionReport fusion;  ///< Of all fused frames together; dropped counts the last review, too.
 };
 
 /// How much of the work a pipeline does. What it leaves out costs quality where the next frames do
@@ -129,6 +130,10 @@ class GroundPipeline {
     PoseSigma sigma;
     int map = 0;
   };
+  struct WaitingThermal {
+    ThermalFramePtr frame;
+    NucAge nuc;
+  };
 
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
                  std::optional<RigidTransform> initial_pose);
@@ -152,6 +157,11 @@ class GroundPipeline {
   /// Has what was spilled and comes into view read in the background.
   void FetchNearView(const RigidTransform& T_world_depth);
   void FuseWaitingThermal(CaptureTime now);
+  /// Why the thermal frame captured at `time` gets no pose or no place; nullptr: it does.
+  const char* WhyLeftOut(CaptureTime time) const;
+  void Fuse(const WaitingThermal& waiting);
+  /// At the end: all sub-maps into the first.
+  void MergeMaps(const std::function<void(double)>& progress);
   /// One standard deviation of the pose, as a shift of the thermal picture on the surface.
   double RegistrationSigmaPx() const;
   void LeaveOut(const char* reason) { ++counts_.thermal_left_out[reason]; }
@@ -168,6 +178,9 @@ class GroundPipeline {
   Atlas atlas_;
   LoopCloser loop_closer_;
   std::unique_ptr<ThermalFuser> fuser_;
+  std::optional<NearHoles> near_holes_;
+  NucEpochs nuc_epochs_;
+  const PreparedDepth* last_depth_ = nullptr;  ///< Of the last depth frame; the preprocessor's.
   BlockSpiller spiller_;
   VisibleBlocks near_view_;
   bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
@@ -178,7 +191,7 @@ class GroundPipeline {
   int searched_ = 0;                      ///< The sub-map a lost rig is looked for in.
   std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
   Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.
-  std::deque<ThermalFramePtr> waiting_thermal_;
+  std::deque<WaitingThermal> waiting_thermal_;
   Effort effort_ = Effort::kAll;
   bool integrate_next_ = true;  ///< With kEverySecond.
   PipelineCounts counts_;

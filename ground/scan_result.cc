@@ -166,6 +166,13 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   thermal["fused"] = counts.thermal_fused;
   for (const auto& [reason, count] : counts.thermal_left_out)
     thermal["left_out_by_reason"][reason] = count;
+  Json& not_assigned = thermal["pixels_not_assigned"];
+  not_assigned["near_an_edge"] = counts.fusion.occluded;
+  not_assigned["smeared"] = counts.fusion.smeared;
+  not_assigned["steep_gradient"] = counts.fusion.steep;
+  not_assigned["maybe_hidden"] = counts.fusion.maybe_hidden;
+  thermal["voxels_assigned"] = counts.fusion.assigned;
+  thermal["voxels_dropped_in_review"] = counts.fusion.dropped;
   json["stages"] = DescribeStages(pipeline);
   json["threads"] = pipeline.threads();
 
@@ -189,6 +196,8 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   volume["memory_bytes"] =
       pipeline.tsdf().memory_bytes() +
       static_cast<std::size_t>(pipeline.tsdf().block_count()) * kBlockVoxels * sizeof(ThermalVoxel);
+  if (const ThermalRecords* records = pipeline.thermal().records())
+    volume["record_bytes"] = records->memory_bytes();
   json["calibration"] = ToText(rig);
   json["configuration"] = ToTextProto(options);
   if (!pipeline.thermal_status().ok())

@@ -55,7 +55,8 @@ std::unique_ptr<SubMap> Atlas::MakeMap() const {
   auto map = std::make_unique<SubMap>();
   map->tsdf = std::make_unique<TsdfVolume>(grid_, options_.tsdf().truncation_distance_m(),
                                            max_blocks, spill_dir);
-  map->thermal = std::make_unique<ThermalVolume>(max_blocks, spill_dir);
+  map->thermal =
+      std::make_unique<ThermalVolume>(max_blocks, spill_dir, options_.thermal().records());
   map->relocaliser = std::make_unique<Relocaliser>(options_.relocaliser(), depth_camera_);
   return map;
 }

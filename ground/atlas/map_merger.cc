@@ -87,13 +87,6 @@ GridIndex VoxelOf(const TsdfVolume& volume, std::int32_t block, int i) {
          GridIndex(i % kBlockSide, i / kBlockSide % kBlockSide, i / (kBlockSide * kBlockSide));
 }
 
-/// Voxels of the thermal volume by their coordinates.
-ThermalVoxel ThermalAt(const PlacedVolume& source, const GridIndex& voxel) {
-  const std::int32_t block = source.tsdf.Find(BlockOf(voxel));
-  return block == TsdfVolume::kNoBlock ? ThermalVoxel()
-                                       : source.thermal.voxels(block)[OffsetInBlock(voxel)];
-}
-
 void MergeDistances(const PlacedVolume& source, float max_weight, std::int32_t block,
                     TsdfVolume& tsdf) {
   const RigidTransform T_source_target = source.T_target_source.inverse();
@@ -113,11 +106,18 @@ void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const Tsd
   for (int i = 0; i < kBlockVoxels; ++i) {
     const Eigen::Vector3d at = source.tsdf.grid().ToVoxel(
         T_source_target * tsdf.grid().VoxelCentre(VoxelOf(tsdf, block, i)));
-    const ThermalVoxel other = ThermalAt(source, (at.array() + 0.5).floor().cast<int>());
-    if (other.measured() && ReplacesMeasurement(other.distance_class(), other.angle_class(),
-                                                other.motion_class(), voxels[i])) {
-      voxels[i] = other;
+    const GridIndex nearest = (at.array() + 0.5).floor().cast<int>();
+    const std::int32_t from = source.tsdf.Find(BlockOf(nearest));
+    if (from == TsdfVolume::kNoBlock) continue;
+    const auto offset = static_cast<int>(OffsetInBlock(nearest));
+    const ThermalVoxel other = source.thermal.voxels(from)[offset];
+    if (!other.measured() || !ReplacesMeasurement(other.distance_class(), other.angle_class(),
+                                                  other.motion_class(), voxels[i])) {
+      continue;
     }
+    voxels[i] = other;
+    AdoptRecord(source.thermal, from, offset, source.T_target_source.linear().cast<float>(), block,
+                i, thermal);
   }
 }
 

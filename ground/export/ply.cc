@@ -49,7 +49,11 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
       "comment scalar_temperature and quality: apparent temperature in degrees Celsius, emissivity "
       "1 assumed; "
       "nan = never measured\n"
-      "comment distance_class and angle_class: 0 bad, 1 good, 2 acceptable, 255 never measured\n";
+      "comment distance_class angle_class motion_class disagreement_class: 0 bad, 1 good, 2 "
+      "acceptable, 255 never measured or not known\n"
+      "comment nuc_epoch: NUCs before the measurement (modulo 256), nuc_age_s: seconds since the "
+      "last one; measured_distance (metres) and measured_angle (degrees from the normal): of the "
+      "thermal camera; nan = not known\n";
   const std::string never = fmt::format("{} {} {} = never measured", kNeverMeasuredPoint.r,
                                         kNeverMeasuredPoint.g, kNeverMeasuredPoint.b);
   if (style.scale) {
@@ -66,7 +70,10 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
       "property uchar red\nproperty uchar green\nproperty uchar blue\n"
       "property float scalar_temperature\n"
       "property uchar distance_class\nproperty uchar angle_class\n"
-      "property float quality\n";
+      "property float quality\n"
+      "property uchar motion_class\nproperty uchar disagreement_class\nproperty uchar nuc_epoch\n"
+      "property float nuc_age_s\nproperty float measured_distance\n"
+      "property float measured_angle\n";
   if (faces)
     text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", *faces);
   return text + "end_header\n";
@@ -83,6 +90,12 @@ void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& reco
   records.Add(point.distance_class);
   records.Add(point.angle_class);
   records.Add(point.celsius);
+  records.Add(point.motion_class);
+  records.Add(point.disagreement_class);
+  records.Add(point.nuc_epoch);
+  records.Add(point.nuc_age_s);
+  records.Add(point.measured_distance_m);
+  records.Add(point.measured_angle_deg);
   records.EndRecord();
 }
 

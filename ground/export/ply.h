@@ -25,7 +25,8 @@ inline constexpr Rgb8 kNeverMeasuredPoint{96, 96, 96};
 /// Writes `surface.points` as binary little-endian PLY with the properties x y z nx ny nz (float,
 /// `world`, metres) red green blue (uchar) scalar_temperature (float, degC, NaN = never measured)
 /// distance_class angle_class (uchar) quality (float, the temperature again, under the name that
-/// MeshLab shows). The order matters: CloudCompare gives each column to the first property whose
+/// MeshLab shows) motion_class disagreement_class nuc_epoch (uchar) nuc_age_s measured_distance
+/// measured_angle (float). The order matters: CloudCompare gives each column to the first property whose
 /// name fits.
 Status WriteCloudPly(const Surface& surface, const PlyStyle& style,
                      const std::filesystem::path& path);

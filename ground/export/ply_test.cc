@@ -119,7 +119,13 @@ TEST_F(PlyTest, PropertiesAreThoseOfTheContractInItsOrder) {
                                              "scalar_temperature",
                                              "distance_class",
                                              "angle_class",
-                                             "quality"};
+                                             "quality",
+                                             "motion_class",
+                                             "disagreement_class",
+                                             "nuc_epoch",
+                                             "nuc_age_s",
+                                             "measured_distance",
+                                             "measured_angle"};
   EXPECT_EQ(ReadPly(path_).names, expected);
 }
 

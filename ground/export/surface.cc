@@ -11,10 +11,13 @@
 #include "common/base/check.h"
 #include "common/concurrency/thread_pool.h"
 #include "ground/export/marching_cubes.h"
+#include "ground/thermal/temperature_review.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
 namespace {
+
+constexpr float kRadPerDeg = 0.0174532925F;
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -204,12 +207,21 @@ class Extractor {
     CloudPoint point;
     point.position_m = p_world.cast<float>();
     point.normal = normal;
-    const ThermalVoxel measured = ThermalVoxelAt(tsdf_, thermal_, p_world);
-    if (measured.measured()) {
-      point.celsius = measured.celsius();
-      point.distance_class = static_cast<std::uint8_t>(measured.distance_class());
-      point.angle_class = static_cast<std::uint8_t>(measured.angle_class());
-    }
+    const auto [voxel, conditions] = MeasurementAt(tsdf_, thermal_, p_world);
+    if (!voxel.judged()) return point;
+    // Beside edges, the nearest voxel may be another face's.
+    if (!conditions.empty() && !BelongsToFace(conditions, normal, 0.0F)) return point;
+    point.celsius = voxel.celsius();
+    point.distance_class = static_cast<std::uint8_t>(voxel.distance_class());
+    point.angle_class = static_cast<std::uint8_t>(voxel.angle_class());
+    point.motion_class = static_cast<std::uint8_t>(voxel.motion_class());
+    point.disagreement_class = static_cast<std::uint8_t>(voxel.disagreement_class());
+    if (conditions.empty()) return point;
+    point.nuc_epoch = conditions.epoch;
+    point.nuc_age_s = conditions.age_s();
+    point.measured_distance_m = conditions.distance_m();
+    const float cosine = normal.dot(DecodeDirection(conditions.direction));
+    point.measured_angle_deg = 1.0F / kRadPerDeg * std::acos(std::clamp(cosine, -1.0F, 1.0F));
     return point;
   }
 

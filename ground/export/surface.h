@@ -20,6 +20,13 @@ struct CloudPoint {
   float celsius = NAN;          ///< Apparent temperature; NaN = never measured.
   std::uint8_t distance_class = kNeverMeasured;
   std::uint8_t angle_class = kNeverMeasured;
+  std::uint8_t motion_class = kNeverMeasured;
+  std::uint8_t disagreement_class = kNeverMeasured;
+  // Of the measurement; empty or NaN without a temperature or without records.
+  std::uint8_t nuc_epoch = 0;  ///< NUCs before it, modulo 256.
+  float nuc_age_s = NAN;
+  float measured_distance_m = NAN;
+  float measured_angle_deg = NAN;  ///< To the surface as it is now.
 };
 
 /// The zero crossings of the model, and triangles between them. Points that no triangle uses are

@@ -15,6 +15,7 @@
 #include "common/recording/byte_stream.h"
 #include "ground/export/output_file.h"
 #include "ground/model/model.pb.h"
+#include "ground/model/record_part.h"
 
 namespace isotherm {
 namespace {
@@ -23,7 +24,9 @@ static_assert(std::endian::native == std::endian::little, "files are little-endi
 
 constexpr std::string_view kMagic = "ISOMODEL";
 constexpr std::string_view kEnd = "LEDOMOSI";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
+/// The first version has no records.
+constexpr std::uint32_t kOldestVersion = 1;
 constexpr std::uint32_t kMaxHeaderBytes = 1 << 24;
 constexpr int kBlocksPerChunk = 256;
 constexpr int kCompression = 1;
@@ -155,15 +158,18 @@ Status SaveModel(const std::filesystem::path& path, const TsdfVolume& tsdf,
       PackBlock(tsdf, thermal, block,
                 plain.data() + static_cast<std::size_t>(block - first) * kBlockBytes);
     }
-    packed.resize(ZSTD_compressBound(plain.size()));
-    const std::size_t bytes =
-        ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), kCompression);
-    if (ZSTD_isError(bytes) != 0)
-      return Internal(path.string() + ": compression failed: " + ZSTD_getErrorName(bytes));
-    packed.resize(bytes);
-    file.Write(BytesOf(ChunkHead{static_cast<std::uint32_t>(end - first),
-                                 static_cast<std::uint32_t>(bytes), Crc(packed)}));
-    file.Write(AsText(packed));
+    for (const bool records : {false, true}) {
+      if (records) plain = PackRecords(thermal, first, end);
+      packed.resize(ZSTD_compressBound(plain.size()));
+      const std::size_t bytes =
+          ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), kCompression);
+      if (ZSTD_isError(bytes) != 0)
+        return Internal(path.string() + ": compression failed: " + ZSTD_getErrorName(bytes));
+      packed.resize(bytes);
+      file.Write(BytesOf(ChunkHead{static_cast<std::uint32_t>(end - first),
+                                   static_cast<std::uint32_t>(bytes), Crc(packed)}));
+      file.Write(AsText(packed));
+    }
   }
   file.Write(kEnd);
   return file.Commit();
@@ -176,6 +182,7 @@ struct ModelFile::Content {
   Rig rig;
   std::vector<RigidTransform> known_poses;
   std::uint64_t first_chunk = 0;
+  std::uint32_t version = kVersion;
 
   Status Damaged(std::string_view what) const {
     return DataLoss(fmt::format("{}: the model file is damaged: {}", name, what));
@@ -192,22 +199,46 @@ struct ModelFile::Content {
     return Read(offset, {reinterpret_cast<std::uint8_t*>(&value), sizeof(value)});
   }
 
+  /// Reads and unpacks one part of at most `max_blocks` blocks and `max_bytes` bytes.
+  Status ReadPart(std::uint64_t& offset, std::uint32_t max_blocks, std::size_t max_bytes,
+                  std::uint32_t& blocks, std::vector<std::uint8_t>& plain) const;
   Status ReadHead();
   Status CheckHead();
 };
+
+Status ModelFile::Content::ReadPart(std::uint64_t& offset, std::uint32_t max_blocks,
+                                    std::size_t max_bytes, std::uint32_t& blocks,
+                                    std::vector<std::uint8_t>& plain) const {
+  ChunkHead head{};
+  if (Status status = ReadValue(offset, head); !status.ok()) return status;
+  if (head.blocks == 0 || head.blocks > kBlocksPerChunk || head.blocks > max_blocks ||
+      head.bytes > ZSTD_compressBound(max_bytes)) {
+    return Damaged("a part has an impossible size");
+  }
+  std::vector<std::uint8_t> packed(head.bytes);
+  if (Status status = Read(offset, packed); !status.ok()) return status;
+  if (Crc(packed) != head.crc) return Damaged("a part has a wrong checksum");
+  const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  if (bytes > max_bytes) return Damaged("a part has an impossible size");
+  plain.resize(bytes);
+  if (ZSTD_decompress(plain.data(), plain.size(), packed.data(), packed.size()) != plain.size())
+    return Damaged("a part cannot be unpacked");
+  blocks = head.blocks;
+  return OkStatus();
+}
 
 Status ModelFile::Content::ReadHead() {
   std::uint64_t offset = 0;
   std::array<std::uint8_t, kMagic.size()> magic{};
   if (Status status = Read(offset, magic); !status.ok() || AsText(magic) != kMagic)
     return InvalidArgument(name + ": not an Isotherm model (model.iso)");
-  std::uint32_t version = 0, bytes = 0, crc = 0;
+  std::uint32_t bytes = 0, crc = 0;
   for (std::uint32_t* value : {&version, &bytes, &crc}) {
     if (Status status = ReadValue(offset, *value); !status.ok()) return status;
   }
-  if (version != kVersion) {
-    return InvalidArgument(
-        fmt::format("{}: model format {}, this program reads {}", name, version, kVersion));
+  if (version < kOldestVersion || version > kVersion) {
+    return InvalidArgument(fmt::format("{}: model format {}, this program reads {} to {}", name,
+                                       version, kOldestVersion, kVersion));
   }
   if (bytes > kMaxHeaderBytes) return Damaged("its head has an impossible size");
   std::vector<std::uint8_t> head(bytes);
@@ -302,24 +333,17 @@ Status ModelFile::CheckRig(const Rig& rig) const {
 Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
   const Content& content = *content_;
   std::uint64_t offset = content.first_chunk;
-  std::vector<std::uint8_t> packed, plain;
+  std::vector<std::uint8_t> plain;
   while (tsdf.block_count() < content.header.block_count()) {
-    ChunkHead head{};
-    if (Status status = content.ReadValue(offset, head); !status.ok()) return status;
     const auto missing =
         static_cast<std::uint32_t>(content.header.block_count() - tsdf.block_count());
-    if (head.blocks == 0 || head.blocks > kBlocksPerChunk || head.blocks > missing ||
-        head.bytes > ZSTD_compressBound(kBlocksPerChunk * kBlockBytes)) {
-      return content.Damaged("a part has an impossible size");
-    }
-    packed.resize(head.bytes);
-    if (Status status = content.Read(offset, packed); !status.ok()) return status;
-    plain.resize(head.blocks * kBlockBytes);
-    if (Crc(packed) != head.crc ||
-        ZSTD_decompress(plain.data(), plain.size(), packed.data(), packed.size()) != plain.size()) {
-      return content.Damaged("a part has a wrong checksum");
-    }
-    for (std::uint32_t i = 0; i < head.blocks; ++i) {
+    std::uint32_t blocks = 0;
+    if (Status status = content.ReadPart(offset, missing, kBlocksPerChunk * kBlockBytes, blocks, plain);
+        !status.ok())
+      return status;
+    if (plain.size() != blocks * kBlockBytes) return content.Damaged("a part has a wrong size");
+    const std::int32_t first = tsdf.block_count();
+    for (std::uint32_t i = 0; i < blocks; ++i) {
       const std::uint8_t* in = plain.data() + i * kBlockBytes;
       GridIndex coordinates;
       std::memcpy(coordinates.data(), in, kCoordinateBytes);
@@ -337,6 +361,14 @@ Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
                               return v.observed() && v.tsdf() <= 0.0F;
                             }));
     }
+    if (content.version < 2) continue;
+    std::uint32_t with_records = 0;
+    if (Status status =
+            content.ReadPart(offset, blocks, kBlocksPerChunk * kMaxRecordBytes, with_records, plain);
+        !status.ok())
+      return status;
+    if (with_records != blocks || !UnpackRecords(plain, first, first + static_cast<std::int32_t>(blocks), thermal))
+      return content.Damaged("the records of a part make no sense");
   }
   std::array<std::uint8_t, kEnd.size()> end{};
   if (Status status = content.Read(offset, end); !status.ok()) return status;

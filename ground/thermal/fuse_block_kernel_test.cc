@@ -71,6 +71,18 @@ ScalarFusion FuseScalarVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   result.slack =
       0.52 + kPixelError * kStepsPerKelvin / kSlopeScale * (std::abs(slope_u) + std::abs(slope_v)) +
       1e-6 * result.code;
+  const bool bad = conditions.distance_class() == ConditionClass::kBad ||
+                   conditions.angle_class() == ConditionClass::kBad;
+  if (!a.keep_bad && bad) result.code = result.slack = 0.0;
+  constexpr std::int32_t kAllGood = 0x3011;
+  if (a.keep_lowest && result.classes == kAllGood && (old.bits & 0xF0FF) == kAllGood) {
+    const double margin = static_cast<double>(old.bits >> 16) - result.code;
+    if (std::abs(margin) <= result.slack + 0.5) {
+      result.assigned = result.assigned == Verdict::kNo ? Verdict::kNo : Verdict::kEither;
+    } else if (margin < 0.0) {
+      result.assigned = Verdict::kNo;
+    }
+  }
   return result;
 }
 
@@ -80,6 +92,7 @@ class FuseBlockTest : public ::testing::Test {
   static constexpr float kVoxel = 0.004F;
   using Words = std::array<std::uint32_t, kVoxels + 1>;
   /// Unchecked, acceptable, good: smeared pixels are never assignable.
+  static constexpr std::int32_t kAllGood = 0x3011;
   static constexpr std::array kMotionCodes = {0, 2 << 12, 3 << 12};
 
   /// A camera of any size before a bumpy wall half a metre away, of which a part is not seen.
@@ -93,6 +106,7 @@ class FuseBlockTest : public ::testing::Test {
       pixel.slopes = (random_.Integer(-2000, 2000) << 16) | (random_.Integer(-2000, 2000) & 0xFFFF);
       pixel.flags = kMotionCodes[random_.Integer(0, 2)] | (random_.Integer(0, 2) << 4) |
                     random_.Integer(0, 2);
+      if (random_.Chance(0.3)) pixel.flags = kAllGood;
       if (random_.Chance(0.9)) pixel.flags |= ThermalPixel::kSeen;
       if ((pixel.flags & ThermalPixel::kSeen) != 0 && random_.Chance(0.8))
         pixel.flags |= ThermalPixel::kAssignable;
@@ -107,6 +121,8 @@ class FuseBlockTest : public ::testing::Test {
     args_.max_distance_m = random_.Uniform(0.5F, 3.0F) * kVoxel;
     args_.max_tsdf_code = random_.Integer(1000, 32767);
     args_.validate = random_.Chance(0.7);
+    args_.keep_bad = random_.Chance(0.5);
+    args_.keep_lowest = random_.Chance(0.3);
   }
 
   void RearrangeBlock() {
@@ -125,8 +141,10 @@ class FuseBlockTest : public ::testing::Test {
       tsdf_[i] = (tsdf << 16) |
                  static_cast<std::uint32_t>(random_.Chance(0.2) ? 0 : random_.Integer(1, 65535));
       const auto code = static_cast<std::uint32_t>(random_.Integer(1, 65535));
-      const int classes = kMotionCodes[random_.Integer(0, 2)] | (random_.Integer(0, 3) << 8) |
-                          (random_.Integer(0, 2) << 4) | random_.Integer(0, 2);
+      int classes = kMotionCodes[random_.Integer(0, 2)] | (random_.Integer(0, 2) << 4) |
+                    random_.Integer(0, 2);
+      if (random_.Chance(0.3)) classes = kAllGood;
+      classes |= random_.Integer(0, 3) << 8;
       thermal_[i] = random_.Chance(0.4) ? 0 : (code << 16) | static_cast<std::uint32_t>(classes);
     }
     thermal_.back() = static_cast<std::uint32_t>(testing::kCanary);
@@ -135,7 +153,8 @@ class FuseBlockTest : public ::testing::Test {
   void CompareBlock() {
     const Words before = thermal_;
     FusionKernelCounts counts;
-    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts);
+    BlockMeasurements measured;
+    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts, &measured);
     ASSERT_EQ(thermal_.back(), before.back()) << "wrote beyond the block";
     const Eigen::Matrix3d axes =
         Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(args_.axes).cast<double>();
@@ -150,15 +169,41 @@ class FuseBlockTest : public ::testing::Test {
           first_.cast<double>() + axes * Eigen::Vector3d(index & 7, (index >> 3) & 7, index >> 6);
       const ScalarFusion truth = FuseScalarVoxel(args_, p, {tsdf_[i]}, {before[i]});
       count(truth.considered, least.considered, most.considered);
-      count(truth.assigned, least.assigned, most.assigned);
+      // Bad conditions leave no temperature (code 0).
+      const bool takes = truth.code > 0.0 || truth.assigned == Verdict::kEither;
+      count(takes ? truth.assigned : Verdict::kNo, least.assigned, most.assigned);
       CompareVoxel(truth, before[i], thermal_[i]);
     }
     ASSERT_GE(counts.considered, least.considered);
     ASSERT_LE(counts.considered, most.considered);
     ASSERT_GE(counts.assigned, least.assigned);
     ASSERT_LE(counts.assigned, most.assigned);
+    CompareMeasurements(before, measured, counts.assigned);
     assigned_ += counts.assigned;
     kept_ += counts.considered - counts.assigned;
+  }
+  /// What is noted is what the block shows, and no temperature under good conditions is missed.
+  void CompareMeasurements(const Words& before, const BlockMeasurements& measured,
+                           std::int64_t assigned) {
+    ASSERT_LE(measured.count, static_cast<int>(kVoxels));
+    std::int64_t noted = 0;
+    for (int i = 0; i < measured.count; ++i) {
+      const auto word = static_cast<std::uint32_t>(measured.words[i]);
+      const auto voxel = static_cast<std::size_t>(measured.voxels[i]) & 511;
+      if (i > 0) {
+        ASSERT_GT(voxel, static_cast<std::size_t>(measured.voxels[i - 1]) & 511) << "in order";
+      }
+      ASSERT_EQ(static_cast<std::int32_t>(word & 0xFFFFU), measured.flags[i] & 0xF0FF);
+      if ((measured.voxels[i] & BlockMeasurements::kAssigned) != 0) {
+        ++noted;
+        ASSERT_EQ(thermal_[voxel], word | (before[voxel] & 0x0F00U)) << "disagreement stays";
+      } else {
+        ASSERT_EQ(word & 0xFFFFU, 0x3011U) << "good, but not taken";
+        ASSERT_EQ(thermal_[voxel], before[voxel]);
+      }
+    }
+    ASSERT_EQ(noted, assigned);
+    good_not_taken_ += measured.count - noted;
   }
   static void CompareVoxel(const ScalarFusion& truth, std::uint32_t before, std::uint32_t after) {
     if (truth.assigned == Verdict::kNo) {
@@ -166,7 +211,8 @@ class FuseBlockTest : public ::testing::Test {
     }
     if (truth.assigned != Verdict::kYes) return;
     ASSERT_NEAR(static_cast<double>(after >> 16), truth.code, truth.slack);
-    ASSERT_EQ(static_cast<std::int32_t>(after & 0xFFFFU), truth.classes);
+    ASSERT_EQ(static_cast<std::int32_t>(after & 0xF0FFU), truth.classes);
+    ASSERT_EQ(after & 0x0F00U, before & 0x0F00U);
   }
 
   float Uniform() { return random_.Uniform(-1.0F, 1.0F); }
@@ -178,11 +224,12 @@ class FuseBlockTest : public ::testing::Test {
   Words tsdf_{}, thermal_{};
   std::int64_t assigned_ = 0;
   std::int64_t kept_ = 0;
+  std::int64_t good_not_taken_ = 0;
 };
 
 TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyPictureAndPose) {
   testing::ForEachInstructionSet([&] {
-    assigned_ = kept_ = 0;
+    assigned_ = kept_ = good_not_taken_ = 0;
     for (int width = 1; width <= 70; ++width) {
       RearrangePicture(width, random_.Integer(1, 50));
       for (int round = 0; round < 6 && !HasFatalFailure(); ++round) {
@@ -192,6 +239,7 @@ TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyPictureAndPose) {
     }
     EXPECT_GT(assigned_, 5000);
     EXPECT_GT(kept_, 5000);
+    EXPECT_GT(good_not_taken_, 50);
   });
 }
 
@@ -206,7 +254,7 @@ TEST_F(FuseBlockTest, LeavesTheBlockAloneAtAPositionThatIsNone) {
         first_[axis] = bad;
         const Words before = thermal_;
         FusionKernelCounts counts;
-        FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts);
+        FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts, nullptr);
         EXPECT_EQ(thermal_, before) << bad << " along axis " << axis;
         EXPECT_EQ(counts.assigned, 0);
       }
@@ -221,7 +269,7 @@ TEST_F(FuseBlockTest, APictureThatShowsNothingChangesNothing) {
     RearrangeBlock();
     const Words before = thermal_;
     FusionKernelCounts counts;
-    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts);
+    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts, nullptr);
     EXPECT_EQ(thermal_, before);
     EXPECT_EQ(counts.considered, 0);
   });

@@ -1,27 +1,19 @@
 #include "ground/thermal/thermal_fuser.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "ground/thermal/upsample_kernel.h"
 
 namespace isotherm {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRowsPerTask = 8;
 
 /// Side of the tiles whose depths are kept to choose blocks; a row of tiles is one task.
 constexpr int kTile = kRowsPerTask;
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-
-float CosineOfDegrees(double degrees) { return static_cast<float>(std::cos(degrees * kRadPerDeg)); }
 
 template <typename Row>
 void ForRows(int height, ThreadPool& pool, const Row& row) {
@@ -39,127 +31,38 @@ CameraModel EverySecondPixel(CameraModel camera) {
   return camera;
 }
 
-/// Smaller is better: good before acceptable before unchecked.
-int Rank(ConditionClass c) { return static_cast<int>(c); }
+/// A temperature is known where its pixel is to about half a pixel: interpolation between pixels
+/// and what a lens spreads.
+constexpr double kPixelUncertaintyPx = 0.5;
+/// A block in view is reviewed once in so many frames.
+constexpr std::uint32_t kFramesBetweenReviews = 16;
+/// Stands for no limit; its square is finite.
+constexpr float kNoLimit = 1e18F;
+
+template <typename Vector>
+void CopyVector(const Vector& from, float* to) {
+  const Eigen::Vector3f single = from.template cast<float>();
+  std::copy_n(single.data(), 3, to);
+}
 
 }  // namespace
 
-Status Validate(const ThermalOptions& o) {
-  if (!(o.distance_min_m() >= 0.0 && o.distance_min_m() < o.distance_good_m() &&
-        o.distance_good_m() <= o.distance_max_m())) {
-    return InvalidArgument(
-        fmt::format("thermal: need 0 <= distance_min_m < distance_good_m <= distance_max_m, got {} "
-                    "m, {} m, {} m",
-                    o.distance_min_m(), o.distance_good_m(), o.distance_max_m()));
-  }
-  if (!(o.angle_min_deg() >= 0.0 && o.angle_min_deg() < o.angle_good_deg() &&
-        o.angle_good_deg() <= o.angle_max_deg() && o.angle_max_deg() <= 90.0)) {
-    return InvalidArgument(
-        fmt::format("thermal: need 0 <= angle_min_deg < angle_good_deg <= angle_max_deg <= 90, got "
-                    "{}, {}, {} degrees",
-                    o.angle_min_deg(), o.angle_good_deg(), o.angle_max_deg()));
-  }
-  if (!(o.parallax_tolerance_m() > 0.0 && o.vertex_distance_vox() > 0.0 && o.max_wait_s() >= 0.0 &&
-        o.max_wait_s() <= 10.0)) {
-    return InvalidArgument(
-        "thermal: parallax_tolerance_m and vertex_distance_vox must be positive, max_wait_s 0..10 "
-        "s");
-  }
-  if (o.edge_margin_px() < 0 || o.edge_margin_px() > 16) {
-    return InvalidArgument(
-        fmt::format("thermal.edge_margin_px must be 0..16 pixels, got {}", o.edge_margin_px()));
-  }
-  if (!(o.max_registration_px() > 0.0)) {
-    return InvalidArgument(fmt::format("thermal.max_registration_px must be positive, got {} px",
-                                       o.max_registration_px()));
-  }
-  if (o.visibility_halvings() != 0 && o.visibility_halvings() != 1) {
-    return InvalidArgument(
-        fmt::format("thermal.visibility_halvings must be 0 or 1, got {}", o.visibility_halvings()));
-  }
-  return OkStatus();
-}
-
-ConditionLimits::ConditionLimits(const ThermalOptions& o)
-    : distance_min_m(static_cast<float>(o.distance_min_m())),
-      distance_good_m(static_cast<float>(o.distance_good_m())),
-      distance_max_m(static_cast<float>(o.distance_max_m())),
-      cosine_min_angle(CosineOfDegrees(o.angle_min_deg())),
-      cosine_good_angle(CosineOfDegrees(o.angle_good_deg())),
-      cosine_max_angle(CosineOfDegrees(o.angle_max_deg())) {}
-
-ConditionClass ConditionLimits::ClassifyDistance(float d) const {
-  if (!(d >= distance_min_m && d <= distance_max_m)) return ConditionClass::kBad;
-  return d <= distance_good_m ? ConditionClass::kGood : ConditionClass::kAcceptable;
-}
-
-ConditionClass ConditionLimits::ClassifyAngle(float cosine) const {
-  if (!(cosine <= cosine_min_angle && cosine >= cosine_max_angle)) return ConditionClass::kBad;
-  return cosine >= cosine_good_angle ? ConditionClass::kGood : ConditionClass::kAcceptable;
-}
-
-bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
-                         ConditionClass new_motion, ThermalVoxel old) {
-  const auto valid = [](ConditionClass distance, ConditionClass angle) {
-    return distance != ConditionClass::kBad && angle != ConditionClass::kBad;
-  };
-  if (new_motion == ConditionClass::kBad) return false;
-  if (!old.measured() || !valid(old.distance_class(), old.angle_class())) return true;
-  if (!valid(new_distance, new_angle)) return false;
-  if (new_distance != old.distance_class()) return Rank(new_distance) < Rank(old.distance_class());
-  if (new_angle != old.angle_class()) return Rank(new_angle) < Rank(old.angle_class());
-  return Rank(new_motion) <= Rank(old.motion_class());
-}
-
-ThermalRectifier::ThermalRectifier(const CameraModel& camera)
-    : ideal_(camera.WithoutDistortion()),
-      source_(camera.width, camera.height, -1),
-      fraction_x_(camera.width, camera.height),
-      fraction_y_(camera.width, camera.height) {
-  for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u) {
-      const Eigen::Vector2d pixel = ProjectNormalized(camera, Unproject(ideal_, {u, v}));
-      if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= camera.width - 1 &&
-            pixel.y() <= camera.height - 1)) {
-        continue;
-      }
-      const int x = std::min(static_cast<int>(pixel.x()), camera.width - 2);
-      const int y = std::min(static_cast<int>(pixel.y()), camera.height - 2);
-      source_.At(u, v) = y * camera.width + x;
-      fraction_x_.At(u, v) = static_cast<float>(pixel.x() - x);
-      fraction_y_.At(u, v) = static_cast<float>(pixel.y() - y);
-    }
-  }
-}
-
-void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
-                               Image<float>& celsius) {
-  const int width = ideal_.width;
-  const int height = ideal_.height;
-  picture_.Resize(width, height);
-  if (celsius.width() != width + 2 * apron || celsius.height() != height + 2 * apron)
-    celsius = Image<float>(width + 2 * apron, height + 2 * apron, kNan);
-  const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
-  pool.ParallelFor(tasks, [&](int task) {
-    const auto begin = static_cast<std::size_t>(task * kRowsPerTask * width);
-    const auto end =
-        std::min(picture_.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint16_t raw = centikelvin.data()[i];
-      picture_.data()[i] = raw == 0 ? kNan : static_cast<float>(raw) * 0.01F - 273.15F;
-    }
-  });
-  ForRows(height, pool, [&](int v) {
-    ResampleRow({picture_.data(), width, source_.Row(v).data(), fraction_x_.Row(v).data(),
-                 fraction_y_.Row(v).data(), width},
-                celsius.Row(v + apron).data() + apron);
-  });
+FusionReport& FusionReport::operator+=(const FusionReport& other) {
+  considered += other.considered;
+  occluded += other.occluded;
+  smeared += other.smeared;
+  steep += other.steep;
+  maybe_hidden += other.maybe_hidden;
+  assigned += other.assigned;
+  dropped += other.dropped;
+  return *this;
 }
 
 ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera,
                            float min_weight)
     : options_(options),
       limits_(options),
+      review_(options),
       min_weight_(min_weight),
       apron_(std::max(1, options.edge_margin_px())),
       rectifier_(thermal_camera) {
@@ -201,25 +104,23 @@ void ThermalFuser::CastSurface(const RigidTransform& T_world_thermal, const Tsdf
   });
 }
 
-std::int64_t ThermalFuser::MakePixels(const RigidTransform& T_world_thermal,
-                                      const CameraModel& depth_camera,
-                                      const RigidTransform& T_world_depth, ThreadPool& pool) {
-  const int width = surface_.width();
-  const int height = surface_.height();
+PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_world_thermal,
+                                   const CameraModel& depth_camera,
+                                   const RigidTransform& T_world_depth,
+                                   const CaptureConditions& capture) const {
+  const CameraModel& camera = rectifier_.ideal_camera();
   PixelRowArgs args{};
   args.distance_stride = distances_m_.width();
   args.celsius_stride = celsius_.width();
   args.margin = options_.edge_margin_px();
-  args.width = width;
-  const Eigen::Vector3f position = T_world_thermal.translation().cast<float>();
-  std::copy_n(position.data(), 3, args.position);
+  args.width = camera.width;
+  CopyVector(T_world_thermal.translation(), args.position);
   const Eigen::Vector4f z_axis = T_world_thermal.inverse().matrix().row(2).cast<float>();
   std::copy_n(z_axis.data(), 4, args.z_axis);
   const RigidTransform T_depth_world = T_world_depth.inverse();
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_world.linear().cast<float>();
-  const Eigen::Vector3f t = T_depth_world.translation().cast<float>();
   std::copy_n(R.data(), 9, args.R_depth);
-  std::copy_n(t.data(), 3, args.t_depth);
+  CopyVector(T_depth_world.translation(), args.t_depth);
   args.depth_fx = static_cast<float>(depth_camera.fx);
   args.depth_fy = static_cast<float>(depth_camera.fy);
   args.depth_cx = static_cast<float>(depth_camera.cx);
@@ -233,16 +134,35 @@ std::int64_t ThermalFuser::MakePixels(const RigidTransform& T_world_thermal,
   args.cosine_min_angle = limits_.cosine_min_angle;
   args.cosine_good_angle = limits_.cosine_good_angle;
   args.cosine_max_angle = limits_.cosine_max_angle;
+  const auto or_none = [](double limit) {
+    return limit > 0.0 ? static_cast<float>(limit) : kNoLimit;
+  };
+  args.max_footprint_m = or_none(options_.max_footprint_m());
+  args.max_slope_k = or_none(options_.max_gradient_error_k() /
+                             std::max(kPixelUncertaintyPx, capture.registration_px));
+  args.fx = static_cast<float>(camera.fx);
+  args.fy = static_cast<float>(camera.fy);
+  args.cx = static_cast<float>(camera.cx);
+  CopyVector(capture.motion.velocity_m_s, args.velocity_m_s);
+  CopyVector(capture.motion.rate_rad_s, args.rate_rad_s);
+  args.smear_good_px = static_cast<float>(options_.smear_good_px());
+  args.smear_max_px = static_cast<float>(options_.smear_max_px());
+  return args;
+}
 
+void ThermalFuser::MakePixels(const PixelRowArgs& args, const NearHoles* holes, ThreadPool& pool,
+                              FusionReport& report) {
+  const CameraModel& camera = rectifier_.ideal_camera();
+  const int width = camera.width;
+  const int height = camera.height;
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
-  std::atomic<std::int64_t> occluded{0};
+  std::atomic<std::int64_t> occluded{0}, smeared{0}, steep{0}, maybe_hidden{0};
   pool.ParallelFor(tasks, [&](int task) {
     const std::span<float> nearest = nearest_m_.Row(task);
     const std::span<float> farthest = farthest_m_.Row(task);
     std::fill(nearest.begin(), nearest.end(), std::numeric_limits<float>::max());
     std::fill(farthest.begin(), farthest.end(), 0.0F);
     const int end = std::min(height, (task + 1) * kRowsPerTask);
-    std::int64_t hidden = 0;
     for (int y = task * kRowsPerTask; y < end; ++y) {
       PixelRowArgs row = args;
       row.vx = surface_.vx.Row(y).data();
@@ -253,9 +173,17 @@ std::int64_t ThermalFuser::MakePixels(const RigidTransform& T_world_thermal,
       row.nz = surface_.nz.Row(y).data();
       row.distance_m = distances_m_.Row(y + apron_).data() + apron_;
       row.celsius = celsius_.Row(y + apron_).data() + apron_;
+      row.y = static_cast<float>((y - camera.cy) / camera.fy);
+      row.smear_s = static_cast<float>(options_.time_constant_s() +
+                                       options_.row_readout_s() * std::abs(y - 0.5 * (height - 1)));
       ThermalPixel* pixels =
           pixels_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
-      hidden += MakePixelRow(row, pixels);
+      const PixelRowCounts counts = MakePixelRow(row, pixels);
+      occluded += counts.occluded;
+      smeared += counts.smeared;
+      steep += counts.steep;
+      if (holes != nullptr && holes->any())
+        maybe_hidden += holes->LeaveOut(y, {pixels, static_cast<std::size_t>(width)});
       for (int x = 0; x < width; ++x) {
         const float depth = pixels[x].depth_m;
         const auto tile = static_cast<std::size_t>(x / kTile);
@@ -263,9 +191,11 @@ std::int64_t ThermalFuser::MakePixels(const RigidTransform& T_world_thermal,
         if (depth > 0.0F) nearest[tile] = std::min(nearest[tile], depth);
       }
     }
-    occluded += hidden;
   });
-  return occluded;
+  report.occluded = occluded;
+  report.smeared = smeared;
+  report.steep = steep;
+  report.maybe_hidden = maybe_hidden;
 }
 
 void ThermalFuser::SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf) {
@@ -301,22 +231,9 @@ void ThermalFuser::SelectBlocks(const RigidTransform& T_world_thermal, const Tsd
   }
 }
 
-FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
-                                const CameraModel& depth_camera,
-                                const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
-                                ThreadPool& pool, ThermalVolume& thermal) {
+FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_world,
+                                         const TsdfVolume& tsdf) const {
   const CameraModel& camera = rectifier_.ideal_camera();
-  CHECK(frame.valid);
-  CHECK(IsRigid(T_world_thermal) && IsRigid(T_world_depth));
-  CHECK(frame.centikelvin.width() == camera.width && frame.centikelvin.height() == camera.height);
-  rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
-  CastSurface(T_world_thermal, tsdf, pool);
-  FusionReport report;
-  report.occluded = MakePixels(T_world_thermal, depth_camera, T_world_depth, pool);
-  SelectBlocks(T_world_thermal, tsdf);
-
-  const VoxelGrid& grid = tsdf.grid();
-  const RigidTransform T_thermal_world = T_world_thermal.inverse();
   FusionKernelArgs args{};
   args.pixels = pixels_.data();
   args.width = camera.width;
@@ -325,10 +242,11 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
   args.fy = static_cast<float>(camera.fy);
   args.cx = static_cast<float>(camera.cx);
   args.cy = static_cast<float>(camera.cy);
+  const double voxel_m = tsdf.grid().voxel_size_m;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> axes =
-      (T_thermal_world.linear() * grid.voxel_size_m).cast<float>();
+      (T_thermal_world.linear() * voxel_m).cast<float>();
   std::copy_n(axes.data(), 9, args.axes);
-  const double max_distance_m = options_.vertex_distance_vox() * grid.voxel_size_m;
+  const double max_distance_m = options_.vertex_distance_vox() * voxel_m;
   args.max_distance_m = static_cast<float>(max_distance_m);
   // A distance measured along a normal is at most that to the vertex, but for noise.
   constexpr double kNoiseMargin = 1.25;
@@ -336,27 +254,73 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
       TsdfVoxel::kTsdfScale *
       std::min(1.0, kNoiseMargin * max_distance_m / tsdf.truncation_distance_m()));
   args.validate = options_.validation();
-  std::atomic<std::int64_t> considered{0};
-  std::atomic<std::int64_t> assigned{0};
+  args.keep_bad = options_.keep_bad();
+  args.keep_lowest = options_.policy() == LOWEST_GOOD;
+  return args;
+}
+
+FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
+                                const CameraModel& depth_camera,
+                                const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
+                                ThreadPool& pool, ThermalVolume& thermal,
+                                const CaptureConditions& capture) {
+  const CameraModel& camera = rectifier_.ideal_camera();
+  CHECK(frame.valid);
+  CHECK(IsRigid(T_world_thermal) && IsRigid(T_world_depth));
+  CHECK(frame.centikelvin.width() == camera.width && frame.centikelvin.height() == camera.height);
+  rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
+  CastSurface(T_world_thermal, tsdf, pool);
+  FusionReport report;
+  MakePixels(RowArgs(T_world_thermal, depth_camera, T_world_depth, capture), capture.holes, pool,
+             report);
+  SelectBlocks(T_world_thermal, tsdf);
+
+  const RigidTransform T_thermal_world = T_world_thermal.inverse();
+  const FusionKernelArgs args = BlockArgs(T_thermal_world, tsdf);
+  const MeasurementRecorder recorder(options_, T_world_thermal, args.axes, capture.nuc);
+  ++frames_;
+  std::atomic<std::int64_t> considered{0}, assigned{0}, dropped{0};
   constexpr int kBlocksPerTask = 32;
   const int count = static_cast<int>(blocks_.size());
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
     FusionKernelCounts counts;
+    BlockMeasurements measured;
+    std::int64_t task_dropped = 0;
     const int end = std::min(count, (task + 1) * kBlocksPerTask);
     for (int i = task * kBlocksPerTask; i < end; ++i) {
       const std::int32_t block = blocks_[i];
       const Eigen::Vector3f first =
-          (T_thermal_world * grid.VoxelCentre(tsdf.block_coordinates(block) * kBlockSide))
+          (T_thermal_world * tsdf.grid().VoxelCentre(tsdf.block_coordinates(block) * kBlockSide))
               .cast<float>();
+      measured.count = 0;
       FuseBlock(args, first.data(), &tsdf.voxels(block).front().bits,
-                &thermal.voxels(block).front().bits, counts);
+                &thermal.voxels(block).front().bits, counts,
+                thermal.records() != nullptr ? &measured : nullptr);
+      if (measured.count > 0) recorder.Record(measured, first, block, thermal);
+      if ((static_cast<std::uint32_t>(block) + frames_) % kFramesBetweenReviews == 0)
+        task_dropped += review_.Review(block, tsdf, thermal);
     }
     considered += counts.considered;
     assigned += counts.assigned;
+    dropped += task_dropped;
   });
   report.considered = considered;
   report.assigned = assigned;
+  report.dropped = dropped;
   return report;
+}
+
+std::int64_t ThermalFuser::ReviewAll(const TsdfVolume& tsdf, ThermalVolume& thermal,
+                                     ThreadPool& pool) const {
+  constexpr int kBlocksPerTask = 64;
+  std::atomic<std::int64_t> dropped{0};
+  const int count = tsdf.block_count();
+  pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
+    const int end = std::min(count, (task + 1) * kBlocksPerTask);
+    for (int block = task * kBlocksPerTask; block < end; ++block)
+      dropped += review_.Review(block, tsdf, thermal);
+  });
+  return dropped;
 }
 
 }  // namespace isotherm

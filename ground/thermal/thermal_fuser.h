@@ -7,7 +7,14 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "ground/ground_options.pb.h"
+#include "ground/thermal/camera_motion.h"
+#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/measurement_recorder.h"
+#include "ground/thermal/near_holes.h"
+#include "ground/thermal/nuc_epochs.h"
+#include "ground/thermal/temperature_review.h"
 #include "ground/thermal/thermal_kernel.h"
+#include "ground/thermal/thermal_rectifier.h"
 #include "ground/thermal/thermal_volume.h"
 #include "ground/tracker/surface_maps.h"
 #include "ground/tsdf/raycaster.h"
@@ -16,47 +23,26 @@
 
 namespace isotherm {
 
-Status Validate(const ThermalOptions& options);
-
-/// The distances and angles of (6.3a-b) in metres and as cosines, ready for inner loops.
-struct ConditionLimits {
-  float distance_min_m, distance_good_m, distance_max_m;
-  float cosine_min_angle, cosine_good_angle, cosine_max_angle;
-
-  explicit ConditionLimits(const ThermalOptions& options);
-  ConditionClass ClassifyDistance(float distance_m) const;
-  /// `cosine` of the emission angle, 0..1.
-  ConditionClass ClassifyAngle(float cosine) const;
-};
-
-/// Algorithm 6: whether a measurement under the new classes replaces one under the old classes.
-/// Under equal distance and angle classes the motion classes decide; a smeared measurement (kBad)
-/// replaces nothing.
-bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
-                         ConditionClass new_motion, ThermalVoxel old);
-
-/// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the
-/// picture or where the frame has no value. Bilinear. Keeps scratch memory. Thread-compatible.
-class ThermalRectifier {
- public:
-  explicit ThermalRectifier(const CameraModel& camera);
-  /// Writes into `celsius` with `apron` pixels of NaN all around.
-  void Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
-               Image<float>& celsius);
-  const CameraModel& ideal_camera() const { return ideal_; }
-
- private:
-  CameraModel ideal_;
-  Image<std::int32_t> source_;  ///< Upper left of the four source pixels, -1 = outside.
-  Image<float> fraction_x_, fraction_y_;
-  Image<float> picture_;  ///< The frame in °C.
-};
-
 /// What one thermal frame did to the model.
 struct FusionReport {
   std::int64_t considered = 0;  ///< Voxels on the surface that both cameras see.
-  std::int64_t occluded = 0;    ///< Thermal pixels too near the edge of something nearer.
-  std::int64_t assigned = 0;    ///< Voxels.
+  // Thermal pixels that were not assigned.
+  std::int64_t occluded = 0;      ///< Too near the edge of something nearer.
+  std::int64_t smeared = 0;       ///< By motion.
+  std::int64_t steep = 0;         ///< Where the temperature changes too fast from pixel to pixel.
+  std::int64_t maybe_hidden = 0;  ///< By something nearer than the depth camera sees.
+  std::int64_t assigned = 0;      ///< Voxels.
+  std::int64_t dropped = 0;       ///< Voxels whose temperature did not stand a review.
+
+  FusionReport& operator+=(const FusionReport& other);
+};
+
+/// What is known about a thermal frame beside its picture and pose.
+struct CaptureConditions {
+  CameraMotion motion;               ///< Of the thermal camera.
+  double registration_px = 0.0;      ///< Standard deviation of the pose in its picture.
+  const NearHoles* holes = nullptr;  ///< Where something unseen may be in the way.
+  NucAge nuc;
 };
 
 /// Assigns temperatures to the surface that both cameras see (algorithms 4 to 6). What the thermal
@@ -73,17 +59,28 @@ class ThermalFuser {
   /// (CHECK).
   FusionReport Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
                     const CameraModel& depth_camera, const RigidTransform& T_world_depth,
-                    const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal);
+                    const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal,
+                    const CaptureConditions& capture = {});
+
+  /// Reviews all temperatures (TemperatureReview), as Fuse does now and then with those in view.
+  /// Returns how many were dropped.
+  std::int64_t ReviewAll(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool) const;
+
+  const CameraModel& ideal_camera() const { return rectifier_.ideal_camera(); }
 
  private:
   /// What the thermal camera sees of the model, into surface_ and distances_m_.
   void CastSurface(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
-  std::int64_t MakePixels(const RigidTransform& T_world_thermal, const CameraModel& depth_camera,
-                          const RigidTransform& T_world_depth, ThreadPool& pool);
+  PixelRowArgs RowArgs(const RigidTransform& T_world_thermal, const CameraModel& depth_camera,
+                       const RigidTransform& T_world_depth, const CaptureConditions& capture) const;
+  void MakePixels(const PixelRowArgs& args, const NearHoles* holes, ThreadPool& pool,
+                  FusionReport& report);
+  FusionKernelArgs BlockArgs(const RigidTransform& T_thermal_world, const TsdfVolume& tsdf) const;
   void SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf);
 
   const ThermalOptions options_;
   const ConditionLimits limits_;
+  const TemperatureReview review_;
   const float min_weight_;
   const int apron_;  ///< Pixels around distances_m_ and celsius_.
   ThermalRectifier rectifier_;
@@ -96,6 +93,7 @@ class ThermalFuser {
   Image<float> nearest_m_, farthest_m_;  ///< Depth of the surface per tile; farthest 0 = none.
   VisibleBlocks visible_;
   std::vector<std::int32_t> blocks_;
+  std::uint32_t frames_ = 0;
 };
 
 }  // namespace isotherm

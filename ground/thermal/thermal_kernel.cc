@@ -81,11 +81,30 @@ HWY_INLINE VI Classify(MF good, MF acceptable) {
       hn::IfThenElseZero(hn::RebindMask(di, acceptable), hn::Set(di, kAcceptable)));
 }
 
-std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
+/// Square of the way that the surface goes in the picture while a row is smeared, pixels: the
+/// derivative of the projection of a resting point (camera_motion.h).
+HWY_INLINE VF SmearSquared(const PixelRowArgs& a, int first, VF depth) {
+  const VF x = hn::Mul(hn::Sub(hn::ConvertTo(d, hn::Iota(di, first)), hn::Set(d, a.cx)),
+                       hn::Set(d, 1.0F / a.fx));
+  const VF y = hn::Set(d, a.y);
+  const VF inverse_z = Reciprocal(depth);
+  const auto rate = [&](int axis) { return hn::Set(d, a.rate_rad_s[axis]); };
+  const auto speed = [&](int axis) { return hn::Mul(hn::Set(d, a.velocity_m_s[axis]), inverse_z); };
+  // Minus the point's velocity over its depth.
+  const VF vx = hn::Add(speed(0), hn::NegMulAdd(rate(2), y, rate(1)));
+  const VF vy = hn::Add(speed(1), hn::MulSub(rate(2), x, rate(0)));
+  const VF vz = hn::Add(speed(2), hn::MulSub(rate(0), y, hn::Mul(rate(1), x)));
+  const VF du = hn::Mul(hn::NegMulAdd(x, vz, vx), hn::Set(d, a.fx * a.smear_s));
+  const VF dv = hn::Mul(hn::NegMulAdd(y, vz, vy), hn::Set(d, a.fy * a.smear_s));
+  return hn::MulAdd(du, du, hn::Mul(dv, dv));
+}
+
+PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const VF zero = hn::Zero(d);
   const VF one = hn::Set(d, 1.0F);
-  std::int64_t hidden = 0;
+  const auto number = [](MF mask) { return static_cast<std::int64_t>(hn::CountTrue(d, mask)); };
+  PixelRowCounts counts;
   for (int x = 0; x < a.width; x += lanes) {
     const auto count = static_cast<std::size_t>(a.width - x);
     const MF in_row = hn::FirstN(d, count);
@@ -129,7 +148,8 @@ std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
     }
     // A slanted surface covers a range of distances within the margin.
     const MF occluded = hn::Gt(hn::Sub(distance, nearest), hn::Set(d, a.occlusion_tolerance_m));
-    hidden += static_cast<std::int64_t>(hn::CountTrue(d, hn::And(seen, occluded)));
+    counts.occluded += number(hn::And(seen, occluded));
+    MF usable = hn::AndNot(occluded, seen);
 
     const VF to_camera_x = hn::Sub(hn::Set(d, a.position[0]), px);
     const VF to_camera_y = hn::Sub(hn::Set(d, a.position[1]), py);
@@ -138,10 +158,12 @@ std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
         hn::MulAdd(load(a.nx), to_camera_x,
                    hn::MulAdd(load(a.ny), to_camera_y, hn::Mul(load(a.nz), to_camera_z)));
     const VF cosine = hn::Min(hn::Div(along, distance), one);
-    const VI distance_class = Classify(hn::And(hn::Ge(distance, hn::Set(d, a.distance_min_m)),
-                                               hn::Le(distance, hn::Set(d, a.distance_good_m))),
-                                       hn::And(hn::Ge(distance, hn::Set(d, a.distance_min_m)),
-                                               hn::Le(distance, hn::Set(d, a.distance_max_m))));
+    const MF resolved = hn::Le(hn::Mul(distance, hn::Set(d, 1.0F / a.fx)),
+                               hn::Mul(cosine, hn::Set(d, a.max_footprint_m)));
+    const MF far_enough = hn::And(hn::Ge(distance, hn::Set(d, a.distance_min_m)), resolved);
+    const VI distance_class =
+        Classify(hn::And(far_enough, hn::Le(distance, hn::Set(d, a.distance_good_m))),
+                 hn::And(far_enough, hn::Le(distance, hn::Set(d, a.distance_max_m))));
     const VI angle_class = Classify(hn::And(hn::Le(cosine, hn::Set(d, a.cosine_min_angle)),
                                             hn::Ge(cosine, hn::Set(d, a.cosine_good_angle))),
                                     hn::And(hn::Le(cosine, hn::Set(d, a.cosine_min_angle)),
@@ -150,53 +172,74 @@ std::int64_t MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
     const VF celsius = load(a.celsius);
     const MF has_value = hn::Eq(celsius, celsius);
     const auto slope = [&](const float* before, const float* after) {
-      const VF half =
-          hn::Mul(hn::Sub(load(after), load(before)), hn::Set(d, 0.5F * ThermalPixel::kSlopeScale));
-      const VF limit = hn::Set(d, 32767.0F);
-      return hn::NearestInt(
-          hn::IfThenElseZero(hn::Eq(half, half), hn::Max(hn::Min(half, limit), hn::Neg(limit))));
+      const VF half = hn::Mul(hn::Sub(load(after), load(before)), hn::Set(d, 0.5F));
+      return hn::IfThenElseZero(hn::Eq(half, half), half);
     };
-    const VI slope_u = slope(a.celsius - 1, a.celsius + 1);
-    const VI slope_v = slope(a.celsius - a.celsius_stride, a.celsius + a.celsius_stride);
+    const auto slope_code = [&](VF kelvin) {
+      const VF limit = hn::Set(d, 32767.0F);
+      const VF code = hn::Mul(kelvin, hn::Set(d, ThermalPixel::kSlopeScale));
+      return hn::NearestInt(hn::Max(hn::Min(code, limit), hn::Neg(limit)));
+    };
+    const VF slope_u = slope(a.celsius - 1, a.celsius + 1);
+    const VF slope_v = slope(a.celsius - a.celsius_stride, a.celsius + a.celsius_stride);
 
-    const MF assignable =
-        hn::And(hn::AndNot(occluded, seen), hn::And(has_value, hn::Gt(cosine, zero)));
+    const VF smear = SmearSquared(a, x, depth);
+    const MF sharp = hn::Le(smear, hn::Set(d, a.smear_max_px * a.smear_max_px));
+    const MF still = hn::Le(smear, hn::Set(d, a.smear_good_px * a.smear_good_px));
+    counts.smeared += number(hn::AndNot(sharp, usable));
+    usable = hn::And(usable, sharp);
+    const MF even = hn::Le(hn::MulAdd(slope_u, slope_u, hn::Mul(slope_v, slope_v)),
+                           hn::Set(d, a.max_slope_k * a.max_slope_k));
+    counts.steep += number(hn::AndNot(even, usable));
+    usable = hn::And(usable, even);
+
+    const MF assignable = hn::And(usable, hn::And(has_value, hn::Gt(cosine, zero)));
     const auto flag = [&](MF condition, std::int32_t bit) {
       return hn::IfThenElseZero(hn::RebindMask(di, condition), hn::Set(di, bit));
     };
+    const VI motion_class = hn::Add(hn::Add(hn::Set(di, 1), flag(sharp, 1)), flag(still, 1));
+    const VI cosine_code = hn::NearestInt(
+        hn::IfThenElseZero(hn::Gt(cosine, zero), hn::Mul(cosine, hn::Set(d, 255.0F))));
+    const VI classes = hn::Or(hn::ShiftLeft<12>(motion_class),
+                              hn::Or(hn::ShiftLeft<4>(distance_class), angle_class));
     const VI flags =
         hn::Or(hn::Or(flag(seen, ThermalPixel::kSeen), flag(assignable, ThermalPixel::kAssignable)),
-               hn::Or(hn::ShiftLeft<4>(distance_class), angle_class));
-    StoreRecords(
-        {{hn::IfThenElseZero(surface, depth), hn::IfThenElseZero(has_value, celsius),
-          hn::BitCast(d, hn::Or(hn::ShiftLeft<16>(slope_v), hn::And(slope_u, hn::Set(di, 0xFFFF)))),
-          hn::BitCast(d, flags)}},
-        count, pixels + x);
+               hn::Or(hn::ShiftLeft<ThermalPixel::kCosineShift>(cosine_code), classes));
+    const VI slopes = hn::Or(hn::ShiftLeft<16>(slope_code(slope_v)),
+                             hn::And(slope_code(slope_u), hn::Set(di, 0xFFFF)));
+    StoreRecords({{hn::IfThenElseZero(surface, depth), hn::IfThenElseZero(has_value, celsius),
+                   hn::BitCast(d, slopes), hn::BitCast(d, flags)}},
+                 count, pixels + x);
   }
-  return hidden;
+  return counts;
 }
 
 // ThermalVoxel's classes of one measurement: motion, distance and angle.
 constexpr std::int32_t kConditionBits = 0xF0FF;
 
+/// Neither distance nor angle is bad.
+HWY_INLINE MI BothValid(VI classes) {
+  return hn::And(hn::Ne(hn::And(classes, hn::Set(di, 0x0F)), hn::Zero(di)),
+                 hn::Ne(hn::And(classes, hn::Set(di, 0xF0)), hn::Zero(di)));
+}
+
 /// Where a voxel's new temperature is no better than the one it has (algorithm 6).
 HWY_INLINE MI KeepsOld(VI old_word, VI word) {
-  const auto both_valid = [&](VI classes) {
-    return hn::And(hn::Ne(hn::And(classes, hn::Set(di, 0x0F)), hn::Zero(di)),
-                   hn::Ne(hn::And(classes, hn::Set(di, 0xF0)), hn::Zero(di)));
-  };
   // Smaller is better: distance, then angle, then motion (whose code grows the better it is).
   const auto order = [&](VI classes) {
     return hn::Sub(hn::ShiftLeft<4>(hn::And(classes, hn::Set(di, 0xFF))),
                    hn::And(hn::ShiftRight<12>(classes), hn::Set(di, 0xF)));
   };
   // A voxel never measured has no valid classes either.
-  return hn::And(both_valid(old_word),
-                 hn::Or(hn::Not(both_valid(word)), hn::Gt(order(word), order(old_word))));
+  return hn::And(BothValid(old_word),
+                 hn::Or(hn::Not(BothValid(word)), hn::Gt(order(word), order(old_word))));
 }
 
+/// Good in motion, distance and angle.
+constexpr std::int32_t kAllGood = 0x3011;
+
 void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
-               std::uint32_t* thermal, FusionKernelCounts& counts) {
+               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const auto* distances = reinterpret_cast<const std::int32_t*>(tsdf);
   auto* temperatures = reinterpret_cast<std::int32_t*>(thermal);
@@ -264,11 +307,12 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
                                   has(ThermalPixel::kSeen));
     const VI old = hn::LoadU(di, temperatures + i);
     const VI classes = hn::And(flags, hn::Set(di, kConditionBits));
-    MI assign = hn::And(on_surface, has(ThermalPixel::kAssignable));
+    const MI assignable = hn::And(on_surface, has(ThermalPixel::kAssignable));
+    MI assign = assignable;
     if (a.validate) assign = hn::AndNot(KeepsOld(old, classes), assign);
     counts.considered += static_cast<std::int64_t>(hn::CountTrue(di, on_surface));
-    counts.assigned += static_cast<std::int64_t>(hn::CountTrue(di, assign));
-    if (hn::AllFalse(di, assign)) continue;
+    const MI good = hn::And(assignable, hn::Eq(classes, hn::Set(di, kAllGood)));
+    if (hn::AllFalse(di, hn::Or(assign, good))) continue;
     // To first order between pixel centres.
     const VI slopes = hn::BitCast(di, record.word[2]);
     const VF slope_u = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(slopes)));
@@ -278,9 +322,26 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
         hn::MulAdd(change, hn::Set(d, 1.0F / ThermalPixel::kSlopeScale), record.word[1]);
     const VF code =
         hn::MulAdd(hn::Sub(celsius, hn::Set(d, kMinCelsius)), hn::Set(d, kStepsPerKelvin), one);
-    const VI stored = hn::NearestInt(hn::Min(hn::Max(code, one), hn::Set(d, kMaxCode)));
-    hn::StoreU(hn::IfThenElse(assign, hn::Or(hn::ShiftLeft<16>(stored), classes), old), di,
-               temperatures + i);
+    VI stored = hn::NearestInt(hn::Min(hn::Max(code, one), hn::Set(d, kMaxCode)));
+    if (!a.keep_bad) stored = hn::IfThenElseZero(BothValid(classes), stored);
+    const VI fresh = hn::Or(hn::ShiftLeft<16>(stored), classes);
+    if (a.keep_lowest) {
+      const VI old_code = hn::And(hn::ShiftRight<16>(old), low_half);
+      const MI was_good = hn::Eq(hn::And(old, hn::Set(di, kConditionBits)), hn::Set(di, kAllGood));
+      assign = hn::AndNot(hn::And(hn::And(good, was_good), hn::Gt(stored, old_code)), assign);
+    }
+    const MI takes = hn::And(assign, hn::Gt(stored, hn::Zero(di)));
+    counts.assigned += static_cast<std::int64_t>(hn::CountTrue(di, takes));
+    const VI disagreement = hn::And(old, hn::Set(di, 0x0F00));
+    hn::StoreU(hn::IfThenElse(assign, hn::Or(fresh, disagreement), old), di, temperatures + i);
+    if (measured == nullptr) continue;
+    const MI noted = hn::Or(takes, good);
+    const VI index = hn::Or(hn::Iota(di, i),
+                            hn::IfThenElseZero(takes, hn::Set(di, BlockMeasurements::kAssigned)));
+    hn::CompressStore(fresh, noted, di, measured->words + measured->count);
+    hn::CompressStore(flags, noted, di, measured->flags + measured->count);
+    measured->count +=
+        static_cast<int>(hn::CompressStore(index, noted, di, measured->voxels + measured->count));
   }
 }
 
@@ -304,13 +365,13 @@ void DistanceRow(const float* vx, const float* vy, const float* vz, const float*
   HWY_DYNAMIC_DISPATCH(DistanceRow)(vx, vy, vz, position, width, distance_m);
 }
 
-std::int64_t MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels) {
+PixelRowCounts MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels) {
   return HWY_DYNAMIC_DISPATCH(MakePixelRow)(args, pixels);
 }
 
 void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
-               std::uint32_t* thermal, FusionKernelCounts& counts) {
-  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, first, tsdf, thermal, counts);
+               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured) {
+  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, first, tsdf, thermal, counts, measured);
 }
 
 }  // namespace isotherm

@@ -10,10 +10,13 @@ struct ThermalPixel {
   static constexpr std::int32_t kSeen = 1 << 8;        ///< Both cameras see the surface here.
   static constexpr std::int32_t kAssignable = 1 << 9;  ///< And its temperature may be assigned.
 
+  static constexpr int kCosineShift = 16;
+
   float depth_m;        ///< Of the model's surface along the thermal camera's z; 0 = none.
   float celsius;        ///< At the pixel's centre.
   std::int32_t slopes;  ///< d celsius / dv << 16 | d celsius / du, signed, in 1 / kSlopeScale K/px.
-  std::int32_t flags;   ///< kSeen, kAssignable, and classes where ThermalVoxel has them.
+  std::int32_t flags;   ///< kSeen, kAssignable, classes where ThermalVoxel has them, and from
+                        ///< kCosineShift on the cosine of the emission angle in 1/255.
 };
 static_assert(sizeof(ThermalPixel) == 16);
 
@@ -55,9 +58,22 @@ struct PixelRowArgs {
   float occlusion_tolerance_m;  ///< Surfaces farther behind the nearest around are hidden.
   float distance_min_m, distance_good_m, distance_max_m;
   float cosine_min_angle, cosine_good_angle, cosine_max_angle;
+  float max_footprint_m;  ///< Of a pixel on the surface; larger is a bad distance.
+  float max_slope_k;      ///< Steepest change from pixel to pixel that is assigned.
+  // Motion (CameraMotion) of the ideal camera, and how long it smears this row.
+  float fx, fy, cx;
+  float y;  ///< Normalised image coordinate of the row.
+  float velocity_m_s[3], rate_rad_s[3];
+  float smear_s;
+  float smear_good_px, smear_max_px;
 };
-/// Returns how many pixels both cameras see but an occluder's edge is too near.
-std::int64_t MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels);
+/// Pixels that both cameras see but that are not assigned, by the first reason that applies.
+struct PixelRowCounts {
+  std::int64_t occluded = 0;  ///< Too near the edge of something nearer.
+  std::int64_t smeared = 0;
+  std::int64_t steep = 0;
+};
+PixelRowCounts MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels);
 
 struct FusionKernelArgs {
   const ThermalPixel* pixels;  ///< Row-major, and one more with depth 0.
@@ -68,14 +84,27 @@ struct FusionKernelArgs {
   float max_distance_m;        ///< Between a voxel and the vertex it takes its temperature from.
   std::int32_t max_tsdf_code;  ///< Voxels farther from the surface are passed over.
   bool validate;               ///< Worse conditions do not replace better ones (algorithm 6).
+  bool keep_bad;               ///< Bad conditions give a temperature, not only their classes.
+  bool keep_lowest;            ///< Of temperatures under good conditions.
 };
 struct FusionKernelCounts {
   std::int64_t considered = 0;
   std::int64_t assigned = 0;
 };
+/// What was measured of the voxels of one block: those that took a new temperature, and those that
+/// were measured under good conditions, whether they took it or not.
+struct BlockMeasurements {
+  static constexpr std::int32_t kAssigned = 1 << 9;  ///< Beside the voxel's index.
+  static constexpr int kRoom = 512 + 64;             ///< Vectors are written whole.
+
+  int count = 0;
+  std::int32_t voxels[kRoom];  ///< Index and kAssigned.
+  std::int32_t words[kRoom];   ///< As ThermalVoxel has them, without disagreement.
+  std::int32_t flags[kRoom];   ///< Of the pixel.
+};
 /// Algorithms 5 and 6 for the 512 voxels of a block whose first voxel's centre is at `first`
-/// (thermal camera coordinates, metres).
+/// (thermal camera coordinates, metres). `measured` may be nullptr.
 void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
-               std::uint32_t* thermal, FusionKernelCounts& counts);
+               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured);
 
 }  // namespace isotherm

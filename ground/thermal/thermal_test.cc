@@ -3,15 +3,14 @@
 #include <cmath>
 #include <limits>
 
-#include "common/testing/volume_shapes.h"
-#include "ground/thermal/thermal_fuser.h"
-#include "ground/tracker/analytic_views_for_test.h"
-#include "ground/tsdf/raycaster.h"
+#include "ground/thermal/ball_and_wall_for_test.h"
 
 namespace isotherm {
 namespace {
 
 using enum ConditionClass;
+using testing::ThermalCameraModel;
+using ThermalFuserTest = testing::BallAndWallTest;
 
 TEST(ThermalVoxelTest, KeepsTemperatureToHalfAStepAndBothClasses) {
   for (float celsius = -100.0F; celsius < 1500.0F; celsius += 7.3F) {
@@ -119,16 +118,6 @@ TEST(ReplacesMeasurementTest, MotionDecidesBetweenEqualClassesOfDistanceAndAngle
       << "a smeared measurement is none";
 }
 
-CameraModel ThermalCameraModel() {
-  CameraModel camera;
-  camera.width = 191;
-  camera.height = 144;
-  camera.fx = camera.fy = 186.0;
-  camera.cx = 95.0;
-  camera.cy = 71.5;
-  return camera;
-}
-
 TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
   CameraModel camera = ThermalCameraModel();
   camera.k1 = -0.4;
@@ -159,89 +148,14 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
       << "a pixel without value stays without value";
 }
 
-/// A hot ball before a cold wall, seen by a depth camera and by a thermal camera beside it.
-class ThermalFuserTest : public ::testing::Test {
- protected:
-  static constexpr float kHot = 100.0F;
-  static constexpr float kCold = 20.0F;
-
-  ThermalFuserTest() {
-    VolumeOptions volume;
-    for (auto set : {&VolumeOptions::set_size_x_m, &VolumeOptions::set_size_y_m,
-                     &VolumeOptions::set_size_z_m}) {
-      (volume.*set)(0.64);
-    }
-    volume.set_voxel_size_m(0.004);
-    const VoxelGrid grid = MakeVoxelGrid(volume).value();
-    const std::int32_t max_blocks = MaxBlocks(volume, grid);
-    tsdf_ = std::make_unique<TsdfVolume>(grid, 0.016, max_blocks);
-    thermal_ = std::make_unique<ThermalVolume>(max_blocks);
-    testing::FillVolume(*tsdf_, Scene);
-  }
-
-  static double Ball(const Eigen::Vector3d& p) {
-    return (p - Eigen::Vector3d(0.32, 0.32, 0.40)).norm() - 0.06;
-  }
-  static double Scene(const Eigen::Vector3d& p) { return std::min(Ball(p), 0.60 - p.z()); }
-
-  ThermalFrame Picture(const RigidTransform& T_world_thermal) const {
-    ThermalFrame frame;
-    frame.valid = true;
-    frame.centikelvin = Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height);
-    for (int v = 0; v < thermal_camera_.height; ++v) {
-      for (int u = 0; u < thermal_camera_.width; ++u) {
-        const double z = testing::TraceDepth(Scene, thermal_camera_, T_world_thermal, u, v);
-        const Eigen::Vector2d xy = Unproject(thermal_camera_, {u, v});
-        const Eigen::Vector3d p = T_world_thermal * Eigen::Vector3d(xy.x() * z, xy.y() * z, z);
-        const float celsius = Ball(p) < 1e-4 ? kHot : kCold;
-        frame.centikelvin.At(u, v) =
-            static_cast<std::uint16_t>(std::lround((celsius + 273.15) * 100.0));
-      }
-    }
-    return frame;
-  }
-
-  struct Outcome {
-    int assigned = 0;
-    int hot_on_wall = 0;
-    int cold_on_ball = 0;
-  };
-  Outcome Fuse(const ThermalOptions& options) {
-    ThermalFuser fuser(options, thermal_camera_, 0.0F);
-    fuser.Fuse(Picture(T_world_thermal_), T_world_thermal_, depth_camera_, T_world_depth_, *tsdf_,
-               pool_, *thermal_);
-    Outcome outcome;
-    for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
-      testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
-                            [&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
-                              if (!voxel.measured()) return;
-                              ++outcome.assigned;
-                              const bool on_wall = p.z() > 0.58;
-                              if (on_wall && voxel.celsius() > 25.0F) ++outcome.hot_on_wall;
-                              if (!on_wall && voxel.celsius() < 25.0F) ++outcome.cold_on_ball;
-                            });
-    }
-    return outcome;
-  }
-
-  CameraModel depth_camera_ = testing::SmallDepthCamera();
-  CameraModel thermal_camera_ = ThermalCameraModel();
-  RigidTransform T_world_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
-  RigidTransform T_world_thermal_ =
-      MakeTransform({0.40, 0.36, 0.0}, Eigen::Quaterniond::Identity());
-  ThreadPool pool_{2};
-  std::unique_ptr<TsdfVolume> tsdf_;
-  std::unique_ptr<ThermalVolume> thermal_;
-};
-
 TEST_F(ThermalFuserTest, ParallaxFilterKeepsTheBallsTemperatureOffTheWall) {
   const Outcome outcome = Fuse(ThermalOptions());
   EXPECT_GT(outcome.assigned, 10'000);
   EXPECT_LE(outcome.hot_on_wall, outcome.assigned / 1000) << "mixed pixels on the very silhouette";
 }
 
-TEST_F(ThermalFuserTest, WhatHasLeftTheDepthCamerasViewStillHides) {
-  // Turned away, the depth camera sees the wall beside the ball only (thesis figs. 7.3 and 7.4).
+TEST_F(ThermalFuserTest, Figures73And74AForegroundThatLeftTheDepthCamerasViewStillHides) {
+  // Turned away, the depth camera sees the wall beside the ball only.
   constexpr double kTurn = 0.42;
   T_world_depth_ = MakeTransform(
       {0.32, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-kTurn, Eigen::Vector3d::UnitY())));

@@ -17,30 +17,46 @@ ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, Conditio
   return voxel;
 }
 
-ThermalVolume::ThermalVolume(std::int32_t max_blocks, const std::filesystem::path& spill_dir)
+ThermalVolume::ThermalVolume(std::int32_t max_blocks, const std::filesystem::path& spill_dir,
+                             bool with_records)
     : arena_(static_cast<std::size_t>(max_blocks) * kBlockVoxels * sizeof(ThermalVoxel),
-             spill_dir) {}
+             spill_dir) {
+  if (with_records) records_ = std::make_unique<ThermalRecords>(max_blocks, spill_dir);
+}
+
+bool ThermalVolume::Back(std::int32_t blocks) {
+  return arena_.Back(static_cast<std::size_t>(blocks) * kBlockVoxels * sizeof(ThermalVoxel)) &&
+         (!records_ || records_->Back(blocks));
+}
 
 namespace {
 
-ThermalVoxel VoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal, const GridIndex& voxel) {
+/// Where a voxel is: block and index in it.
+struct VoxelPlace {
+  std::int32_t block = TsdfVolume::kNoBlock;
+  int index = 0;
+};
+
+VoxelPlace PlaceOf(const TsdfVolume& tsdf, const GridIndex& voxel) {
   if ((voxel.array() < 0).any()) return {};
-  const std::int32_t block = tsdf.Find(voxel / kBlockSide);
-  if (block == TsdfVolume::kNoBlock) return {};
-  const auto local = [](int i) { return static_cast<std::size_t>(i % kBlockSide); };
-  return thermal.voxels(
-      block)[local(voxel.x()) + kBlockSide * (local(voxel.y()) + kBlockSide * local(voxel.z()))];
+  const GridIndex local(voxel.x() % kBlockSide, voxel.y() % kBlockSide, voxel.z() % kBlockSide);
+  return {tsdf.Find(voxel / kBlockSide),
+          local.x() + kBlockSide * (local.y() + kBlockSide * local.z())};
 }
 
-}  // namespace
+ThermalVoxel VoxelAt(const ThermalVolume& thermal, const VoxelPlace& place) {
+  return place.block == TsdfVolume::kNoBlock ? ThermalVoxel()
+                                             : thermal.voxels(place.block)[place.index];
+}
 
-ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                            const Eigen::Vector3d& p_world) {
+/// The voxel that speaks for a point.
+VoxelPlace PlaceFor(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                    const Eigen::Vector3d& p_world) {
   const Eigen::Vector3d p_voxel = tsdf.grid().ToVoxel(p_world);
   const GridIndex centre = p_voxel.array().round().cast<int>();
-  const ThermalVoxel own = VoxelAt(tsdf, thermal, centre);
-  if (own.measured()) return own;
-  ThermalVoxel nearest;
+  const VoxelPlace own = PlaceOf(tsdf, centre);
+  if (VoxelAt(thermal, own).judged()) return own;
+  VoxelPlace nearest = own;
   double nearest_squared = std::numeric_limits<double>::infinity();
   for (int z = -1; z <= 1; ++z) {
     for (int y = -1; y <= 1; ++y) {
@@ -48,14 +64,45 @@ ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal
         const GridIndex index = centre + GridIndex(x, y, z);
         const double squared = (index.cast<double>() - p_voxel).squaredNorm();
         if (squared >= nearest_squared) continue;
-        const ThermalVoxel candidate = VoxelAt(tsdf, thermal, index);
-        if (!candidate.measured()) continue;
+        const VoxelPlace candidate = PlaceOf(tsdf, index);
+        if (!VoxelAt(thermal, candidate).measured()) continue;
         nearest = candidate;
         nearest_squared = squared;
       }
     }
   }
   return nearest;
+}
+
+}  // namespace
+
+void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int source_voxel,
+                 const Eigen::Matrix3f& R_target_source, std::int32_t block, int voxel,
+                 ThermalVolume& target) {
+  if (source.records() == nullptr || target.records() == nullptr) return;
+  const RecordRow* from = source.records()->Find(source_block, source_voxel / RecordRow::kVoxels);
+  if (from == nullptr) return;
+  RecordRow& to = target.records()->Row(block, voxel / RecordRow::kVoxels);
+  ConditionRecord& conditions = to.conditions[voxel % RecordRow::kVoxels];
+  conditions = from->conditions[source_voxel % RecordRow::kVoxels];
+  conditions.direction = EncodeDirection(R_target_source * DecodeDirection(conditions.direction));
+  to.disagreement[voxel % RecordRow::kVoxels] =
+      from->disagreement[source_voxel % RecordRow::kVoxels];
+}
+
+PointMeasurement MeasurementAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                               const Eigen::Vector3d& p_world) {
+  const VoxelPlace place = PlaceFor(tsdf, thermal, p_world);
+  PointMeasurement measurement{VoxelAt(thermal, place), {}};
+  if (!measurement.voxel.measured() || thermal.records() == nullptr) return measurement;
+  const RecordRow* row = thermal.records()->Find(place.block, place.index / RecordRow::kVoxels);
+  if (row != nullptr) measurement.conditions = row->conditions[place.index % RecordRow::kVoxels];
+  return measurement;
+}
+
+ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                            const Eigen::Vector3d& p_world) {
+  return VoxelAt(thermal, PlaceFor(tsdf, thermal, p_world));
 }
 
 }  // namespace isotherm

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 
+#include "ground/thermal/thermal_records.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
@@ -20,7 +22,8 @@ enum class ConditionClass : std::uint8_t {
 };
 
 /// One thermal voxel in 32 bits (thesis fig. 6.9; the table is in docs/model-format.md):
-///   bits 31..16  temperature code: 0 = never measured, else 1 + (celsius + 100) / 0.025 (steps of
+///   bits 31..16  temperature code: 0 = none, never measured or not kept, else 1 + (celsius + 100)
+///   / 0.025 (steps of
 ///                0.025 K from -100 to 1538 °C)
 ///   bits 15..12  motion class, bits 11..8 disagreement class, each as 0 unchecked, 1 bad,
 ///                2 acceptable, 3 good: the zeros of a voxel from before these checks are right
@@ -35,6 +38,8 @@ struct ThermalVoxel {
                            ConditionClass motion = ConditionClass::kUnchecked,
                            ConditionClass disagreement = ConditionClass::kUnchecked);
   bool measured() const { return (bits >> 16) != 0; }
+  /// Measured, or tried under bad conditions: the classes say which (temperature code 0).
+  bool judged() const { return bits != 0; }
   /// °C; NaN = never measured.
   float celsius() const {
     const std::uint32_t code = bits >> 16;
@@ -69,19 +74,20 @@ static_assert(sizeof(ThermalVoxel) == 4);
 /// Thread-compatible; different blocks may be written by different threads.
 class ThermalVolume {
  public:
-  /// With a `spill_dir`, memory can be given back (GrowingArena).
-  explicit ThermalVolume(std::int32_t max_blocks, const std::filesystem::path& spill_dir = {});
+  /// With a `spill_dir`, memory can be given back (GrowingArena). `with_records`: the conditions of
+  /// each measurement are kept, too.
+  explicit ThermalVolume(std::int32_t max_blocks, const std::filesystem::path& spill_dir = {},
+                         bool with_records = true);
 
   /// To be called before blocks up to this number are written. False if the disk is full.
-  bool Back(std::int32_t blocks) {
-    return arena_.Back(static_cast<std::size_t>(blocks) * kBlockVoxels * sizeof(ThermalVoxel));
-  }
+  bool Back(std::int32_t blocks);
   /// Gives the memory of blocks back until they are touched again; does nothing without a spill
   /// folder.
   void GiveBack(std::int32_t first_block, std::int32_t count) const {
     constexpr std::size_t kBlockBytes = kBlockVoxels * sizeof(ThermalVoxel);
     arena_.GiveBack(static_cast<std::size_t>(first_block) * kBlockBytes,
                     static_cast<std::size_t>(count) * kBlockBytes);
+    if (records_) records_->GiveBack(first_block, count);
   }
 
   /// Has blocks that were given back read in the background.
@@ -89,7 +95,12 @@ class ThermalVolume {
     constexpr std::size_t kBlockBytes = kBlockVoxels * sizeof(ThermalVoxel);
     arena_.Fetch(static_cast<std::size_t>(first_block) * kBlockBytes,
                  static_cast<std::size_t>(count) * kBlockBytes);
+    if (records_) records_->Fetch(first_block, count);
   }
+
+  /// nullptr if none are kept.
+  ThermalRecords* records() { return records_.get(); }
+  const ThermalRecords* records() const { return records_.get(); }
 
   std::span<ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) {
     return std::span<ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
@@ -103,10 +114,25 @@ class ThermalVolume {
  private:
   ThermalVoxel* base() const { return reinterpret_cast<ThermalVoxel*>(arena_.data()); }
   GrowingArena arena_;
+  std::unique_ptr<ThermalRecords> records_;
 };
 
-/// The thermal voxel that belongs to a surface point: of the voxel the point lies in, or, if that
-/// was never measured, of the nearest measured one among the 26 around it. Unmeasured if none.
+/// What is known about the temperature of a surface point.
+struct PointMeasurement {
+  ThermalVoxel voxel;
+  ConditionRecord conditions;  ///< Empty: not kept.
+};
+
+/// Copies the record of a voxel to one of another volume, whose coordinate frame is turned by
+/// R_target_source, as far as both volumes keep any.
+void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int source_voxel,
+                 const Eigen::Matrix3f& R_target_source, std::int32_t block, int voxel,
+                 ThermalVolume& target);
+
+/// The measurement that belongs to a surface point: of the voxel the point lies in, or, if nothing
+/// was ever tried there, of the nearest measured one among the 26 around it. Unmeasured if none.
+PointMeasurement MeasurementAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                               const Eigen::Vector3d& p_world);
 ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                             const Eigen::Vector3d& p_world);
 

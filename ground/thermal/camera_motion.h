@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "common/geometry/rigid_transform.h"
+
+namespace isotherm {
+
+/// How a camera moves, in its own coordinates: m/s and rad/s.
+struct CameraMotion {
+  Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
+  Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
+};
+
+/// The motion, taken as even, between two poses `interval_s` apart; none for an interval of 0.
+CameraMotion MotionBetween(const RigidTransform& T_world_before,
+                           const RigidTransform& T_world_after, double interval_s);
+
+/// The same motion of another camera on the rig: T_other_camera maps into its coordinates.
+CameraMotion MotionOf(const CameraMotion& motion, const RigidTransform& T_other_camera);
+
+/// Speed at which a resting point at normalised image coordinates `xy` and depth `z_m` goes through
+/// the picture, per second in normalised coordinates: with p = (x, y, 1), its velocity is
+/// -v - w x (z p), and the image follows the projection's derivative.
+Eigen::Vector2d ImageVelocity(const CameraMotion& motion, const Eigen::Vector2d& xy, double z_m);
+
+}  // namespace isotherm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <limits>
+
+#include "common/base/status.h"
+#include "common/geometry/camera.h"
+#include "ground/ground_options.pb.h"
+#include "ground/thermal/thermal_volume.h"
+
+namespace isotherm {
+
+Status Validate(const ThermalOptions& options);
+
+/// Distances between which a lens shows everything sharp, metres (thesis eq. 2.20a-b).
+struct DepthOfField {
+  double near_m = 0.0;
+  double far_m = std::numeric_limits<double>::infinity();
+
+  explicit DepthOfField(const ThermalLens& lens);
+};
+
+/// The distances and angles of (6.3a-b) in metres and as cosines, ready for inner loops.
+struct ConditionLimits {
+  float distance_min_m, distance_good_m, distance_max_m;
+  float cosine_min_angle, cosine_good_angle, cosine_max_angle;
+
+  /// Distances are narrowed by the depth of field if the lens is known.
+  explicit ConditionLimits(const ThermalOptions& options);
+  ConditionClass ClassifyDistance(float distance_m) const;
+  /// `cosine` of the emission angle, 0..1.
+  ConditionClass ClassifyAngle(float cosine) const;
+};
+
+/// Algorithm 6: whether a measurement under the new classes replaces one under the old classes.
+/// Under equal distance and angle classes the motion classes decide; a smeared measurement (kBad)
+/// replaces nothing.
+bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
+                         ConditionClass new_motion, ThermalVoxel old);
+
+}  // namespace isotherm

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/frame/image.h"
+#include "common/geometry/camera.h"
+#include "ground/ground_options.pb.h"
+#include "ground/thermal/thermal_kernel.h"
+#include "ground/tracker/surface_maps.h"
+
+namespace isotherm {
+
+/// The near-range rule: something closer than the depth camera's near range gives no return, so it
+/// is neither in the model nor in the depth image, but it makes a hole there. A hole is a square of
+/// hole_px pixels in which the model has a surface and the depth image (almost) nothing. Thermal
+/// pixels whose line of sight crosses the space before a hole, up to the near range, are left out.
+/// Small holes (edges, dark spots) and those before unknown surface are no holes here, so what
+/// comes near before a place never scanned is not noticed. Thread-compatible.
+class NearHoles {
+ public:
+  /// `thermal_camera` without distortion.
+  NearHoles(const ThermalOptions& options, const CameraModel& thermal_camera,
+            const RigidTransform& T_thermal_depth);
+
+  /// `depth_m`: the last depth image, 0 = no return. `model`: the model's surface at the same time
+  /// from the same pose, seen by the depth camera at the same or a halved size.
+  void Update(const Image<float>& depth_m, const SurfaceMaps& model,
+              const CameraModel& model_camera);
+
+  /// Whether any thermal pixel is left out.
+  bool any() const { return any_; }
+  /// Makes pixels of row `y` that are left out unassignable. Returns how many were assignable.
+  std::int64_t LeaveOut(int y, std::span<ThermalPixel> row) const;
+
+ private:
+  bool FindHoles(const Image<float>& depth_m, const SurfaceMaps& model);
+  bool CrossesHole(const Eigen::Vector2d& xy_thermal, const CameraModel& model_camera) const;
+
+  const double near_range_m_;
+  const int hole_px_;
+  const CameraModel thermal_camera_;
+  const RigidTransform T_depth_thermal_;
+  int hole_side_ = 0;             ///< Of a square, pixels of the model's view.
+  Image<std::uint8_t> holes_;     ///< Per square, 1 = hole.
+  Image<std::uint8_t> left_out_;  ///< Per tile of the thermal picture.
+  bool any_ = false;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,84 @@
+#include "ground/thermal/near_holes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace isotherm {
+namespace {
+
+/// A wall that fills both views, 0.6 m away; the thermal camera sits beside the depth camera.
+class NearHolesTest : public ::testing::Test {
+ protected:
+  NearHolesTest() {
+    depth_camera_ = CameraModel{320, 240, 290.0, 290.0, 159.5, 119.5};
+    thermal_camera_ = CameraModel{160, 120, 150.0, 150.0, 79.5, 59.5};
+    depth_m_ = Image<float>(320, 240, 0.6F);
+    model_.Resize(320, 240);
+    model_.vx.Fill(0.0F);
+  }
+  /// Pixels that are left out of the whole thermal picture.
+  std::int64_t LeftOut() {
+    NearHoles holes(options_, thermal_camera_, T_thermal_depth_);
+    holes.Update(depth_m_, model_, depth_camera_);
+    std::int64_t count = 0;
+    picture_.assign(static_cast<std::size_t>(160 * 120), ThermalPixel{});
+    for (int y = 0; y < 120; ++y) {
+      const std::span<ThermalPixel> row(picture_.data() + 160 * y, 160);
+      for (ThermalPixel& pixel : row) pixel.flags = ThermalPixel::kAssignable;
+      count += holes.LeaveOut(y, row);
+    }
+    return count;
+  }
+  bool IsLeftOut(int x, int y) const {
+    return (picture_[static_cast<std::size_t>(160 * y + x)].flags & ThermalPixel::kAssignable) == 0;
+  }
+  void MakeHole(int x0, int y0, int side) {
+    for (int y = y0; y < y0 + side; ++y) {
+      for (int x = x0; x < x0 + side; ++x) depth_m_.At(x, y) = 0.0F;
+    }
+  }
+
+  ThermalOptions options_;
+  CameraModel depth_camera_, thermal_camera_;
+  RigidTransform T_thermal_depth_ =
+      MakeTransform({-0.05, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+  Image<float> depth_m_;
+  SurfaceMaps model_;
+  std::vector<ThermalPixel> picture_;
+};
+
+TEST_F(NearHolesTest, ALensCapBeforePartOfTheDepthCameraLeavesOutWhatItMayHide) {
+  // A hand 0.15 to 0.3 m away, in the middle of the depth camera's view.
+  MakeHole(120, 80, 80);
+  EXPECT_GT(LeftOut(), 500);
+  // Something 0.2 m before the depth camera is seen 0.05 m / 0.2 m further left by the thermal one.
+  EXPECT_TRUE(IsLeftOut(80 - 37, 60));
+  EXPECT_FALSE(IsLeftOut(150, 60)) << "no line of sight there crosses the hole's near space";
+  EXPECT_FALSE(IsLeftOut(60, 5)) << "beside the hole's rows";
+}
+
+TEST_F(NearHolesTest, SmallHolesAndEdgesCostNothing) {
+  for (int i = 0; i < 12; ++i) MakeHole(20 + 24 * i, 100, 10);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 200; x < 206; ++x) depth_m_.At(x, y) = 0.0F;  // The shadow at an edge.
+  }
+  EXPECT_EQ(LeftOut(), 0);
+}
+
+TEST_F(NearHolesTest, WhereNoSurfaceIsKnownThereIsNothingToMiss) {
+  depth_m_.Fill(0.0F);
+  model_.vx.Fill(std::numeric_limits<float>::quiet_NaN());
+  EXPECT_EQ(LeftOut(), 0);
+}
+
+TEST_F(NearHolesTest, ANearRangeOfZeroTurnsItOff) {
+  depth_m_.Fill(0.0F);
+  EXPECT_GT(LeftOut(), 10'000);
+  options_.set_near_range_m(0.0);
+  EXPECT_EQ(LeftOut(), 0);
+}
+
+}  // namespace
+}  // namespace isotherm

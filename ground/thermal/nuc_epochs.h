@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/frame/frame.h"
+
+namespace isotherm {
+
+/// Which NUC a thermal frame's temperatures rest on.
+struct NucAge {
+  std::uint8_t epoch = 0;               ///< NUCs seen before, modulo 256.
+  std::optional<double> seconds_since;  ///< Since the shutter opened; nullopt = none seen.
+};
+
+/// Follows the shutter through a stream of thermal frames, valid or not, in order.
+/// Thread-compatible.
+class NucEpochs {
+ public:
+  /// A NUC lies between two frames if the camera's own count of seconds fell, or if frames were not
+  /// valid in between. Without the camera's count, seconds run from the last such frame.
+  NucAge Follow(const ThermalFrame& frame);
+
+ private:
+  NucAge age_;
+  bool had_valid_ = false;
+  bool shut_ = false;  ///< The last frame was not valid.
+  std::optional<CaptureTime> last_shut_;
+  std::optional<double> last_seconds_;  ///< The camera's count.
+};
+
+}  // namespace isotherm

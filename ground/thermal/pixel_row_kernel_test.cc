@@ -1,0 +1,332 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "common/frame/image.h"
+#include "common/testing/kernel_checks_for_test.h"
+#include "ground/thermal/camera_motion.h"
+#include "ground/thermal/thermal_kernel.h"
+
+namespace isotherm {
+namespace {
+
+using testing::AtLeastZero;
+using testing::Both;
+using testing::Random;
+using testing::Verdict;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFar = std::numeric_limits<float>::max();
+constexpr double kSinglePrecision = 2e-6;  ///< Of a sum of a few products.
+
+/// For `width` pixels, and memory behind them for a whole vector.
+std::vector<float> Row(int width, float value) {
+  return std::vector<float>(static_cast<std::size_t>(width + testing::kMostLanes), value);
+}
+
+/// What MakePixelRow must make of a pixel.
+struct ScalarPixel {
+  double depth_m = 0.0;
+  double slope_u = 0.0, slope_v = 0.0;  ///< Codes.
+  Verdict surface = Verdict::kNo, seen = Verdict::kNo;
+  Verdict occluded = Verdict::kNo, assignable = Verdict::kNo;
+  Verdict sharp = Verdict::kNo, still = Verdict::kNo, even = Verdict::kNo;
+  double cosine = 0.0;
+  int distance_class = 0;
+  int angle_class = 0;
+  bool certain_angle = true;
+  bool certain_distance = true;
+};
+
+/// Whether the row is smeared by less than its limits here.
+void JudgeSmear(const PixelRowArgs& a, int x, ScalarPixel& result) {
+  const auto vector = [](const float* v) {
+    return Eigen::Map<const Eigen::Vector3f>(v).cast<double>().eval();
+  };
+  const CameraMotion motion{vector(a.velocity_m_s), vector(a.rate_rad_s)};
+  const Eigen::Vector2d xy((x - double{a.cx}) / a.fx, a.y);
+  const Eigen::Vector2d speed = ImageVelocity(motion, xy, result.depth_m);
+  const double smear_px = double{a.smear_s} * std::hypot(a.fx * speed.x(), a.fy * speed.y());
+  constexpr double kRelative = 1e-4;  // Of a reciprocal and differences.
+  result.sharp = AtLeastZero(a.smear_max_px - smear_px, kRelative * (1.0 + smear_px));
+  result.still = AtLeastZero(a.smear_good_px - smear_px, kRelative * (1.0 + smear_px));
+}
+
+Verdict Not(Verdict v) {
+  if (v == Verdict::kEither) return v;
+  return v == Verdict::kYes ? Verdict::kNo : Verdict::kYes;
+}
+
+int ScalarClass(double value, double good_low, double good_high, double low, double high) {
+  if (value >= good_low && value <= good_high) return 1;
+  return value >= low && value <= high ? 2 : 0;
+}
+
+double ScalarSlope(float before, float after) {
+  const double half = 0.5 * (double{after} - before) * double{ThermalPixel::kSlopeScale};
+  return std::isnan(half) ? 0.0 : std::clamp(half, -32767.0, 32767.0);
+}
+
+ScalarPixel MakeScalarPixel(const PixelRowArgs& a, int x) {
+  ScalarPixel result;
+  const Eigen::Vector3d p(a.vx[x], a.vy[x], a.vz[x]);
+  result.slope_u = ScalarSlope(a.celsius[x - 1], a.celsius[x + 1]);
+  result.slope_v = ScalarSlope(a.celsius[x - a.celsius_stride], a.celsius[x + a.celsius_stride]);
+  const Eigen::Vector3d z_axis = Eigen::Map<const Eigen::Vector3f>(a.z_axis).cast<double>();
+  result.depth_m = z_axis.dot(p) + a.z_axis[3];
+  const double reach = z_axis.cwiseAbs().dot(p.cwiseAbs()) + std::abs(a.z_axis[3]);
+  result.surface = AtLeastZero(result.depth_m, kSinglePrecision * reach);
+
+  const Eigen::Matrix3d R =
+      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(a.R_depth).cast<double>();
+  const Eigen::Vector3d q = R * p + Eigen::Map<const Eigen::Vector3f>(a.t_depth).cast<double>();
+  const double q_slack = kSinglePrecision * (p.cwiseAbs().sum() + 1.0);
+  result.seen = Both(result.surface, AtLeastZero(q.z(), q_slack));
+  const auto in_image = [&](double along, double f, double c, double size) {
+    const double pixel = f * along / q.z() + c + 0.5;
+    const double slack = 1e-4 + f * q_slack * (1.0 + std::abs(along / q.z())) / std::abs(q.z());
+    return Both(AtLeastZero(pixel, slack), AtLeastZero(size - pixel, slack));
+  };
+  result.seen =
+      Both(result.seen, Both(in_image(q.x(), a.depth_fx, a.depth_cx, double{a.depth_width}),
+                             in_image(q.y(), a.depth_fy, a.depth_cy, double{a.depth_height})));
+
+  const double distance = a.distance_m[x];
+  double nearest = distance;
+  for (int row = -a.margin; row <= a.margin; ++row) {
+    for (int column = -a.margin; column <= a.margin; ++column)
+      nearest = std::min(nearest, double{a.distance_m[x + row * a.distance_stride + column]});
+  }
+  result.occluded = AtLeastZero(distance - nearest - double{a.occlusion_tolerance_m},
+                                kSinglePrecision * distance);
+  const Eigen::Vector3d to_camera =
+      Eigen::Map<const Eigen::Vector3f>(a.position).cast<double>() - p;
+  const Eigen::Vector3d n(a.nx[x], a.ny[x], a.nz[x]);
+  const double cosine = std::min(n.dot(to_camera) / distance, 1.0);
+  result.cosine = cosine;
+  const double resolved = cosine * a.max_footprint_m - distance / a.fx;
+  result.certain_distance = std::abs(resolved) > 1e-6;
+  result.distance_class = resolved < 0.0
+                              ? 0
+                              : ScalarClass(distance, a.distance_min_m, a.distance_good_m,
+                                            a.distance_min_m, a.distance_max_m);
+  result.angle_class = ScalarClass(cosine, a.cosine_good_angle, a.cosine_min_angle,
+                                   a.cosine_max_angle, a.cosine_min_angle);
+  for (const float limit : {a.cosine_good_angle, a.cosine_min_angle, a.cosine_max_angle})
+    result.certain_angle = result.certain_angle && std::abs(cosine - double{limit}) > 1e-5;
+  JudgeSmear(a, x, result);
+  const double slope_k = std::hypot(result.slope_u, result.slope_v) / ThermalPixel::kSlopeScale;
+  // Codes stop at their limits, temperatures do not.
+  result.even = slope_k > 400.0 ? Verdict::kNo : AtLeastZero(a.max_slope_k - slope_k, 1e-4);
+  result.assignable = Both(result.seen, Not(result.occluded));
+  result.assignable = Both(result.assignable, Both(result.sharp, result.even));
+  result.assignable = Both(result.assignable, AtLeastZero(cosine, 1e-5));
+  if (std::isnan(a.celsius[x])) result.assignable = Verdict::kNo;
+  return result;
+}
+
+class MakePixelRowTest : public ::testing::Test {
+ protected:
+  /// A wavy surface with gaps before both cameras, and things before it.
+  void FillRow(int width) {
+    const auto uniform = [&] { return random_.Uniform(-1.0F, 1.0F); };
+    args_ = {};
+    args_.width = width;
+    args_.margin = random_.Integer(0, 3);
+    for (std::vector<float>& plane : planes_) plane = Row(width, kNan);
+    for (std::size_t x = 0; x < planes_[0].size(); ++x) {
+      if (random_.Chance(0.2)) continue;
+      const Eigen::Vector3f n = Eigen::Vector3f(uniform(), uniform(), -1.0F).normalized();
+      const float p[6] = {
+          0.6F * uniform(), 0.5F * uniform(), 0.7F + 0.4F * uniform(), n.x(), n.y(), n.z()};
+      for (std::size_t k = 0; k < 6; ++k) planes_[k][x] = p[k];
+      if (random_.Chance(0.1)) planes_[2][x] = -planes_[2][x];
+    }
+    distances_ = Image<float>(width + 2 * args_.margin, 1 + 2 * args_.margin, kFar);
+    for (float& distance : distances_.pixels()) {
+      if (random_.Chance(0.9)) distance = 0.7F + 0.02F * uniform();
+    }
+    celsius_ = Image<float>(width + 2, 3);
+    for (float& value : celsius_.pixels()) {
+      value = 20.0F * uniform();
+      if (random_.Chance(0.1)) value = random_.Chance(0.8) ? kNan : 1e30F * uniform();
+    }
+    args_.distance_stride = distances_.width();
+    args_.celsius_stride = celsius_.width();
+    args_.distance_m = distances_.Row(args_.margin).data() + args_.margin;
+    args_.celsius = celsius_.Row(1).data() + 1;
+    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) SetDistance(x);
+    PointAtPlanes();
+    Aim();
+  }
+  /// As DistanceRow and the cast make it, but for pixels beside a nearer one.
+  void SetDistance(std::size_t x) {
+    const Eigen::Vector3f p(planes_[0][x], planes_[1][x], planes_[2][x]);
+    if (random_.Chance(0.5) && p.allFinite())
+      distances_.Row(args_.margin)[x + static_cast<std::size_t>(args_.margin)] = p.norm();
+  }
+  void PointAtPlanes() {
+    const float** const targets[6] = {&args_.vx, &args_.vy, &args_.vz,
+                                      &args_.nx, &args_.ny, &args_.nz};
+    for (std::size_t k = 0; k < 6; ++k) *targets[k] = planes_[k].data();
+  }
+  void Aim() {
+    const auto uniform = [&] { return random_.Uniform(-1.0F, 1.0F); };
+    const auto turn = [&] {
+      return Eigen::Quaternionf(1.0F, 0.1F * uniform(), 0.1F * uniform(), 0.1F * uniform())
+          .normalized()
+          .toRotationMatrix();
+    };
+    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = turn();
+    std::copy_n(R.data(), 9, args_.R_depth);
+    const Eigen::Matrix3f z = turn();
+    for (int i = 0; i < 3; ++i) {
+      args_.z_axis[i] = z(i, 2);
+      args_.t_depth[i] = 0.05F * uniform();
+      args_.position[i] = 0.05F * uniform();
+    }
+    args_.z_axis[3] = 0.05F * uniform();
+    args_.depth_fx = args_.depth_fy = 285.0F;
+    args_.depth_cx = 159.5F;
+    args_.depth_cy = 119.5F;
+    args_.depth_width = 320.0F;
+    args_.depth_height = 240.0F;
+    args_.occlusion_tolerance_m = 0.02F;
+    args_.distance_min_m = 0.3F;
+    args_.distance_good_m = 0.7F;
+    args_.distance_max_m = 0.9F;
+    args_.cosine_min_angle = 0.999F;
+    args_.cosine_good_angle = 0.8F;
+    args_.cosine_max_angle = 0.5F;
+    args_.max_footprint_m = random_.Chance(0.5) ? 1e18F : 0.004F;
+    args_.max_slope_k = random_.Chance(0.5) ? 1e18F : 15.0F;
+    args_.fx = args_.fy = 250.0F;
+    args_.cx = 30.0F;
+    args_.y = 0.5F * uniform();
+    for (int i = 0; i < 3; ++i) {
+      args_.velocity_m_s[i] = 0.4F * uniform();
+      args_.rate_rad_s[i] = 0.5F * uniform();
+    }
+    args_.smear_s = 0.01F;
+    args_.smear_good_px = 0.8F;
+    args_.smear_max_px = 1.8F;
+  }
+
+  void CompareRow() {
+    const auto width = static_cast<std::size_t>(args_.width);
+    std::vector<ThermalPixel> pixels(width + 1);
+    pixels.back().flags = testing::kCanary;
+    const PixelRowCounts counts = MakePixelRow(args_, pixels.data());
+    ASSERT_EQ(pixels.back().flags, testing::kCanary) << "wrote beyond a row of " << width;
+    PixelRowCounts least, most;
+    const auto tally = [](Verdict v, std::int64_t& low, std::int64_t& high) {
+      low += v == Verdict::kYes ? 1 : 0;
+      high += v != Verdict::kNo ? 1 : 0;
+    };
+    for (int x = 0; x < args_.width && !HasFatalFailure(); ++x) {
+      SCOPED_TRACE(::testing::Message() << "pixel " << x << " of " << args_.width);
+      const ScalarPixel truth = MakeScalarPixel(args_, x);
+      const Verdict visible = Both(truth.seen, Not(truth.occluded));
+      tally(Both(truth.seen, truth.occluded), least.occluded, most.occluded);
+      tally(Both(visible, Not(truth.sharp)), least.smeared, most.smeared);
+      tally(Both(Both(visible, truth.sharp), Not(truth.even)), least.steep, most.steep);
+      ComparePixel(pixels[static_cast<std::size_t>(x)], truth, args_.celsius[x]);
+    }
+    for (const auto reason :
+         {&PixelRowCounts::occluded, &PixelRowCounts::smeared, &PixelRowCounts::steep}) {
+      ASSERT_GE(counts.*reason, least.*reason);
+      ASSERT_LE(counts.*reason, most.*reason);
+      counts_.*reason += counts.*reason;
+    }
+  }
+  static void CompareFlag(const ThermalPixel& pixel, std::int32_t flag, Verdict truth) {
+    if (truth != Verdict::kEither) {
+      ASSERT_EQ((pixel.flags & flag) != 0, truth == Verdict::kYes) << "flag " << flag;
+    }
+  }
+  void ComparePixel(const ThermalPixel& pixel, const ScalarPixel& truth, float celsius) {
+    constexpr double kStep = 0.51;  // Codes.
+    ASSERT_EQ(pixel.celsius, std::isnan(celsius) ? 0.0F : celsius);
+    ASSERT_NEAR(static_cast<std::int16_t>(pixel.slopes & 0xFFFF), truth.slope_u, kStep);
+    ASSERT_NEAR(pixel.slopes >> 16, truth.slope_v, kStep);
+    ASSERT_NO_FATAL_FAILURE(CompareFlag(pixel, ThermalPixel::kSeen, truth.seen));
+    ASSERT_NO_FATAL_FAILURE(CompareFlag(pixel, ThermalPixel::kAssignable, truth.assignable));
+    if (truth.surface == Verdict::kNo) {
+      ASSERT_EQ(pixel.depth_m, 0.0F);
+    }
+    if (truth.surface != Verdict::kYes) return;
+    ASSERT_NEAR(pixel.depth_m, truth.depth_m, 3.0 * kSinglePrecision);
+    if (truth.certain_distance) {
+      ASSERT_EQ((pixel.flags >> 4) & 0xF, truth.distance_class);
+    }
+    if (truth.sharp != Verdict::kEither && truth.still != Verdict::kEither) {
+      ASSERT_EQ((pixel.flags >> 12) & 0xF, truth.still == Verdict::kYes   ? 3
+                                           : truth.sharp == Verdict::kYes ? 2
+                                                                          : 1);
+    }
+    ASSERT_NEAR((pixel.flags >> ThermalPixel::kCosineShift) & 0xFF,
+                255.0 * std::max(truth.cosine, 0.0), kStep);
+    if (truth.certain_angle) {
+      ASSERT_EQ(pixel.flags & 0xF, truth.angle_class);
+    }
+    assignable_ += (pixel.flags & ThermalPixel::kAssignable) != 0 ? 1 : 0;
+  }
+
+  Random random_;
+  PixelRowArgs args_{};
+  std::vector<float> planes_[6];
+  Image<float> distances_, celsius_;
+  PixelRowCounts counts_;
+  int assignable_ = 0;
+};
+
+TEST_F(MakePixelRowTest, MatchesTheScalarReferenceForAnyWidth) {
+  testing::ForEachInstructionSet([&] {
+    counts_ = {};
+    assignable_ = 0;
+    for (int width = 0; width <= 5 * testing::kMostLanes; ++width) {
+      for (int round = 0; round < 5 && !HasFatalFailure(); ++round) {
+        FillRow(width);
+        CompareRow();
+      }
+    }
+    EXPECT_GT(counts_.occluded, 500);
+    EXPECT_GT(counts_.smeared, 500);
+    EXPECT_GT(counts_.steep, 100);
+    EXPECT_GT(assignable_, 500);
+  });
+}
+
+TEST_F(MakePixelRowTest, NothingIsSeenFromAPoseThatIsNone) {
+  testing::ForEachInstructionSet([&] {
+    for (const float bad : {kNan, kInfinity, -kInfinity}) {
+      FillRow(70);
+      for (int i = 0; i < 3; ++i) args_.t_depth[i] = args_.z_axis[i] = bad;
+      std::vector<ThermalPixel> pixels(70);
+      EXPECT_EQ(MakePixelRow(args_, pixels.data()).occluded, 0);
+      for (const ThermalPixel& pixel : pixels)
+        ASSERT_EQ(pixel.flags & (ThermalPixel::kSeen | ThermalPixel::kAssignable), 0) << bad;
+    }
+  });
+}
+
+TEST_F(MakePixelRowTest, AVertexAtInfinityIsNotSeen) {
+  testing::ForEachInstructionSet([&] {
+    FillRow(70);
+    for (std::vector<float>& plane : planes_) {
+      for (float& value : plane) value = random_.Chance(0.5) ? kInfinity : -kInfinity;
+    }
+    std::vector<ThermalPixel> pixels(70);
+    EXPECT_EQ(MakePixelRow(args_, pixels.data()).occluded, 0);
+    for (const ThermalPixel& pixel : pixels)
+      ASSERT_EQ(pixel.flags & (ThermalPixel::kSeen | ThermalPixel::kAssignable), 0);
+  });
+}
+
+}  // namespace
+}  // namespace isotherm

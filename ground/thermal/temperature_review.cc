@@ -1,0 +1,81 @@
+#include "ground/thermal/temperature_review.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace isotherm {
+namespace {
+
+/// Faces further apart than this are different ones: several times the noise of normals.
+constexpr float kOtherFaceRad = static_cast<float>(20.0 * std::numbers::pi / 180.0);
+
+float DistanceAt(const TsdfVolume& tsdf, const GridIndex& voxel) {
+  if ((voxel.array() < 0).any()) return NAN;
+  const TsdfVoxel at = tsdf.VoxelAt(voxel);
+  return at.observed() ? at.tsdf() : NAN;
+}
+
+/// Unit normal of the surface by central differences, one-sided beside unobserved voxels; nullopt
+/// where an axis has no neighbour.
+std::optional<Eigen::Vector3f> NormalAt(const TsdfVolume& tsdf, const GridIndex& voxel) {
+  Eigen::Vector3f gradient;
+  const float centre = DistanceAt(tsdf, voxel);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float below = DistanceAt(tsdf, voxel - GridIndex::Unit(axis));
+    const float above = DistanceAt(tsdf, voxel + GridIndex::Unit(axis));
+    if (!std::isnan(below) && !std::isnan(above)) {
+      gradient[axis] = 0.5F * (above - below);
+    } else if (!std::isnan(above)) {
+      gradient[axis] = above - centre;
+    } else if (!std::isnan(below)) {
+      gradient[axis] = centre - below;
+    } else {
+      return std::nullopt;
+    }
+  }
+  const float norm = gradient.norm();
+  if (!(norm > 0.0F)) return std::nullopt;
+  return gradient / norm;
+}
+
+float Angle(float cosine) { return std::acos(std::clamp(cosine, -1.0F, 1.0F)); }
+
+}  // namespace
+
+bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal, float min_cosine) {
+  const float cosine = normal.dot(DecodeDirection(record.direction));
+  return cosine >= min_cosine &&
+         std::abs(Angle(cosine) - Angle(record.cosine_seen())) <= kOtherFaceRad;
+}
+
+TemperatureReview::TemperatureReview(const ThermalOptions& options)
+    : limits_(options), keep_bad_(options.keep_bad()) {}
+
+std::int64_t TemperatureReview::Review(std::int32_t block, const TsdfVolume& tsdf,
+                                       ThermalVolume& thermal) const {
+  if (thermal.records() == nullptr || keep_bad_) return 0;
+  std::int64_t dropped = 0;
+  const auto voxels = thermal.voxels(block);
+  const GridIndex base = tsdf.block_coordinates(block) * kBlockSide;
+  for (int row = 0; row < ThermalRecords::kRowsPerBlock; ++row) {
+    RecordRow* records = thermal.records()->Find(block, row);
+    if (records == nullptr) continue;
+    for (int x = 0; x < RecordRow::kVoxels; ++x) {
+      ThermalVoxel& voxel = voxels[row * RecordRow::kVoxels + x];
+      ConditionRecord& record = records->conditions[x];
+      if (!voxel.measured() || record.empty()) continue;
+      const auto normal = NormalAt(tsdf, base + GridIndex(x, row % kBlockSide, row / kBlockSide));
+      if (!normal) continue;
+      if (BelongsToFace(record, *normal, limits_.cosine_max_angle)) continue;
+      // The classes stay, but for the angle's: a new measurement of any kind replaces it.
+      voxel.bits = (voxel.bits & 0xFFF0U) | static_cast<std::uint32_t>(ConditionClass::kBad);
+      record = ConditionRecord();
+      ++dropped;
+    }
+  }
+  return dropped;
+}
+
+}  // namespace isotherm

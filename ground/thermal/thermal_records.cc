@@ -1,0 +1,74 @@
+#include "ground/thermal/thermal_records.h"
+
+#include <algorithm>
+
+namespace isotherm {
+namespace {
+
+constexpr std::size_t kIndexBytes = ThermalRecords::kRowsPerBlock * sizeof(std::uint32_t);
+
+/// For all rows of the blocks, and the parts' last pages, which need not be full.
+std::size_t MaxPages(std::int32_t blocks) {
+  constexpr std::size_t kPagesPerBlock = 2;
+  const auto count = static_cast<std::size_t>(blocks);
+  return kPagesPerBlock * count + count / ThermalRecords::kBlocksPerPart + 1;
+}
+
+}  // namespace
+
+ThermalRecords::ThermalRecords(std::int32_t max_blocks, const std::filesystem::path& spill_dir)
+    : index_(static_cast<std::size_t>(max_blocks) * kIndexBytes, spill_dir),
+      pages_(MaxPages(max_blocks) * kPageBytes, spill_dir),
+      parts_(static_cast<std::size_t>(max_blocks / kBlocksPerPart) + 1) {}
+
+RecordRow& ThermalRecords::RowAt(std::uint32_t entry) const {
+  const std::size_t page = (entry - 1) / kRowsPerPage;
+  const std::size_t row = (entry - 1) % kRowsPerPage;
+  return reinterpret_cast<RecordRow*>(pages_.data() + page * kPageBytes)[row];
+}
+
+const RecordRow* ThermalRecords::Find(std::int32_t block, int row) const {
+  const std::uint32_t entry = Entry(block, row);
+  return entry == 0 ? nullptr : &RowAt(entry);
+}
+
+RecordRow& ThermalRecords::Row(std::int32_t block, int row) {
+  std::uint32_t& entry = Entry(block, row);
+  if (entry != 0) return RowAt(entry);
+  const std::lock_guard lock(mutex_);
+  Part& part = parts_[static_cast<std::size_t>(block / kBlocksPerPart)];
+  if (part.pages.empty() || part.used == kRowsPerPage) {
+    part.pages.push_back(page_count_++);
+    part.used = 0;
+  }
+  entry = part.pages.back() * kRowsPerPage + part.used++ + 1;
+  return RowAt(entry);
+}
+
+bool ThermalRecords::Back(std::int32_t blocks) {
+  return index_.Back(static_cast<std::size_t>(blocks) * kIndexBytes) &&
+         pages_.Back(MaxPages(blocks) * kPageBytes);
+}
+
+template <typename Visit>
+void ThermalRecords::ForPages(std::int32_t first_block, std::int32_t count,
+                              const Visit& visit) const {
+  for (std::int32_t block = first_block; block + kBlocksPerPart <= first_block + count;
+       block += kBlocksPerPart) {
+    const auto part = static_cast<std::size_t>(block / kBlocksPerPart);
+    if (part >= parts_.size()) return;
+    for (const std::uint32_t page : parts_[part].pages) visit(page);
+  }
+}
+
+void ThermalRecords::GiveBack(std::int32_t first_block, std::int32_t count) const {
+  ForPages(first_block, count,
+           [&](std::uint32_t page) { pages_.GiveBack(page * kPageBytes, kPageBytes); });
+}
+
+void ThermalRecords::Fetch(std::int32_t first_block, std::int32_t count) const {
+  ForPages(first_block, count,
+           [&](std::uint32_t page) { pages_.Fetch(page * kPageBytes, kPageBytes); });
+}
+
+}  // namespace isotherm

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/image.h"
+#include "common/geometry/camera.h"
+
+namespace isotherm {
+
+/// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the
+/// picture or where the frame has no value. Bilinear. Keeps scratch memory. Thread-compatible.
+class ThermalRectifier {
+ public:
+  explicit ThermalRectifier(const CameraModel& camera);
+  /// Writes into `celsius` with `apron` pixels of NaN all around.
+  void Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
+               Image<float>& celsius);
+  const CameraModel& ideal_camera() const { return ideal_; }
+
+ private:
+  CameraModel ideal_;
+  Image<std::int32_t> source_;  ///< Upper left of the four source pixels, -1 = outside.
+  Image<float> fraction_x_, fraction_y_;
+  Image<float> picture_;  ///< The frame in °C.
+};
+
+}  // namespace isotherm

@@ -1,0 +1,259 @@
+// What keeps a temperature out of the model, and what is kept beside it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ground/thermal/ball_and_wall_for_test.h"
+#include "ground/thermal/measurement_recorder.h"
+
+namespace isotherm {
+namespace {
+
+using enum ConditionClass;
+
+class ThermalRulesTest : public testing::BallAndWallTest {
+ protected:
+  static std::uint16_t Raw(double celsius) {
+    return static_cast<std::uint16_t>(std::lround((celsius + 273.15) * 100.0));
+  }
+  /// The same temperature everywhere.
+  ThermalFrame Even(double celsius) const {
+    ThermalFrame frame;
+    frame.valid = true;
+    frame.centikelvin =
+        Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height, Raw(celsius));
+    return frame;
+  }
+  static CaptureConditions Sweeping(double speed_m_s) {
+    CaptureConditions capture;
+    capture.motion.velocity_m_s.x() = speed_m_s;
+    return capture;
+  }
+  static bool OnWall(const Eigen::Vector3d& p) { return p.z() > 0.58; }
+
+  ThermalOptions options_;
+};
+
+TEST_F(ThermalRulesTest, ASweepIsGoodAcceptableOrLeftOutByItsSmear) {
+  // The wall is about 0.6 m away: 186 px x v / 0.6 m in 10 ms is 3.1 px at 1 m/s.
+  const auto motion_on_wall = [&](double speed_m_s) {
+    FuseFrame(options_, Even(20.0), Sweeping(speed_m_s));
+    ConditionClass seen = kUnchecked;
+    ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+      if (OnWall(p)) seen = voxel.motion_class();
+    });
+    return seen;
+  };
+  const FusionReport fast = FuseFrame(options_, Even(20.0), Sweeping(1.0));
+  EXPECT_EQ(fast.assigned, 0);
+  EXPECT_GT(fast.smeared, 5'000);
+  EXPECT_EQ(motion_on_wall(0.4), kAcceptable);
+  EXPECT_EQ(motion_on_wall(0.1), kGood);
+  EXPECT_EQ(motion_on_wall(0.4), kGood) << "worse does not replace better";
+}
+
+TEST_F(ThermalRulesTest, RowsReadOneAfterTheOtherAreShiftedTheMoreTheFartherFromTheMiddle) {
+  options_.set_time_constant_s(0.0);
+  options_.set_row_readout_s(1e-4);  // 7 ms from the middle row to the last: 2.2 px at 1 m/s.
+  FuseFrame(options_, Even(20.0), Sweeping(1.0));
+  int near_middle = 0;
+  int far = 0;
+  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+    if (!OnWall(p)) return;
+    const double row =
+        std::abs(thermal_camera_.fy * (p.y() - T_world_thermal_.translation().y()) / 0.6);
+    if (row < 12.0) near_middle += voxel.motion_class() == kGood ? 1 : 0;
+    if (row > 68.0) ++far;
+  });
+  EXPECT_GT(near_middle, 500);
+  EXPECT_EQ(far, 0);
+}
+
+TEST_F(ThermalRulesTest, BesideASteepStepOfTemperatureNothingIsAssigned) {
+  ThermalFrame frame = Even(20.0);
+  constexpr int kStepColumn = 60;
+  for (int v = 0; v < thermal_camera_.height; ++v) {
+    for (int u = kStepColumn; u < thermal_camera_.width; ++u)
+      frame.centikelvin.At(u, v) = Raw(60.0);
+  }
+  EXPECT_GT(FuseFrame(options_, frame).steep, 100);
+  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
+    if (!voxel.measured()) return;
+    const double off =
+        std::min(std::abs(voxel.celsius() - 20.0F), std::abs(voxel.celsius() - 60.0F));
+    ASSERT_LT(off, 0.1) << "nothing in between";
+  });
+  // 3 K per pixel may be off by 1.5 K: less than is promised.
+  ThermalFrame ramp = Even(20.0);
+  for (int v = 0; v < thermal_camera_.height; ++v) {
+    for (int u = 0; u < thermal_camera_.width; ++u) ramp.centikelvin.At(u, v) = Raw(20.0 + 3.0 * u);
+  }
+  EXPECT_EQ(FuseFrame(options_, ramp).steep, 0);
+}
+
+TEST_F(ThermalRulesTest, BadConditionsLeaveTheirClassesAndNoTemperature) {
+  options_.set_distance_good_m(0.35);
+  options_.set_distance_max_m(0.5);
+  EXPECT_GT(FuseFrame(options_, Even(20.0)).considered, 1'000);
+  int judged = 0;
+  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+    if (!OnWall(p)) return;
+    ++judged;
+    EXPECT_FALSE(voxel.measured());
+    EXPECT_EQ(voxel.distance_class(), kBad);
+    EXPECT_TRUE(std::isnan(voxel.celsius()));
+  });
+  EXPECT_GT(judged, 1'000);
+  options_.set_keep_bad(true);
+  FuseFrame(options_, Even(20.0));
+  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
+    EXPECT_NEAR(voxel.celsius(), 20.0, 0.02);
+  });
+}
+
+TEST_F(ThermalRulesTest, EachTemperatureKnowsItsDistanceAngleAndNuc) {
+  CaptureConditions capture;
+  capture.nuc = {7, 12.4};
+  FuseFrame(options_, Even(20.0), capture);
+  int checked = 0;
+  for (double x = 0.3; x < 0.56; x += 0.02) {
+    for (double y = 0.1; y < 0.5; y += 0.02) {
+      const Eigen::Vector3d p(x, y, 0.60);
+      const PointMeasurement at = MeasurementAt(*tsdf_, *thermal_, p);
+      if (!at.voxel.measured() || at.conditions.empty()) continue;
+      ++checked;
+      const Eigen::Vector3d to_camera = T_world_thermal_.translation() - p;
+      constexpr double kVoxelSide_m = 0.004;
+      EXPECT_NEAR(at.conditions.distance_m(), to_camera.norm(), 2.0 * kVoxelSide_m);
+      constexpr double kBlockAngle = 0.06;  // Half a block's diagonal at 0.6 m, and the coding.
+      const Eigen::Vector3d direction = DecodeDirection(at.conditions.direction).cast<double>();
+      EXPECT_LT((direction - to_camera.normalized()).norm(), kBlockAngle);
+      EXPECT_NEAR(at.conditions.cosine_seen(), -to_camera.z() / to_camera.norm(), 0.02);
+      EXPECT_EQ(at.conditions.epoch, 7);
+      EXPECT_NEAR(at.conditions.age_s(), 12.4, 0.5 * ConditionRecord::kAgeStepS);
+    }
+  }
+  EXPECT_GT(checked, 100);
+}
+
+TEST_F(ThermalRulesTest, WithoutRecordsTemperaturesAreTheSame) {
+  thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks(), std::filesystem::path(), false);
+  EXPECT_GT(Fuse(options_).assigned, 10'000);
+  EXPECT_TRUE(MeasurementAt(*tsdf_, *thermal_, {0.4, 0.36, 0.6}).conditions.empty());
+}
+
+TEST_F(ThermalRulesTest, AReflectionThatMovesDisagreesAndTheLowestCanBeKept) {
+  // Half of the picture shows the same 20 °C always, the other at times 8 K more.
+  options_.set_distance_good_m(0.8);
+  for (const bool lowest : {false, true}) {
+    thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks());
+    if (lowest) options_.set_policy(LOWEST_GOOD);
+    for (int i = 0; i < 8; ++i) {
+      ThermalFrame frame = Even(20.0);
+      for (int v = 0; v < thermal_camera_.height; ++v) {
+        for (int u = 0; u < 40; ++u) frame.centikelvin.At(u, v) = Raw(i % 2 == 0 ? 20.0 : 28.0);
+      }
+      FuseFrame(options_, frame);
+    }
+    int in_reflection = 0;
+    int elsewhere = 0;
+    ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+      if (!OnWall(p) || voxel.angle_class() != kGood || !voxel.measured()) return;
+      const Eigen::Vector3d p_thermal = T_world_thermal_.inverse() * p;
+      const double u = thermal_camera_.fx * p_thermal.x() / p_thermal.z() + thermal_camera_.cx;
+      if (std::abs(u - 40.0) < 4.0) return;
+      if (u < 40.0) {
+        ++in_reflection;
+        ASSERT_EQ(voxel.disagreement_class(), kBad);
+        ASSERT_NEAR(voxel.celsius(), lowest ? 20.0 : 28.0, 0.05);
+      } else {
+        ++elsewhere;
+        ASSERT_EQ(voxel.disagreement_class(), kGood);
+      }
+    });
+    EXPECT_GT(in_reflection, 300);
+    EXPECT_GT(elsewhere, 300);
+  }
+}
+
+TEST(ClassifyDisagreementTest, NeedsEnoughMeasurementsAndARangeBeyondNoise) {
+  ThermalOptions options;  // Noise 0.15 K: a range of 0.9 K says nothing.
+  EXPECT_EQ(ClassifyDisagreement(options, 50.0F, 4), kUnchecked);
+  EXPECT_EQ(ClassifyDisagreement(options, 1.89F, 5), kGood);
+  EXPECT_EQ(ClassifyDisagreement(options, 1.91F, 5), kAcceptable);
+  EXPECT_EQ(ClassifyDisagreement(options, 3.91F, 5), kBad);
+}
+
+TEST_F(ThermalRulesTest, WhatTurnsOutToBelongToAnotherFaceIsDropped) {
+  FuseFrame(options_, Even(20.0));
+  const Eigen::Vector3d p(0.44, 0.36, 0.60);
+  const auto frontal = MeasurementAt(*tsdf_, *thermal_, p);
+  ASSERT_TRUE(frontal.voxel.measured());
+  const TemperatureReview review(options_);
+  const std::int32_t block =
+      tsdf_->Find((tsdf_->grid().ToVoxel(p).array().round().cast<int>() / kBlockSide).matrix());
+  EXPECT_EQ(review.Review(block, *tsdf_, *thermal_), 0) << "what was judged right stays";
+  // As if the camera had stood far to the side when the surface looked like facing it.
+  int records = 0;
+  for (int row = 0; row < ThermalRecords::kRowsPerBlock; ++row) {
+    RecordRow* found = thermal_->records()->Find(block, row);
+    if (found == nullptr) continue;
+    for (ConditionRecord& record : found->conditions) {
+      if (record.empty()) continue;
+      record.direction = EncodeDirection(Eigen::Vector3f(0.94F, 0.0F, -0.34F).normalized());
+      ++records;
+    }
+  }
+  EXPECT_GT(records, 20);
+  EXPECT_EQ(review.Review(block, *tsdf_, *thermal_), records);
+  EXPECT_FALSE(MeasurementAt(*tsdf_, *thermal_, p).voxel.measured())
+      << "and no neighbour speaks for it";
+  FuseFrame(options_, Even(30.0));
+  EXPECT_NEAR(ThermalVoxelAt(*tsdf_, *thermal_, p).celsius(), 30.0, 0.02) << "measured anew";
+}
+
+TEST(ValidateThermalTest, RefusesContradictionsByName) {
+  const auto message = [](auto change) {
+    ThermalOptions options;
+    change(options);
+    return Validate(options).message();
+  };
+  EXPECT_EQ(message([](ThermalOptions&) {}), "");
+  EXPECT_NE(message([](ThermalOptions& o) { o.set_smear_good_px(3.0); }).find("smear_good_px"),
+            std::string::npos);
+  EXPECT_NE(message([](ThermalOptions& o) { o.set_time_constant_s(-1.0); }).find("time_constant_s"),
+            std::string::npos);
+  EXPECT_NE(
+      message([](ThermalOptions& o) { o.set_disagreement_max_k(0.5); }).find("disagreement_max_k"),
+      std::string::npos);
+  EXPECT_NE(message([](ThermalOptions& o) { o.set_hole_px(0); }).find("hole_px"),
+            std::string::npos);
+  EXPECT_NE(message([](ThermalOptions& o) { o.mutable_lens()->set_f_number(1.0); }).find("lens"),
+            std::string::npos);
+}
+
+TEST(DepthOfFieldTest, NarrowsTheDistancesAsEquation220Says) {
+  ThermalOptions options;
+  ThermalLens& lens = *options.mutable_lens();
+  lens.set_focal_length_mm(10.0);
+  lens.set_f_number(1.0);
+  lens.set_focus_m(0.5);
+  lens.set_pixel_pitch_um(25.0);
+  // c N (D - f) = 12.25e-6 m2 against f2 = 100e-6 m2.
+  const ConditionLimits limits(options);
+  EXPECT_NEAR(limits.distance_min_m, 0.5 * 100.0 / 112.25, 1e-6);
+  EXPECT_NEAR(limits.distance_max_m, 0.5 * 100.0 / 87.75, 1e-6);
+  EXPECT_LE(limits.distance_good_m, limits.distance_max_m);
+}
+
+TEST_F(ThermalRulesTest, APixelThatCoversTooMuchIsTooFar) {
+  options_.set_max_footprint_m(0.003);  // 0.6 m / 186 px is 3.2 mm.
+  FuseFrame(options_, Even(20.0));
+  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+    if (!OnWall(p)) return;
+    ASSERT_EQ(voxel.distance_class(), kBad);
+  });
+}
+
+}  // namespace
+}  // namespace isotherm
