@@ -87,6 +87,11 @@ Status Validate(const SimulationOptions& options) {
         kMaxRadiometricCelsius);
   CheckClock("depth_clock", options.depth_clock(), check);
   CheckClock("thermal_clock", options.thermal_clock(), check);
+  const OdometryOptions& odometry = options.odometry();
+  check("odometry.rate_hz", odometry.rate_hz(), 0.0, 1000.0);
+  check("odometry.scale_error", odometry.scale_error(), -0.9, 10.0);
+  check("odometry.position_sigma_m", odometry.position_sigma_m(), 0.0, 1.0);
+  check("odometry.rotation_sigma_deg", odometry.rotation_sigma_deg(), 0.0, 45.0);
   check("thermal_phase_s", options.thermal_phase_s(), 0.0, 10.0);
   return check.status();
 }

@@ -14,6 +14,7 @@
 #include "common/config/text_proto.h"
 #include "common/recording/recording.h"
 #include "common/simulation/options.h"
+#include "common/simulation/simulated_odometry.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
 
@@ -24,14 +25,17 @@ constexpr std::uint64_t kSession = 1;
 
 /// One thing to write, in the order of true time.
 struct Item {
-  enum class Kind { kNuc, kDepth, kThermal };  // Order at equal times.
+  enum class Kind { kNuc, kOdometry, kDepth, kThermal };  // Order at equal times.
   CaptureTime time;
   Kind kind;
   std::uint64_t number;
 };
 
-std::vector<Item> InOrderOfTime(const SimulatedScan& scan) {
+std::vector<Item> InOrderOfTime(const SimulatedScan& scan,
+                                const std::vector<OutsidePose>& odometry) {
   std::vector<Item> items;
+  for (std::size_t i = 0; i < odometry.size(); ++i)
+    items.push_back({odometry[i].time, Item::Kind::kOdometry, i});
   for (std::size_t i = 0; i < scan.nuc_events().size(); ++i) {
     items.push_back({scan.nuc_events()[i].start, Item::Kind::kNuc, i});
   }
@@ -91,11 +95,13 @@ struct Worker {
   }
 };
 
-Status WriteItem(const SimulatedScan& scan, const Item& item, const Worker& worker,
-                 RecordingWriter& writer) {
+Status WriteItem(const SimulatedScan& scan, const std::vector<OutsidePose>& odometry,
+                 const Item& item, const Worker& worker, RecordingWriter& writer) {
   switch (item.kind) {
     case Item::Kind::kNuc:
       return writer.Write(scan.nuc_events()[item.number]);
+    case Item::Kind::kOdometry:
+      return writer.Write(odometry[item.number]);
     case Item::Kind::kDepth:
       ISOTHERM_RETURN_IF_ERROR(
           writer.WritePose("groundtruth", {item.time, scan.PoseAt(item.time)}));
@@ -144,7 +150,9 @@ Status RenderRecording(const SimulationOptions& options, const std::filesystem::
   // Threads render whole frames; a batch is written in order when all of it is done.
   constexpr int kFramesPerThread = 6;
   std::vector<Worker> workers(static_cast<std::size_t>(pool.threads() * kFramesPerThread));
-  const std::vector<Item> items = InOrderOfTime(**scan);
+  const std::vector<OutsidePose> odometry =
+      SimulateOdometry(options.odometry(), **scan, options.seed());
+  const std::vector<Item> items = InOrderOfTime(**scan, odometry);
   for (std::size_t done = 0; done < items.size();) {
     if (stop.stop_requested()) return Unavailable("rendering the simulated scan was interrupted");
     const std::size_t count = std::min(workers.size(), items.size() - done);
@@ -153,7 +161,7 @@ Status RenderRecording(const SimulationOptions& options, const std::filesystem::
       workers[index].Render(**scan, items[done + index]);
     });
     for (std::size_t i = 0; i < count; ++i) {
-      ISOTHERM_RETURN_IF_ERROR(WriteItem(**scan, items[done + i], workers[i], **writer));
+      ISOTHERM_RETURN_IF_ERROR(WriteItem(**scan, odometry, items[done + i], workers[i], **writer));
     }
     done += count;
     if (progress) progress(static_cast<double>(done) / static_cast<double>(items.size()));

@@ -102,6 +102,37 @@ TEST_F(RenderRecordingTest, HoldsEveryFrameWithItsTimesAndTruth) {
   EXPECT_EQ(events, 1U);
 }
 
+/// The motion between two poses is the true one, but for scale and jitter, whatever the reference.
+TEST_F(RenderRecordingTest, OdometrySeesTheTrueMotionWithItsErrors) {
+  OdometryOptions& odometry = *options_.mutable_odometry();
+  odometry.set_rate_hz(100.0);
+  odometry.set_scale_error(0.5);
+  ASSERT_TRUE(Render(dir_ / "scan.mcap").ok());
+  const auto scan = SimulatedScan::Create(options_);
+  ASSERT_TRUE(scan);
+  std::vector<OutsidePose> poses;
+  for (const RecordedItem& item : ReadAll(dir_ / "scan.mcap")) {
+    if (const auto* pose = std::get_if<OutsidePose>(&item)) poses.push_back(*pose);
+  }
+  const std::vector<SimulatedFrameTime>& frames = (*scan)->depth_times();
+  const double seconds = ToSeconds(frames.back().exposure - frames.front().exposure);
+  EXPECT_NEAR(static_cast<double>(poses.size()), 100.0 * seconds, 1.5);
+  const auto seen = [&](std::size_t i) {
+    return MakeTransform(poses[i].translation_m, poses[i].rotation);
+  };
+  const std::size_t last = poses.size() - 1;
+  const RigidTransform motion = seen(0).inverse() * seen(last);
+  const RigidTransform truth =
+      (*scan)->PoseAt(poses[0].time).inverse() * (*scan)->PoseAt(poses[last].time);
+  ASSERT_GT(truth.translation().norm(), 0.02);
+  // Five sigmas of both ends, and the lever of the first one's turn.
+  constexpr double kJitter = 5.0 * 1.5 * 0.0005;
+  EXPECT_LT((motion.translation() - 1.5 * truth.translation()).norm(), kJitter);
+  EXPECT_LT(RotationAngle(motion, truth), 0.003);
+  EXPECT_GT(TranslationDistance(seen(0), (*scan)->PoseAt(poses[0].time)), 1.0)
+      << "another reference frame";
+}
+
 TEST_F(RenderRecordingTest, ExplainsItself) {
   ASSERT_TRUE(Render(dir_ / "scan.mcap").ok());
   auto reader = RecordingReader::Open(dir_ / "scan.mcap");

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/outside_pose.h"
+
+namespace isotherm {
+
+class OdometryOptions;
+class SimulatedScan;
+
+/// What odometry beside the cameras says about the whole of a simulated scan: noisy, of another
+/// scale, in a reference frame of its own. In order of time; empty if its rate is 0. Everything
+/// random follows from `seed`.
+std::vector<OutsidePose> SimulateOdometry(const OdometryOptions& options, const SimulatedScan& scan,
+                                          std::uint64_t seed);
+
+}  // namespace isotherm
