@@ -211,6 +211,9 @@ Result<std::string> WriteScan(
     const std::function<void(std::string_view what, double share)>& progress) {
   const bool has_view = pipeline.view().maps.width() > 0;
   const SurfaceMaps view = has_view ? pipeline.CastFullView() : SurfaceMaps();
+  const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
+  if (!interpretation) return Err(interpretation.error());
+  const bool interpreted = !interpretation->changes_nothing();
   const ResultInputs inputs{pipeline.tsdf(),
                             pipeline.thermal(),
                             pipeline.trajectory(),
@@ -219,6 +222,7 @@ Result<std::string> WriteScan(
                             options.renderer(),
                             options.thermal(),
                             options.export_(),
+                            interpreted ? &*interpretation : nullptr,
                             std::move(stats)};
   const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
   if (!summary) return Err(summary.error());
@@ -259,10 +263,12 @@ Result<std::string> WriteScan(
       summary->points, share(summary->measured_points), share(summary->good_points),
       summary->triangles);
   if (summary->measured_points > 0) {
-    text += fmt::format("         {:.1f} to {:.1f} °C, mean {:.1f} °C (apparent temperature)\n",
+    text += fmt::format("         {:.1f} to {:.1f} °C, mean {:.1f} °C ({} temperature)\n",
                         summary->temperatures.min_celsius, summary->temperatures.max_celsius,
-                        summary->temperatures.mean_celsius);
+                        summary->temperatures.mean_celsius, interpreted ? "object" : "apparent");
   }
+  for (const std::string& sentence : interpretation->Errors(summary->interpretation))
+    text += fmt::format("         {}\n", sentence);
   if (pipeline.spiller().spilled() > 0) {
     text += fmt::format(
         "memory   the model has outgrown volume.max_memory_bytes: {} blocks went to {}, and came "

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/geometry/pose_text.h"
+#include "ground/export/interpretation.h"
 #include "ground/export/results.h"
 #include "ground/ground_options.pb.h"
 #include "ground/relocaliser/relocaliser.h"
@@ -58,6 +59,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   check(Validate(options.thermal()));
   check(Validate(options.renderer()));
   check(Validate(options.export_()));
+  check(Validate(options.interpretation()));
   check(Validate(options.live()));
   if (options.threads() < 0 || options.threads() > 256) {
     check(InvalidArgument(

@@ -46,9 +46,13 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
   text +=
       "comment coordinate frame: world (edges of the scan volume), metres; unit normals towards "
       "the observed side\n"
-      "comment scalar_temperature and quality: apparent temperature in degrees Celsius, emissivity "
-      "1 assumed; "
-      "nan = never measured\n"
+      "comment scalar_temperature and quality: ";
+  text += style.interpreted
+              ? "temperature of the object in degrees Celsius; nan = never measured, or no "
+                "temperature fits; apparent_temperature: as measured\n"
+              : "apparent temperature in degrees Celsius, emissivity 1 assumed; nan = never "
+                "measured\n";
+  text +=
       "comment distance_class angle_class motion_class disagreement_class: 0 bad, 1 good, 2 "
       "acceptable, 255 never measured or not known\n"
       "comment nuc_epoch: NUCs before the measurement (modulo 256), nuc_age_s: seconds since the "
@@ -74,6 +78,7 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
       "property uchar motion_class\nproperty uchar disagreement_class\nproperty uchar nuc_epoch\n"
       "property float nuc_age_s\nproperty float measured_distance\n"
       "property float measured_angle\n";
+  if (style.interpreted) text += "property float apparent_temperature\n";
   if (faces)
     text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", *faces);
   return text + "end_header\n";
@@ -96,6 +101,7 @@ void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& reco
   records.Add(point.nuc_age_s);
   records.Add(point.measured_distance_m);
   records.Add(point.measured_angle_deg);
+  if (style.interpreted) records.Add(point.apparent_celsius);
   records.EndRecord();
 }
 

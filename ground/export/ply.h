@@ -17,6 +17,7 @@ struct PlyStyle {
   std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured.
   std::string palette_name;               ///< As PaletteName gives it.
   std::string software;                   ///< Name and version.
+  bool interpreted = false;               ///< Points hold object temperatures (Interpretation).
 };
 
 /// Colour of points that were never measured.
@@ -26,8 +27,9 @@ inline constexpr Rgb8 kNeverMeasuredPoint{96, 96, 96};
 /// `world`, metres) red green blue (uchar) scalar_temperature (float, degC, NaN = never measured)
 /// distance_class angle_class (uchar) quality (float, the temperature again, under the name that
 /// MeshLab shows) motion_class disagreement_class nuc_epoch (uchar) nuc_age_s measured_distance
-/// measured_angle (float). The order matters: CloudCompare gives each column to the first property whose
-/// name fits.
+/// measured_angle (float) and, if `style.interpreted`, apparent_temperature (float, degC, as
+/// measured). The order matters: CloudCompare gives each column to the first property whose name
+/// fits.
 Status WriteCloudPly(const Surface& surface, const PlyStyle& style,
                      const std::filesystem::path& path);
 

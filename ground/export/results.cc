@@ -79,11 +79,14 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
                   const fs::path& folder, ThreadPool& threads, FirstFailure& failure) {
   ViewMaps view;
   SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
+  if (inputs.interpretation != nullptr) inputs.interpretation->Apply(*inputs.view, view.celsius);
   const Renderer renderer(inputs.renderer_options, inputs.thermal_options);
   std::optional<ContourField> contours;
   if (renderer.draws_lines()) {
     contours = SampleContours(*inputs.view, inputs.tsdf, inputs.thermal,
                               inputs.renderer_options.isotherm_smoothing_px(), threads);
+    if (inputs.interpretation != nullptr)
+      inputs.interpretation->Apply(*inputs.view, contours->celsius);
   }
   for (const RenderLayer layer : AllLayers()) {
     const RgbImage picture = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);
@@ -95,6 +98,8 @@ Json CompleteStats(const ResultInputs& inputs, const ResultSummary& summary) {
   Json stats = inputs.stats;
   stats["software"] = kSoftware;
   stats["surface"] = SurfaceStats(summary);
+  if (inputs.interpretation != nullptr)
+    stats["interpretation"] = inputs.interpretation->Describe(summary.interpretation);
   return stats;
 }
 
@@ -134,22 +139,26 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
   const ExportOptions& options = inputs.export_options;
   FirstFailure failure;
   announce("trajectory.txt", 0.0);
-  failure.Add(WriteTrajectory(inputs.trajectory, dir / "trajectory.txt"));
+  if (inputs.trajectory) failure.Add(WriteTrajectory(*inputs.trajectory, dir / "trajectory.txt"));
   announce("surface", 0.05);
   ResultSummary summary;
   {
-    const Surface surface = ExtractSurface(
+    Surface surface = ExtractSurface(
         inputs.tsdf, inputs.thermal,
         {.min_weight = static_cast<float>(options.min_weight()), .triangles = options.mesh()},
         threads);
+    std::vector<PartReport> reports;
+    if (inputs.interpretation != nullptr) reports = inputs.interpretation->Apply(surface);
     summary = SummarizeSurface(surface, inputs.renderer_options);
+    summary.interpretation = std::move(reports);
     announce("stats.json", 0.4);
     failure.Add(WriteFile(dir / "stats.json", CompleteStats(inputs, summary).ToText()));
     const ColourTable colours(inputs.renderer_options);
     const PlyStyle style{.colours = colours,
                          .scale = summary.scale,
                          .palette_name = PaletteName(inputs.renderer_options.palette()),
-                         .software = kSoftware};
+                         .software = kSoftware,
+                         .interpreted = inputs.interpretation != nullptr};
     if (options.cloud()) {
       announce("cloud.ply", 0.4);
       failure.Add(WriteCloudPly(surface, style, dir / "cloud.ply"));

@@ -6,9 +6,11 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "common/base/status.h"
 #include "common/recording/recording.h"
+#include "ground/export/interpretation.h"
 #include "ground/export/json.h"
 #include "ground/renderer/temperature_scale.h"
 #include "ground/thermal/thermal_volume.h"
@@ -33,14 +35,15 @@ Status PrepareOutputDir(const std::filesystem::path& dir);
 struct ResultInputs {
   const TsdfVolume& tsdf;
   const ThermalVolume& thermal;
-  std::span<const StampedPose> trajectory;
+  std::optional<std::span<const StampedPose>> trajectory;  ///< nullopt: no trajectory.txt.
   /// What the model looks like from `viewer_world`, ray-cast, in `world`; nullptr: no pictures.
   const SurfaceMaps* view = nullptr;
   Eigen::Vector3d viewer_world = Eigen::Vector3d::Zero();
   const RendererOptions& renderer_options;
   const ThermalOptions& thermal_options;
   const ExportOptions& export_options;
-  Json stats;  ///< Becomes stats.json, with `software` and `surface` added.
+  const Interpretation* interpretation = nullptr;  ///< nullptr: temperatures stay apparent.
+  Json stats;  ///< Becomes stats.json, with `software`, `surface`, `interpretation` added.
 };
 
 /// What was written, for a summary on the screen.
@@ -51,6 +54,7 @@ struct ResultSummary {
   std::size_t triangles = 0;
   std::optional<TemperatureScale> scale;  ///< Of pictures and colours alike.
   TemperatureStatistics temperatures;
+  std::vector<PartReport> interpretation;  ///< Of each of its parts; empty without one.
 };
 
 /// Called before each step with what is about to be written and the share done, 0..1.

@@ -158,6 +158,48 @@ TEST_F(ResultsTest, StatsKeepTheCallersValuesAndAddTheSurface) {
   }
 }
 
+TEST_F(ResultsTest, InterpretedResultsKeepWhatWasMeasured) {
+  InterpretationOptions options;
+  options.set_emissivity(0.5);
+  const Interpretation interpretation = Interpretation::Create(options).value();
+  ResultInputs inputs = Inputs();
+  inputs.interpretation = &interpretation;
+  inputs.trajectory.reset();
+  ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
+  ThreadPool pool(1);
+  const Result<ResultSummary> summary = WriteResults(inputs, folder_.path(), pool);
+  ASSERT_TRUE(summary) << summary.error().message();
+  EXPECT_FALSE(fs::exists(folder_.path() / "trajectory.txt"));
+  ASSERT_EQ(summary->interpretation.size(), 1U);
+  EXPECT_EQ(summary->interpretation[0].measured, summary->points);
+  // The hottest point was 83 °C apparent (20 + 500 x, x up to 0.126 m).
+  EXPECT_NEAR(summary->temperatures.max_celsius, interpretation.ObjectCelsius(0, 83.0F), 0.1);
+  EXPECT_GT(summary->temperatures.max_celsius, 110.0);
+  EXPECT_NE(ReadAll(folder_.path() / "stats.json").find("\"interpretation\""), std::string::npos);
+  const std::string cloud = ReadAll(folder_.path() / "cloud.ply");
+  EXPECT_NE(cloud.find("property float apparent_temperature\nend_header"), std::string::npos);
+  constexpr std::size_t kPointBytes = 6 * 4 + 3 + 4 + 2 + 4 + 3 + 3 * 4 + 4;
+  EXPECT_EQ(cloud.size() - cloud.find("end_header\n") - 11, summary->points * kPointBytes);
+}
+
+TEST_F(ResultsTest, PicturesAreInterpretedToo) {
+  renderer_.set_legend(false);
+  ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
+  renderer_.set_scale(FIXED);
+  ThreadPool pool(1);
+  ASSERT_TRUE(Write(folder_.path()));
+  const std::string apparent = ReadAll(folder_.path() / "renders/thermal.png");
+  const std::string distance = ReadAll(folder_.path() / "renders/distance.png");
+  InterpretationOptions options;
+  options.set_emissivity(0.5);
+  const Interpretation interpretation = Interpretation::Create(options).value();
+  ResultInputs inputs = Inputs();
+  inputs.interpretation = &interpretation;
+  ASSERT_TRUE(WriteResults(inputs, folder_.path(), pool));
+  EXPECT_NE(ReadAll(folder_.path() / "renders/thermal.png"), apparent);
+  EXPECT_EQ(ReadAll(folder_.path() / "renders/distance.png"), distance);
+}
+
 TEST_F(ResultsTest, ProgressRisesToOne) {
   ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
   double last = -1.0;

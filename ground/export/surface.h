@@ -17,7 +17,7 @@ struct CloudPoint {
   Eigen::Vector3f position_m = Eigen::Vector3f::Zero();  ///< In `world`.
   Eigen::Vector3f normal =
       Eigen::Vector3f::Zero();  ///< Unit, in `world`, towards the side it was observed from.
-  float celsius = NAN;          ///< Apparent temperature; NaN = never measured.
+  float celsius = NAN;          ///< Apparent temperature, or the object's; NaN = none.
   std::uint8_t distance_class = kNeverMeasured;
   std::uint8_t angle_class = kNeverMeasured;
   std::uint8_t motion_class = kNeverMeasured;
@@ -27,6 +27,7 @@ struct CloudPoint {
   float nuc_age_s = NAN;
   float measured_distance_m = NAN;
   float measured_angle_deg = NAN;  ///< To the surface as it is now.
+  float apparent_celsius = NAN;  ///< Kept by Interpretation; NaN = never measured.
 };
 
 /// The zero crossings of the model, and triangles between them. Points that no triangle uses are

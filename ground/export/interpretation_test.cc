@@ -1,0 +1,215 @@
+#include "ground/export/interpretation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "ground/ground_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr double kTableKelvin = 2e-3;  // Twice BandRadiance's interpolation error.
+
+class InterpretationTest : public ::testing::Test {
+ protected:
+  InterpretationTest() {
+    options_.set_emissivity(0.85);
+    options_.set_reflected_celsius(23.0);
+  }
+
+  void AddRegion(const char* name, const char* box, double emissivity, double reflected_celsius) {
+    InterpretedRegion& region = *options_.add_region();
+    region.set_name(name);
+    region.set_box(box);
+    region.set_emissivity(emissivity);
+    region.set_reflected_celsius(reflected_celsius);
+  }
+  Interpretation Make() const {
+    Result<Interpretation> interpretation = Interpretation::Create(options_);
+    EXPECT_TRUE(interpretation) << interpretation.error().message();
+    return std::move(*interpretation);
+  }
+  std::string Refusal() const {
+    const Result<Interpretation> interpretation = Interpretation::Create(options_);
+    return interpretation ? "" : interpretation.error().message();
+  }
+  static Surface SurfaceOf(std::initializer_list<std::pair<float, float>> x_and_celsius) {
+    Surface surface;
+    for (const auto& [x, celsius] : x_and_celsius) {
+      CloudPoint& point = surface.points.emplace_back();
+      point.position_m.x() = x;
+      point.celsius = celsius;
+    }
+    return surface;
+  }
+
+  InterpretationOptions options_;
+};
+
+TEST_F(InterpretationTest, GivesBackTheTemperatureThatLooksLikeThat) {
+  const Interpretation interpretation = Make();
+  const BandRadiance band;
+  for (const double object : {-30.0, 24.0, 100.0, 900.0}) {
+    const double apparent = ApparentCelsius(band, object, 0.85, 23.0);
+    EXPECT_NEAR(interpretation.ObjectCelsius(0, static_cast<float>(apparent)), object,
+                kTableKelvin);
+  }
+  EXPECT_TRUE(std::isnan(interpretation.ObjectCelsius(0, NAN)));
+}
+
+TEST_F(InterpretationTest, OtherBandsGiveOtherTemperatures) {
+  const float long_wave = Make().ObjectCelsius(0, 200.0F);
+  options_.set_band_min_um(3.0);
+  options_.set_band_max_um(5.0);
+  const BandRadiance mid_wave({3.0, 5.0});
+  const float celsius = Make().ObjectCelsius(0, 200.0F);
+  EXPECT_NEAR(ApparentCelsius(mid_wave, celsius, 0.85, 23.0), 200.0, kTableKelvin);
+  EXPECT_GT(std::abs(celsius - long_wave), 1.0);
+}
+
+TEST_F(InterpretationTest, LaterRegionsHoldWhereTheyOverlap) {
+  AddRegion("left", "0 -1 -1 2 1 1", 0.5, 30.0);
+  AddRegion("right", "1 -1 -1 3 1 1", 0.3, 40.0);
+  AddRegion("apart", "4 4 4 5 5 5", 0.3, 40.0);
+  const Interpretation interpretation = Make();
+  EXPECT_EQ(interpretation.PartAt({-0.5F, 0, 0}), 0U);
+  EXPECT_EQ(interpretation.PartAt({0.5F, 0, 0}), 1U);
+  EXPECT_EQ(interpretation.PartAt({1.5F, 0, 0}), 2U);
+  EXPECT_EQ(interpretation.PartAt({2.5F, 0, 0}), 2U);
+  EXPECT_EQ(interpretation.PartAt({2.5F, 1.5F, 0}), 0U);
+  EXPECT_THAT(interpretation.Overlaps(),
+              ElementsAre(HasSubstr("'left' and 'right' overlap: 'right', the later one, holds")));
+}
+
+TEST_F(InterpretationTest, RegionsTakeWhatTheyDoNotSetFromTheWholeModel) {
+  InterpretedRegion& region = *options_.add_region();
+  region.set_box("0 0 0 1 1 1");
+  region.set_emissivity(0.4);
+  const Interpretation interpretation = Make();
+  EXPECT_EQ(interpretation.parts()[1].reflected_celsius, 23.0);
+  EXPECT_EQ(interpretation.parts()[1].name, "region 1");
+}
+
+TEST_F(InterpretationTest, PointsKeepWhatWasMeasured) {
+  AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
+  const Interpretation interpretation = Make();
+  Surface surface = SurfaceOf({{-0.5F, 80.0F}, {0.5F, 80.0F}, {0.6F, NAN}});
+  const std::vector<PartReport> reports = interpretation.Apply(surface);
+  const BandRadiance band;
+  EXPECT_EQ(surface.points[1].apparent_celsius, 80.0F);
+  EXPECT_NEAR(surface.points[0].celsius, TrueCelsius(band, 80.0, 0.85, 23.0).value(), kTableKelvin);
+  EXPECT_NEAR(surface.points[1].celsius, TrueCelsius(band, 80.0, 0.5, 25.0).value(), kTableKelvin);
+  EXPECT_TRUE(std::isnan(surface.points[2].celsius));
+  EXPECT_EQ(reports[0].points, 1U);
+  EXPECT_EQ(reports[1].points, 2U);
+  EXPECT_EQ(reports[1].measured, 1U);
+  EXPECT_EQ(reports[1].unsolved(), 0U);
+  EXPECT_TRUE(interpretation.Errors(reports).empty());
+}
+
+TEST_F(InterpretationTest, WhatReflectsMoreThanWasMeasuredIsAnErrorOfItsRegionOnly) {
+  AddRegion("mirror", "0 -1 -1 1 1 1", 0.1, 200.0);
+  const Interpretation interpretation = Make();
+  Surface surface = SurfaceOf({{-0.5F, 50.0F}, {0.2F, 50.0F}, {0.3F, 60.0F}, {0.4F, 300.0F}});
+  const std::vector<PartReport> reports = interpretation.Apply(surface);
+  EXPECT_FALSE(std::isnan(surface.points[0].celsius));
+  EXPECT_TRUE(std::isnan(surface.points[1].celsius));
+  EXPECT_TRUE(std::isnan(surface.points[2].celsius));
+  EXPECT_FALSE(std::isnan(surface.points[3].celsius));
+  EXPECT_EQ(surface.points[1].apparent_celsius, 50.0F);
+  EXPECT_EQ(reports[1].reflects_too_much, 2U);
+  EXPECT_THAT(interpretation.Errors(reports),
+              ElementsAre(AllOf(HasSubstr("mirror: 2 of 3 measured points (50.0 to 60.0 °C"),
+                                HasSubstr("emissivity 0.1 and 200 °C reflected"),
+                                HasSubstr("more would be reflected than was measured"))));
+}
+
+TEST_F(InterpretationTest, TemperaturesBeyondTheRangeAreSaidToBe) {
+  AddRegion("tiny", "0 -1 -1 1 1 1", 0.05, 20.0);
+  const Interpretation interpretation = Make();
+  Surface surface = SurfaceOf({{0.5F, 900.0F}});
+  const std::vector<PartReport> reports = interpretation.Apply(surface);
+  EXPECT_EQ(reports[1].too_hot, 1U);
+  EXPECT_THAT(interpretation.Errors(reports), ElementsAre(HasSubstr("hotter than 1500 °C")));
+}
+
+TEST_F(InterpretationTest, ARegionWithWrongValuesIsLeftOutAndTheRestGoesOn) {
+  AddRegion("wrong", "0 -1 -1 1 1 1", 1.2, 25.0);
+  const Interpretation interpretation = Make();
+  Surface surface = SurfaceOf({{-0.5F, 50.0F}, {0.5F, 50.0F}});
+  const std::vector<PartReport> reports = interpretation.Apply(surface);
+  EXPECT_FALSE(std::isnan(surface.points[0].celsius));
+  EXPECT_TRUE(std::isnan(surface.points[1].celsius));
+  EXPECT_THAT(interpretation.Errors(reports),
+              ElementsAre(AllOf(HasSubstr("interpretation.region 'wrong': emissivity must be"),
+                                HasSubstr("got 1.2"), HasSubstr("its 1 measured points"))));
+  EXPECT_EQ(Validate(options_).code(), StatusCode::kInvalidArgument);
+}
+
+TEST_F(InterpretationTest, WrongValuesForTheWholeModelAreRefusedByName) {
+  for (const double wrong : {0.0, -0.1, 1.001, std::nan("")}) {
+    options_.set_emissivity(wrong);
+    EXPECT_THAT(Refusal(), HasSubstr("interpretation.emissivity must be above 0 and at most 1"));
+  }
+  options_.set_emissivity(1.0);
+  EXPECT_EQ(Refusal(), "");
+  options_.set_reflected_celsius(-101.0);
+  EXPECT_THAT(Refusal(), HasSubstr("interpretation.reflected_celsius"));
+  options_.set_reflected_celsius(23.0);
+  options_.set_band_max_um(7.0);
+  EXPECT_THAT(Refusal(), HasSubstr("interpretation.band_min_um"));
+}
+
+TEST_F(InterpretationTest, BoxesThatAreNoneAreRefusedByName) {
+  for (const char* wrong : {"", "0 0 0 1 1", "0 0 0 1 1 1 1", "0 0 0 1 one 1", "0 0 0 -1 1 1",
+                            "0 0 0 0 1 1", "nan 0 0 1 1 1", "0 0 0 inf 1 1"}) {
+    options_.clear_region();
+    AddRegion("pipe", wrong, 0.5, 25.0);
+    EXPECT_THAT(Refusal(), HasSubstr("interpretation.region 'pipe': box must be")) << wrong;
+  }
+}
+
+TEST_F(InterpretationTest, EmissivityOneChangesNothing) {
+  EXPECT_FALSE(Make().changes_nothing());
+  options_.set_emissivity(1.0);
+  EXPECT_TRUE(Make().changes_nothing());
+  EXPECT_EQ(Make().ObjectCelsius(0, 1530.0F), 1530.0F);  // Beyond the tables.
+  AddRegion("pipe", "0 0 0 1 1 1", 0.5, 25.0);
+  EXPECT_FALSE(Make().changes_nothing());
+}
+
+TEST_F(InterpretationTest, PicturesShowTheSameAsThePoints) {
+  AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
+  const Interpretation interpretation = Make();
+  SurfaceMaps maps;
+  maps.Resize(2, 1);
+  Image<float> celsius(2, 1);
+  for (const int x : {0, 1}) {
+    maps.vx.At(x, 0) = x == 0 ? -0.5F : 0.5F;
+    maps.vy.At(x, 0) = maps.vz.At(x, 0) = 0.0F;
+    celsius.At(x, 0) = 80.0F;
+  }
+  interpretation.Apply(maps, celsius);
+  EXPECT_EQ(celsius.At(0, 0), interpretation.ObjectCelsius(0, 80.0F));
+  EXPECT_EQ(celsius.At(1, 0), interpretation.ObjectCelsius(1, 80.0F));
+}
+
+TEST_F(InterpretationTest, StatsSayWhatWasAppliedAndToHowMuch) {
+  AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
+  const Interpretation interpretation = Make();
+  Surface surface = SurfaceOf({{-0.5F, 80.0F}, {0.5F, 80.0F}});
+  const std::string json = interpretation.Describe(interpretation.Apply(surface)).ToText();
+  for (const char* text :
+       {"\"whole model\"", "\"pipe\"", "\"emissivity\": 0.85", "\"emissivity\": 0.5",
+        "\"measured_points\": 1", "\"without_solution\": 0", "\"box_m\""}) {
+    EXPECT_THAT(json, HasSubstr(text));
+  }
+}
+
+}  // namespace
+}  // namespace isotherm
