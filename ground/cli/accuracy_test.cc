@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,15 +14,23 @@
 #include "common/config/text_proto.h"
 #include "common/dataset/import.h"
 #include "common/simulation/simulation_options.pb.h"
+#include "ground/cli/model_export.h"
 #include "ground/cli/result_evaluation.h"
 #include "ground/cli/simulation_files.h"
 #include "ground/cli/truth.h"
+#include "ground/evaluation/ply_reader.h"
 #include "ground/reconstruct.h"
 
 namespace isotherm {
 namespace {
 
 namespace fs = std::filesystem;
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
 
 class AccuracyTest : public testing::Test {
  protected:
@@ -113,6 +123,55 @@ TEST_F(AccuracyTest, RealKinectRoom) {
   EXPECT_LE(Compare(request).trajectory.aligned_m.rms, 0.05);
   request.first = 200;
   EXPECT_LE(Compare(request).trajectory.aligned_m.rms, 0.03);
+}
+
+// A patch of known emissivity and temperature: the calibrator's target (thesis table C.1), 0.95 and
+// 100 °C, in surroundings of 23 °C and other parts of 0.96.
+TEST_F(AccuracyTest, TemperatureInterpretedAfterwardsIsThatOfTheObject) {
+  SimulationOptions simulation;
+  const Status parsed = ParseTextProto(R"(
+duration_s: 1.0
+scene { scene: CALIBRATOR }
+thermal { rate_hz: 20 }
+shutter { interval_s: 0 first_s: 100 })",
+                                       "simulation", simulation);
+  ASSERT_TRUE(parsed.ok()) << parsed.message();
+  ThreadPool pool(2);
+  ASSERT_TRUE(RenderToFile(simulation, recording_, false, pool, [](double) {}).ok());
+  GroundOptions options;
+  options.mutable_volume()->set_voxel_size_m(0.004);
+  options.mutable_tsdf()->set_truncation_distance_m(0.016);
+  Run(options, recording_);
+  InterpretationOptions* interpretation = options.mutable_interpretation();
+  interpretation->set_emissivity(0.96);
+  InterpretedRegion* target = interpretation->add_region();
+  target->set_box("0.41 0.48 0.505 0.57 0.65 0.523");
+  target->set_emissivity(0.95);
+  const auto summary =
+      ExportModel(result_ / "model.iso", options, Interpretation::Create(*interpretation).value(),
+                  folder_ / "objects");
+  ASSERT_TRUE(summary) << summary.error().message();
+  EXPECT_EQ(summary->interpretation[1].unsolved(), 0U);
+
+  const auto cloud = ReadPly(folder_ / "objects" / "cloud.ply");
+  ASSERT_TRUE(cloud) << cloud.error().message();
+  const auto column = [&](const char* name) -> const std::vector<float>& {
+    return *cloud->Find(name);
+  };
+  constexpr float kInnerRadiusM = 0.06F;  // Of 0.076: away from the rim.
+  std::vector<double> object, apparent;
+  for (std::size_t i = 0; i < cloud->count; ++i) {
+    const float radius = std::hypot(column("x")[i] - 0.49F, column("y")[i] - 0.565F);
+    const bool on_target = radius < kInnerRadiusM && std::abs(column("z")[i] - 0.514F) < 0.006F;
+    if (!on_target || std::isnan(column("scalar_temperature")[i])) continue;
+    object.push_back(column("scalar_temperature")[i]);
+    apparent.push_back(column("apparent_temperature")[i]);
+  }
+  ASSERT_GT(object.size(), 300U);
+  constexpr double kTrueCelsius = 99.95;  // Falls from 100 to 99.85 towards the rim.
+  constexpr double kToleranceKelvin = 0.5;
+  EXPECT_NEAR(Median(object), kTrueCelsius, kToleranceKelvin);
+  EXPECT_LT(Median(apparent), kTrueCelsius - 2.0);  // Not interpreted it would be wrong.
 }
 
 // A phone's LiDAR: 256 x 192 pixels at 60 Hz, another depth unit. Nothing may depend on the usual

@@ -30,6 +30,7 @@ void AddInspectCommand(CLI::App& app, CommandBody& body);
 void AddReconstructCommand(CLI::App& app, CommandBody& body);
 void AddRenderCommand(CLI::App& app, CommandBody& body);
 void AddEvaluateCommand(CLI::App& app, CommandBody& body);
+void AddExportCommand(CLI::App& app, CommandBody& body);
 void AddSimulateCommand(CLI::App& app, CommandBody& body);
 void AddLimitsCommand(CLI::App& app, CommandBody& body);
 void AddDemoCommand(CLI::App& app, CommandBody& body);

@@ -47,6 +47,7 @@ int Main(int argc, char** argv) {
   AddReconstructCommand(app, body);
   AddRenderCommand(app, body);
   AddEvaluateCommand(app, body);
+  AddExportCommand(app, body);
   AddSimulateCommand(app, body);
   AddLimitsCommand(app, body);
   try {

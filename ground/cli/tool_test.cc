@@ -112,6 +112,34 @@ class ToolTest : public testing::Test {
     refused("out -o x.png --isotherms warm", kConfiguration, "'warm' is no temperature");
   }
 
+  // Results of out/model.iso with object temperatures; ASSERT needs a function of its own.
+  void ExportResult() const {
+    // The simulation's emissivity and surroundings give the objects' own temperatures.
+    const Outcome objects = Run("export out/model.iso -o objects --emissivity 0.96 --reflected 23");
+    ASSERT_EQ(objects.status, 0) << objects.err;
+    EXPECT_THAT(ReadAll(folder_ / "objects/cloud.ply"), HasSubstr("float apparent_temperature"));
+    EXPECT_THAT(ReadAll(folder_ / "objects/stats.json"), HasSubstr("\"emissivity\": 0.96"));
+    EXPECT_TRUE(fs::exists(folder_ / "objects/renders/thermal.png"));
+
+    const Outcome mirror =
+        Run("export out/model.iso -o mirror --emissivity 0.96 "
+            "--box '0 0 0 1 1 1: emissivity=0.2 reflected=300 name=mirror' "
+            "--box '0 0 0 0.2 1 1: emissivity=0.9'");
+    EXPECT_EQ(mirror.status, kData);
+    EXPECT_THAT(mirror.err, AllOf(HasSubstr("mirror: "), HasSubstr("more would be reflected")));
+    EXPECT_THAT(mirror.out, HasSubstr("overlap"));
+    EXPECT_TRUE(fs::exists(folder_ / "mirror/mesh.ply"));
+
+    const Outcome wrong =
+        Run("export out/model.iso -o wrong --emissivity 1.2 --box '0 0 0 1 1: emissivity=1'");
+    EXPECT_EQ(wrong.status, kConfiguration);
+    EXPECT_THAT(wrong.err, HasSubstr("--box: expected 6 numbers"));
+    EXPECT_FALSE(fs::exists(folder_ / "wrong"));
+    EXPECT_THAT(Run("export out/model.iso -o wrong --emissivity 1.2").err,
+                HasSubstr("interpretation.emissivity must be above 0 and at most 1, got 1.2"));
+    EXPECT_EQ(Run("export nowhere.iso -o wrong").status, kNoInput);
+  }
+
   fs::path folder_;
 };
 
@@ -122,8 +150,8 @@ TEST_F(ToolTest, HelpTeachesAndVersionNamesTheProgram) {
                               HasSubstr("78")));
   EXPECT_EQ(Run("").out, help.out);
   EXPECT_THAT(Run("--version").out, HasSubstr("isotherm 0."));
-  for (const std::string name :
-       {"demo", "import", "inspect", "reconstruct", "render", "evaluate", "simulate", "limits"}) {
+  for (const std::string name : {"demo", "import", "inspect", "reconstruct", "render", "evaluate",
+                                 "export", "simulate", "limits"}) {
     EXPECT_THAT(help.out, HasSubstr(name));
     const Outcome each = Run(name + " --help");
     EXPECT_EQ(each.status, 0);
@@ -210,6 +238,7 @@ TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
   EXPECT_THAT(Run("evaluate out --groundtruth scan.mcap").out, HasSubstr("rigidly aligned"));
   EXPECT_EQ(Run("evaluate out --groundtruth scan.mcap --emissivity 0.9").status, kUsage);
   RenderResult();
+  ExportResult();
 }
 
 TEST_F(ToolTest, LimitsComeAsOptionsOrAsOneSentence) {

@@ -1,0 +1,137 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "common/base/progress.h"
+#include "common/config/text_proto.h"
+#include "ground/cli/command.h"
+#include "ground/cli/interpretation_arguments.h"
+#include "ground/cli/model_export.h"
+#include "ground/export/interpretation.h"
+#include "ground/validate_options.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Temperatures in a model are apparent: those that black bodies would have. With an emissivity and the
+temperature of what is reflected they become those of the objects (3.1, Planck over the camera's
+band). DIR gets cloud.ply and mesh.ply with scalar_temperature (object) and apparent_temperature,
+renders/*.png and stats.json.
+
+A region is a box in `world`; it may have values of its own, and where regions overlap the later one
+holds. A regions file has one entry each:
+  region { name: "pipe" box: "0.1 0.1 0.7 0.3 0.9 0.8" emissivity: 0.3 reflected_celsius: 25 }
+Points that were measured but fit no temperature are NaN, are counted, and make the exit status 65;
+all files are written.
+
+Examples:
+  isotherm export out/model.iso -o out/objects --emissivity 0.85 --reflected 23
+  isotherm export out/model.iso -o out/objects --emissivity 0.95 \
+      --box "0.1 0.1 0.7 0.3 0.9 0.8: emissivity=0.3 reflected=25"
+  isotherm export out/model.iso -o out/objects --regions plant.textproto --label "pipe: emissivity=0.4")";
+
+struct Arguments {
+  std::string model, output, config;
+  InterpretationArguments interpretation;
+  std::optional<int> threads;
+  std::vector<std::string> overrides;
+};
+
+/// All that is wrong with the options at once, one problem per line; empty if they are fine. Values
+/// of single regions are left to Interpretation, which lets the rest go on.
+std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
+  std::string problems;
+  const auto add = [&](const Status& status) {
+    if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
+  };
+  if (!arguments.config.empty()) add(LoadTextProto(arguments.config, options));
+  for (const std::string& assignment : arguments.overrides)
+    add(ApplyOverride(assignment, options).WithContext("--set"));
+  if (arguments.threads) options.set_threads(*arguments.threads);
+  add(ApplyArguments(arguments.interpretation, *options.mutable_interpretation()));
+  if (!problems.empty()) return problems;
+  const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
+  if (!interpretation) add(interpretation.error());
+  GroundOptions others = options;
+  others.clear_interpretation();
+  for (const Status& status : ValidateAll(others)) add(status);
+  return problems;
+}
+
+void PrintSummary(const Interpretation& interpretation, const ResultSummary& summary,
+                  const std::string& folder) {
+  fmt::print("surface  {} points, {} with a temperature; {} triangles\n", summary.points,
+             summary.measured_points, summary.triangles);
+  for (std::size_t i = 0; i < interpretation.parts().size(); ++i) {
+    const InterpretedPart& part = interpretation.parts()[i];
+    fmt::print("{:<8} {}: emissivity {:g}, {:g} °C reflected: {} points measured\n",
+               i == 0 ? "applied" : "", part.name, part.emissivity, part.reflected_celsius,
+               summary.interpretation[i].measured);
+  }
+  for (const std::string& sentence : interpretation.Overlaps())
+    fmt::print("         {}\n", sentence);
+  if (summary.measured_points > 0) {
+    fmt::print("         {:.1f} to {:.1f} °C, mean {:.1f} °C (object temperature)\n",
+               summary.temperatures.min_celsius, summary.temperatures.max_celsius,
+               summary.temperatures.mean_celsius);
+  }
+  fmt::print("results  {}\n", folder);
+}
+
+int Run(const Arguments& arguments) {
+  GroundOptions options;
+  const std::string problems = CollectOptions(arguments, options);
+  if (!problems.empty()) return FailConfiguration(problems);
+  const Interpretation interpretation = Interpretation::Create(options.interpretation()).value();
+  ProgressBar progress("exporting", 0, "");
+  const Result<ResultSummary> summary =
+      ExportModel(arguments.model, options, interpretation, arguments.output,
+                  [&](std::string_view, double share) { progress.Update(share); });
+  if (!summary) return Fail(summary.error());
+  progress.Finish();
+  PrintSummary(interpretation, *summary, arguments.output);
+  int status = 0;
+  for (const std::string& sentence : interpretation.Errors(summary->interpretation))
+    status = Fail(FailedPrecondition(sentence));
+  return status;
+}
+
+}  // namespace
+
+void AddExportCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* command = app.add_subcommand(
+      "export", "Writes a saved model's results, with temperatures interpreted anew");
+  auto arguments = std::make_shared<Arguments>();
+  InterpretationArguments& interpretation = arguments->interpretation;
+  command->add_option("model", arguments->model, "Saved model (model.iso)")->required();
+  command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
+  command->add_option("--emissivity", interpretation.emissivity,
+                      "Of the whole model, above 0 and at most 1");
+  command->add_option("--reflected", interpretation.reflected_celsius,
+                      "Temperature of what the whole model reflects, °C");
+  command
+      ->add_option("--box", interpretation.boxes,
+                   "A region: two corners (metres, world), a colon, its values; repeatable")
+      ->take_all()
+      ->type_name("\"X Y Z X Y Z: emissivity=E reflected=T\"");
+  command->add_option("--regions", interpretation.regions, "File with regions (text format)");
+  command
+      ->add_option("--label", interpretation.labels,
+                   "Other values for a region of the file; repeatable")
+      ->take_all()
+      ->type_name("\"NAME: emissivity=E reflected=T\"");
+  command->add_option("--band", interpretation.band, "Of the thermal camera, \"min max\" um");
+  command->add_option("--config", arguments->config,
+                      "Configuration file (text format of isotherm.GroundOptions)");
+  command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
+  command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
+      ->take_all()
+      ->type_name("STAGE.FIELD=VALUE");
+  command->footer(kFooter);
+  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace isotherm

@@ -1,0 +1,93 @@
+#include "ground/cli/interpretation_arguments.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/config/nearest_name.h"
+#include "common/config/text_proto.h"
+#include "common/dataset/text_lines.h"
+#include "ground/cli/numbers.h"
+
+namespace isotherm {
+namespace {
+
+/// "emissivity=0.3 reflected=25" into a region.
+Status ReadValues(std::string_view values, std::string_view option, InterpretedRegion& region) {
+  bool any = false;
+  for (std::string_view word = NextWord(values); !word.empty(); word = NextWord(values)) {
+    const std::size_t equals = word.find('=');
+    const std::string key(word.substr(0, equals));
+    if (key == "name" && equals != std::string_view::npos) {
+      region.set_name(std::string(word.substr(equals + 1)));
+      continue;
+    }
+    if (equals == std::string_view::npos || (key != "emissivity" && key != "reflected")) {
+      return InvalidArgument(fmt::format(
+          "{}: '{}' is not known, expected emissivity=VALUE and reflected=VALUE", option, word));
+    }
+    const Result<double> value = ParseNumber(word.substr(equals + 1));
+    if (!value)
+      return InvalidArgument(fmt::format("{}: {}: {}", option, key, value.error().message()));
+    if (key == "emissivity") region.set_emissivity(*value);
+    if (key == "reflected") region.set_reflected_celsius(*value);
+    any = true;
+  }
+  if (any) return OkStatus();
+  return InvalidArgument(fmt::format(
+      "{}: nothing to interpret with, expected emissivity=VALUE or reflected=VALUE after "
+      "the colon",
+      option));
+}
+
+Status AddBox(const std::string& text, InterpretationOptions& options) {
+  const std::size_t colon = text.find(':');
+  const std::string corners = text.substr(0, colon);
+  const auto numbers = ParseNumbers(corners, {6}, "--box");
+  if (!numbers) return numbers.error();
+  InterpretedRegion& region = *options.add_region();
+  region.set_box(corners);
+  region.set_name(fmt::format("box {}", corners));
+  return ReadValues(colon == std::string::npos ? "" : std::string_view(text).substr(colon + 1),
+                    fmt::format("--box \"{}\"", text), region);
+}
+
+Status ChangeLabel(const std::string& text, InterpretationOptions& options) {
+  const std::size_t colon = text.rfind(':');
+  const std::string name = text.substr(0, colon);
+  const auto region = std::ranges::find_if(
+      *options.mutable_region(), [&](const InterpretedRegion& r) { return r.name() == name; });
+  if (region == options.mutable_region()->end()) {
+    std::vector<std::string> names;
+    for (const InterpretedRegion& known : options.region()) names.push_back(known.name());
+    return InvalidArgument(fmt::format(
+        "--label: there is no region '{}'.{} {}", name, DidYouMean(name, names),
+        names.empty() ? "--regions FILE brings them" : "Known are " + JoinNames(names)));
+  }
+  return ReadValues(colon == std::string::npos ? "" : std::string_view(text).substr(colon + 1),
+                    fmt::format("--label \"{}\"", text), *region);
+}
+
+}  // namespace
+
+Status ApplyArguments(const InterpretationArguments& arguments, InterpretationOptions& options) {
+  if (!arguments.regions.empty()) {
+    InterpretationOptions file;
+    ISOTHERM_RETURN_IF_ERROR(LoadTextProto(arguments.regions, file));
+    options.MergeFrom(file);
+  }
+  if (arguments.emissivity) options.set_emissivity(*arguments.emissivity);
+  if (arguments.reflected_celsius) options.set_reflected_celsius(*arguments.reflected_celsius);
+  if (!arguments.band.empty()) {
+    const auto band = ParseNumbers(arguments.band, {2}, "--band");
+    if (!band) return band.error();
+    options.set_band_min_um(band->front());
+    options.set_band_max_um(band->back());
+  }
+  for (const std::string& label : arguments.labels)
+    ISOTHERM_RETURN_IF_ERROR(ChangeLabel(label, options));
+  for (const std::string& box : arguments.boxes) ISOTHERM_RETURN_IF_ERROR(AddBox(box, options));
+  return OkStatus();
+}
+
+}  // namespace isotherm

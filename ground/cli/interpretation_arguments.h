@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/status.h"
+#include "ground/ground_options.pb.h"
+
+namespace isotherm {
+
+/// How `isotherm export` is told what to interpret.
+struct InterpretationArguments {
+  std::optional<double> emissivity, reflected_celsius;
+  std::string band;                 ///< "min max", um; empty: as in the options.
+  std::string regions;              ///< Text format of InterpretationOptions.
+  std::vector<std::string> boxes;   ///< "x0 y0 z0 x1 y1 z1: emissivity=0.3 reflected=25".
+  std::vector<std::string> labels;  ///< "NAME: emissivity=0.3 reflected=25", a region's name.
+};
+
+/// Puts the arguments over `options`: the regions file, then what holds for the whole model, then
+/// labels, and boxes after all regions. Says what cannot be read; values are checked later.
+Status ApplyArguments(const InterpretationArguments& arguments, InterpretationOptions& options);
+
+}  // namespace isotherm

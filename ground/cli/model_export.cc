@@ -1,0 +1,52 @@
+#include "ground/cli/model_export.h"
+
+#include <optional>
+#include <utility>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/config/text_proto.h"
+#include "ground/cli/simulation_files.h"
+#include "ground/model/load_model.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+/// What the model's depth camera saw last; nullopt if the model knows no pose.
+std::optional<SurfaceMaps> CastLastView(const LoadedModel& model, const GroundOptions& options,
+                                        ThreadPool& pool) {
+  if (!model.rig.depth || model.known_poses.empty()) return std::nullopt;
+  SurfaceMaps maps;
+  Raycaster().Cast(*model.tsdf, model.rig.depth->WithoutDistortion(), model.known_poses.back(),
+                   static_cast<float>(options.raycast().min_weight()), pool, maps);
+  return maps;
+}
+
+}  // namespace
+
+Result<ResultSummary> ExportModel(const std::filesystem::path& model_path, GroundOptions options,
+                                  const Interpretation& interpretation,
+                                  const std::filesystem::path& dir,
+                                  const ResultProgress& progress) {
+  const Result<LoadedModel> model = LoadModel(model_path, options);
+  if (!model) return Err(model.error());
+  if (Status status = PrepareOutputDir(dir); !status.ok()) return Err(status);
+  ThreadPool pool(ChosenThreads(options.threads()));
+  const std::optional<SurfaceMaps> view = CastLastView(*model, options, pool);
+  Json stats;
+  stats["source"]["model"] = model_path.filename().string();
+  stats["configuration"] = ToTextProto(options);
+  ResultInputs inputs{.tsdf = *model->tsdf,
+                      .thermal = *model->thermal,
+                      .trajectory = std::nullopt,
+                      .view = view ? &*view : nullptr,
+                      .renderer_options = options.renderer(),
+                      .thermal_options = options.thermal(),
+                      .export_options = options.export_(),
+                      .interpretation = &interpretation,
+                      .stats = std::move(stats)};
+  if (view) inputs.viewer_world = model->known_poses.back().translation();
+  return WriteResults(inputs, dir, pool, progress);
+}
+
+}  // namespace isotherm
