@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/config/rig_calibration.h"
+#include "common/config/text_proto.h"
 #include "common/dataset/trajectory.h"
 #include "ground/cli/truth.h"
 #include "ground/evaluation/point_sets.h"
