@@ -90,15 +90,13 @@ std::optional<RigidTransform> LastKnownPose(const GroundPipeline& pipeline) {
 
 }  // namespace
 
-FeedbackMaker::FeedbackMaker(const GroundOptions& options, const FeedbackOptions& feedback,
-                             const RigDescription& rig)
+FeedbackMaker::FeedbackMaker(const GroundOptions& options, const RigDescription& rig)
     : options_(options),
-      feedback_options_(feedback),
       rig_(rig.rig),
       session_(rig.session),
       T_depth_thermal_(rig.rig.T_thermal_depth ? rig.rig.T_thermal_depth->inverse()
                                                : RigidTransform::Identity()),
-      adviser_(feedback, options.thermal()) {}
+      adviser_(options.feedback(), options.thermal()) {}
 
 SurfaceAreas FeedbackMaker::areas() const {
   SurfaceAreas sum;
@@ -117,7 +115,7 @@ ViewPlanner* FeedbackMaker::Planner(const GroundPipeline& pipeline) {
   if (!rig_.depth || !rig_.thermal || !rig_.T_thermal_depth) return nullptr;
   if (!planner_ || planned_map_ != pipeline.atlas().active_index()) {
     planned_map_ = pipeline.atlas().active_index();
-    planner_.emplace(feedback_options_, options_.thermal(), rig_,
+    planner_.emplace(options_.feedback(), options_.thermal(), rig_,
                      static_cast<float>(options_.raycast().min_weight()));
   }
   return &*planner_;
@@ -127,7 +125,7 @@ CoverageSummary FeedbackMaker::LookAtView(GroundPipeline& pipeline) {
   const ModelView& model = pipeline.view();
   view_.Resize(0, 0);
   if (model.maps.width() == 0) return {};
-  const int columns = std::max(kLeastColumns, feedback_options_.picture_width_px());
+  const int columns = std::max(kLeastColumns, options_.feedback().picture_width_px());
   Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
   // Distances and angles are limits of the thermal camera.
   SampleView(maps_, (model.T_world_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
@@ -194,7 +192,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipel
   feedback.done = adviser_.done();
   AddNextPose(pipeline, moment.report.tracked ? &moment.report.tracking.T_world_depth : nullptr,
               feedback);
-  if (feedback_options_.picture_width_px() > 0 && view_.width() > 0) {
+  if (options_.feedback().picture_width_px() > 0 && view_.width() > 0) {
     feedback.picture = EncodeWithin(
         DrawConfidence(view_, feedback.tracking_state == TrackingState::kLost), kMaxPictureBytes);
   }
@@ -215,7 +213,7 @@ void FeedbackMaker::ThinkAhead(GroundPipeline& pipeline) {
         const GridIndex first = pipeline.tsdf().block_coordinates(block) * kBlockSide;
         return has_spilled && (first.cast<double>() - rig_vox).norm() > reach_vox;
       },
-      feedback_options_.blocks_per_message(), pipeline.pool());
+      options_.feedback().blocks_per_message(), pipeline.pool());
   ViewPlanner* planner = Planner(pipeline);
   if (planner == nullptr || pipeline.view().maps.width() == 0 || adviser_.done()) return;
   planner->Step(pipeline.tsdf(), pipeline.thermal(), coverage, pipeline.view().T_world_depth,

@@ -27,8 +27,7 @@ struct FeedbackMoment {
 /// time after each message (ThinkAhead). Thread-bound.
 class FeedbackMaker {
  public:
-  FeedbackMaker(const GroundOptions& options, const FeedbackOptions& feedback,
-                const RigDescription& rig);
+  FeedbackMaker(const GroundOptions& options, const RigDescription& rig);
 
   Feedback Make(const FeedbackMoment& moment, GroundPipeline& pipeline);
   /// Goes on with the coverage of the whole model and with the search for the next view.
@@ -52,7 +51,6 @@ class FeedbackMaker {
   ViewPlanner* Planner(const GroundPipeline& pipeline);
 
   const GroundOptions options_;
-  const FeedbackOptions feedback_options_;
   const Rig rig_;
   const std::uint64_t session_;
   const RigidTransform T_depth_thermal_;

@@ -14,7 +14,6 @@
 #include "common/config/text_proto.h"
 #include "common/time/clock.h"
 #include "common/transport/transport_environment.h"
-#include "ground/feedback/advice.h"
 #include "ground/ground_options.pb.h"
 #include "ground/ground_service.h"
 #include "ground/validate_options.h"
@@ -56,7 +55,6 @@ struct CommandLine {
   std::optional<std::string> config, output, edge_id;
   std::optional<int> domain, threads;
   std::vector<std::string> overrides;
-  std::vector<std::string> feedback;
   bool once = false;
   bool no_record = false;
   LogLevel log_level = LogLevel::kInfo;
@@ -77,10 +75,6 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_option("--domain", line.domain, "DDS domain, 0..230")->type_name("N");
   app.add_option("--threads", line.threads, "Threads of the reconstruction, 0 = one per core")
       ->type_name("N");
-  app.add_option("--feedback", line.feedback,
-                 "Set an option of the operator's feedback, e.g. done_share=0.9; repeatable")
-      ->type_name("FIELD=VALUE")
-      ->allow_extra_args(false);
   app.add_flag("--once", line.once,
                "Serve one scan, write its results into DIR itself, then leave");
   app.add_flag("--no-record", line.no_record, "Do not record what is received");
@@ -126,22 +120,11 @@ int Main(int argc, char** argv) {
     for (const Status& problem : problems) LOG(Ground, Error) << problem.message();
     return kExitConfiguration;
   }
-  ServiceMode mode{.single_scan = line.once, .feedback = {}};
-  for (const std::string& assignment : line.feedback) {
-    if (const Status applied = ApplyOverride(assignment, mode.feedback); !applied.ok()) {
-      LOG(Ground, Error) << applied.WithContext("--feedback").message();
-      return kExitConfiguration;
-    }
-  }
-  if (const Status valid = Validate(mode.feedback); !valid.ok()) {
-    LOG(Ground, Error) << valid.message();
-    return kExitConfiguration;
-  }
   LOG(Ground, Debug) << "effective configuration:\n" << ToTextProto(options);
   StopSignal signal;
   const SystemClock clock;
   const TransportEnvironment environment(clock);
-  return RunGround(options, mode, environment, clock, signal);
+  return RunGround(options, {line.once}, environment, clock, signal);
 }
 
 }  // namespace

@@ -144,8 +144,7 @@ class ReconstructionLoop {
   void Handle(const SessionStart& start) {
     End(last_account_);
     start_ = start;
-    Result<std::unique_ptr<LiveScan>> scan =
-        LiveScan::Create(clock_, options_, mode_.feedback, start.rig);
+    Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
     if (!scan) {
       LOG(Ground, Error) << "session " << start.rig.session
                          << " is recorded only: " << scan.error().message();

@@ -2,7 +2,6 @@
 
 #include "common/time/clock.h"
 #include "common/transport/transport_environment.h"
-#include "ground/feedback/feedback_options.pb.h"
 #include "ground/ground_options.pb.h"
 
 namespace isotherm {
@@ -12,7 +11,6 @@ class StopSignal;
 struct ServiceMode {
   bool single_scan =
       false;  ///< Results go straight into live.output_dir; leave when the scan has ended.
-  FeedbackOptions feedback;
 };
 
 /// The threaded driver:

@@ -28,17 +28,14 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
 }
 
 Result<std::unique_ptr<LiveScan>> LiveScan::Create(const Clock& clock, const GroundOptions& options,
-                                                   const FeedbackOptions& feedback,
                                                    const RigDescription& rig) {
   Result<std::unique_ptr<GroundPipeline>> pipeline =
       GroundPipeline::Create(options, rig.rig, std::nullopt);
   if (!pipeline) return Err(pipeline.error());
-  return std::unique_ptr<LiveScan>(
-      new LiveScan(clock, options, feedback, rig, std::move(*pipeline)));
+  return std::unique_ptr<LiveScan>(new LiveScan(clock, options, rig, std::move(*pipeline)));
 }
 
-LiveScan::LiveScan(const Clock& clock, const GroundOptions& options,
-                   const FeedbackOptions& feedback, const RigDescription& rig,
+LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
                    std::unique_ptr<GroundPipeline> pipeline)
     : clock_(clock),
       options_(options),
@@ -47,8 +44,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options,
       keeps_up_(options.live().max_wait_s() > 0.0 && !rig.waits_for_ground),
       pipeline_(std::move(pipeline)),
       assembler_(rig.rig.thermal.has_value()),
-      done_share_(feedback.done_share()),
-      feedback_(options, feedback, rig) {}
+      feedback_(options, rig) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
   if (keeps_up_) KeepUp(clock_.Now() - depth.queued);
@@ -156,9 +152,11 @@ void LiveScan::TellWhenDone() {
   told_done_ = feedback_.done();
   const SurfaceAreas areas = feedback_.areas();
   LOG(Ground, Info) << fmt::format(
-      "{}: {:.1f} % of {:.3f} m2 of surface are measured well, {:.1f} % are asked for",
+      "{}: {:.1f} % of {:.3f} m2 of surface are measured well, {:.1f} % are asked for "
+      "(feedback.done_share)",
       told_done_ ? "the scan is done" : "the scan is not done any more: there is more surface",
-      100.0 * areas.good_m2 / areas.total_m2(), areas.total_m2(), 100.0 * done_share_);
+      100.0 * areas.good_m2 / areas.total_m2(), areas.total_m2(),
+      100.0 * options_.feedback().done_share());
 }
 
 void LiveScan::ThinkAhead() {

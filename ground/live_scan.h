@@ -31,7 +31,6 @@ class LiveScan {
  public:
   /// `clock` must outlive the scan; it is only asked how long frames waited.
   static Result<std::unique_ptr<LiveScan>> Create(const Clock& clock, const GroundOptions& options,
-                                                  const FeedbackOptions& feedback,
                                                   const RigDescription& rig);
 
   void Add(const ReceivedDepth& depth);
@@ -55,8 +54,8 @@ class LiveScan {
   const Rig& rig() const { return rig_; }
 
  private:
-  LiveScan(const Clock& clock, const GroundOptions& options, const FeedbackOptions& feedback,
-           const RigDescription& rig, std::unique_ptr<GroundPipeline> pipeline);
+  LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
+           std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
   void NoteTurn(const void* frame);
   /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
@@ -72,7 +71,6 @@ class LiveScan {
   const bool keeps_up_;
   std::unique_ptr<GroundPipeline> pipeline_;
   Assembler assembler_;
-  const double done_share_;
   FeedbackMaker feedback_;
   FeedbackMoment moment_;  ///< Of the newest depth frame.
   bool feedback_waiting_ = false;

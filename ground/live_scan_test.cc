@@ -30,7 +30,7 @@ class LiveScanTest : public ::testing::Test {
     options_.set_threads(2);
   }
   void Start() {
-    auto created = LiveScan::Create(clock_, options_, feedback_options_, rig_);
+    auto created = LiveScan::Create(clock_, options_, rig_);
     ASSERT_TRUE(created.has_value()) << created.error().message();
     scan_ = std::move(*created);
   }
@@ -73,7 +73,6 @@ class LiveScanTest : public ::testing::Test {
 
   FakeClock clock_{CaptureTime(FromSeconds(1000.0))};
   GroundOptions options_;
-  FeedbackOptions feedback_options_;
   RigDescription rig_;
   std::unique_ptr<LiveScan> scan_;
 };
@@ -233,7 +232,7 @@ TEST_F(LiveScanTest, TheNextViewIsGivenInWorldAndFromTheRig) {
   }
   ASSERT_TRUE(feedback.has_value());
   ASSERT_TRUE(feedback->T_world_depth_next.has_value());
-  EXPECT_GT(feedback->next_gain_m2, feedback_options_.min_gain_m2());
+  EXPECT_GT(feedback->next_gain_m2, options_.feedback().min_gain_m2());
   ASSERT_TRUE(feedback->T_depth_next.has_value());
   EXPECT_TRUE((*feedback->T_world_depth * *feedback->T_depth_next)
                   .isApprox(*feedback->T_world_depth_next, 1e-9));
@@ -241,8 +240,8 @@ TEST_F(LiveScanTest, TheNextViewIsGivenInWorldAndFromTheRig) {
 
 TEST_F(LiveScanTest, EnoughOfTheSurfaceMeasuredWellIsDone) {
   options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
-  feedback_options_.set_done_share(0.01);
-  feedback_options_.set_settle_s(0.0);
+  options_.mutable_feedback()->set_done_share(0.01);
+  options_.mutable_feedback()->set_settle_s(0.0);
   Start();
   std::optional<Feedback> feedback;
   for (int i = 0; i < 10; ++i) {

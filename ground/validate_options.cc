@@ -7,6 +7,7 @@
 #include "common/geometry/pose_text.h"
 #include "ground/export/interpretation.h"
 #include "ground/export/results.h"
+#include "ground/feedback/advice.h"
 #include "ground/ground_options.pb.h"
 #include "ground/relocaliser/relocaliser.h"
 #include "ground/renderer/renderer.h"
@@ -61,6 +62,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   check(Validate(options.export_()));
   check(Validate(options.interpretation()));
   check(Validate(options.live()));
+  check(Validate(options.feedback()));
   if (options.threads() < 0 || options.threads() > 256) {
     check(InvalidArgument(
         fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));

@@ -8,7 +8,6 @@
 #include "common/base/status.h"
 #include "common/time/time_types.h"
 #include "ground/feedback/coverage.h"
-#include "ground/feedback/feedback_options.pb.h"
 #include "ground/ground_options.pb.h"
 
 namespace isotherm {

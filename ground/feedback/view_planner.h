@@ -6,7 +6,6 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
-#include "ground/feedback/feedback_options.pb.h"
 #include "ground/feedback/model_coverage.h"
 #include "ground/ground_options.pb.h"
 #include "ground/thermal/thermal_fuser.h"
