@@ -213,7 +213,6 @@ Rgb8 Renderer::ColourOf(double celsius, const TemperatureScale& scale) const {
 ScaleLegend Renderer::ThermalLegend(const std::optional<TemperatureScale>& scale,
                                     bool with_lines) const {
   ScaleLegend legend;
-  legend.title = "apparent temperature";
   legend.scale = scale;
   legend.rule = "scale: " + ScaleRuleName(options_);
   legend.unit = DisplayUnitOf(options_.unit());
@@ -256,8 +255,9 @@ RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<Temperature
     }
   }
   if (!options_.legend()) return picture;
-  return WithLegend(picture, ThermalLegend(scale, contours != nullptr),
-                    [&](double celsius) { return ColourOf(celsius, *scale); });
+  ScaleLegend legend = ThermalLegend(scale, contours != nullptr);
+  legend.title = view.celsius_meaning;
+  return WithLegend(picture, legend, [&](double celsius) { return ColourOf(celsius, *scale); });
 }
 
 RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& classes,

@@ -24,6 +24,9 @@ struct ViewMaps {
       cos_view;  ///< |cos| of the angle between normal and line of sight; NaN = no surface.
   Image<float> distance_m;  ///< From the viewer to the surface; NaN = no surface.
 
+  /// Whose temperatures `celsius` holds, for legends.
+  const char* celsius_meaning = "apparent temperature";
+
   int width() const { return celsius.width(); }
   int height() const { return celsius.height(); }
   void Resize(int width, int height);
