@@ -54,6 +54,10 @@ Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
         FailedPrecondition("the rig calibration has no depth intrinsics: nothing can be "
                            "reconstructed without a depth camera"));
   }
+  if (options.tracker().use_thermal()) {
+    if (Status status = CheckThermalFusion(rig); !status.ok())
+      return Err(status.WithContext("tracker.use_thermal"));
+  }
   if (initial_pose && !IsRigid(*initial_pose))
     return Err(InvalidArgument("the first frame's pose is not a rigid motion with finite numbers"));
   if (!initial_pose && !options.volume().initial_pose().empty()) {
@@ -84,6 +88,7 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
   fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
                                           static_cast<float>(options.raycast().min_weight()));
   near_holes_.emplace(options.thermal(), fuser_->ideal_camera(), *rig.T_thermal_depth);
+  if (options.tracker().use_thermal()) tracker_.UseThermal(*rig.thermal, *rig.T_thermal_depth);
 }
 
 Status GroundPipeline::Continue(const ModelFile& model) {
@@ -298,6 +303,7 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
              frame->centikelvin.height() != rig_.thermal->height) {
     LeaveOut("wrong_size");
   } else {
+    tracker_.AddThermal(frame);
     waiting_thermal_.push_back({std::move(frame), nuc});
     // A depth stream that stopped must not make the buffer grow.
     constexpr std::size_t kMaxWaiting = 64;

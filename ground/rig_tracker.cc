@@ -1,8 +1,10 @@
 #include "ground/rig_tracker.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/base/log.h"
+#include "ground/tracker/thermal_cue.h"
 
 namespace isotherm {
 namespace {
@@ -31,6 +33,19 @@ RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_ca
       outside_(options.tracker().outside()) {
   view_.camera = depth_camera.Downscaled(options.raycast().halvings());
   candidate_.camera = view_.camera;
+}
+
+RigTracker::~RigTracker() = default;
+
+void RigTracker::UseThermal(const CameraModel& thermal_camera,
+                            const RigidTransform& T_thermal_depth) {
+  cue_ =
+      std::make_unique<ThermalCue>(thermal_camera, T_thermal_depth,
+                                   options_.thermal_min_gradient_k_m(), options_.prior_sigma_m_s());
+}
+
+void RigTracker::AddThermal(ThermalFramePtr frame) {
+  if (cue_) cue_->Add(std::move(frame));
 }
 
 TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
@@ -62,7 +77,11 @@ PriorError RigTracker::InertialError(CaptureTime time, double mean_depth_m) cons
 
 TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
                                   const TsdfVolume& volume, ThreadPool& pool) {
-  const auto track = [&](const IcpTracker::Start& start) {
+  const auto track = [&](IcpTracker::Start start) {
+    if (cue_ && state_ == State::kFollowing) {
+      cue_->Begin(motion_.last(), time, start.guess);
+      start.cue = cue_.get();
+    }
     TrackingResult result = tracker_.Track(depth, view_, volume.grid(), start, pool);
     if (result.tracked()) result.lost = FindAnomaly(result);
     return result;
@@ -173,6 +192,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
     motion_.Clear();
     outside_.Reset();
     speed_is_known_ = false;
+    if (cue_) cue_->Forget();
     return result;
   }
   motion_.Add({time, result.T_world_depth});
@@ -190,6 +210,7 @@ void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
   trusted_pose_ = result.T_world_depth;
   trusted_time_ = time;
   has_trusted_pose_ = true;
+  if (cue_) cue_->End(motion_.before_last(), *motion_.last(), uncertainty_.surface_sigma_m());
   if (result.iterations == 0) return;  // Not tracked against anything.
   if (motion_.before_last() && result.verdict() == Verdict::kTracked) speed_is_known_ = true;
   constexpr double kNewShare = 0.1;
@@ -204,6 +225,7 @@ void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
 void RigTracker::Forget() {
   motion_.Clear();
   outside_.Reset();
+  if (cue_) cue_->Forget();
   has_trusted_pose_ = false;
   speed_is_known_ = false;
 }
@@ -211,6 +233,7 @@ void RigTracker::Forget() {
 void RigTracker::Rebase(const RigidTransform& T_new_old) {
   motion_.Transform(T_new_old);
   outside_.Transform(T_new_old);
+  if (cue_) cue_->Forget();
   trusted_pose_ = T_new_old * trusted_pose_;
   view_.T_world_depth = T_new_old * view_.T_world_depth;
   uncertainty_.Rotate(T_new_old.linear());

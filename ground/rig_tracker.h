@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "common/concurrency/thread_pool.h"
+#include "common/frame/frame.h"
 #include "ground/atlas/sub_map.h"
 #include "ground/ground_options.pb.h"
 #include "ground/tracker/icp_tracker.h"
@@ -28,6 +30,11 @@ class RigTracker {
   };
 
   RigTracker(const GroundOptions& options, const CameraModel& depth_camera);
+  ~RigTracker();
+  /// From now on, temperatures help where the geometry does not suffice.
+  void UseThermal(const CameraModel& thermal_camera, const RigidTransform& T_thermal_depth);
+  /// A valid thermal frame of the camera's size, before the first depth frame after it.
+  void AddThermal(ThermalFramePtr frame);
 
   /// What a source outside says about the rig's motion, in order of capture time, ideally before
   /// the first depth frame that is not older.
@@ -100,6 +107,7 @@ class RigTracker {
   const RelocaliserOptions relocaliser_options_;
   const float min_weight_;
   IcpTracker tracker_;
+  std::unique_ptr<ThermalCue> cue_;
   Raycaster raycaster_;
   ModelView view_;
   ModelView candidate_;  ///< The model from a pose where the rig may be.

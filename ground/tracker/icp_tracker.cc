@@ -10,6 +10,7 @@
 
 #include "ground/tracker/icp_kernel.h"
 #include "ground/tracker/outside_stream.h"
+#include "ground/tracker/thermal_cue.h"
 
 namespace isotherm {
 namespace {
@@ -54,6 +55,18 @@ Matrix6 ObservedCovariance(const IcpSums& sums, const TrackingResult& result) {
       basis.transpose() * sums.H * basis / weight;
   return basis * information.inverse() * basis.transpose() *
          (result.residual_m * result.residual_m / samples);
+}
+
+/// Free axes that temperatures observe are free no more.
+void Adopt(const ThermalFit& fit, TrackingResult& result) {
+  MotionSpace& motion = result.motion;
+  const Matrix6 before = motion.axes;
+  motion.axes.leftCols(motion.free_axes) = before.leftCols(motion.free_axes) * fit.turn;
+  motion.free_axes -= fit.observed;
+  for (int i = 0; i < fit.observed; ++i) {
+    const Vector6 twist = motion.scale.cwiseProduct(motion.axes.col(motion.free_axes + i));
+    result.covariance += fit.variance_m2(i) * twist * twist.transpose();
+  }
 }
 
 }  // namespace
@@ -116,6 +129,11 @@ Status Validate(const TrackerOptions& o) {
   if (!(o.prior_sigma_m_s() >= 0.0 && o.prior_sigma_m_s() <= 100.0)) {
     return InvalidArgument(
         fmt::format("tracker.prior_sigma_m_s must be 0..100 m/s, got {}", o.prior_sigma_m_s()));
+  }
+  if (!(o.thermal_min_gradient_k_m() > 0.0 && o.thermal_min_gradient_k_m() <= 10'000.0)) {
+    return InvalidArgument(fmt::format(
+        "tracker.thermal_min_gradient_k_m must be above 0 and at most 10000 K/m, got {}",
+        o.thermal_min_gradient_k_m()));
   }
   return Validate(o.outside());
 }
@@ -181,6 +199,7 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   if (!result.motion.fully_observed()) {
     ApplyTwist(result.motion.FreePart(TwistBetween(start.guess, start.prior)),
                result.T_world_depth);
+    if (start.cue != nullptr) start.cue->Align(result.motion, model.maps, result.T_world_depth);
   }
   IcpSums last;
   const std::array<int, kPyramidLevels> iterations = {
@@ -212,6 +231,11 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   result.T_world_depth.linear() =
       Eigen::Quaterniond(result.T_world_depth.linear()).normalized().toRotationMatrix();
   result.covariance = ObservedCovariance(last, result);
+  if (start.cue != nullptr && !result.motion.fully_observed()) {
+    // Once more, where the geometry has put it.
+    const auto fit = start.cue->Align(result.motion, model.maps, result.T_world_depth);
+    if (fit) Adopt(*fit, result);
+  }
   result.step_m = TranslationDistance(model.T_world_depth, result.T_world_depth);
   result.step_rad = RotationAngle(model.T_world_depth, result.T_world_depth);
   // The normals of a young model are too rough to reject correspondences fairly.

@@ -13,6 +13,8 @@
 
 namespace isotherm {
 
+class ThermalCue;
+
 /// Why a frame could not be tracked.
 enum class LostReason {
   kNone,
@@ -80,11 +82,12 @@ class IcpTracker {
   struct Start {
     RigidTransform guess;
     RigidTransform prior;
+    ThermalCue* cue = nullptr;  ///< Goes before the prior where it observes something.
   };
 
   /// Finds T_world_depth of `depth` near the guess. Residuals are weighted by the sensor's depth
   /// noise (variance grows with the fourth power of the depth). In directions along which the view
-  /// slides on itself (a plane, a cylinder), the pose is the prior's.
+  /// slides on itself (a plane, a cylinder), the pose is the cue's or else the prior's.
   TrackingResult Track(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
                        const Start& start, ThreadPool& pool) const;
 

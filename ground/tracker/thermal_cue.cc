@@ -1,0 +1,340 @@
+#include "ground/tracker/thermal_cue.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/check.h"
+#include "ground/tracker/icp_tracker.h"
+#include "ground/tracker/surface_maps.h"
+
+namespace isotherm {
+namespace {
+
+constexpr int kHalvings = 2;
+constexpr int kCell = 1 << kHalvings;
+constexpr int kCellPixels = kCell * kCell;
+
+/// Points across the model's view: about 2000 in all.
+constexpr int kPointsAcross = 54;
+constexpr std::size_t kFewestSamples = 300;
+/// A reference of which less than this share is in view is replaced.
+constexpr double kMinOverlap = 0.6;
+
+constexpr int kMostIterations = 20;  ///< Two or three do, but after a while without pictures.
+constexpr double kConvergedM = 1e-4;
+/// Further off than this from the motion before, the picture is not where it seems to be.
+constexpr double kMaxShiftM = 0.1;
+/// Residuals beyond this many standard deviations (by the median, so that they do not count) are
+/// something else than noise, and than the picture's shift.
+constexpr double kOutlier = 3.0;
+constexpr double kSigmaOfMedian = 1.4826;
+constexpr double kLeastSpreadK = 0.02;  ///< Of centi-kelvins, however little noise there is.
+/// Of the reference's variance: a fit that explains less than the rest is none.
+constexpr double kMaxUnexplained = 0.25;
+/// Neighbouring cells share pixels by interpolation: about one of this many samples counts.
+constexpr double kSamplesPerValue = 4.0;
+
+/// Older frames say nothing about where the first depth frame was.
+constexpr double kMaxAgeAtStartS = 0.05;
+
+/// Changes their order; there must be some.
+double TakeMedian(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+/// About the mean over the samples, so that the level does not count.
+struct ThermalCue::Sums {
+  int in_view = 0;
+  int count = 0;                ///< Of those, the ones that are summed.
+  double median_k = 0.0;        ///< Of the residuals in view, ...
+  double spread_k = 0.0;        ///< ... and their standard deviation, if they are normal.
+  double mean_square_k2 = 0.0;  ///< Of those summed, about their mean.
+  /// Mean of the reference's derivatives times the picture's, K^2/m^2: noise, which is independent
+  /// in both, averages out and does not look like structure.
+  Matrix6 H = Matrix6::Zero();
+  Vector6 g = Vector6::Zero();  ///< Mean of derivative times residual, K^2/m.
+};
+
+ThermalCue::ThermalCue(const CameraModel& thermal_camera, const RigidTransform& T_thermal_depth,
+                       double min_gradient_k_m, double prior_sigma_m_s)
+    : camera_(thermal_camera.WithoutDistortion().Downscaled(kHalvings)),
+      T_depth_thermal_(T_thermal_depth.inverse()),
+      min_gradient_k_m_(min_gradient_k_m),
+      prior_sigma_m_s_(prior_sigma_m_s) {
+  const CameraModel ideal = thermal_camera.WithoutDistortion();
+  source_.reserve(static_cast<std::size_t>(camera_.width * camera_.height * kCellPixels));
+  for (int v = 0; v < camera_.height; ++v) {
+    for (int u = 0; u < camera_.width; ++u) {
+      for (int i = 0; i < kCellPixels; ++i) {
+        const Eigen::Vector2d pixel(u * kCell + i % kCell, v * kCell + i / kCell);
+        const Eigen::Vector2d source = ProjectNormalized(thermal_camera, Unproject(ideal, pixel));
+        const int x = std::clamp(static_cast<int>(source.x() + 0.5), 0, thermal_camera.width - 1);
+        const int y = std::clamp(static_cast<int>(source.y() + 0.5), 0, thermal_camera.height - 1);
+        source_.push_back(y * thermal_camera.width + x);
+      }
+    }
+  }
+}
+
+void ThermalCue::Reduce(const Image<std::uint16_t>& centikelvin, Image<float>& celsius) const {
+  celsius.Resize(camera_.width, camera_.height);
+  const std::int32_t* source = source_.data();
+  for (float& cell : celsius.pixels()) {
+    std::uint32_t sum = 0;
+    bool whole = true;
+    for (int i = 0; i < kCellPixels; ++i) {
+      const std::uint16_t raw = centikelvin.data()[*source++];
+      sum += raw;
+      whole = whole && raw != 0;
+    }
+    cell = whole ? CentikelvinToCelsius(static_cast<double>(sum) / kCellPixels) : NAN;
+  }
+}
+
+std::optional<ThermalCue::Sample> ThermalCue::Look(const Image<float>& celsius,
+                                                   const RigidTransform& T_world_thermal,
+                                                   const Eigen::Vector3d& p_world) const {
+  const Eigen::Matrix3d& R = T_world_thermal.linear();
+  const Eigen::Vector3d p = R.transpose() * (p_world - T_world_thermal.translation());
+  if (!(p.z() > 0.0)) return std::nullopt;
+  const double u = camera_.fx * p.x() / p.z() + camera_.cx;
+  const double v = camera_.fy * p.y() / p.z() + camera_.cy;
+  if (!(u >= 0.0 && v >= 0.0 && u < celsius.width() - 1 && v < celsius.height() - 1))
+    return std::nullopt;
+  const int x = static_cast<int>(u);
+  const int y = static_cast<int>(v);
+  const double s = u - x;
+  const double t = v - y;
+  const double top_left = celsius.At(x, y);
+  const double top_right = celsius.At(x + 1, y);
+  const double bottom_left = celsius.At(x, y + 1);
+  const double bottom_right = celsius.At(x + 1, y + 1);
+  const double top = top_left + s * (top_right - top_left);
+  const double bottom = bottom_left + s * (bottom_right - bottom_left);
+  const double du = (1.0 - t) * (top_right - top_left) + t * (bottom_right - bottom_left);
+  const double dv = bottom - top;
+  const double value = top + t * (bottom - top);
+  if (!std::isfinite(value)) return std::nullopt;
+  const Eigen::Vector3d in_camera(camera_.fx * du / p.z(), camera_.fy * dv / p.z(),
+                                  -(du * (u - camera_.cx) + dv * (v - camera_.cy)) / p.z());
+  return Sample{p_world, value, R * in_camera};
+}
+
+void ThermalCue::MakeReference(const SurfaceMaps& model_points) {
+  reference_.clear();
+  if (!placed_) return;
+  Image<float> celsius;
+  Reduce(placed_->centikelvin, celsius);
+  const int step = std::max(1, (model_points.width() + kPointsAcross - 1) / kPointsAcross);
+  double sum = 0.0;
+  double squares = 0.0;
+  for (int y = step / 2; y < model_points.height(); y += step) {
+    for (int x = step / 2; x < model_points.width(); x += step) {
+      const Eigen::Vector3d p(model_points.vx.At(x, y), model_points.vy.At(x, y),
+                              model_points.vz.At(x, y));
+      const auto sample = p.allFinite() ? Look(celsius, T_world_placed_, p) : std::nullopt;
+      if (!sample) continue;
+      reference_.push_back(*sample);
+      sum += sample->celsius;
+      squares += sample->celsius * sample->celsius;
+    }
+  }
+  if (reference_.size() < kFewestSamples) return reference_.clear();
+  const auto count = static_cast<double>(reference_.size());
+  reference_variance_k2_ = squares / count - sum * sum / (count * count);
+  reference_sigma_m_ = placed_sigma_m_;
+}
+
+void ThermalCue::Begin(const std::optional<StampedPose>& last, CaptureTime time,
+                       const RigidTransform& guess) {
+  has_picture_ = false;
+  is_reduced_ = false;
+  was_wanted_ = false;
+  was_measured_ = false;
+  reference_leaves_view_ = false;
+  if (!newest_ || !last) return;
+  const CaptureTime taken = newest_->header.capture_time;
+  if (taken <= last->time || taken > time) return;
+  // From the thermal to the depth frame the motion before goes on. To interpolate instead would
+  // make the last pose's error, turned over, this one's.
+  const double share = ToSeconds(taken - last->time) / ToSeconds(time - last->time);
+  RigidTransform motion = last->T_world_depth.inverse() * guess;
+  // The way back from where it was believed to be meanwhile is no motion to go on.
+  if (since_gap_ == 1) motion.setIdentity();
+  T_depth_then_ = motion.inverse() * Interpolate(RigidTransform::Identity(), motion, share);
+  behind_s_ = ToSeconds(time - taken);
+  has_picture_ = true;
+}
+
+ThermalCue::Sums ThermalCue::Accumulate(const RigidTransform& T_world_depth,
+                                        const MotionSpace& motion, const Sums& last) {
+  const RigidTransform T_world_thermal = T_world_depth * T_depth_then_ * T_depth_thermal_;
+  // When the camera moves by a twist, the point moves by its inverse.
+  const Matrix6 to_axes = -motion.axes.transpose() * motion.scale.asDiagonal();
+  Matrix6 products = Matrix6::Zero();
+  Vector6 with_residual = Vector6::Zero();
+  Vector6 sum_before = Vector6::Zero();
+  Vector6 sum_now = Vector6::Zero();
+  double sum_residual = 0.0;
+  double squares = 0.0;
+  Sums sums;
+  const double limit_k = last.in_view > 0 ? kOutlier * last.spread_k : HUGE_VAL;
+  residuals_.clear();
+  for (const Sample& before : reference_) {
+    const auto now = Look(picture_, T_world_thermal, before.p_world);
+    if (!now) continue;
+    const double residual = now->celsius - before.celsius;
+    residuals_.push_back(residual);
+    if (std::abs(residual - last.median_k) > limit_k) continue;
+    const Eigen::Vector3d arm = before.p_world - T_world_depth.translation();
+    Vector6 J_before;
+    J_before << before.gradient, arm.cross(before.gradient);
+    Vector6 J_now;
+    J_now << now->gradient, arm.cross(now->gradient);
+    const Vector6 j_before = to_axes * J_before;
+    const Vector6 j_now = to_axes * J_now;
+    products += j_before * j_now.transpose();
+    with_residual += 0.5 * residual * (j_before + j_now);
+    sum_before += j_before;
+    sum_now += j_now;
+    sum_residual += residual;
+    squares += residual * residual;
+    ++sums.count;
+  }
+  sums.in_view = static_cast<int>(residuals_.size());
+  if (sums.count == 0) return sums;
+  sums.median_k = TakeMedian(residuals_);
+  for (double& residual : residuals_) residual = std::abs(residual - sums.median_k);
+  sums.spread_k = std::max(kLeastSpreadK, kSigmaOfMedian * TakeMedian(residuals_));
+  const double share = 1.0 / sums.count;
+  const Matrix6 H = share * products - share * share * (sum_before * sum_now.transpose());
+  sums.H = 0.5 * (H + H.transpose());
+  const double level_k = share * sum_residual;
+  sums.g = share * with_residual - 0.5 * share * level_k * (sum_before + sum_now);
+  sums.mean_square_k2 = std::max(0.0, squares * share - level_k * level_k);
+  return sums;
+}
+
+Matrix6 ThermalCue::Shifts(const RigidTransform& T_world_depth, const MotionSpace& motion) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Sample& sample : reference_) {
+    const Eigen::Vector3d arm = sample.p_world - T_world_depth.translation();
+    sum += arm;
+    squares += arm * arm.transpose();
+  }
+  const double share = 1.0 / static_cast<double>(reference_.size());
+  // Of the point's motion v + w x arm, squared.
+  Eigen::Matrix3d cross;
+  cross << 0.0, -sum.z(), sum.y(), sum.z(), 0.0, -sum.x(), -sum.y(), sum.x(), 0.0;
+  Matrix6 shifts = Matrix6::Identity();
+  shifts.bottomLeftCorner<3, 3>() = share * cross;
+  shifts.topRightCorner<3, 3>() = share * cross.transpose();
+  shifts.bottomRightCorner<3, 3>() =
+      share * (squares.trace() * Eigen::Matrix3d::Identity() - squares);
+  const Matrix6 twists = motion.scale.asDiagonal() * motion.axes;
+  return twists.transpose() * shifts * twists;
+}
+
+Eigen::VectorXd ThermalCue::FindObserved(const Eigen::MatrixXd& H, const Eigen::MatrixXd& shifts,
+                                         ThermalFit& fit) const {
+  fit.observed = 0;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(H);
+  if (solver.info() != Eigen::Success) return {};
+  const Eigen::Index free = H.cols();
+  fit.turn.resize(free, free);
+  Eigen::VectorXd strength(free);
+  Eigen::Index held = 0;
+  for (Eigen::Index i = free - 1; i >= 0; --i) {
+    const Eigen::VectorXd axis = solver.eigenvectors().col(i);
+    const double value = solver.eigenvalues()(i);
+    const bool observed = value >= min_gradient_k_m_ * min_gradient_k_m_ * axis.dot(shifts * axis);
+    const Eigen::Index column = observed ? free - ++fit.observed : held++;
+    fit.turn.col(column) = axis;
+    strength(column) = value;
+  }
+  return strength;
+}
+
+std::optional<ThermalFit> ThermalCue::Align(const MotionSpace& motion,
+                                            const SurfaceMaps& model_points,
+                                            RigidTransform& T_world_depth) {
+  was_wanted_ = true;
+  was_measured_ = false;
+  if (!has_picture_) return std::nullopt;
+  if (reference_.empty()) MakeReference(model_points);
+  if (reference_.empty()) return std::nullopt;
+  if (!is_reduced_) Reduce(newest_->centikelvin, picture_);
+  is_reduced_ = true;
+  const int free = motion.free_axes;
+  const Eigen::MatrixXd shifts = Shifts(T_world_depth, motion).topLeftCorner(free, free);
+  RigidTransform pose = T_world_depth;
+  Eigen::VectorXd moved = Eigen::VectorXd::Zero(free);
+  Sums sums = Accumulate(pose, motion, Sums());
+  ThermalFit fit;
+  double last_step_m = HUGE_VAL;
+  for (int i = 0; i < kMostIterations && last_step_m > kConvergedM; ++i) {
+    sums = Accumulate(pose, motion, sums);
+    reference_leaves_view_ = sums.in_view < kMinOverlap * static_cast<double>(reference_.size());
+    if (sums.count < 0.5 * kMinOverlap * static_cast<double>(reference_.size()))
+      return std::nullopt;
+    const Eigen::VectorXd strength = FindObserved(sums.H.topLeftCorner(free, free), shifts, fit);
+    if (fit.observed == 0) return std::nullopt;
+    const Eigen::MatrixXd kept = fit.turn.rightCols(fit.observed);
+    const Eigen::VectorXd kept_strength = strength.tail(fit.observed);
+    const Eigen::VectorXd slope = kept.transpose() * sums.g.head(free);
+    const Eigen::VectorXd step = -(kept * slope.cwiseQuotient(kept_strength));
+    // The variance along an axis: of the mean over independent values, by the slope.
+    const double values = sums.count / kSamplesPerValue;
+    const double ahead_m = prior_sigma_m_s_ * behind_s_;
+    fit.variance_m2 = (sums.mean_square_k2 / values) * kept_strength.cwiseInverse();
+    fit.variance_m2.array() += reference_sigma_m_ * reference_sigma_m_ + ahead_m * ahead_m;
+    moved += step;
+    if (!(moved.norm() < kMaxShiftM)) return std::nullopt;
+    ApplyTwist(motion.scale.cwiseProduct(motion.axes.leftCols(free) * step), pose);
+    last_step_m = step.norm();
+  }
+  if (last_step_m > 10.0 * kConvergedM) return std::nullopt;
+  if (sums.mean_square_k2 > kMaxUnexplained * reference_variance_k2_) return std::nullopt;
+  T_world_depth = pose;
+  was_measured_ = true;
+  return fit;
+}
+
+void ThermalCue::End(const std::optional<StampedPose>& before, const StampedPose& last,
+                     double sigma_m) {
+  // A reference from before the geometry sufficed is older than need be.
+  if (!was_wanted_ || reference_leaves_view_) reference_.clear();
+  const bool ends_gap = since_gap_ == 0 && was_measured_;
+  since_gap_ = was_wanted_ && !was_measured_ ? 0 : std::min(since_gap_ + 1, kNoGap);
+  if (!newest_ || newest_ == placed_) return;
+  const CaptureTime taken = newest_->header.capture_time;
+  if (taken > last.time) return;
+  if (ends_gap) {
+    T_world_placed_ = last.T_world_depth * T_depth_then_ * T_depth_thermal_;
+  } else if (before && taken > before->time) {
+    const double share = ToSeconds(taken - before->time) / ToSeconds(last.time - before->time);
+    T_world_placed_ =
+        Interpolate(before->T_world_depth, last.T_world_depth, share) * T_depth_thermal_;
+  } else if (!before && ToSeconds(last.time - taken) < kMaxAgeAtStartS) {
+    T_world_placed_ = last.T_world_depth * T_depth_thermal_;
+  } else {
+    return;
+  }
+  placed_ = newest_;
+  placed_sigma_m_ = sigma_m;
+}
+
+void ThermalCue::Forget() {
+  placed_.reset();
+  reference_.clear();
+  has_picture_ = false;
+  since_gap_ = kNoGap;
+}
+
+}  // namespace isotherm

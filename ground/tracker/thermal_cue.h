@@ -1,0 +1,108 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/stamped_pose.h"
+#include "ground/tracker/motion_space.h"
+
+namespace isotherm {
+
+/// What temperatures add to the motion along directions that the geometry leaves free.
+struct ThermalFit {
+  /// Of the free axes to new ones, orthonormal columns, the observed ones last.
+  Eigen::MatrixXd turn;
+  int observed = 0;             ///< The last columns, which temperatures observe.
+  Eigen::VectorXd variance_m2;  ///< Along each of those.
+};
+
+/// Measures motions that the geometry does not: in front of a bare wall, the newest thermal picture
+/// is laid over one from before, the reference, whose temperatures belong to points of the model.
+/// The idea is that of T-ICP (Cao, Xu, Gall et al., "Depth and thermal sensor fusion to enhance 3D
+/// thermographic reconstruction", Optics Express 26, 2018); here geometry keeps the directions that
+/// it observes, so that kelvins need no weight against metres. What counts are differences within a
+/// picture, not its level, which shutter events and the camera's temperature move. Works on
+/// pictures of a quarter of the size, where the noise is a quarter. Thread-compatible.
+class ThermalCue {
+ public:
+  /// `min_gradient_k_m`: the standard deviation over the picture of the change of temperature per
+  /// shift of the surface, from which a direction is observed.
+  ThermalCue(const CameraModel& thermal_camera, const RigidTransform& T_thermal_depth,
+             double min_gradient_k_m, double prior_sigma_m_s);
+
+  /// A valid thermal frame of the camera's size. Before the first depth frame after it.
+  void Add(ThermalFramePtr frame) { newest_ = std::move(frame); }
+
+  /// A depth frame of `time` is going to be tracked, near `guess`; `last` is the one before.
+  void Begin(const std::optional<StampedPose>& last, CaptureTime time, const RigidTransform& guess);
+  /// Moves the depth frame's pose along the free axes of `motion` as far as temperatures observe
+  /// them; nullopt and no move if they do not, or if there is nothing to compare. `model_points`:
+  /// maps in `world` from the last pose.
+  std::optional<ThermalFit> Align(const MotionSpace& motion, const SurfaceMaps& model_points,
+                                  RigidTransform& T_world_depth);
+  /// The depth frame was tracked: `last` is its pose and `before` the one before that, if it is
+  /// known. `sigma_m`: how far the surface may be off in the picture.
+  void End(const std::optional<StampedPose>& before, const StampedPose& last, double sigma_m);
+  /// Tracking was lost.
+  void Forget();
+
+ private:
+  /// A point of the model and what was measured there.
+  struct Sample {
+    Eigen::Vector3d p_world;
+    double celsius;
+    Eigen::Vector3d gradient;  ///< Of the temperature with the point's motion, K/m, in `world`.
+  };
+  struct Sums;
+
+  /// What a picture shows at a point; nullopt outside of it.
+  std::optional<Sample> Look(const Image<float>& celsius, const RigidTransform& T_world_thermal,
+                             const Eigen::Vector3d& p_world) const;
+  /// The quarter picture without lens distortion, °C; NaN = no value.
+  void Reduce(const Image<std::uint16_t>& centikelvin, Image<float>& celsius) const;
+  void MakeReference(const SurfaceMaps& model_points);
+  /// Mean products of the shifts of the reference's points per motion along the axes.
+  Matrix6 Shifts(const RigidTransform& T_world_depth, const MotionSpace& motion) const;
+  /// Separates directions by the mean square of the temperature's change per shift, and returns
+  /// that per motion.
+  Eigen::VectorXd FindObserved(const Eigen::MatrixXd& H, const Eigen::MatrixXd& shifts,
+                               ThermalFit& fit) const;
+  /// Along all axes. `last`: the sums at the pose before, if there were any; what is far from them
+  /// is left out.
+  Sums Accumulate(const RigidTransform& T_world_depth, const MotionSpace& motion, const Sums& last);
+
+  CameraModel camera_;                ///< Of the quarter picture.
+  std::vector<std::int32_t> source_;  ///< Its cells' pixels in the camera's picture, 16 each.
+  const RigidTransform T_depth_thermal_;
+  const double min_gradient_k_m_;
+  const double prior_sigma_m_s_;
+
+  ThermalFramePtr newest_;
+  ThermalFramePtr placed_;  ///< The newest one whose pose is known.
+  RigidTransform T_world_placed_;
+  double placed_sigma_m_ = 0.0;
+
+  std::vector<Sample> reference_;
+  double reference_sigma_m_ = 0.0;
+  double reference_variance_k2_ = 0.0;  ///< Of its temperatures.
+  bool reference_leaves_view_ = false;
+
+  static constexpr int kNoGap = 2;
+  /// Frames since free directions were not measured.
+  int since_gap_ = kNoGap;
+
+  // About the depth frame that is tracked.
+  bool has_picture_ = false;  ///< The newest frame was taken since the depth frame before.
+  bool is_reduced_ = false;
+  bool was_wanted_ = false;
+  bool was_measured_ = false;
+  double behind_s_ = 0.0;        ///< Time from the thermal to the depth frame.
+  RigidTransform T_depth_then_;  ///< The depth camera's motion in that time, backwards.
+  Image<float> picture_;
+  std::vector<double> residuals_;  ///< Scratch.
+};
+
+}  // namespace isotherm

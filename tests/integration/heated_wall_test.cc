@@ -1,0 +1,281 @@
+// Temperatures as a second cue, on simulated heated walls with truth: what they add where the
+// geometry leaves directions free, and that they add nothing where they say nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+#include "common/simulation/depth_sensor.h"
+#include "common/simulation/noise.h"
+#include "common/simulation/options.h"
+#include "common/simulation/scene_builder.h"
+#include "common/simulation/simulation_options.pb.h"
+#include "common/simulation/thermal_sensor.h"
+#include "ground/ground_pipeline.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::uint64_t kSeed = 21;
+constexpr double kPi = std::numbers::pi;
+constexpr double kSeconds = 5.0;
+constexpr double kDepthPeriod = 1.0 / 30.0;
+constexpr double kThermalPeriod = 1.0 / 40.0;
+constexpr double kThermalPhase = 0.0043;
+
+enum class Pattern { kUniform, kStripes, kSpots };
+
+/// A wall at z = 0.9 m, 45 °C, with warm spots or upright stripes every half metre.
+Scene HeatedWall(Pattern pattern, double contrast_k, double cold_celsius = 45.0) {
+  constexpr double kSpacing = 0.5;
+  SceneBuilder builder(23.0);
+  builder.UseMaterial({});
+  for (int i = -3; i <= 6; ++i) {
+    for (int j = -3; j <= 4; ++j) {
+      const Eigen::Vector3d low(i * kSpacing, j * kSpacing, 0.9);
+      const Eigen::Vector3d high = low + Eigen::Vector3d(kSpacing, kSpacing, 0.1);
+      const Eigen::Vector3d middle(low.x() + kSpacing / 2, low.y() + kSpacing / 2, 0.9);
+      Primitive& part = builder.Box("wall", low, high);
+      part.temperature = pattern == Pattern::kUniform
+                             ? Uniform(cold_celsius)
+                             : Radial(part, middle,
+                                      pattern == Pattern::kSpots ? Eigen::Vector3d::UnitZ()
+                                                                 : Eigen::Vector3d::UnitY(),
+                                      cold_celsius + contrast_k, kSpacing / 2, cold_celsius);
+    }
+  }
+  return builder.Build("heated wall");
+}
+
+/// Along the wall at about 0.2 m/s, never at the same speed or in the same direction, turning about
+/// the line of sight; from rest.
+class Walk {
+ public:
+  Walk() {
+    Eigen::Vector2d position(0.0, 0.5);
+    for (double t = 0.0; t < kSeconds + 1.0; t += kStep) {
+      positions_.push_back(position);
+      const double start = std::min(1.0, t / 0.3);
+      const double speed = 0.2 * start * (0.75 + 0.25 * std::sin(2.0 * kPi * t / 1.7));
+      const double heading = 0.8 * std::sin(2.0 * kPi * t / 2.3);
+      position += kStep * speed * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    }
+  }
+  RigidTransform PoseAt(double seconds) const {
+    const double i = std::max(0.0, seconds) / kStep;
+    const auto whole = static_cast<std::size_t>(i);
+    const double part = i - static_cast<double>(whole);
+    const Eigen::Vector2d p = (1.0 - part) * positions_[whole] + part * positions_[whole + 1];
+    const double roll = 0.08 * std::sin(2.0 * kPi * std::max(0.0, seconds) / 3.1);
+    return MakeTransform({p.x(), p.y(), 0.3},
+                         Eigen::Quaterniond(Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ())));
+  }
+
+ private:
+  static constexpr double kStep = 0.001;
+  std::vector<Eigen::Vector2d> positions_;
+};
+
+struct Outcome {
+  double end_m = 0.0;  ///< Off along the wall, at the end ...
+  double rms_x_m = 0.0, rms_y_m = 0.0;
+  double end_deg = 0.0;  ///< and about the normal.
+  double across_m = 0.0;
+  double sigma_m = 0.0;  ///< What the pipeline says.
+  int degraded = 0;
+  int least_free = 6;
+  int most_free = 0;
+  int lost = 0;
+  std::uint64_t fused = 0;
+  double track_ms = 0.0;
+};
+
+struct Setting {
+  bool use_thermal = true;
+  double netd_k = 0.1;
+  double nuc_from =
+      1e9;  ///< Frames from here on for 0.4 s repeat the last picture and are not valid.
+  double min_gradient_k_m = TrackerOptions().thermal_min_gradient_k_m();
+};
+
+Outcome Run(const Scene& scene, const Setting& setting) {
+  Rig rig = DefaultSimulatedRig();
+  rig.depth = rig.depth->WithoutDistortion().Downscaled(1);
+  DepthCameraOptions depth_options;
+  depth_options.set_disparity_noise_px(0.5 * depth_options.disparity_noise_px());
+  depth_options.set_disparity_step_px(0.5 * depth_options.disparity_step_px());
+  const DepthSensor depth_sensor(*rig.depth, depth_options);
+  ThermalCameraOptions thermal_options;
+  thermal_options.set_netd_kelvin(setting.netd_k);
+  const ThermalSensor thermal_sensor(*rig.thermal, thermal_options);
+  DepthSensor::Scratch depth_scratch;
+  ThermalSensor::Scratch thermal_scratch;
+
+  GroundOptions options;
+  VolumeOptions& volume = *options.mutable_volume();
+  volume.set_voxel_size_m(0.004);
+  volume.set_size_x_m(2.4);
+  volume.set_min_x_m(-0.6);
+  options.mutable_tsdf()->set_truncation_distance_m(0.016);
+  options.mutable_tracker()->set_use_thermal(setting.use_thermal);
+  options.mutable_tracker()->set_thermal_min_gradient_k_m(setting.min_gradient_k_m);
+  options.set_threads(2);
+  const Walk walk;
+  auto created = GroundPipeline::Create(options, rig, walk.PoseAt(0.0));
+  EXPECT_TRUE(created) << created.error().message();
+  GroundPipeline& pipeline = **created;
+  const auto time_at = [](double seconds) { return CaptureTime(FromSeconds(100.0 + seconds)); };
+
+  Outcome outcome;
+  int thermal_number = 0;
+  Image<std::uint16_t> picture;
+  double squares_x = 0.0;
+  double squares_y = 0.0;
+  const int frames = static_cast<int>(kSeconds / kDepthPeriod);
+  for (int i = 0; i <= frames; ++i) {
+    const double now = kDepthPeriod * i;
+    for (;; ++thermal_number) {
+      const double taken = kThermalPeriod * thermal_number - kThermalPhase;
+      if (taken > now) break;
+      auto frame = std::make_shared<ThermalFrame>();
+      const auto number = static_cast<std::uint64_t>(thermal_number);
+      frame->header.frame_number = number;
+      frame->header.capture_time = time_at(taken);
+      const bool shutter = taken >= setting.nuc_from && taken < setting.nuc_from + 0.4;
+      if (!shutter) {
+        picture = thermal_sensor.Render(scene, walk.PoseAt(taken) * rig.T_thermal_depth->inverse(),
+                                        NoiseStream(kSeed, 1, number), thermal_scratch);
+      }
+      frame->centikelvin = picture;
+      frame->valid = !shutter;
+      pipeline.ProcessThermal(frame);
+    }
+    DepthFrame frame;
+    const RigidTransform truth = walk.PoseAt(now);
+    frame.header.frame_number = static_cast<std::uint64_t>(i);
+    frame.header.capture_time = time_at(now);
+    frame.depth_raw = depth_sensor.Render(
+        scene, truth, NoiseStream(kSeed, 0, static_cast<std::uint64_t>(i)), depth_scratch);
+    const DepthReport report = pipeline.ProcessDepth(frame);
+    if (!report.tracked) {
+      ++outcome.lost;
+      continue;
+    }
+    if (i > 0) {
+      outcome.least_free = std::min(outcome.least_free, report.tracking.motion.free_axes);
+      outcome.most_free = std::max(outcome.most_free, report.tracking.motion.free_axes);
+    }
+    outcome.degraded += report.tracking.verdict() == Verdict::kDegraded ? 1 : 0;
+    const RigidTransform& pose = report.tracking.T_world_depth;
+    const Eigen::Vector3d off = pose.translation() - truth.translation();
+    squares_x += off.x() * off.x();
+    squares_y += off.y() * off.y();
+    outcome.end_m = off.head<2>().norm();
+    outcome.across_m = std::abs(off.z());
+    outcome.end_deg = RotationAngle(pose, truth) * 180.0 / kPi;
+  }
+  outcome.rms_x_m = std::sqrt(squares_x / frames);
+  outcome.rms_y_m = std::sqrt(squares_y / frames);
+  outcome.sigma_m = pipeline.uncertainty().surface_sigma_m();
+  outcome.fused = pipeline.counts().thermal_fused;
+  outcome.track_ms = pipeline.stage_stats().at("track").Percentile(50);
+  return outcome;
+}
+
+Outcome Show(const char* what, const Scene& scene, const Setting& setting) {
+  const Outcome o = Run(scene, setting);
+  std::cout << what << (setting.use_thermal ? " with" : " without") << ": off at the end "
+            << 1e3 * o.end_m << " mm and " << o.end_deg << " degrees, on the way "
+            << 1e3 * o.rms_x_m << " mm along x, " << 1e3 * o.rms_y_m << " mm along y (rms), across "
+            << 1e3 * o.across_m << " mm, sigma " << 1e3 * o.sigma_m << " mm, free " << o.least_free
+            << " to " << o.most_free << ", degraded " << o.degraded << ", lost " << o.lost
+            << ", thermal fused " << o.fused << ", track " << o.track_ms << " ms\n";
+  return o;
+}
+
+class HeatedWallTest : public ::testing::Test {
+ protected:
+  /// The geometry is the same with any pattern.
+  static void SetUpTestSuite() {
+    std::cout << "seed " << kSeed << '\n';
+    Setting setting;
+    setting.use_thermal = false;
+    geometry_alone_ = Show("wall", HeatedWall(Pattern::kSpots, 10.0), setting);
+    EXPECT_GT(geometry_alone_.end_m, 0.5) << "the motion before, rest, is held";
+    EXPECT_EQ(geometry_alone_.least_free, 3);
+  }
+  static Outcome geometry_alone_;
+};
+Outcome HeatedWallTest::geometry_alone_;
+
+TEST_F(HeatedWallTest, SpotsMeasureTheMotionAlongABareWall) {
+  const Outcome outcome = Show("spots of 10 K", HeatedWall(Pattern::kSpots, 10.0), {});
+  EXPECT_EQ(outcome.lost, 0);
+  EXPECT_EQ(outcome.degraded, 0);
+  // A chain of some eight references, each within 0.3 mm.
+  EXPECT_LT(outcome.end_m, 0.003);
+  EXPECT_LT(outcome.end_deg, 0.3);
+  EXPECT_LT(std::hypot(outcome.rms_x_m, outcome.rms_y_m), 0.002);
+  EXPECT_LT(outcome.across_m, 0.001);
+  EXPECT_LT(outcome.end_m, 3.0 * outcome.sigma_m) << "no false certainty";
+  EXPECT_GT(outcome.fused, 150U) << "temperatures are fused where the pose is certain";
+}
+
+TEST_F(HeatedWallTest, FaintSpotsMeasureItLessWell) {
+  const Outcome outcome = Show("spots of 3 K", HeatedWall(Pattern::kSpots, 3.0), {});
+  EXPECT_EQ(outcome.lost, 0);
+  EXPECT_LT(outcome.end_m, 0.02 * geometry_alone_.end_m);
+  EXPECT_LT(outcome.end_m, 3.0 * outcome.sigma_m);
+}
+
+TEST_F(HeatedWallTest, StripesLeaveTheMotionAlongThemToTheMotionBefore) {
+  const Outcome outcome = Show("stripes of 10 K", HeatedWall(Pattern::kStripes, 10.0), {});
+  EXPECT_EQ(outcome.least_free, 1);
+  EXPECT_EQ(outcome.most_free, 1);
+  EXPECT_LT(outcome.rms_x_m, 0.002);
+  EXPECT_LT(outcome.rms_y_m, 1.02 * geometry_alone_.rms_y_m) << "no worse along them";
+  EXPECT_GT(outcome.sigma_m, 0.1);
+}
+
+/// Hot, so that the emissivity's change with the angle shows: a pattern that goes with the camera.
+TEST_F(HeatedWallTest, AnEquallyHotWallGainsNothingAndLosesNothing) {
+  const Outcome outcome = Show("150 °C everywhere", HeatedWall(Pattern::kUniform, 0.0, 150.0), {});
+  EXPECT_EQ(outcome.least_free, 3);
+  EXPECT_EQ(outcome.most_free, 3);
+  EXPECT_EQ(outcome.end_m, geometry_alone_.end_m);
+  EXPECT_EQ(outcome.end_deg, geometry_alone_.end_deg);
+  EXPECT_EQ(outcome.sigma_m, geometry_alone_.sigma_m);
+}
+
+TEST_F(HeatedWallTest, APictureThatIsFrozenByTheShutterIsNotUsed) {
+  Setting setting;
+  setting.nuc_from = 2.0;
+  const Outcome outcome =
+      Show("spots of 10 K, shutter", HeatedWall(Pattern::kSpots, 10.0), setting);
+  EXPECT_EQ(outcome.lost, 0);
+  EXPECT_EQ(outcome.most_free, 3) << "for a while the motion before is all there is";
+  EXPECT_GE(outcome.degraded, 10);
+  EXPECT_LE(outcome.degraded, 15);
+  // Used, it would hold the rig for 0.4 s: 6 cm and more.
+  EXPECT_LT(outcome.end_m, 0.03);
+}
+
+TEST(HeatedWallOptionsTest, WhatTheRigOrTheOptionsLackIsSaid) {
+  GroundOptions options;
+  options.mutable_tracker()->set_use_thermal(true);
+  Rig rig = DefaultSimulatedRig();
+  rig.thermal.reset();
+  auto pipeline = GroundPipeline::Create(options, rig, {});
+  ASSERT_FALSE(pipeline);
+  EXPECT_NE(pipeline.error().message().find("tracker.use_thermal"), std::string::npos);
+  options.mutable_tracker()->set_thermal_min_gradient_k_m(0.0);
+  pipeline = GroundPipeline::Create(options, DefaultSimulatedRig(), {});
+  ASSERT_FALSE(pipeline);
+  EXPECT_NE(pipeline.error().message().find("tracker.thermal_min_gradient_k_m"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace isotherm
