@@ -1,6 +1,7 @@
 #include "common/recording/recording_messages.h"
 
 #include <fmt/format.h>
+#include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>
 
 #include <cmath>
@@ -9,6 +10,7 @@
 
 #include "common/base/check.h"
 #include "common/config/rig_calibration.h"
+#include "common/recording/schema.h"
 
 namespace isotherm::recording {
 namespace {

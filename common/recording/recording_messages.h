@@ -1,7 +1,5 @@
 #pragma once
 
-#include <google/protobuf/descriptor.h>
-
 #include <string>
 
 #include "common/recording/foxglove.pb.h"
@@ -21,9 +19,6 @@ inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
 inline constexpr std::string_view kTrajectoryTopic = "/trajectory";
 inline constexpr std::string_view kOutsidePoseTopic = "/outside_pose";
 inline constexpr std::string_view kLogTopic = "/log";
-
-/// FileDescriptorSet of the message's file and all that it imports, as MCAP wants schemas.
-std::string SerializedSchema(const google::protobuf::Descriptor& descriptor);
 
 /// Raw is a foxglove::RawImage or foxglove::CompressedImage without image data.
 template <typename Image>

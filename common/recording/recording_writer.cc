@@ -6,6 +6,7 @@
 #include "common/codec/codec.h"
 #include "common/recording/mcap_writer.h"
 #include "common/recording/recording_messages.h"
+#include "common/recording/schema.h"
 #include "common/recording/recording_streams.h"
 
 namespace isotherm {

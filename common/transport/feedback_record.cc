@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/recording/feedback.pb.h"
-#include "common/recording/recording_messages.h"
+#include "common/recording/schema.h"
 
 namespace isotherm {
 namespace {

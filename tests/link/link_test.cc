@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "common/concurrency/latest_value.h"
 #include "common/transport/test_domain.h"
 #include "ground/subscriber/subscriber.h"
 #include "tests/link/edge_side.h"
