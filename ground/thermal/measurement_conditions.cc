@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/radiometry/optics.h"
+
 namespace isotherm {
 namespace {
 
@@ -16,6 +18,11 @@ float CosineOfDegrees(double degrees) { return static_cast<float>(std::cos(degre
 /// Smaller is better: good before acceptable before unchecked.
 int Rank(ConditionClass c) { return static_cast<int>(c); }
 
+DepthOfField SharpDistances(const ThermalLens& lens) {
+  return ComputeDepthOfField(1e-3 * lens.focal_length_mm(), lens.f_number(),
+                             1e-6 * lens.pixel_pitch_um(), lens.focus_m());
+}
+
 Status ValidateLens(const ThermalOptions& o) {
   const ThermalLens& lens = o.lens();
   if (!(lens.focal_length_mm() > 0.0 && lens.f_number() > 0.0 && lens.pixel_pitch_um() > 0.0 &&
@@ -24,7 +31,7 @@ Status ValidateLens(const ThermalOptions& o) {
         "thermal.lens: focal_length_mm, f_number and pixel_pitch_um must be positive, and focus_m "
         "beyond the focal length");
   }
-  const DepthOfField sharp(lens);
+  const DepthOfField sharp = SharpDistances(lens);
   if (sharp.near_m >= o.distance_max_m() || sharp.far_m <= o.distance_min_m()) {
     return InvalidArgument(
         fmt::format("thermal.lens: sharp from {:.3f} to {:.3f} m only, outside distance_min_m {} m "
@@ -103,14 +110,6 @@ Status Validate(const ThermalOptions& o) {
   return o.has_lens() ? ValidateLens(o) : OkStatus();
 }
 
-DepthOfField::DepthOfField(const ThermalLens& lens) {
-  const double f = 1e-3 * lens.focal_length_mm();
-  const double D = lens.focus_m();
-  const double blur = 1e-6 * lens.pixel_pitch_um() * lens.f_number() * (D - f);
-  near_m = D * f * f / (f * f + blur);
-  if (blur < f * f) far_m = D * f * f / (f * f - blur);
-}
-
 ConditionLimits::ConditionLimits(const ThermalOptions& o)
     : distance_min_m(static_cast<float>(o.distance_min_m())),
       distance_good_m(static_cast<float>(o.distance_good_m())),
@@ -119,7 +118,7 @@ ConditionLimits::ConditionLimits(const ThermalOptions& o)
       cosine_good_angle(CosineOfDegrees(o.angle_good_deg())),
       cosine_max_angle(CosineOfDegrees(o.angle_max_deg())) {
   if (!o.has_lens()) return;
-  const DepthOfField sharp(o.lens());
+  const DepthOfField sharp = SharpDistances(o.lens());
   distance_min_m = std::max(distance_min_m, static_cast<float>(sharp.near_m));
   distance_max_m = std::min(distance_max_m, static_cast<float>(sharp.far_m));
   distance_good_m = std::min(distance_good_m, distance_max_m);

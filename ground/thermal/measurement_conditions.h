@@ -1,7 +1,5 @@
 #pragma once
 
-#include <limits>
-
 #include "common/base/status.h"
 #include "common/geometry/camera.h"
 #include "ground/ground_options.pb.h"
@@ -10,14 +8,6 @@
 namespace isotherm {
 
 Status Validate(const ThermalOptions& options);
-
-/// Distances between which a lens shows everything sharp, metres (thesis eq. 2.20a-b).
-struct DepthOfField {
-  double near_m = 0.0;
-  double far_m = std::numeric_limits<double>::infinity();
-
-  explicit DepthOfField(const ThermalLens& lens);
-};
 
 /// The distances and angles of (6.3a-b) in metres and as cosines, ready for inner loops.
 struct ConditionLimits {
