@@ -28,6 +28,7 @@ class LiveScanTest : public ::testing::Test {
     options_.mutable_tsdf()->set_truncation_distance_m(0.016);
     options_.mutable_live()->set_max_wait_s(0.1);
     options_.set_threads(2);
+    options_.mutable_thermal()->set_time_constant_s(0.001);  // What is near moves fast.
   }
   void Start() {
     auto created = LiveScan::Create(clock_, options_, rig_);

@@ -23,6 +23,12 @@ DepthOfField SharpDistances(const ThermalLens& lens) {
                              1e-6 * lens.pixel_pitch_um(), lens.focus_m());
 }
 
+/// Options that were written out have all numbers, 0 where none was given.
+bool IsKnown(const ThermalLens& lens) {
+  return lens.focal_length_mm() != 0.0 || lens.f_number() != 0.0 || lens.focus_m() != 0.0 ||
+         lens.pixel_pitch_um() != 0.0;
+}
+
 Status ValidateLens(const ThermalOptions& o) {
   const ThermalLens& lens = o.lens();
   if (!(lens.focal_length_mm() > 0.0 && lens.f_number() > 0.0 && lens.pixel_pitch_um() > 0.0 &&
@@ -107,7 +113,7 @@ Status Validate(const ThermalOptions& o) {
                     "{}",
                     o.near_range_m(), o.hole_px()));
   }
-  return o.has_lens() ? ValidateLens(o) : OkStatus();
+  return IsKnown(o.lens()) ? ValidateLens(o) : OkStatus();
 }
 
 ConditionLimits::ConditionLimits(const ThermalOptions& o)
@@ -117,7 +123,7 @@ ConditionLimits::ConditionLimits(const ThermalOptions& o)
       cosine_min_angle(CosineOfDegrees(o.angle_min_deg())),
       cosine_good_angle(CosineOfDegrees(o.angle_good_deg())),
       cosine_max_angle(CosineOfDegrees(o.angle_max_deg())) {
-  if (!o.has_lens()) return;
+  if (!IsKnown(o.lens())) return;
   const DepthOfField sharp = SharpDistances(o.lens());
   distance_min_m = std::max(distance_min_m, static_cast<float>(sharp.near_m));
   distance_max_m = std::min(distance_max_m, static_cast<float>(sharp.far_m));
