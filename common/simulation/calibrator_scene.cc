@@ -147,7 +147,7 @@ StagedScene MakeCalibratorScene(const SceneOptions& options) {
   AddPanel(scene, hot_celsius);
   AddTarget(scene, hot_celsius);
   AddMug(scene);
-  return {scene.Build("calibrator"), MakePath()};
+  return {scene.Build("calibrator"), MakePath(), {}};
 }
 
 }  // namespace isotherm

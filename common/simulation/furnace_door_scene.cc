@@ -161,7 +161,7 @@ StagedScene MakeFurnaceDoorScene(const SceneOptions& options) {
   AddHandle(scene);
   AddPipe(scene);
   AddPlate(scene, options.specular_reflections());
-  return {scene.Build("furnace-door"), MakePath()};
+  return {scene.Build("furnace-door"), MakePath(), {}};
 }
 
 }  // namespace isotherm

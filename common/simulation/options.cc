@@ -45,6 +45,8 @@ void CheckThermal(const ThermalCameraOptions& thermal, RangeCheck& check) {
   check("thermal.blur_px", thermal.blur_px(), 0.0, 10.0);
   check("thermal.band_min_um", thermal.band_min_um(), 0.5, 100.0);
   check("thermal.band_max_um", thermal.band_max_um(), thermal.band_min_um() + 0.01, 200.0);
+  check("thermal.time_constant_s", thermal.time_constant_s(), 0.0, 1.0);
+  check("thermal.readout_s", thermal.readout_s(), 0.0, 1.0);
 }
 
 void CheckClock(const std::string& name, const ClockOptions& clock, RangeCheck& check) {
@@ -83,6 +85,7 @@ Status Validate(const SimulationOptions& options) {
   check("shutter.first_s", shutter.first_s(), 0.0, kHour);
   check("shutter.interval_s", shutter.interval_s(), 0.0, kHour);
   check("shutter.duration_s", shutter.duration_s(), 0.0, kHour);
+  check("shutter.duration_step_s", shutter.duration_step_s(), 0.0, kHour);
   check("shutter.shutter_celsius", shutter.shutter_celsius(), kMinRadiometricCelsius,
         kMaxRadiometricCelsius);
   CheckClock("depth_clock", options.depth_clock(), check);

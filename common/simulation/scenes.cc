@@ -1,5 +1,7 @@
 #include "common/simulation/scenes.h"
 
+#include <utility>
+
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 
@@ -19,6 +21,16 @@ StagedScene MakeScene(const SceneOptions& options) {
   return MakeFurnaceDoorScene(options);
 }
 
+Scene SceneAround(const StagedScene& staged, const RigidTransform& T_world_depth) {
+  std::vector<Primitive> primitives = staged.scene.primitives();
+  for (const Primitive& carried : staged.carried) {
+    primitives.push_back(carried);
+    primitives.back().T_world_primitive = T_world_depth * carried.T_world_primitive;
+  }
+  return Scene(staged.scene.name(), std::move(primitives), staged.scene.materials(),
+               staged.scene.surround_celsius());
+}
+
 StagedScene MakePlaneScene(const SceneOptions& options) {
   constexpr double kDefaultCelsius = 30.0;
   SceneBuilder scene(options.surround_celsius());
@@ -30,7 +42,7 @@ StagedScene MakePlaneScene(const SceneOptions& options) {
   path.target_y_m = {kSceneCubeM / 2.0};
   path.target_z_m = {0.6};
   path.distance_m = {0.6};
-  return {scene.Build("plane"), path};
+  return {scene.Build("plane"), path, {}};
 }
 
 StagedScene MakeCornerSphereScene(const SceneOptions& options) {
@@ -51,7 +63,7 @@ StagedScene MakeCornerSphereScene(const SceneOptions& options) {
   path.azimuth_rad = {0.25, 0.35, 15.0, -0.9};
   path.elevation_rad = {0.35, 0.18, 11.0, 0.8};
   path.distance_m = {0.60, 0.08, 13.0, 1.0};
-  return {scene.Build("corner-sphere"), path};
+  return {scene.Build("corner-sphere"), path, {}};
 }
 
 }  // namespace isotherm

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "common/base/status.h"
 #include "common/simulation/scan_path.h"
 #include "common/simulation/scene.h"
@@ -16,7 +18,13 @@ inline constexpr double kSceneCubeM = 0.96;
 struct StagedScene {
   Scene scene;
   ScanPath path;
+  /// What moves with the rig and is behind it, such as the operator: seen in mirrors only. Poses
+  /// are T_depth_primitive; materials are the scene's.
+  std::vector<Primitive> carried;
 };
+
+/// The scene, with what is carried where it is for a rig at `T_world_depth`.
+Scene SceneAround(const StagedScene& staged, const RigidTransform& T_world_depth);
 
 /// The scene that the options name.
 StagedScene MakeScene(const SceneOptions& options);

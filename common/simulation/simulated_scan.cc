@@ -19,15 +19,22 @@ enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels, kDepthClock, k
 
 Result<std::unique_ptr<SimulatedScan>> SimulatedScan::Create(const SimulationOptions& options) {
   if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
-  const Result<Rig> rig = SimulatedRig(options);
-  if (!rig) return Err(rig.error());
-  return std::unique_ptr<SimulatedScan>(new SimulatedScan(Resolved(options), *rig));
+  return Create(options, MakeScene(options.scene()));
 }
 
-SimulatedScan::SimulatedScan(const SimulationOptions& resolved, const Rig& rig)
+Result<std::unique_ptr<SimulatedScan>> SimulatedScan::Create(const SimulationOptions& options,
+                                                             StagedScene staged) {
+  if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
+  const Result<Rig> rig = SimulatedRig(options);
+  if (!rig) return Err(rig.error());
+  return std::unique_ptr<SimulatedScan>(
+      new SimulatedScan(Resolved(options), *rig, std::move(staged)));
+}
+
+SimulatedScan::SimulatedScan(const SimulationOptions& resolved, const Rig& rig, StagedScene staged)
     : options_(std::make_unique<const SimulationOptions>(resolved)),
       rig_(rig),
-      staged_(MakeScene(resolved.scene())),
+      staged_(std::move(staged)),
       depth_sensor_(*rig.depth, resolved.depth()),
       thermal_sensor_(*rig.thermal, resolved.thermal()),
       start_(CaptureTimeFromNanoseconds(resolved.start_time_ns())) {
@@ -59,7 +66,9 @@ void SimulatedScan::ScheduleShutter() {
   const double interval_s = std::max(shutter.interval_s(), shutter.duration_s());
   for (double at_s = shutter.first_s(); at_s < options_->duration_s(); at_s += interval_s) {
     const CaptureTime closed = start_ + FromSeconds(at_s);
-    nuc_events_.push_back({closed, closed + FromSeconds(shutter.duration_s()), NucSource::kInBand});
+    const double duration_s =
+        shutter.duration_s() + shutter.duration_step_s() * static_cast<double>(nuc_events_.size());
+    nuc_events_.push_back({closed, closed + FromSeconds(duration_s), NucSource::kInBand});
   }
 }
 
@@ -128,8 +137,14 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
     return thermal_sensor_.RenderShutter(options_->shutter().shutter_celsius(), noise,
                                          scratch.thermal);
   }
-  return thermal_sensor_.Render(scene(), ThermalPoseAt(thermal_times_[shown].exposure), noise,
-                                scratch.thermal);
+  const CaptureTime time = thermal_times_[shown].exposure;
+  const auto pose_after = [&](double seconds) {
+    return ThermalPoseAt(time + FromSeconds(seconds));
+  };
+  if (staged_.carried.empty())
+    return thermal_sensor_.RenderMoving(scene(), pose_after, noise, scratch.thermal);
+  return thermal_sensor_.RenderMoving(SceneAround(staged_, PoseAt(time)), pose_after, noise,
+                                      scratch.thermal);
 }
 
 ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {

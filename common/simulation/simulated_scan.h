@@ -24,6 +24,9 @@ class SimulatedScan {
  public:
   /// Fails if the options are out of range or the rig file cannot be used.
   static Result<std::unique_ptr<SimulatedScan>> Create(const SimulationOptions& options);
+  /// The same with a scene of the caller's own; `options.scene` does not matter then.
+  static Result<std::unique_ptr<SimulatedScan>> Create(const SimulationOptions& options,
+                                                       StagedScene staged);
   ~SimulatedScan();
 
   struct Scratch {
@@ -52,7 +55,7 @@ class SimulatedScan {
   RawFrame RenderThermal(std::uint64_t frame_number, Scratch& scratch) const;
 
  private:
-  SimulatedScan(const SimulationOptions& resolved, const Rig& rig);
+  SimulatedScan(const SimulationOptions& resolved, const Rig& rig, StagedScene staged);
   void ScheduleFrames();
   void ScheduleShutter();
   Image<std::uint16_t> ThermalPixels(std::uint64_t frame_number, Scratch& scratch) const;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <utility>
 
 #include "common/frame/frame.h"
 #include "common/simulation/noise.h"
@@ -27,21 +29,88 @@ std::vector<float> GaussianWeights(double sigma_px) {
   return normalized;
 }
 
+/// Delays between radiation and its reading: an exponential distribution cut into
+/// parts of equal weight, each at its median, moved so that the mean is 0.
+std::vector<double> ResponseDelays(double time_constant_s) {
+  constexpr int kParts = 24;
+  if (time_constant_s <= 0.0) return {0.0};
+  std::vector<double> delays_s;
+  double sum = 0.0;
+  for (int i = 0; i < kParts; ++i) {
+    delays_s.push_back(-time_constant_s * std::log(1.0 - (i + 0.5) / kParts));
+    sum += delays_s.back();
+  }
+  for (double& delay_s : delays_s) delay_s -= sum / kParts;
+  return delays_s;
+}
+
+/// Share of the exposure at `times[i]` in what is interpolated linearly at `time_s`.
+double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, double time_s) {
+  if (times_s.size() == 1) return 1.0;
+  const double step_s = times_s[1] - times_s[0];
+  return std::max(0.0, 1.0 - std::abs(time_s - times_s[i]) / step_s);
+}
+
 }  // namespace
 
 ThermalSensor::ThermalSensor(const CameraModel& camera, const ThermalCameraOptions& options)
     : grid_(camera),
       band_(SpectralBand{options.band_min_um(), options.band_max_um()}),
       noise_radiance_(options.netd_kelvin() * PlanckBandRadianceSlope(kNetdCelsius, band_.band())),
+      readout_s_(options.readout_s()),
+      delays_s_(ResponseDelays(options.time_constant_s())),
       blur_weights_(GaussianWeights(options.blur_px())) {}
 
 Image<std::uint16_t> ThermalSensor::Render(const Scene& scene,
                                            const RigidTransform& T_world_thermal,
                                            std::uint64_t noise_stream, Scratch& scratch) const {
+  Expose(scene, T_world_thermal, scratch);
+  return Detect(noise_stream, scratch);
+}
+
+void ThermalSensor::Expose(const Scene& scene, const RigidTransform& T_world_thermal,
+                           Scratch& scratch) const {
   CastRays(scene, grid_, T_world_thermal, scratch.hits);
   FillRadiance(scene, T_world_thermal, scratch);
   Blur(scratch);
+}
+
+Image<std::uint16_t> ThermalSensor::RenderMoving(const Scene& scene,
+                                                 const PoseAfter& T_world_thermal,
+                                                 std::uint64_t noise_stream,
+                                                 Scratch& scratch) const {
+  const double first_s = -delays_s_.back() - 0.5 * readout_s_;
+  const double last_s = -delays_s_.front() + 0.5 * readout_s_;
+  if (first_s == last_s || T_world_thermal(first_s).isApprox(T_world_thermal(last_s), 1e-12))
+    return Render(scene, T_world_thermal(0.0), noise_stream, scratch);
+  constexpr int kExposures = 13;
+  std::vector<double> times_s;
+  for (int i = 0; i < kExposures; ++i)
+    times_s.push_back(first_s + (last_s - first_s) * i / (kExposures - 1));
+  scratch.smeared.Resize(grid_.width(), grid_.height());
+  scratch.smeared.Fill(0.0F);
+  for (std::size_t i = 0; i < times_s.size(); ++i) {
+    Expose(scene, T_world_thermal(times_s[i]), scratch);
+    AddSmear(times_s, i, scratch);
+  }
+  std::swap(scratch.radiance, scratch.smeared);
   return Detect(noise_stream, scratch);
+}
+
+void ThermalSensor::AddSmear(const std::vector<double>& exposure_times_s, std::size_t exposure,
+                             Scratch& scratch) const {
+  const int height = grid_.height();
+  for (int y = 0; y < height; ++y) {
+    const double read_s = readout_s_ * ((y + 0.5) / height - 0.5);
+    double weight = 0.0;
+    for (const double delay_s : delays_s_)
+      weight += InterpolationWeight(exposure_times_s, exposure, read_s - delay_s);
+    weight /= static_cast<double>(delays_s_.size());
+    if (weight <= 0.0) continue;
+    const std::span<const float> in = scratch.radiance.Row(y);
+    const std::span<float> out = scratch.smeared.Row(y);
+    for (std::size_t x = 0; x < out.size(); ++x) out[x] += static_cast<float>(weight) * in[x];
+  }
 }
 
 Image<std::uint16_t> ThermalSensor::RenderShutter(double shutter_celsius,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "common/frame/image.h"
@@ -13,9 +14,10 @@ namespace isotherm {
 class ThermalCameraOptions;
 
 /// A long-wave camera: band radiance of what each pixel sees with directional emissivity and
-/// reflected surroundings (thesis eq. 3.1, B.2), optical blur, noise that is constant in radiance,
-/// and conversion to the apparent (black-body) temperature. Thread-safe (immutable); scratch memory
-/// is the caller's.
+/// reflected surroundings (thesis eq. 3.1, B.2), optical blur, the detector's inertia and the
+/// reading of one row after the other (3.3.1), noise that is constant in radiance, and conversion
+/// to the apparent (black-body) temperature. Thread-safe (immutable); scratch memory is the
+/// caller's.
 class ThermalSensor {
  public:
   ThermalSensor(const CameraModel& camera, const ThermalCameraOptions& options);
@@ -24,11 +26,20 @@ class ThermalSensor {
     HitImage hits;
     Image<float> radiance;
     Image<float> rows;
+    Image<float> smeared;
   };
+  /// T_world_thermal so many seconds after the capture time.
+  using PoseAfter = std::function<RigidTransform(double seconds)>;
 
   /// One picture in centi-kelvin. The same `noise_stream` gives the same noise.
   Image<std::uint16_t> Render(const Scene& scene, const RigidTransform& T_world_thermal,
                               std::uint64_t noise_stream, Scratch& scratch) const;
+  /// The same by a camera that moves. A pixel's answer to a change is 1 - exp(-t / time constant);
+  /// the capture time is the mean time of the radiation that the middle row shows, so that a camera
+  /// with constant speed sees an edge there where it was then, as a calibration of the constant
+  /// delay finds it.
+  Image<std::uint16_t> RenderMoving(const Scene& scene, const PoseAfter& T_world_thermal,
+                                    std::uint64_t noise_stream, Scratch& scratch) const;
   /// The inside of the closed shutter.
   Image<std::uint16_t> RenderShutter(double shutter_celsius, std::uint64_t noise_stream,
                                      Scratch& scratch) const;
@@ -46,11 +57,18 @@ class ThermalSensor {
   double MirrorRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
                         const Eigen::Vector2f& ray, double emissivity) const;
   void Blur(Scratch& scratch) const;
+  /// What the optics throw on the detector, into scratch.radiance.
+  void Expose(const Scene& scene, const RigidTransform& T_world_thermal, Scratch& scratch) const;
+  /// Adds one exposure's part, which depends on the row, to scratch.smeared.
+  void AddSmear(const std::vector<double>& exposure_times_s, std::size_t exposure,
+                Scratch& scratch) const;
   Image<std::uint16_t> Detect(std::uint64_t noise_stream, const Scratch& scratch) const;
 
   const RayGrid grid_;
   const BandRadiance band_;
   const double noise_radiance_;
+  const double readout_s_;
+  std::vector<double> delays_s_;     ///< Equal parts of the detector's answer; their mean is 0.
   std::vector<float> blur_weights_;  ///< From the centre outwards; one weight = sharp.
 };
 

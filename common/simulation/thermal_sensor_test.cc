@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 
@@ -128,6 +129,93 @@ TEST_F(ThermalSensorTest, BlurKeepsTheMeanRadianceAndSoftensEdges) {
   EXPECT_GE(between, 3);
   EXPECT_LE(between, 8);
   EXPECT_NEAR(soft_sum / sharp_sum, 1.0, 2e-4);
+}
+
+/// A camera that passes the edge of a hot half of a wall, without noise and distortion: at the
+/// capture time the edge is in the middle.
+class MovingThermalCameraTest : public ThermalSensorTest {
+ protected:
+  static constexpr double kSpeedMS = 0.5;
+  static constexpr double kWallM = 0.5;
+
+  MovingThermalCameraTest() : scene_(HalfWall()) {
+    camera_ = camera_.WithoutDistortion();
+    options_.set_netd_kelvin(0.0);
+    options_.set_blur_px(0.0);
+  }
+  static Scene HalfWall() {
+    SceneBuilder builder(23.0);
+    builder.UseMaterial({1.0, 1.0, 0.0, false});
+    builder.Box("half", {0.0, -3, kWallM}, {3, 3, 0.6}).temperature = Uniform(100.0);
+    return builder.Build("half");
+  }
+  Image<std::uint16_t> RenderMoving(double speed_m_s) {
+    const ThermalSensor sensor(camera_, options_);
+    ThermalSensor::Scratch scratch;
+    return sensor.RenderMoving(
+        scene_,
+        [&](double seconds) {
+          return MakeTransform({speed_m_s * seconds, 0, 0}, Eigen::Quaterniond::Identity());
+        },
+        NoiseStream(kSeed, 1, 0), scratch);
+  }
+  /// Share of the hot side's radiance in a pixel.
+  double HotShare(const Image<std::uint16_t>& picture, int x, int y) const {
+    const double radiance = band_.RadianceFromCelsius(picture.At(x, y) / 100.0 - 273.15);
+    const double cold = band_.RadianceFromCelsius(23.0), hot = band_.RadianceFromCelsius(100.0);
+    return (radiance - cold) / (hot - cold);
+  }
+  /// Column at which a row turns hot, to a fraction of a pixel.
+  double EdgeColumn(const Image<std::uint16_t>& picture, int y) const {
+    double cold_pixels = 0.0;
+    for (int x = 0; x < camera_.width; ++x) cold_pixels += 1.0 - HotShare(picture, x, y);
+    return cold_pixels - 0.5;
+  }
+
+  const Scene scene_;
+  const BandRadiance band_;
+};
+
+TEST_F(MovingThermalCameraTest, SmearsAsAnExponentialAnswerDoes) {
+  constexpr double kTimeConstantS = 0.010;
+  // A dozen exposures, a third of the time constant apart: the onset becomes a ramp as long as
+  // that.
+  constexpr double kDiscrete = 0.15;
+  options_.set_time_constant_s(kTimeConstantS);
+  const Image<std::uint16_t> picture = RenderMoving(kSpeedMS);
+  constexpr int kRow = 100;
+  double sum = 0.0;
+  for (int x = 0; x < camera_.width; ++x) {
+    // The pixel sees the hot half from this time on, and is read one time constant after the
+    // capture time, which is the mean time of its radiation.
+    const double hot_from_s = -kWallM * (x - camera_.cx) / camera_.fx / kSpeedMS;
+    const double since_s = kTimeConstantS - hot_from_s;
+    const double share = since_s > 0.0 ? 1.0 - std::exp(-since_s / kTimeConstantS) : 0.0;
+    EXPECT_NEAR(HotShare(picture, x, kRow), share, kDiscrete) << "column " << x;
+    sum += HotShare(picture, x, kRow) - share;
+  }
+  EXPECT_NEAR(sum, 0.0, 0.3)
+      << "the edge as a whole is where it was at the capture time, in pixels";
+}
+
+TEST_F(MovingThermalCameraTest, RowsThatAreReadLaterSeeTheEdgeLater) {
+  constexpr double kReadoutS = 0.020;
+  constexpr double kWithinAPixel = 1.0;
+  options_.set_readout_s(kReadoutS);
+  const Image<std::uint16_t> picture = RenderMoving(kSpeedMS);
+  const double shift_px = kSpeedMS * kReadoutS * camera_.fx / kWallM;
+  EXPECT_GT(shift_px, 5.0);
+  const int last = camera_.height - 1;
+  EXPECT_NEAR(EdgeColumn(picture, 0) - EdgeColumn(picture, last), shift_px, kWithinAPixel);
+  EXPECT_NEAR(EdgeColumn(picture, last / 2), camera_.cx, kWithinAPixel);
+}
+
+TEST_F(MovingThermalCameraTest, ACameraAtRestSmearsNothing) {
+  const Image<std::uint16_t> sharp = Render(scene_, RigidTransform::Identity());
+  options_.set_time_constant_s(0.01);
+  options_.set_readout_s(0.02);
+  EXPECT_TRUE(std::ranges::equal(RenderMoving(0.0).pixels(), sharp.pixels()));
+  EXPECT_FALSE(std::ranges::equal(RenderMoving(kSpeedMS).pixels(), sharp.pixels()));
 }
 
 TEST_F(ThermalSensorTest, TheShutterIsUniform) {
