@@ -34,5 +34,6 @@ void AddExportCommand(CLI::App& app, CommandBody& body);
 void AddSimulateCommand(CLI::App& app, CommandBody& body);
 void AddLimitsCommand(CLI::App& app, CommandBody& body);
 void AddDemoCommand(CLI::App& app, CommandBody& body);
+void AddExperimentCommand(CLI::App& app, CommandBody& body);
 
 }  // namespace isotherm

@@ -26,6 +26,7 @@ constexpr const char* kFooter =
 
 Exit status:
    0  done
+   1  an experiment's requirement is not met
   64  wrong command line or argument
   65  data is damaged, inconsistent or lacks something
   66  a file or folder does not exist
@@ -50,6 +51,7 @@ int Main(int argc, char** argv) {
   AddExportCommand(app, body);
   AddSimulateCommand(app, body);
   AddLimitsCommand(app, body);
+  AddExperimentCommand(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

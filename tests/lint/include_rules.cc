@@ -64,6 +64,8 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
       {"ground/model", with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal",
                                       "ground/export/output_file.h"})},
       {"ground/evaluation", with(kCommon, {"ground", "ground/export"})},
+      {"ground/experiment", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
+                                           "ground/thermal", "ground/renderer", "ground/export"})},
       {"ground/feedback", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
                                          "ground/thermal", "ground/renderer"})},
   };

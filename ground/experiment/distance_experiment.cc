@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/simulation/scene_builder.h"
+#include "ground/experiment/experiment.h"
+#include "ground/experiment/experiment_scan.h"
+#include "ground/experiment/model_check.h"
+#include "ground/renderer/renderer.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kDurationS = 4.0;
+constexpr double kCloseUpS = 0.8;  ///< Until then the rig has hardly moved away.
+constexpr double kHotCelsius = 80.0, kColdCelsius = 40.0;
+constexpr double kPanelZ = 0.60;
+constexpr std::array kBarWidthsM = {0.002, 0.003, 0.004};
+constexpr int kPeriods = 5;
+
+/// A resolution target in a panel: groups of hot and cold bars, flush, so that only the camera's
+/// resolution blurs them. Black bodies.
+StagedScene ResolutionTarget() {
+  SceneBuilder scene(23.0);
+  scene.UseMaterial({1.0, 1.0, 0.0, false});
+  scene.Box("wall", {0.02, 0.02, 0.84}, {0.94, 0.94, 0.90}).temperature = Uniform(24.0);
+  scene.Box("table", {0.02, 0.70, 0.20}, {0.94, 0.76, 0.84}).temperature = Uniform(24.0);
+  scene.Box("panel", {0.36, 0.34, kPanelZ + 0.002}, {0.60, 0.70, 0.74}).temperature =
+      Uniform(kColdCelsius);
+  scene.Cylinder("knob", {0.40, 0.66, kPanelZ - 0.03}, {0.40, 0.66, kPanelZ + 0.002}, 0.02)
+      .temperature = Uniform(kColdCelsius);
+  scene.RotatedBox("carton", {0.22, 0.62, 0.68}, {0.14, 0.16, 0.14}, {0, 30, 0}).temperature =
+      Uniform(24.0);
+  double x = 0.42;
+  for (const double width : kBarWidthsM) {
+    for (int bar = 0; bar < 2 * kPeriods; ++bar, x += width) {
+      const bool hot = bar % 2 == 0;
+      scene.Box(hot ? "hot bar" : "cold bar", {x, 0.47, kPanelZ}, {x + width, 0.57, kPanelZ + 0.01})
+          .temperature = Uniform(hot ? kHotCelsius : kColdCelsius);
+    }
+    x += 0.010;
+  }
+  ScanPath path;
+  path.target_x_m = {0.48, 0.005, 1.5};
+  path.target_y_m = {0.52, 0.005, 1.1};
+  path.target_z_m = {kPanelZ};
+  path.distance_m = FromTo(0.40, 0.90, kDurationS);
+  return {scene.Build("resolution target"), path, {}};
+}
+
+/// Difference between the middles of hot and of cold bars, as a share of the true one, by group.
+using Contrasts = std::array<double, kBarWidthsM.size()>;
+
+Contrasts MeasureContrasts(const SimulatedScan& scan, const GroundPipeline& pipeline,
+                           ThreadPool& pool) {
+  constexpr double kMiddleShare = 0.15;  // Of a bar's width, to either side of its middle.
+  struct Sum {
+    double celsius = 0.0;
+    int count = 0;
+    double Mean() const { return count == 0 ? std::nan("") : celsius / count; }
+  };
+  std::array<std::array<Sum, 2>, kBarWidthsM.size()> sums;
+  for (const CheckedPoint& point :
+       CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool)) {
+    const Primitive& part =
+        scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)];
+    if (!part.name.ends_with("bar") || !point.measured()) continue;
+    const Eigen::Vector3d p = part.T_world_primitive.inverse() * point.truth.p_world;
+    if (std::abs(p.x()) > 2.0 * kMiddleShare * part.size.x()) continue;
+    if (std::abs(p.y()) > 0.8 * part.size.y()) continue;
+    for (std::size_t group = 0; group < kBarWidthsM.size(); ++group) {
+      if (std::abs(2.0 * part.size.x() - kBarWidthsM[group]) > 1e-4) continue;
+      Sum& sum = sums[group][part.name == "hot bar" ? 1 : 0];
+      sum.celsius += static_cast<double>(point.point.celsius);
+      ++sum.count;
+    }
+  }
+  Contrasts contrasts;
+  for (std::size_t group = 0; group < contrasts.size(); ++group) {
+    contrasts[group] =
+        (sums[group][1].Mean() - sums[group][0].Mean()) / (kHotCelsius - kColdCelsius);
+  }
+  return contrasts;
+}
+
+RgbImage Picture(const SimulatedScan& scan, const GroundPipeline& pipeline, ThreadPool& pool) {
+  RendererOptions options;
+  options.set_scale(FIXED);
+  options.set_scale_min_celsius(23.0);
+  options.set_scale_max_celsius(kHotCelsius);
+  return Renderer(options, ThermalOptions())
+      .Thermal(LookAtModel(pipeline.tsdf(), pipeline.thermal(), *scan.rig().depth,
+                           scan.PoseAt(scan.depth_times().front().exposure), pool));
+}
+
+GroundOptions FineModel(bool validation) {
+  GroundOptions options;
+  options.mutable_volume()->set_voxel_size_m(0.0013);  // As in the thesis.
+  ThermalOptions& thermal = *options.mutable_thermal();
+  thermal.set_distance_min_m(0.30);
+  thermal.set_distance_good_m(0.45);
+  thermal.set_distance_max_m(0.60);
+  thermal.set_validation(validation);
+  thermal.set_keep_bad(!validation);
+  return options;
+}
+
+/// The table and what is required of it.
+ExperimentReport Describe(const Contrasts& close_up, const Contrasts& not_validated,
+                          const Contrasts& validated) {
+  ExperimentReport report;
+  report.table.rows_are = "bars";
+  report.table.columns = {"close-up [contrast]", "retreat, not validated [contrast]",
+                          "retreat, validated [contrast]", "kept, not validated [%]",
+                          "kept, validated [%]"};
+  double least_kept = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < kBarWidthsM.size(); ++i) {
+    const double kept_without = 100.0 * not_validated[i] / close_up[i];
+    const double kept = 100.0 * validated[i] / close_up[i];
+    least_kept = std::isnan(kept) ? kept : std::min(least_kept, kept);
+    report.table.rows.push_back(
+        {fmt::format("{:.0f} mm", 1000.0 * kBarWidthsM[i]),
+         {close_up[i], not_validated[i], validated[i], kept_without, kept}});
+  }
+  report.requirements = {{"contrast kept of the close-up, validated", least_kept,
+                          Requirement::Sense::kAtLeast, 98.0, "%"}};
+  return report;
+}
+
+}  // namespace
+
+Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
+  const auto scan = SimulatedScan::Create(ExperimentCameras(kDurationS), ResolutionTarget());
+  if (!scan) return Err(scan.error());
+  const auto with = StartPipeline(FineModel(true), **scan, pool);
+  const auto without = StartPipeline(FineModel(false), **scan, pool);
+  if (!with) return Err(with.error());
+  if (!without) return Err(without.error());
+  const CaptureTime close_up_until =
+      (*scan)->depth_times().front().exposure + FromSeconds(kCloseUpS);
+  std::optional<Contrasts> close_up;
+  PlayScan(**scan, pool,
+           {[&](const DepthFrame& frame) {
+              (*with)->ProcessDepth(frame);
+              (*without)->ProcessDepth(frame);
+              if (!close_up && frame.header.capture_time >= close_up_until)
+                close_up = MeasureContrasts(**scan, **with, pool);
+            },
+            [&](const ThermalFramePtr& frame) {
+              (*with)->ProcessThermal(frame);
+              (*without)->ProcessThermal(frame);
+            }});
+  for (const auto* pipeline : {&*with, &*without}) {
+    (*pipeline)->Finish();
+    if (Status status = CheckTracked(**pipeline); !status.ok()) return Err(status);
+  }
+
+  if (!close_up) return Err(Internal("the scan was over before the close-up"));
+  ExperimentReport report = Describe(*close_up, MeasureContrasts(**scan, **without, pool),
+                                     MeasureContrasts(**scan, **with, pool));
+  report.pictures = {{"not_validated", Picture(**scan, **without, pool)},
+                     {"validated", Picture(**scan, **with, pool)}};
+  return report;
+}
+
+}  // namespace isotherm

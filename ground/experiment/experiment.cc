@@ -1,0 +1,43 @@
+#include "ground/experiment/experiment.h"
+
+#include <algorithm>
+
+namespace isotherm {
+namespace {
+
+constexpr Experiment kExperiments[] = {
+    {"parallax", "fig. 6.8",
+     "What hides a surface from the thermal camera keeps its temperature to itself.",
+     &RunParallaxExperiment},
+    {"foreground", "figs. 7.3 and 7.4",
+     "It does so after it has left the depth camera's view or come too close for it.",
+     &RunForegroundExperiment},
+    {"distance", "fig. 6.10",
+     "Detail that was measured from close by is not blurred from farther away.",
+     &RunDistanceExperiment},
+    {"angle", "fig. 6.11",
+     "Temperatures that were measured at a good angle are not lost at a bad one.",
+     &RunAngleExperiment},
+    {"shading", "fig. 6.12", "Shading shows shape where temperature does not.",
+     &RunShadingExperiment},
+    {"confidence", "figs. 6.13 and 6.14",
+     "The class layers say from where each temperature was really measured.",
+     &RunConfidenceExperiment},
+    {"nuc", "8.2", "A shutter that closes during the scan leaves no trace in the model.",
+     &RunNucExperiment},
+};
+
+}  // namespace
+
+bool ExperimentReport::AllMet() const {
+  return std::ranges::all_of(requirements, &Requirement::IsMet);
+}
+
+std::span<const Experiment> AllExperiments() { return kExperiments; }
+
+const Experiment* FindExperiment(std::string_view name) {
+  const auto* const found = std::ranges::find(kExperiments, name, &Experiment::name);
+  return found == std::end(kExperiments) ? nullptr : found;
+}
+
+}  // namespace isotherm

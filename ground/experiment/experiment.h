@@ -1,0 +1,77 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/base/status.h"
+#include "common/concurrency/thread_pool.h"
+#include "ground/renderer/rgb.h"
+
+namespace isotherm {
+
+/// A number that an experiment must reach.
+struct Requirement {
+  enum class Sense { kAtMost, kAtLeast };
+
+  std::string what;
+  double measured;
+  Sense sense;
+  double limit;
+  std::string unit;  ///< Empty for counts and ratios.
+
+  /// False for NaN.
+  bool IsMet() const { return sense == Sense::kAtMost ? measured <= limit : measured >= limit; }
+};
+
+/// Numbers by what was compared: one row per method or condition.
+struct ExperimentTable {
+  struct Row {
+    std::string label;
+    std::vector<double> values;  ///< As many as there are columns; NaN = does not apply.
+  };
+  std::string rows_are;              ///< What the labels are, for example "method".
+  std::vector<std::string> columns;  ///< With their units.
+  std::vector<Row> rows;
+};
+
+struct ExperimentPicture {
+  std::string name;  ///< Part of the file's name.
+  RgbImage picture;
+};
+
+/// What an experiment showed.
+struct ExperimentReport {
+  ExperimentTable table;
+  std::vector<Requirement> requirements;
+  std::vector<ExperimentPicture> pictures;
+
+  bool AllMet() const;
+};
+
+/// Shows on an analytic scene, whose truth is known, what the method does: the real pipeline with
+/// simulated cameras. The same each time.
+struct Experiment {
+  std::string_view name;    ///< On the command line and in file names.
+  std::string_view figure;  ///< Of the thesis, what it repeats.
+  std::string_view claim;   ///< What it shows, one sentence.
+  /// Fails only if something is wrong with the experiment itself, for example tracking was lost.
+  Result<ExperimentReport> (*run)(ThreadPool& pool);
+};
+
+/// In the order of the thesis's figures.
+std::span<const Experiment> AllExperiments();
+/// nullptr if there is none of this name.
+const Experiment* FindExperiment(std::string_view name);
+
+// One per file of the same name.
+Result<ExperimentReport> RunParallaxExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunForegroundExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunShadingExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunNucExperiment(ThreadPool& pool);
+
+}  // namespace isotherm

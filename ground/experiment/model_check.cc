@@ -1,0 +1,70 @@
+#include "ground/experiment/model_check.h"
+
+#include <limits>
+#include <optional>
+
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+std::optional<SurfacePoint> TruthAt(const Scene& scene, const CloudPoint& point) {
+  constexpr double kReachM = 0.006;
+  const Eigen::Vector3d n_world = point.normal.cast<double>();
+  const Eigen::Vector3d above = point.position_m.cast<double>() + kReachM * n_world;
+  const auto hit = scene.Intersect(above, -n_world);
+  if (!hit || hit->distance > 2.0 * kReachM) return std::nullopt;
+  return hit->point;
+}
+
+double Percent(std::size_t part, std::size_t whole) {
+  return whole == 0 ? std::numeric_limits<double>::quiet_NaN()
+                    : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+std::vector<CheckedPoint> CheckModel(const Scene& scene, const BandRadiance& band,
+                                     const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                                     ThreadPool& pool) {
+  SurfaceOptions options;
+  options.min_weight = 1.0F;
+  options.triangles = false;
+  std::vector<CheckedPoint> checked;
+  for (const CloudPoint& point : ExtractSurface(tsdf, thermal, options, pool).points) {
+    const auto truth = TruthAt(scene, point);
+    if (!truth) continue;
+    checked.push_back(
+        {point, *truth,
+         ApparentCelsius(band, truth->celsius, scene.MaterialOf(truth->primitive).normal_emissivity,
+                         scene.surround_celsius())});
+  }
+  return checked;
+}
+
+double AssignmentCheck::WrongPercent() const { return Percent(wrong(), assigned); }
+
+AssignmentCheck CheckAssignment(const std::vector<CheckedPoint>& points) {
+  AssignmentCheck check;
+  check.points = points.size();
+  for (const CheckedPoint& point : points) {
+    if (!point.measured()) continue;
+    ++check.assigned;
+    if (point.ErrorKelvin() > AssignmentCheck::kWrongKelvin) ++check.too_warm;
+    if (point.ErrorKelvin() < -AssignmentCheck::kWrongKelvin) ++check.too_cold;
+  }
+  return check;
+}
+
+ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                     const CameraModel& camera, const RigidTransform& T_world_camera,
+                     ThreadPool& pool) {
+  constexpr float kMinWeight = 1.0F;
+  SurfaceMaps maps;
+  Raycaster().Cast(tsdf, camera, T_world_camera, kMinWeight, pool, maps);
+  ViewMaps view;
+  SampleView(maps, T_world_camera.translation(), tsdf, thermal, pool, view);
+  return view;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,149 @@
+#include <cmath>
+
+#include "common/simulation/scene_builder.h"
+#include "ground/experiment/experiment.h"
+#include "ground/experiment/experiment_scan.h"
+#include "ground/experiment/model_check.h"
+#include "ground/renderer/renderer.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kDurationS = 4.9;
+constexpr double kShutterCelsius = 60.0;
+/// Nothing in the scene is warmer than 30 °C: what is warmer than this was read off the shutter.
+constexpr double kFromShutterCelsius = 45.0;
+
+StagedScene CoolCorner() {
+  SceneBuilder scene(23.0);
+  scene.UseMaterial({});
+  scene.Box("back wall", {0.02, 0.02, 0.86}, {0.94, 0.94, 0.92}).temperature = Uniform(24.0);
+  scene.Box("side wall", {0.02, 0.02, 0.40}, {0.08, 0.94, 0.86}).temperature = Uniform(28.0);
+  scene.Box("floor", {0.08, 0.80, 0.40}, {0.94, 0.86, 0.86}).temperature = Uniform(26.0);
+  scene.Sphere("sphere", {0.48, 0.64, 0.66}, 0.14).temperature = Uniform(30.0);
+  ScanPath path;
+  path.target_x_m = {0.44, 0.04, 7.0};
+  path.target_y_m = {0.56, 0.03, 5.0};
+  path.target_z_m = {0.72};
+  path.azimuth_rad = {0.2, 0.12, 6.0};
+  path.elevation_rad = {0.30, 0.06, 4.5};
+  path.distance_m = {0.60};
+  return {scene.Build("cool corner"), path, {}};
+}
+
+/// Three closings of 0.4, 0.7 and 1.0 s.
+SimulationOptions CamerasWithShutter() {
+  SimulationOptions options = ExperimentCameras(kDurationS);
+  ShutterOptions& shutter = *options.mutable_shutter();
+  shutter.set_first_s(0.8);
+  shutter.set_interval_s(1.4);
+  shutter.set_duration_s(0.4);
+  shutter.set_duration_step_s(0.3);
+  shutter.set_appearance(ShutterOptions::SHUTTER);
+  shutter.set_shutter_celsius(kShutterCelsius);
+  return options;
+}
+
+/// Voxels anywhere in the model, and those of them with the shutter's temperature.
+struct VoxelCount {
+  double measured = 0.0;
+  double from_shutter = 0.0;
+};
+VoxelCount CountVoxels(const GroundPipeline& pipeline) {
+  VoxelCount count;
+  for (std::int32_t block = 0; block < pipeline.tsdf().block_count(); ++block) {
+    for (const ThermalVoxel& voxel : pipeline.thermal().voxels(block)) {
+      count.measured += voxel.measured() ? 1.0 : 0.0;
+      count.from_shutter += voxel.celsius() > kFromShutterCelsius ? 1.0 : 0.0;
+    }
+  }
+  return count;
+}
+
+double LeftOutForNuc(const GroundPipeline& pipeline) {
+  const auto& left_out = pipeline.counts().thermal_left_out;
+  const auto found = left_out.find("nuc");
+  return found == left_out.end() ? 0.0 : static_cast<double>(found->second);
+}
+
+ExperimentTable::Row DescribeModel(const char* label, const GroundPipeline& pipeline) {
+  const VoxelCount voxels = CountVoxels(pipeline);
+  return {label,
+          {static_cast<double>(pipeline.counts().thermal_fused), LeftOutForNuc(pipeline),
+           voxels.measured, voxels.from_shutter}};
+}
+
+/// Frames while the shutter was closed.
+struct WhileClosed {
+  double thermal_frames = 0.0;
+  double depth_frames = 0.0;
+  double tracked = 0.0;  ///< Of the depth frames.
+};
+
+/// The table and what is required of it.
+ExperimentReport Describe(const GroundPipeline& ignored, const GroundPipeline& respected,
+                          const WhileClosed& seen) {
+  ExperimentReport report;
+  report.table.rows_are = "frames of the closed shutter";
+  report.table.columns = {"thermal frames fused", "left out for NUC", "voxels measured",
+                          "voxels with the shutter's temperature"};
+  report.table.rows = {DescribeModel("believed", ignored), DescribeModel("left out", respected)};
+  const PipelineCounts& counts = respected.counts();
+  report.requirements = {
+      {"voxels with the shutter's temperature", report.table.rows[1].values[3],
+       Requirement::Sense::kAtMost, 0.0, ""},
+      {"frames of the closed shutter not left out", seen.thermal_frames - LeftOutForNuc(respected),
+       Requirement::Sense::kAtMost, 0.0, ""},
+      {"depth frames not tracked", static_cast<double>(counts.depth_in - counts.depth_tracked),
+       Requirement::Sense::kAtMost, 0.0, ""},
+      {"depth frames tracked while the shutter was closed",
+       100.0 * seen.tracked / seen.depth_frames, Requirement::Sense::kAtLeast, 100.0, "%"}};
+  return report;
+}
+
+}  // namespace
+
+Result<ExperimentReport> RunNucExperiment(ThreadPool& pool) {
+  const auto scan = SimulatedScan::Create(CamerasWithShutter(), CoolCorner());
+  if (!scan) return Err(scan.error());
+  const auto respected = StartPipeline({}, **scan, pool);
+  const auto ignored = StartPipeline({}, **scan, pool);
+  if (!respected) return Err(respected.error());
+  if (!ignored) return Err(ignored.error());
+  WhileClosed seen;
+  PlayScan(**scan, pool,
+           {[&](const DepthFrame& frame) {
+              const bool tracked = (*respected)->ProcessDepth(frame).tracked;
+              (*ignored)->ProcessDepth(frame);
+              if (!(*scan)->IsShutterClosed(frame.header.capture_time)) return;
+              seen.depth_frames += 1.0;
+              seen.tracked += tracked ? 1.0 : 0.0;
+            },
+            [&](const ThermalFramePtr& frame) {
+              seen.thermal_frames += frame->valid ? 0.0 : 1.0;
+              (*respected)->ProcessThermal(frame);
+              auto trusted = std::make_shared<ThermalFrame>(*frame);
+              trusted->valid = true;
+              (*ignored)->ProcessThermal(std::move(trusted));
+            }});
+  for (const auto* pipeline : {&*respected, &*ignored}) (*pipeline)->Finish();
+
+  ExperimentReport report = Describe(**ignored, **respected, seen);
+  report.requirements.push_back({"NUC events in mid-scan",
+                                 static_cast<double>((*scan)->nuc_events().size()),
+                                 Requirement::Sense::kAtLeast, 3.0, ""});
+  RendererOptions renderer_options;
+  renderer_options.set_scale(FIXED);
+  renderer_options.set_scale_min_celsius(20.0);
+  renderer_options.set_scale_max_celsius(kShutterCelsius);
+  const Renderer renderer(renderer_options, ThermalOptions());
+  const auto picture = [&](const GroundPipeline& pipeline) {
+    const RigidTransform T_world_depth = (*scan)->PoseAt((*scan)->depth_times().back().exposure);
+    return renderer.Thermal(LookAtModel(pipeline.tsdf(), pipeline.thermal(), *(*scan)->rig().depth,
+                                        T_world_depth, pool));
+  };
+  report.pictures = {{"believed", picture(**ignored)}, {"left_out", picture(**respected)}};
+  return report;
+}
+
+}  // namespace isotherm

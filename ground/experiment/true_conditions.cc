@@ -1,0 +1,128 @@
+#include "ground/experiment/true_conditions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace isotherm {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Whether something is in front of `p` by more than `tolerance_m`.
+bool IsHidden(const Scene& scene, const Vector3d& viewer, const Vector3d& p, double tolerance_m) {
+  const Vector3d to_point = p - viewer;
+  const auto hit = scene.Intersect(viewer, to_point);
+  return hit && (1.0 - hit->distance) * to_point.norm() > tolerance_m;
+}
+
+bool IsInPicture(const CameraModel& camera, const RigidTransform& T_world_camera,
+                 const Vector3d& p_world, double margin_px) {
+  const auto pixel = Project(camera, T_world_camera.inverse() * p_world);
+  return pixel && pixel->x() >= margin_px && pixel->y() >= margin_px &&
+         pixel->x() <= camera.width - 1 - margin_px && pixel->y() <= camera.height - 1 - margin_px;
+}
+
+double AngleDeg(const Vector3d& viewer, const SurfacePoint& point) {
+  const double cosine = point.n_world.dot((viewer - point.p_world).normalized());
+  return std::acos(std::clamp(cosine, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+}
+
+/// How many of the lines of sight to the point and to four places around it are hidden.
+int CountHidden(const Scene& scene, const Vector3d& viewer, const SurfacePoint& point) {
+  constexpr double kAroundM = 0.006;     // Some thermal pixels.
+  constexpr double kToleranceM = 0.015;  // A surface at 60 degrees comes this much nearer there.
+  const Vector3d ray = (point.p_world - viewer).normalized();
+  const Vector3d right = ray.unitOrthogonal(), down = ray.cross(right);
+  int hidden = IsHidden(scene, viewer, point.p_world, 0.003) ? 1 : 0;
+  for (const Vector3d& side : {right, Vector3d(-right), down, Vector3d(-down)})
+    hidden += IsHidden(scene, viewer, point.p_world + kAroundM * side, kToleranceM) ? 1 : 0;
+  return hidden;
+}
+
+struct Shift {
+  double distance_m, angle_deg;
+  bool only_sure;
+};
+
+TrueClasses Classify(const TrueCondition& condition, const ThermalOptions& o, const Shift& shift) {
+  const auto classify = [](double value, double low, double good, double high) {
+    if (value < low || value > high) return ConditionClass::kBad;
+    return value <= good ? ConditionClass::kGood : ConditionClass::kAcceptable;
+  };
+  const double angle_deg = std::abs(condition.angle_deg + shift.angle_deg);
+  return {classify(condition.distance_m + shift.distance_m, o.distance_min_m(), o.distance_good_m(),
+                   o.distance_max_m()),
+          classify(angle_deg, o.angle_min_deg(), o.angle_good_deg(), o.angle_max_deg())};
+}
+
+/// Algorithm 6: the best of the valid conditions; the last one if none was valid.
+std::optional<TrueClasses> Best(const std::vector<TrueCondition>& conditions,
+                                const ThermalOptions& limits, const Shift& shift) {
+  std::optional<TrueClasses> best, last;
+  const auto rank = [](const TrueClasses& c) {  // kGood is 1, kAcceptable 2.
+    return 4 * static_cast<int>(c.distance) + static_cast<int>(c.angle);
+  };
+  for (const TrueCondition& condition : conditions) {
+    if (!(shift.only_sure ? condition.surely_seen : condition.maybe_seen)) continue;
+    last = Classify(condition, limits, shift);
+    const bool valid =
+        last->distance != ConditionClass::kBad && last->angle != ConditionClass::kBad;
+    if (valid && (!best || rank(*last) < rank(*best))) best = last;
+  }
+  return best ? best : last;
+}
+
+}  // namespace
+
+std::vector<TrueCondition> TrueConditions(const SimulatedScan& scan,
+                                          const std::vector<std::size_t>& frames,
+                                          const SurfacePoint& point) {
+  constexpr double kMarginPx = 6.0;
+  constexpr double kSteepForDepthDeg = 62.0;  // Returns become rare at 70.
+  constexpr int kFramesUntilModelled = 3;
+  std::vector<TrueCondition> conditions;
+  int seen_in_a_row = 0;
+  for (const std::size_t number : frames) {
+    const CaptureTime time = scan.thermal_times()[number].exposure;
+    const RigidTransform T_world_thermal = scan.ThermalPoseAt(time);
+    const RigidTransform T_world_depth = scan.PoseAt(time);
+    const Vector3d viewer = T_world_thermal.translation();
+    TrueCondition& condition = conditions.emplace_back();
+    condition.distance_m = (point.p_world - viewer).norm();
+    condition.angle_deg = AngleDeg(viewer, point);
+    if (condition.angle_deg > 90.0 + kMarginPx ||
+        !IsInPicture(*scan.rig().thermal, T_world_thermal, point.p_world, -kMarginPx)) {
+      seen_in_a_row = 0;
+      continue;
+    }
+    const int hidden = CountHidden(scan.scene(), viewer, point);
+    condition.maybe_seen = hidden < 5;
+    const bool seen = hidden == 0 &&
+                      IsInPicture(*scan.rig().thermal, T_world_thermal, point.p_world, kMarginPx) &&
+                      IsInPicture(*scan.rig().depth, T_world_depth, point.p_world, kMarginPx) &&
+                      AngleDeg(T_world_depth.translation(), point) < kSteepForDepthDeg &&
+                      CountHidden(scan.scene(), T_world_depth.translation(), point) == 0;
+    seen_in_a_row = seen ? seen_in_a_row + 1 : 0;
+    condition.surely_seen = seen_in_a_row >= kFramesUntilModelled;
+  }
+  return conditions;
+}
+
+std::optional<TrueClasses> ExpectClasses(const std::vector<TrueCondition>& conditions,
+                                         const ThermalOptions& limits) {
+  constexpr double kDistanceM = 0.01, kAngleDeg = 5.0;
+  const auto expected = Best(conditions, limits, {0.0, 0.0, true});
+  if (!expected) return std::nullopt;
+  for (const double distance_m : {-kDistanceM, kDistanceM}) {
+    for (const double angle_deg : {-kAngleDeg, kAngleDeg}) {
+      for (const bool only_sure : {false, true}) {
+        if (Best(conditions, limits, {distance_m, angle_deg, only_sure}) != expected)
+          return std::nullopt;
+      }
+    }
+  }
+  return expected;
+}
+
+}  // namespace isotherm
