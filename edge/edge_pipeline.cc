@@ -71,6 +71,11 @@ Status EdgePipeline::Stop() {
     thread->request_stop();
     if (thread->joinable()) thread->join();
   }
+  if (outside_poses_captured_ > 0) {
+    LOG(Edge, Info) << "poses from outside, captured=" << outside_poses_captured_
+                    << " published=" << outside_poses_published_
+                    << " not_published=" << outside_poses_captured_ - outside_poses_published_;
+  }
   if (!spool_) return recording_status_;
   RecordFeedback();
   if (feedback_to_record_.dropped() > 0) {
@@ -99,6 +104,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
     Result<SourceItem> item = source_.Read(stop);
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
     if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
+    if (OutsidePose* pose = std::get_if<OutsidePose>(&*item)) Keep(std::move(*pose));
   }
   source_.Close();
   source_ended_ = true;
@@ -110,6 +116,13 @@ void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
   } else {
     ProcessThermal(std::move(raw), stop);
   }
+}
+
+void EdgePipeline::Keep(OutsidePose pose) {
+  // Cameras that stopped must not make the buffer grow.
+  constexpr std::size_t kMost = 1024;
+  if (outside_poses_.size() == kMost) outside_poses_.erase(outside_poses_.begin());
+  outside_poses_.push_back({session_, outside_poses_captured_++, std::move(pose)});
 }
 
 void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
@@ -142,6 +155,7 @@ FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const 
 }
 
 void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
+  encoded.outside_poses = std::exchange(outside_poses_, {});
   const auto frame = std::make_shared<const EncodedFrame>(std::move(encoded));
   if (spool_ && !spool_queue_.Push(frame, stop)) {
     account_.Count(frame->sensor(), FrameFate::kRecordQueueFull);
@@ -165,8 +179,16 @@ void EdgePipeline::RecordFeedback() {
   }
 }
 
+void EdgePipeline::PublishOutsidePoses(const EncodedFrame& frame) {
+  for (const OutsidePoseSample& sample : frame.outside_poses) {
+    if (publisher_.Publish(sample).ok()) ++outside_poses_published_;
+  }
+}
+
 void EdgePipeline::Publish(const std::stop_token& stop) {
   while (const std::optional<EncodedFramePtr> frame = publish_queue_.Pop(stop)) {
+    // First, so that the ground has them when it tracks the frame.
+    PublishOutsidePoses(**frame);
     const Status published =
         std::visit([this, &stop](const auto& content) { return publisher_.Publish(content, stop); },
                    (*frame)->content);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <stop_token>
 #include <thread>
+#include <vector>
 
 #include "common/codec/codec.h"
 #include "common/concurrency/bounded_queue.h"
@@ -71,6 +72,9 @@ class EdgePipeline {
  private:
   void Capture(const std::stop_token& stop);
   void Process(RawFrame raw, const std::stop_token& stop);
+  /// Keeps the pose for the next frame to take along.
+  void Keep(OutsidePose pose);
+  void PublishOutsidePoses(const EncodedFrame& frame);
   void ProcessDepth(RawFrame raw, const std::stop_token& stop);
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
@@ -92,6 +96,10 @@ class EdgePipeline {
   NucSupervisor nuc_supervisor_;
   DepthEncoder depth_encoder_;
   ThermalEncoder thermal_encoder_;
+
+  std::vector<OutsidePoseSample> outside_poses_;  ///< Since the last frame.
+  std::uint64_t outside_poses_captured_ = 0;
+  std::uint64_t outside_poses_published_ = 0;
 
   std::atomic<bool> source_ended_{false};
   std::atomic<NucState> nuc_state_{NucState::kUnknown};

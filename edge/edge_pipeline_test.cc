@@ -91,6 +91,20 @@ TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
   }
 }
 
+TEST_F(EdgePipelineTest, PosesFromOutsideAreRecordedAndPublishedWithTheNextFrame) {
+  Start("d 3*p t 2*p d 4*p");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  const std::vector<OutsidePoseSample> published = publisher_.outside_poses();
+  ASSERT_EQ(published.size(), 5U) << "those behind the last frame tell nothing of any";
+  for (std::size_t i = 0; i < published.size(); ++i) {
+    EXPECT_EQ(published[i].session, kSession);
+    EXPECT_EQ(published[i].number, i);
+    EXPECT_EQ(published[i].pose.source, "fake");
+  }
+  EXPECT_EQ(published[4].pose.time, publisher_.depth().at(1).header.capture_time);
+  EXPECT_EQ(recording_.outside_poses.size(), 5U);
+}
+
 TEST_F(EdgePipelineTest, PixelsSurviveTheCodec) {
   Start("d:holes t");
   EXPECT_TRUE(RunToTheEnd().ok());

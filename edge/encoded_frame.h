@@ -2,8 +2,10 @@
 
 #include <memory>
 #include <variant>
+#include <vector>
 
 #include "common/frame/frame.h"
+#include "common/transport/messages.h"
 
 namespace isotherm {
 
@@ -11,6 +13,9 @@ namespace isotherm {
 struct EncodedFrame {
   std::variant<EncodedDepthFrame, EncodedThermalFrame> content;
   CaptureTime arrival{};
+  /// What came from outside since the frame before: it travels along, so that order and back
+  /// pressure are the same.
+  std::vector<OutsidePoseSample> outside_poses{};
 
   Sensor sensor() const {
     return std::holds_alternative<EncodedDepthFrame>(content) ? Sensor::kDepth : Sensor::kThermal;

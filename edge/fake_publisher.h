@@ -28,6 +28,12 @@ class FakePublisher final : public Publisher {
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return Take(frame, thermal_, stop);
   }
+  Status Publish(const OutsidePoseSample& sample) override {
+    std::scoped_lock lock(mutex_);
+    if (broken_) return Unavailable("no link");
+    outside_poses_.push_back(sample);
+    return OkStatus();
+  }
   Status Publish(EdgeStatus) override { return OkStatus(); }
   Status Answer(const CommandResult& result) override {
     std::scoped_lock lock(mutex_);
@@ -62,6 +68,10 @@ class FakePublisher final : public Publisher {
     std::scoped_lock lock(mutex_);
     return thermal_;
   }
+  std::vector<OutsidePoseSample> outside_poses() const {
+    std::scoped_lock lock(mutex_);
+    return outside_poses_;
+  }
   std::vector<CommandResult> answers() const {
     std::scoped_lock lock(mutex_);
     return answers_;
@@ -85,6 +95,7 @@ class FakePublisher final : public Publisher {
   std::optional<PublishPolicy> policy_;
   std::vector<EncodedDepthFrame> depth_;
   std::vector<EncodedThermalFrame> thermal_;
+  std::vector<OutsidePoseSample> outside_poses_;
   std::vector<CommandResult> answers_;
 };
 

@@ -45,7 +45,8 @@ struct SessionStart {
   std::shared_future<RecordingOutcome> recording;
 };
 
-using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, SessionAccount, Feedback>;
+using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, OutsidePoseSample,
+                          SessionAccount, Feedback>;
 using ItemQueue = BoundedQueue<Item>;
 
 bool IsFrame(const Item& item) {
@@ -165,6 +166,10 @@ class ReconstructionLoop {
     if (mode_.single_scan) signal_.Request();
   }
 
+  void Handle(const OutsidePoseSample& sample) {
+    if (scan_) scan_->Add(sample);
+  }
+
   template <typename Frame>
   void Handle(const Frame& frame) {
     if (!scan_) return;
@@ -190,6 +195,10 @@ class ReconstructionLoop {
     link["not_processed_at_stop"] = unprocessed_;
     link["waiting"] = DescribeStage(scan_->waiting());
     link["out_of_order_frames"] = scan_->out_of_order();
+    if (scan_->outside_poses_received() > 0) {
+      link["outside_poses"]["received"] = scan_->outside_poses_received();
+      link["outside_poses"]["missing"] = scan_->outside_poses_missing();
+    }
     RecordingOutcome recording;
     if (start_.recording.wait_for(1s) == std::future_status::ready)
       recording = start_.recording.get();
@@ -281,6 +290,7 @@ class Distributor {
     if (const auto* depth = std::get_if<ReceivedDepth>(&item)) return depth->frame->header.session;
     if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
       return thermal->frame->header.session;
+    if (const auto* sample = std::get_if<OutsidePoseSample>(&item)) return sample->session;
     return 0;
   }
   void Send(Item item) {
@@ -344,6 +354,7 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
   handlers.thermal = [&](ReceivedThermal thermal) { distributor.OnFrame(std::move(thermal)); };
   handlers.late_depth = [&](ReceivedDepth depth) { distributor.OnLate(std::move(depth)); };
   handlers.late_thermal = [&](ReceivedThermal thermal) { distributor.OnLate(std::move(thermal)); };
+  handlers.outside_pose = [&](const OutsidePoseSample& pose) { distributor.OnFrame(pose); };
   handlers.rig = [&](const RigDescription& rig) { distributor.OnRig(rig); };
   handlers.session_end = [&](const SessionAccount& account) { distributor.OnSessionEnd(account); };
   const Result<std::unique_ptr<Subscriber>> subscriber =

@@ -61,6 +61,12 @@ void LiveScan::Add(const ReceivedThermal& thermal) {
   while (const auto frame = assembler_.Pop()) Process(*frame);
 }
 
+void LiveScan::Add(const OutsidePoseSample& sample) {
+  ++outside_poses_received_;
+  next_outside_pose_ = std::max(next_outside_pose_, sample.number + 1);
+  pipeline_->ProcessOutsidePose(sample.pose);
+}
+
 void LiveScan::FinishFrames() {
   while (const auto frame = assembler_.Flush()) Process(*frame);
   pipeline_->Finish();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -35,6 +36,8 @@ class LiveScan {
 
   void Add(const ReceivedDepth& depth);
   void Add(const ReceivedThermal& thermal);
+  /// Not held back: frames wait for each other, so poses are there before them.
+  void Add(const OutsidePoseSample& sample);
   /// Processes what the assembler still holds back.
   void FinishFrames();
 
@@ -50,6 +53,11 @@ class LiveScan {
 
   std::uint64_t session() const { return session_; }
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }
+  std::uint64_t outside_poses_received() const { return outside_poses_received_; }
+  /// Numbers below the highest received that did not come.
+  std::uint64_t outside_poses_missing() const {
+    return next_outside_pose_ - std::min(next_outside_pose_, outside_poses_received_);
+  }
   GroundPipeline& pipeline() { return *pipeline_; }
   const Rig& rig() const { return rig_; }
 
@@ -81,6 +89,8 @@ class LiveScan {
   int frames_ = 0;
   bool is_behind_ = false;
   bool told_done_ = false;
+  std::uint64_t outside_poses_received_ = 0;
+  std::uint64_t next_outside_pose_ = 0;
   std::map<const void*, CaptureTime> arrivals_;  ///< Of frames in the assembler.
   StageStats waiting_;
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.

@@ -37,6 +37,8 @@ void ScanRecorder::Write(const Feedback& feedback) {
   Note(WriteFeedback(feedback, std::nullopt, *writer_));
 }
 
+void ScanRecorder::Write(const OutsidePoseSample& sample) { Note(writer_->Write(sample.pose)); }
+
 Status ScanRecorder::Close() {
   Note(writer_->Close());
   return first_error_;

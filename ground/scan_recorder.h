@@ -24,6 +24,7 @@ class ScanRecorder {
   void Write(const ReceivedDepth& depth);
   void Write(const ReceivedThermal& thermal);
   void Write(const Feedback& feedback);
+  void Write(const OutsidePoseSample& sample);
   /// Writes index and footer. The first error of the recording, or ok. Idempotent.
   Status Close();
 

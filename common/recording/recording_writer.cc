@@ -46,7 +46,12 @@ class McapRecordingWriter final : public RecordingWriter {
   }
 
   Status Write(const OutsidePose& pose) override {
-    return Append(rec::kOutsidePoseTopic, pose.time, pose.time, rec::ToMessage(pose));
+    // Filed under its own time, unless that is nonsense: it must not stretch the recording.
+    constexpr Nanoseconds kFar = std::chrono::seconds(10);
+    const CaptureTime newest = last_time_.value_or(pose.time);
+    const bool is_far = pose.time < newest - kFar || pose.time > newest + kFar;
+    const CaptureTime time = is_far ? newest : pose.time;
+    return Append(rec::kOutsidePoseTopic, time, time, rec::ToMessage(pose));
   }
 
   Status WritePose(std::string_view stream, const StampedPose& pose) override {

@@ -34,6 +34,8 @@ const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
       return &isotherm_wire_Feedback_desc;
     case TopicId::kHello:
       return &isotherm_wire_Hello_desc;
+    case TopicId::kOutsidePose:
+      return &isotherm_wire_OutsidePose_desc;
   }
   return nullptr;
 }
@@ -177,6 +179,7 @@ std::int32_t Reader<Message>::read_condition() const {
 template class Writer<EncodedDepthFrame>;
 template class Writer<EncodedThermalFrame>;
 template class Writer<RigDescription>;
+template class Writer<OutsidePoseSample>;
 template class Writer<EdgeStatus>;
 template class Writer<Command>;
 template class Writer<CommandResult>;
@@ -187,6 +190,7 @@ template class Writer<Hello>;
 template class Reader<EncodedDepthFrame>;
 template class Reader<EncodedThermalFrame>;
 template class Reader<RigDescription>;
+template class Reader<OutsidePoseSample>;
 template class Reader<EdgeStatus>;
 template class Reader<Command>;
 template class Reader<CommandResult>;

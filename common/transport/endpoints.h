@@ -12,8 +12,8 @@
 #include "common/transport/refusal.h"
 
 /// Typed ends of the topics of the link. Message is one of EncodedDepthFrame, EncodedThermalFrame,
-/// RigDescription, EdgeStatus, Command, CommandResult, Receipt, Feedback, Hello; the topic and its
-/// QoS follow from it (qos.cc).
+/// RigDescription, OutsidePoseSample, EdgeStatus, Command, CommandResult, Receipt, Feedback, Hello;
+/// the topic and its QoS follow from it (qos.cc).
 namespace isotherm {
 
 /// Writes one topic. Thread-safe.

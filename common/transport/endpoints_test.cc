@@ -171,6 +171,33 @@ TEST_F(EndpointsTest, RigArrivesAsItWasWritten) {
   EXPECT_EQ(rig.depth.rate_hz, 30.0);
 }
 
+/// What a source says is judged where it is used, so wrong numbers arrive as they are.
+TEST_F(EndpointsTest, OutsidePoseArrivesAsItWasWrittenRightOrWrong) {
+  OutsidePoseSample sent{.session = 3, .number = 12, .pose = {}};
+  sent.pose.source = "vio";
+  sent.pose.time = CaptureTimeFromNanoseconds(1'700'000'000'123'456'789);
+  sent.pose.time_sigma = 40us;
+  sent.pose.translation_m = {1.0, -2.0, std::numeric_limits<double>::quiet_NaN()};
+  sent.pose.rotation.coeffs() = Eigen::Vector4d(0.1, 0.2, 0.3, 4.0);
+  sent.pose.rotation_sigma_rad = 0.01;
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  const OutsidePose& pose = received->message.pose;
+  EXPECT_EQ(received->message.session, 3U);
+  EXPECT_EQ(received->message.number, 12U);
+  EXPECT_EQ(pose.source, "vio");
+  EXPECT_EQ(pose.time, sent.pose.time);
+  EXPECT_EQ(pose.time_sigma, sent.pose.time_sigma);
+  EXPECT_EQ(pose.translation_m.y(), -2.0);
+  EXPECT_TRUE(std::isnan(pose.translation_m.z()));
+  EXPECT_EQ(pose.rotation.coeffs(), sent.pose.rotation.coeffs());
+  EXPECT_TRUE(std::isnan(pose.position_sigma_m)) << "not known";
+  EXPECT_TRUE(pose.has_position());
+  EXPECT_EQ(pose.rotation_sigma_rad, 0.01);
+  sent.pose.position_sigma_m = OutsidePose::kNotMeasured;
+  EXPECT_FALSE(RoundTrip(sent)->message.pose.has_position());
+}
+
 TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   EdgeStatus sent;
   sent.session = 5;

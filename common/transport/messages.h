@@ -9,6 +9,7 @@
 
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/outside_pose.h"
 #include "common/geometry/pose_covariance.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/time/time_types.h"
@@ -65,6 +66,13 @@ struct RigDescription {
   StreamMode thermal;
   /// Frames come as fast as the ground takes them (a replay), not as a camera makes them.
   bool waits_for_ground = false;
+};
+
+/// A pose from outside on its way to the ground.
+struct OutsidePoseSample {
+  std::uint64_t session = 0;
+  std::uint64_t number = 0;  ///< Counts the session's samples from 0, so that losses are seen.
+  OutsidePose pose;
 };
 
 enum class ScanState : std::uint8_t {

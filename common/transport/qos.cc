@@ -27,7 +27,7 @@ constexpr dds_duration_t kFrameBlocking = DDS_MSECS(100);
 constexpr dds_duration_t kSmallBlocking = DDS_MSECS(50);
 constexpr dds_duration_t kLease = DDS_SECS(1);
 
-constexpr std::array<Profile, 9> kProfiles = {{
+constexpr std::array<Profile, 10> kProfiles = {{
     {"isotherm/depth", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/thermal", kFrameHistory, true, kFrameBlocking, kLease},
     {"isotherm/rig", 1, true, kSmallBlocking, kLease},
@@ -38,6 +38,7 @@ constexpr std::array<Profile, 9> kProfiles = {{
     {"isotherm/receipt", 1, false, kSmallBlocking, kLease},
     {"isotherm/feedback", 1, false, kSmallBlocking, kLease},
     {"isotherm/hello", 1, true, kSmallBlocking, kLease},
+    {"isotherm/outside_pose", kOutsidePoseHistory, true, kSmallBlocking, kLease},
 }};
 
 const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }

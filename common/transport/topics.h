@@ -7,6 +7,7 @@
 // Generated from idl/; complete only in the .cc files of this folder.
 struct isotherm_wire_DepthFrame;
 struct isotherm_wire_ThermalFrame;
+struct isotherm_wire_OutsidePose;
 struct isotherm_wire_Rig;
 struct isotherm_wire_EdgeStatus;
 struct isotherm_wire_Command;
@@ -27,6 +28,7 @@ enum class TopicId : std::uint8_t {
   kReceipt,
   kFeedback,
   kHello,
+  kOutsidePose,
 };
 
 /// Relates a message to its topic and to the type that idlc generated for it.
@@ -46,6 +48,11 @@ template <>
 struct TopicOf<RigDescription> {
   using Wire = ::isotherm_wire_Rig;
   static constexpr TopicId kId = TopicId::kRig;
+};
+template <>
+struct TopicOf<OutsidePoseSample> {
+  using Wire = ::isotherm_wire_OutsidePose;
+  static constexpr TopicId kId = TopicId::kOutsidePose;
 };
 template <>
 struct TopicOf<EdgeStatus> {

@@ -36,6 +36,7 @@ std::string HostName() {
 struct EdgeEndpoints {
   Writer<EncodedDepthFrame> depth;
   Writer<EncodedThermalFrame> thermal;
+  Writer<OutsidePoseSample> outside_pose;
   Writer<RigDescription> rig;
   Writer<EdgeStatus> status;
   Writer<CommandResult> result;
@@ -68,6 +69,9 @@ class DdsPublisher final : public Publisher {
   }
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return PublishFrame(frame, &ends_.thermal, &thermal_, stop);
+  }
+  Status Publish(const OutsidePoseSample& sample) override {
+    return ends_.outside_pose.Write(options_.edge_id, sample);
   }
   Status Publish(EdgeStatus status) override;
   Status Answer(const CommandResult& result) override {
@@ -130,6 +134,7 @@ class DdsPublisher final : public Publisher {
 Status DdsPublisher::Open(const Participant& participant) {
   ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.outside_pose.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.result.Open(participant));

@@ -42,8 +42,16 @@ Result<SourceItem> FakeSource::Read(std::stop_token) {
   if (next_ == steps_.size()) return EndOfStream{};
   const Step& step = steps_[next_++];
   if (step.what == '-') return NothingYet{};
+  if (step.what == 'p') return MakePose();
   if (step.what == '!') return Err(Unavailable("the cable came off"));
   return MakeFrame(step);
+}
+
+OutsidePose FakeSource::MakePose() const {
+  OutsidePose pose;
+  pose.source = "fake";
+  pose.time = kFakeEpoch + static_cast<int>(frames_[0]) * kPeriod[0];
+  return pose;
 }
 
 RawFrame FakeSource::MakeFrame(const Step& step) {

@@ -14,6 +14,7 @@ namespace isotherm {
 ///
 ///   d  t      a depth or thermal frame (8x6 and 6x4 pixels; 30 and 40 Hz; arrival = kFakeEpoch +
 ///   device time)
+///   p         a pose from outside, true when the next depth frame arrives
 ///   -         nothing yet
 ///   !         Read fails (the cable came off)
 ///   d:empty   the frame has no pixels             d:size    ... the wrong size
@@ -44,6 +45,7 @@ class FakeSource final : public FrameSource {
     std::string fault;
   };
   RawFrame MakeFrame(const Step& step);
+  OutsidePose MakePose() const;
 
   std::vector<Step> steps_;
   std::size_t next_ = 0;

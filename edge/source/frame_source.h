@@ -8,6 +8,7 @@
 #include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/outside_pose.h"
 
 namespace isotherm {
 
@@ -16,10 +17,11 @@ struct NothingYet {};
 /// The source has delivered all it has.
 struct EndOfStream {};
 
-using SourceItem = std::variant<RawFrame, NothingYet, EndOfStream>;
+using SourceItem = std::variant<RawFrame, OutsidePose, NothingYet, EndOfStream>;
 
-/// Delivers frames of one or more sensors as the device and the host gave them. Thread-bound: one
-/// thread opens, reads and closes.
+/// Delivers frames of one or more sensors as the device and the host gave them, and poses of the
+/// rig that something outside measured, on the edge's wall clock. Thread-bound: one thread opens,
+/// reads and closes.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;

@@ -60,23 +60,23 @@ Status ReplaySource::Open() {
 
 Result<SourceItem> ReplaySource::Read(std::stop_token stop) {
   if (!pending_) {
-    Result<std::optional<RawFrame>> frame = NextFrame();
-    if (!frame) return Err(frame.error());
-    if (!*frame) return SourceItem(StartNextLoop() ? SourceItem(NothingYet{}) : EndOfStream{});
-    PlaceInTime(**frame);
-    pending_ = std::move(*frame);
+    Result<std::optional<Item>> item = NextItem();
+    if (!item) return Err(item.error());
+    if (!*item) return SourceItem(StartNextLoop() ? SourceItem(NothingYet{}) : EndOfStream{});
+    PlaceInTime(**item);
+    pending_ = std::move(*item);
   }
   if (rate_ > 0.0) {
     const Nanoseconds early = DueTime(*pending_) - clock_.SteadyNow();
     Pause(stop, std::min(early, longest_pause_));
     if (clock_.SteadyNow() < DueTime(*pending_)) return NothingYet{};
   }
-  RawFrame frame = std::move(*pending_);
+  Item item = std::move(*pending_);
   pending_.reset();
-  return frame;
+  return std::visit([](auto& value) { return SourceItem(std::move(value)); }, item);
 }
 
-Result<std::optional<RawFrame>> ReplaySource::NextFrame() {
+Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
   while (true) {
     Result<std::optional<RecordedItem>> item = reader_->Next();
     if (!item && item.error().code() == StatusCode::kDataLoss) {
@@ -87,9 +87,11 @@ Result<std::optional<RawFrame>> ReplaySource::NextFrame() {
     }
     if (!item) return Err(item.error());
     if (!*item) return std::nullopt;
-    if (auto* depth = std::get_if<RecordedDepth>(&**item)) return ToRawFrame(std::move(*depth));
+    if (auto* depth = std::get_if<RecordedDepth>(&**item))
+      return Item(ToRawFrame(std::move(*depth)));
     if (auto* thermal = std::get_if<RecordedThermal>(&**item))
-      return ToRawFrame(std::move(*thermal));
+      return Item(ToRawFrame(std::move(*thermal)));
+    if (auto* pose = std::get_if<OutsidePose>(&**item)) return Item(std::move(*pose));
     if (const auto* nuc = std::get_if<NucEvent>(&**item)) last_nuc_event_ = *nuc;
   }
 }
@@ -145,20 +147,25 @@ bool ReplaySource::StartNextLoop() {
   return true;
 }
 
-void ReplaySource::PlaceInTime(RawFrame& frame) {
+void ReplaySource::PlaceInTime(Item& item) {
+  auto* frame = std::get_if<RawFrame>(&item);
+  // A pose comes when it is true.
+  CaptureTime& arrival = frame ? frame->arrival_wall : std::get<OutsidePose>(item).time;
   if (!first_arrival_) {
-    first_arrival_ = frame.arrival_wall;
+    first_arrival_ = arrival;
     started_at_ = clock_.SteadyNow();
-    if (rebase_) rebase_offset_ = clock_.Now() - frame.arrival_wall;
+    if (rebase_) rebase_offset_ = clock_.Now() - arrival;
   }
-  frame.device_ticks += std::chrono::floor<std::chrono::microseconds>(loop_offset_);
-  frame.arrival_wall += loop_offset_;
-  last_arrival_ = std::max(last_arrival_, frame.arrival_wall);
-  frame.arrival_wall += rebase_offset_;
+  if (frame) frame->device_ticks += std::chrono::floor<std::chrono::microseconds>(loop_offset_);
+  arrival += loop_offset_;
+  last_arrival_ = std::max(last_arrival_, arrival);
+  arrival += rebase_offset_;
 }
 
-SteadyTime ReplaySource::DueTime(const RawFrame& frame) const {
-  const Nanoseconds since_start = frame.arrival_wall - rebase_offset_ - *first_arrival_;
+SteadyTime ReplaySource::DueTime(const Item& item) const {
+  const auto* frame = std::get_if<RawFrame>(&item);
+  const CaptureTime arrival = frame ? frame->arrival_wall : std::get<OutsidePose>(item).time;
+  const Nanoseconds since_start = arrival - rebase_offset_ - *first_arrival_;
   return started_at_ + FromSeconds(ToSeconds(since_start) / rate_);
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 
 #include "common/recording/recording.h"
 #include "common/time/clock.h"
@@ -15,7 +16,8 @@ namespace isotherm {
 
 class SourceOptions;
 
-/// Plays a recording: the frames of both sensors, in the order of their stamps in the file.
+/// Plays a recording: the frames of both sensors and poses from outside, in the order of their
+/// stamps in the file.
 ///
 /// Times: device ticks and arrival are those recorded, so that the Timestamper has the same work as
 /// live. Frames without a recorded arrival (imported data sets) get ticks and arrival equal to
@@ -39,14 +41,16 @@ class ReplaySource final : public FrameSource {
   std::optional<Rig> rig() const override { return rig_; }
 
  private:
-  Result<std::optional<RawFrame>> NextFrame();
+  using Item = std::variant<RawFrame, OutsidePose>;
+
+  Result<std::optional<Item>> NextItem();
   RawFrame ToRawFrame(RecordedDepth recorded);
   RawFrame ToRawFrame(RecordedThermal recorded);
   RawFrame Prepare(Sensor sensor, const FrameHeader& header, const EncodedImage& image,
                    const std::optional<CaptureTime>& arrival);
   bool StartNextLoop();
-  void PlaceInTime(RawFrame& frame);
-  SteadyTime DueTime(const RawFrame& frame) const;
+  void PlaceInTime(Item& item);
+  SteadyTime DueTime(const Item& item) const;
 
   const std::string name_;
   const std::filesystem::path path_;
@@ -64,7 +68,7 @@ class ReplaySource final : public FrameSource {
   std::uint64_t unreadable_ = 0;
   int loops_played_ = 0;
 
-  std::optional<RawFrame> pending_;           ///< Read ahead, not due yet.
+  std::optional<Item> pending_;               ///< Read ahead, not due yet.
   std::optional<CaptureTime> first_arrival_;  ///< As recorded.
   CaptureTime last_arrival_{};                ///< As recorded, with the loops before.
   Nanoseconds loop_offset_{0};

@@ -97,6 +97,39 @@ class ReplaySourceTest : public testing::Test {
   std::unique_ptr<ReplaySource> source_;
 };
 
+TEST_F(ReplaySourceTest, PosesFromOutsideComeBetweenFramesOnTheirTimeLine) {
+  options_.set_rate(1);
+  const auto write = [&](Nanoseconds time) {
+    OutsidePose pose;
+    pose.source = "vio";
+    pose.time = kRecordedStart + time;
+    pose.translation_m.x() = ToSeconds(time);
+    ASSERT_TRUE(writer_->Write(pose).ok());
+  };
+  WriteDepth(milliseconds(0), /*stamped_by_edge=*/false);
+  write(milliseconds(10));
+  write(milliseconds(20));
+  WriteDepth(milliseconds(33), /*stamped_by_edge=*/false);
+  Open();
+  std::vector<std::pair<char, CaptureTime>> seen;
+  for (int i = 0; i < 40; ++i) {
+    const Result<SourceItem> item = source_->Read({});
+    ASSERT_TRUE(item.has_value());
+    if (const auto* frame = std::get_if<RawFrame>(&*item))
+      seen.emplace_back('f', frame->arrival_wall);
+    if (const auto* pose = std::get_if<OutsidePose>(&*item)) {
+      EXPECT_EQ(pose->source, "vio");
+      seen.emplace_back('p', pose->time);
+    }
+    clock_.Advance(milliseconds(1));
+  }
+  const std::vector<std::pair<char, CaptureTime>> expected = {{'f', kNow},
+                                                              {'p', kNow + milliseconds(10)},
+                                                              {'p', kNow + milliseconds(20)},
+                                                              {'f', kNow + milliseconds(33)}};
+  EXPECT_EQ(seen, expected) << "rebased as the frames are";
+}
+
 TEST_F(ReplaySourceTest, DeliversBothSensorsInOrderAsTheyWereRecorded) {
   WriteDepth(milliseconds(0));
   WriteThermal(milliseconds(7));

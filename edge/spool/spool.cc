@@ -55,6 +55,8 @@ void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
 }
 
 Status Spool::WriteFrame(const EncodedFrame& frame) {
+  for (const OutsidePoseSample& sample : frame.outside_poses)
+    ISOTHERM_RETURN_IF_ERROR(writer_->Write(sample.pose));
   if (const auto* depth = std::get_if<EncodedDepthFrame>(&frame.content)) {
     return writer_->Write(*depth, frame.arrival);
   }

@@ -33,6 +33,7 @@ std::string HostName() {
 struct GroundEndpoints {
   Reader<EncodedDepthFrame> depth;
   Reader<EncodedThermalFrame> thermal;
+  Reader<OutsidePoseSample> outside_poses;
   Reader<RigDescription> rig;
   Reader<EdgeStatus> status;
   Reader<CommandResult> results;
@@ -110,6 +111,7 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
 Status DdsSubscriber::Open(const Participant& participant) {
   ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant, &refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.outside_poses.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.results.Open(participant, &refusals_));
@@ -121,6 +123,7 @@ Status DdsSubscriber::Open(const Participant& participant) {
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.depth));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.thermal));
+  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.outside_poses));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.rig));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.status));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.results));
@@ -153,6 +156,11 @@ int DdsSubscriber::TakeMessages() {
   int taken = ends_.peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
   taken += ends_.rig.Take([this](Received<RigDescription>&& rig) {
     if (IsFollowed(rig.edge_id) && handlers_.rig) handlers_.rig(rig.message);
+  });
+  taken += ends_.outside_poses.Take([this](Received<OutsidePoseSample>&& sample) {
+    if (IsFollowed(sample.edge_id) && handlers_.outside_pose) {
+      handlers_.outside_pose(sample.message);
+    }
   });
   taken += ends_.status.Take([this](Received<EdgeStatus>&& status) {
     if (!IsFollowed(status.edge_id)) return;

@@ -42,6 +42,8 @@ struct SubscriberHandlers {
   /// Arrived behind the reorder window: not for the reconstruction, good for the recording.
   std::function<void(ReceivedDepth)> late_depth;
   std::function<void(ReceivedThermal)> late_thermal;
+  /// As they come: numbers may be missing.
+  std::function<void(const OutsidePoseSample&)> outside_pose;
   std::function<void(const RigDescription&)> rig;
   std::function<void(const EdgeStatus&)> status;
   std::function<void(const CommandResult&)> command_result;

@@ -33,6 +33,9 @@ class GroundSide {
     SubscriberHandlers handlers;
     handlers.depth = [this](ReceivedDepth item) { Take(*item.encoded, &depth_); };
     handlers.thermal = [this](ReceivedThermal item) { Take(*item.encoded, &thermal_); };
+    handlers.outside_pose = [this](const OutsidePoseSample& sample) {
+      Update([&] { outside_poses_.push_back(sample.number); });
+    };
     handlers.rig = [this](const RigDescription& rig) {
       Update([&] { rig_session_ = rig.session; });
     };
@@ -61,6 +64,11 @@ class GroundSide {
   bool AwaitDepth(std::size_t count) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kLinkPatience, [&] { return depth_.size() >= count; });
+  }
+  std::vector<std::uint64_t> AwaitOutsidePoses(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLinkPatience, [&] { return outside_poses_.size() >= count; });
+    return outside_poses_;
   }
   std::optional<CommandResult> AwaitResult() {
     std::unique_lock lock(mutex_);
@@ -111,7 +119,7 @@ class GroundSide {
   std::unique_ptr<Subscriber> subscriber_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::uint64_t> depth_, thermal_;
+  std::vector<std::uint64_t> depth_, thermal_, outside_poses_;
   std::optional<std::uint64_t> rig_session_;
   std::optional<CommandResult> result_;
   std::vector<SessionAccount> ended_;
@@ -298,6 +306,21 @@ TEST_F(LinkTest, NobodyThereEndsTheWaitForGround) {
   stop.request_stop();
   EXPECT_FALSE(edge.publisher().WaitForGround(1h, stop.get_token()));
   EXPECT_TRUE(edge.publisher().Drain(1ms));  // Nobody listens: nothing to wait for.
+}
+
+TEST_F(LinkTest, PosesFromOutsideArriveInOrder) {
+  constexpr std::uint64_t kPoses = 300;  // Fewer than the history, so that none may be missing.
+  const auto ground = StartGround();
+  EdgeSide edge(environment_, clock_, Plan(1, 1));
+  ASSERT_TRUE(edge.publisher().WaitForGround(kLinkPatience, {}));
+  edge.Begin();
+  for (std::uint64_t i = 0; i < kPoses; ++i) {
+    OutsidePoseSample sample{.session = 1, .number = i, .pose = {}};
+    sample.pose.source = "vio";
+    sample.pose.time = CaptureTimeFromNanoseconds(static_cast<std::int64_t>(i));
+    ASSERT_TRUE(edge.publisher().Publish(sample).ok());
+  }
+  EXPECT_EQ(ground->AwaitOutsidePoses(kPoses), Range(0, kPoses));
 }
 
 TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
