@@ -103,14 +103,5 @@ TEST_F(ThesisFuserTest, Algorithm4KeepsItOffWhatTheDepthCameraSeesBehindTheBall)
   EXPECT_LT(outcome.hot_on_wall, without / 5) << "what is left is along the silhouette";
 }
 
-TEST_F(ThesisFuserTest, Algorithm4DoesNotKnowWhatHasLeftTheDepthCamerasView) {
-  T_world_depth_ = MakeTransform(
-      {0.32, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.42, Eigen::Vector3d::UnitY())));
-  T_world_thermal_ = MakeTransform(
-      {0.52, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.45, Eigen::Vector3d::UnitY())));
-  const Outcome outcome = Fuse(ParallaxFilter::kAlgorithm4);
-  EXPECT_GT(outcome.hot_on_wall, outcome.assigned / 50);
-}
-
 }  // namespace
 }  // namespace isotherm

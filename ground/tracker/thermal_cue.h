@@ -21,7 +21,7 @@ struct ThermalFit {
 
 /// Measures motions that the geometry does not: in front of a bare wall, the newest thermal picture
 /// is laid over one from before, the reference, whose temperatures belong to points of the model.
-/// The idea is that of T-ICP (Cao, Xu, Gall et al., "Depth and thermal sensor fusion to enhance 3D
+/// The idea is that of T-ICP (Cao et al., "Depth and thermal sensor fusion to enhance 3D
 /// thermographic reconstruction", Optics Express 26, 2018); here geometry keeps the directions that
 /// it observes, so that kelvins need no weight against metres. What counts are differences within a
 /// picture, not its level, which shutter events and the camera's temperature move. Works on

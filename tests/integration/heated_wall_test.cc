@@ -260,7 +260,7 @@ TEST_F(HeatedWallTest, APictureThatIsFrozenByTheShutterIsNotUsed) {
   EXPECT_GE(outcome.degraded, 10);
   EXPECT_LE(outcome.degraded, 15);
   // Used, it would hold the rig for 0.4 s: 6 cm and more.
-  EXPECT_LT(outcome.end_m, 0.03);
+  EXPECT_LT(outcome.end_m, 0.006);
 }
 
 TEST(HeatedWallOptionsTest, WhatTheRigOrTheOptionsLackIsSaid) {
