@@ -19,11 +19,14 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
   libprotobuf-dev protobuf-compiler
   libexpected-dev libfmt-dev libspdlog-dev libcli11-dev
   libzstd-dev zlib1g-dev libsystemd-dev
+  libusb-1.0-0-dev libopenni2-dev
   libgtest-dev libgmock-dev libbenchmark-dev"
 
 # Recordings are checked against the format's reference implementation, which is JavaScript. Node.js may come from
 # elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).
+# Emulated USB devices need umockdev.
 add_test_packages() {
+  packages="$packages umockdev libumockdev-dev"
   command -v node >/dev/null 2>&1 || packages="$packages nodejs"
   command -v npm >/dev/null 2>&1 || packages="$packages npm"
 }

@@ -85,17 +85,29 @@ struct ThermalFrame {
   bool valid = false;  ///< Temperatures may reach the model.
 };
 
+/// What a thermal camera itself says of its correction.
+struct CameraNuc {
+  NucState state = NucState::kUnknown;
+  NucSource source = NucSource::kUnknown;  ///< How the driver knows.
+  std::optional<double> seconds_since;     ///< Since the last correction, by the camera's count.
+};
+
 /// What a FrameSource delivers: pixels and times as the device and the host gave them, not yet
 /// stamped.
 struct RawFrame {
   Sensor sensor = Sensor::kDepth;
   std::uint64_t frame_number =
       0;  ///< Counted by the source; a hole is a frame that was lost before us.
-  DeviceTicks device_ticks{};
-  CaptureTime arrival_wall{};   ///< Edge wall clock when the first byte reached us.
+  DeviceTicks device_ticks{};    ///< Unwrapped by the driver; backwards = the counter was reset.
+  bool has_device_clock = true;  ///< False: the camera has no counter, and ticks mean nothing.
+  CaptureTime arrival_wall{};    ///< Edge wall clock when the first byte reached us.
+  /// This computer's monotonic clock at the same moment; 0 = the source does not say.
+  SteadyTime arrival_steady{};
   Image<std::uint16_t> pixels;  ///< As DepthFrame::depth_raw or ThermalFrame::centikelvin.
   double depth_scale = 1000.0;  ///< Raw depth units per metre (depth only).
   bool shutter_closed = false;  ///< Thermal only: the camera says so (in band).
+  /// Thermal only: more than the shutter flag; nullopt = the camera says nothing.
+  std::optional<CameraNuc> camera_nuc;
   ThermalHousekeeping housekeeping;
 };
 

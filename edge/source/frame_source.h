@@ -17,6 +17,14 @@ struct NothingYet {};
 /// The source has delivered all it has.
 struct EndOfStream {};
 
+/// Correct the thermal camera now.
+struct TriggerNuc {};
+/// Let the thermal camera correct itself when it sees fit, or only when told to.
+struct SetAutomaticNuc {
+  bool on = true;
+};
+using CameraControl = std::variant<TriggerNuc, SetAutomaticNuc>;
+
 using SourceItem = std::variant<RawFrame, OutsidePose, NothingYet, EndOfStream>;
 
 /// Delivers frames of one or more sensors as the device and the host gave them, and poses of the
@@ -32,6 +40,10 @@ class FrameSource {
   /// requested. A failure means that the source must be closed and opened again.
   virtual Result<SourceItem> Read(std::stop_token stop) = 0;
   virtual void Close() = 0;
+  /// Tells the camera what to do; takes at most some milliseconds. Refused by sources that cannot.
+  virtual Status Control(const CameraControl& /*control*/) {
+    return Unavailable("the source has no shutter to command");
+  }
   /// Calibration that comes with the frames, known after Open; nullopt if the source has none (a
   /// bare camera).
   virtual std::optional<Rig> rig() const { return std::nullopt; }

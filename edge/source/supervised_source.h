@@ -37,6 +37,7 @@ class SupervisedSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { source_->Close(); }
+  Status Control(const CameraControl& control) override { return source_->Control(control); }
   std::optional<Rig> rig() const override { return source_->rig(); }
 
   /// Expected sizes, from a calibration that overrides the source's own.
