@@ -68,7 +68,7 @@ bool IsEdge(const HitImage& hits, int x, int y) {
 
 }  // namespace
 
-DepthSensor::DepthSensor(const CameraModel& camera, const DepthCameraOptions& options)
+DepthSensor::DepthSensor(const CameraModel& camera, const SimulatedDepthOptions& options)
     : grid_(camera),
       disparity_metres_px_(static_cast<float>(camera.fx * options.baseline_m())),
       step_px_(static_cast<float>(options.disparity_step_px())),

@@ -10,7 +10,7 @@
 
 namespace isotherm {
 
-class DepthCameraOptions;
+class SimulatedDepthOptions;
 
 /// A structured-light depth camera (PrimeSense Carmine): noise and quantisation in disparity, so
 /// that both grow with the square of the distance; no return at grazing angles, beside depth edges,
@@ -18,7 +18,7 @@ class DepthCameraOptions;
 /// Thread-safe (immutable); scratch memory is the caller's.
 class DepthSensor {
  public:
-  DepthSensor(const CameraModel& camera, const DepthCameraOptions& options);
+  DepthSensor(const CameraModel& camera, const SimulatedDepthOptions& options);
 
   struct Scratch {
     HitImage hits;

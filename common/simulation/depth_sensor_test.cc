@@ -44,7 +44,7 @@ class DepthSensorTest : public ::testing::Test {
 
   SceneBuilder builder_;
   CameraModel camera_;
-  DepthCameraOptions options_;
+  SimulatedDepthOptions options_;
 };
 
 TEST_F(DepthSensorTest, WithoutNoiseAndStepsDepthIsTrue) {

@@ -26,7 +26,7 @@ class RangeCheck {
   Status status_;
 };
 
-void CheckDepth(const DepthCameraOptions& depth, RangeCheck& check) {
+void CheckDepth(const SimulatedDepthOptions& depth, RangeCheck& check) {
   check("depth.rate_hz", depth.rate_hz(), 0.1, 1000.0);
   check("depth.baseline_m", depth.baseline_m(), 0.001, 10.0);
   check("depth.disparity_step_px", depth.disparity_step_px(), 0.0, 10.0);
@@ -39,7 +39,7 @@ void CheckDepth(const DepthCameraOptions& depth, RangeCheck& check) {
   check("depth.depth_scale", depth.depth_scale(), 1.0, 1e6);
 }
 
-void CheckThermal(const ThermalCameraOptions& thermal, RangeCheck& check) {
+void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
   check("thermal.rate_hz", thermal.rate_hz(), 0.1, 1000.0);
   check("thermal.netd_kelvin", thermal.netd_kelvin(), 0.0, 10.0);
   check("thermal.blur_px", thermal.blur_px(), 0.0, 10.0);

@@ -53,7 +53,7 @@ double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, do
 
 }  // namespace
 
-ThermalSensor::ThermalSensor(const CameraModel& camera, const ThermalCameraOptions& options)
+ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOptions& options)
     : grid_(camera),
       band_(SpectralBand{options.band_min_um(), options.band_max_um()}),
       noise_radiance_(options.netd_kelvin() * PlanckBandRadianceSlope(kNetdCelsius, band_.band())),

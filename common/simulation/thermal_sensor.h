@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-class ThermalCameraOptions;
+class SimulatedThermalOptions;
 
 /// A long-wave camera: band radiance of what each pixel sees with directional emissivity and
 /// reflected surroundings (thesis eq. 3.1, B.2), optical blur, the detector's inertia and the
@@ -20,7 +20,7 @@ class ThermalCameraOptions;
 /// caller's.
 class ThermalSensor {
  public:
-  ThermalSensor(const CameraModel& camera, const ThermalCameraOptions& options);
+  ThermalSensor(const CameraModel& camera, const SimulatedThermalOptions& options);
 
   struct Scratch {
     HitImage hits;

@@ -53,7 +53,7 @@ class ThermalSensorTest : public ::testing::Test {
   }
 
   CameraModel camera_;
-  ThermalCameraOptions options_;
+  SimulatedThermalOptions options_;
 };
 
 TEST_F(ThermalSensorTest, NoiseIsTheNetdAt30CelsiusAndLessWhereItIsHot) {

@@ -104,11 +104,11 @@ struct Setting {
 Outcome Run(const Scene& scene, const Setting& setting) {
   Rig rig = DefaultSimulatedRig();
   rig.depth = rig.depth->WithoutDistortion().Downscaled(1);
-  DepthCameraOptions depth_options;
+  SimulatedDepthOptions depth_options;
   depth_options.set_disparity_noise_px(0.5 * depth_options.disparity_noise_px());
   depth_options.set_disparity_step_px(0.5 * depth_options.disparity_step_px());
   const DepthSensor depth_sensor(*rig.depth, depth_options);
-  ThermalCameraOptions thermal_options;
+  SimulatedThermalOptions thermal_options;
   thermal_options.set_netd_kelvin(setting.netd_k);
   const ThermalSensor thermal_sensor(*rig.thermal, thermal_options);
   DepthSensor::Scratch depth_scratch;

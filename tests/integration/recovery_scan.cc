@@ -18,7 +18,7 @@ RecoveryScan::RecoveryScan(Scene scene, std::uint64_t seed)
   volume.set_voxel_size_m(0.004);
   options_.mutable_tsdf()->set_truncation_distance_m(0.016);
   options_.set_threads(2);
-  DepthCameraOptions camera;
+  SimulatedDepthOptions camera;
   // Half the focal length: half the disparity noise and steps in pixels for the same in metres.
   camera.set_disparity_noise_px(0.5 * camera.disparity_noise_px());
   camera.set_disparity_step_px(0.5 * camera.disparity_step_px());
