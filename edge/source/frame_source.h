@@ -2,8 +2,10 @@
 
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
@@ -27,6 +29,18 @@ using CameraControl = std::variant<TriggerNuc, SetAutomaticNuc>;
 
 using SourceItem = std::variant<RawFrame, OutsidePose, NothingYet, EndOfStream>;
 
+/// A camera as it was found when it was opened: what was read back, not what was asked for.
+struct CameraDescription {
+  Sensor sensor = Sensor::kDepth;
+  std::string driver;  ///< "openni2", "lepton-uvc", ...
+  std::string model;
+  std::string serial;    ///< Empty: the camera does not say.
+  int width = 0;         ///< Pixels.
+  int height = 0;        ///< Pixels.
+  double rate_hz = 0.0;  ///< 0 = not known.
+  std::string settings;  ///< What else was set, for people: "unit 1 mm, mirroring off".
+};
+
 /// Delivers frames of one or more sensors as the device and the host gave them, and poses of the
 /// rig that something outside measured, on the edge's wall clock. Thread-bound: one thread opens,
 /// reads and closes.
@@ -47,6 +61,8 @@ class FrameSource {
   /// Calibration that comes with the frames, known after Open; nullopt if the source has none (a
   /// bare camera).
   virtual std::optional<Rig> rig() const { return std::nullopt; }
+  /// The cameras that were opened, known after Open; none if there is no camera behind the source.
+  virtual std::vector<CameraDescription> cameras() const { return {}; }
 };
 
 }  // namespace isotherm

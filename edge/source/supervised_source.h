@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "common/time/clock.h"
 #include "edge/source/frame_check.h"
@@ -39,6 +40,7 @@ class SupervisedSource final : public FrameSource {
   void Close() override { source_->Close(); }
   Status Control(const CameraControl& control) override { return source_->Control(control); }
   std::optional<Rig> rig() const override { return source_->rig(); }
+  std::vector<CameraDescription> cameras() const override { return source_->cameras(); }
 
   /// Expected sizes, from a calibration that overrides the source's own.
   void Expect(const Rig& rig) { check_.Expect(rig); }

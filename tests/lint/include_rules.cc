@@ -88,6 +88,8 @@ const std::map<std::string_view, std::string_view>& SdkHomes() {
       {"ddsi/", "common/transport"},
       {"isotherm_idl.h", "common/transport"},
       {"OpenNI", "edge/openni"},
+      {"Driver/Oni", "edge/openni"},
+      {"PS1080.h", "edge/openni"},
       {"libusb", "edge/usb"},
       {"boost/beast", "ground/console"},
       {"boost/asio", "ground/console"},

@@ -61,7 +61,7 @@ TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
   EXPECT_THAT(MessagesFor("common/transport/participant.h", "#include \"dds/dds.h\""),
               ElementsAre(HasSubstr(".cc files only")));
   EXPECT_THAT(MessagesFor("ground/subscriber/subscriber.cc", "#include <libusb-1.0/libusb.h>"),
-              ElementsAre(HasSubstr("belongs to edge/source only")));
+              ElementsAre(HasSubstr("belongs to edge/usb only")));
   EXPECT_THAT(MessagesFor("common/transport/participant.cc", "#include \"dds/dds.h\""), IsEmpty());
 }
 

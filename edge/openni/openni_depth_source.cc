@@ -1,0 +1,109 @@
+#include "edge/openni/openni_depth_source.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
+// More frames cannot have been lost without a stall; a larger step is a counter that was set anew.
+constexpr int kMostLost = 1000;
+
+}  // namespace
+
+OpenniDepthSource::OpenniDepthSource(const DepthCameraOptions& options, double file_rate,
+                                     const Clock& clock)
+    : options_(std::make_unique<const DepthCameraOptions>(options)),
+      file_rate_(file_rate),
+      clock_(clock) {}
+
+OpenniDepthSource::~OpenniDepthSource() = default;
+
+Status OpenniDepthSource::Open() {
+  device_.reset();  // The library must let go of the camera before it is opened again.
+  Result<std::unique_ptr<OpenniDevice>> device = OpenniDevice::Open(*options_, file_rate_);
+  if (!device) return device.error();
+  device_ = std::move(*device);
+  unwrapper_ = {};
+  last_index_.reset();
+  last_frame_at_ = clock_.SteadyNow();
+  const CameraDescription& found = device_->description();
+  LOG(Openni, Info) << found.model << ", serial=" << (found.serial.empty() ? "?" : found.serial)
+                    << " mode=" << found.width << "x" << found.height << "@" << found.rate_hz
+                    << ", " << found.settings;
+  return OkStatus();
+}
+
+Result<SourceItem> OpenniDepthSource::Read(std::stop_token stop) {
+  if (stop.stop_requested()) return NothingYet{};
+  Result<std::optional<OpenniDevice::Frame>> frame = device_->Wait(kLongestWait);
+  if (!frame) return Err(frame.error());
+  if (*frame) return ToRawFrame(std::move(**frame));
+  if (device_->ended()) return EndOfStream{};
+  if (const Status stall = CheckStall(); !stall.ok()) return Err(stall);
+  return NothingYet{};
+}
+
+RawFrame OpenniDepthSource::ToRawFrame(OpenniDevice::Frame frame) {
+  RawFrame raw;
+  raw.sensor = Sensor::kDepth;
+  raw.arrival_wall = clock_.Now();
+  raw.arrival_steady = clock_.SteadyNow();
+  const std::uint64_t resets = unwrapper_.resets();
+  raw.device_ticks = unwrapper_.Unwrap(frame.timestamp_us);
+  if (unwrapper_.resets() != resets) {
+    LOG(Openni, Warning) << "the camera's clock was set back, resets=" << unwrapper_.resets();
+  }
+  raw.frame_number = Number(frame.index);
+  raw.pixels = std::move(frame.pixels);
+  raw.depth_scale = frame.depth_scale;
+  last_frame_at_ = raw.arrival_steady;
+  if (device_->is_file() && file_rate_ != 1.0) PlaceInTime(raw);
+  return raw;
+}
+
+std::uint64_t OpenniDepthSource::Number(int index) {
+  if (last_index_) {
+    const std::int64_t step = std::int64_t{index} - *last_index_;
+    if (step > 1 && step <= kMostLost) next_number_ += static_cast<std::uint64_t>(step - 1);
+  }
+  last_index_ = index;
+  return next_number_++;
+}
+
+void OpenniDepthSource::PlaceInTime(RawFrame& raw) {
+  if (!file_start_) {
+    file_start_ = raw.arrival_wall;
+    file_first_ticks_ = raw.device_ticks;
+  }
+  raw.arrival_wall = *file_start_ + (raw.device_ticks - file_first_ticks_);
+  raw.arrival_steady = {};
+}
+
+Status OpenniDepthSource::CheckStall() const {
+  const Nanoseconds silent = clock_.SteadyNow() - last_frame_at_;
+  if (silent < FromSeconds(options_->stall_timeout_s())) return OkStatus();
+  return Unavailable(fmt::format("no frame for {:.1f} s", ToSeconds(silent)));
+}
+
+std::optional<Rig> OpenniDepthSource::rig() const {
+  if (!device_ || !device_->nominal_intrinsics()) return std::nullopt;
+  Rig rig;
+  rig.depth = device_->nominal_intrinsics();
+  rig.depth_scale = device_->depth_scale();
+  rig.serial = device_->description().serial;
+  rig.method = "nominal: the depth camera's field of view, no calibration";
+  return rig;
+}
+
+std::vector<CameraDescription> OpenniDepthSource::cameras() const {
+  if (!device_) return {};
+  return {device_->description()};
+}
+
+}  // namespace isotherm

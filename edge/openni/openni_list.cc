@@ -1,0 +1,43 @@
+#include "edge/openni/openni_list.h"
+
+#include <OpenNI.h>
+#include <fmt/format.h>
+
+#include "edge/openni/openni_settings.h"
+
+namespace isotherm {
+namespace {
+
+OpenniListing Look(const openni::DeviceInfo& info) {
+  OpenniListing listing;
+  listing.uri = info.getUri();
+  listing.model = fmt::format("{} {}", info.getVendor(), info.getName());
+  openni::Device device;
+  if (device.open(info.getUri()) != openni::STATUS_OK) {
+    listing.problem = fmt::format("cannot be opened: {}", OpenniError());
+    return listing;
+  }
+  listing.serial = SerialOf(device);
+  openni::VideoStream stream;
+  if (stream.create(device, openni::SENSOR_DEPTH) != openni::STATUS_OK) {
+    listing.problem = fmt::format("has no depth: {}", OpenniError());
+    return listing;
+  }
+  listing.modes = DepthModes(stream);
+  stream.destroy();
+  return listing;
+}
+
+}  // namespace
+
+Result<std::vector<OpenniListing>> ListOpenniCameras() {
+  const OpenniLibrary library;
+  if (!library.status().ok()) return Err(library.status());
+  openni::Array<openni::DeviceInfo> found;
+  openni::OpenNI::enumerateDevices(&found);
+  std::vector<OpenniListing> listings;
+  for (int i = 0; i < found.getSize(); ++i) listings.push_back(Look(found[i]));
+  return listings;
+}
+
+}  // namespace isotherm
