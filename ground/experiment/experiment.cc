@@ -6,6 +6,8 @@ namespace isotherm {
 namespace {
 
 constexpr Experiment kExperiments[] = {
+    {"motion", "fig. 3.9", "A fast sweep leaves no smeared temperatures in the model.",
+     &RunMotionExperiment},
     {"parallax", "fig. 6.8",
      "What hides a surface from the thermal camera keeps its temperature to itself.",
      &RunParallaxExperiment},
@@ -23,6 +25,9 @@ constexpr Experiment kExperiments[] = {
     {"confidence", "figs. 6.13 and 6.14",
      "The class layers say from where each temperature was really measured.",
      &RunConfidenceExperiment},
+    {"reflection", "fig. 7.5",
+     "The disagreement layer shows what is seen in a mirror instead of on the surface.",
+     &RunReflectionExperiment},
     {"nuc", "8.2", "A shutter that closes during the scan leaves no trace in the model.",
      &RunNucExperiment},
 };

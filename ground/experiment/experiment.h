@@ -72,6 +72,8 @@ Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunShadingExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucExperiment(ThreadPool& pool);
 
 }  // namespace isotherm

@@ -15,6 +15,8 @@ constexpr double kNearestShare = 0.2;
 /// Pixels of a square that must show known surface, and those of them that may have a return.
 constexpr double kKnownShare = 0.9;
 constexpr double kReturnShare = 0.1;
+/// Pixels of a square that have a return where there certainly is a surface.
+constexpr double kSurfaceShare = 0.5;
 
 int Tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
 
@@ -28,29 +30,49 @@ NearHoles::NearHoles(const ThermalOptions& options, const CameraModel& thermal_c
       T_depth_thermal_(T_thermal_depth.inverse()),
       left_out_(Tiles(thermal_camera.width), Tiles(thermal_camera.height)) {}
 
+NearHoles::Square NearHoles::Look(int column, int row, const Image<float>& depth_m,
+                                  const SurfaceMaps& model) const {
+  const int scale = std::max(1, depth_m.width() / model.width());
+  int known = 0, returns = 0, known_returns = 0;
+  for (int y = row * hole_side_; y < (row + 1) * hole_side_; ++y) {
+    for (int x = column * hole_side_; x < (column + 1) * hole_side_; ++x) {
+      const bool is_known = !std::isnan(model.vx.At(x, y));
+      const bool has_return = depth_m.At(x * scale, y * scale) > 0.0F;
+      known += is_known ? 1 : 0;
+      returns += has_return ? 1 : 0;
+      known_returns += is_known && has_return ? 1 : 0;
+    }
+  }
+  const double pixels = hole_side_ * hole_side_;
+  if (known >= kKnownShare * pixels && known_returns <= kReturnShare * known) return Square::kHole;
+  if (returns <= kReturnShare * pixels) return Square::kEmpty;
+  return returns >= kSurfaceShare * pixels ? Square::kSurface : Square::kNeither;
+}
+
 bool NearHoles::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model) {
   const int scale = std::max(1, depth_m.width() / model.width());
   hole_side_ = std::max(1, hole_px_ / scale);
-  holes_.Resize(model.width() / hole_side_, model.height() / hole_side_);
-  const int known_needed = static_cast<int>(std::ceil(kKnownShare * hole_side_ * hole_side_));
-  bool found = false;
-  for (int row = 0; row < holes_.height(); ++row) {
-    for (int column = 0; column < holes_.width(); ++column) {
-      int known = 0;
-      int returns = 0;
-      for (int y = row * hole_side_; y < (row + 1) * hole_side_; ++y) {
-        for (int x = column * hole_side_; x < (column + 1) * hole_side_; ++x) {
-          if (std::isnan(model.vx.At(x, y))) continue;
-          ++known;
-          returns += depth_m.At(x * scale, y * scale) > 0.0F ? 1 : 0;
-        }
-      }
-      const bool hole = known >= known_needed && returns <= kReturnShare * known;
-      holes_.At(column, row) = hole ? 1 : 0;
-      found = found || hole;
-    }
+  squares_.Resize(model.width() / hole_side_, model.height() / hole_side_);
+  for (int row = 0; row < squares_.height(); ++row) {
+    for (int column = 0; column < squares_.width(); ++column)
+      squares_.At(column, row) = Look(column, row, depth_m, model);
   }
-  return found;
+  for (int row = 0; row < squares_.height(); ++row) FillBetween(0, row, 1, 0);
+  for (int column = 0; column < squares_.width(); ++column) FillBetween(column, 0, 0, 1);
+  return std::ranges::count(squares_.pixels(), Square::kHole) > 0;
+}
+
+void NearHoles::FillBetween(int column, int row, int step_x, int step_y) {
+  const int count = step_x != 0 ? squares_.width() : squares_.height();
+  const auto square = [&](int i) -> Square& {
+    return squares_.At(column + i * step_x, row + i * step_y);
+  };
+  int first = 0, last = count - 1;
+  while (first < count && square(first) != Square::kSurface) ++first;
+  while (last > first && square(last) != Square::kSurface) --last;
+  for (int i = first + 1; i < last; ++i) {
+    if (square(i) == Square::kEmpty) square(i) = Square::kHole;
+  }
 }
 
 bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal,
@@ -66,8 +88,8 @@ bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal,
     if (!(u >= 0.0 && v >= 0.0)) continue;
     const double column = u / hole_side_;
     const double row = v / hole_side_;
-    if (column >= holes_.width() || row >= holes_.height()) continue;
-    if (holes_.At(static_cast<int>(column), static_cast<int>(row)) != 0) return true;
+    if (column >= squares_.width() || row >= squares_.height()) continue;
+    if (squares_.At(static_cast<int>(column), static_cast<int>(row)) == Square::kHole) return true;
   }
   return false;
 }

@@ -13,10 +13,12 @@ namespace isotherm {
 
 /// The near-range rule: something closer than the depth camera's near range gives no return, so it
 /// is neither in the model nor in the depth image, but it makes a hole there. A hole is a square of
-/// hole_px pixels in which the model has a surface and the depth image (almost) nothing. Thermal
-/// pixels whose line of sight crosses the space before a hole, up to the near range, are left out.
-/// Small holes (edges, dark spots) and those before unknown surface are no holes here, so what
-/// comes near before a place never scanned is not noticed. Thread-compatible.
+/// hole_px pixels in which the depth image has (almost) nothing, although the model has a surface
+/// there, or although there are surfaces to the left and right or above and below. Thermal pixels
+/// whose line of sight crosses the space before a hole, up to the near range, are left out. Small
+/// holes (edges, dark spots) do not count, nor does an emptiness that reaches the picture's border
+/// on two sides, so what comes near there before a place never scanned is not noticed.
+/// Thread-compatible.
 class NearHoles {
  public:
   /// `thermal_camera` without distortion.
@@ -34,6 +36,10 @@ class NearHoles {
   std::int64_t LeaveOut(int y, std::span<ThermalPixel> row) const;
 
  private:
+  enum class Square : std::uint8_t { kNeither, kSurface, kEmpty, kHole };
+  Square Look(int column, int row, const Image<float>& depth_m, const SurfaceMaps& model) const;
+  /// Empty squares between surfaces on a line of squares are holes.
+  void FillBetween(int column, int row, int step_x, int step_y);
   bool FindHoles(const Image<float>& depth_m, const SurfaceMaps& model);
   bool CrossesHole(const Eigen::Vector2d& xy_thermal, const CameraModel& model_camera) const;
 
@@ -42,7 +48,7 @@ class NearHoles {
   const CameraModel thermal_camera_;
   const RigidTransform T_depth_thermal_;
   int hole_side_ = 0;             ///< Of a square, pixels of the model's view.
-  Image<std::uint8_t> holes_;     ///< Per square, 1 = hole.
+  Image<Square> squares_;         ///< Of the model's view.
   Image<std::uint8_t> left_out_;  ///< Per tile of the thermal picture.
   bool any_ = false;
 };

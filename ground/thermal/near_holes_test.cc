@@ -67,6 +67,29 @@ TEST_F(NearHolesTest, SmallHolesAndEdgesCostNothing) {
   EXPECT_EQ(LeftOut(), 0);
 }
 
+TEST_F(NearHolesTest, WhatIsNearBeforeAPlaceNeverScannedIsNoticedBetweenSurfaces) {
+  // A pipe close to the camera, from the upper border to the lower.
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 140; x < 190; ++x) {
+      depth_m_.At(x, y) = 0.0F;
+      model_.vx.At(x, y) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  EXPECT_GT(LeftOut(), 500);
+  EXPECT_TRUE(IsLeftOut(80 - 37, 60));
+  EXPECT_FALSE(IsLeftOut(150, 60));
+}
+
+TEST_F(NearHolesTest, OpenSpaceBesideTheSurfaceCostsNothing) {
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 160; x < 320; ++x) {
+      depth_m_.At(x, y) = 0.0F;
+      model_.vx.At(x, y) = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  EXPECT_EQ(LeftOut(), 0);
+}
+
 TEST_F(NearHolesTest, WhereNoSurfaceIsKnownThereIsNothingToMiss) {
   depth_m_.Fill(0.0F);
   model_.vx.Fill(std::numeric_limits<float>::quiet_NaN());

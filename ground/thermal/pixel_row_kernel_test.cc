@@ -33,6 +33,7 @@ std::vector<float> Row(int width, float value) {
 struct ScalarPixel {
   double depth_m = 0.0;
   double slope_u = 0.0, slope_v = 0.0;  ///< Codes.
+  double smear_px = 0.0;
   Verdict surface = Verdict::kNo, seen = Verdict::kNo;
   Verdict occluded = Verdict::kNo, assignable = Verdict::kNo;
   Verdict sharp = Verdict::kNo, still = Verdict::kNo, even = Verdict::kNo;
@@ -53,6 +54,7 @@ void JudgeSmear(const PixelRowArgs& a, int x, ScalarPixel& result) {
   const Eigen::Vector2d speed = ImageVelocity(motion, xy, result.depth_m);
   const double smear_px = double{a.smear_s} * std::hypot(a.fx * speed.x(), a.fy * speed.y());
   constexpr double kRelative = 1e-4;  // Of a reciprocal and differences.
+  result.smear_px = smear_px;
   result.sharp = AtLeastZero(a.smear_max_px - smear_px, kRelative * (1.0 + smear_px));
   result.still = AtLeastZero(a.smear_good_px - smear_px, kRelative * (1.0 + smear_px));
 }
@@ -122,7 +124,9 @@ ScalarPixel MakeScalarPixel(const PixelRowArgs& a, int x) {
   JudgeSmear(a, x, result);
   const double slope_k = std::hypot(result.slope_u, result.slope_v) / ThermalPixel::kSlopeScale;
   // Codes stop at their limits, temperatures do not.
-  result.even = slope_k > 400.0 ? Verdict::kNo : AtLeastZero(a.max_slope_k - slope_k, 1e-4);
+  const double error_k = slope_k * std::max(double{a.uncertainty_px}, result.smear_px);
+  result.even =
+      slope_k > 400.0 ? Verdict::kNo : AtLeastZero(a.max_error_k - error_k, 1e-4 * (1.0 + error_k));
   result.assignable = Both(result.seen, Not(result.occluded));
   result.assignable = Both(result.assignable, Both(result.sharp, result.even));
   result.assignable = Both(result.assignable, AtLeastZero(cosine, 1e-5));
@@ -204,7 +208,8 @@ class MakePixelRowTest : public ::testing::Test {
     args_.cosine_good_angle = 0.8F;
     args_.cosine_max_angle = 0.5F;
     args_.max_footprint_m = random_.Chance(0.5) ? 1e18F : 0.004F;
-    args_.max_slope_k = random_.Chance(0.5) ? 1e18F : 15.0F;
+    args_.max_error_k = random_.Chance(0.5) ? 1e18F : 12.0F;
+    args_.uncertainty_px = random_.Chance(0.5) ? 0.5F : 0.9F;
     args_.fx = args_.fy = 250.0F;
     args_.cx = 30.0F;
     args_.y = 0.5F * uniform();

@@ -138,8 +138,8 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_world_thermal,
     return limit > 0.0 ? static_cast<float>(limit) : kNoLimit;
   };
   args.max_footprint_m = or_none(options_.max_footprint_m());
-  args.max_slope_k = or_none(options_.max_gradient_error_k() /
-                             std::max(kPixelUncertaintyPx, capture.registration_px));
+  args.max_error_k = or_none(options_.max_gradient_error_k());
+  args.uncertainty_px = static_cast<float>(std::max(kPixelUncertaintyPx, capture.registration_px));
   args.fx = static_cast<float>(camera.fx);
   args.fy = static_cast<float>(camera.fy);
   args.cx = static_cast<float>(camera.cx);

@@ -188,8 +188,11 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
     const MF still = hn::Le(smear, hn::Set(d, a.smear_good_px * a.smear_good_px));
     counts.smeared += number(hn::AndNot(sharp, usable));
     usable = hn::And(usable, sharp);
-    const MF even = hn::Le(hn::MulAdd(slope_u, slope_u, hn::Mul(slope_v, slope_v)),
-                           hn::Set(d, a.max_slope_k * a.max_slope_k));
+    // Inertia shows slope x smear too little or too much, and makes steep edges look even.
+    const VF uncertainty = hn::Max(smear, hn::Set(d, a.uncertainty_px * a.uncertainty_px));
+    const MF even =
+        hn::Le(hn::Mul(uncertainty, hn::MulAdd(slope_u, slope_u, hn::Mul(slope_v, slope_v))),
+               hn::Set(d, a.max_error_k * a.max_error_k));
     counts.steep += number(hn::AndNot(even, usable));
     usable = hn::And(usable, even);
 

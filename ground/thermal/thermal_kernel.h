@@ -59,7 +59,8 @@ struct PixelRowArgs {
   float distance_min_m, distance_good_m, distance_max_m;
   float cosine_min_angle, cosine_good_angle, cosine_max_angle;
   float max_footprint_m;  ///< Of a pixel on the surface; larger is a bad distance.
-  float max_slope_k;      ///< Steepest change from pixel to pixel that is assigned.
+  float max_error_k;      ///< Most that the temperature may change within the uncertainty.
+  float uncertainty_px;   ///< Of where a pixel is on the surface; the smear if that is more.
   // Motion (CameraMotion) of the ideal camera, and how long it smears this row.
   float fx, fy, cx;
   float y;  ///< Normalised image coordinate of the row.

@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "common/simulation/scene_builder.h"
+#include "ground/experiment/experiment.h"
+#include "ground/experiment/experiment_scan.h"
+#include "ground/experiment/model_check.h"
+#include "ground/renderer/renderer.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kDurationS = 3.2;
+constexpr double kColdCelsius = 30.0, kHotCelsius = 60.0;
+constexpr double kFirstBarM = 0.02, kBarM = 0.016, kWallM = 0.80;
+/// That of the simulated detector, and what the pipeline is told.
+constexpr double kTimeConstantS = 0.010;
+/// No smear is too much.
+constexpr double kAnySmearPx = 1e6;
+
+/// A wall of hot and cold bars, flush, which the rig sweeps along at up to 0.8 m/s, resting for a
+/// moment at either end. Black bodies, so that a temperature is wrong only by motion and blur.
+StagedScene SweepAlongBars() {
+  SceneBuilder scene(23.0);
+  scene.UseMaterial({1.0, 1.0, 0.0, false});
+  bool hot = false;
+  for (double x = kFirstBarM; x < 0.94; x += kBarM, hot = !hot) {
+    scene.Box(hot ? "hot bar" : "cold bar", {x, 0.02, kWallM}, {x + kBarM, 0.76, kWallM + 0.05})
+        .temperature = Uniform(hot ? kHotCelsius : kColdCelsius);
+  }
+  // What the tracker holds on to.
+  scene.Box("sill", {0.02, 0.76, 0.62}, {0.94, 0.82, 0.86}).temperature = Uniform(kColdCelsius);
+  scene.RotatedBox("carton", {0.24, 0.68, 0.70}, {0.12, 0.14, 0.10}, {0, 30, 0}).temperature =
+      Uniform(kColdCelsius);
+  scene.Sphere("knob", {0.66, 0.70, 0.72}, 0.06).temperature = Uniform(kColdCelsius);
+  scene.RotatedBox("box", {0.48, 0.71, 0.70}, {0.08, 0.10, 0.08}, {0, 15, 0}).temperature =
+      Uniform(kColdCelsius);
+  ScanPath path;
+  path.target_x_m = {0.48, 0.16, 1.25};
+  path.target_y_m = {0.52};
+  path.target_z_m = {kWallM};
+  path.distance_m = {0.52};
+  return {scene.Build("sweep along bars"), path, {}};
+}
+
+SimulationOptions CamerasWithInertia() {
+  SimulationOptions options = ExperimentCameras(kDurationS);
+  options.mutable_thermal()->set_time_constant_s(kTimeConstantS);
+  return options;
+}
+
+GroundOptions WithSmearLimits(bool limited) {
+  GroundOptions options;
+  // The simulated depth camera has no shutter of rows: faster motion is good enough here.
+  options.mutable_tsdf()->set_max_step_m(0.04);
+  options.mutable_thermal()->set_time_constant_s(kTimeConstantS);
+  if (!limited) {
+    options.mutable_thermal()->set_smear_good_px(kAnySmearPx);
+    options.mutable_thermal()->set_smear_max_px(kAnySmearPx);
+  }
+  return options;
+}
+
+/// Nearer to the border between two bars, a voxel and a thermal pixel show both: that is a matter
+/// of resolution (the distance experiment), not of motion.
+constexpr double kBorderM = 0.004;
+
+bool IsAtBorder(const CheckedPoint& point) {
+  const double bars = (point.truth.p_world.x() - kFirstBarM) / kBarM;
+  return std::abs(bars - std::round(bars)) * kBarM < kBorderM;
+}
+
+/// How far the temperatures of points that have one are off, kelvin.
+struct Errors {
+  std::size_t points = 0;
+  std::size_t assigned = 0;
+  double median = std::numeric_limits<double>::quiet_NaN();
+  double p999 = std::numeric_limits<double>::quiet_NaN();
+  double largest = std::numeric_limits<double>::quiet_NaN();
+};
+
+Errors Measure(std::vector<CheckedPoint> points) {
+  std::vector<double> errors;
+  std::erase_if(points, IsAtBorder);
+  for (const CheckedPoint& point : points) {
+    if (point.measured()) errors.push_back(std::abs(point.ErrorKelvin()));
+  }
+  Errors result;
+  result.points = points.size();
+  result.assigned = errors.size();
+  if (errors.empty()) return result;
+  std::ranges::sort(errors);
+  const auto at = [&](double share) {
+    return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+  };
+  result.median = at(0.5);
+  result.p999 = at(0.999);
+  result.largest = errors.back();
+  return result;
+}
+
+}  // namespace
+
+Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool) {
+  const auto played = Play(CamerasWithInertia(), SweepAlongBars(),
+                           {WithSmearLimits(false), WithSmearLimits(true)}, pool);
+  if (!played) return Err(played.error());
+  ExperimentReport report;
+  report.table.rows_are = "smeared pixels";
+  report.table.columns = {"points",           "assigned",         "smeared pixels left out",
+                          "median error [K]", "99.9 % error [K]", "largest error [K]"};
+  RendererOptions renderer_options;
+  renderer_options.set_scale(FIXED);
+  renderer_options.set_scale_min_celsius(kColdCelsius);
+  renderer_options.set_scale_max_celsius(kHotCelsius);
+  renderer_options.set_shading(false);
+  const Renderer renderer(renderer_options, ThermalOptions());
+  const RigidTransform T_world_depth =
+      played->scan->PoseAt(played->scan->depth_times().front().exposure);
+  constexpr const char* kLabels[] = {"believed", "left out"};
+  constexpr const char* kPictures[] = {"believed", "left_out"};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const GroundPipeline& pipeline = *played->pipelines[i];
+    const Errors errors = Measure(CheckModel(played->scan->scene(), played->scan->band(),
+                                             pipeline.tsdf(), pipeline.thermal(), pool));
+    report.table.rows.push_back(
+        {kLabels[i],
+         {static_cast<double>(errors.points), static_cast<double>(errors.assigned),
+          static_cast<double>(pipeline.counts().fusion.smeared), errors.median, errors.p999,
+          errors.largest}});
+    report.pictures.push_back(
+        {kPictures[i],
+         renderer.Thermal(LookAtModel(pipeline.tsdf(), pipeline.thermal(),
+                                      *played->scan->rig().depth, T_world_depth, pool))});
+  }
+  const auto value = [&](std::size_t row, std::size_t column) {
+    return report.table.rows[row].values[column];
+  };
+  report.requirements = {
+      {"error of 99.9 % of what remains", value(1, 4), Requirement::Sense::kAtMost, 1.0, "K"},
+      {"the same of what is believed without limits, which fails here", value(0, 4),
+       Requirement::Sense::kAtLeast, 1.0, "K"},
+      {"smeared pixels left out", value(1, 2), Requirement::Sense::kAtLeast, 1.0, ""},
+      // The limit must not win by leaving surfaces without temperatures.
+      {"assigned with limits, of what is assigned without", 100.0 * value(1, 1) / value(0, 1),
+       Requirement::Sense::kAtLeast, 50.0, "%"}};
+  return report;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,124 @@
+#include <limits>
+
+#include "common/simulation/scene_builder.h"
+#include "ground/experiment/experiment.h"
+#include "ground/experiment/experiment_scan.h"
+#include "ground/experiment/model_check.h"
+#include "ground/renderer/renderer.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kDurationS = 5.0;
+constexpr const char* kPatch = "polished patch";
+
+/// A painted door with a polished patch that mirrors a hot pipe in front of it. The rig goes around
+/// the patch, and the pipe's image wanders over all of it.
+StagedScene DoorWithPolishedPatch() {
+  SceneBuilder scene(23.0);
+  scene.UseMaterial({0.96, 1.5, 0.0, false});
+  scene.Box("door", {0.02, 0.02, 0.74}, {0.94, 0.94, 0.80}).temperature = Uniform(60.0);
+  scene.Box("sill", {0.02, 0.64, 0.60}, {0.94, 0.70, 0.74}).temperature = Uniform(60.0);
+  scene.RotatedBox("carton", {0.66, 0.58, 0.68}, {0.10, 0.12, 0.10}, {0, 25, 0}).temperature =
+      Uniform(60.0);
+  scene.RotatedBox("hinge", {0.58, 0.30, 0.71}, {0.14, 0.06, 0.06}, {0, 0, 20}).temperature =
+      Uniform(60.0);
+  scene.Sphere("knob", {0.70, 0.42, 0.72}, 0.05).temperature = Uniform(60.0);
+  scene.Cylinder("pipe", {0.40, 0.06, 0.56}, {0.40, 0.64, 0.56}, 0.02).temperature = Uniform(130.0);
+  // Rough metal under paint does not mirror; this does.
+  scene.UseMaterial({0.40, 1.5, 0.0, true});
+  scene.Box(kPatch, {0.45, 0.44, 0.734}, {0.53, 0.52, 0.741}).temperature = Uniform(60.0);
+  ScanPath path;
+  path.target_x_m = {0.49};
+  path.target_y_m = {0.48};
+  path.target_z_m = {0.74};
+  path.azimuth_rad = FromTo(0.02, 0.72, kDurationS - 0.4);
+  path.elevation_rad = {0.05, 0.04, 2.0};
+  path.distance_m = {0.56};
+  return {scene.Build("door with a polished patch"), path, {}};
+}
+
+/// The disagreement layer as a test for "this surface reflects".
+struct Detection {
+  double reflecting = 0.0;  ///< Points of the patch that were judged.
+  double found = 0.0;       ///< Those called bad.
+  double false_alarms = 0.0;
+  double others = 0.0;
+
+  double PrecisionPercent() const { return Percent(found, found + false_alarms); }
+  double RecallPercent() const { return Percent(found, reflecting); }
+  static double Percent(double part, double whole) {
+    return whole == 0.0 ? std::numeric_limits<double>::quiet_NaN() : 100.0 * part / whole;
+  }
+};
+
+Detection Detect(const Scene& scene, const std::vector<CheckedPoint>& points) {
+  Detection detection;
+  for (const CheckedPoint& point : points) {
+    const auto disagreement = static_cast<ConditionClass>(point.point.disagreement_class);
+    if (disagreement == ConditionClass::kUnchecked) continue;
+    const bool bad = disagreement == ConditionClass::kBad;
+    const bool reflects =
+        scene.primitives()[static_cast<std::size_t>(point.truth.primitive)].name == kPatch;
+    (reflects ? detection.reflecting : detection.others) += 1.0;
+    if (bad) (reflects ? detection.found : detection.false_alarms) += 1.0;
+  }
+  return detection;
+}
+
+}  // namespace
+
+Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
+  GroundOptions lowest;
+  lowest.mutable_thermal()->set_policy(LOWEST_GOOD);
+  const auto played =
+      Play(ExperimentCameras(kDurationS), DoorWithPolishedPatch(), {GroundOptions(), lowest}, pool);
+  if (!played) return Err(played.error());
+  ExperimentReport report;
+  report.table.rows_are = "temperature kept";
+  report.table.columns = {"patch points judged",           "found",         "other points judged",
+                          "falsely called reflecting",     "precision [%]", "recall [%]",
+                          "patch points warmer than 80 °C"};
+  constexpr double kShowsPipeCelsius = 80.0;
+  RendererOptions renderer_options;
+  renderer_options.set_scale(FIXED);
+  renderer_options.set_scale_min_celsius(23.0);
+  renderer_options.set_scale_max_celsius(130.0);
+  const Renderer renderer(renderer_options, ThermalOptions());
+  const RigidTransform T_world_depth =
+      played->scan->PoseAt(played->scan->depth_times().back().exposure);
+  constexpr const char* kLabels[] = {"best conditions", "lowest of the good"};
+  constexpr const char* kPictures[] = {"best_conditions", "lowest"};
+  std::vector<Detection> detections;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const GroundPipeline& pipeline = *played->pipelines[i];
+    const std::vector<CheckedPoint> points = CheckModel(played->scan->scene(), played->scan->band(),
+                                                        pipeline.tsdf(), pipeline.thermal(), pool);
+    const Detection& detection = detections.emplace_back(Detect(played->scan->scene(), points));
+    double shows_pipe = 0.0;
+    for (const CheckedPoint& point : points) {
+      const auto primitive = static_cast<std::size_t>(point.truth.primitive);
+      if (played->scan->scene().primitives()[primitive].name == kPatch && point.measured() &&
+          point.point.celsius > kShowsPipeCelsius) {
+        shows_pipe += 1.0;
+      }
+    }
+    report.table.rows.push_back(
+        {kLabels[i],
+         {detection.reflecting, detection.found, detection.others, detection.false_alarms,
+          detection.PrecisionPercent(), detection.RecallPercent(), shows_pipe}});
+    const ViewMaps view = LookAtModel(pipeline.tsdf(), pipeline.thermal(),
+                                      *played->scan->rig().depth, T_world_depth, pool);
+    report.pictures.push_back({kPictures[i], renderer.Thermal(view)});
+    if (i == 0) report.pictures.push_back({"disagreement", renderer.Disagreement(view)});
+  }
+  report.requirements = {
+      {"precision of the disagreement layer", detections[0].PrecisionPercent(),
+       Requirement::Sense::kAtLeast, 90.0, "%"},
+      {"recall of the disagreement layer", detections[0].RecallPercent(),
+       Requirement::Sense::kAtLeast, 90.0, "%"},
+      {"patch points judged", detections[0].reflecting, Requirement::Sense::kAtLeast, 1000.0, ""}};
+  return report;
+}
+
+}  // namespace isotherm
