@@ -88,6 +88,7 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
   fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
                                           static_cast<float>(options.raycast().min_weight()));
   near_holes_.emplace(options.thermal(), fuser_->ideal_camera(), *rig.T_thermal_depth);
+  sight_lines_.emplace(options.thermal(), fuser_->ideal_camera(), *rig.T_thermal_depth);
   if (options.tracker().use_thermal()) tracker_.UseThermal(*rig.thermal, *rig.T_thermal_depth);
 }
 
@@ -367,6 +368,7 @@ void GroundPipeline::Fuse(const WaitingThermal& waiting) {
                               after.T_world_depth * T_depth_thermal, interval_s),
       .registration_px = RegistrationSigmaPx(),
       .holes = &*near_holes_,
+      .sight = &*sight_lines_,
       .nuc = waiting.nuc};
   counts_.fusion +=
       fuser_->Fuse(*waiting.frame, T_world_depth_at_capture * T_depth_thermal, view().camera,
@@ -383,8 +385,10 @@ void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
       LeaveOut(reason);
       continue;
     }
-    if (!std::exchange(holes_are_current, true))
+    if (!std::exchange(holes_are_current, true)) {
       near_holes_->Update(last_depth_->depth_m, view().maps, view().camera);
+      sight_lines_->Update(view().maps, view().camera, view().T_world_depth);
+    }
     Fuse(waiting);
   }
 }

@@ -179,6 +179,7 @@ class GroundPipeline {
   LoopCloser loop_closer_;
   std::unique_ptr<ThermalFuser> fuser_;
   std::optional<NearHoles> near_holes_;
+  std::optional<SightLines> sight_lines_;
   NucEpochs nuc_epochs_;
   const PreparedDepth* last_depth_ = nullptr;  ///< Of the last depth frame; the preprocessor's.
   BlockSpiller spiller_;

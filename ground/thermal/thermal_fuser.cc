@@ -150,8 +150,8 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_world_thermal,
   return args;
 }
 
-void ThermalFuser::MakePixels(const PixelRowArgs& args, const NearHoles* holes, ThreadPool& pool,
-                              FusionReport& report) {
+void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions& capture,
+                              ThreadPool& pool, FusionReport& report) {
   const CameraModel& camera = rectifier_.ideal_camera();
   const int width = camera.width;
   const int height = camera.height;
@@ -182,14 +182,20 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const NearHoles* holes, 
       occluded += counts.occluded;
       smeared += counts.smeared;
       steep += counts.steep;
-      if (holes != nullptr && holes->any())
-        maybe_hidden += holes->LeaveOut(y, {pixels, static_cast<std::size_t>(width)});
+      if (capture.holes != nullptr && capture.holes->any())
+        maybe_hidden += capture.holes->LeaveOut(y, {pixels, static_cast<std::size_t>(width)});
       for (int x = 0; x < width; ++x) {
         const float depth = pixels[x].depth_m;
         const auto tile = static_cast<std::size_t>(x / kTile);
         farthest[tile] = std::max(farthest[tile], depth);
         if (depth > 0.0F) nearest[tile] = std::min(nearest[tile], depth);
       }
+    }
+    if (capture.sight != nullptr) {
+      const int first = task * kRowsPerTask;
+      const std::span rows(pixels_.data() + static_cast<std::ptrdiff_t>(first) * width,
+                           static_cast<std::size_t>((end - first) * width));
+      maybe_hidden += capture.sight->LeaveOut(first, rows);
     }
   });
   report.occluded = occluded;
@@ -271,8 +277,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
   rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
   CastSurface(T_world_thermal, tsdf, pool);
   FusionReport report;
-  MakePixels(RowArgs(T_world_thermal, depth_camera, T_world_depth, capture), capture.holes, pool,
-             report);
+  MakePixels(RowArgs(T_world_thermal, depth_camera, T_world_depth, capture), capture, pool, report);
   SelectBlocks(T_world_thermal, tsdf);
 
   const RigidTransform T_thermal_world = T_world_thermal.inverse();

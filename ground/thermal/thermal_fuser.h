@@ -12,6 +12,7 @@
 #include "ground/thermal/measurement_recorder.h"
 #include "ground/thermal/near_holes.h"
 #include "ground/thermal/nuc_epochs.h"
+#include "ground/thermal/sight_lines.h"
 #include "ground/thermal/temperature_review.h"
 #include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/thermal_rectifier.h"
@@ -30,7 +31,7 @@ struct FusionReport {
   std::int64_t occluded = 0;      ///< Too near the edge of something nearer.
   std::int64_t smeared = 0;       ///< By motion.
   std::int64_t steep = 0;         ///< Where the temperature changes too fast from pixel to pixel.
-  std::int64_t maybe_hidden = 0;  ///< By something nearer than the depth camera sees.
+  std::int64_t maybe_hidden = 0;  ///< By something that the depth camera does not see.
   std::int64_t assigned = 0;      ///< Voxels.
   std::int64_t dropped = 0;       ///< Voxels whose temperature did not stand a review.
 
@@ -39,9 +40,10 @@ struct FusionReport {
 
 /// What is known about a thermal frame beside its picture and pose.
 struct CaptureConditions {
-  CameraMotion motion;               ///< Of the thermal camera.
-  double registration_px = 0.0;      ///< Standard deviation of the pose in its picture.
-  const NearHoles* holes = nullptr;  ///< Where something unseen may be in the way.
+  CameraMotion motion;                ///< Of the thermal camera.
+  double registration_px = 0.0;       ///< Standard deviation of the pose in its picture.
+  const NearHoles* holes = nullptr;   ///< Where something unseen may be in the way.
+  const SightLines* sight = nullptr;  ///< What the depth camera looks through.
   NucAge nuc;
 };
 
@@ -73,7 +75,7 @@ class ThermalFuser {
   void CastSurface(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
   PixelRowArgs RowArgs(const RigidTransform& T_world_thermal, const CameraModel& depth_camera,
                        const RigidTransform& T_world_depth, const CaptureConditions& capture) const;
-  void MakePixels(const PixelRowArgs& args, const NearHoles* holes, ThreadPool& pool,
+  void MakePixels(const PixelRowArgs& args, const CaptureConditions& capture, ThreadPool& pool,
                   FusionReport& report);
   FusionKernelArgs BlockArgs(const RigidTransform& T_thermal_world, const TsdfVolume& tsdf) const;
   void SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf);

@@ -1,0 +1,99 @@
+#include "ground/thermal/sight_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace isotherm {
+namespace {
+
+/// Side of the squares of thermal pixels that share a line of sight.
+constexpr int kTile = 4;
+/// Points that are looked at on a line of sight, evenly in inverse depth: two to three pixels of a
+/// halved depth image apart.
+constexpr int kSteps = 12;
+
+}  // namespace
+
+SightLines::SightLines(const ThermalOptions& options, const CameraModel& thermal_camera,
+                       const RigidTransform& T_thermal_depth)
+    : near_range_m_(static_cast<float>(options.near_range_m())),
+      tolerance_m_(static_cast<float>(options.parallax_tolerance_m())),
+      thermal_camera_(thermal_camera),
+      R_depth_thermal_(T_thermal_depth.inverse().linear().cast<float>()),
+      t_depth_thermal_(T_thermal_depth.inverse().translation().cast<float>()) {}
+
+void SightLines::Update(const SurfaceMaps& model, const CameraModel& model_camera,
+                        const RigidTransform& T_world_depth) {
+  model_camera_ = model_camera;
+  depth_m_.Resize(model.width(), model.height());
+  const Eigen::Vector4f z = T_world_depth.inverse().matrix().row(2).cast<float>();
+  const auto x_world = model.vx.pixels();
+  const auto y_world = model.vy.pixels();
+  const auto z_world = model.vz.pixels();
+  const auto depth_m = depth_m_.pixels();
+  for (std::size_t i = 0; i < depth_m.size(); ++i)
+    depth_m[i] = z[0] * x_world[i] + z[1] * y_world[i] + z[2] * z_world[i] + z[3];
+}
+
+float SightLines::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const {
+  const Eigen::Vector3f ray = R_depth_thermal_ * xy_thermal.homogeneous();
+  const auto fx = static_cast<float>(model_camera_.fx), fy = static_cast<float>(model_camera_.fy);
+  const auto cx = static_cast<float>(model_camera_.cx), cy = static_cast<float>(model_camera_.cy);
+  const auto last_u = static_cast<float>(depth_m_.width() - 1);
+  const auto last_v = static_cast<float>(depth_m_.height() - 1);
+  const float nearest = 1.0F / near_range_m_;
+  const float step = (nearest - 1.0F / z_m) / kSteps;
+  for (int i = 0; i < kSteps; ++i) {
+    const float z_thermal = 1.0F / (nearest - static_cast<float>(i) * step);
+    const Eigen::Vector3f p = z_thermal * ray + t_depth_thermal_;
+    // What reaches the picture's border goes on beyond it.
+    const float u = std::clamp(fx * p.x() / p.z() + cx + 0.5F, 0.0F, last_u);
+    const float v = std::clamp(fy * p.y() / p.z() + cy + 0.5F, 0.0F, last_v);
+    // NaN: no surface there, and nothing to be behind of.
+    const bool behind =
+        p.z() > depth_m_.At(static_cast<int>(u), static_cast<int>(v)) + tolerance_m_;
+    if (behind && z_thermal < z_m - tolerance_m_) return z_thermal;
+  }
+  return z_m;
+}
+
+std::int64_t SightLines::LeaveOut(int y, std::span<ThermalPixel> rows) const {
+  const int width = thermal_camera_.width;
+  const int height = static_cast<int>(rows.size()) / width;
+  if (near_range_m_ <= 0.0F || depth_m_.width() == 0) return 0;
+  const auto fx = static_cast<float>(thermal_camera_.fx),
+             fy = static_cast<float>(thermal_camera_.fy);
+  const auto cx = static_cast<float>(thermal_camera_.cx),
+             cy = static_cast<float>(thermal_camera_.cy);
+  std::int64_t count = 0;
+  for (int top = 0; top < height; top += kTile) {
+    for (int left = 0; left < width; left += kTile) {
+      const int bottom = std::min(top + kTile, height), right = std::min(left + kTile, width);
+      float farthest_m = 0.0F;
+      for (int row = top; row < bottom; ++row) {
+        for (int x = left; x < right; ++x) {
+          const ThermalPixel& pixel = rows[static_cast<std::size_t>(row * width + x)];
+          if ((pixel.flags & ThermalPixel::kAssignable) != 0)
+            farthest_m = std::max(farthest_m, pixel.depth_m);
+        }
+      }
+      if (farthest_m <= near_range_m_) continue;
+      const Eigen::Vector2f xy(
+          (0.5F * static_cast<float>(left + right - 1) - cx) / fx,
+          (static_cast<float>(y) + 0.5F * static_cast<float>(top + bottom - 1) - cy) / fy);
+      const float proven_m = ProvenUpTo(xy, farthest_m);
+      if (proven_m >= farthest_m) continue;
+      for (int row = top; row < bottom; ++row) {
+        for (int x = left; x < right; ++x) {
+          ThermalPixel& pixel = rows[static_cast<std::size_t>(row * width + x)];
+          if ((pixel.flags & ThermalPixel::kAssignable) == 0 || pixel.depth_m <= proven_m) continue;
+          pixel.flags &= ~ThermalPixel::kAssignable;
+          ++count;
+        }
+      }
+    }
+  }
+  return count;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/frame/image.h"
+#include "common/geometry/camera.h"
+#include "ground/ground_options.pb.h"
+#include "ground/thermal/thermal_kernel.h"
+#include "ground/tracker/surface_maps.h"
+
+namespace isotherm {
+
+/// What hides a surface from the thermal camera need not be in the model: a face that the depth
+/// camera sees only edge-on, or a part of a thing that is outside its picture. So a thermal pixel
+/// is assigned only if no part of its line of sight, from the near range to the surface, lies
+/// behind what the depth camera sees of the model (as in space carving, Kutulakos and Seitz 2000).
+/// What reaches its picture's border is taken to go on beyond. Thread-compatible.
+class SightLines {
+ public:
+  /// `thermal_camera` without distortion.
+  SightLines(const ThermalOptions& options, const CameraModel& thermal_camera,
+             const RigidTransform& T_thermal_depth);
+
+  /// `model`: the model's surface in world as seen by the depth camera (`model_camera`, perhaps
+  /// halved) from `T_world_depth`.
+  void Update(const SurfaceMaps& model, const CameraModel& model_camera,
+              const RigidTransform& T_world_depth);
+
+  /// Makes pixels of rows y to y + rows.size() / width - 1 unassignable that the depth camera does
+  /// not prove to be seen. Returns how many were assignable. Thread-safe.
+  std::int64_t LeaveOut(int y, std::span<ThermalPixel> rows) const;
+
+ private:
+  /// First depth along the thermal camera's z, beginning at the near range, at which the line of
+  /// sight is hidden from the depth camera; `z_m` if it is nowhere before that.
+  float ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const;
+
+  const float near_range_m_;  ///< 0 = everything is believed.
+  const float tolerance_m_;
+  const CameraModel thermal_camera_;
+  const Eigen::Matrix3f R_depth_thermal_;
+  const Eigen::Vector3f t_depth_thermal_;
+  CameraModel model_camera_;
+  Image<float> depth_m_;  ///< Of the model along the depth camera's z; NaN = none.
+};
+
+}  // namespace isotherm
