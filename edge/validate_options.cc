@@ -48,6 +48,13 @@ void CheckSource(const SourceOptions& options, Problems& problems) {
   }
 }
 
+void CheckThermalCamera(const ThermalCameraOptions& options, Problems& problems) {
+  problems.Stage("source.thermal_camera");
+  problems.CheckRange("stall_timeout_s", options.stall_timeout_s(), 0.2, 60.0);
+  problems.CheckRange("kelvin_per_count", options.kelvin_per_count(), 0.0, 10.0);
+  problems.CheckRange("offset_kelvin", options.offset_kelvin(), -1e5, 1e4);
+}
+
 void CheckFrames(const FrameCheckOptions& options, Problems& problems) {
   problems.Stage("frame_check");
   problems.CheckRange("min_celsius", options.min_celsius(), -273.0, 382.0);
@@ -93,6 +100,7 @@ void CheckLink(const LinkOptions& options, Problems& problems) {
 Status Validate(const EdgeOptions& options) {
   Problems problems;
   CheckSource(options.source(), problems);
+  CheckThermalCamera(options.source().thermal_camera(), problems);
   CheckFrames(options.frame_check(), problems);
   CheckTimestamper(options.timestamper(), problems);
   problems.Stage("nuc");

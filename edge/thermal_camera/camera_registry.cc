@@ -1,0 +1,118 @@
+#include "edge/thermal_camera/camera_registry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "common/base/check.h"
+#include "edge/edge_options.pb.h"
+#include "edge/thermal_camera/lepton_camera.h"
+#include "edge/usb/usb_device.h"
+
+namespace isotherm {
+namespace {
+
+struct KnownCamera {
+  std::uint16_t vendor_id;
+  std::uint16_t product_id;
+  std::string_view driver;
+  std::string_view product;  ///< Where the device does not name itself.
+  std::string_view modes;
+};
+
+// Identifiers: vendors' descriptors, as collected in docs/thermal-cameras.md.
+constexpr KnownCamera kKnown[] = {
+    {0x1E4E, 0x0100, LeptonCamera::kDriver, "FLIR Lepton on PureThermal",
+     "160x120 or 80x60, 16 bit with telemetry, 9 Hz"},
+};
+
+const KnownCamera* Find(std::uint16_t vendor_id, std::uint16_t product_id) {
+  for (const KnownCamera& camera : kKnown) {
+    if (camera.vendor_id == vendor_id && camera.product_id == product_id) return &camera;
+  }
+  return nullptr;
+}
+
+DeviceDescription Describe(const UsbDeviceInfo& info) {
+  const KnownCamera& known = *Find(info.vendor_id, info.product_id);
+  DeviceDescription device;
+  device.driver = known.driver;
+  device.product = info.product.empty() ? std::string(known.product) : info.product;
+  device.serial = info.serial;
+  device.bus_port = info.bus_port;
+  device.modes = {std::string(known.modes)};
+  device.problem = info.problem;
+  return device;
+}
+
+/// LEPTON_UVC in the options is lepton-uvc as a driver.
+std::string DriverName(ThermalDriver driver) {
+  if (driver == ANY_THERMAL_CAMERA) return {};
+  std::string name = ThermalDriver_Name(driver);
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) {
+    return c == '_' ? '-' : static_cast<char>(std::tolower(c));
+  });
+  return name;
+}
+
+std::string Text(const std::vector<DeviceDescription>& devices) {
+  if (devices.empty()) return "none";
+  std::string text;
+  for (const DeviceDescription& device : devices) {
+    text += fmt::format("{}{} with serial \"{}\" at {}", text.empty() ? "" : ", ", device.driver,
+                        device.serial, device.bus_port);
+  }
+  return text;
+}
+
+}  // namespace
+
+Result<std::vector<DeviceDescription>> ListThermalCameras() {
+  const auto known = [](std::uint16_t vendor_id, std::uint16_t product_id) {
+    return Find(vendor_id, product_id) != nullptr;
+  };
+  const Result<std::vector<UsbDeviceInfo>> found = ListUsbDevices(known);
+  if (!found) return Err(found.error());
+  std::vector<DeviceDescription> devices;
+  std::transform(found->begin(), found->end(), std::back_inserter(devices), Describe);
+  return devices;
+}
+
+Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescription>& devices,
+                                              const ThermalCameraOptions& options,
+                                              const std::string& pinned_serial) {
+  const std::string driver = DriverName(options.driver());
+  std::vector<DeviceDescription> fitting;
+  for (const DeviceDescription& device : devices) {
+    const bool fits = (driver.empty() || device.driver == driver) &&
+                      (options.bus_port().empty() || device.bus_port == options.bus_port());
+    if (fits) fitting.push_back(device);
+  }
+  if (fitting.empty()) {
+    return Err(Unavailable(
+        fmt::format("no thermal camera{}{} is connected; connected are: {}",
+                    driver.empty() ? "" : " for the driver " + driver,
+                    options.bus_port().empty() ? "" : " at " + options.bus_port(), Text(devices))));
+  }
+  const std::string& serial = options.serial().empty() ? pinned_serial : options.serial();
+  if (serial.empty()) return fitting.front();
+  for (const DeviceDescription& device : fitting) {
+    if (device.serial == serial) return device;
+  }
+  return Err(FailedPrecondition(fmt::format(
+      "the thermal camera with serial \"{}\" is not connected; connected are: {}. Another camera "
+      "has another calibration: connect the right one, or name the new one in "
+      "source.thermal_camera.serial and calibrate the rig with it",
+      serial, Text(fitting))));
+}
+
+std::unique_ptr<ThermalCamera> MakeThermalCamera(const DeviceDescription& device,
+                                                 const ThermalCameraOptions& /*options*/,
+                                                 const Clock& clock) {
+  CHECK(device.driver == LeptonCamera::kDriver);
+  return std::make_unique<LeptonCamera>(device.bus_port, clock);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,50 @@
+#include "edge/thermal_camera/frame_novelty.h"
+
+#include <cstring>
+#include <string_view>
+
+namespace isotherm {
+namespace {
+
+std::uint64_t HashOf(const Image<std::uint16_t>& counts) {
+  const std::string_view bytes(reinterpret_cast<const char*>(counts.data()),
+                               counts.size() * sizeof(std::uint16_t));
+  return std::hash<std::string_view>{}(bytes);
+}
+
+bool IsCorrecting(const RawThermalFrame& frame) {
+  return frame.nuc && frame.nuc->state == NucState::kInProgress;
+}
+
+}  // namespace
+
+Novelty FrameNovelty::Process(const RawThermalFrame& frame) {
+  const std::uint64_t hash = HashOf(frame.counts);
+  const bool same_counter = counter_step_ > 0 && frame.device_counter == counter_;
+  const bool repeated = hash_ && (hash == hash_ || (frame.device_counter && same_counter));
+  Novelty novelty;
+  if (repeated) {
+    ++repeats_;
+    novelty.kind = repeats_ > most_repeats_ ? Novelty::Kind::kFrozen : Novelty::Kind::kRepeat;
+    novelty.frozen_for = frame.first_packet.steady - first_seen_;
+  } else {
+    novelty.lost = LostBefore(frame);
+    repeats_ = 0;
+    first_seen_ = frame.first_packet.steady;
+  }
+  hash_ = hash;
+  counter_ = frame.device_counter;
+  was_correcting_ = IsCorrecting(frame);
+  return novelty;
+}
+
+std::uint64_t FrameNovelty::LostBefore(const RawThermalFrame& frame) const {
+  // While it corrects itself a camera's counter may stand still, and jumps afterwards.
+  if (counter_step_ == 0 || !counter_ || !frame.device_counter || was_correcting_) return 0;
+  if (*frame.device_counter <= *counter_) return 0;  // It was reset.
+  const std::uint64_t steps =
+      (*frame.device_counter - *counter_ + counter_step_ / 2) / counter_step_;
+  return steps > 1 ? steps - 1 : 0;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "edge/thermal_camera/thermal_camera.h"
+
+namespace isotherm {
+
+/// What a frame is in relation to those before it.
+struct Novelty {
+  enum class Kind {
+    kNew,
+    kRepeat,  ///< The same picture again, as the camera may do; nothing is lost without it.
+    kFrozen,  ///< The same picture for too often: the camera hangs, or corrects itself silently.
+  };
+  Kind kind = Kind::kNew;
+  std::uint64_t lost = 0;     ///< Pictures that the camera counted and we did not get.
+  Nanoseconds frozen_for{0};  ///< Since the picture came first.
+};
+
+/// Tells new pictures from repeated and frozen ones, by the camera's counter and by the pixels: no
+/// two pictures of a working detector are bit for bit the same. Thread-compatible.
+class FrameNovelty {
+ public:
+  /// `counter_step`, `native_repeats`: see ThermalCameraInfo.
+  FrameNovelty(int counter_step, int native_repeats)
+      : counter_step_(static_cast<std::uint64_t>(counter_step)),
+        most_repeats_(3 * native_repeats) {}
+
+  Novelty Process(const RawThermalFrame& frame);
+
+ private:
+  std::uint64_t LostBefore(const RawThermalFrame& frame) const;
+
+  const std::uint64_t counter_step_;
+  const int most_repeats_;
+  std::optional<std::uint64_t> counter_;
+  std::optional<std::uint64_t> hash_;
+  int repeats_ = 0;
+  bool was_correcting_ = false;
+  SteadyTime first_seen_{};
+};
+
+}  // namespace isotherm

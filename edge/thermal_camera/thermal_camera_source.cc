@@ -1,0 +1,203 @@
+#include "edge/thermal_camera/thermal_camera_source.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Of one Read.
+constexpr Nanoseconds kWait = milliseconds(50);
+
+ThermalGain GainOf(ThermalGainOption gain) {
+  switch (gain) {
+    case HIGH_GAIN:
+      return ThermalGain::kHigh;
+    case LOW_GAIN:
+      return ThermalGain::kLow;
+    case KEEP_GAIN:
+      break;
+  }
+  return ThermalGain::kKeep;
+}
+
+bool IsCorrecting(const RawThermalFrame& raw) {
+  return raw.nuc && raw.nuc->state == NucState::kInProgress;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions& options,
+                                                     const Clock& clock) {
+  ThermalCameraSource::Cameras cameras;
+  cameras.list = ListThermalCameras;
+  cameras.make = [options, &clock](const DeviceDescription& device) {
+    return MakeThermalCamera(device, options, clock);
+  };
+  return std::make_unique<ThermalCameraSource>(options, clock, std::move(cameras));
+}
+
+ThermalCameraSource::ThermalCameraSource(const ThermalCameraOptions& options, const Clock& clock,
+                                         Cameras cameras)
+    : options_(std::make_unique<const ThermalCameraOptions>(options)),
+      clock_(clock),
+      cameras_(std::move(cameras)) {}
+
+ThermalCameraSource::~ThermalCameraSource() = default;
+
+Status ThermalCameraSource::Open() {
+  Close();
+  const Result<std::vector<DeviceDescription>> devices = cameras_.list();
+  if (!devices) return devices.error();
+  const Result<DeviceDescription> device = ChooseThermalCamera(*devices, *options_, serial_);
+  if (!device) return device.error();
+  if (!device->problem.empty()) {
+    return FailedPrecondition(fmt::format("thermal camera {} at {}: {}", device->driver,
+                                          device->bus_port, device->problem));
+  }
+  camera_ = cameras_.make(*device);
+  Status opened = camera_->Open();
+  if (opened.ok()) opened = camera_->SetGain(GainOf(options_->gain()));
+  if (!opened.ok()) {
+    Close();
+    return opened.WithContext(
+        fmt::format("thermal camera {} at {}", device->driver, device->bus_port));
+  }
+  const ThermalCameraInfo& info = camera_->info();
+  serial_ = info.serial;
+  name_ = fmt::format("thermal camera {}", info.driver);
+  novelty_.emplace(info.counter_step, info.native_repeats);
+  last_frame_at_ = clock_.SteadyNow();
+  frozen_ = false;
+  incomplete_ = false;
+  LOG(Thermal, Info) << name_ << " opened, product=\"" << info.product << "\" serial=\""
+                     << info.serial << "\" port=" << info.bus_port << " width=" << info.width
+                     << " height=" << info.height;
+  return OkStatus();
+}
+
+void ThermalCameraSource::Close() {
+  if (!camera_) return;
+  camera_->Close();
+  camera_.reset();
+  LOG(Thermal, Info) << name_ << " closed, delivered=" << counts_.delivered
+                     << " frozen=" << counts_.frozen << " repeated=" << counts_.repeated
+                     << " incomplete=" << counts_.incomplete << " lost=" << counts_.lost;
+}
+
+Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
+  if (!camera_) return Err(FailedPrecondition(name_ + " is not open"));
+  if (stop.stop_requested()) return NothingYet{};
+  Result<std::optional<RawThermalFrame>> raw = camera_->Read(kWait);
+  if (!raw) return Err(raw.error());
+  if (*raw) {
+    last_frame_at_ = clock_.SteadyNow();
+    return Judge(std::move(**raw));
+  }
+  const Nanoseconds silence = clock_.SteadyNow() - last_frame_at_;
+  if (ToSeconds(silence) < options_->stall_timeout_s()) return NothingYet{};
+  return Err(Hangs("sends nothing", silence));
+}
+
+Result<SourceItem> ThermalCameraSource::Judge(RawThermalFrame raw) {
+  if (raw.incomplete) {
+    ++counts_.incomplete;
+    if (!std::exchange(incomplete_, true)) {
+      LOG(Thermal, Warning) << name_ << ": incomplete frame, number=" << next_frame_number_;
+    }
+    raw.counts = {};
+    return Convert(raw);
+  }
+  incomplete_ = false;
+  if (!EncodingOf(raw).radiometric) {
+    return Err(
+        FailedPrecondition(name_ +
+                           " sends counts that it does not relate to temperatures; say how in "
+                           "source.thermal_camera.kelvin_per_count and offset_kelvin"));
+  }
+  const Novelty novelty = novelty_->Process(raw);
+  counts_.lost += novelty.lost;
+  next_frame_number_ += novelty.lost;
+  // What the camera declares as a correction is delivered as that, whatever it shows meanwhile.
+  if (novelty.kind == Novelty::Kind::kRepeat && !IsCorrecting(raw)) {
+    ++counts_.repeated;
+    return NothingYet{};
+  }
+  const bool frozen = novelty.kind == Novelty::Kind::kFrozen && !IsCorrecting(raw);
+  if (frozen && ToSeconds(novelty.frozen_for) >= options_->stall_timeout_s()) {
+    return Err(Hangs("sends the same picture", novelty.frozen_for));
+  }
+  if (frozen) {
+    ++counts_.frozen;
+    if (!frozen_) {
+      LOG(Thermal, Warning) << name_ << ": the picture is frozen, number=" << next_frame_number_;
+    }
+    // A camera that would say so is not correcting itself: something is wrong.
+    const NucState state = raw.nuc ? NucState::kError : NucState::kInProgress;
+    raw.nuc = CameraNuc{state, NucSource::kInferred, std::nullopt};
+    raw.shutter_closed = true;
+  }
+  frozen_ = frozen;
+  ++counts_.delivered;
+  return Convert(raw);
+}
+
+RawFrame ThermalCameraSource::Convert(const RawThermalFrame& raw) {
+  RawFrame frame;
+  frame.sensor = Sensor::kThermal;
+  frame.frame_number = next_frame_number_++;
+  frame.has_device_clock = raw.device_ticks.has_value();
+  frame.device_ticks = raw.device_ticks.value_or(DeviceTicks{});
+  frame.arrival_wall = raw.first_packet.wall;
+  frame.arrival_steady = raw.first_packet.steady;
+  frame.shutter_closed = raw.shutter_closed;
+  frame.camera_nuc = raw.nuc;
+  frame.housekeeping = raw.housekeeping;
+  if (raw.counts.empty()) return frame;
+  UpdateTable(EncodingOf(raw));
+  frame.pixels.Resize(raw.counts.width(), raw.counts.height());
+  const std::uint16_t* counts = raw.counts.data();
+  for (std::uint16_t& pixel : frame.pixels.pixels()) pixel = centikelvin_of_count_[*counts++];
+  return frame;
+}
+
+PixelEncoding ThermalCameraSource::EncodingOf(const RawThermalFrame& raw) const {
+  if (raw.encoding.radiometric || options_->kelvin_per_count() == 0.0) return raw.encoding;
+  return {true, options_->kelvin_per_count(), options_->offset_kelvin()};
+}
+
+void ThermalCameraSource::UpdateTable(const PixelEncoding& encoding) {
+  if (encoding == encoding_ && !centikelvin_of_count_.empty()) return;
+  encoding_ = encoding;
+  centikelvin_of_count_.resize(65'536);
+  for (std::size_t count = 0; count < centikelvin_of_count_.size(); ++count) {
+    const double kelvin =
+        encoding.kelvin_per_count * static_cast<double>(count) + encoding.offset_kelvin;
+    const double centikelvin = std::round(kCentikelvinPerKelvin * kelvin);
+    const bool fits = centikelvin >= 1.0 && centikelvin <= 65'535.0;
+    centikelvin_of_count_[count] = static_cast<std::uint16_t>(fits ? centikelvin : 0.0);
+  }
+}
+
+Status ThermalCameraSource::Hangs(const std::string& what, Nanoseconds duration) const {
+  return Unavailable(fmt::format("{} at {} {} for {:.1f} s", name_, camera_->info().bus_port, what,
+                                 ToSeconds(duration)));
+}
+
+Status ThermalCameraSource::Control(const CameraControl& control) {
+  if (!camera_) return Unavailable(name_ + " is not open");
+  if (std::holds_alternative<TriggerNuc>(control)) return camera_->TriggerNuc();
+  if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
+    return camera_->SetAutomaticNuc(automatic->on);
+  }
+  return FailedPrecondition(name_ + " does not know this order");
+}
+
+}  // namespace isotherm

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/time/clock.h"
+#include "edge/source/frame_source.h"
+#include "edge/thermal_camera/camera_registry.h"
+#include "edge/thermal_camera/frame_novelty.h"
+#include "edge/thermal_camera/thermal_camera.h"
+
+namespace isotherm {
+
+class ThermalCameraOptions;
+
+/// The thermal camera of this computer that the options ask for. `clock` must outlive it.
+std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions& options,
+                                                     const Clock& clock);
+
+/// What became of the camera's frames since the start. All that came are in one of them.
+struct ThermalCameraCounts {
+  std::uint64_t delivered = 0;   ///< Including `frozen`.
+  std::uint64_t frozen = 0;      ///< Delivered as taken behind a closed shutter.
+  std::uint64_t repeated = 0;    ///< Sent again by the camera; left out.
+  std::uint64_t incomplete = 0;  ///< Refused.
+  std::uint64_t lost = 0;        ///< Counted by the camera, never seen here.
+};
+
+/// Frames of one thermal camera in centi-kelvin.
+///
+/// - Repeated pictures are left out; they are no loss.
+/// - Frozen pictures count as taken behind a closed shutter; when they last, the camera is taken
+///   for hung, as it is when nothing comes at all: Read fails, so that it is opened again.
+/// - Incomplete frames come without pixels, so that whoever checks frames refuses and counts them.
+/// - Frame numbers have holes where the camera counted pictures that never came.
+/// - After it was opened once, a camera with another serial number is refused.
+///
+/// Thread-bound.
+class ThermalCameraSource final : public FrameSource {
+ public:
+  /// Finds the cameras and makes drivers: the real ones, or those of a test.
+  struct Cameras {
+    std::function<Result<std::vector<DeviceDescription>>()> list;
+    std::function<std::unique_ptr<ThermalCamera>(const DeviceDescription&)> make;
+  };
+
+  ThermalCameraSource(const ThermalCameraOptions& options, const Clock& clock, Cameras cameras);
+  ~ThermalCameraSource() override;
+
+  std::string_view name() const override { return name_; }
+  Status Open() override;
+  Result<SourceItem> Read(std::stop_token stop) override;
+  void Close() override;
+  Status Control(const CameraControl& control) override;
+
+  const ThermalCameraCounts& counts() const { return counts_; }
+
+ private:
+  Result<SourceItem> Judge(RawThermalFrame raw);
+  RawFrame Convert(const RawThermalFrame& raw);
+  /// `what` and how long it has lasted, as a failure.
+  Status Hangs(const std::string& what, Nanoseconds duration) const;
+  /// Takes the temperatures of counts from the options if the camera does not know them.
+  PixelEncoding EncodingOf(const RawThermalFrame& raw) const;
+  void UpdateTable(const PixelEncoding& encoding);
+
+  const std::unique_ptr<const ThermalCameraOptions> options_;
+  const Clock& clock_;
+  const Cameras cameras_;
+  std::string name_ = "thermal camera";
+  std::string serial_;  ///< Of the camera that was opened first.
+  std::unique_ptr<ThermalCamera> camera_;
+  std::optional<FrameNovelty> novelty_;
+  PixelEncoding encoding_;
+  std::vector<std::uint16_t> centikelvin_of_count_;  ///< 65536 values; 0 = no value.
+  SteadyTime last_frame_at_{};
+  std::uint64_t next_frame_number_ = 0;
+  bool frozen_ = false;
+  bool incomplete_ = false;
+  ThermalCameraCounts counts_;
+};
+
+}  // namespace isotherm

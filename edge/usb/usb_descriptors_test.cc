@@ -1,0 +1,154 @@
+#include "edge/usb/usb_descriptors.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "edge/usb/uvc_descriptors.h"
+#include "edge/usb/uvc_probe.h"
+
+namespace isotherm {
+namespace {
+
+using Data = std::vector<std::uint8_t>;
+
+/// A camera as the tables of the class specification lay it out, byte by byte.
+Data Camera() {
+  Data data = {
+      9,    2,    0,    0,    2,    1,    0,    0x80, 50,  // Configuration 1; the total is filled
+                                                           // in below.
+      9,    4,    0,    0,    0,    0x0E, 1,    0,    0,   // Interface 0: video control.
+      13,   0x24, 1,    0x00, 0x01, 39,   0,    0x80, 0x8D, 0x5B, 0x00, 1,    1,  // UVC 1.00, 6
+                                                                                  // MHz.
+      26,   0x24, 6,    5,  // Extension unit 5, ...
+      'p',  't',  '1',  '-',  'l',  'e',  'p',  '-',  'r',  'a',  'd',  '-',  '0',  '0',
+      '0',  '0',  // ... GUID.
+      1,    1,    3,    1,    0xFF, 0,    9,    4,    1,    0,    0,    0x0E, 2,    0,
+      0,  // Interface 1: video streaming.
+      15,   0x24, 1,    2,    0,    0,    0x81, 0,    0,    0,    0,    0,    1,    0,
+      0,    27,   0x24, 4,    2,    1,  // Format 2: 16 bit per pixel, ...
+      'Y',  '1',  '6',  ' ',  0,    0,    0x10, 0,    0x80, 0,    0,    0xAA, 0,    0x38,
+      0x9B, 0x71, 16,   1,    0,    0,    0,    0,    30,   0x24, 5,    1,    0,    160,
+      0,    120,  0,  // ... frame size 1: 160 x 120, ...
+      0,    0,    0,    0,    0,    0,    0,    0,    0,    0,    0,    0,    0x07, 0xF4,
+      0x10, 0x00,  // ... 111.1 ms, ...
+      1,    0x07, 0xF4, 0x10, 0x00, 11,   0x24, 6,    1,    0,    0,    0,    0,    0,
+      0,    0,  // ... and a compressed format, which is left out.
+      9,    4,    1,    1,    1,    0x0E, 2,    0,    0,  // Alternate setting 1: ...
+      7,    5,    0x81, 5,    0x82, 0x02, 1,              // ... 642 bytes.
+      9,    4,    1,    2,    1,    0x0E, 2,    0,    0,  // Alternate setting 2: ...
+      7,    5,    0x81, 5,    0x00, 0x14, 1,              // ... three times 1024 bytes.
+  };
+  data[2] = static_cast<std::uint8_t>(data.size());
+  data[3] = static_cast<std::uint8_t>(data.size() >> 8);
+  return data;
+}
+
+UvcFunction Parse(const Data& data) {
+  const Result<UsbConfiguration> configuration = ParseConfiguration(data);
+  EXPECT_TRUE(configuration.has_value());
+  const Result<UvcFunction> function = ParseUvc(*configuration);
+  EXPECT_TRUE(function.has_value());
+  return *function;
+}
+
+TEST(UvcDescriptorsTest, FindsUnitsByGuidWhateverTheirId) {
+  const UvcFunction function = Parse(Camera());
+  EXPECT_EQ(function.version, 0x0100);
+  EXPECT_EQ(function.clock_hz, 6'000'000U);
+  constexpr UvcGuid kRad = {'p', 't', '1', '-', 'l', 'e', 'p', '-',
+                            'r', 'a', 'd', '-', '0', '0', '0', '0'};
+  EXPECT_EQ(function.UnitWithGuid(kRad), 5);
+  EXPECT_EQ(function.UnitWithGuid(UvcGuid{}), std::nullopt);
+}
+
+TEST(UvcDescriptorsTest, ReadsFormatsAndFrameSizes) {
+  const UvcFunction function = Parse(Camera());
+  ASSERT_EQ(function.formats.size(), 1U);
+  EXPECT_EQ(function.formats[0].index, 2);
+  EXPECT_EQ(function.formats[0].four_characters(), "Y16 ");
+  EXPECT_EQ(function.formats[0].bits_per_pixel, 16);
+  ASSERT_EQ(function.formats[0].frames.size(), 1U);
+  EXPECT_EQ(function.formats[0].frames[0].width, 160);
+  EXPECT_EQ(function.formats[0].frames[0].height, 120);
+  EXPECT_EQ(function.formats[0].frames[0].default_interval, 1'111'047U);
+}
+
+TEST(UvcDescriptorsTest, ReadsBandwidthWithHighSpeedMultiples) {
+  const UvcFunction function = Parse(Camera());
+  ASSERT_EQ(function.alternates.size(), 2U);
+  EXPECT_EQ(function.alternates[0].number, 1);
+  EXPECT_EQ(function.alternates[0].endpoint.packet_bytes, 642);
+  EXPECT_EQ(function.alternates[0].endpoint.kind, UsbTransferKind::kIsochronous);
+  EXPECT_EQ(function.alternates[1].endpoint.packet_bytes, 3 * 1024);
+}
+
+TEST(UsbDescriptorsTest, EveryTruncationIsRefused) {
+  const Data data = Camera();
+  for (std::size_t length = 0; length < data.size(); ++length) {
+    const Data cut(data.begin(), data.begin() + static_cast<std::ptrdiff_t>(length));
+    const auto parsed = ParseConfiguration(cut);
+    ASSERT_FALSE(parsed.has_value()) << length;
+    EXPECT_EQ(parsed.error().code(), StatusCode::kDataLoss) << length;
+  }
+}
+
+// A total that was cut as well leaves whole descriptors or half ones: neither may crash.
+TEST(UsbDescriptorsTest, EveryShorterTotalIsSurvived) {
+  for (std::size_t length = 9; length < Camera().size(); ++length) {
+    Data cut = Camera();
+    cut.resize(length);
+    PutLe16(cut, 2, static_cast<std::uint16_t>(length));
+    const auto parsed = ParseConfiguration(cut);
+    if (parsed) static_cast<void>(ParseUvc(*parsed));
+  }
+}
+
+TEST(UsbDescriptorsTest, EveryByteMayBeHostile) {
+  const Data data = Camera();
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    for (const int value : {0x00, 0x01, 0x02, 0x03, 0x7F, 0xFF}) {
+      Data hostile = data;
+      hostile[i] = static_cast<std::uint8_t>(value);
+      const auto parsed = ParseConfiguration(hostile);
+      if (parsed) static_cast<void>(ParseUvc(*parsed));
+    }
+  }
+}
+
+TEST(UvcDescriptorsTest, DeviceWithoutVideoIsNotFound) {
+  Data data = Camera();
+  std::replace(data.begin(), data.end(), 0x0E, 0x08);
+  const auto configuration = ParseConfiguration(data);
+  ASSERT_TRUE(configuration.has_value());
+  EXPECT_EQ(ParseUvc(*configuration).error().code(), StatusCode::kNotFound);
+}
+
+TEST(UvcProbeTest, HasTheLengthOfItsVersion) {
+  EXPECT_EQ(UvcProbeBytes(0x0100), 26U);
+  EXPECT_EQ(UvcProbeBytes(0x0110), 34U);
+  EXPECT_EQ(UvcProbeBytes(0x0150), 48U);
+}
+
+TEST(UvcProbeTest, PutsFieldsWhereTheTableSays) {
+  const Data bytes = PackUvcProbe({2, 3, 400'000, 39'040, 642, 6'000'000}, 34);
+  EXPECT_EQ(bytes[2], 2);
+  EXPECT_EQ(bytes[3], 3);
+  EXPECT_EQ(Le32(bytes, 4), 400'000U);
+  EXPECT_EQ(Le32(bytes, 18), 39'040U);
+  EXPECT_EQ(Le32(bytes, 22), 642U);
+  EXPECT_EQ(Le32(bytes, 26), 6'000'000U);
+}
+
+TEST(UvcProbeTest, EveryTruncationIsRefused) {
+  const Data bytes = PackUvcProbe({2, 3, 400'000, 39'040, 642, 6'000'000}, 26);
+  EXPECT_EQ(UnpackUvcProbe(bytes)->max_payload_bytes, 642U);
+  for (std::size_t length = 0; length < 26; ++length) {
+    EXPECT_FALSE(UnpackUvcProbe(Bytes(bytes).first(length)).has_value()) << length;
+  }
+}
+
+}  // namespace
+}  // namespace isotherm

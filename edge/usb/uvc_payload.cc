@@ -1,0 +1,98 @@
+#include "edge/usb/uvc_payload.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace isotherm {
+
+std::optional<UvcPayloadHeader> ParseUvcPayloadHeader(Bytes payload) {
+  if (payload.size() < 2 || payload[0] < 2 || payload[0] > payload.size()) return std::nullopt;
+  const std::uint8_t flags = payload[1];
+  UvcPayloadHeader header;
+  header.length = payload[0];
+  header.frame_id = (flags & 0x01) != 0;
+  header.end_of_frame = (flags & 0x02) != 0;
+  header.error = (flags & 0x40) != 0;
+  std::size_t at = 2;
+  if ((flags & 0x04) != 0) {
+    if (header.length < at + 4) return std::nullopt;
+    header.presentation_time = Le32(payload, at);
+    at += 4;
+  }
+  if ((flags & 0x08) != 0) {
+    if (header.length < at + 6) return std::nullopt;
+    header.source_clock = Le32(payload, at);
+    header.usb_frame = static_cast<std::uint16_t>(Le16(payload, at + 4) & 0x7FF);
+  }
+  return header;
+}
+
+void UvcAssembler::AddPayload(Bytes payload, const HostStamp& stamp) {
+  if (payload.empty()) return;  // Nothing was due in this bus interval.
+  const std::optional<UvcPayloadHeader> header = ParseUvcPayloadHeader(payload);
+  if (!header) {
+    ++bad_payloads_;
+    NoteLostPacket();
+    return;
+  }
+  const Bytes data = payload.subspan(header->length);
+  if (in_frame_ && header->frame_id != frame_id_) Finish();
+  if (!in_frame_) {
+    // Strays of the frame that has ended.
+    if (frame_id_ == header->frame_id) return;
+    if (data.empty() && !header->error) return;
+    Begin(*header);
+  }
+  Append(*header, data, stamp);
+  if (header->end_of_frame) Finish();
+}
+
+void UvcAssembler::NoteLostPacket() {
+  if (in_frame_) {
+    frame_.incomplete = true;
+  } else {
+    damaged_ = true;
+  }
+}
+
+void UvcAssembler::Begin(const UvcPayloadHeader& header) {
+  frame_ = {};
+  frame_.bytes.resize(frame_bytes_);
+  frame_.incomplete = std::exchange(damaged_, false);
+  frame_id_ = header.frame_id;
+  in_frame_ = true;
+}
+
+void UvcAssembler::Append(const UvcPayloadHeader& header, Bytes data, const HostStamp& stamp) {
+  if (header.error) frame_.incomplete = true;
+  if (!frame_.presentation_time) frame_.presentation_time = header.presentation_time;
+  if (data.empty()) return;
+  if (frame_.received == 0) frame_.first_packet = stamp;
+  frame_.last_packet = stamp;
+  const std::size_t room = frame_bytes_ - frame_.received;
+  if (data.size() > room) frame_.incomplete = true;
+  const std::size_t taken = std::min(room, data.size());
+  std::copy_n(data.begin(), taken,
+              frame_.bytes.begin() + static_cast<std::ptrdiff_t>(frame_.received));
+  frame_.received += taken;
+}
+
+void UvcAssembler::Finish() {
+  in_frame_ = false;
+  if (frame_.received != frame_bytes_) frame_.incomplete = true;
+  if (!std::exchange(seen_a_frame_, true) && frame_.incomplete) return;
+  if (finished_.size() == kMostFrames) {
+    finished_.pop_front();
+    ++dropped_frames_;
+  }
+  finished_.push_back(std::move(frame_));
+}
+
+std::optional<UvcFrame> UvcAssembler::Pop() {
+  if (finished_.empty()) return std::nullopt;
+  UvcFrame frame = std::move(finished_.front());
+  finished_.pop_front();
+  return frame;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "common/time/time_types.h"
+#include "edge/usb/bytes.h"
+
+namespace isotherm {
+
+/// Both clocks of this computer, read together.
+struct HostStamp {
+  CaptureTime wall{};
+  SteadyTime steady{};
+};
+
+/// Header of a UVC payload (UVC 1.5, section 2.4.3.3).
+struct UvcPayloadHeader {
+  std::size_t length = 0;
+  bool frame_id = false;      ///< Toggles with each frame.
+  bool end_of_frame = false;  ///< The last payload of a frame, where the camera says so.
+  bool error = false;
+  std::optional<std::uint32_t> presentation_time;  ///< Camera clock.
+  std::optional<std::uint32_t> source_clock;       ///< Camera clock when the payload was sent.
+  std::optional<std::uint16_t> usb_frame;          ///< 11-bit number of the bus frame, 1 ms each.
+};
+
+/// Nullopt if the bytes cannot be a payload. A missing end-of-header bit is tolerated.
+std::optional<UvcPayloadHeader> ParseUvcPayloadHeader(Bytes payload);
+
+struct UvcFrame {
+  std::vector<std::uint8_t> bytes;  ///< As many as were negotiated; what is missing is 0.
+  std::size_t received = 0;         ///< Bytes that came, at most those negotiated.
+  bool incomplete = false;          ///< Packets are missing, were damaged, or were too many.
+  HostStamp first_packet;
+  HostStamp last_packet;
+  std::optional<std::uint32_t> presentation_time;
+};
+
+/// Joins payloads to frames. A frame ends with the end-of-frame bit, or where the frame id toggles
+/// without one; payloads between an end and the next toggle are strays. What came before the first
+/// whole frame is left out, since a stream may start anywhere. Thread-compatible.
+class UvcAssembler {
+ public:
+  explicit UvcAssembler(std::size_t frame_bytes) : frame_bytes_(frame_bytes) {}
+
+  void AddPayload(Bytes payload, const HostStamp& stamp);
+  /// The bus lost a packet: the frame it belongs to cannot be whole.
+  void NoteLostPacket();
+  /// The next finished frame. At most `kMostFrames` wait; older ones are dropped and counted.
+  std::optional<UvcFrame> Pop();
+
+  std::uint64_t bad_payloads() const { return bad_payloads_; }
+  std::uint64_t dropped_frames() const { return dropped_frames_; }
+
+  static constexpr std::size_t kMostFrames = 4;
+
+ private:
+  void Begin(const UvcPayloadHeader& header);
+  void Append(const UvcPayloadHeader& header, Bytes data, const HostStamp& stamp);
+  void Finish();
+
+  const std::size_t frame_bytes_;
+  UvcFrame frame_;
+  bool in_frame_ = false;
+  bool damaged_ = false;  ///< A packet was lost before the frame it may belong to began.
+  bool seen_a_frame_ = false;
+  std::optional<bool> frame_id_;
+  std::deque<UvcFrame> finished_;
+  std::uint64_t bad_payloads_ = 0;
+  std::uint64_t dropped_frames_ = 0;
+};
+
+}  // namespace isotherm
