@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "common/base/log.h"
 #include "common/config/text_proto.h"
@@ -14,10 +17,8 @@
 #include "edge/edge_pipeline.h"
 #include "edge/edge_report.h"
 #include "edge/housekeeping.h"
+#include "edge/make_source.h"
 #include "edge/source/pause.h"
-#include "edge/source/replay_source.h"
-#include "edge/source/supervised_source.h"
-#include "edge/source/synthetic_source.h"
 
 namespace isotherm {
 namespace {
@@ -37,29 +38,28 @@ int Fail(const Status& status) {
   return ExitCode(status);
 }
 
-std::unique_ptr<SupervisedSource> MakeSource(const EdgeOptions& options, const Clock& clock,
-                                             FrameAccount& account, const std::stop_token& stop) {
-  std::unique_ptr<FrameSource> source;
-  if (options.source().kind() == REPLAY) {
-    source = std::make_unique<ReplaySource>(options.source(), options.source().recording(), clock);
-  } else {
-    source = std::make_unique<SyntheticSource>(options.source(), clock, stop);
-  }
-  const auto count_as = [&account](FrameFate fate) {
-    return [fate, &account](Sensor sensor) { account.Count(sensor, fate); };
-  };
-  return std::make_unique<SupervisedSource>(std::move(source), options.frame_check(), clock,
-                                            count_as(FrameFate::kCaptured),
-                                            count_as(FrameFate::kRejected));
-}
-
-/// The configured calibration file, or what comes with the source; nullopt if there is none.
-Result<std::optional<Rig>> ChooseRig(const SourceOptions& options, SupervisedSource& source) {
-  if (options.rig_file().empty()) return source.rig();
+/// The configured calibration file; nullopt if none is.
+Result<std::optional<Rig>> LoadCalibration(const SourceOptions& options) {
+  if (options.rig_file().empty()) return std::nullopt;
   Result<Rig> rig = LoadRigCalibration(options.rig_file());
   if (!rig) return Err(rig.error());
-  source.Expect(*rig);
   return std::optional<Rig>(std::move(*rig));
+}
+
+/// Says what is missing for temperatures on the surface.
+void TellAboutRig(const std::optional<Rig>& rig) {
+  if (!rig) {
+    LOG(Edge, Warning) << "no rig calibration: thermal frames cannot be fused with depth";
+    return;
+  }
+  if (const Status fusion = CheckThermalFusion(*rig); !fusion.ok()) {
+    LOG(Edge, Warning) << "thermal frames cannot be fused with depth: " << fusion.message()
+                       << "; name a calibration with --rig";
+  }
+  if (rig->method.starts_with("nominal")) {
+    LOG(Edge, Warning) << "intrinsics of the depth camera are " << rig->method
+                       << ", fx=" << rig->depth->fx << " fy=" << rig->depth->fy;
+  }
 }
 
 /// The rig as it is published and recorded: capture times already contain the thermal delay.
@@ -71,6 +71,7 @@ std::optional<Rig> WithoutThermalDelay(std::optional<Rig> rig) {
 /// What was found out before anything starts.
 struct Start {
   CaptureTime time;
+  std::vector<CameraDescription> cameras;
   std::optional<Rig> rig;            ///< As published and recorded.
   double rig_thermal_delay_s = 0.0;  ///< As calibrated.
 
@@ -82,16 +83,35 @@ RigDescription Describe(const EdgeOptions& options, const Start& start) {
   RigDescription description;
   description.session = start.session();
   description.waits_for_ground = options.source().rate() == 0.0;
-  if (!start.rig) return description;
-  description.rig = *start.rig;
+  if (start.rig) description.rig = *start.rig;
   const auto mode = [](const std::optional<CameraModel>& camera, Encoding encoding) {
     StreamMode stream;
     if (camera) stream = {camera->width, camera->height, 0.0, encoding, ""};
     return stream;
   };
-  description.depth = mode(start.rig->depth, Encoding::kDepthRans);
-  description.thermal = mode(start.rig->thermal, Encoding::kThermalRans);
+  description.depth = mode(description.rig.depth, Encoding::kDepthRans);
+  description.thermal = mode(description.rig.thermal, Encoding::kThermalRans);
+  for (const CameraDescription& camera : start.cameras) {
+    const bool is_depth = camera.sensor == Sensor::kDepth;
+    (is_depth ? description.depth : description.thermal) = {
+        camera.width, camera.height, camera.rate_hz,
+        is_depth ? Encoding::kDepthRans : Encoding::kThermalRans, camera.serial};
+  }
   return description;
+}
+
+/// What the recording says of the cameras.
+std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
+  std::map<std::string, std::string> metadata;
+  for (const CameraDescription& camera : cameras) {
+    const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
+    metadata[name] = fmt::format("{}, {}", camera.driver, camera.model);
+    metadata[name + "_serial"] = camera.serial;
+    metadata[name + "_mode"] =
+        fmt::format("{}x{}@{:g}", camera.width, camera.height, camera.rate_hz);
+    metadata[name + "_settings"] = camera.settings;
+  }
+  return metadata;
 }
 
 Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const Start& start,
@@ -99,13 +119,14 @@ Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const Start
   const std::optional<std::filesystem::path> path = SpoolPath(options.spool().record(), start.time);
   if (!path) return nullptr;
   const TimestamperOptions& timing = options.timestamper();
-  const Spool::Metadata metadata = {
+  Spool::Metadata metadata = {
       {"configuration", {{"edge", ToTextProto(options)}}},
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
       {"timing",
        {{"depth_delay_s", fmt::format("{}", timing.depth_delay_s())},
         {"thermal_delay_s",
          fmt::format("{}", timing.thermal_delay_s() + start.rig_thermal_delay_s)}}}};
+  if (!start.cameras.empty()) metadata["cameras"] = CameraMetadata(start.cameras);
   LOG(Edge, Info) << "recording to " << path->string();
   return Spool::Create(*path, options.spool(), start.rig, metadata, account);
 }
@@ -157,12 +178,12 @@ void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Houseke
 }
 
 /// Captures until told to leave, then hands on what is under way. The process's exit status.
-int Capture(const EdgeOptions& options, const Start& start, SupervisedSource& source,
-            std::unique_ptr<Spool> spool, FrameAccount& account, Publisher& publisher,
-            const Clock& clock, const std::stop_token& stop) {
+int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
+            std::unique_ptr<Spool> spool, FrameAccount& account, CameraHealth& health,
+            Publisher& publisher, const Clock& clock, const std::stop_token& stop) {
   const bool recording = spool != nullptr;
   const std::filesystem::path disk = recording ? spool->path() : ".";
-  EdgePipeline pipeline(options, {source, publisher, account, clock, std::move(spool),
+  EdgePipeline pipeline(options, {source, publisher, account, health, clock, std::move(spool),
                                   start.session(), start.rig_thermal_delay_s});
   pipeline.StartReceiving();
   NotifyReady(fmt::format("capturing from {}", source.name()));
@@ -171,7 +192,7 @@ int Capture(const EdgeOptions& options, const Start& start, SupervisedSource& so
   if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
 
   pipeline.StartCapture();
-  Housekeeping housekeeping(clock, pipeline, publisher, account, disk,
+  Housekeeping housekeeping(clock, pipeline, publisher, account, health, disk,
                             options.display().picture_file());
   RunUntilStopped(options, pipeline, housekeeping, stop);
 
@@ -184,6 +205,8 @@ int Capture(const EdgeOptions& options, const Start& start, SupervisedSource& so
   std::fputs(
       Summary(account, recording, publisher.receipt(), pipeline.feedback().latency()).c_str(),
       stdout);
+  std::fputs(CameraSummary(health.Get(Sensor::kDepth), health.Get(Sensor::kThermal)).c_str(),
+             stdout);
   return recorded.ok() ? 0 : kExitRecording;
 }
 
@@ -193,16 +216,19 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
             const StopSignal& signal) {
   const std::stop_token stop = signal.token();
   FrameAccount account;
-  const std::unique_ptr<SupervisedSource> source = MakeSource(options, clock, account, stop);
-  if (const Status opened = source->Open(); !opened.ok()) {
+  CameraHealth health;
+  const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
+  if (!calibration) return Fail(calibration.error());
+  const Result<std::unique_ptr<FrameSource>> source =
+      MakeSource(options, {clock, account, health, *calibration, stop});
+  if (!source) return Fail(source.error());
+  if (const Status opened = (*source)->Open(); !opened.ok()) {
     return stop.stop_requested() ? 0 : Fail(opened);
   }
-  const Result<std::optional<Rig>> rig = ChooseRig(options.source(), *source);
-  if (!rig) return Fail(rig.error());
-  if (!*rig) {
-    LOG(Edge, Warning) << "no rig calibration: thermal frames cannot be fused with depth";
-  }
-  const Start start{clock.Now(), WithoutThermalDelay(*rig), *rig ? (*rig)->thermal_delay_s : 0.0};
+  const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
+  TellAboutRig(rig);
+  const Start start{clock.Now(), (*source)->cameras(), WithoutThermalDelay(rig),
+                    rig ? rig->thermal_delay_s : 0.0};
 
   const Result<std::unique_ptr<Participant>> participant =
       Participant::Create(environment, options.link().domain());
@@ -216,7 +242,8 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   }
   const Status begun = (*publisher)->BeginSession(Describe(options, start));
   if (!begun.ok()) return Fail(begun);
-  return Capture(options, start, *source, std::move(*spool), account, **publisher, clock, stop);
+  return Capture(options, start, **source, std::move(*spool), account, health, **publisher, clock,
+                 stop);
 }
 
 }  // namespace isotherm

@@ -17,6 +17,7 @@
 #include "common/transport/transport_environment.h"
 #include "edge/edge_daemon.h"
 #include "edge/edge_options.pb.h"
+#include "edge/make_camera.h"
 #include "edge/validate_options.h"
 
 namespace isotherm {
@@ -25,12 +26,13 @@ namespace {
 constexpr const char* kDescription =
     "Captures depth and thermal frames, dates them, follows the thermal camera's shutter, records "
     "them and\n"
-    "publishes them over DDS to isotherm-ground. Without cameras it replays a recording or "
-    "simulates a scan.";
+    "publishes them over DDS to isotherm-ground. By default it simulates a scan; --source says "
+    "where frames come from.";
 
 constexpr const char* kFooter =
     "Examples:\n"
     "  isotherm-edge                                       a simulated furnace door, in real time\n"
+    "  isotherm-edge --source cameras --rig rig.textproto --record /data/   the cameras\n"
     "  isotherm-edge --recording scan.mcap --exit-at-end   a recording, once\n"
     "  isotherm-edge --recording scan.mcap --rate 0 --wait-for-ground --exit-at-end\n"
     "                                                      ... as fast as the ground takes it, "
@@ -59,12 +61,13 @@ constexpr const char* kFooter =
 struct CommandLine {
   std::optional<std::string> config;
   std::vector<std::string> overrides;
-  std::optional<std::string> source, recording, scene, record, edge_id;
+  std::optional<std::string> source, recording, scene, depth_camera, rig, record, edge_id;
   std::optional<double> rate;
   std::optional<int> domain;
   bool exit_at_end = false;
   bool wait_for_ground = false;
   bool list_sources = false;
+  bool list_devices = false;
   LogLevel log_level = LogLevel::kInfo;
 };
 
@@ -77,14 +80,21 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_option("--set", line.overrides, "Override an option of the configuration; repeatable")
       ->type_name("STAGE.FIELD=VALUE")
       ->allow_extra_args(false);
-  app.add_option("--source", line.source, "Where frames come from: replay or synthetic")
-      ->check(CLI::IsMember({"replay", "synthetic"}))
+  app.add_option("--source", line.source, "Where frames come from: cameras, replay or synthetic")
+      ->check(CLI::IsMember({"cameras", "replay", "synthetic"}))
       ->type_name("KIND");
   app.add_option("--recording", line.recording, "Recording to replay (implies --source replay)")
       ->type_name("FILE");
   app.add_option("--scene", line.scene,
                  "Scene to simulate (implies --source synthetic), see --list-sources")
       ->type_name("NAME");
+  app.add_option(
+         "--depth-camera", line.depth_camera,
+         "OpenNI2's address of the depth camera or an .oni file (implies --source cameras); "
+         "default: the first one found")
+      ->type_name("URI");
+  app.add_option("--rig", line.rig, "Rig calibration (rig.textproto); default: the source's own")
+      ->type_name("FILE");
   app.add_option("--rate", line.rate, "Speed: 1 = real time, 0 = as fast as the rest can follow")
       ->type_name("FACTOR");
   app.add_option("--record", line.record,
@@ -102,7 +112,9 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_option("--log-level", line.log_level, "debug, info, warning or error")
       ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case).description(""))
       ->type_name("LEVEL");
-  app.add_flag("--list-sources", line.list_sources, "List sources and scenes, then leave");
+  app.add_flag("--list-sources", line.list_sources,
+               "List sources, scenes and connected cameras, then leave");
+  app.add_flag("--list-devices", line.list_devices, "List connected cameras, then leave");
 }
 
 // FURNACE_DOOR in the configuration is furnace-door on the command line.
@@ -114,6 +126,7 @@ std::string SpokenName(std::string name) {
 }
 
 void ListSources() {
+  std::puts("cameras     the cameras of this computer (--source cameras)");
   std::puts("replay      a recording (--recording FILE)");
   std::puts(
       "synthetic   a simulated scan (--scene NAME), rendered once and kept in the cache. Scenes:");
@@ -135,6 +148,11 @@ Status ApplyScene(const std::string& name, SourceOptions& options) {
   return InvalidArgument("--scene " + name + ": no such scene; --list-sources names them");
 }
 
+SourceKind KindNamed(const std::string& name) {
+  if (name == "cameras") return CAMERAS;
+  return name == "replay" ? REPLAY : SYNTHETIC;
+}
+
 Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
   if (line.config) ISOTHERM_RETURN_IF_ERROR(LoadTextProto(*line.config, options));
   for (const std::string& assignment : line.overrides) {
@@ -146,7 +164,12 @@ Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
     source.set_kind(REPLAY);
     source.set_recording(*line.recording);
   }
-  if (line.source) source.set_kind(*line.source == "replay" ? REPLAY : SYNTHETIC);
+  if (line.depth_camera) {
+    source.set_kind(CAMERAS);
+    source.mutable_depth_camera()->set_uri(*line.depth_camera);
+  }
+  if (line.source) source.set_kind(KindNamed(*line.source));
+  if (line.rig) source.set_rig_file(*line.rig);
   if (line.rate) source.set_rate(*line.rate);
   if (line.record) options.mutable_spool()->set_record(*line.record);
   if (line.edge_id) options.mutable_link()->set_edge_id(*line.edge_id);
@@ -172,8 +195,9 @@ int Main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
   SetLogLevel(line.log_level);
-  if (line.list_sources) {
-    ListSources();
+  if (line.list_sources) ListSources();
+  if (line.list_sources || line.list_devices) {
+    std::fputs(ListCameras().c_str(), stdout);
     return 0;
   }
   EdgeOptions options;

@@ -27,6 +27,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
     : source_(parts.source),
       publisher_(parts.publisher),
       account_(parts.account),
+      health_(parts.health),
       clock_(parts.clock),
       spool_(std::move(parts.spool)),
       session_(parts.session),
@@ -36,6 +37,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
           options.timestamper().thermal_window(),
           FromSeconds(options.timestamper().thermal_delay_s() + parts.rig_thermal_delay_s)),
       nuc_supervisor_(options.nuc()),
+      blind_detector_(options.frame_check()),
       feedback_(TimeBaseOf(options.source())),
       spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
       spool_queue_(spool_capacity_, PolicyFor(options),
@@ -107,6 +109,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
     if (OutsidePose* pose = std::get_if<OutsidePose>(&*item)) Keep(std::move(*pose));
   }
   source_.Close();
+  while (std::optional<RawFrame> raw = source_.TakeUnread()) Process(std::move(*raw), stop);
   source_ended_ = true;
 }
 
@@ -127,7 +130,9 @@ void EdgePipeline::Keep(OutsidePose pose) {
 
 void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
   const Stamp stamp = depth_timestamper_.Process(raw.device_ticks, raw.arrival_wall);
+  NoteStamped(raw);
   feedback_.NoteCapture(stamp.time, clock_.Now());
+  health_.SetBlind(Sensor::kDepth, blind_detector_.Update(raw));
   EncodedDepthFrame frame;
   frame.header = Header(raw, stamp);
   frame.depth_scale = raw.depth_scale;
@@ -137,6 +142,7 @@ void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
 
 void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   const Stamp stamp = thermal_timestamper_.Process(raw.device_ticks, raw.arrival_wall);
+  NoteStamped(raw);
   const NucStatus nuc = nuc_supervisor_.Update(stamp.time, raw.shutter_closed);
   EncodedThermalFrame frame;
   frame.header = Header(raw, stamp);
@@ -148,6 +154,11 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   frame.image = thermal_encoder_.Encode(raw.pixels);
   nuc_state_ = nuc.state;
   Emit({std::move(frame), raw.arrival_wall}, stop);
+}
+
+void EdgePipeline::NoteStamped(const RawFrame& raw) {
+  if (raw.arrival_steady == SteadyTime{}) return;  // Not from a camera.
+  health_.AddStamping(raw.sensor, clock_.SteadyNow() - raw.arrival_steady);
 }
 
 FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const {

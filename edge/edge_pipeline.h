@@ -12,11 +12,13 @@
 #include "common/concurrency/bounded_queue.h"
 #include "common/time/clock.h"
 #include "common/transport/messages.h"
+#include "edge/camera_health.h"
 #include "edge/encoded_frame.h"
 #include "edge/feedback_monitor.h"
 #include "edge/frame_account.h"
 #include "edge/nuc/nuc_supervisor.h"
 #include "edge/publisher/publisher.h"
+#include "edge/source/blind_detector.h"
 #include "edge/source/frame_source.h"
 #include "edge/spool/spool.h"
 #include "edge/timestamper/timestamper.h"
@@ -30,6 +32,7 @@ struct EdgeParts {
   FrameSource& source;  ///< Opened; bad frames are already out (SupervisedSource).
   Publisher& publisher;
   FrameAccount& account;
+  CameraHealth& health;
   const Clock& clock;
   std::unique_ptr<Spool> spool;  ///< Null: no recording.
   std::uint64_t session = 0;
@@ -78,6 +81,8 @@ class EdgePipeline {
   void ProcessDepth(RawFrame raw, const std::stop_token& stop);
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
+  /// How long it took from arrival to here.
+  void NoteStamped(const RawFrame& raw);
   FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
   void Record(const std::stop_token& stop);
   void RecordFeedback();
@@ -87,6 +92,7 @@ class EdgePipeline {
   FrameSource& source_;
   Publisher& publisher_;
   FrameAccount& account_;
+  CameraHealth& health_;
   const Clock& clock_;
   const std::unique_ptr<Spool> spool_;
   const std::uint64_t session_;
@@ -94,6 +100,7 @@ class EdgePipeline {
   Timestamper depth_timestamper_;
   Timestamper thermal_timestamper_;
   NucSupervisor nuc_supervisor_;
+  BlindDetector blind_detector_;
   DepthEncoder depth_encoder_;
   ThermalEncoder thermal_encoder_;
 

@@ -34,6 +34,7 @@ class EdgePipelineTest : public testing::Test {
         options_, EdgeParts{.source = *source_,
                             .publisher = publisher_,
                             .account = account_,
+                            .health = health_,
                             .clock = clock_,
                             .spool = std::move(spool),
                             .session = kSession,
@@ -61,6 +62,7 @@ class EdgePipelineTest : public testing::Test {
   std::uint64_t disk_room_ = UINT64_MAX;
   double rig_thermal_delay_s_ = 0.0;
   FrameAccount account_;
+  CameraHealth health_;
   std::unique_ptr<SupervisedSource> source_;
   std::unique_ptr<EdgePipeline> pipeline_;
 };

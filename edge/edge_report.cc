@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string_view>
 
 #include "edge/feedback_text.h"
@@ -46,6 +47,12 @@ std::string Equation(std::string_view done, const SensorAccount& account, std::u
   return text;
 }
 
+/// " (lost)" behind a rate; nothing for a camera that works.
+std::string StateText(const CameraReport& camera) {
+  if (camera.state == CameraState::kLost) return " (camera lost)";
+  return camera.state == CameraState::kBlind ? " (camera blind)" : "";
+}
+
 std::string ReceiptText(const StreamReceipt& receipt) {
   return fmt::format("ground received {}, missing {}", receipt.received,
                      receipt.next - receipt.received);
@@ -82,19 +89,47 @@ void AddHostStatus(const HostStatus& host, EdgeStatus& status) {
   status.clock_error_s = host.clock_error_s;
 }
 
+std::string_view CameraText(CameraState state) {
+  switch (state) {
+    case CameraState::kNone:
+      return "none";
+    case CameraState::kWorking:
+      return "working";
+    case CameraState::kLost:
+      return "lost, the scan goes on without it";
+    case CameraState::kBlind:
+      return "blind: covered, too close or too far";
+  }
+  return "?";
+}
+
+std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal) {
+  std::string text;
+  const auto add = [&text](std::string_view name, const CameraReport& camera) {
+    if (camera.state == CameraState::kNone || std::isnan(camera.stamping_p99_s)) return;
+    text += fmt::format(
+        "{}  camera failed {} times, stamped {:.2f} ms after arrival (p99 {:.2f} ms)\n", name,
+        camera.failures, camera.stamping_p50_s * 1e3, camera.stamping_p99_s * 1e3);
+  };
+  add("depth  ", depth);
+  add("thermal", thermal);
+  return text;
+}
+
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
                        const std::optional<Feedback>& feedback) {
   const SensorAccount depth = account.Get(Sensor::kDepth);
   const SensorAccount thermal = account.Get(Sensor::kThermal);
   return fmt::format(
-      "ground: {} | depth {:.1f}/s  thermal {:.1f}/s  NUC {}  recorded {}  published {}  dropped "
+      "ground: {} | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  "
+      "dropped "
       "{}",
       !ground_present ? "absent"
       : feedback      ? FeedbackText(*feedback)
                       : "no feedback yet",
-      status.depth.rate_hz, status.thermal.rate_hz, ToText(status.nuc_state),
-      depth.recorded + thermal.recorded, depth.published + thermal.published,
-      Dropped(depth) + Dropped(thermal));
+      status.depth.rate_hz, StateText(status.depth_camera), status.thermal.rate_hz,
+      StateText(status.thermal_camera), ToText(status.nuc_state), depth.recorded + thermal.recorded,
+      depth.published + thermal.published, Dropped(depth) + Dropped(thermal));
 }
 
 std::string Summary(const FrameAccount& account, bool recording,

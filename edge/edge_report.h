@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "common/transport/messages.h"
 #include "edge/frame_account.h"
@@ -26,6 +27,13 @@ StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz);
 
 /// The host's part.
 void AddHostStatus(const HostStatus& host, EdgeStatus& status);
+
+/// "working", "lost, the scan goes on without it", ...
+std::string_view CameraText(CameraState state);
+
+/// How often the cameras failed and how soon their frames were stamped, printed at exit; empty if
+/// there are none.
+std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal);
 
 /// One line for the operator: what the ground says, then rates, drops and NUC.
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,

@@ -21,12 +21,13 @@ constexpr Nanoseconds kLogInterval = std::chrono::seconds(10);
 }  // namespace
 
 Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-                           const FrameAccount& account, std::filesystem::path disk,
-                           std::filesystem::path picture_file)
+                           const FrameAccount& account, const CameraHealth& health,
+                           std::filesystem::path disk, std::filesystem::path picture_file)
     : clock_(clock),
       pipeline_(pipeline),
       publisher_(publisher),
       account_(account),
+      health_(health),
       disk_(std::move(disk)),
       picture_file_(std::move(picture_file)),
       terminal_(isatty(STDERR_FILENO) == 1),
@@ -43,7 +44,9 @@ void Housekeeping::Tick() {
   if (now < next_status_) return;
   next_status_ += kStatusInterval;
   const bool ended = pipeline_.finished();
+  const EdgeStatus before = std::exchange(status_, {});
   status_ = MakeStatus(ended ? ScanState::kEnded : ScanState::kScanning, now);
+  TellCameras(before);
   const Status published = publisher_.Publish(status_);
   if (!published.ok()) {
     LOG(Edge, Debug) << "status not published: " << published.message();
@@ -71,8 +74,23 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.nuc_state = pipeline_.nuc_state();
   status.feedback = pipeline_.feedback().latency();
   status.spool_fill_ratio = pipeline_.spool_fill_ratio();
+  status.depth_camera = health_.Get(Sensor::kDepth);
+  status.thermal_camera = health_.Get(Sensor::kThermal);
   AddHostStatus(ReadHostStatus(disk_), status);
   return status;
+}
+
+void Housekeeping::TellCameras(const EdgeStatus& before) const {
+  const auto tell = [](std::string_view name, CameraState was, CameraState is) {
+    if (was == is || is == CameraState::kNone) return;
+    if (is == CameraState::kWorking) {
+      LOG(Edge, Info) << name << " camera: " << CameraText(is);
+    } else {
+      LOG(Edge, Warning) << name << " camera: " << CameraText(is);
+    }
+  };
+  tell("depth", before.depth_camera.state, status_.depth_camera.state);
+  tell("thermal", before.thermal_camera.state, status_.thermal_camera.state);
 }
 
 void Housekeeping::ShowFeedback() {

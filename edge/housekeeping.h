@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/time/clock.h"
+#include "edge/camera_health.h"
 #include "edge/edge_pipeline.h"
 #include "edge/edge_report.h"
 #include "edge/feedback_text.h"
@@ -20,7 +21,7 @@ class Housekeeping {
   /// All must outlive it. `disk` is where the recording goes, `picture_file` the confidence picture
   /// (empty: nowhere).
   Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-               const FrameAccount& account, std::filesystem::path disk,
+               const FrameAccount& account, const CameraHealth& health, std::filesystem::path disk,
                std::filesystem::path picture_file);
 
   /// Does what is due; call it often.
@@ -33,6 +34,8 @@ class Housekeeping {
   /// The newest feedback, if it was not shown yet: picture, status line or journal.
   void ShowFeedback();
   void ShowLine();
+  /// What became of the cameras since the last status.
+  void TellCameras(const EdgeStatus& before) const;
   void Log();
   void FeedWatchdog(SteadyTime now);
 
@@ -40,6 +43,7 @@ class Housekeeping {
   EdgePipeline& pipeline_;
   Publisher& publisher_;
   const FrameAccount& account_;
+  const CameraHealth& health_;
   const std::filesystem::path disk_;
   const std::filesystem::path picture_file_;
   const bool terminal_;

@@ -23,7 +23,8 @@ class Problems {
     Add(field, fmt::format("is {}, must be from {} to {}", value, lowest, highest));
   }
   void Add(std::string_view field, std::string_view problem) {
-    text_ += fmt::format("{}{}.{}: {}", text_.empty() ? "" : "\n", stage_, field, problem);
+    text_ += fmt::format("{}{}{}{}: {}", text_.empty() ? "" : "\n", stage_,
+                         stage_.empty() ? "" : ".", field, problem);
   }
   Status ToStatus() const { return text_.empty() ? OkStatus() : InvalidArgument(text_); }
 
@@ -39,6 +40,25 @@ bool IsPlainName(const std::string& name) {
          name.find_first_not_of(kAllowed) == std::string::npos;
 }
 
+void CheckDepthCamera(const SourceOptions& source, Problems& problems) {
+  problems.Stage("source.depth_camera");
+  const DepthCameraOptions& options = source.depth_camera();
+  problems.CheckRange("width", options.width(), 16, 4096);
+  problems.CheckRange("height", options.height(), 16, 4096);
+  problems.CheckRange("rate_hz", options.rate_hz(), 1, 240);
+  problems.CheckRange("stall_timeout_s", options.stall_timeout_s(), 0.2, 60.0);
+  problems.Stage("source");
+  const bool is_file = options.uri().ends_with(".oni") && !source.thermal_camera().enabled();
+  if (source.rate() != 1.0 && !is_file) {
+    problems.Add("rate", fmt::format("is {}, but cameras have a pace of their own: leave it at 1",
+                                     source.rate()));
+  }
+  if (!options.enabled() && !source.thermal_camera().enabled()) {
+    problems.Add("depth_camera.enabled",
+                 "is false, and thermal_camera.enabled too: no camera is left");
+  }
+}
+
 void CheckSource(const SourceOptions& options, Problems& problems) {
   problems.Stage("source");
   problems.CheckRange("rate", options.rate(), 0.0, 100.0);
@@ -46,6 +66,7 @@ void CheckSource(const SourceOptions& options, Problems& problems) {
   if (options.kind() == REPLAY && options.recording().empty()) {
     problems.Add("recording", "is empty; name the file to replay (--recording FILE)");
   }
+  if (options.kind() == CAMERAS) CheckDepthCamera(options, problems);
 }
 
 void CheckThermalCamera(const ThermalCameraOptions& options, Problems& problems) {
@@ -65,6 +86,8 @@ void CheckFrames(const FrameCheckOptions& options, Problems& problems) {
   }
   problems.CheckRange("max_bad_in_a_row", options.max_bad_in_a_row(), 1, 100'000);
   problems.CheckRange("retry_min_s", options.retry_min_s(), 0.01, 60.0);
+  problems.CheckRange("min_valid_ratio", options.min_valid_ratio(), 0.0, 1.0);
+  problems.CheckRange("blind_after_s", options.blind_after_s(), 0.0, 60.0);
   problems.CheckRange("retry_max_s", options.retry_max_s(), options.retry_min_s(), 600.0);
 }
 
@@ -102,6 +125,8 @@ Status Validate(const EdgeOptions& options) {
   CheckSource(options.source(), problems);
   CheckThermalCamera(options.source().thermal_camera(), problems);
   CheckFrames(options.frame_check(), problems);
+  problems.Stage("");
+  problems.CheckRange("capture_queue_frames", options.capture_queue_frames(), 1, 1000);
   CheckTimestamper(options.timestamper(), problems);
   problems.Stage("nuc");
   problems.CheckRange("settle_time_s", options.nuc().settle_time_s(), 0.0, 60.0);

@@ -62,6 +62,24 @@ std::optional<RefusalCause> FromWireStream(const isotherm_wire_StreamStatus& fro
   return std::nullopt;
 }
 
+void ToWireCamera(const CameraReport& from, isotherm_wire_CameraReport* to) {
+  to->state = static_cast<std::uint8_t>(from.state);
+  to->failures = from.failures;
+  to->stamping_p50_s = from.stamping_p50_s;
+  to->stamping_p99_s = from.stamping_p99_s;
+}
+
+std::optional<RefusalCause> FromWireCamera(const isotherm_wire_CameraReport& from,
+                                           CameraReport* to) {
+  if (const auto cause = CheckEnum(from.state, CameraState::kBlind)) return cause;
+  if (const auto cause = CheckFiniteOrUnknown({from.stamping_p50_s, from.stamping_p99_s})) {
+    return cause;
+  }
+  *to = {static_cast<CameraState>(from.state), from.failures, from.stamping_p50_s,
+         from.stamping_p99_s};
+  return std::nullopt;
+}
+
 void ToWireReceipt(const StreamReceipt& from, isotherm_wire_StreamReceipt* to) {
   to->next_number = from.next;
   to->handled = from.handled;
@@ -163,6 +181,8 @@ void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
   to->feedback_count = from.feedback.count;
   to->feedback_latency_p50_s = from.feedback.p50_s;
   to->feedback_latency_p99_s = from.feedback.p99_s;
+  ToWireCamera(from.depth_camera, &to->depth_camera);
+  ToWireCamera(from.thermal_camera, &to->thermal_camera);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
@@ -176,6 +196,8 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   if (infinite) return infinite;
   if (const auto cause = FromWireStream(from.depth, &to->depth)) return cause;
   if (const auto cause = FromWireStream(from.thermal, &to->thermal)) return cause;
+  if (const auto cause = FromWireCamera(from.depth_camera, &to->depth_camera)) return cause;
+  if (const auto cause = FromWireCamera(from.thermal_camera, &to->thermal_camera)) return cause;
   to->session = from.session;
   to->time = CaptureTimeFromNanoseconds(from.time_ns);
   to->scan_state = static_cast<ScanState>(from.scan_state);

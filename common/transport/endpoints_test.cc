@@ -206,6 +206,7 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   sent.depth.next_frame_number = 103;
   sent.depth.dropped = {{"queue full", 2}, {"clock model warming up", 1}};
   sent.clock_error_s = 0.002;
+  sent.depth_camera = {CameraState::kLost, 3, 0.0001, 0.0004};
   sent.feedback = {.count = 50, .p50_s = 0.05, .p99_s = 0.11};
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
@@ -216,6 +217,12 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   EXPECT_EQ(status.depth.dropped[1].reason, "clock model warming up");
   EXPECT_EQ(status.depth.dropped[0].frames, 2U);
   EXPECT_EQ(status.clock_error_s, 0.002);
+  EXPECT_EQ(status.depth_camera.state, CameraState::kLost);
+  EXPECT_EQ(status.depth_camera.failures, 3U);
+  EXPECT_EQ(status.depth_camera.stamping_p50_s, 0.0001);
+  EXPECT_EQ(status.depth_camera.stamping_p99_s, 0.0004);
+  EXPECT_EQ(status.thermal_camera.state, CameraState::kNone);
+  EXPECT_TRUE(std::isnan(status.thermal_camera.stamping_p99_s));
   EXPECT_EQ(status.feedback.count, 50U);
   EXPECT_EQ(status.feedback.p50_s, 0.05);
   EXPECT_EQ(status.feedback.p99_s, 0.11);

@@ -116,6 +116,22 @@ struct FeedbackLatency {
   double p99_s = std::numeric_limits<double>::quiet_NaN();
 };
 
+enum class CameraState : std::uint8_t {
+  kNone = 0,  ///< Not a camera: a replay, a simulation, nothing.
+  kWorking = 1,
+  kLost = 2,   ///< Unplugged, silent or failing; it is opened again and again.
+  kBlind = 3,  ///< It works, but shows (almost) nothing: covered, too close, too far.
+};
+
+/// One camera as the edge sees it.
+struct CameraReport {
+  CameraState state = CameraState::kNone;
+  std::uint32_t failures = 0;  ///< How often it was lost.
+  /// From the arrival of a frame to its capture time being known. NaN = not measured.
+  double stamping_p50_s = std::numeric_limits<double>::quiet_NaN();
+  double stamping_p99_s = std::numeric_limits<double>::quiet_NaN();
+};
+
 /// State of the edge at 1 Hz and at each change of scan_state; the last one is kept for late
 /// joiners. NaN = not known.
 struct EdgeStatus {
@@ -134,6 +150,8 @@ struct EdgeStatus {
   std::uint64_t disk_free_bytes = 0;
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
   FeedbackLatency feedback;  ///< Of this session.
+  CameraReport depth_camera;
+  CameraReport thermal_camera;
 };
 
 enum class CommandKind : std::uint8_t {

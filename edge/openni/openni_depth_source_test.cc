@@ -301,9 +301,9 @@ TEST_F(OpenniDepthSourceTest, TheListShowsSerialAndModes) {
   const auto list = ListOpenniCameras();
   ASSERT_TRUE(list.has_value());
   ASSERT_EQ(list->size(), 1U);
-  EXPECT_EQ((*list)[0].model, "Isotherm Fake Depth Camera");
+  EXPECT_EQ((*list)[0].product, "Isotherm Fake Depth Camera");
   EXPECT_EQ((*list)[0].serial, "FAKE-1");
-  EXPECT_EQ((*list)[0].uri, "fake-depth://0");
+  EXPECT_EQ((*list)[0].bus_port, "fake-depth://0");
   EXPECT_THAT((*list)[0].modes, ::testing::Contains("640x480@30 0.1 mm"));
   EXPECT_EQ((*list)[0].problem, "");
 }

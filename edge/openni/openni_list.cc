@@ -8,10 +8,12 @@
 namespace isotherm {
 namespace {
 
-OpenniListing Look(const openni::DeviceInfo& info) {
-  OpenniListing listing;
-  listing.uri = info.getUri();
-  listing.model = fmt::format("{} {}", info.getVendor(), info.getName());
+DeviceDescription Look(const openni::DeviceInfo& info) {
+  DeviceDescription listing;
+  listing.sensor = Sensor::kDepth;
+  listing.driver = "openni2";
+  listing.bus_port = info.getUri();
+  listing.product = fmt::format("{} {}", info.getVendor(), info.getName());
   openni::Device device;
   if (device.open(info.getUri()) != openni::STATUS_OK) {
     listing.problem = fmt::format("cannot be opened: {}", OpenniError());
@@ -30,12 +32,12 @@ OpenniListing Look(const openni::DeviceInfo& info) {
 
 }  // namespace
 
-Result<std::vector<OpenniListing>> ListOpenniCameras() {
+Result<std::vector<DeviceDescription>> ListOpenniCameras() {
   const OpenniLibrary library;
   if (!library.status().ok()) return Err(library.status());
   openni::Array<openni::DeviceInfo> found;
   openni::OpenNI::enumerateDevices(&found);
-  std::vector<OpenniListing> listings;
+  std::vector<DeviceDescription> listings;
   for (int i = 0; i < found.getSize(); ++i) listings.push_back(Look(found[i]));
   return listings;
 }

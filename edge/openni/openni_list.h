@@ -1,22 +1,14 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "common/base/status.h"
+#include "edge/source/device_description.h"
 
 namespace isotherm {
 
-/// A depth camera that OpenNI2 can see.
-struct OpenniListing {
-  std::string uri;
-  std::string model;
-  std::string serial;              ///< Empty: it does not say.
-  std::vector<std::string> modes;  ///< "640x480@30 1 mm".
-  std::string problem;             ///< Why it cannot be opened; empty if it can.
-};
-
-/// The depth cameras connected now. Opens each for its serial number and modes.
-Result<std::vector<OpenniListing>> ListOpenniCameras();
+/// The depth cameras that OpenNI2 can see now; `bus_port` is OpenNI2's address. Opens each for its
+/// serial number and modes.
+Result<std::vector<DeviceDescription>> ListOpenniCameras();
 
 }  // namespace isotherm

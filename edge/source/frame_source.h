@@ -54,6 +54,9 @@ class FrameSource {
   /// requested. A failure means that the source must be closed and opened again.
   virtual Result<SourceItem> Read(std::stop_token stop) = 0;
   virtual void Close() = 0;
+  /// After Close: a frame that was captured but not read, until there is none. Sources with threads
+  /// of their own may have some.
+  virtual std::optional<RawFrame> TakeUnread() { return std::nullopt; }
   /// Tells the camera what to do; takes at most some milliseconds. Refused by sources that cannot.
   virtual Status Control(const CameraControl& /*control*/) {
     return Unavailable("the source has no shutter to command");

@@ -27,9 +27,42 @@ SupervisedSource::SupervisedSource(std::unique_ptr<FrameSource> source,
       next_wait_(retry_min_) {}
 
 Status SupervisedSource::Open() {
-  ISOTHERM_RETURN_IF_ERROR(source_->Open());
-  if (const std::optional<Rig> rig = source_->rig()) check_.Expect(*rig);
+  ISOTHERM_RETURN_IF_ERROR(OpenSame());
+  const std::optional<Rig> rig = source_->rig();
+  if (rig && !sizes_are_calibrated_) check_.Expect(*rig);
   return OkStatus();
+}
+
+void SupervisedSource::Expect(const Rig& rig) {
+  check_.Expect(rig);
+  sizes_are_calibrated_ = true;
+}
+
+Status SupervisedSource::OpenSame() {
+  ISOTHERM_RETURN_IF_ERROR(source_->Open());
+  for (const CameraDescription& camera : source_->cameras()) {
+    std::string& serial = serials_[static_cast<std::size_t>(camera.sensor)];
+    if (!serial.empty() && camera.serial != serial) {
+      source_->Close();
+      return FailedPrecondition(fmt::format(
+          "the camera with serial number \"{}\" is not used: the scan began with \"{}\", "
+          "and a calibration holds for one camera; start again to change it",
+          camera.serial, serial));
+    }
+    serial = camera.serial;
+  }
+  return OkStatus();
+}
+
+Status SupervisedSource::Control(const CameraControl& control) {
+  if (reopen_at_) return Unavailable("the camera does not work; it is being opened again");
+  return source_->Control(control);
+}
+
+void SupervisedSource::Tell(bool works) {
+  if (works_ == works) return;
+  works_ = works;
+  if (on_works_) on_works_(works);
 }
 
 Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
@@ -44,12 +77,19 @@ Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
 }
 
 SourceItem SupervisedSource::Judge(RawFrame frame) {
+  std::uint64_t& thrown_away = thrown_away_[static_cast<std::size_t>(frame.sensor)];
+  if (idle_) {
+    thrown_away = frame.frame_number + 1;
+    return NothingYet{};
+  }
+  frame.frame_number -= thrown_away;
   on_frame_(frame.sensor);
   int& bad_in_a_row = bad_in_a_row_[static_cast<std::size_t>(frame.sensor)];
   const Status verdict = check_.Process(frame);
   if (verdict.ok()) {
     bad_in_a_row = 0;
     next_wait_ = retry_min_;
+    Tell(true);
     return frame;
   }
   on_rejected_(frame.sensor);
@@ -66,6 +106,7 @@ void SupervisedSource::ScheduleReopen(const Status& reason) {
   LOG(Source, Error) << name() << ": " << reason.message()
                      << "; opening it again, wait_s=" << ToSeconds(next_wait_);
   source_->Close();
+  Tell(false);
   reopen_at_ = clock_.SteadyNow() + next_wait_;
   next_wait_ = std::min(2 * next_wait_, retry_max_);
   bad_in_a_row_ = {};
@@ -79,7 +120,7 @@ SourceItem SupervisedSource::ReopenWhenDue(const std::stop_token& stop) {
   }
   reopen_at_.reset();
   ++reopened_;
-  if (const Status opened = source_->Open(); !opened.ok()) ScheduleReopen(opened);
+  if (const Status opened = OpenSame(); !opened.ok()) ScheduleReopen(opened);
   return NothingYet{};
 }
 

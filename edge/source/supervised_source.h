@@ -5,6 +5,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "common/time/clock.h"
@@ -21,11 +23,14 @@ class FrameCheckOptions;
 ///
 ///   open --(failure, too many bad frames)--> waiting --(wait over, Open succeeds)--> open
 ///
-/// Reports each frame through `on_frame` before it is judged and each refused one through
+/// A camera with another serial number than the first one's is not used: the calibration is not its
+/// own. Reports each frame through `on_frame` before it is judged and each refused one through
 /// `on_rejected`. Thread-bound.
 class SupervisedSource final : public FrameSource {
  public:
   using FrameCallback = std::function<void(Sensor)>;
+  /// True: frames come (again). False: the source failed and waits to be opened again.
+  using WorksCallback = std::function<void(bool works)>;
 
   /// `clock` must outlive the source. `longest_pause` bounds one Read while waiting.
   SupervisedSource(std::unique_ptr<FrameSource> source, const FrameCheckOptions& options,
@@ -33,34 +38,49 @@ class SupervisedSource final : public FrameSource {
                    Nanoseconds longest_pause = std::chrono::milliseconds(50));
 
   std::string_view name() const override { return source_->name(); }
-  /// The first opening is not retried: a wrong path or an absent camera at start ends the program
-  /// with a sentence.
+  /// The first opening is not retried by itself: a wrong path or an absent camera at start ends the
+  /// program with a sentence.
   Status Open() override;
+  /// Instead: goes on after an Open that failed as if the source had failed later.
+  void KeepTrying(const Status& reason) { ScheduleReopen(reason); }
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { source_->Close(); }
-  Status Control(const CameraControl& control) override { return source_->Control(control); }
+  Status Control(const CameraControl& control) override;
   std::optional<Rig> rig() const override { return source_->rig(); }
   std::vector<CameraDescription> cameras() const override { return source_->cameras(); }
 
   /// Expected sizes, from a calibration that overrides the source's own.
-  void Expect(const Rig& rig) { check_.Expect(rig); }
+  void Expect(const Rig& rig);
+  /// Idle: frames are read, so that the camera keeps going, and thrown away unseen and uncounted.
+  /// Numbers start from 0 with the first frame after it.
+  void SetIdle(bool idle) { idle_ = idle; }
+  void OnWorks(WorksCallback on_works) { on_works_ = std::move(on_works); }
   std::uint64_t reopened() const { return reopened_; }
 
  private:
   SourceItem Judge(RawFrame frame);
   SourceItem ReopenWhenDue(const std::stop_token& stop);
   void ScheduleReopen(const Status& reason);
+  /// Opens, and refuses a camera that is not the one from the start.
+  Status OpenSame();
+  void Tell(bool works);
 
   const std::unique_ptr<FrameSource> source_;
   const Clock& clock_;
   const FrameCallback on_frame_;
   const FrameCallback on_rejected_;
+  WorksCallback on_works_;
+  std::optional<bool> works_;  ///< As told last.
   const int max_bad_in_a_row_;
   const Nanoseconds retry_min_;
   const Nanoseconds retry_max_;
   const Nanoseconds longest_pause_;
   FrameCheck check_;
-  std::array<int, 2> bad_in_a_row_{};  ///< By Sensor: one camera may fail while the other works.
+  bool sizes_are_calibrated_ = false;
+  bool idle_ = false;
+  std::array<std::uint64_t, 2> thrown_away_{};  ///< By Sensor: frame numbers before the first.
+  std::array<std::string, 2> serials_;  ///< By Sensor, of the cameras from the start; empty: any.
+  std::array<int, 2> bad_in_a_row_{};   ///< By Sensor: one camera may fail while the other works.
   std::uint64_t reopened_ = 0;
   Nanoseconds next_wait_;
   std::optional<SteadyTime> reopen_at_;  ///< Set while waiting.

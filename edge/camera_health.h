@@ -1,0 +1,41 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+
+#include "common/base/stage_stats.h"
+#include "common/frame/frame.h"
+#include "common/time/time_types.h"
+#include "common/transport/messages.h"
+
+namespace isotherm {
+
+/// How the cameras are: their threads and the capture thread write it, the status reads it.
+/// Thread-safe.
+class CameraHealth {
+ public:
+  /// Frames come, or the camera failed.
+  void SetWorks(Sensor sensor, bool works);
+  /// The picture shows (almost) nothing.
+  void SetBlind(Sensor sensor, bool blind) { At(sensor).blind = blind; }
+  /// How long a frame took from its arrival to its capture time.
+  void AddStamping(Sensor sensor, Nanoseconds latency);
+
+  CameraReport Get(Sensor sensor) const;
+
+ private:
+  struct Entry {
+    std::atomic<CameraState> state{CameraState::kNone};  ///< But for kBlind.
+    std::atomic<bool> blind{false};
+    std::atomic<std::uint32_t> failures{0};
+    mutable std::mutex mutex;
+    StageStats stamping_ms;  ///< Guarded by `mutex`.
+  };
+  Entry& At(Sensor sensor) { return entries_[static_cast<std::size_t>(sensor)]; }
+
+  std::array<Entry, 2> entries_;
+};
+
+}  // namespace isotherm

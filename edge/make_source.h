@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <stop_token>
+
+#include "common/base/status.h"
+#include "common/geometry/camera.h"
+#include "common/time/clock.h"
+#include "edge/camera_health.h"
+#include "edge/frame_account.h"
+#include "edge/source/frame_source.h"
+
+namespace isotherm {
+
+class EdgeOptions;
+
+/// What a source is put together with. All must outlive it.
+struct SourceContext {
+  const Clock& clock;
+  FrameAccount& account;
+  CameraHealth& health;
+  /// A calibration that overrides the source's own: frames of other sizes are refused.
+  const std::optional<Rig>& calibration;
+  std::stop_token stop;  ///< Ends the rendering of a simulated scan.
+};
+
+/// The source that the options ask for, supervised: a recording, a simulated scan, or the cameras,
+/// each on a thread of its own. Not opened yet.
+Result<std::unique_ptr<FrameSource>> MakeSource(const EdgeOptions& options,
+                                                const SourceContext& context);
+
+}  // namespace isotherm

@@ -1,0 +1,128 @@
+#include "edge/source/camera_pair.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace isotherm {
+namespace {
+
+// How long a Read waits for a frame.
+constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
+
+std::string_view NameOf(Sensor sensor) {
+  return sensor == Sensor::kDepth ? "depth camera" : "thermal camera";
+}
+
+}  // namespace
+
+CameraPair::CameraPair(std::vector<Camera> cameras, Queue queue)
+    : queue_(cameras.size(), queue.capacity, queue.policy, std::move(queue.on_drop)) {
+  for (Camera& camera : cameras) {
+    members_.push_back(std::make_unique<Member>());
+    members_.back()->camera = std::move(camera);
+  }
+}
+
+CameraPair::~CameraPair() { Close(); }
+
+Status CameraPair::Open() {
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    members_[i]->opened = {};
+    members_[i]->thread = std::jthread([this, i](const std::stop_token& stop) { Run(i, stop); });
+  }
+  std::string missing;
+  std::optional<Status> hopeless;
+  std::size_t working = 0;
+  for (const std::unique_ptr<Member>& member : members_) {
+    const Opened opened = member->opened.get_future().get();
+    Keep(opened);
+    if (opened.status.ok()) {
+      ++working;
+      continue;
+    }
+    const Status named = opened.status.WithContext(NameOf(member->camera.sensor));
+    if (named.code() == StatusCode::kInvalidArgument) hopeless = named;
+    missing += (missing.empty() ? "" : "; ") + named.message();
+  }
+  if (working > 0 && !hopeless) {
+    if (!missing.empty()) {
+      LOG(Source, Warning) << "starting without a camera, which is tried again: " << missing;
+    }
+    return OkStatus();
+  }
+  Close();
+  return hopeless ? *hopeless : Unavailable("no camera: " + missing);
+}
+
+void CameraPair::Keep(const Opened& opened) {
+  descriptions_.insert(descriptions_.end(), opened.descriptions.begin(), opened.descriptions.end());
+  if (!opened.rig) return;
+  if (!rig_) {
+    rig_ = opened.rig;
+    return;
+  }
+  if (opened.rig->depth) rig_->depth = opened.rig->depth;
+  if (opened.rig->thermal) rig_->thermal = opened.rig->thermal;
+}
+
+Result<SourceItem> CameraPair::Read(std::stop_token stop) {
+  reading_ = true;
+  return queue_.Pop(kLongestWait, stop);
+}
+
+void CameraPair::Close() {
+  for (const std::unique_ptr<Member>& member : members_) member->thread.request_stop();
+  for (const std::unique_ptr<Member>& member : members_) {
+    if (member->thread.joinable()) member->thread.join();
+  }
+}
+
+std::optional<RawFrame> CameraPair::TakeUnread() {
+  while (true) {
+    SourceItem item = queue_.Pop(Nanoseconds(0), {});
+    if (auto* frame = std::get_if<RawFrame>(&item)) return std::move(*frame);
+    // The cameras' threads are gone: the end comes after the last item.
+    if (std::holds_alternative<EndOfStream>(item)) return std::nullopt;
+  }
+}
+
+Status CameraPair::Control(const CameraControl& control) {
+  for (const std::unique_ptr<Member>& member : members_) {
+    if (member->camera.sensor != Sensor::kThermal) continue;
+    member->controls.Push(control, {});
+    return OkStatus();
+  }
+  return Unavailable("there is no thermal camera");
+}
+
+void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
+  Member& member = *members_[index];
+  SupervisedSource& source = *member.camera.source;
+  const Status opened = source.Open();
+  if (!opened.ok()) source.KeepTrying(opened);
+  member.opened.set_value({opened, opened.ok() ? source.rig() : std::nullopt, source.cameras()});
+  while (!stop.stop_requested()) {
+    Obey(member);
+    source.SetIdle(!reading_);
+    Result<SourceItem> item = source.Read(stop);
+    if (!item || std::holds_alternative<EndOfStream>(*item)) break;
+    if (!std::holds_alternative<NothingYet>(*item)) queue_.Push(index, std::move(*item), stop);
+  }
+  source.Close();
+  queue_.End(index);
+}
+
+void CameraPair::Obey(Member& member) {
+  while (member.controls.size() > 0) {
+    const Status obeyed = member.camera.source->Control(*member.controls.Pop({}));
+    if (!obeyed.ok()) {
+      LOG(Source, Warning) << "the thermal camera does not obey: " << obeyed.message();
+    }
+  }
+}
+
+}  // namespace isotherm

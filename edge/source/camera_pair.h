@@ -1,0 +1,85 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <future>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string_view>
+#include <thread>
+#include <vector>
+
+#include "common/concurrency/bounded_queue.h"
+#include "edge/source/frame_source.h"
+#include "edge/source/merge_queue.h"
+#include "edge/source/supervised_source.h"
+
+namespace isotherm {
+
+/// The cameras of the rig as one source. Each is opened, read, supervised and closed on a thread of
+/// its own, so that one that fails, hangs or is not there does not hold up the other.
+///
+///   depth camera   -> SupervisedSource -> queue -+
+///   |------------ camera thread -------------|   +-> Read, in order of arrival
+///   thermal camera -> SupervisedSource -> queue -+
+///
+/// The cameras run from Open on; what they deliver counts from the first Read on. A camera that is
+/// missing at the start is tried again like one that is lost later. Thread-bound,
+/// as any source; the cameras' threads are its own.
+class CameraPair final : public FrameSource {
+ public:
+  struct Camera {
+    Sensor sensor = Sensor::kDepth;
+    std::unique_ptr<SupervisedSource> source;
+  };
+  struct Queue {
+    std::size_t capacity = 8;  ///< Frames per camera.
+    OverflowPolicy policy = OverflowPolicy::kDropOldest;
+    std::function<void(Sensor)> on_drop;  ///< May count, no more.
+  };
+
+  /// One or two cameras.
+  CameraPair(std::vector<Camera> cameras, Queue queue);
+  ~CameraPair() override;
+
+  std::string_view name() const override { return "cameras"; }
+  /// Fails if no camera can be opened, or if one is asked for something that it cannot do
+  /// (kInvalidArgument): trying again would not help.
+  Status Open() override;
+  Result<SourceItem> Read(std::stop_token stop) override;
+  void Close() override;
+  std::optional<RawFrame> TakeUnread() override;
+  /// For the thermal camera's thread, which obeys within 0.1 s. What the camera refuses then is
+  /// logged.
+  Status Control(const CameraControl& control) override;
+  /// What the cameras said of themselves when they were opened at the start.
+  std::optional<Rig> rig() const override { return rig_; }
+  std::vector<CameraDescription> cameras() const override { return descriptions_; }
+
+ private:
+  /// How a camera's first Open went.
+  struct Opened {
+    Status status;
+    std::optional<Rig> rig;
+    std::vector<CameraDescription> descriptions;
+  };
+  struct Member {
+    Camera camera;
+    BoundedQueue<CameraControl> controls{8, OverflowPolicy::kDropOldest};
+    std::promise<Opened> opened;
+    std::jthread thread;
+  };
+
+  void Run(std::size_t index, const std::stop_token& stop);
+  void Obey(Member& member);
+  void Keep(const Opened& opened);
+
+  std::vector<std::unique_ptr<Member>> members_;
+  std::atomic<bool> reading_{false};
+  MergeQueue queue_;
+  std::optional<Rig> rig_;
+  std::vector<CameraDescription> descriptions_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,72 @@
+#include "edge/source/merge_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/check.h"
+
+namespace isotherm {
+namespace {
+
+CaptureTime ArrivalOf(const SourceItem& item) {
+  const auto* frame = std::get_if<RawFrame>(&item);
+  return frame ? frame->arrival_wall : CaptureTime{};  // Anything else goes first.
+}
+
+}  // namespace
+
+MergeQueue::MergeQueue(std::size_t cameras, std::size_t capacity, OverflowPolicy policy,
+                       std::function<void(Sensor)> on_drop)
+    : cameras_(cameras), capacity_(capacity), policy_(policy), on_drop_(std::move(on_drop)) {
+  CHECK(cameras > 0 && cameras <= kMostCameras && capacity > 0);
+}
+
+void MergeQueue::Push(std::size_t camera, SourceItem item, const std::stop_token& stop) {
+  CHECK(camera < cameras_);
+  std::unique_lock lock(mutex_);
+  Lane& lane = lanes_[camera];
+  if (policy_ == OverflowPolicy::kBlock) {
+    // At the end it may hold one more: what was captured is not lost.
+    changed_.wait(lock, stop, [&] { return lane.items.size() < capacity_; });
+  } else if (lane.items.size() == capacity_) {
+    if (const auto* frame = std::get_if<RawFrame>(&lane.items.front())) on_drop_(frame->sensor);
+    lane.items.pop_front();
+  }
+  lane.items.push_back(std::move(item));
+  changed_.notify_all();
+}
+
+void MergeQueue::End(std::size_t camera) {
+  std::scoped_lock lock(mutex_);
+  lanes_[camera].ended = true;
+  changed_.notify_all();
+}
+
+SourceItem MergeQueue::Pop(Nanoseconds timeout, const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  changed_.wait_for(lock, stop, timeout, [this] { return Next() != nullptr || AllEnded(); });
+  Lane* lane = Next();
+  if (lane == nullptr) return AllEnded() ? SourceItem(EndOfStream{}) : SourceItem(NothingYet{});
+  SourceItem item = std::move(lane->items.front());
+  lane->items.pop_front();
+  changed_.notify_all();
+  return item;
+}
+
+MergeQueue::Lane* MergeQueue::Next() {
+  Lane* next = nullptr;
+  for (Lane& lane : lanes_) {
+    if (lane.items.empty()) continue;
+    if (next == nullptr || ArrivalOf(lane.items.front()) < ArrivalOf(next->items.front())) {
+      next = &lane;
+    }
+  }
+  return next;
+}
+
+bool MergeQueue::AllEnded() const {
+  return std::all_of(lanes_.begin(), lanes_.begin() + static_cast<std::ptrdiff_t>(cameras_),
+                     [](const Lane& lane) { return lane.ended; });
+}
+
+}  // namespace isotherm
