@@ -55,6 +55,8 @@ GroundOptions WithAngleLimits(bool validation) {
   ThermalOptions& thermal = *options.mutable_thermal();
   // The rim stands 8 mm above the disc: less than what counts as hiding by default.
   thermal.set_parallax_tolerance_m(0.004);
+  // What is asked for here.
+  thermal.set_max_gradient_error_k(1.0);
   // As in the thesis.
   thermal.set_angle_min_deg(15.0);
   thermal.set_angle_good_deg(30.0);

@@ -17,6 +17,9 @@ constexpr double kKnownShare = 0.9;
 constexpr double kReturnShare = 0.1;
 /// Pixels of a square that have a return where there certainly is a surface.
 constexpr double kSurfaceShare = 0.5;
+/// Between projector and camera of PrimeSense's cameras, with some reserve: beside the edge of
+/// something near, what lies behind is in the projector's shadow.
+constexpr double kProjectorBaselineM = 0.08;
 
 int Tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
 
@@ -34,22 +37,27 @@ NearHoles::Square NearHoles::Look(int column, int row, const Image<float>& depth
                                   const SurfaceMaps& model) const {
   const int scale = std::max(1, depth_m.width() / model.width());
   int known = 0, returns = 0, known_returns = 0;
+  float sum_m = 0.0F;
   for (int y = row * hole_side_; y < (row + 1) * hole_side_; ++y) {
     for (int x = column * hole_side_; x < (column + 1) * hole_side_; ++x) {
       const bool is_known = !std::isnan(model.vx.At(x, y));
-      const bool has_return = depth_m.At(x * scale, y * scale) > 0.0F;
+      const float z_m = depth_m.At(x * scale, y * scale);
+      const bool has_return = z_m > 0.0F;
       known += is_known ? 1 : 0;
       returns += has_return ? 1 : 0;
       known_returns += is_known && has_return ? 1 : 0;
+      sum_m += z_m;
     }
   }
   const double pixels = hole_side_ * hole_side_;
-  if (known >= kKnownShare * pixels && known_returns <= kReturnShare * known) return Square::kHole;
-  if (returns <= kReturnShare * pixels) return Square::kEmpty;
-  return returns >= kSurfaceShare * pixels ? Square::kSurface : Square::kNeither;
+  if (known >= kKnownShare * pixels && known_returns <= kReturnShare * known)
+    return {Kind::kHole, 0.0F};
+  if (returns <= kReturnShare * pixels) return {Kind::kEmpty, 0.0F};
+  if (returns < kSurfaceShare * pixels) return {Kind::kNeither, 0.0F};
+  return {Kind::kSurface, sum_m / static_cast<float>(returns)};
 }
 
-bool NearHoles::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model) {
+bool NearHoles::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model, double model_fx) {
   const int scale = std::max(1, depth_m.width() / model.width());
   hole_side_ = std::max(1, hole_px_ / scale);
   squares_.Resize(model.width() / hole_side_, model.height() / hole_side_);
@@ -57,22 +65,45 @@ bool NearHoles::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model)
     for (int column = 0; column < squares_.width(); ++column)
       squares_.At(column, row) = Look(column, row, depth_m, model);
   }
-  for (int row = 0; row < squares_.height(); ++row) FillBetween(0, row, 1, 0);
-  for (int column = 0; column < squares_.width(); ++column) FillBetween(column, 0, 0, 1);
-  return std::ranges::count(squares_.pixels(), Square::kHole) > 0;
+  for (int row = 0; row < squares_.height(); ++row) JudgeRow(row, model_fx);
+  for (int column = 0; column < squares_.width(); ++column) JudgeColumn(column);
+  return std::ranges::count(squares_.pixels(), Kind::kHole, &Square::kind) > 0;
 }
 
-void NearHoles::FillBetween(int column, int row, int step_x, int step_y) {
-  const int count = step_x != 0 ? squares_.width() : squares_.height();
-  const auto square = [&](int i) -> Square& {
-    return squares_.At(column + i * step_x, row + i * step_y);
+template <typename At, typename Judge>
+void NearHoles::ForEmptyRuns(int count, const At& at, const Judge& judge) {
+  // Depth of the surface next to a run, 0 = the picture's border or nothing certain.
+  const auto beside_m = [&](int i, int step) {
+    while (i >= 0 && i < count && at(i).kind == Kind::kNeither) i += step;
+    return i >= 0 && i < count ? at(i).depth_m : 0.0F;
   };
-  int first = 0, last = count - 1;
-  while (first < count && square(first) != Square::kSurface) ++first;
-  while (last > first && square(last) != Square::kSurface) --last;
-  for (int i = first + 1; i < last; ++i) {
-    if (square(i) == Square::kEmpty) square(i) = Square::kHole;
+  for (int first = 0, end = 0; first < count; first = end + 1) {
+    end = first;
+    while (end < count && at(end).is_empty()) ++end;
+    if (end > first) judge(first, end, beside_m(first - 1, -1), beside_m(end, 1));
   }
+}
+
+void NearHoles::JudgeRow(int row, double model_fx) {
+  const auto at = [&](int i) -> Square& { return squares_.At(i, row); };
+  ForEmptyRuns(squares_.width(), at, [&](int first, int end, float left_m, float right_m) {
+    const auto inverse = [](float z_m) { return z_m > 0.0F ? 1.0F / z_m : 0.0F; };
+    const double shadow_px = kProjectorBaselineM * model_fx *
+                             static_cast<double>(std::abs(inverse(left_m) - inverse(right_m)));
+    const int width_px = (end - first) * hole_side_;
+    const bool is_shadow = width_px <= shadow_px + 2 * hole_side_ && shadow_px > hole_side_;
+    const bool is_between = left_m > 0.0F && right_m > 0.0F;
+    if (!is_shadow && !is_between) return;
+    for (int i = first; i < end; ++i) at(i).kind = is_shadow ? Kind::kNeither : Kind::kHole;
+  });
+}
+
+void NearHoles::JudgeColumn(int column) {
+  const auto at = [&](int i) -> Square& { return squares_.At(column, i); };
+  ForEmptyRuns(squares_.height(), at, [&](int first, int end, float above_m, float below_m) {
+    if (!(above_m > 0.0F && below_m > 0.0F)) return;
+    for (int i = first; i < end; ++i) at(i).kind = Kind::kHole;
+  });
 }
 
 bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal,
@@ -89,7 +120,8 @@ bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal,
     const double column = u / hole_side_;
     const double row = v / hole_side_;
     if (column >= squares_.width() || row >= squares_.height()) continue;
-    if (squares_.At(static_cast<int>(column), static_cast<int>(row)) == Square::kHole) return true;
+    if (squares_.At(static_cast<int>(column), static_cast<int>(row)).kind == Kind::kHole)
+      return true;
   }
   return false;
 }
@@ -97,7 +129,8 @@ bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal,
 void NearHoles::Update(const Image<float>& depth_m, const SurfaceMaps& model,
                        const CameraModel& model_camera) {
   any_ = false;
-  if (near_range_m_ <= 0.0 || model.width() == 0 || !FindHoles(depth_m, model)) return;
+  if (near_range_m_ <= 0.0 || model.width() == 0 || !FindHoles(depth_m, model, model_camera.fx))
+    return;
   for (int row = 0; row < left_out_.height(); ++row) {
     for (int column = 0; column < left_out_.width(); ++column) {
       const double u = (column + 0.5) * kTile - 0.5;

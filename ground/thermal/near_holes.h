@@ -17,8 +17,8 @@ namespace isotherm {
 /// there, or although there are surfaces to the left and right or above and below. Thermal pixels
 /// whose line of sight crosses the space before a hole, up to the near range, are left out. Small
 /// holes (edges, dark spots) do not count, nor does an emptiness that reaches the picture's border
-/// on two sides, so what comes near there before a place never scanned is not noticed.
-/// Thread-compatible.
+/// on two sides, nor what can be the projector's shadow beside something near; so what comes near
+/// there before a place never scanned is not noticed. Thread-compatible.
 class NearHoles {
  public:
   /// `thermal_camera` without distortion.
@@ -36,11 +36,21 @@ class NearHoles {
   std::int64_t LeaveOut(int y, std::span<ThermalPixel> row) const;
 
  private:
-  enum class Square : std::uint8_t { kNeither, kSurface, kEmpty, kHole };
+  enum class Kind : std::uint8_t { kNeither, kSurface, kEmpty, kHole };
+  /// hole_px x hole_px pixels of the depth image.
+  struct Square {
+    Kind kind = Kind::kNeither;
+    float depth_m = 0.0F;  ///< Of a surface; 0 for others.
+    bool is_empty() const { return kind == Kind::kEmpty || kind == Kind::kHole; }
+  };
   Square Look(int column, int row, const Image<float>& depth_m, const SurfaceMaps& model) const;
-  /// Empty squares between surfaces on a line of squares are holes.
-  void FillBetween(int column, int row, int step_x, int step_y);
-  bool FindHoles(const Image<float>& depth_m, const SurfaceMaps& model);
+  /// Calls `judge(first, end, depth before, depth behind)` for each run of empty squares of a line.
+  template <typename At, typename Judge>
+  static void ForEmptyRuns(int count, const At& at, const Judge& judge);
+  /// Runs no longer than the projector's shadow are no holes, others between surfaces are.
+  void JudgeRow(int row, double model_fx);
+  void JudgeColumn(int column);
+  bool FindHoles(const Image<float>& depth_m, const SurfaceMaps& model, double model_fx);
   bool CrossesHole(const Eigen::Vector2d& xy_thermal, const CameraModel& model_camera) const;
 
   const double near_range_m_;

@@ -80,6 +80,19 @@ TEST_F(NearHolesTest, WhatIsNearBeforeAPlaceNeverScannedIsNoticedBetweenSurfaces
   EXPECT_FALSE(IsLeftOut(150, 60));
 }
 
+TEST_F(NearHolesTest, AShadowBesideSomethingNearCostsNothing) {
+  // A post 0.4 m away; the projector 7.5 cm beside cannot light 18 pixels of the wall next to it.
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 100; x < 160; ++x) depth_m_.At(x, y) = 0.4F;
+    for (int x = 160; x < 178; ++x) depth_m_.At(x, y) = 0.0F;
+  }
+  EXPECT_EQ(LeftOut(), 0);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 178; x < 280; ++x) depth_m_.At(x, y) = 0.0F;  // No shadow is so wide.
+  }
+  EXPECT_GT(LeftOut(), 500);
+}
+
 TEST_F(NearHolesTest, OpenSpaceBesideTheSurfaceCostsNothing) {
   for (int y = 0; y < 240; ++y) {
     for (int x = 160; x < 320; ++x) {
