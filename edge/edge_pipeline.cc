@@ -1,5 +1,6 @@
 #include "edge/edge_pipeline.h"
 
+#include <string_view>
 #include <utility>
 
 #include "common/base/log.h"
@@ -17,6 +18,14 @@ TimeBase TimeBaseOf(const SourceOptions& options) {
   return options.rebase() ? TimeBase::kWallClock : TimeBase::kShifted;
 }
 
+/// What was wrong with a camera's clock, if anything.
+void ReportStamping(std::string_view stream, const StampingCounts& counts) {
+  if (counts.resets + counts.moved + counts.unsynchronised == 0) return;
+  LOG(Edge, Warning) << stream << " camera's clock: resets=" << counts.resets
+                     << " moved_stamps=" << counts.moved
+                     << " unsynchronised_frames=" << counts.unsynchronised;
+}
+
 auto CountDropsAs(FrameFate fate, FrameAccount& account) {
   return [fate, &account](const EncodedFramePtr& frame) { account.Count(frame->sensor(), fate); };
 }
@@ -31,11 +40,9 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       clock_(parts.clock),
       spool_(std::move(parts.spool)),
       session_(parts.session),
-      depth_timestamper_(options.timestamper().depth_window(),
-                         FromSeconds(options.timestamper().depth_delay_s())),
-      thermal_timestamper_(
-          options.timestamper().thermal_window(),
-          FromSeconds(options.timestamper().thermal_delay_s() + parts.rig_thermal_delay_s)),
+      depth_timestamper_(options.timestamper(), Sensor::kDepth, Nanoseconds(0)),
+      thermal_timestamper_(options.timestamper(), Sensor::kThermal,
+                           FromSeconds(parts.rig_thermal_delay_s)),
       nuc_supervisor_(options.nuc()),
       blind_detector_(options.frame_check()),
       feedback_(TimeBaseOf(options.source())),
@@ -73,6 +80,8 @@ Status EdgePipeline::Stop() {
     thread->request_stop();
     if (thread->joinable()) thread->join();
   }
+  ReportStamping("depth", depth_timestamper_.counts());
+  ReportStamping("thermal", thermal_timestamper_.counts());
   if (outside_poses_captured_ > 0) {
     LOG(Edge, Info) << "poses from outside, captured=" << outside_poses_captured_
                     << " published=" << outside_poses_published_
@@ -129,7 +138,7 @@ void EdgePipeline::Keep(OutsidePose pose) {
 }
 
 void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
-  const Stamp stamp = depth_timestamper_.Process(raw.device_ticks, raw.arrival_wall);
+  const Stamp stamp = depth_timestamper_.Process(raw, raw.arrival_wall);
   NoteStamped(raw);
   feedback_.NoteCapture(stamp.time, clock_.Now());
   health_.SetBlind(Sensor::kDepth, blind_detector_.Update(raw));
@@ -141,7 +150,7 @@ void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
 }
 
 void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
-  const Stamp stamp = thermal_timestamper_.Process(raw.device_ticks, raw.arrival_wall);
+  const Stamp stamp = thermal_timestamper_.Process(raw, raw.arrival_wall);
   NoteStamped(raw);
   const NucStatus nuc = nuc_supervisor_.Update(stamp.time, raw.shutter_closed);
   EncodedThermalFrame frame;

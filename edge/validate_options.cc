@@ -97,6 +97,14 @@ void CheckTimestamper(const TimestamperOptions& options, Problems& problems) {
   problems.CheckRange("thermal_window", options.thermal_window(), 1, 1000);
   problems.CheckRange("depth_delay_s", options.depth_delay_s(), -1.0, 1.0);
   problems.CheckRange("thermal_delay_s", options.thermal_delay_s(), -1.0, 1.0);
+  problems.CheckRange("envelope_window_s", options.envelope_window_s(), 1.0, 600.0);
+  problems.CheckRange("max_skew_ppm", options.max_skew_ppm(), 0.0, 100'000.0);
+  problems.CheckRange("max_slew_ppm", options.max_slew_ppm(), 1.0, 100'000.0);
+  problems.CheckRange("early_limit_s", options.early_limit_s(), 0.0001, 10.0);
+  problems.CheckRange("residual_limit_s", options.residual_limit_s(), 0.0001, 10.0);
+  problems.CheckRange("residual_window_s", options.residual_window_s(), 0.1,
+                      options.envelope_window_s());
+  problems.CheckRange("relearn_after_s", options.relearn_after_s(), 0.1, 600.0);
 }
 
 void CheckSpool(const SpoolOptions& options, Problems& problems) {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// Raise when the same options give another recording: scenes, sensors, noise, clocks or the file's
 /// layout changed.
-constexpr int kRenderVersion = 3;
+constexpr int kRenderVersion = 4;
 
 /// FNV-1a.
 std::uint64_t Hash(const std::string& text) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -113,9 +112,9 @@ Status WriteItem(const SimulatedScan& scan, const std::vector<OutsidePose>& odom
 }
 
 /// What a calibration of the camera's constant delay would find: added to filtered arrivals, it
-/// gives the exposure. The median of exponential jitter is ln 2 of its mean.
+/// gives the exposure. The edge stamps by the frames that were held up least.
 std::string KnownDelay(const ClockOptions& clock) {
-  return fmt::format("{:.6f}", -(clock.delay_s() + std::numbers::ln2 * clock.jitter_s()));
+  return fmt::format("{:.6f}", -clock.delay_s());
 }
 
 Status WriteStart(const SimulationOptions& options, const SimulatedScan& scan,

@@ -1,76 +1,54 @@
 #include "edge/timestamper/timestamper.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include "common/base/check.h"
+#include "edge/edge_options.pb.h"
 
 namespace isotherm {
 namespace {
 
-// Standard deviation of normal noise per median absolute deviation, and of the median of n samples
-// per standard deviation of one (asymptotic: sqrt(pi / 2 / n)).
-constexpr double kSigmaPerMad = 1.4826;
-constexpr double kMedianEfficiency = 1.2533;
-// Ticks have microseconds; nothing is known better than that.
-constexpr Nanoseconds kResolution = std::chrono::microseconds(1);
+int MedianWindow(const TimestamperOptions& options, Sensor sensor) {
+  return sensor == Sensor::kDepth ? options.depth_window() : options.thermal_window();
+}
 
-Nanoseconds MedianOfSorted(const std::vector<Nanoseconds>& sorted) {
-  const std::size_t middle = sorted.size() / 2;
-  if (sorted.size() % 2 == 1) return sorted[middle];
-  return sorted[middle - 1] + (sorted[middle] - sorted[middle - 1]) / 2;
+EnvelopeOptions ToEnvelopeOptions(const TimestamperOptions& options, Sensor sensor) {
+  return {.median_window = MedianWindow(options, sensor),
+          .window_s = options.envelope_window_s(),
+          .max_skew_ppm = options.max_skew_ppm(),
+          .max_slew_ppm = options.max_slew_ppm(),
+          .early_limit_s = options.early_limit_s(),
+          .residual_limit_s = options.residual_limit_s(),
+          .residual_window_s = options.residual_window_s(),
+          .relearn_after_s = options.relearn_after_s()};
 }
 
 }  // namespace
 
-Timestamper::Timestamper(int window, Nanoseconds constant_delay)
-    : window_(static_cast<std::size_t>(window)), constant_delay_(constant_delay) {
-  CHECK(window >= 1);
-}
+Timestamper::Timestamper(const TimestamperOptions& options, Sensor sensor, Nanoseconds rig_delay)
+    : use_envelope_(options.estimator() == ENVELOPE),
+      constant_delay_(FromSeconds(sensor == Sensor::kDepth ? options.depth_delay_s()
+                                                           : options.thermal_delay_s()) +
+                      rig_delay),
+      median_(MedianWindow(options, sensor)),
+      envelope_(ToEnvelopeOptions(options, sensor)),
+      period_(ToEnvelopeOptions(options, sensor)) {}
 
-Stamp Timestamper::Process(DeviceTicks ticks, CaptureTime arrival) {
-  if (last_ticks_ && ticks < *last_ticks_) {
-    differences_.clear();
-    sorted_.clear();
-    ++resets_;
-  }
-  last_ticks_ = ticks;
-
-  const Nanoseconds device_time = ticks.time_since_epoch();
-  AddDifference(arrival.time_since_epoch() - device_time);                          // (5.4a)
-  const Nanoseconds median = Median();                                              // (5.4b)
-  Stamp stamp{CaptureTime(device_time + median + constant_delay_), Sigma(median)};  // (5.4c), (5.5)
-
+Stamp Timestamper::Process(const RawFrame& frame, CaptureTime arrival) {
+  Stamp stamp = !frame.has_device_clock ? period_.Process(frame.frame_number, arrival)
+                : use_envelope_         ? envelope_.Process(frame.device_ticks, arrival)
+                                        : median_.Process(frame.device_ticks, arrival);
+  stamp.time += constant_delay_;  // (5.5)
   if (last_stamp_ && stamp.time <= *last_stamp_) {
     stamp.time = *last_stamp_ + Nanoseconds(1);
-    ++moved_;
+    ++counts_.moved;
   }
   last_stamp_ = stamp.time;
+  if (!stamp.synchronised) ++counts_.unsynchronised;
   return stamp;
 }
 
-void Timestamper::AddDifference(Nanoseconds difference) {
-  if (differences_.size() == window_) {
-    sorted_.erase(std::lower_bound(sorted_.begin(), sorted_.end(), differences_.front()));
-    differences_.pop_front();
-  }
-  differences_.push_back(difference);
-  sorted_.insert(std::upper_bound(sorted_.begin(), sorted_.end(), difference), difference);
-}
-
-Nanoseconds Timestamper::Median() const { return MedianOfSorted(sorted_); }
-
-Nanoseconds Timestamper::Sigma(Nanoseconds median) const {
-  if (sorted_.size() < 2) return Nanoseconds(0);
-  std::vector<Nanoseconds> deviations;
-  deviations.reserve(sorted_.size());
-  for (const Nanoseconds difference : sorted_)
-    deviations.push_back(std::chrono::abs(difference - median));
-  std::sort(deviations.begin(), deviations.end());
-  const double spread_ns = kSigmaPerMad * static_cast<double>(MedianOfSorted(deviations).count());
-  const double sigma_ns =
-      kMedianEfficiency * spread_ns / std::sqrt(static_cast<double>(sorted_.size()));
-  return std::max(kResolution, Nanoseconds(std::llround(sigma_ns)));
+StampingCounts Timestamper::counts() const {
+  StampingCounts counts = counts_;
+  counts.resets = median_.resets() + envelope_.resets() + envelope_.relearned() + period_.slips();
+  return counts;
 }
 
 }  // namespace isotherm

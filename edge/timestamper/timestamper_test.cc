@@ -2,187 +2,79 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <random>
-#include <vector>
+#include "edge/edge_options.pb.h"
 
 namespace isotherm {
 namespace {
 
-using std::chrono::microseconds;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr int kDepthWindow = 15;
-constexpr Nanoseconds kNoDelay{0};
-// The wall clock when the camera's counter was zero.
 constexpr CaptureTime kEpoch{seconds(1'700'000'000)};
 
-DeviceTicks Ticks(microseconds since_zero) { return DeviceTicks(since_zero); }
+class TimestamperTest : public testing::TestWithParam<StampEstimator> {
+ protected:
+  TimestamperTest() { options_.set_estimator(GetParam()); }
 
-/// A seed that the log shows and ISOTHERM_TEST_SEED repeats.
-unsigned Seed() {
-  const char* given = std::getenv("ISOTHERM_TEST_SEED");
-  const unsigned seed =
-      given != nullptr ? static_cast<unsigned>(std::atoi(given)) : std::random_device{}();
-  std::printf("ISOTHERM_TEST_SEED=%u\n", seed);
-  return seed;
-}
+  Timestamper Make(Nanoseconds rig_delay = Nanoseconds(0)) const {
+    return Timestamper(options_, Sensor::kThermal, rig_delay);
+  }
+  static RawFrame Frame(Nanoseconds ticks, CaptureTime arrival) {
+    RawFrame frame;
+    frame.sensor = Sensor::kThermal;
+    frame.device_ticks = DeviceTicks(std::chrono::floor<std::chrono::microseconds>(ticks));
+    frame.arrival_wall = arrival;
+    return frame;
+  }
+  static Stamp Process(Timestamper& timestamper, Nanoseconds ticks, CaptureTime arrival) {
+    return timestamper.Process(Frame(ticks, arrival), arrival);
+  }
 
-struct Sample {
-  DeviceTicks ticks;
-  CaptureTime arrival;
+  TimestamperOptions options_;
 };
 
-/// Frames at 30 Hz whose arrivals scatter as in fig. 5.15 of the thesis: a millisecond of noise and
-/// now and then an impulse of up to 20 ms.
-std::vector<Sample> JitteredFrames(int count, double noise_s, double impulse_share, unsigned seed) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> noise(0.0, noise_s);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Sample> samples;
-  for (int i = 0; i < count; ++i) {
-    const microseconds time = i * microseconds(33'333);
-    double delay_s = 0.040 + noise(random);
-    if (uniform(random) < impulse_share) delay_s += 0.020 * uniform(random);
-    samples.push_back({Ticks(time), kEpoch + time + FromSeconds(delay_s)});
-  }
-  return samples;
+TEST_P(TimestamperTest, ConstantDelaysAreAdded) {
+  options_.set_thermal_delay_s(-0.042);
+  Timestamper timestamper = Make(milliseconds(2));
+  EXPECT_EQ(Process(timestamper, seconds(1), kEpoch).time, kEpoch - milliseconds(40));
 }
 
-/// (5.4) as it is written: sort the last N differences and take the middle.
-std::vector<CaptureTime> ReferenceStamps(const std::vector<Sample>& samples, std::size_t window) {
-  std::vector<CaptureTime> stamps;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    std::vector<std::int64_t> differences;
-    for (std::size_t j = i + 1 > window ? i + 1 - window : 0; j <= i; ++j) {
-      differences.push_back(
-          (samples[j].arrival.time_since_epoch() - Nanoseconds(samples[j].ticks.time_since_epoch()))
-              .count());
-    }
-    std::sort(differences.begin(), differences.end());
-    const std::size_t n = differences.size();
-    const std::int64_t lower = differences[(n - 1) / 2];
-    const std::int64_t median = lower + (differences[n / 2] - lower) / 2;
-    stamps.push_back(CaptureTime(samples[i].ticks.time_since_epoch() + Nanoseconds(median)));
-  }
-  return stamps;
-}
-
-double StandardDeviation(const std::vector<double>& values) {
-  double mean = 0.0;
-  for (const double value : values) mean += value / static_cast<double>(values.size());
-  double variance = 0.0;
-  for (const double value : values) {
-    variance += (value - mean) * (value - mean) / static_cast<double>(values.size());
-  }
-  return std::sqrt(variance);
-}
-
-TEST(TimestamperTest, EqualsTheMedianAsItIsDefined) {
-  for (const int window : {1, 2, 15, 21}) {
-    const std::vector<Sample> samples = JitteredFrames(400, 0.001, 0.05, Seed());
-    const std::vector<CaptureTime> expected =
-        ReferenceStamps(samples, static_cast<std::size_t>(window));
-    Timestamper timestamper(window, kNoDelay);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const Stamp stamp = timestamper.Process(samples[i].ticks, samples[i].arrival);
-      ASSERT_EQ(ToNanoseconds(stamp.time), ToNanoseconds(expected[i]))
-          << "window " << window << " frame " << i;
-    }
-    EXPECT_EQ(timestamper.moved(), 0U);
-  }
-}
-
-TEST(TimestamperTest, TheFirstFrameGetsItsOwnArrival) {
-  Timestamper timestamper(kDepthWindow, kNoDelay);
-  const Stamp stamp = timestamper.Process(Ticks(seconds(5)), kEpoch);
-  EXPECT_EQ(stamp.time, kEpoch);
-  EXPECT_EQ(stamp.sigma, Nanoseconds(0)) << "one frame says nothing about the spread";
-}
-
-TEST(TimestamperTest, EqualTicksAndArrivalPassUnchanged) {
-  Timestamper timestamper(kDepthWindow, kNoDelay);
-  for (int i = 0; i < 100; ++i) {
-    const microseconds time = kEpoch.time_since_epoch() / microseconds(1) * microseconds(1) +
-                              i * microseconds(33'333 + i);
-    EXPECT_EQ(timestamper.Process(Ticks(time), CaptureTime(time)).time, CaptureTime(time));
-  }
-}
-
-TEST(TimestamperTest, ConstantDelayIsAdded) {
-  Timestamper timestamper(kDepthWindow, milliseconds(-42));
-  EXPECT_EQ(timestamper.Process(Ticks(seconds(1)), kEpoch).time, kEpoch - milliseconds(42));
-}
-
-TEST(TimestamperTest, ASingleLateFrameDoesNotMoveTheStamps) {
-  Timestamper timestamper(kDepthWindow, kNoDelay);
-  for (int i = 0; i < 60; ++i) {
-    const microseconds time = i * microseconds(33'333);
-    const Nanoseconds stall = i == 30 ? milliseconds(200) : milliseconds(0);
-    EXPECT_EQ(timestamper.Process(Ticks(time), kEpoch + time + stall).time, kEpoch + time) << i;
-  }
-}
-
-TEST(TimestamperTest, JitterShrinksAsInTheThesis) {
-  // Figures 5.15 and 5.16: impulses vanish, noise shrinks by about sqrt(N) / 1.25.
-  constexpr double kNoise_s = 0.001;
-  const std::vector<Sample> samples = JitteredFrames(3000, kNoise_s, 0.02, Seed());
-  Timestamper timestamper(kDepthWindow, kNoDelay);
-  std::vector<double> errors_s;
-  double worst_s = 0.0;
-  double sigma_sum_s = 0.0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Stamp stamp = timestamper.Process(samples[i].ticks, samples[i].arrival);
-    if (i < kDepthWindow) continue;
-    const CaptureTime truth = kEpoch + samples[i].ticks.time_since_epoch() + milliseconds(40);
-    errors_s.push_back(ToSeconds(stamp.time - truth));
-    worst_s = std::max(worst_s, std::abs(errors_s.back()));
-    sigma_sum_s += ToSeconds(stamp.sigma);
-  }
-  const double deviation_s = StandardDeviation(errors_s);
-  const double mean_sigma_s = sigma_sum_s / static_cast<double>(errors_s.size());
-  // The standard error of a median of 15 is 0.32 of one sample's; 3000 overlapping windows scatter
-  // by a tenth.
-  EXPECT_NEAR(deviation_s / kNoise_s, 0.33, 0.08);
-  EXPECT_LT(worst_s, 0.002) << "an impulse came through";
-  EXPECT_NEAR(mean_sigma_s / deviation_s, 1.0, 0.35)
-      << "sigma does not say how uncertain the stamps are";
-}
-
-TEST(TimestamperTest, F09CounterResetStartsTheFilterAgainAtThatFrame) {
-  Timestamper timestamper(kDepthWindow, kNoDelay);
-  CaptureTime last{};
-  for (int i = 0; i < 100; ++i) {
-    const microseconds time = i * microseconds(33'333);
-    const microseconds ticks = i < 50 ? time + seconds(4000) : time - 50 * microseconds(33'333);
-    const CaptureTime stamp = timestamper.Process(Ticks(ticks), kEpoch + time).time;
-    EXPECT_EQ(stamp, kEpoch + time) << i;
-    EXPECT_GT(stamp, last);
-    last = stamp;
-  }
-  EXPECT_EQ(timestamper.resets(), 1U);
-}
-
-TEST(TimestamperTest, F09StampsStayStrictlyIncreasingWhenTheResetFrameWasEarly) {
-  Timestamper timestamper(kDepthWindow, kNoDelay);
+TEST_P(TimestamperTest, F09StampsStayStrictlyIncreasingWhenTheResetFrameWasEarly) {
+  Timestamper timestamper = Make();
   // Until now each frame arrived 40 ms late; the first one of the new counter arrives at once.
-  const CaptureTime before =
-      timestamper.Process(Ticks(seconds(10)), kEpoch + milliseconds(40)).time;
-  const CaptureTime after = timestamper.Process(Ticks(seconds(0)), kEpoch + milliseconds(33)).time;
+  const CaptureTime before = Process(timestamper, seconds(10), kEpoch + milliseconds(40)).time;
+  const CaptureTime after = Process(timestamper, seconds(0), kEpoch + milliseconds(33)).time;
   EXPECT_EQ(after, before + Nanoseconds(1));
-  EXPECT_EQ(timestamper.moved(), 1U);
+  EXPECT_EQ(timestamper.counts().moved, 1U);
+  EXPECT_EQ(timestamper.counts().resets, 1U);
 }
 
-TEST(TimestamperTest, RepeatedTicksGetDistinctStamps) {
-  Timestamper timestamper(kDepthWindow, kNoDelay);
-  const CaptureTime first = timestamper.Process(Ticks(seconds(1)), kEpoch).time;
-  EXPECT_EQ(timestamper.Process(Ticks(seconds(1)), kEpoch).time, first + Nanoseconds(1));
-  EXPECT_EQ(timestamper.resets(), 0U);
+TEST_P(TimestamperTest, RepeatedTicksGetDistinctStamps) {
+  Timestamper timestamper = Make();
+  const CaptureTime first = Process(timestamper, seconds(1), kEpoch).time;
+  EXPECT_EQ(Process(timestamper, seconds(1), kEpoch).time, first + Nanoseconds(1));
+  EXPECT_EQ(timestamper.counts().resets, 0U);
 }
+
+TEST_P(TimestamperTest, ACameraWithoutAClockIsStampedByItsFrames) {
+  Timestamper timestamper = Make();
+  CaptureTime last{};
+  for (int i = 0; i < 400; ++i) {
+    // Ticks that mean nothing.
+    RawFrame frame = Frame(Nanoseconds(0), kEpoch + i * milliseconds(40));
+    if (i % 5 == 0) frame.arrival_wall += milliseconds(9);
+    frame.has_device_clock = false;
+    frame.frame_number = static_cast<std::uint64_t>(i);
+    const Stamp stamp = timestamper.Process(frame, frame.arrival_wall);
+    if (i > 100) {
+      EXPECT_EQ(stamp.time - last, milliseconds(40)) << i;
+      EXPECT_GT(stamp.sigma, Nanoseconds(0));
+    }
+    last = stamp.time;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Estimators, TimestamperTest, testing::Values(MEDIAN, ENVELOPE));
 
 }  // namespace
 }  // namespace isotherm

@@ -52,6 +52,7 @@ int Main(int argc, char** argv) {
   AddSimulateCommand(app, body);
   AddLimitsCommand(app, body);
   AddExperimentCommand(app, body);
+  AddTimingCommand(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

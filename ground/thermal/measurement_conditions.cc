@@ -74,6 +74,10 @@ Status Validate(const ThermalOptions& o) {
     return InvalidArgument(
         fmt::format("thermal.edge_margin_px must be 0..16 pixels, got {}", o.edge_margin_px()));
   }
+  if (!(o.max_time_sigma_s() > 0.0)) {
+    return InvalidArgument(
+        fmt::format("thermal.max_time_sigma_s must be positive, got {} s", o.max_time_sigma_s()));
+  }
   if (!(o.max_registration_px() > 0.0)) {
     return InvalidArgument(fmt::format("thermal.max_registration_px must be positive, got {} px",
                                        o.max_registration_px()));

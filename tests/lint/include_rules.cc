@@ -23,13 +23,15 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
   };
   static const Folders kCommon =
       with(kFrameParts, {"common/radiometry", "common/codec", "common/config", "common/recording",
-                         "common/dataset", "common/simulation", "common/transport"});
+                         "common/dataset", "common/simulation", "common/stamping",
+                         "common/transport"});
   static const std::map<std::string_view, Folders> kAllowed = {
       {"common/base", {}},
       {"common/time", {"common/base"}},
       {"common/concurrency", {"common/base", "common/time"}},
       {"common/geometry", {"common/base", "common/time", "common/concurrency"}},
       {"common/radiometry", {"common/base", "common/geometry"}},
+      {"common/stamping", {"common/base", "common/time", "common/simulation/noise.h"}},
       {"common/frame", kFrameParts},
       {"common/codec", kFrameParts},
       {"common/config", kFrameParts},
