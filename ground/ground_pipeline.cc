@@ -3,33 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 #include <utility>
 
 #include "common/base/log.h"
 #include "common/geometry/pose_text.h"
 #include "ground/initial_pose.h"
+#include "ground/stage_timer.h"
 
 namespace isotherm {
 namespace {
-
-/// Adds the time from construction to destruction to a stage.
-class StageTimer {
- public:
-  explicit StageTimer(StageStats& stats) : stats_(stats) {}
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-  ~StageTimer() {
-    const std::chrono::duration<double, std::milli> elapsed =
-        std::chrono::steady_clock::now() - start_;
-    stats_.Add(elapsed.count());
-  }
-
- private:
-  StageStats& stats_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 int ThreadCount(const GroundOptions& options) {
   if (options.threads() > 0) return options.threads();
@@ -85,10 +68,8 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       loop_closer_(options, atlas_, tracker_),
       spiller_(MaxResidentBlocks(options.volume(), grid)) {
   if (!thermal_status_.ok()) return;
-  fuser_ = std::make_unique<ThermalFuser>(options.thermal(), *rig.thermal,
-                                          static_cast<float>(options.raycast().min_weight()));
-  near_holes_.emplace(options.thermal(), fuser_->ideal_camera(), *rig.T_thermal_depth);
-  sight_lines_.emplace(options.thermal(), fuser_->ideal_camera(), *rig.T_thermal_depth);
+  thermal_stage_.emplace(options.thermal(), rig, static_cast<float>(options.raycast().min_weight()),
+                         counts_, stage_stats_["thermal_frame"]);
   if (options.tracker().use_thermal()) tracker_.UseThermal(*rig.thermal, *rig.T_thermal_depth);
 }
 
@@ -187,7 +168,7 @@ SurfaceMaps GroundPipeline::CastFullView() {
 
 DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   const DepthReport report = TrackAndIntegrate(frame);
-  if (report.tracked) FuseWaitingThermal(frame.header.capture_time);
+  if (report.tracked) FuseThermal();
   return report;
 }
 
@@ -295,24 +276,26 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
 
 void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   ++counts_.thermal_in;
-  const NucAge nuc = nuc_epochs_.Follow(*frame);
-  if (!fuser_) {
-    LeaveOut("no_calibration");
-  } else if (!frame->valid) {
-    LeaveOut("nuc");
-  } else if (frame->centikelvin.width() != rig_.thermal->width ||
-             frame->centikelvin.height() != rig_.thermal->height) {
-    LeaveOut("wrong_size");
-  } else {
-    tracker_.AddThermal(frame);
-    waiting_thermal_.push_back({std::move(frame), nuc});
-    // A depth stream that stopped must not make the buffer grow.
-    constexpr std::size_t kMaxWaiting = 64;
-    if (waiting_thermal_.size() > kMaxWaiting) {
-      waiting_thermal_.pop_front();
-      LeaveOut("no_depth");
-    }
+  if (!thermal_stage_) {
+    ++counts_.thermal_left_out["no_calibration"];
+  } else if (thermal_stage_->Add(frame)) {
+    tracker_.AddThermal(std::move(frame));
   }
+}
+
+void GroundPipeline::FuseThermal() {
+  if (!thermal_stage_) return;
+  const TrackedDepth depth{
+      .depth_m = last_depth_->depth_m,
+      .view = view(),
+      .before = tracker_.motion().before_last(),
+      .now = *tracker_.motion().last(),
+      .surface_sigma_rad = uncertainty().surface_sigma_m() / uncertainty().mean_depth_m(),
+      .tsdf = tsdf(),
+      .refusal = effort_ != Effort::kAll ? "behind"
+                 : has_room_             ? nullptr
+                                         : "disk_full"};
+  thermal_stage_->FuseUpTo(depth, *atlas_.active().thermal, pool_);
 }
 
 void GroundPipeline::AddToTrajectory(const StampedPose& pose) {
@@ -339,65 +322,9 @@ void GroundPipeline::KeepSubMaps(const PreparedDepth& depth, const RigidTransfor
   }
 }
 
-double GroundPipeline::RegistrationSigmaPx() const {
-  return rig_.thermal->fx * uncertainty().surface_sigma_m() / uncertainty().mean_depth_m();
-}
-
-const char* GroundPipeline::WhyLeftOut(CaptureTime time) const {
-  if (effort_ != Effort::kAll) return "behind";
-  const std::optional<StampedPose> before = tracker_.motion().before_last();
-  if (!before || time < before->time) return "pose_unknown";
-  if (!has_room_) return "disk_full";
-  if (RegistrationSigmaPx() > options_.thermal().max_registration_px()) return "pose_uncertain";
-  const double interval_s = ToSeconds(tracker_.motion().last()->time - before->time);
-  return interval_s > options_.thermal().max_wait_s() ? "depth_gap" : nullptr;
-}
-
-void GroundPipeline::Fuse(const WaitingThermal& waiting) {
-  const StageTimer timer(stage_stats_["thermal_frame"]);
-  const CaptureTime time = waiting.frame->header.capture_time;
-  const StampedPose before = *tracker_.motion().before_last();
-  const StampedPose after = *tracker_.motion().last();
-  const double interval_s = ToSeconds(after.time - before.time);
-  const double alpha = interval_s > 0.0 ? ToSeconds(time - before.time) / interval_s : 1.0;
-  const RigidTransform T_world_depth_at_capture =
-      Interpolate(before.T_world_depth, after.T_world_depth, alpha);
-  const RigidTransform T_depth_thermal = rig_.T_thermal_depth->inverse();
-  const CaptureConditions capture{
-      .motion = MotionBetween(before.T_world_depth * T_depth_thermal,
-                              after.T_world_depth * T_depth_thermal, interval_s),
-      .registration_px = RegistrationSigmaPx(),
-      .holes = &*near_holes_,
-      .sight = &*sight_lines_,
-      .nuc = waiting.nuc};
-  counts_.fusion +=
-      fuser_->Fuse(*waiting.frame, T_world_depth_at_capture * T_depth_thermal, view().camera,
-                   T_world_depth_at_capture, tsdf(), pool_, *atlas_.active().thermal, capture);
-  ++counts_.thermal_fused;
-}
-
-void GroundPipeline::FuseWaitingThermal(CaptureTime now) {
-  bool holes_are_current = false;
-  while (!waiting_thermal_.empty() && waiting_thermal_.front().frame->header.capture_time <= now) {
-    const WaitingThermal waiting = std::move(waiting_thermal_.front());
-    waiting_thermal_.pop_front();
-    if (const char* reason = WhyLeftOut(waiting.frame->header.capture_time)) {
-      LeaveOut(reason);
-      continue;
-    }
-    if (!std::exchange(holes_are_current, true)) {
-      near_holes_->Update(last_depth_->depth_m, view().maps, view().camera);
-      sight_lines_->Update(view().maps, view().camera, view().T_world_depth);
-    }
-    Fuse(waiting);
-  }
-}
-
 void GroundPipeline::Finish(const std::function<void(double)>& progress) {
-  for (std::size_t i = 0; i < waiting_thermal_.size(); ++i) LeaveOut("no_depth_after");
-  waiting_thermal_.clear();
   if (atlas_.size() > 1) MergeMaps(progress);
-  if (fuser_) counts_.fusion.dropped += fuser_->ReviewAll(tsdf(), *atlas_.active().thermal, pool_);
+  if (thermal_stage_) thermal_stage_->Finish(tsdf(), *atlas_.active().thermal, pool_);
 }
 
 void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {

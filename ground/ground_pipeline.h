@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -20,29 +19,13 @@
 #include "ground/ground_options.pb.h"
 #include "ground/loop_closer.h"
 #include "ground/model/model_file.h"
+#include "ground/pipeline_counts.h"
 #include "ground/rig_tracker.h"
-#include "ground/thermal/thermal_fuser.h"
+#include "ground/thermal_stage.h"
 #include "ground/tracker/depth_preprocessor.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
-
-/// What the pipeline did with the frames it was given: in = sum of the outcomes.
-struct PipelineCounts {
-  std::uint64_t depth_in = 0;
-  std::uint64_t depth_repeated = 0;  ///< The picture of the frame before again.
-  std::uint64_t depth_tracked = 0;
-  std::uint64_t depth_degraded = 0;                 ///< Of the tracked ones.
-  std::uint64_t depth_unconfirmed = 0;              ///< Found again, but not yet believed.
-  std::uint64_t depth_integrated = 0;               ///< Of the tracked ones.
-  std::uint64_t depth_behind = 0;                   ///< Not integrated for want of time.
-  std::uint64_t depth_refused = 0;                  ///< Of another size than the calibration's.
-  std::map<std::string, std::uint64_t> depth_lost;  ///< By reason.
-  std::uint64_t thermal_in = 0;
-  std::uint64_t thermal_fused = 0;
-  std::map<std::string, std::uint64_t> thermal_left_out;  ///< By reason.
-  FusionReport fusion;  ///< Of all fused frames together; dropped counts the last review, too.
-};
 
 /// How much of the work a pipeline does. What it leaves out costs quality where the next frames do
 /// not see the same again.
@@ -130,10 +113,6 @@ class GroundPipeline {
     PoseSigma sigma;
     int map = 0;
   };
-  struct WaitingThermal {
-    ThermalFramePtr frame;
-    NucAge nuc;
-  };
 
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
                  std::optional<RigidTransform> initial_pose);
@@ -156,15 +135,9 @@ class GroundPipeline {
   void UpdateView(const RigidTransform& T_world_depth);
   /// Has what was spilled and comes into view read in the background.
   void FetchNearView(const RigidTransform& T_world_depth);
-  void FuseWaitingThermal(CaptureTime now);
-  /// Why the thermal frame captured at `time` gets no pose or no place; nullptr: it does.
-  const char* WhyLeftOut(CaptureTime time) const;
-  void Fuse(const WaitingThermal& waiting);
+  void FuseThermal();
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);
-  /// One standard deviation of the pose, as a shift of the thermal picture on the surface.
-  double RegistrationSigmaPx() const;
-  void LeaveOut(const char* reason) { ++counts_.thermal_left_out[reason]; }
 
   const GroundOptions options_;
   const Rig rig_;
@@ -177,10 +150,6 @@ class GroundPipeline {
   IntegrationGate gate_;
   Atlas atlas_;
   LoopCloser loop_closer_;
-  std::unique_ptr<ThermalFuser> fuser_;
-  std::optional<NearHoles> near_holes_;
-  std::optional<SightLines> sight_lines_;
-  NucEpochs nuc_epochs_;
   const PreparedDepth* last_depth_ = nullptr;  ///< Of the last depth frame; the preprocessor's.
   BlockSpiller spiller_;
   VisibleBlocks near_view_;
@@ -192,11 +161,11 @@ class GroundPipeline {
   int searched_ = 0;                      ///< The sub-map a lost rig is looked for in.
   std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
   Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.
-  std::deque<WaitingThermal> waiting_thermal_;
   Effort effort_ = Effort::kAll;
   bool integrate_next_ = true;  ///< With kEverySecond.
   PipelineCounts counts_;
   std::map<std::string, StageStats> stage_stats_;
+  std::optional<ThermalStage> thermal_stage_;  ///< Of a rig that thermal frames can be fused of.
 };
 
 }  // namespace isotherm

@@ -80,6 +80,8 @@ Result<int> WritePictures(const LoadedModel& model, const GroundOptions& options
                    static_cast<float>(options.export_().min_weight()), pool, maps);
     SampleView(maps, T_world_camera.translation(), *model.tsdf, *model.thermal, pool, view);
     empty += std::ranges::all_of(view.cos_view.pixels(), [](float c) { return std::isnan(c); });
+    if (std::ranges::count(request.layers, RenderLayer::kAge) > 0)
+      SampleNucAge(maps, *model.tsdf, *model.thermal, pool, view);
     std::optional<ContourField> contours;
     if (thermal && renderer.draws_lines()) {
       contours = SampleContours(maps, *model.tsdf, *model.thermal,

@@ -83,7 +83,8 @@ class ToolTest : public testing::Test {
     EXPECT_TRUE(fs::exists(folder_ / "folder" / "again.png"));
     const Outcome orbit = Run("render out -o orbit --orbit 3 --layer all --size 64x48");
     ASSERT_EQ(orbit.status, 0) << orbit.err;
-    for (const char* name : {"thermal_000.png", "coverage_001.png", "disagreement_002.png"})
+    for (const char* name :
+         {"thermal_000.png", "coverage_001.png", "age_001.png", "disagreement_002.png"})
       EXPECT_TRUE(fs::exists(folder_ / "orbit" / name)) << name;
     EXPECT_THAT(orbit.err, HasSubstr("rendering"));
     EXPECT_THAT(Run("render out -o last.png --view last --size 64x48").out, HasSubstr("last pose"));

@@ -79,6 +79,7 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
                   const fs::path& folder, ThreadPool& threads, FirstFailure& failure) {
   ViewMaps view;
   SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
+  SampleNucAge(*inputs.view, inputs.tsdf, inputs.thermal, threads, view);
   if (inputs.interpretation != nullptr) {
     inputs.interpretation->Apply(*inputs.view, view.celsius);
     view.celsius_meaning = "object temperature";

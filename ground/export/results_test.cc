@@ -98,7 +98,8 @@ constexpr const char* kFiles[] = {"cloud.ply",
                                   "renders/geometry.png",
                                   "renders/coverage.png",
                                   "renders/motion.png",
-                                  "renders/disagreement.png"};
+                                  "renders/disagreement.png",
+                                  "renders/age.png"};
 
 TEST_F(ResultsTest, WritesEveryFileOfTheContract) {
   const fs::path dir = folder_.path() / "a" / "b";
@@ -112,7 +113,7 @@ TEST_F(ResultsTest, WritesEveryFileOfTheContract) {
   EXPECT_EQ(summary->good_points, summary->points);
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(dir)) files += entry.is_regular_file();
-  EXPECT_EQ(files, 11);  // Nothing partial is left.
+  EXPECT_EQ(files, 12);  // Nothing partial is left.
 }
 
 TEST_F(ResultsTest, SameInputsGiveTheSameBytesWhateverTheThreads) {

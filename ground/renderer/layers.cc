@@ -6,9 +6,10 @@
 namespace isotherm {
 namespace {
 
-constexpr RenderLayer kLayers[] = {
-    RenderLayer::kThermal,      RenderLayer::kDistance, RenderLayer::kAngle,   RenderLayer::kMotion,
-    RenderLayer::kDisagreement, RenderLayer::kCoverage, RenderLayer::kGeometry};
+constexpr RenderLayer kLayers[] = {RenderLayer::kThermal,      RenderLayer::kDistance,
+                                   RenderLayer::kAngle,        RenderLayer::kMotion,
+                                   RenderLayer::kDisagreement, RenderLayer::kAge,
+                                   RenderLayer::kCoverage,     RenderLayer::kGeometry};
 
 }  // namespace
 
@@ -26,6 +27,8 @@ std::string_view LayerName(RenderLayer layer) {
       return "motion";
     case RenderLayer::kDisagreement:
       return "disagreement";
+    case RenderLayer::kAge:
+      return "age";
     case RenderLayer::kCoverage:
       return "coverage";
     case RenderLayer::kGeometry:

@@ -14,6 +14,7 @@ enum class RenderLayer : std::uint8_t {
   kAngle,         ///< Class of the emission angle (algorithm 9).
   kMotion,        ///< Class of the smear while the temperature was measured.
   kDisagreement,  ///< Class of how far measurements under good conditions contradict each other.
+  kAge,           ///< Seconds between the last NUC and the measurement.
   kCoverage,      ///< Seen by depth, but never measured well.
   kGeometry,      ///< The surface only.
 };

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/check.h"
@@ -192,6 +192,8 @@ RgbImage Renderer::Draw(RenderLayer layer, const ViewMaps& view,
       return Motion(view);
     case RenderLayer::kDisagreement:
       return Disagreement(view);
+    case RenderLayer::kAge:
+      return NucAge(view);
     case RenderLayer::kCoverage:
       return Coverage(view);
     case RenderLayer::kGeometry:
@@ -306,6 +308,28 @@ RgbImage Renderer::Disagreement(const ViewMaps& view) const {
                                        "contradict: reflection?");
   legend.rows.push_back({kUncheckedColour, "not checked", "too few to compare", ""});
   return Classes(view, view.disagreement_class, legend);
+}
+
+RgbImage Renderer::NucAge(const ViewMaps& view) const {
+  CHECK(view.nuc_age_s.size() == view.celsius.size());
+  constexpr double kShortest_s = 1.0;  // A shorter scale would only show the frames' periods.
+  const TemperatureStatistics ages = Summarize(view.nuc_age_s.pixels());
+  const double longest_s = std::max(ages.max_celsius, kShortest_s);
+  const auto colour = [longest_s](double age_s) { return InfernoColour(1.0 - age_s / longest_s); };
+  const RgbImage picture = DrawSurface(view, [&](int x, int y) {
+    const double cos_view = options_.shading() ? view.cos_view.At(x, y) : 1.0;
+    const double age_s = view.nuc_age_s.At(x, y);
+    if (!std::isnan(age_s)) return Shaded(colour(age_s), cos_view);
+    return std::isnan(view.celsius.At(x, y)) ? NeverMeasuredColour(x, y, cos_view)
+                                             : Shaded(kUncheckedColour, cos_view);
+  });
+  if (!options_.legend()) return picture;
+  ScaleLegend legend;
+  legend.title = "age since NUC";
+  if (ages.count > 0) legend.scale = TemperatureScale{0.0, longest_s};
+  legend.unit.name = "s";
+  legend.rows = {{kUncheckedColour, "not known", "", ""}};
+  return WithLegend(picture, legend, colour);
 }
 
 RgbImage Renderer::Coverage(const ViewMaps& view) const {

@@ -23,6 +23,7 @@ Status Validate(const RendererOptions& options);
 ///   thermal    palette colour; never measured surface dim grey with diagonal lines; isotherms
 ///   distance   green, yellow, red = good, acceptable, bad; black = never measured
 ///   angle, motion, disagreement  the same; dim violet = measured, but not checked
+///   age        light = soon after the NUC, dark = longest after it; dim violet = not known
 ///   coverage   grey where measured well, orange where only badly, magenta where never
 ///   geometry   light grey
 /// Pixels without a surface have kBackground. With the legend option a panel is added to the right;
@@ -50,6 +51,8 @@ class Renderer {
   RgbImage Angle(const ViewMaps& view) const;
   RgbImage Motion(const ViewMaps& view) const;
   RgbImage Disagreement(const ViewMaps& view) const;
+  /// Of a view with SampleNucAge.
+  RgbImage NucAge(const ViewMaps& view) const;
   RgbImage Coverage(const ViewMaps& view) const;
   RgbImage Geometry(const ViewMaps& view) const;
 

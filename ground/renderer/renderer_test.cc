@@ -160,8 +160,27 @@ TEST(RendererTest, CoverageShowsWhatIsMissing) {
   }
 }
 
+TEST(RendererTest, AgeGoesFromLightToDark) {
+  ViewMaps view = EmptyView(5, 1);
+  view.nuc_age_s = Image<float>(5, 1, NAN);
+  const float ages_s[] = {0.0F, 60.0F, 120.0F, NAN, NAN};
+  for (int x = 0; x < 5; ++x) {
+    view.cos_view.At(x, 0) = 1.0F;
+    view.celsius.At(x, 0) = x == 4 ? NAN : 40.0F;
+    view.nuc_age_s.At(x, 0) = ages_s[x];
+  }
+  const RgbImage picture = MakeRenderer(FixedScale(false)).NucAge(view);
+  EXPECT_EQ(picture.At(0, 0), InfernoColour(1.0));
+  EXPECT_EQ(picture.At(1, 0), InfernoColour(0.5));
+  EXPECT_EQ(picture.At(2, 0), InfernoColour(0.0));
+  EXPECT_EQ(picture.At(3, 0), (Rgb8{96, 84, 128}));
+  EXPECT_EQ(picture.At(4, 0), NeverMeasuredColour(4, 0, 1.0));
+  EXPECT_GT(MakeRenderer(FixedScale(true)).NucAge(view).width(), 5);
+}
+
 TEST(RendererTest, EveryLayerCanBeDrawnByItsName) {
   ViewMaps view = EmptyView(8, 8);
+  view.nuc_age_s = Image<float>(8, 8, NAN);
   view.cos_view.At(4, 4) = 1.0F;
   const Renderer renderer = MakeRenderer(FixedScale(false));
   std::set<std::string_view> names;

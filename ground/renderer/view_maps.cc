@@ -78,4 +78,19 @@ void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
   });
 }
 
+void SampleNucAge(const SurfaceMaps& maps, const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                  ThreadPool& threads, ViewMaps& view) {
+  view.nuc_age_s.Resize(maps.width(), maps.height());
+  threads.ParallelFor(maps.height(), [&](int y) {
+    for (int x = 0; x < maps.width(); ++x) {
+      float& age_s = view.nuc_age_s.At(x, y);
+      age_s = NAN;
+      if (std::isnan(view.celsius.At(x, y))) continue;
+      const Eigen::Vector3d p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
+      const ConditionRecord record = MeasurementAt(tsdf, thermal, p_world).conditions;
+      if (!record.empty()) age_s = record.age_s();
+    }
+  });
+}
+
 }  // namespace isotherm

@@ -27,6 +27,9 @@ struct ViewMaps {
   /// Whose temperatures `celsius` holds, for legends.
   const char* celsius_meaning = "apparent temperature";
 
+  Image<float> nuc_age_s;  ///< Since the NUC before the measurement; NaN = not known. Empty unless
+                           ///< SampleNucAge was called.
+
   int width() const { return celsius.width(); }
   int height() const { return celsius.height(); }
   void Resize(int width, int height);
@@ -47,5 +50,10 @@ MeasurementQuality QualityAt(const ViewMaps& view, int x, int y);
 void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
                 const TsdfVolume& tsdf, const ThermalVolume& thermal, ThreadPool& threads,
                 ViewMaps& view);
+
+/// Adds the age of the measurements since the NUC, from their records, to a view of the same
+/// `maps`.
+void SampleNucAge(const SurfaceMaps& maps, const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                  ThreadPool& threads, ViewMaps& view);
 
 }  // namespace isotherm
