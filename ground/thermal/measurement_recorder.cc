@@ -1,6 +1,7 @@
 #include "ground/thermal/measurement_recorder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace isotherm {
@@ -45,16 +46,21 @@ void MeasurementRecorder::Record(const BlockMeasurements& measured, const Eigen:
   // The directions within a block differ by a degree or two.
   const std::uint16_t direction = EncodeDirection((R_world_thermal_ * -middle).normalized());
   const auto voxels = thermal.voxels(block);
-  RecordRow* row = nullptr;
-  int row_index = -1;
+  // Rows lie anywhere in memory: all are asked for before the first one is needed.
+  std::array<RecordRow*, ThermalRecords::kRowsPerBlock> rows{};
+  for (int i = 0; i < measured.count; ++i) {
+    const int voxel = measured.voxels[i] & (kBlockVoxels - 1);
+    RecordRow*& row = rows[static_cast<std::size_t>(voxel / RecordRow::kVoxels)];
+    if (row != nullptr) continue;
+    row = &thermal.records()->Row(block, voxel / RecordRow::kVoxels);
+    __builtin_prefetch(row->conditions, 1);
+    __builtin_prefetch(row->disagreement, 1);
+  }
   for (int i = 0; i < measured.count; ++i) {
     const std::int32_t voxel = measured.voxels[i] & (kBlockVoxels - 1);
     const auto word = static_cast<std::uint32_t>(measured.words[i]);
     const bool good = (word & kClassBits) == kAllGood;
-    if (voxel / RecordRow::kVoxels != row_index) {
-      row_index = voxel / RecordRow::kVoxels;
-      row = &thermal.records()->Row(block, row_index);
-    }
+    RecordRow* row = rows[static_cast<std::size_t>(voxel / RecordRow::kVoxels)];
     ConditionRecord& record = row->conditions[voxel % RecordRow::kVoxels];
     if ((measured.voxels[i] & BlockMeasurements::kAssigned) != 0) {
       const Eigen::Vector3f offset(static_cast<float>(voxel & 7),

@@ -47,8 +47,9 @@ float SightLines::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const
     const float z_thermal = 1.0F / (nearest - static_cast<float>(i) * step);
     const Eigen::Vector3f p = z_thermal * ray + t_depth_thermal_;
     // What reaches the picture's border goes on beyond it.
-    const float u = std::clamp(fx * p.x() / p.z() + cx + 0.5F, 0.0F, last_u);
-    const float v = std::clamp(fy * p.y() / p.z() + cy + 0.5F, 0.0F, last_v);
+    const float inverse_z = 1.0F / p.z();
+    const float u = std::clamp(fx * p.x() * inverse_z + cx + 0.5F, 0.0F, last_u);
+    const float v = std::clamp(fy * p.y() * inverse_z + cy + 0.5F, 0.0F, last_v);
     // NaN: no surface there, and nothing to be behind of.
     const bool behind =
         p.z() > depth_m_.At(static_cast<int>(u), static_cast<int>(v)) + tolerance_m_;

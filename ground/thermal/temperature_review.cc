@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 namespace isotherm {
 namespace {
 
-/// Faces further apart than this are different ones: several times the noise of normals.
-constexpr float kOtherFaceRad = static_cast<float>(20.0 * std::numbers::pi / 180.0);
+/// Cosine of 20 degrees. Faces further apart than this are different ones: several times the noise
+/// of normals.
+constexpr float kOtherFaceCosine = 0.9396926F;
 
 float DistanceAt(const TsdfVolume& tsdf, const GridIndex& voxel) {
   if ((voxel.array() < 0).any()) return NAN;
@@ -40,14 +40,18 @@ std::optional<Eigen::Vector3f> NormalAt(const TsdfVolume& tsdf, const GridIndex&
   return gradient / norm;
 }
 
-float Angle(float cosine) { return std::acos(std::clamp(cosine, -1.0F, 1.0F)); }
+/// Of the difference of two angles in 0..180 degrees that have these cosines.
+float CosineOfDifference(float a, float b) {
+  const auto squared_sine = [](float cosine) { return std::max(0.0F, 1.0F - cosine * cosine); };
+  return a * b + std::sqrt(squared_sine(a) * squared_sine(b));
+}
 
 }  // namespace
 
 bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal, float min_cosine) {
   const float cosine = normal.dot(DecodeDirection(record.direction));
   return cosine >= min_cosine &&
-         std::abs(Angle(cosine) - Angle(record.cosine_seen())) <= kOtherFaceRad;
+         CosineOfDifference(cosine, record.cosine_seen()) >= kOtherFaceCosine;
 }
 
 TemperatureReview::TemperatureReview(const ThermalOptions& options)

@@ -39,11 +39,12 @@ void DisagreementRecord::Add(std::uint16_t code, int count) {
   highest = std::max(highest, code);
   const float n = static_cast<float>(std::min(count, kMemory));
   const float off = static_cast<float>(code) - static_cast<float>(mean);
+  const float share = 1.0F / (n + 1.0F);
   // Welford's update; once the memory is full, each new square replaces an average old one.
-  const float kept = count < kMemory ? ToFloat(squares) : ToFloat(squares) * (n - 1.0F) / n;
-  squares = UpperHalf(kept + off * off * n / (n + 1.0F));
-  mean = static_cast<std::uint16_t>(
-      std::clamp(std::lround(static_cast<float>(mean) + off / (n + 1.0F)), 0L, 65535L));
+  const float kept = count < kMemory ? ToFloat(squares) : ToFloat(squares) * (1.0F - 1.0F / n);
+  squares = UpperHalf(kept + off * off * n * share);
+  // Between the old mean and the code, so never outside 16 bits.
+  mean = static_cast<std::uint16_t>(static_cast<float>(mean) + off * share + 0.5F);
 }
 
 float DisagreementRecord::range_k() const {
