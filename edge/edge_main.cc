@@ -68,6 +68,7 @@ struct CommandLine {
   bool wait_for_ground = false;
   bool list_sources = false;
   bool list_devices = false;
+  std::string camera_process, camera_options;
   LogLevel log_level = LogLevel::kInfo;
 };
 
@@ -115,6 +116,11 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_flag("--list-sources", line.list_sources,
                "List sources, scenes and connected cameras, then leave");
   app.add_flag("--list-devices", line.list_devices, "List connected cameras, then leave");
+  // How this program starts itself for a camera whose library may crash; not for people.
+  app.add_option("--camera-process", line.camera_process)
+      ->check(CLI::IsMember({"depth", "thermal"}))
+      ->group("");
+  app.add_option("--camera-options", line.camera_options)->group("");
 }
 
 // FURNACE_DOOR in the configuration is furnace-door on the command line.
@@ -195,6 +201,9 @@ int Main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
   SetLogLevel(line.log_level);
+  if (!line.camera_process.empty()) {
+    return RunCameraProcess(line.camera_process, line.camera_options, SystemClock());
+  }
   if (line.list_sources) ListSources();
   if (line.list_sources || line.list_devices) {
     std::fputs(ListCameras().c_str(), stdout);

@@ -81,16 +81,21 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
 }
 
 void Housekeeping::TellCameras(const EdgeStatus& before) const {
-  const auto tell = [](std::string_view name, CameraState was, CameraState is) {
-    if (was == is || is == CameraState::kNone) return;
-    if (is == CameraState::kWorking) {
-      LOG(Edge, Info) << name << " camera: " << CameraText(is);
+  const auto tell = [](std::string_view name, const CameraReport& was, const CameraReport& is) {
+    // A camera may have been lost and be back between two looks.
+    if (is.state == CameraState::kNone || (was.state == is.state && was.failures == is.failures)) {
+      return;
+    }
+    if (is.state == CameraState::kWorking) {
+      LOG(Edge, Info) << name << " camera: " << CameraText(is.state)
+                      << ", failures=" << is.failures;
     } else {
-      LOG(Edge, Warning) << name << " camera: " << CameraText(is);
+      LOG(Edge, Warning) << name << " camera: " << CameraText(is.state)
+                         << ", failures=" << is.failures;
     }
   };
-  tell("depth", before.depth_camera.state, status_.depth_camera.state);
-  tell("thermal", before.thermal_camera.state, status_.thermal_camera.state);
+  tell("depth", before.depth_camera, status_.depth_camera);
+  tell("thermal", before.thermal_camera, status_.thermal_camera);
 }
 
 void Housekeeping::ShowFeedback() {

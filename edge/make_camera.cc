@@ -5,8 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/log.h"
+#include "common/config/text_proto.h"
 #include "edge/edge_options.pb.h"
+#include "edge/source/camera_process.h"
 #include "edge/source/device_description.h"
+#include "edge/thermal_camera/camera_registry.h"
+#include "edge/thermal_camera/thermal_camera_source.h"
 #if ISOTHERM_WITH_OPENNI
 #include "edge/openni/openni_depth_source.h"
 #include "edge/openni/openni_list.h"
@@ -63,9 +68,46 @@ std::string ToText(const Result<std::vector<DeviceDescription>>& devices) {
 Result<std::unique_ptr<FrameSource>> MakeCamera(Sensor sensor, const SourceOptions& options,
                                                 const Clock& clock) {
   if (sensor == Sensor::kDepth) return MakeDepthCamera(options, clock);
-  return Err(Unavailable("this program was built without thermal cameras"));
+  return MakeThermalCameraSource(options.thermal_camera(), clock);
 }
 
-std::string ListCameras() { return "depth cameras:\n" + ToText(ListDepthCameras()); }
+bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options) {
+  if (sensor == Sensor::kThermal) {
+    // The other drivers are ours.
+    return ThermalDriver_Name(options.thermal_camera().driver()) == "OPTRIS_SDK";
+  }
+  const DepthCameraOptions& depth = options.depth_camera();
+  return depth.own_process() && !depth.uri().ends_with(".oni");
+}
+
+std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOptions& options,
+                                               const Clock& clock) {
+  const bool is_depth = sensor == Sensor::kDepth;
+  CameraProcess::Settings settings;
+  settings.name = is_depth ? "depth camera" : "thermal camera";
+  settings.program = "/proc/self/exe";
+  settings.arguments = {"--camera-process", is_depth ? "depth" : "thermal", "--camera-options",
+                        ToTextProto(options)};
+  return std::make_unique<CameraProcess>(std::move(settings), clock);
+}
+
+int RunCameraProcess(const std::string& sensor_name, const std::string& source_options,
+                     const Clock& clock) {
+  SourceOptions options;
+  Status status = ParseTextProto(source_options, "--camera-options", options);
+  const Sensor sensor = sensor_name == "depth" ? Sensor::kDepth : Sensor::kThermal;
+  if (status.ok()) {
+    Result<std::unique_ptr<FrameSource>> camera = MakeCamera(sensor, options, clock);
+    if (camera) return ServeCamera(**camera, clock);
+    status = camera.error();
+  }
+  LOG(Edge, Error) << status.message();
+  return ExitCode(status);
+}
+
+std::string ListCameras() {
+  return "depth cameras:\n" + ToText(ListDepthCameras()) + "thermal cameras:\n" +
+         ToText(ListThermalCameras());
+}
 
 }  // namespace isotherm

@@ -16,6 +16,16 @@ class SourceOptions;
 Result<std::unique_ptr<FrameSource>> MakeCamera(Sensor sensor, const SourceOptions& options,
                                                 const Clock& clock);
 
+/// Whether the camera's library may crash or hang without taking the edge along.
+bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options);
+/// The same camera in a process of its own: this program again, with CameraProcessArguments.
+std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOptions& options,
+                                               const Clock& clock);
+/// What the program does when it was started so; the exit status. `sensor_name`: "depth" or
+/// "thermal"; `source_options`: text format.
+int RunCameraProcess(const std::string& sensor_name, const std::string& source_options,
+                     const Clock& clock);
+
 /// What is connected, for people: a line per camera with driver, serial number and modes.
 std::string ListCameras();
 

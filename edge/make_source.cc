@@ -35,7 +35,9 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
     const bool enabled = sensor == Sensor::kDepth ? source.depth_camera().enabled()
                                                   : source.thermal_camera().enabled();
     if (!enabled) continue;
-    Result<std::unique_ptr<FrameSource>> camera = MakeCamera(sensor, source, context.clock);
+    Result<std::unique_ptr<FrameSource>> camera =
+        RunsInOwnProcess(sensor, source) ? MakeCameraProcess(sensor, source, context.clock)
+                                         : MakeCamera(sensor, source, context.clock);
     if (!camera) {
       LOG(Edge, Warning) << camera.error().message();
       continue;

@@ -1,0 +1,248 @@
+// isotherm-edge on cameras, as a process: the genuine OpenNI2 library with a driver whose camera is
+// unplugged, exchanged, crashes and hangs as a script says.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "common/testing/temporary_directory.h"
+#include "edge/openni/fake_depth_camera.h"
+#include "tests/system/programs.h"
+
+namespace isotherm::system_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// The numbers of "depth    captured 100 = recorded 99 + rejected 1 + queue full 0 + failed 0".
+struct Account {
+  long captured = -1, done = -1, rejected = -1, queue_full = -1, failed = -1;
+  bool Closes() const { return captured >= 0 && captured == done + rejected + queue_full + failed; }
+};
+
+Account AccountOf(const std::string& output, const std::string& done) {
+  Account account;
+  const std::size_t begin = output.find("depth    captured");
+  for (std::size_t at = begin; at != std::string::npos;
+       at = output.find("depth    captured", at + 1)) {
+    const std::string format =
+        "depth captured %ld = " + done + " %ld + rejected %ld + queue full %ld + failed %ld\n";
+    if (std::sscanf(output.c_str() + at, format.c_str(), &account.captured, &account.done,
+                    &account.rejected, &account.queue_full, &account.failed) == 5) {
+      EXPECT_EQ(output.substr(at, output.find('\n', at) - at).find("unaccounted"),
+                std::string::npos);
+      return account;
+    }
+  }
+  return {};
+}
+
+/// Processes that `pid` has started and that still run.
+std::vector<pid_t> ChildrenOf(pid_t pid) {
+  std::vector<pid_t> children;
+  const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
+  for (const auto& task : std::filesystem::directory_iterator(tasks)) {
+    std::ifstream list(task.path() / "children");
+    for (pid_t child = 0; list >> child;) children.push_back(child);
+  }
+  return children;
+}
+
+class CamerasTest : public ::testing::Test {
+ protected:
+  Command Edge(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"--source", "cameras",
+                                          "--set",    "source.thermal_camera.enabled=false",
+                                          "--set",    "frame_check.retry_min_s=0.1",
+                                          "--set",    "frame_check.retry_max_s=0.2",
+                                          "--domain", std::to_string(TestDomain())};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return {EdgeDaemon(), std::move(arguments), {"LD_LIBRARY_PATH=" FAKE_OPENNI}, {}};
+  }
+  std::vector<std::string> Record() const { return {"--record", file_.string()}; }
+
+  /// Ends the daemon and checks that each frame is accounted for.
+  Account End(Process& edge) {
+    edge.Signal(SIGTERM);
+    EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+    const Account recorded = AccountOf(edge.output(), "recorded");
+    const Account published = AccountOf(edge.output(), "published");
+    EXPECT_TRUE(recorded.Closes()) << edge.output();
+    EXPECT_TRUE(published.Closes()) << edge.output();
+    const RecordingContent content = ReadRecording(file_);
+    EXPECT_TRUE(content.complete);
+    EXPECT_EQ(static_cast<long>(content.depth.size()), recorded.done);
+    EXPECT_TRUE(std::is_sorted(
+        content.depth.begin(), content.depth.end(),
+        [](const StoredFrame& a, const StoredFrame& b) { return a.capture_time < b.capture_time; }))
+        << "capture times rise with the frame numbers";
+    return recorded;
+  }
+  /// Waits until `text` has come `times` times.
+  static bool WaitForRepeated(Process& edge, const std::string& text, int times) {
+    const auto end = std::chrono::steady_clock::now() + kPatience;
+    while (std::chrono::steady_clock::now() < end) {
+      int count = 0;
+      const std::string output = edge.output();
+      for (std::size_t at = output.find(text); at != std::string::npos;
+           at = output.find(text, at + 1)) {
+        ++count;
+      }
+      if (count >= times) return true;
+      if (edge.WaitForExit(Seconds(0.05))) return false;
+    }
+    return false;
+  }
+
+  static constexpr const char* kWorking = "depth camera: working";
+  static constexpr const char* kLost = "depth camera: lost";
+
+  const ::isotherm::testing::TemporaryDirectory folder_;
+  FakeDepthCamera camera_{folder_.path()};
+  const std::filesystem::path file_ = folder_.path() / "scan.mcap";
+};
+
+TEST_F(CamerasTest, RecordsAndPublishesWhatTheCameraSees) {
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience)) << edge.output();
+  const Account account = End(edge);
+  EXPECT_GT(account.done, 0);
+  const RecordingContent content = ReadRecording(file_);
+  ASSERT_FALSE(content.depth.empty());
+  ASSERT_EQ(content.depth[0].pixels.size(), 640U * 480U);
+  EXPECT_EQ(content.depth[0].pixels[100 * 640 + 200], FakePlane_mm(200, 100));
+  EXPECT_THAT(edge.output(), HasSubstr("nominal"));
+  EXPECT_THAT(edge.output(), HasSubstr("serial=FAKE-1 mode=640x480@30"));
+  EXPECT_THAT(edge.output(), HasSubstr("depth    camera failed 0 times, stamped"));
+}
+
+TEST_F(CamerasTest, F01ACameraThatIsUnpluggedIsLostAndF02UsedAgainWhenItIsBack) {
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience)) << edge.output();
+  for (int time = 1; time <= 2; ++time) {
+    camera_.Plug(false);
+    ASSERT_TRUE(WaitForRepeated(edge, kLost, time)) << edge.output();
+    camera_.Plug(true);
+    ASSERT_TRUE(WaitForRepeated(edge, kWorking, time + 1)) << edge.output();
+  }
+  End(edge);
+  EXPECT_THAT(edge.output(), HasSubstr("it was unplugged"));
+  EXPECT_THAT(edge.output(), HasSubstr("depth    camera failed 2 times"));
+}
+
+TEST_F(CamerasTest, F03AnotherCameraInItsPlaceIsNotUsed) {
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience)) << edge.output();
+  camera_.Plug(false);
+  ASSERT_TRUE(edge.WaitForOutput(kLost, kPatience)) << edge.output();
+  camera_.script.serial = "FAKE-2";
+  camera_.Plug(true);
+  ASSERT_TRUE(edge.WaitForOutput("serial number \"FAKE-2\" is not used", kPatience))
+      << edge.output();
+  EXPECT_FALSE(edge.WaitForExit(Seconds(0.0)));
+  camera_.Plug(false);
+  camera_.script.serial = "FAKE-1";
+  camera_.Plug(true);
+  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  End(edge);
+}
+
+TEST_F(CamerasTest, F11BadFramesAreCountedAndTenInARowOpenTheCameraAgain) {
+  camera_.script.faults[40] = {FakeDepthFault::kShort, 1'000'000, 0};
+  camera_.Apply();
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput("10 bad frames in a row", kPatience)) << edge.output();
+  camera_.script.faults.clear();
+  camera_.Apply();
+  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  EXPECT_GE(End(edge).rejected, 10);
+}
+
+TEST_F(CamerasTest, F13ACoveredCameraIsBlind) {
+  const std::filesystem::path dark = folder_.path() / "dark.raw";
+  std::ofstream(dark, std::ios::binary) << std::string(640 * 480 * 2, '\0');
+  camera_.script.pixels = dark;
+  camera_.Apply();
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput("depth camera: blind", kPatience)) << edge.output();
+  EXPECT_GT(End(edge).done, 0) << "blind frames are recorded";
+}
+
+TEST_F(CamerasTest, F14ALibraryThatCrashesTakesOnlyItsOwnProcessDown) {
+  camera_.script.faults[40].fault = FakeDepthFault::kCrash;
+  camera_.Apply();
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput("ended by signal 11", kPatience)) << edge.output();
+  camera_.script.faults.clear();
+  camera_.Apply();
+  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  End(edge);
+}
+
+TEST_F(CamerasTest, F14ALibraryThatHangsIsReplaced) {
+  camera_.script.faults[40].fault = FakeDepthFault::kHang;
+  camera_.Apply();
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput("its library hung for 2.0 s and was killed", kPatience))
+      << edge.output();
+  camera_.script.faults.clear();
+  camera_.Apply();
+  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  End(edge);
+}
+
+TEST_F(CamerasTest, F14TheCamerasProcessDoesNotOutliveTheDaemon) {
+  Process edge(Edge(Record()));
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience)) << edge.output();
+  const std::vector<pid_t> children = ChildrenOf(edge.pid());
+  ASSERT_EQ(children.size(), 1U);
+  edge.Signal(SIGKILL);
+  ASSERT_TRUE(edge.WaitForExit(kPatience));
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  // A zombie that nobody has collected yet has no memory map.
+  const std::filesystem::path maps = "/proc/" + std::to_string(children[0]) + "/maps";
+  const auto runs = [&maps] {
+    return !std::ifstream(maps).eof() && std::ifstream(maps).peek() > 0;
+  };
+  while (runs() && std::chrono::steady_clock::now() < end) std::this_thread::yield();
+  EXPECT_FALSE(runs());
+}
+
+TEST_F(CamerasTest, AStallIsFoundInTheCamerasProcess) {
+  camera_.script.faults[40].fault = FakeDepthFault::kStall;
+  camera_.Apply();
+  Process edge(
+      Edge({"--record", file_.string(), "--set", "source.depth_camera.stall_timeout_s=0.5"}));
+  ASSERT_TRUE(edge.WaitForOutput("no frame for 0.", kPatience)) << edge.output();
+  End(edge);
+}
+
+TEST_F(CamerasTest, TheListShowsTheCamera) {
+  const Finished list =
+      RunToEnd({EdgeDaemon(), {"--list-devices"}, {"LD_LIBRARY_PATH=" FAKE_OPENNI}, {}}, kPatience);
+  EXPECT_EQ(list.status, 0);
+  EXPECT_THAT(list.output, HasSubstr("openni2, Isotherm Fake Depth Camera, serial FAKE-1"));
+  EXPECT_THAT(list.output, HasSubstr("640x480@30 1 mm"));
+  EXPECT_THAT(list.output, HasSubstr("thermal cameras:"));
+}
+
+TEST_F(CamerasTest, WithoutAnyCameraItSaysSoAndLeaves) {
+  camera_.Plug(false);
+  const Finished edge = RunToEnd(Edge(), kPatience);
+  EXPECT_EQ(edge.status, 69);
+  EXPECT_THAT(edge.output, HasSubstr("no depth camera is connected"));
+}
+
+TEST_F(CamerasTest, AModeThatTheCameraLacksEndsTheStart) {
+  const Finished edge = RunToEnd(Edge({"--set", "source.depth_camera.rate_hz=25"}), kPatience);
+  EXPECT_EQ(edge.status, 64);
+  EXPECT_THAT(edge.output, HasSubstr("the camera has no mode 640x480@25 1 mm; it has 640x480@30"));
+}
+
+}  // namespace
+}  // namespace isotherm::system_test
