@@ -34,6 +34,7 @@ void AddExportCommand(CLI::App& app, CommandBody& body);
 void AddSimulateCommand(CLI::App& app, CommandBody& body);
 void AddLimitsCommand(CLI::App& app, CommandBody& body);
 void AddTimingCommand(CLI::App& app, CommandBody& body);
+void AddDevicesCommand(CLI::App& app, CommandBody& body);
 void AddDemoCommand(CLI::App& app, CommandBody& body);
 void AddExperimentCommand(CLI::App& app, CommandBody& body);
 

@@ -43,6 +43,7 @@ int Main(int argc, char** argv) {
   app.footer(kFooter);
   CommandBody body;
   AddDemoCommand(app, body);
+  AddDevicesCommand(app, body);
   AddImportCommand(app, body);
   AddInspectCommand(app, body);
   AddReconstructCommand(app, body);
