@@ -9,10 +9,14 @@
 #include "common/base/check.h"
 #include "edge/edge_options.pb.h"
 #include "edge/thermal_camera/lepton_camera.h"
+#include "edge/thermal_camera/p2pro_camera.h"
+#include "edge/thermal_camera/p3_camera.h"
 #include "edge/usb/usb_device.h"
 
 namespace isotherm {
 namespace {
+
+using MakeCamera = std::unique_ptr<ThermalCamera> (*)(const DeviceDescription&, const Clock&);
 
 struct KnownCamera {
   std::uint16_t vendor_id;
@@ -20,12 +24,26 @@ struct KnownCamera {
   std::string_view driver;
   std::string_view product;  ///< Where the device does not name itself.
   std::string_view modes;
+  MakeCamera make;
 };
+
+template <typename Camera>
+std::unique_ptr<ThermalCamera> MakeOf(const DeviceDescription& device, const Clock& clock) {
+  return std::make_unique<Camera>(device.bus_port, clock);
+}
+
+template <int kWidth, int kHeight>
+std::unique_ptr<ThermalCamera> MakeP3(const DeviceDescription& device, const Clock& clock) {
+  return std::make_unique<P3Camera>(device.bus_port, P3Layout{kWidth, kHeight}, clock);
+}
 
 // Identifiers: vendors' descriptors, as collected in docs/thermal-cameras.md.
 constexpr KnownCamera kKnown[] = {
-    {0x1E4E, 0x0100, LeptonCamera::kDriver, "FLIR Lepton on PureThermal",
-     "160x120 or 80x60, 16 bit with telemetry, 9 Hz"},
+    {0x1E4E, 0x0100, LeptonCamera::kDriver, "FLIR Lepton on PureThermal", "160x120 or 80x60, 9 Hz",
+     MakeOf<LeptonCamera>},
+    {0x0BDA, 0x5830, P2ProCamera::kDriver, "InfiRay P2 Pro", "256x192, 25 Hz", MakeOf<P2ProCamera>},
+    {0x3474, 0x45A2, P3Camera::kDriver, "Thermal Master P3", "256x192, 25 Hz", MakeP3<256, 192>},
+    {0x3474, 0x45C2, P3Camera::kDriver, "Thermal Master P1", "160x120, 25 Hz", MakeP3<160, 120>},
 };
 
 const KnownCamera* Find(std::uint16_t vendor_id, std::uint16_t product_id) {
@@ -42,6 +60,8 @@ DeviceDescription Describe(const UsbDeviceInfo& info) {
   device.product = info.product.empty() ? std::string(known.product) : info.product;
   device.serial = info.serial;
   device.bus_port = info.bus_port;
+  device.vendor_id = info.vendor_id;
+  device.product_id = info.product_id;
   device.modes = {std::string(known.modes)};
   device.problem = info.problem;
   return device;
@@ -109,10 +129,13 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
 }
 
 std::unique_ptr<ThermalCamera> MakeThermalCamera(const DeviceDescription& device,
-                                                 const ThermalCameraOptions& /*options*/,
                                                  const Clock& clock) {
-  CHECK(device.driver == LeptonCamera::kDriver);
-  return std::make_unique<LeptonCamera>(device.bus_port, clock);
+  const auto known =
+      std::find_if(std::begin(kKnown), std::end(kKnown), [&device](const KnownCamera& camera) {
+        return camera.vendor_id == device.vendor_id && camera.product_id == device.product_id;
+      });
+  CHECK(known != std::end(kKnown));
+  return known->make(device, clock);
 }
 
 }  // namespace isotherm

@@ -23,9 +23,9 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
                                               const ThermalCameraOptions& options,
                                               const std::string& pinned_serial);
 
-/// The driver for `device`, not opened yet. `clock` must outlive it.
+/// The driver for `device`, which ListThermalCameras has found; not opened yet. `clock` must
+/// outlive it.
 std::unique_ptr<ThermalCamera> MakeThermalCamera(const DeviceDescription& device,
-                                                 const ThermalCameraOptions& options,
                                                  const Clock& clock);
 
 }  // namespace isotherm

@@ -48,7 +48,8 @@ struct ThermalCameraInfo {
   /// How much the device counter grows from picture to picture; 0 = there is no counter, and
   /// pictures are told apart by their pixels.
   int counter_step = 0;
-  int native_repeats = 1;  ///< How often each picture is sent: 1 = once.
+  int native_repeats = 1;     ///< How often each picture is sent: 1 = once.
+  Nanoseconds start_time{0};  ///< From Open until the first picture must be there.
 };
 
 /// One thermal camera: how its bytes come and what they mean. Thread-bound.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -38,8 +39,8 @@ std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions&
                                                      const Clock& clock) {
   ThermalCameraSource::Cameras cameras;
   cameras.list = ListThermalCameras;
-  cameras.make = [options, &clock](const DeviceDescription& device) {
-    return MakeThermalCamera(device, options, clock);
+  cameras.make = [&clock](const DeviceDescription& device) {
+    return MakeThermalCamera(device, clock);
   };
   return std::make_unique<ThermalCameraSource>(options, clock, std::move(cameras));
 }
@@ -74,9 +75,10 @@ Status ThermalCameraSource::Open() {
   serial_ = info.serial;
   name_ = fmt::format("thermal camera {}", info.driver);
   novelty_.emplace(info.counter_step, info.native_repeats);
-  last_frame_at_ = clock_.SteadyNow();
+  last_frame_at_ = clock_.SteadyNow() + info.start_time;
   frozen_ = false;
   incomplete_ = false;
+  incomplete_since_ = 0;
   LOG(Thermal, Info) << name_ << " opened, product=\"" << info.product << "\" serial=\""
                      << info.serial << "\" port=" << info.bus_port << " width=" << info.width
                      << " height=" << info.height;
@@ -109,6 +111,7 @@ Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
 Result<SourceItem> ThermalCameraSource::Judge(RawThermalFrame raw) {
   if (raw.incomplete) {
     ++counts_.incomplete;
+    ++incomplete_since_;
     if (!std::exchange(incomplete_, true)) {
       LOG(Thermal, Warning) << name_ << ": incomplete frame, number=" << next_frame_number_;
     }
@@ -123,8 +126,11 @@ Result<SourceItem> ThermalCameraSource::Judge(RawThermalFrame raw) {
                            "source.thermal_camera.kelvin_per_count and offset_kelvin"));
   }
   const Novelty novelty = novelty_->Process(raw);
-  counts_.lost += novelty.lost;
-  next_frame_number_ += novelty.lost;
+  // Incomplete frames have their numbers already.
+  const std::uint64_t lost = novelty.lost - std::min(novelty.lost, incomplete_since_);
+  incomplete_since_ = 0;
+  counts_.lost += lost;
+  next_frame_number_ += lost;
   // What the camera declares as a correction is delivered as that, whatever it shows meanwhile.
   if (novelty.kind == Novelty::Kind::kRepeat && !IsCorrecting(raw)) {
     ++counts_.repeated;
@@ -140,7 +146,8 @@ Result<SourceItem> ThermalCameraSource::Judge(RawThermalFrame raw) {
       LOG(Thermal, Warning) << name_ << ": the picture is frozen, number=" << next_frame_number_;
     }
     // A camera that would say so is not correcting itself: something is wrong.
-    const NucState state = raw.nuc ? NucState::kError : NucState::kInProgress;
+    const bool would_say = raw.nuc && raw.nuc->source == NucSource::kInBand;
+    const NucState state = would_say ? NucState::kError : NucState::kInProgress;
     raw.nuc = CameraNuc{state, NucSource::kInferred, std::nullopt};
     raw.shutter_closed = true;
   }

@@ -80,7 +80,8 @@ class ThermalCameraSource final : public FrameSource {
   SteadyTime last_frame_at_{};
   std::uint64_t next_frame_number_ = 0;
   bool frozen_ = false;
-  bool incomplete_ = false;
+  bool incomplete_ = false;             ///< The last frame was.
+  std::uint64_t incomplete_since_ = 0;  ///< Since the last whole frame.
   ThermalCameraCounts counts_;
 };
 

@@ -149,7 +149,10 @@ class UsbDevice::Impl {
   Impl(Context context, const Clock& clock) : context_(std::move(context)), clock_(clock) {}
   ~Impl() {
     stream_.reset();
-    for (const int interface : claimed_) libusb_release_interface(handle_.get(), interface);
+    while (!claimed_.empty()) Release(claimed_.back());
+    if (!unsound_) return;
+    static_cast<void>(handle_.release());
+    static_cast<void>(context_.release());
   }
 
   Status Open(const std::string& bus_port) {
@@ -180,9 +183,24 @@ class UsbDevice::Impl {
     return claimed;
   }
 
-  const Context context_;
+  void Release(int interface) {
+    std::erase(claimed_, interface);
+    libusb_release_interface(handle_.get(), interface);
+  }
+
+  Status SetAlternate(int interface, int alternate) {
+    const int code = libusb_set_interface_alt_setting(handle_.get(), interface, alternate);
+    if (code == LIBUSB_ERROR_NO_DEVICE) unsound_ = true;
+    return Check(
+        code, fmt::format("choosing alternate setting {} of interface {}", alternate, interface));
+  }
+
+  Context context_;
   const Clock& clock_;
   Handle handle_;
+  /// libusb 1.0.26 unlocks a mutex that it has not locked if an alternate setting is asked of a
+  /// device that was just unplugged, and then aborts when the device is closed: it never is.
+  bool unsound_ = false;
   UsbDeviceInfo info_;
   UsbConfiguration configuration_;
   bool high_speed_ = false;
@@ -211,10 +229,9 @@ Nanoseconds UsbDevice::bus_interval() const {
 
 Status UsbDevice::Claim(int interface) { return impl_->Claim(interface); }
 
+void UsbDevice::Release(int interface) { impl_->Release(interface); }
 Status UsbDevice::SetAlternate(int interface, int alternate) {
-  return impl_->Check(
-      libusb_set_interface_alt_setting(impl_->handle_.get(), interface, alternate),
-      fmt::format("choosing alternate setting {} of interface {}", alternate, interface));
+  return impl_->SetAlternate(interface, alternate);
 }
 
 Status UsbDevice::ControlOut(const UsbControl& control, Bytes data) {

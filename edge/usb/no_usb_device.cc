@@ -28,6 +28,7 @@ const UsbConfiguration& UsbDevice::configuration() const { return impl_->configu
 const Clock& UsbDevice::clock() const { return impl_->clock; }
 Nanoseconds UsbDevice::bus_interval() const { return Nanoseconds(125'000); }
 Status UsbDevice::Claim(int) { return NoUsb(); }
+void UsbDevice::Release(int) {}
 Status UsbDevice::SetAlternate(int, int) { return NoUsb(); }
 Status UsbDevice::ControlOut(const UsbControl&, Bytes) { return NoUsb(); }
 Result<std::vector<std::uint8_t>> UsbDevice::ControlIn(const UsbControl&, std::size_t) {

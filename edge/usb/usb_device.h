@@ -78,6 +78,8 @@ class UsbDevice {
 
   /// Takes an interface from the kernel's driver; it gets it back at the end.
   Status Claim(int interface);
+  /// Gives it back, which brings it to its alternate setting 0.
+  void Release(int interface);
   Status SetAlternate(int interface, int alternate);
   Status ControlOut(const UsbControl& control, Bytes data);
   /// Reads at most `size` bytes.

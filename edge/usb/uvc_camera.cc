@@ -67,10 +67,8 @@ bool UvcCamera::Has(const UvcMode& mode) const { return FindFormat(mode) != null
 
 double UvcCamera::frame_rate_hz() const { return interval_ == 0 ? 0.0 : 1e7 / interval_; }
 
-Status UvcCamera::ClaimInterfaces() {
-  if (claimed_) return OkStatus();
-  ISOTHERM_RETURN_IF_ERROR(device_->Claim(function_.control_interface));
-  ISOTHERM_RETURN_IF_ERROR(device_->Claim(function_.streaming_interface));
+Status UvcCamera::ClaimControl() {
+  if (!claimed_) ISOTHERM_RETURN_IF_ERROR(device_->Claim(function_.control_interface));
   claimed_ = true;
   return OkStatus();
 }
@@ -83,7 +81,9 @@ Status UvcCamera::Start(const UvcMode& mode) {
                                 mode.four_characters));
   }
   Stop();
-  ISOTHERM_RETURN_IF_ERROR(ClaimInterfaces());
+  ISOTHERM_RETURN_IF_ERROR(ClaimControl());
+  ISOTHERM_RETURN_IF_ERROR(device_->Claim(function_.streaming_interface));
+  started_ = true;
   ISOTHERM_RETURN_IF_ERROR(Negotiate(*format, *FindFrame(*format, mode)));
   const Result<UvcAlternate> alternate = ChooseAlternate();
   if (!alternate) return alternate.error();
@@ -91,7 +91,6 @@ Status UvcCamera::Start(const UvcMode& mode) {
     ISOTHERM_RETURN_IF_ERROR(
         device_->SetAlternate(function_.streaming_interface, alternate->number));
   }
-  started_ = true;
   assembler_.emplace(frame_bytes_);
   return device_->StartStream(PlanFor(*alternate), [this](const UsbPacket& packet) {
     if (packet.lost) assembler_->NoteLostPacket();
@@ -162,29 +161,31 @@ UsbStreamPlan UvcCamera::PlanFor(const UvcAlternate& alternate) const {
 }
 
 Result<std::optional<UvcFrame>> UvcCamera::Read(Nanoseconds timeout) {
-  if (!started_) return Err(FailedPrecondition("the camera was not started"));
+  if (!assembler_) return Err(FailedPrecondition("the camera was not started"));
   const Clock& clock = device_->clock();
   const SteadyTime deadline = clock.SteadyNow() + timeout;
   while (true) {
     if (std::optional<UvcFrame> frame = assembler_->Pop()) return frame;
     const Nanoseconds left = deadline - clock.SteadyNow();
     if (left <= Nanoseconds(0)) return std::optional<UvcFrame>();
-    if (Status pumped = device_->Pump(left); !pumped.ok()) return Err(std::move(pumped));
+    Status pumped = device_->Pump(left);
+    // What came before the failure comes first.
+    if (!pumped.ok() && !assembler_->has_frame()) return Err(std::move(pumped));
   }
 }
 
 void UvcCamera::Stop() {
   if (!std::exchange(started_, false)) return;
   device_->StopStream();
-  // Frees the bandwidth; a camera that is gone has none.
-  static_cast<void>(device_->SetAlternate(function_.streaming_interface, 0));
+  // Frees the bandwidth: the interface goes back to its alternate setting 0.
+  device_->Release(function_.streaming_interface);
 }
 
 Result<std::vector<std::uint8_t>> UvcCamera::GetControl(const UvcGuid& guid, std::uint8_t selector,
                                                         std::size_t size) {
   const std::optional<std::uint8_t> unit = function_.UnitWithGuid(guid);
   if (!unit) return Err(NotFound("the camera has no such extension unit"));
-  if (Status claimed = ClaimInterfaces(); !claimed.ok()) return Err(std::move(claimed));
+  if (Status claimed = ClaimControl(); !claimed.ok()) return Err(std::move(claimed));
   const UsbControl control{kGetInterface, kGetCurrent, static_cast<std::uint16_t>(selector << 8),
                            Index(function_.control_interface, *unit)};
   Result<std::vector<std::uint8_t>> answer = device_->ControlIn(control, size);
@@ -198,7 +199,7 @@ Result<std::vector<std::uint8_t>> UvcCamera::GetControl(const UvcGuid& guid, std
 Status UvcCamera::SetControl(const UvcGuid& guid, std::uint8_t selector, Bytes data) {
   const std::optional<std::uint8_t> unit = function_.UnitWithGuid(guid);
   if (!unit) return NotFound("the camera has no such extension unit");
-  ISOTHERM_RETURN_IF_ERROR(ClaimInterfaces());
+  ISOTHERM_RETURN_IF_ERROR(ClaimControl());
   const UsbControl control{kSetInterface, kSetCurrent, static_cast<std::uint16_t>(selector << 8),
                            Index(function_.control_interface, *unit)};
   Status sent = device_->ControlOut(control, data);

@@ -50,7 +50,7 @@ class UvcCamera {
  private:
   UvcCamera(std::unique_ptr<UsbDevice> device, UvcFunction function);
   const UvcFormat* FindFormat(const UvcMode& mode) const;
-  Status ClaimInterfaces();
+  Status ClaimControl();
   Status Negotiate(const UvcFormat& format, const UvcFrameSize& frame);
   Result<UvcAlternate> ChooseAlternate() const;
   UsbStreamPlan PlanFor(const UvcAlternate& alternate) const;

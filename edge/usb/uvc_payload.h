@@ -51,6 +51,7 @@ class UvcAssembler {
   void NoteLostPacket();
   /// The next finished frame. At most `kMostFrames` wait; older ones are dropped and counted.
   std::optional<UvcFrame> Pop();
+  bool has_frame() const { return !finished_.empty(); }
 
   std::uint64_t bad_payloads() const { return bad_payloads_; }
   std::uint64_t dropped_frames() const { return dropped_frames_; }

@@ -128,6 +128,7 @@ class EmulatedBus::Impl {
   UMockdevIoctlClient* reaping_ = nullptr;  ///< Waits for a finished request, ...
   std::uintptr_t reap_into_ = 0;            ///< ... whose address goes here.
   Nanoseconds reap_until_{0};
+  bool found_nothing_ = false;  ///< The last time that it was asked.
   std::shared_ptr<EmulatedDevice> comes_back_;
   std::optional<Nanoseconds> comes_back_at_;
   std::jthread thread_;
@@ -240,9 +241,11 @@ int EmulatedBus::Impl::DoSmall(unsigned long request, std::uintptr_t argument) {
                             static_cast<int>(setting.altsetting));
       return 0;
     }
+    case USBDEVFS_RELEASEINTERFACE:
+      device_->SetAlternate(static_cast<int>(memory.Get<unsigned>(argument)), 0);
+      return 0;
     case USBDEVFS_DISCONNECT_CLAIM:
     case USBDEVFS_CLAIMINTERFACE:
-    case USBDEVFS_RELEASEINTERFACE:
     case USBDEVFS_CLEAR_HALT:
     case USBDEVFS_RESET:
       return 0;
@@ -257,7 +260,10 @@ int EmulatedBus::Impl::DoSmall(unsigned long request, std::uintptr_t argument) {
 void EmulatedBus::Impl::AnswerReap() {
   if (reaping_ == nullptr) return;
   const std::optional<std::uintptr_t> finished = requests_ ? requests_->Reap() : std::nullopt;
-  if (!finished && !gone_ && Now() < reap_until_) return;
+  // The first time there is nothing it says so at once, as a kernel would: a client that finds
+  // something each time it asks would never look up.
+  const bool at_once = !std::exchange(found_nothing_, !finished);
+  if (!finished && !gone_ && !at_once && Now() < reap_until_) return;
   UMockdevIoctlClient* client = std::exchange(reaping_, nullptr);
   if (finished) {
     ClientMemory(*child_).Put(reap_into_, *finished);
