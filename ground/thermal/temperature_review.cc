@@ -7,6 +7,8 @@
 namespace isotherm {
 namespace {
 
+/// How far edges are rounded, voxels.
+constexpr float kBesideVox = 2.0F;
 /// Cosine of 20 degrees. Faces further apart than this are different ones: several times the noise
 /// of normals.
 constexpr float kOtherFaceCosine = 0.9396926F;
@@ -57,8 +59,26 @@ bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal,
 TemperatureReview::TemperatureReview(const ThermalOptions& options)
     : limits_(options), keep_bad_(options.keep_bad()) {}
 
+bool TemperatureReview::IsBesideSteepFace(const ConditionRecord& record,
+                                          const Eigen::Vector3f& normal, const TsdfVolume& tsdf,
+                                          const GridIndex& voxel) const {
+  const Eigen::Vector3f to_camera = DecodeDirection(record.direction);
+  const Eigen::Vector3f right = normal.unitOrthogonal();
+  const Eigen::Vector3f down = normal.cross(right);
+  for (const Eigen::Vector3f& side :
+       {right, Eigen::Vector3f(-right), down, Eigen::Vector3f(-down)}) {
+    const GridIndex beside =
+        voxel + (kBesideVox * side).array().round().cast<std::int32_t>().matrix();
+    const auto other = NormalAt(tsdf, beside);
+    if (other && other->dot(normal) < kOtherFaceCosine &&
+        other->dot(to_camera) < limits_.cosine_max_angle)
+      return true;
+  }
+  return false;
+}
+
 std::int64_t TemperatureReview::Review(std::int32_t block, const TsdfVolume& tsdf,
-                                       ThermalVolume& thermal) const {
+                                       ThermalVolume& thermal, bool is_final) const {
   if (thermal.records() == nullptr || keep_bad_) return 0;
   std::int64_t dropped = 0;
   const auto voxels = thermal.voxels(block);
@@ -70,9 +90,13 @@ std::int64_t TemperatureReview::Review(std::int32_t block, const TsdfVolume& tsd
       ThermalVoxel& voxel = voxels[row * RecordRow::kVoxels + x];
       ConditionRecord& record = records->conditions[x];
       if (!voxel.measured() || record.empty()) continue;
-      const auto normal = NormalAt(tsdf, base + GridIndex(x, row % kBlockSide, row / kBlockSide));
+      const GridIndex at = base + GridIndex(x, row % kBlockSide, row / kBlockSide);
+      const auto normal = NormalAt(tsdf, at);
       if (!normal) continue;
-      if (BelongsToFace(record, *normal, limits_.cosine_max_angle)) continue;
+      if (BelongsToFace(record, *normal, limits_.cosine_max_angle) &&
+          !(is_final && IsBesideSteepFace(record, *normal, tsdf, at))) {
+        continue;
+      }
       // The classes stay, but for the angle's: a new measurement of any kind replaces it.
       voxel.bits = (voxel.bits & 0xFFF0U) | static_cast<std::uint32_t>(ConditionClass::kBad);
       record = ConditionRecord();

@@ -17,16 +17,22 @@ bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal,
 /// judged by what the surface looked like then; of many noisy judgements the kindest wins
 /// (algorithm 6), so that steep faces and edges keep values that never were good. A temperature is
 /// dropped if its voxel's surface turns out to have been seen at a bad angle, or turned away from
-/// the surface that was seen: it belongs to another face. Needs records; without, does nothing.
+/// the surface that was seen: it belongs to another face. The final review also drops what lies
+/// beside an edge to a face that was seen at a bad angle: the model rounds edges by a voxel or two,
+/// and whose radiation a pixel there received is not known. Needs records; without, does nothing.
 /// Thread-safe for different blocks (immutable).
 class TemperatureReview {
  public:
   explicit TemperatureReview(const ThermalOptions& options);
 
   /// Returns how many temperatures of the block were dropped. What is dropped keeps its classes.
-  std::int64_t Review(std::int32_t block, const TsdfVolume& tsdf, ThermalVolume& thermal) const;
+  std::int64_t Review(std::int32_t block, const TsdfVolume& tsdf, ThermalVolume& thermal,
+                      bool is_final = false) const;
 
  private:
+  bool IsBesideSteepFace(const ConditionRecord& record, const Eigen::Vector3f& normal,
+                         const TsdfVolume& tsdf, const GridIndex& voxel) const;
+
   const ConditionLimits limits_;
   const bool keep_bad_;
 };

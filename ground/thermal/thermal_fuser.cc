@@ -323,7 +323,7 @@ std::int64_t ThermalFuser::ReviewAll(const TsdfVolume& tsdf, ThermalVolume& ther
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
     const int end = std::min(count, (task + 1) * kBlocksPerTask);
     for (int block = task * kBlocksPerTask; block < end; ++block)
-      dropped += review_.Review(block, tsdf, thermal);
+      dropped += review_.Review(block, tsdf, thermal, /*is_final=*/true);
   });
   return dropped;
 }
