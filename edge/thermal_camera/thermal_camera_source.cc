@@ -198,6 +198,21 @@ Status ThermalCameraSource::Hangs(const std::string& what, Nanoseconds duration)
                                  ToSeconds(duration)));
 }
 
+std::vector<CameraDescription> ThermalCameraSource::cameras() const {
+  if (!camera_) return {};
+  const ThermalCameraInfo& info = camera_->info();
+  CameraDescription description;
+  description.sensor = Sensor::kThermal;
+  description.driver = info.driver;
+  description.model = info.product;
+  description.serial = info.serial;
+  description.width = info.width;
+  description.height = info.height;
+  description.rate_hz = info.rate_hz;
+  description.settings = "port " + info.bus_port;
+  return {description};
+}
+
 Status ThermalCameraSource::Control(const CameraControl& control) {
   if (!camera_) return Unavailable(name_ + " is not open");
   if (std::holds_alternative<TriggerNuc>(control)) return camera_->TriggerNuc();

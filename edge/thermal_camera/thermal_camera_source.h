@@ -56,6 +56,7 @@ class ThermalCameraSource final : public FrameSource {
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override;
   Status Control(const CameraControl& control) override;
+  std::vector<CameraDescription> cameras() const override;
 
   const ThermalCameraCounts& counts() const { return counts_; }
 

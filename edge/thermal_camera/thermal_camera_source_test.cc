@@ -291,6 +291,16 @@ TEST_F(ThermalCameraSourceTest, CameraThatMayNotBeOpenedSaysWhy) {
   EXPECT_THAT(Make()->Open().message(), HasSubstr("Access denied"));
 }
 
+TEST_F(ThermalCameraSourceTest, DescribesTheOpenedCamera) {
+  const auto source = Make();
+  EXPECT_TRUE(source->cameras().empty());
+  ASSERT_TRUE(source->Open().ok());
+  ASSERT_EQ(source->cameras().size(), 1U);
+  EXPECT_EQ(source->cameras()[0].sensor, Sensor::kThermal);
+  EXPECT_EQ(source->cameras()[0].serial, "A1");
+  EXPECT_EQ(source->cameras()[0].width, 2);
+}
+
 TEST_F(ThermalCameraSourceTest, OrdersReachTheCamera) {
   options_.set_gain(LOW_GAIN);
   const auto source = Open();
