@@ -43,7 +43,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       depth_timestamper_(options.timestamper(), Sensor::kDepth, Nanoseconds(0)),
       thermal_timestamper_(options.timestamper(), Sensor::kThermal,
                            FromSeconds(parts.rig_thermal_delay_s)),
-      nuc_supervisor_(options.nuc()),
+      nuc_(options, parts.source),
       blind_detector_(options.frame_check()),
       feedback_(TimeBaseOf(options.source())),
       spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
@@ -112,6 +112,7 @@ double EdgePipeline::spool_fill_ratio() const {
 
 void EdgePipeline::Capture(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
+    ServeNucCommands();
     Result<SourceItem> item = source_.Read(stop);
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
     if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
@@ -119,7 +120,14 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
   }
   source_.Close();
   while (std::optional<RawFrame> raw = source_.TakeUnread()) Process(std::move(*raw), stop);
+  nuc_.End();
+  ServeNucCommands();
   source_ended_ = true;
+}
+
+void EdgePipeline::ServeNucCommands() {
+  while (nuc_commands_.size() > 0) nuc_.Obey(*nuc_commands_.Pop({}));
+  for (CommandResult& answer : nuc_.TakeAnswers()) nuc_answers_.Push(std::move(answer), {});
 }
 
 void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
@@ -152,7 +160,7 @@ void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
 void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   const Stamp stamp = thermal_timestamper_.Process(raw, raw.arrival_wall);
   NoteStamped(raw);
-  const NucStatus nuc = nuc_supervisor_.Update(stamp.time, raw.shutter_closed);
+  const NucStatus nuc = nuc_.Process(raw, stamp.time);
   EncodedThermalFrame frame;
   frame.header = Header(raw, stamp);
   frame.nuc_state = nuc.state;
@@ -161,7 +169,7 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   frame.valid = nuc.valid;
   frame.housekeeping = raw.housekeeping;
   frame.image = thermal_encoder_.Encode(raw.pixels);
-  nuc_state_ = nuc.state;
+  nuc_report_.Set(nuc_.Report());
   Emit({std::move(frame), raw.arrival_wall}, stop);
 }
 
@@ -176,6 +184,7 @@ FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const 
 
 void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
   encoded.outside_poses = std::exchange(outside_poses_, {});
+  encoded.log = nuc_.TakeLog();
   const auto frame = std::make_shared<const EncodedFrame>(std::move(encoded));
   if (spool_ && !spool_queue_.Push(frame, stop)) {
     account_.Count(frame->sensor(), FrameFate::kRecordQueueFull);
@@ -218,28 +227,37 @@ void EdgePipeline::Publish(const std::stop_token& stop) {
 }
 
 void EdgePipeline::AnswerCommands() {
-  while (commands_.size() > 0) {
-    const Status answered = publisher_.Answer(Obey(*commands_.Pop({})));
-    if (!answered.ok()) {
-      LOG(Edge, Warning) << "command not answered: " << answered.message();
-    }
+  while (commands_.size() > 0) Obey(*commands_.Pop({}));
+  while (nuc_answers_.size() > 0) Answer(*nuc_answers_.Pop({}));
+  // Nobody serves these any more.
+  while (source_ended_ && nuc_commands_.size() > 0) {
+    Answer({nuc_commands_.Pop({})->number, CommandOutcome::kRefused, "the source has ended"});
   }
 }
 
-CommandResult EdgePipeline::Obey(const Command& command) {
+void EdgePipeline::Answer(const CommandResult& result) {
+  const Status answered = publisher_.Answer(result);
+  if (!answered.ok()) {
+    LOG(Edge, Warning) << "command not answered: " << answered.message();
+  }
+}
+
+void EdgePipeline::Obey(const Command& command) {
   switch (command.kind) {
     case CommandKind::kSetPublishPolicy:
       publisher_.SetPolicy(command.publish_policy);
-      return {command.number, CommandOutcome::kDone, ""};
+      return Answer({command.number, CommandOutcome::kDone, ""});
     case CommandKind::kTriggerNuc:
     case CommandKind::kSetNucPolicy:
-      return {command.number, CommandOutcome::kRefused, "the source has no shutter to command"};
+    case CommandKind::kHoldNuc:
+      static_cast<void>(nuc_commands_.Push(command, {}));
+      return;
     case CommandKind::kStartScan:
     case CommandKind::kStopScan:
       break;
   }
-  return {command.number, CommandOutcome::kRefused,
-          "a scan lasts from the start to the end of isotherm-edge"};
+  Answer({command.number, CommandOutcome::kRefused,
+          "a scan lasts from the start to the end of isotherm-edge"});
 }
 
 }  // namespace isotherm

@@ -10,13 +10,14 @@
 
 #include "common/codec/codec.h"
 #include "common/concurrency/bounded_queue.h"
+#include "common/concurrency/latest_value.h"
 #include "common/time/clock.h"
 #include "common/transport/messages.h"
 #include "edge/camera_health.h"
 #include "edge/encoded_frame.h"
 #include "edge/feedback_monitor.h"
 #include "edge/frame_account.h"
-#include "edge/nuc/nuc_supervisor.h"
+#include "edge/nuc_control.h"
 #include "edge/publisher/publisher.h"
 #include "edge/source/blind_detector.h"
 #include "edge/source/frame_source.h"
@@ -41,7 +42,7 @@ struct EdgeParts {
 
 /// The straight line of the edge and its threads:
 ///
-///   FrameSource -> Timestamper -> NucSupervisor -> Codec -+-> queue -> Spool
+///   FrameSource -> Timestamper -> NucControl ----> Codec -+-> queue -> Spool
 ///    (supervised)                 (thermal only)          +-> queue -> Publisher
 ///   |---------------- capture thread --------------------|   spool and publish threads
 ///
@@ -65,8 +66,8 @@ class EdgePipeline {
 
   /// The source has ended and each of its frames has met its fate. Thread-safe.
   bool finished() const;
-  /// The newest thermal frame's NUC state. Thread-safe.
-  NucState nuc_state() const { return nuc_state_; }
+  /// The correction as of the newest thermal frame. Thread-safe.
+  NucReport nuc() const { return nuc_report_.Get().value_or(NucReport()); }
   /// What the ground says. Thread-safe.
   const FeedbackMonitor& feedback() const { return feedback_; }
   /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
@@ -87,7 +88,10 @@ class EdgePipeline {
   void Record(const std::stop_token& stop);
   void RecordFeedback();
   void Publish(const std::stop_token& stop);
-  CommandResult Obey(const Command& command);
+  /// On the capture thread, which alone talks to the camera.
+  void ServeNucCommands();
+  void Obey(const Command& command);
+  void Answer(const CommandResult& result);
 
   FrameSource& source_;
   Publisher& publisher_;
@@ -99,7 +103,7 @@ class EdgePipeline {
 
   Timestamper depth_timestamper_;
   Timestamper thermal_timestamper_;
-  NucSupervisor nuc_supervisor_;
+  NucControl nuc_;
   BlindDetector blind_detector_;
   DepthEncoder depth_encoder_;
   ThermalEncoder thermal_encoder_;
@@ -109,7 +113,7 @@ class EdgePipeline {
   std::uint64_t outside_poses_published_ = 0;
 
   std::atomic<bool> source_ended_{false};
-  std::atomic<NucState> nuc_state_{NucState::kUnknown};
+  LatestValue<NucReport> nuc_report_;
   bool stopped_ = false;
   Status recording_status_;
 
@@ -121,6 +125,8 @@ class EdgePipeline {
   /// Of several seconds, for the spool thread to take along with the frames.
   BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
   BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest};
+  BoundedQueue<Command> nuc_commands_{16, OverflowPolicy::kDropOldest};
+  BoundedQueue<CommandResult> nuc_answers_{32, OverflowPolicy::kDropOldest};
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;
   BoundedQueue<EncodedFramePtr> publish_queue_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "edge/edge_options.pb.h"
@@ -20,8 +21,11 @@ class EdgePipelineTest : public testing::Test {
   EdgePipelineTest() { options_.mutable_source()->set_rate(0); }
 
   void Start(std::string_view script, bool record = true) {
+    auto camera = std::make_unique<FakeSource>(script);
+    camera->control_answer = control_answer_;
+    camera_ = camera.get();
     source_ = std::make_unique<SupervisedSource>(
-        std::make_unique<FakeSource>(script), options_.frame_check(), clock_,
+        std::move(camera), options_.frame_check(), clock_,
         [this](Sensor sensor) { account_.Count(sensor, FrameFate::kCaptured); },
         [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
     ASSERT_TRUE(source_->Open().ok());
@@ -41,6 +45,17 @@ class EdgePipelineTest : public testing::Test {
                             .rig_thermal_delay_s = rig_thermal_delay_s_});
     pipeline_->StartReceiving();
     pipeline_->StartCapture();
+  }
+  std::vector<CommandResult> AwaitAnswers(std::size_t count) {
+    while (publisher_.answers().size() < count) {
+      pipeline_->AnswerCommands();
+      std::this_thread::yield();
+    }
+    return publisher_.answers();
+  }
+  static CommandResult Find(const std::vector<CommandResult>& answers, std::uint64_t number) {
+    const auto found = std::ranges::find(answers, number, &CommandResult::number);
+    return found == answers.end() ? CommandResult{} : *found;
   }
   /// The test's own time limit is the bound.
   Status RunToTheEnd() {
@@ -63,6 +78,8 @@ class EdgePipelineTest : public testing::Test {
   double rig_thermal_delay_s_ = 0.0;
   FrameAccount account_;
   CameraHealth health_;
+  Status control_answer_ = Unavailable("no shutter");
+  FakeSource* camera_ = nullptr;
   std::unique_ptr<SupervisedSource> source_;
   std::unique_ptr<EdgePipeline> pipeline_;
 };
@@ -251,16 +268,80 @@ TEST_F(EdgePipelineTest, EveryCommandIsAnswered) {
                           .publish_policy = PublishPolicy::kLossless},
                          {.number = 3, .kind = CommandKind::kStopScan}};
   Start("d");
-  while (publisher_.answers().size() < 3) {
-    pipeline_->AnswerCommands();
+  const std::vector<CommandResult> answers = AwaitAnswers(3);
+  EXPECT_EQ(Find(answers, 1).outcome, CommandOutcome::kRefused) << "there is no thermal camera";
+  EXPECT_FALSE(Find(answers, 1).text.empty());
+  EXPECT_EQ(Find(answers, 2).outcome, CommandOutcome::kDone);
+  EXPECT_EQ(publisher_.policy(), PublishPolicy::kLossless);
+  EXPECT_EQ(Find(answers, 3).outcome, CommandOutcome::kRefused);
+}
+
+TEST_F(EdgePipelineTest, ANucThatIsAskedForReachesTheCamera) {
+  control_answer_ = OkStatus();
+  publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc}};
+  // More than the test waits for; unpaced playback waits for the queues.
+  Start("1000000*t", false);
+  const CommandResult answer = Find(AwaitAnswers(1), 1);
+  // Asked before the first frame came, or after.
+  if (answer.outcome == CommandOutcome::kDone) {
+    EXPECT_EQ(answer.text, "the camera has the order");
+  } else {
+    EXPECT_EQ(answer.text, "no thermal frame has come yet");
+  }
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  const auto triggers = std::ranges::count_if(camera_->controls, [](const CameraControl& control) {
+    return std::holds_alternative<TriggerNuc>(control);
+  });
+  EXPECT_EQ(triggers > 0, answer.outcome == CommandOutcome::kDone);
+}
+
+TEST_F(EdgePipelineTest, WithoutACameraToCommandNucCommandsAreRefusedWithAReason) {
+  options_.mutable_source()->set_kind(REPLAY);
+  publisher_.commands = {
+      {.number = 1, .kind = CommandKind::kTriggerNuc},
+      {.number = 2, .kind = CommandKind::kHoldNuc, .hold_s = 5.0},
+      {.number = 3, .kind = CommandKind::kSetNucPolicy, .nuc_policy = NucPolicy::kManual}};
+  Start("1000000*t", false);
+  for (const CommandResult& answer : AwaitAnswers(3)) {
+    EXPECT_EQ(answer.outcome, CommandOutcome::kRefused);
+    EXPECT_EQ(answer.text, "a recording is played: there is no shutter to command");
+  }
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  EXPECT_TRUE(camera_->controls.empty());
+}
+
+TEST_F(EdgePipelineTest, F07NucEventsAreRecorded) {
+  Start("2*t 4*t:shut 30*t");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  std::string log;
+  for (const RecordedLog& line : recording_.log) log += line.level + " " + line.text + "\n";
+  EXPECT_NE(log.find("info nuc: shutter closed, not ordered by us, known by its frames"),
+            std::string::npos)
+      << log;
+  EXPECT_NE(log.find("info nuc: shutter open after 0.10 s"), std::string::npos) << log;
+  ASSERT_EQ(recording_.nuc_events.size(), 1U);
+  EXPECT_EQ(pipeline_->nuc().state, NucState::kIdle);
+  EXPECT_EQ(pipeline_->nuc().closings_per_minute, 1U);
+}
+
+TEST_F(EdgePipelineTest, F05FrozenFramesAreNotFusedAndTheCameraIsOpenedAgain) {
+  // 2.5 s of the same picture; the fourth of it is known to be frozen.
+  Start("10*t 100*t:same 60*t");
+  // The supervised source waits before it opens the camera again.
+  while (!pipeline_->finished()) {
+    clock_.Advance(std::chrono::milliseconds(100));
     std::this_thread::yield();
   }
-  const std::vector<CommandResult> answers = publisher_.answers();
-  EXPECT_EQ(answers[0].outcome, CommandOutcome::kRefused);
-  EXPECT_FALSE(answers[0].text.empty());
-  EXPECT_EQ(answers[1].outcome, CommandOutcome::kDone);
-  EXPECT_EQ(publisher_.policy(), PublishPolicy::kLossless);
-  EXPECT_EQ(answers[2].number, 3U);
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  const std::vector<EncodedThermalFrame> thermal = publisher_.thermal();
+  for (std::size_t i = 0; i < thermal.size(); ++i) {
+    // Then half a second to settle.
+    EXPECT_EQ(thermal[i].valid, i < 12 || i >= 130) << i;
+  }
+  EXPECT_EQ(thermal[40].nuc_source, NucSource::kInferred);
+  EXPECT_EQ(thermal[105].nuc_state, NucState::kError);
+  EXPECT_EQ(camera_->opened(), 2);
+  EXPECT_EQ(source_->reopened(), 1U);
 }
 
 }  // namespace

@@ -10,26 +10,16 @@
 namespace isotherm {
 namespace {
 
-std::string_view ToText(NucState state) {
-  switch (state) {
-    case NucState::kUnknown:
-      return "unknown";
-    case NucState::kIdle:
-      return "idle";
-    case NucState::kDesired:
-      return "desired";
-    case NucState::kImminent:
-      return "imminent";
-    case NucState::kInProgress:
-      return "in progress";
-    case NucState::kSettling:
-      return "settling";
-    case NucState::kBlocked:
-      return "blocked";
-    case NucState::kError:
-      return "error";
+/// "idle", "desired (held for 20 s: ...)", "error, STORM: 9/min, 41 % closed".
+std::string NucText(const NucReport& nuc) {
+  std::string text(ToString(nuc.state));
+  if (!nuc.reason.empty()) text += fmt::format(" ({})", nuc.reason);
+  if (nuc.storm) {
+    text += fmt::format(", STORM: {}/min, {:.0f} % closed", nuc.closings_per_minute,
+                        100.0 * nuc.closed_share);
   }
-  return "?";
+  if (nuc.warming_up) text += ", warming up";
+  return text;
 }
 
 std::uint64_t Dropped(const SensorAccount& account) {
@@ -128,7 +118,7 @@ std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bo
       : feedback      ? FeedbackText(*feedback)
                       : "no feedback yet",
       status.depth.rate_hz, StateText(status.depth_camera), status.thermal.rate_hz,
-      StateText(status.thermal_camera), ToText(status.nuc_state), depth.recorded + thermal.recorded,
+      StateText(status.thermal_camera), NucText(status.nuc), depth.recorded + thermal.recorded,
       depth.published + thermal.published, Dropped(depth) + Dropped(thermal));
 }
 

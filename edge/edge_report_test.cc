@@ -57,6 +57,18 @@ TEST_F(EdgeReportTest, SummarySaysHowSoonTheGroundAnswered) {
   EXPECT_THAT(Summary(account_, false, std::nullopt, {}), HasSubstr("arrival unknown"));
 }
 
+TEST_F(EdgeReportTest, F08TheStatusLineShowsTheDutyCycleOfAStorm) {
+  EdgeStatus status;
+  status.nuc.state = NucState::kError;
+  status.nuc.reason = "shutter closed for 7 s";
+  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+              HasSubstr("NUC error (shutter closed for 7 s)  recorded"));
+  status.nuc = {
+      .state = NucState::kIdle, .closings_per_minute = 9, .closed_share = 0.41, .storm = true};
+  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+              HasSubstr("NUC idle, STORM: 9/min, 41 % closed"));
+}
+
 TEST_F(EdgeReportTest, AnAccountThatDoesNotCloseIsNotHidden) {
   Count(Sensor::kThermal, FrameFate::kCaptured, 5);
   Count(Sensor::kThermal, FrameFate::kPublished, 4);

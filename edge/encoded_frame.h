@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/frame/frame.h"
+#include "common/recording/recording.h"
 #include "common/transport/messages.h"
 
 namespace isotherm {
@@ -16,6 +17,7 @@ struct EncodedFrame {
   /// What came from outside since the frame before: it travels along, so that order and back
   /// pressure are the same.
   std::vector<OutsidePoseSample> outside_poses{};
+  std::vector<RecordedLog> log{};  ///< What happened since then, for the recording.
 
   Sensor sensor() const {
     return std::holds_alternative<EncodedDepthFrame>(content) ? Sensor::kDepth : Sensor::kThermal;

@@ -71,7 +71,7 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.scan_state = scan_state;
   status.depth = ToStreamStatus(depth, depth_rate_.Update(depth.captured, now));
   status.thermal = ToStreamStatus(thermal, thermal_rate_.Update(thermal.captured, now));
-  status.nuc_state = pipeline_.nuc_state();
+  status.nuc = pipeline_.nuc();
   status.feedback = pipeline_.feedback().latency();
   status.spool_fill_ratio = pipeline_.spool_fill_ratio();
   status.depth_camera = health_.Get(Sensor::kDepth);

@@ -107,6 +107,28 @@ void CheckTimestamper(const TimestamperOptions& options, Problems& problems) {
   problems.CheckRange("relearn_after_s", options.relearn_after_s(), 0.1, 600.0);
 }
 
+void CheckNuc(const NucOptions& options, Problems& problems) {
+  constexpr double kHour = 3600.0;
+  problems.Stage("nuc");
+  problems.CheckRange("settle_time_s", options.settle_time_s(), 0.0, 60.0);
+  problems.CheckRange("max_housing_drift_k", options.max_housing_drift_k(), 0.0, 100.0);
+  problems.CheckRange("max_fpa_drift_k", options.max_fpa_drift_k(), 0.0, 100.0);
+  problems.CheckRange("max_interval_s", options.max_interval_s(), 0.0, 24.0 * kHour);
+  problems.CheckRange("min_interval_s", options.min_interval_s(), 0.5, kHour);
+  problems.CheckRange("max_hold_s", options.max_hold_s(), 0.0, kHour);
+  problems.CheckRange("answer_s", options.answer_s(), 0.1, 60.0);
+  problems.CheckRange("max_attempts", options.max_attempts(), 1, 100);
+  problems.CheckRange("max_duration_s", options.max_duration_s(), 0.1, 600.0);
+  problems.CheckRange("commanded_duration_s", options.commanded_duration_s(), 0.0, 60.0);
+  problems.CheckRange("native_repeats", options.native_repeats(), 1, 100);
+  problems.CheckRange("shutter_like_spread", options.shutter_like_spread(), 0.0, 1.0);
+  problems.CheckRange("max_closings_per_minute", options.max_closings_per_minute(), 1, 600);
+  problems.CheckRange("warm_up_rate_k_per_min", options.warm_up_rate_k_per_min(), 0.001, 100.0);
+  problems.CheckRange("warm_up_stable_s", options.warm_up_stable_s(), 1.0, kHour);
+  problems.CheckRange("warm_up_time_s", options.warm_up_time_s(), 0.0, 24.0 * kHour);
+  problems.CheckRange("frozen_restart_s", options.frozen_restart_s(), 0.0, 600.0);
+}
+
 void CheckSpool(const SpoolOptions& options, Problems& problems) {
   problems.Stage("spool");
   if (options.record().empty()) problems.Add("record", "is empty; name a file or say \"off\"");
@@ -136,8 +158,7 @@ Status Validate(const EdgeOptions& options) {
   problems.Stage("");
   problems.CheckRange("capture_queue_frames", options.capture_queue_frames(), 1, 1000);
   CheckTimestamper(options.timestamper(), problems);
-  problems.Stage("nuc");
-  problems.CheckRange("settle_time_s", options.nuc().settle_time_s(), 0.0, 60.0);
+  CheckNuc(options.nuc(), problems);
   CheckSpool(options.spool(), problems);
   CheckLink(options.link(), problems);
   problems.Stage("display");

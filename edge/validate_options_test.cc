@@ -31,6 +31,7 @@ TEST(ValidateEdgeOptionsTest, F59AllProblemsAreListed) {
   options.mutable_source()->set_rate(-1);
   options.mutable_timestamper()->set_depth_window(0);
   options.mutable_nuc()->set_settle_time_s(std::numeric_limits<double>::quiet_NaN());
+  options.mutable_nuc()->set_min_interval_s(0);
   options.mutable_link()->set_domain(231);
   options.mutable_link()->set_edge_id("drone 1");
   const Status status = Validate(options);
@@ -38,6 +39,7 @@ TEST(ValidateEdgeOptionsTest, F59AllProblemsAreListed) {
   EXPECT_THAT(status.message(), HasSubstr("source.rate: is -1"));
   EXPECT_THAT(status.message(), HasSubstr("timestamper.depth_window: is 0"));
   EXPECT_THAT(status.message(), HasSubstr("nuc.settle_time_s: is nan"));
+  EXPECT_THAT(status.message(), HasSubstr("nuc.min_interval_s: is 0"));
   EXPECT_THAT(status.message(), HasSubstr("link.domain: is 231"));
   EXPECT_THAT(status.message(), HasSubstr("link.edge_id: is \"drone 1\""));
 }

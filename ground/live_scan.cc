@@ -55,7 +55,8 @@ void LiveScan::Add(const ReceivedDepth& depth) {
 
 void LiveScan::Add(const ReceivedThermal& thermal) {
   const NucState state = thermal.frame->nuc_state;
-  moment_.nuc_running = state == NucState::kInProgress || state == NucState::kSettling;
+  moment_.nuc_running = state == NucState::kImminent || state == NucState::kInProgress ||
+                        state == NucState::kSettling;
   arrivals_[thermal.frame.get()] = thermal.arrival;
   assembler_.Add(thermal.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);

@@ -84,6 +84,7 @@ class InlineDriver {
 
   void Take(const NucEvent& /*event*/) {}  // Each frame carries its NUC state.
   void Take(const RecordedPose& /*pose*/) {}
+  void Take(const RecordedLog& /*log*/) {}
   void Take(const OutsidePose& pose) { pipeline_.ProcessOutsidePose(pose); }
 
   bool DecodeInto(const EncodedImage& encoded, const char* stream, const FrameHeader& header,

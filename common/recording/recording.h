@@ -94,8 +94,14 @@ struct RecordedPose {
   std::string stream;
   StampedPose pose;
 };
+/// A sentence about something that happened during the scan.
+struct RecordedLog {
+  CaptureTime time{};
+  std::string level{};  ///< debug, info, warning or error.
+  std::string text{};
+};
 using RecordedItem =
-    std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose, OutsidePose>;
+    std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose, OutsidePose, RecordedLog>;
 
 /// What is known about a recording without reading its frames (from the summary, or rebuilt by one
 /// pass over the chunk headers if the file has none).

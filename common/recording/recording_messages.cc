@@ -284,6 +284,14 @@ foxglove::Log ToLogMessage(CaptureTime time, std::string_view level, std::string
   return message;
 }
 
+Result<RecordedLog> FromMessage(const foxglove::Log& message) {
+  const std::optional<CaptureTime> time = ToTime(message.timestamp());
+  if (!time) return Err(DataLoss("its time is impossible"));
+  std::string level = foxglove::Log::Level_Name(message.level());
+  for (char& c : level) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return RecordedLog{*time, std::move(level), message.message()};
+}
+
 template <typename Image>
 Result<RecordedDepth> ToDepth(Image& message, CaptureTime log_time, std::uint32_t sequence) {
   RecordedDepth depth;

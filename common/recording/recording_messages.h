@@ -47,5 +47,6 @@ Result<StampedPose> FromMessage(const foxglove::FrameTransform& message);
 /// Checks nothing but the time: what the numbers are worth is judged where they are used.
 Result<OutsidePose> FromMessage(const foxglove::PoseInFrame& message);
 Result<NucEvent> FromMessage(const NucRecord& message);
+Result<RecordedLog> FromMessage(const foxglove::Log& message);
 
 }  // namespace isotherm::recording

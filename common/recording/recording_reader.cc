@@ -24,6 +24,7 @@ enum class Content {
   kNuc,
   kPose,
   kOutsidePose,
+  kLog,
   kRig
 };
 
@@ -44,6 +45,7 @@ Content ContentOf(std::string_view topic, std::string_view schema_name) {
   if (topic == rec::kNucTopic && Is<rec::NucRecord>(schema_name)) return Content::kNuc;
   if (topic == rec::kOutsidePoseTopic && Is<foxglove::PoseInFrame>(schema_name))
     return Content::kOutsidePose;
+  if (topic == rec::kLogTopic && Is<foxglove::Log>(schema_name)) return Content::kLog;
   if (topic == rec::kRigTopic && Is<rec::RigRecord>(schema_name)) return Content::kRig;
   if ((topic == rec::kGroundtruthTopic || topic == rec::kTrajectoryTopic) &&
       Is<foxglove::FrameTransform>(schema_name)) {
@@ -187,6 +189,9 @@ class McapRecordingReader final : public RecordingReader {
       case Content::kOutsidePose:
         return ParseItem<foxglove::PoseInFrame>(
             message, [](const foxglove::PoseInFrame& pose) { return rec::FromMessage(pose); });
+      case Content::kLog:
+        return ParseItem<foxglove::Log>(
+            message, [](const foxglove::Log& log) { return rec::FromMessage(log); });
       default:
         return ParsePose(message);
     }

@@ -139,6 +139,10 @@ TEST_P(RecordingTest, RigEventsPosesAndMetadataComeBack) {
   EXPECT_EQ(recorded.stream, "groundtruth");
   EXPECT_EQ(recorded.pose.time, pose.time);
   EXPECT_TRUE(recorded.pose.T_world_depth.isApprox(pose.T_world_depth, 1e-12));
+  const auto log = read.All<RecordedLog>().at(0);
+  EXPECT_EQ(log.time, kScanStart + 3ms);
+  EXPECT_EQ(log.level, "warning");
+  EXPECT_EQ(log.text, "closer");
   const RecordingInfo& info = reader->info();
   EXPECT_EQ(info.metadata.at("origin").at("folder"), "scan");
   EXPECT_EQ(info.messages_by_topic.at("/depth"), 1U);

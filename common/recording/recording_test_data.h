@@ -135,6 +135,7 @@ inline CaptureTime TimeOf(const RecordedItem& item) {
     CaptureTime operator()(const NucEvent& event) { return event.start; }
     CaptureTime operator()(const RecordedPose& pose) { return pose.pose.time; }
     CaptureTime operator()(const OutsidePose& pose) { return pose.time; }
+    CaptureTime operator()(const RecordedLog& log) { return log.time; }
   };
   return std::visit(Visitor{}, item);
 }

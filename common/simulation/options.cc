@@ -88,6 +88,13 @@ Status Validate(const SimulationOptions& options) {
   check("shutter.duration_step_s", shutter.duration_step_s(), 0.0, kHour);
   check("shutter.shutter_celsius", shutter.shutter_celsius(), kMinRadiometricCelsius,
         kMaxRadiometricCelsius);
+  check("shutter.drift_k", shutter.drift_k(), 0.0, 100.0);
+  check("shutter.order_delay_s", shutter.order_delay_s(), 0.0, 60.0);
+  const ThermalDriftOptions& drift = options.drift();
+  check("drift.housing_celsius", drift.housing_celsius(), -60.0, 120.0);
+  check("drift.warm_up_k", drift.warm_up_k(), -100.0, 100.0);
+  check("drift.time_constant_s", drift.time_constant_s(), 0.01, 100.0 * kHour);
+  check("drift.error_per_kelvin", drift.error_per_kelvin(), -100.0, 100.0);
   CheckClock("depth_clock", options.depth_clock(), check);
   CheckClock("thermal_clock", options.thermal_clock(), check);
   const OdometryOptions& odometry = options.odometry();

@@ -17,6 +17,17 @@ enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels, kDepthClock, k
 
 }  // namespace
 
+void AddKelvin(double kelvin, Image<std::uint16_t>& centikelvin) {
+  if (kelvin == 0.0) return;
+  constexpr double kLast = 65'535.0;
+  const double add = kelvin * kCentikelvinPerKelvin;
+  for (std::uint16_t& pixel : centikelvin.pixels()) {
+    if (pixel == 0) continue;
+    const double value = std::floor(pixel + add + 0.5);
+    pixel = value >= 1.0 && value <= kLast ? static_cast<std::uint16_t>(value) : 0;
+  }
+}
+
 Result<std::unique_ptr<SimulatedScan>> SimulatedScan::Create(const SimulationOptions& options) {
   if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
   return Create(options, MakeScene(options.scene()));
@@ -62,14 +73,43 @@ void SimulatedScan::ScheduleFrames() {
 
 void SimulatedScan::ScheduleShutter() {
   const ShutterOptions& shutter = options_->shutter();
-  if (shutter.interval_s() <= 0.0 || shutter.duration_s() <= 0.0) return;
+  if (shutter.duration_s() <= 0.0) return;
   const double interval_s = std::max(shutter.interval_s(), shutter.duration_s());
-  for (double at_s = shutter.first_s(); at_s < options_->duration_s(); at_s += interval_s) {
+  const bool by_drift = shutter.drift_k() > 0.0;
+  if (!by_drift && shutter.interval_s() <= 0.0) return;
+  double at_s = by_drift ? NextDrift(0.0) : shutter.first_s();
+  while (at_s < options_->duration_s()) {
     const CaptureTime closed = start_ + FromSeconds(at_s);
     const double duration_s =
         shutter.duration_s() + shutter.duration_step_s() * static_cast<double>(nuc_events_.size());
     nuc_events_.push_back({closed, closed + FromSeconds(duration_s), NucSource::kInBand});
+    const double next_s = at_s + interval_s;
+    const double drifted_s = by_drift ? NextDrift(at_s + duration_s) : next_s;
+    at_s = by_drift && shutter.interval_s() <= 0.0 ? drifted_s : std::min(next_s, drifted_s);
   }
+}
+
+double SimulatedScan::HousingCelsius(double seconds) const {
+  const ThermalDriftOptions& drift = options_->drift();
+  return drift.housing_celsius() +
+         drift.warm_up_k() * (1.0 - std::exp(-seconds / drift.time_constant_s()));
+}
+
+double SimulatedScan::NextDrift(double after_s) const {
+  constexpr double kStep_s = 0.005;  // Finer than frames are.
+  const double reference = HousingCelsius(after_s);
+  double at_s = after_s;
+  while (at_s < options_->duration_s() &&
+         std::abs(HousingCelsius(at_s) - reference) < options_->shutter().drift_k()) {
+    at_s += kStep_s;
+  }
+  return at_s;
+}
+
+double SimulatedScan::DriftErrorKelvin(CaptureTime time) const {
+  const double corrected_s = ToSeconds(LastOpening(time).value_or(start_) - start_);
+  return options_->drift().error_per_kelvin() *
+         (HousingCelsius(ToSeconds(time - start_)) - HousingCelsius(corrected_s));
 }
 
 bool SimulatedScan::IsShutterClosed(CaptureTime time) const {
@@ -141,19 +181,19 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
   const auto pose_after = [&](double seconds) {
     return ThermalPoseAt(time + FromSeconds(seconds));
   };
-  if (staged_.carried.empty())
-    return thermal_sensor_.RenderMoving(scene(), pose_after, noise, scratch.thermal);
-  return thermal_sensor_.RenderMoving(SceneAround(staged_, PoseAt(time)), pose_after, noise,
-                                      scratch.thermal);
+  Image<std::uint16_t> pixels =
+      staged_.carried.empty()
+          ? thermal_sensor_.RenderMoving(scene(), pose_after, noise, scratch.thermal)
+          : thermal_sensor_.RenderMoving(SceneAround(staged_, PoseAt(time)), pose_after, noise,
+                                         scratch.thermal);
+  AddKelvin(DriftErrorKelvin(time), pixels);
+  return pixels;
 }
 
 ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {
-  // A camera that was switched on a while ago and still warms up a little.
-  constexpr double kHousingCelsius = 30.0, kWarmUpKelvin = 1.5, kWarmUpS = 120.0;
   constexpr double kFpaAboveHousingKelvin = 4.0;
-  const double warmed_up = 1.0 - std::exp(-ToSeconds(time - start_) / kWarmUpS);
   ThermalHousekeeping housekeeping;
-  housekeeping.housing_celsius = static_cast<float>(kHousingCelsius + kWarmUpKelvin * warmed_up);
+  housekeeping.housing_celsius = static_cast<float>(HousingCelsius(ToSeconds(time - start_)));
   housekeeping.fpa_celsius =
       housekeeping.housing_celsius + static_cast<float>(kFpaAboveHousingKelvin);
   housekeeping.shutter_celsius = static_cast<float>(options_->shutter().shutter_celsius());

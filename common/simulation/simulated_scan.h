@@ -46,6 +46,10 @@ class SimulatedScan {
   /// The shutter's last opening before `time`, if it was closed before.
   std::optional<CaptureTime> LastOpening(CaptureTime time) const;
 
+  /// How much too warm an open shutter's picture is at `time`, because the housing changed since
+  /// the last correction.
+  double DriftErrorKelvin(CaptureTime time) const;
+
   /// True T_world_depth.
   RigidTransform PoseAt(CaptureTime time) const;
   /// True T_world_thermal.
@@ -58,6 +62,10 @@ class SimulatedScan {
   SimulatedScan(const SimulationOptions& resolved, const Rig& rig, StagedScene staged);
   void ScheduleFrames();
   void ScheduleShutter();
+  /// So many seconds after the start.
+  double HousingCelsius(double seconds) const;
+  /// When the housing has changed by the shutter's drift_k since then, seconds after the start.
+  double NextDrift(double after_s) const;
   Image<std::uint16_t> ThermalPixels(std::uint64_t frame_number, Scratch& scratch) const;
   ThermalHousekeeping HousekeepingAt(CaptureTime time) const;
 
@@ -71,5 +79,8 @@ class SimulatedScan {
   std::vector<SimulatedFrameTime> thermal_times_;
   std::vector<NucEvent> nuc_events_;
 };
+
+/// Adds the same to each pixel that has a value; what 16 bits cannot say becomes 0 = no value.
+void AddKelvin(double kelvin, Image<std::uint16_t>& centikelvin);
 
 }  // namespace isotherm

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/simulation/scene_builder.h"
@@ -55,6 +56,66 @@ TEST_F(SimulatedScanTest, APolishedWallShowsTheOperatorWhoIsNotInTheDepthPicture
   const RawFrame depth = held->RenderDepth(0, scratch);
   EXPECT_TRUE(
       std::ranges::equal(depth.pixels.pixels(), alone->RenderDepth(0, scratch).pixels.pixels()));
+}
+
+/// A wall of one temperature that the rig faces and that fills the thermal picture.
+StagedScene PlainWall() {
+  SceneBuilder builder(23.0);
+  builder.UseMaterial({});
+  builder.Box("wall", {-1.0, -1.0, 0.7}, {2.0, 2.0, 0.8}).temperature = Uniform(40.0);
+  ScanPath path;
+  path.target_x_m = path.target_y_m = {0.5};
+  path.target_z_m = {0.7};
+  path.distance_m = {0.5};
+  return {builder.Build("plain wall"), path, {}};
+}
+
+TEST_F(SimulatedScanTest, AHousingThatWarmsUpFalsifiesTemperaturesUntilTheNextNuc) {
+  // Fig. 3.4b: 5 K of the housing, 20 K of error. After 10 time constants nothing is left to come.
+  options_.set_duration_s(20.0);
+  options_.mutable_thermal()->set_netd_kelvin(0.0);
+  options_.mutable_shutter()->set_interval_s(0.0);
+  ThermalDriftOptions& drift = *options_.mutable_drift();
+  drift.set_warm_up_k(5.0);
+  drift.set_time_constant_s(2.0);
+  const auto without = Create(PlainWall());
+  drift.set_error_per_kelvin(4.0);
+  const auto with = Create(PlainWall());
+  SimulatedScan::Scratch scratch;
+  const std::uint64_t last = with->thermal_times().size() - 1;
+  const double truth = CentreCelsius(without->RenderThermal(last, scratch));
+  const RawFrame late = with->RenderThermal(last, scratch);
+  EXPECT_NEAR(CentreCelsius(late) - truth, 20.0, 0.02);
+  EXPECT_NEAR(late.housekeeping.housing_celsius, 35.0, 0.01);
+  EXPECT_NEAR(CentreCelsius(with->RenderThermal(0, scratch)), truth, 0.3) << "just corrected";
+
+  options_.mutable_shutter()->set_first_s(18.0);
+  options_.mutable_shutter()->set_interval_s(100.0);
+  const auto corrected = Create(PlainWall());
+  EXPECT_NEAR(CentreCelsius(corrected->RenderThermal(last, scratch)), truth, 0.02);
+}
+
+TEST_F(SimulatedScanTest, TheShutterClosesWheneverTheHousingHasDrifted) {
+  options_.set_duration_s(20.0);
+  ThermalDriftOptions& drift = *options_.mutable_drift();
+  drift.set_warm_up_k(5.0);
+  drift.set_time_constant_s(4.0);
+  ShutterOptions& shutter = *options_.mutable_shutter();
+  shutter.set_interval_s(0.0);
+  shutter.set_duration_s(0.1);
+  shutter.set_drift_k(0.8);
+  const auto scan = Create(PlainWall());
+  // The housing at t is 30 + 5 (1 - exp(-t / 4)). It is 0.8 K above h at -4 ln(1 - (h + 0.8 - 30) /
+  // 5).
+  double opened_s = 0.0;
+  ASSERT_GE(scan->nuc_events().size(), 4U);
+  for (const NucEvent& event : scan->nuc_events()) {
+    const double reached_k = 5.0 * (1.0 - std::exp(-opened_s / 4.0));
+    const double expected_s = -4.0 * std::log(1.0 - (reached_k + 0.8) / 5.0);
+    const double closed_s = ToSeconds(event.start - scan->depth_times()[0].exposure);
+    EXPECT_NEAR(closed_s, expected_s, 0.011) << "two steps of 5 ms";
+    opened_s = closed_s + 0.1;
+  }
 }
 
 TEST_F(SimulatedScanTest, ClosingsCanBecomeLonger) {

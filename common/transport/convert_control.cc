@@ -80,6 +80,43 @@ std::optional<RefusalCause> FromWireCamera(const isotherm_wire_CameraReport& fro
   return std::nullopt;
 }
 
+void ToWireNuc(const NucReport& from, isotherm_wire_EdgeStatus* to) {
+  to->nuc_state = static_cast<std::uint8_t>(from.state);
+  to->has_nuc = true;
+  to->nuc_source = static_cast<std::uint8_t>(from.source);
+  to->nuc_policy = static_cast<std::uint8_t>(from.policy);
+  to->nuc_seconds_since = from.seconds_since;
+  to->nuc_closings_per_minute = from.closings_per_minute;
+  to->nuc_closed_share = from.closed_share;
+  to->nuc_storm = from.storm;
+  to->nuc_warming_up = from.warming_up;
+  to->nuc_fpa_celsius = from.fpa_celsius;
+  to->nuc_housing_celsius = from.housing_celsius;
+  CopyText(from.reason, to->nuc_reason);
+}
+
+std::optional<RefusalCause> FromWireNuc(const isotherm_wire_EdgeStatus& from, NucReport* to) {
+  if (const auto cause = CheckEnum(from.nuc_state, NucState::kError)) return cause;
+  to->state = static_cast<NucState>(from.nuc_state);
+  if (!from.has_nuc) return std::nullopt;
+  if (const auto cause = CheckEnum(from.nuc_source, NucSource::kInferred)) return cause;
+  if (const auto cause = CheckEnum(from.nuc_policy, NucPolicy::kCamera)) return cause;
+  const auto infinite = CheckFiniteOrUnknown({from.nuc_seconds_since, from.nuc_closed_share,
+                                              from.nuc_fpa_celsius, from.nuc_housing_celsius});
+  if (infinite) return infinite;
+  to->source = static_cast<NucSource>(from.nuc_source);
+  to->policy = static_cast<NucPolicy>(from.nuc_policy);
+  to->seconds_since = from.nuc_seconds_since;
+  to->closings_per_minute = from.nuc_closings_per_minute;
+  to->closed_share = from.nuc_closed_share;
+  to->storm = from.nuc_storm;
+  to->warming_up = from.nuc_warming_up;
+  to->fpa_celsius = from.nuc_fpa_celsius;
+  to->housing_celsius = from.nuc_housing_celsius;
+  to->reason = ReadText(from.nuc_reason);
+  return std::nullopt;
+}
+
 void ToWireReceipt(const StreamReceipt& from, isotherm_wire_StreamReceipt* to) {
   to->next_number = from.next;
   to->handled = from.handled;
@@ -169,7 +206,7 @@ void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
   to->time_ns = ToNanoseconds(from.time);
   to->scan_state = static_cast<std::uint8_t>(from.scan_state);
   to->publish_policy = static_cast<std::uint8_t>(from.publish_policy);
-  to->nuc_state = static_cast<std::uint8_t>(from.nuc_state);
+  ToWireNuc(from.nuc, to);
   ToWireStream(from.depth, &to->depth);
   ToWireStream(from.thermal, &to->thermal);
   to->spool_fill_ratio = from.spool_fill_ratio;
@@ -189,7 +226,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   if (from.time_ns < 0) return RefusalCause::kNegativeTime;
   if (const auto cause = CheckEnum(from.scan_state, ScanState::kEnded)) return cause;
   if (const auto cause = CheckEnum(from.publish_policy, PublishPolicy::kLossless)) return cause;
-  if (const auto cause = CheckEnum(from.nuc_state, NucState::kError)) return cause;
+  if (const auto cause = FromWireNuc(from, &to->nuc)) return cause;
   const auto infinite = CheckFiniteOrUnknown(
       {from.spool_fill_ratio, from.clock_offset_s, from.clock_error_s, from.cpu_temperature_celsius,
        from.feedback_latency_p50_s, from.feedback_latency_p99_s});
@@ -202,7 +239,6 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   to->time = CaptureTimeFromNanoseconds(from.time_ns);
   to->scan_state = static_cast<ScanState>(from.scan_state);
   to->publish_policy = static_cast<PublishPolicy>(from.publish_policy);
-  to->nuc_state = static_cast<NucState>(from.nuc_state);
   to->spool_fill_ratio = from.spool_fill_ratio;
   to->spool_frames = from.spool_frames;
   to->clock_offset_s = from.clock_offset_s;
@@ -219,18 +255,21 @@ void ToWire(const Command& from, isotherm_wire_Command* to) {
   to->kind = static_cast<std::uint8_t>(from.kind);
   to->nuc_policy = static_cast<std::uint8_t>(from.nuc_policy);
   to->publish_policy = static_cast<std::uint8_t>(from.publish_policy);
+  to->hold_s = from.hold_s;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Command& from, Command* to) {
   if (from.time_ns < 0) return RefusalCause::kNegativeTime;
-  if (const auto cause = CheckEnum(from.kind, CommandKind::kSetPublishPolicy)) return cause;
-  if (const auto cause = CheckEnum(from.nuc_policy, NucPolicy::kManual)) return cause;
+  if (const auto cause = CheckEnum(from.kind, CommandKind::kHoldNuc)) return cause;
+  if (const auto cause = CheckEnum(from.nuc_policy, NucPolicy::kCamera)) return cause;
+  if (const auto cause = CheckFinite({from.hold_s})) return cause;
   if (const auto cause = CheckEnum(from.publish_policy, PublishPolicy::kLossless)) return cause;
   *to = {.number = from.number,
          .time = CaptureTimeFromNanoseconds(from.time_ns),
          .kind = static_cast<CommandKind>(from.kind),
          .nuc_policy = static_cast<NucPolicy>(from.nuc_policy),
-         .publish_policy = static_cast<PublishPolicy>(from.publish_policy)};
+         .publish_policy = static_cast<PublishPolicy>(from.publish_policy),
+         .hold_s = from.hold_s};
   return std::nullopt;
 }
 

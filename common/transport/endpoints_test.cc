@@ -208,6 +208,16 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   sent.clock_error_s = 0.002;
   sent.depth_camera = {CameraState::kLost, 3, 0.0001, 0.0004};
   sent.feedback = {.count = 50, .p50_s = 0.05, .p99_s = 0.11};
+  sent.nuc = {.state = NucState::kDesired,
+              .source = NucSource::kPolled,
+              .policy = NucPolicy::kCamera,
+              .seconds_since = 12.5,
+              .closings_per_minute = 9,
+              .closed_share = 0.25,
+              .storm = true,
+              .warming_up = true,
+              .housing_celsius = 31.5,
+              .reason = "drift"};
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
   const EdgeStatus& status = received->message;
@@ -227,6 +237,17 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   EXPECT_EQ(status.feedback.p50_s, 0.05);
   EXPECT_EQ(status.feedback.p99_s, 0.11);
   EXPECT_TRUE(std::isnan(status.cpu_temperature_celsius));
+  EXPECT_EQ(status.nuc.state, NucState::kDesired);
+  EXPECT_EQ(status.nuc.source, NucSource::kPolled);
+  EXPECT_EQ(status.nuc.policy, NucPolicy::kCamera);
+  EXPECT_EQ(status.nuc.seconds_since, 12.5);
+  EXPECT_EQ(status.nuc.closings_per_minute, 9U);
+  EXPECT_EQ(status.nuc.closed_share, 0.25);
+  EXPECT_TRUE(status.nuc.storm);
+  EXPECT_TRUE(status.nuc.warming_up);
+  EXPECT_TRUE(std::isnan(status.nuc.fpa_celsius));
+  EXPECT_EQ(status.nuc.housing_celsius, 31.5);
+  EXPECT_EQ(status.nuc.reason, "drift");
 }
 
 TEST_F(EndpointsTest, CommandAndItsResultArrive) {
@@ -236,6 +257,10 @@ TEST_F(EndpointsTest, CommandAndItsResultArrive) {
   EXPECT_EQ(command->message.number, 3U);
   EXPECT_EQ(command->message.kind, CommandKind::kSetNucPolicy);
   EXPECT_EQ(command->message.nuc_policy, NucPolicy::kManual);
+  const auto hold = RoundTrip(Command{.number = 4, .kind = CommandKind::kHoldNuc, .hold_s = 12.5});
+  ASSERT_TRUE(hold.has_value());
+  EXPECT_EQ(hold->message.kind, CommandKind::kHoldNuc);
+  EXPECT_EQ(hold->message.hold_s, 12.5);
   const auto result = RoundTrip(
       CommandResult{.number = 3, .outcome = CommandOutcome::kRefused, .text = "scan is running"});
   ASSERT_TRUE(result.has_value());

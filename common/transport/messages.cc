@@ -52,6 +52,56 @@ std::string_view ToString(Advice advice) {
   return "?";
 }
 
+std::string_view ToString(NucPolicy policy) {
+  switch (policy) {
+    case NucPolicy::kAutomatic:
+      return "automatic";
+    case NucPolicy::kManual:
+      return "manual";
+    case NucPolicy::kCamera:
+      return "camera";
+  }
+  return "?";
+}
+
+std::string_view ToString(NucState state) {
+  switch (state) {
+    case NucState::kUnknown:
+      return "unknown";
+    case NucState::kIdle:
+      return "idle";
+    case NucState::kDesired:
+      return "desired";
+    case NucState::kImminent:
+      return "imminent";
+    case NucState::kInProgress:
+      return "in progress";
+    case NucState::kSettling:
+      return "settling";
+    case NucState::kBlocked:
+      return "blocked";
+    case NucState::kError:
+      return "error";
+  }
+  return "?";
+}
+
+std::string_view ToString(NucSource source) {
+  switch (source) {
+    case NucSource::kUnknown:
+      return "nothing";
+    case NucSource::kInBand:
+      return "its frames";
+    case NucSource::kPolled:
+      return "asking the camera";
+    case NucSource::kCommanded:
+      return "our order alone";
+    case NucSource::kInferred:
+      return "its pictures";
+  }
+  return "?";
+}
+
 Status CheckCompatible(const Hello& own, const Hello& peer) {
   if (own.wire_major == peer.wire_major) return OkStatus();
   const Hello& old = own.wire_major < peer.wire_major ? own : peer;

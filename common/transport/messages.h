@@ -22,7 +22,7 @@ namespace isotherm {
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
 /// Major: they do not, and say so (CheckCompatible()).
 inline constexpr std::uint16_t kWireMajor = 1;
-inline constexpr std::uint16_t kWireMinor = 1;
+inline constexpr std::uint16_t kWireMinor = 2;
 
 inline constexpr std::size_t kMaxIdBytes = 32;     ///< edge_id, serial numbers, names of stages.
 inline constexpr std::size_t kMaxTextBytes = 256;  ///< Sentences.
@@ -88,8 +88,28 @@ enum class PublishPolicy : std::uint8_t {
 };
 
 enum class NucPolicy : std::uint8_t {
-  kAutomatic = 0,  ///< By drift and interval.
+  kAutomatic = 0,  ///< The edge decides, by drift and interval.
   kManual = 1,     ///< Only by command.
+  kCamera = 2,     ///< The camera decides by itself.
+};
+std::string_view ToString(NucPolicy policy);
+/// In the operator's words, as the next.
+std::string_view ToString(NucState state);
+std::string_view ToString(NucSource source);
+
+/// The thermal camera's correction as the edge sees it.
+struct NucReport {
+  NucState state = NucState::kUnknown;
+  NucSource source = NucSource::kUnknown;
+  NucPolicy policy = NucPolicy::kAutomatic;
+  double seconds_since = std::numeric_limits<double>::quiet_NaN();  ///< Since the shutter opened.
+  std::uint32_t closings_per_minute = 0;
+  double closed_share = std::numeric_limits<double>::quiet_NaN();  ///< Of the last minute, 0..1.
+  bool storm = false;       ///< More closings per minute than allowed.
+  bool warming_up = false;  ///< Temperatures may still be off.
+  double fpa_celsius = std::numeric_limits<double>::quiet_NaN();
+  double housing_celsius = std::numeric_limits<double>::quiet_NaN();
+  std::string reason{};  ///< Of the state; empty = nothing to say.
 };
 
 struct DropCount {
@@ -141,7 +161,7 @@ struct EdgeStatus {
   PublishPolicy publish_policy = PublishPolicy::kLive;
   StreamStatus depth;
   StreamStatus thermal;
-  NucState nuc_state = NucState::kUnknown;
+  NucReport nuc;  ///< From an edge before wire 1.2: the state alone.
   double spool_fill_ratio = std::numeric_limits<double>::quiet_NaN();  ///< 0..1.
   std::uint64_t spool_frames = 0;  ///< Recorded but not yet published.
   double clock_offset_s = std::numeric_limits<double>::quiet_NaN();  ///< Local minus reference.
@@ -160,6 +180,7 @@ enum class CommandKind : std::uint8_t {
   kTriggerNuc = 2,
   kSetNucPolicy = 3,
   kSetPublishPolicy = 4,
+  kHoldNuc = 5,  ///< No corrections for a while.
 };
 
 /// An order from the ground. Every command is answered by a CommandResult with the same number.
@@ -169,6 +190,7 @@ struct Command {
   CommandKind kind = CommandKind::kStartScan;
   NucPolicy nuc_policy = NucPolicy::kAutomatic;         ///< For kSetNucPolicy.
   PublishPolicy publish_policy = PublishPolicy::kLive;  ///< For kSetPublishPolicy.
+  double hold_s = 0.0;                                  ///< For kHoldNuc; 0 ends a hold.
 };
 
 enum class CommandOutcome : std::uint8_t { kDone = 0, kRefused = 1, kFailed = 2 };
@@ -176,7 +198,7 @@ enum class CommandOutcome : std::uint8_t { kDone = 0, kRefused = 1, kFailed = 2 
 struct CommandResult {
   std::uint64_t number = 0;
   CommandOutcome outcome = CommandOutcome::kDone;
-  std::string text{};  ///< Why it was refused or failed.
+  std::string text{};  ///< Why it was refused or failed, or what will be done.
 };
 
 /// Frame numbers first..last, both included.

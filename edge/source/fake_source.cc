@@ -69,6 +69,9 @@ RawFrame FakeSource::MakeFrame(const Step& step) {
 
   frame.pixels =
       depth ? Image<std::uint16_t>(8, 6, kDepthRaw) : Image<std::uint16_t>(6, 4, kCentikelvin);
+  // No thermal camera is free of noise; the first picture has none, for comparison.
+  if (!depth && step.fault != "same") noise_ = static_cast<std::uint16_t>(frame.frame_number % 97);
+  if (!depth) frame.pixels.At(0, 1) = static_cast<std::uint16_t>(kCentikelvin + noise_);
   if (step.fault == "empty") frame.pixels = {};
   if (step.fault == "size") frame.pixels = Image<std::uint16_t>(7, 6, kDepthRaw);
   for (std::size_t i = 0; i < frame.pixels.size(); i += 2) {

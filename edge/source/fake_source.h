@@ -20,6 +20,7 @@ namespace isotherm {
 ///   d:empty   the frame has no pixels             d:size    ... the wrong size
 ///   d:reset   the camera's counter starts again   t:shut    the shutter is closed
 ///   t:hot     every other pixel is out of range   d:holes   every other pixel is 0 or 65535
+///   t:same    the picture before once more
 ///
 /// At the end of the script the stream ends. Opening again goes on with the script. Thread-bound.
 class FakeSource final : public FrameSource {
@@ -34,6 +35,14 @@ class FakeSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { open_ = false; }
+  /// Answers with `control_answer`.
+  Status Control(const CameraControl& control) override {
+    controls.push_back(control);
+    return control_answer;
+  }
+
+  std::vector<CameraControl> controls;  ///< What was asked for.
+  Status control_answer = Unavailable("the source has no shutter to command");
 
   /// Later calls of Open fail so many times.
   void FailToOpen(int times) { failures_to_open_ = times; }
@@ -53,6 +62,7 @@ class FakeSource final : public FrameSource {
   int opened_ = 0;
   int failures_to_open_ = 0;
   std::uint64_t frames_[2] = {};
+  std::uint16_t noise_ = 0;  ///< In one pixel of the newest thermal picture.
   std::chrono::microseconds device_zero_[2] = {};
 };
 

@@ -25,7 +25,9 @@ struct TriggerNuc {};
 struct SetAutomaticNuc {
   bool on = true;
 };
-using CameraControl = std::variant<TriggerNuc, SetAutomaticNuc>;
+/// Open the thermal camera again: its frames are frozen.
+struct RestartCamera {};
+using CameraControl = std::variant<TriggerNuc, SetAutomaticNuc, RestartCamera>;
 
 using SourceItem = std::variant<RawFrame, OutsidePose, NothingYet, EndOfStream>;
 

@@ -109,7 +109,7 @@ RawFrame ReplaySource::ToRawFrame(RecordedThermal recorded) {
   frame.housekeeping = thermal.housekeeping;
   const CaptureTime time = thermal.header.capture_time;
   frame.shutter_closed =
-      thermal.nuc_state == NucState::kInProgress ||
+      thermal.nuc_state == NucState::kInProgress || thermal.nuc_state == NucState::kError ||
       (last_nuc_event_ && time >= last_nuc_event_->start && time < last_nuc_event_->end);
   return frame;
 }

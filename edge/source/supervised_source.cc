@@ -54,11 +54,6 @@ Status SupervisedSource::OpenSame() {
   return OkStatus();
 }
 
-Status SupervisedSource::Control(const CameraControl& control) {
-  if (reopen_at_) return Unavailable("the camera does not work; it is being opened again");
-  return source_->Control(control);
-}
-
 void SupervisedSource::Tell(bool works) {
   if (works_ == works) return;
   works_ = works;
@@ -74,6 +69,14 @@ Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
   }
   if (RawFrame* frame = std::get_if<RawFrame>(&*item)) return Judge(std::move(*frame));
   return item;
+}
+
+Status SupervisedSource::Control(const CameraControl& control) {
+  if (reopen_at_) return FailedPrecondition("the camera does not work; it is being opened again");
+  Status done = source_->Control(control);
+  if (done.ok() || !std::holds_alternative<RestartCamera>(control)) return done;
+  ScheduleReopen(Status(StatusCode::kUnavailable, "its thermal frames are frozen"));
+  return OkStatus();
 }
 
 SourceItem SupervisedSource::Judge(RawFrame frame) {

@@ -45,6 +45,7 @@ class SupervisedSource final : public FrameSource {
   void KeepTrying(const Status& reason) { ScheduleReopen(reason); }
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { source_->Close(); }
+  /// A source that cannot restart its thermal camera alone is closed and opened again.
   Status Control(const CameraControl& control) override;
   std::optional<Rig> rig() const override { return source_->rig(); }
   std::vector<CameraDescription> cameras() const override { return source_->cameras(); }

@@ -17,7 +17,8 @@ SyntheticSource::SyntheticSource(const SourceOptions& options, const Clock& cloc
                                  std::stop_token stop)
     : options_(std::make_unique<const SourceOptions>(options)),
       clock_(clock),
-      stop_(std::move(stop)) {}
+      stop_(std::move(stop)),
+      shutter_(options.simulation()) {}
 
 SyntheticSource::~SyntheticSource() = default;
 
@@ -47,7 +48,13 @@ Result<std::filesystem::path> SyntheticSource::RenderOrFind() const {
       stop_);
 }
 
-Result<SourceItem> SyntheticSource::Read(std::stop_token stop) { return replay_->Read(stop); }
+Result<SourceItem> SyntheticSource::Read(std::stop_token stop) {
+  Result<SourceItem> item = replay_->Read(stop);
+  if (!item) return item;
+  RawFrame* const frame = std::get_if<RawFrame>(&*item);
+  if (frame && frame->sensor == Sensor::kThermal) shutter_.Apply(*frame);
+  return item;
+}
 
 std::optional<Rig> SyntheticSource::rig() const { return replay_->rig(); }
 

@@ -7,6 +7,7 @@
 
 #include "common/time/clock.h"
 #include "edge/source/frame_source.h"
+#include "edge/source/simulated_shutter.h"
 
 namespace isotherm {
 
@@ -15,7 +16,7 @@ class SourceOptions;
 
 /// A simulated scan. The first Open renders it into the cache, with a progress bar, or finds it
 /// there; then it is replayed like any recording, so that a live run spends its cores on the
-/// pipeline. Thread-bound.
+/// pipeline. Its thermal camera has a shutter that can be commanded. Thread-bound.
 class SyntheticSource final : public FrameSource {
  public:
   /// `clock` must outlive the source. `stop` ends rendering early.
@@ -26,6 +27,7 @@ class SyntheticSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override {}
+  Status Control(const CameraControl& control) override { return shutter_.Control(control); }
   std::optional<Rig> rig() const override;
 
  private:
@@ -35,6 +37,7 @@ class SyntheticSource final : public FrameSource {
   const Clock& clock_;
   const std::stop_token stop_;
   std::unique_ptr<ReplaySource> replay_;
+  SimulatedShutter shutter_;
 };
 
 }  // namespace isotherm

@@ -18,6 +18,7 @@ struct FakeRecording {
   std::vector<NucEvent> nuc_events;
   std::vector<OutsidePose> outside_poses;
   std::vector<std::pair<std::string, CaptureTime>> messages;  ///< By topic.
+  std::vector<RecordedLog> log;
   int writes_after_failure = 0;
   bool closed = false;
 };
@@ -47,7 +48,10 @@ class FakeRecordingWriter final : public RecordingWriter {
   Status WriteMetadata(std::string_view, const std::map<std::string, std::string>&) override {
     return OkStatus();
   }
-  Status WriteLog(CaptureTime, std::string_view, std::string_view) override { return OkStatus(); }
+  Status WriteLog(CaptureTime time, std::string_view level, std::string_view text) override {
+    recording_.log.push_back({time, std::string(level), std::string(text)});
+    return OkStatus();
+  }
   Status WriteMessage(std::string_view topic, std::string_view, std::string_view, CaptureTime time,
                       std::string_view) override {
     recording_.messages.emplace_back(topic, time);

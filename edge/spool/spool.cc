@@ -57,6 +57,8 @@ void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
 Status Spool::WriteFrame(const EncodedFrame& frame) {
   for (const OutsidePoseSample& sample : frame.outside_poses)
     ISOTHERM_RETURN_IF_ERROR(writer_->Write(sample.pose));
+  for (const RecordedLog& log : frame.log)
+    ISOTHERM_RETURN_IF_ERROR(writer_->WriteLog(log.time, log.level, log.text));
   if (const auto* depth = std::get_if<EncodedDepthFrame>(&frame.content)) {
     return writer_->Write(*depth, frame.arrival);
   }
@@ -67,7 +69,8 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
 
 void Spool::NoteShutter(const EncodedThermalFrame& frame) {
   const CaptureTime time = frame.header.capture_time;
-  const bool closed = frame.nuc_state == NucState::kInProgress;
+  const bool closed =
+      frame.nuc_state == NucState::kInProgress || frame.nuc_state == NucState::kError;
   if (closed && !shutter_closed_at_) shutter_closed_at_ = time;
   if (closed || !shutter_closed_at_) return;
   NoteError(writer_->Write(NucEvent{*shutter_closed_at_, time, frame.nuc_source}));

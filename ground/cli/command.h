@@ -37,5 +37,6 @@ void AddTimingCommand(CLI::App& app, CommandBody& body);
 void AddDevicesCommand(CLI::App& app, CommandBody& body);
 void AddDemoCommand(CLI::App& app, CommandBody& body);
 void AddExperimentCommand(CLI::App& app, CommandBody& body);
+void AddNucCommand(CLI::App& app, CommandBody& body);
 
 }  // namespace isotherm

@@ -126,6 +126,13 @@ void AppendRig(const RecordingReport& report, std::string& text) {
   }
 }
 
+void AppendLog(const RecordingSummary& summary, std::string& text) {
+  for (const RecordedLog& log : summary.log)
+    text += fmt::format("{:<14}{} {}: {}\n", "log", FormatStamp(log.time), log.level, log.text);
+  if (summary.log_left_out > 0)
+    text += fmt::format("{:<14}and {} lines more\n", "log", summary.log_left_out);
+}
+
 void AppendOther(const RecordingReport& report, std::string& text) {
   for (const auto& [stream, count] : report.summary.poses)
     text += fmt::format("{:<14}{} poses\n", stream, count);
@@ -225,6 +232,7 @@ std::string ToText(const RecordingReport& report) {
   AppendRig(report, text);
   if (report.summary.unreadable > 0)
     text += fmt::format("{:<14}{} messages\n", "unreadable", report.summary.unreadable);
+  AppendLog(report.summary, text);
   AppendOther(report, text);
   return text;
 }
@@ -242,6 +250,13 @@ Json ToJson(const RecordingReport& report) {
   for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
   for (const auto& [source, count] : report.summary.outside_poses)
     json["outside_poses"][source] = count;
+  for (const RecordedLog& log : report.summary.log) {
+    Json line;
+    line["time"] = FormatStamp(log.time);
+    line["level"] = log.level;
+    line["text"] = log.text;
+    json["log"].Append(std::move(line));
+  }
   for (const auto& [topic, count] : report.info.messages_by_topic) json["messages"][topic] = count;
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) json["metadata"][name][key] = value;

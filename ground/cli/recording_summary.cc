@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "common/transport/messages.h"
+
 namespace isotherm {
 namespace {
 
@@ -62,28 +64,6 @@ std::string EncodingName(Encoding encoding) {
   return fmt::format("unknown ({})", static_cast<int>(encoding));
 }
 
-std::string NucStateName(NucState state) {
-  switch (state) {
-    case NucState::kUnknown:
-      return "unknown";
-    case NucState::kIdle:
-      return "idle";
-    case NucState::kDesired:
-      return "desired";
-    case NucState::kImminent:
-      return "imminent";
-    case NucState::kInProgress:
-      return "in progress";
-    case NucState::kSettling:
-      return "settling";
-    case NucState::kBlocked:
-      return "blocked";
-    case NucState::kError:
-      return "error";
-  }
-  return fmt::format("unknown ({})", static_cast<int>(state));
-}
-
 void RecordingSummarizer::AddFrame(const FrameHeader& header, const EncodedImage& image,
                                    StreamSummary& stream, Stamps& stamps) {
   ++stream.frames;
@@ -106,8 +86,9 @@ void RecordingSummarizer::AddFrame(const FrameHeader& header, const EncodedImage
 
 void RecordingSummarizer::AddNuc(const EncodedThermalFrame& frame) {
   if (frame.valid) ++summary_.valid_thermal;
-  ++summary_.nuc_states[NucStateName(frame.nuc_state)];
-  const bool in_nuc = frame.nuc_state == NucState::kInProgress;
+  ++summary_.nuc_states[std::string(ToString(frame.nuc_state))];
+  const bool in_nuc =
+      frame.nuc_state == NucState::kInProgress || frame.nuc_state == NucState::kError;
   const CaptureTime now = frame.header.capture_time;
   if (in_nuc && !in_nuc_) summary_.nuc_runs.push_back({now, now, 0});
   if (in_nuc) {
@@ -129,6 +110,12 @@ void RecordingSummarizer::Add(const RecordedItem& item) {
     ++summary_.poses[pose->stream];
   } else if (const auto* outside = std::get_if<OutsidePose>(&item)) {
     ++summary_.outside_poses[outside->source];
+  } else if (const auto* log = std::get_if<RecordedLog>(&item)) {
+    if (summary_.log.size() < RecordingSummary::kMostLog) {
+      summary_.log.push_back(*log);
+    } else {
+      ++summary_.log_left_out;
+    }
   }
 }
 

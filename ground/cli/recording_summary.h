@@ -48,7 +48,10 @@ struct RecordingSummary {
   std::vector<NucEvent> nuc_events;                    ///< As recorded.
   std::map<std::string, std::uint64_t> poses;          ///< By stream: groundtruth, trajectory.
   std::map<std::string, std::uint64_t> outside_poses;  ///< By source.
-  std::uint64_t unreadable = 0;                        ///< Messages that could not be read.
+  std::vector<RecordedLog> log;                        ///< What happened; the first kMostLog.
+  std::uint64_t log_left_out = 0;
+  static constexpr std::size_t kMostLog = 200;
+  std::uint64_t unreadable = 0;  ///< Messages that could not be read.
 };
 
 /// Collects a summary in constant memory per frame (its number and time). Thread-compatible.

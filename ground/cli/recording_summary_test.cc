@@ -85,7 +85,7 @@ TEST(RecordingSummaryTest, ShutterRunsAreFoundFromTheFrames) {
   using enum NucState;
   std::vector<RecordedItem> items;
   int number = 0;
-  for (const NucState state : {kIdle, kInProgress, kInProgress, kSettling, kIdle, kInProgress}) {
+  for (const NucState state : {kIdle, kInProgress, kInProgress, kSettling, kIdle, kError}) {
     items.emplace_back(Thermal(static_cast<std::uint64_t>(number), 25 * number, state));
     ++number;
   }
@@ -95,7 +95,17 @@ TEST(RecordingSummaryTest, ShutterRunsAreFoundFromTheFrames) {
   EXPECT_EQ(summary.nuc_runs[0].start, Time(25));
   EXPECT_EQ(summary.nuc_runs[0].end, Time(50));
   EXPECT_EQ(summary.nuc_runs[0].frames, 2U);
-  EXPECT_EQ(summary.nuc_states.at("in progress"), 3U);
+  EXPECT_EQ(summary.nuc_states.at("in progress"), 2U);
+  EXPECT_EQ(summary.nuc_states.at("error"), 1U);
+}
+
+TEST(RecordingSummaryTest, WhatHappenedIsListedUpToALimit) {
+  std::vector<RecordedItem> items(RecordingSummary::kMostLog + 7,
+                                  RecordedLog{Time(5), "warning", "nuc: storm"});
+  const RecordingSummary summary = Summarized(items);
+  ASSERT_EQ(summary.log.size(), RecordingSummary::kMostLog);
+  EXPECT_EQ(summary.log[0].text, "nuc: storm");
+  EXPECT_EQ(summary.log_left_out, 7U);
 }
 
 TEST(RecordingSummaryTest, EmptyRecording) {

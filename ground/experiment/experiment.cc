@@ -30,6 +30,9 @@ constexpr Experiment kExperiments[] = {
      &RunReflectionExperiment},
     {"nuc", "8.2", "A shutter that closes during the scan leaves no trace in the model.",
      &RunNucExperiment},
+    {"nuc-drift", "fig. 3.4b",
+     "Corrections as the camera's housing drifts keep the error small that it would cause.",
+     &RunNucDriftExperiment},
 };
 
 }  // namespace

@@ -75,5 +75,6 @@ Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool);
 
 }  // namespace isotherm

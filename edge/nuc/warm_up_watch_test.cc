@@ -1,0 +1,62 @@
+#include "edge/nuc/warm_up_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "edge/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+using State = WarmUpWatch::State;
+
+class WarmUpWatchTest : public testing::Test {
+ protected:
+  State Update(double seconds, double fpa_celsius) {
+    ThermalHousekeeping housekeeping;
+    housekeeping.fpa_celsius = static_cast<float>(fpa_celsius);
+    return watch_.Update(start_ + FromSeconds(seconds), housekeeping);
+  }
+
+  NucOptions options_;
+  CaptureTime start_{std::chrono::hours(1)};
+  WarmUpWatch watch_{options_};
+};
+
+TEST_F(WarmUpWatchTest, IsWarmWhenTheDetectorChangesSlowlyEnough) {
+  // As a detector warms up (fig. 3.4a): exponentially, here with 40 s and 8 K. It changes by less
+  // than 1 K in a minute, measured over 30 s behind, from the time t on at which
+  // 2 * 8 K * (exp(-(t - 30) / 40) - exp(-t / 40)) = 1 K.
+  const double expected_s = 40.0 * std::log(16.0 * (std::exp(30.0 / 40.0) - 1.0));
+  double warm_s = 0.0;
+  while (warm_s < 600.0 && Update(warm_s, 40.0 - 8.0 * std::exp(-warm_s / 40.0)) != State::kWarm)
+    warm_s += 0.025;
+  EXPECT_NEAR(warm_s, expected_s, 2.0) << "one sample a second";
+}
+
+TEST_F(WarmUpWatchTest, IsNotJudgedBeforeItsTime) {
+  EXPECT_EQ(Update(0, 35.0), State::kNotJudged);
+  EXPECT_EQ(Update(29, 35.0), State::kNotJudged);
+  EXPECT_EQ(Update(30, 35.0), State::kWarm);
+}
+
+TEST_F(WarmUpWatchTest, CoolingIsNoEquilibriumEither) {
+  for (int s = 0; s < 100; ++s) EXPECT_NE(Update(s, 50.0 - 0.05 * s), State::kWarm);
+  EXPECT_NEAR(watch_.rate_k_per_min().value(), -3.0, 0.01);
+}
+
+TEST_F(WarmUpWatchTest, WithoutTemperaturesTimeCounts) {
+  EXPECT_EQ(Update(0, kUnknownCelsius), State::kCold);
+  EXPECT_EQ(Update(179, kUnknownCelsius), State::kCold);
+  EXPECT_NEAR(ToSeconds(watch_.left()), 1.0, 1e-6);
+  EXPECT_EQ(Update(180, kUnknownCelsius), State::kWarm);
+}
+
+TEST_F(WarmUpWatchTest, OnceWarmItStaysSo) {
+  for (int s = 0; s <= 30; ++s) Update(s, 35.0);
+  for (int s = 31; s < 100; ++s) EXPECT_EQ(Update(s, 35.0 + s), State::kWarm);
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "common/transport/participant.h"
+#include "common/transport/transport_environment.h"
+#include "ground/cli/command.h"
+#include "ground/subscriber/rig_commander.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Talks to a running isotherm-edge, beside isotherm-ground or without it. Without an order it shows the
+state. The edge answers whether it takes the order; the exit status is 69 if it does not, or if no
+rig is there.
+
+Examples:
+  isotherm nuc                       state, age, temperatures of the camera
+  isotherm nuc --now                 a correction before measuring something important
+  isotherm nuc --hold 20             none in the next 20 seconds, because it would disturb
+  isotherm nuc --hold 0              that is over
+  isotherm nuc --policy manual       only when asked for; automatic: the edge decides; camera: the camera does
+
+Try it without cameras: isotherm-edge --scene furnace-door --set source.loops=0)";
+
+struct Arguments {
+  bool now = false;
+  std::optional<double> hold_s;
+  std::optional<NucPolicy> policy;
+  std::string edge_id;
+  int domain = 0;
+  double timeout_s = 5.0;
+};
+
+std::string Kelvin(double celsius) {
+  return std::isfinite(celsius) ? fmt::format("{:.2f} C", celsius) : "unknown";
+}
+
+std::string StatusText(const std::string& edge_id, const NucReport& nuc) {
+  std::string text = fmt::format("{:<14}{}\n", "rig", edge_id);
+  text += fmt::format("{:<14}{}{}\n", "correction", ToString(nuc.state),
+                      nuc.reason.empty() ? "" : fmt::format(": {}", nuc.reason));
+  text += fmt::format("{:<14}{}\n", "known by", ToString(nuc.source));
+  text +=
+      fmt::format("{:<14}{}\n", "last one",
+                  std::isfinite(nuc.seconds_since) ? fmt::format("{:.1f} s ago", nuc.seconds_since)
+                                                   : "none seen yet");
+  text += fmt::format("{:<14}{} corrections, shutter closed for {:.1f} %{}\n", "last minute",
+                      nuc.closings_per_minute,
+                      std::isfinite(nuc.closed_share) ? 100.0 * nuc.closed_share : 0.0,
+                      nuc.storm ? " (storm)" : "");
+  text += fmt::format("{:<14}{}\n", "policy", ToString(nuc.policy));
+  text += fmt::format("{:<14}detector {}, housing {}{}\n", "camera", Kelvin(nuc.fpa_celsius),
+                      Kelvin(nuc.housing_celsius), nuc.warming_up ? ", warming up" : "");
+  return text;
+}
+
+std::optional<Command> OrderOf(const Arguments& arguments) {
+  Command command;
+  if (arguments.now) command.kind = CommandKind::kTriggerNuc;
+  if (arguments.hold_s) {
+    command.kind = CommandKind::kHoldNuc;
+    command.hold_s = *arguments.hold_s;
+  }
+  if (arguments.policy) {
+    command.kind = CommandKind::kSetNucPolicy;
+    command.nuc_policy = *arguments.policy;
+  }
+  if (!arguments.now && !arguments.hold_s && !arguments.policy) return std::nullopt;
+  return command;
+}
+
+Status Run(const Arguments& arguments) {
+  const SystemClock clock;
+  const TransportEnvironment environment(clock);
+  const Nanoseconds timeout = FromSeconds(arguments.timeout_s);
+  const auto participant = Participant::Create(environment, arguments.domain);
+  if (!participant) return participant.error();
+  const auto commander = RigCommander::Create(**participant, clock, arguments.edge_id);
+  if (!commander) return commander.error();
+  const Result<EdgeStatus> status = (*commander)->AwaitStatus(timeout);
+  if (!status) return status.error();
+  const std::optional<Command> order = OrderOf(arguments);
+  if (!order) {
+    std::fputs(StatusText((*commander)->edge_id(), status->nuc).c_str(), stdout);
+    return OkStatus();
+  }
+  const Result<CommandResult> answer = (*commander)->Send(*order, timeout);
+  if (!answer) return answer.error();
+  const std::string& rig = (*commander)->edge_id();
+  if (answer->outcome != CommandOutcome::kDone) {
+    return Unavailable(fmt::format(
+        "{} {}: {}", rig, answer->outcome == CommandOutcome::kRefused ? "refuses" : "failed",
+        answer->text));
+  }
+  fmt::print("{}: {}\n", rig, answer->text.empty() ? "done" : answer->text);
+  return OkStatus();
+}
+
+}  // namespace
+
+void AddNucCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* command = app.add_subcommand(
+      "nuc", "Corrections of a running rig's thermal camera: state, now, hold, policy");
+  auto arguments = std::make_shared<Arguments>();
+  const std::map<std::string, NucPolicy> policies = {{"automatic", NucPolicy::kAutomatic},
+                                                     {"manual", NucPolicy::kManual},
+                                                     {"camera", NucPolicy::kCamera}};
+  auto* const orders = command->add_option_group("order", "What to do; nothing: show the state");
+  orders->add_flag("--now", arguments->now, "Correct as soon as it is allowed");
+  orders
+      ->add_option("--hold", arguments->hold_s,
+                   "No correction for so long (nuc.max_hold_s at most); 0 ends a hold")
+      ->check(CLI::Range(0.0, 86400.0))
+      ->type_name("SECONDS");
+  orders->add_option("--policy", arguments->policy, "automatic, manual or camera")
+      ->transform(CLI::CheckedTransformer(policies, CLI::ignore_case).description(""))
+      ->type_name("POLICY");
+  orders->require_option(0, 1);
+  command->add_option("--edge-id", arguments->edge_id, "Which rig; default: the first one seen")
+      ->type_name("NAME");
+  command->add_option("--domain", arguments->domain, "DDS domain, 0..230")
+      ->check(CLI::Range(0, kMaxDomainId))
+      ->type_name("N");
+  command->add_option("--timeout", arguments->timeout_s, "How long to wait for the rig, seconds")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
+  command->footer(kFooter);
+  command->callback([arguments, &body] {
+    body = [arguments] {
+      const Status done = Run(*arguments);
+      return done.ok() ? 0 : Fail(done);
+    };
+  });
+}
+
+}  // namespace isotherm

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "common/base/status.h"
+#include "common/time/clock.h"
+#include "common/transport/endpoints.h"
+#include "common/transport/messages.h"
+#include "common/transport/participant.h"
+#include "common/transport/wait_set.h"
+
+namespace isotherm {
+
+/// Gives a rig single orders and waits for its answers, beside the ground station that receives its
+/// frames or without one. Thread-bound.
+class RigCommander {
+ public:
+  /// `edge_id`: which rig; empty: the first one seen. `participant` and `clock` must outlive it.
+  static Result<std::unique_ptr<RigCommander>> Create(const Participant& participant,
+                                                      const Clock& clock, std::string edge_id);
+
+  /// The rig's next status. kUnavailable after `timeout`; the message names what to check.
+  Result<EdgeStatus> AwaitStatus(Nanoseconds timeout);
+  /// Sends the order (its number and time are set here) to the rig that AwaitStatus has found and
+  /// waits for the answer. kUnavailable after `timeout`.
+  Result<CommandResult> Send(Command command, Nanoseconds timeout);
+  /// Name of the rig; empty before a status has come.
+  const std::string& edge_id() const { return edge_id_; }
+
+ private:
+  RigCommander(const Clock& clock, std::string edge_id)
+      : clock_(clock), edge_id_(std::move(edge_id)) {}
+  Status Open(const Participant& participant);
+  bool WaitUntil(Nanoseconds timeout, const std::function<bool()>& done);
+
+  const Clock& clock_;
+  std::string edge_id_;
+  RefusalCounter refusals_;
+  Reader<EdgeStatus> statuses_;
+  Reader<CommandResult> results_;
+  Writer<Command> commands_;
+  WaitSet wait_set_;
+};
+
+}  // namespace isotherm
