@@ -178,8 +178,11 @@ Status CameraProcess::Control(const CameraControl& control) {
   ToCamera order;
   if (std::holds_alternative<TriggerNuc>(control)) {
     order.set_trigger_nuc(true);
+  } else if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
+    order.set_automatic_nuc(automatic->on);
   } else {
-    order.set_automatic_nuc(std::get<SetAutomaticNuc>(control).on);
+    // Whoever supervises it closes and opens it instead, which starts another process.
+    return FailedPrecondition("the camera's process takes no such order");
   }
   if (link_->Send(order)) return OkStatus();
   return Unavailable("the camera's process does not listen");
