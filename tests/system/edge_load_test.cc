@@ -1,0 +1,254 @@
+// The edge under the load of a real rig: 640x480 depth at 30 Hz through OpenNI2 in its own process,
+// 382x288 thermal at 40 Hz, recorded to disk and published over DDS to another process. Checks that
+// nothing is lost and memory stays bounded; prints CPU, memory and stamping latency.
+// ISOTHERM_LOAD_SECONDS says how long (60).
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <thread>
+
+#include "common/testing/temporary_directory.h"
+#include "common/transport/participant.h"
+#include "edge/edge_options.pb.h"
+#include "edge/edge_pipeline.h"
+#include "edge/openni/fake_depth_camera.h"
+#include "edge/source/camera_pair.h"
+#include "edge/source/camera_process.h"
+#include "edge/source/pause.h"
+#include "tests/system/programs.h"
+
+namespace isotherm::system_test {
+namespace {
+
+constexpr int kThermalWidth = 382;
+constexpr int kThermalHeight = 288;
+constexpr std::chrono::milliseconds kThermalPeriod{25};
+constexpr int kPreparedFrames = 8;
+/// A computer that leaves a thread waiting for longer does something else: nothing is learnt then.
+constexpr std::chrono::milliseconds kStarved{50};
+/// What the edge may hold in memory, with its camera's process.
+constexpr double kMostMemory_mb = 150.0;
+constexpr unsigned kSeed = 20;
+
+double CpuSeconds(int who) {
+  rusage usage{};
+  getrusage(who, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+/// What a process has in memory, MB; pages that processes share count for each with its share.
+double Memory_mb(const std::string& process) {
+  std::ifstream pages("/proc/" + process + "/smaps_rollup");
+  for (std::string line; std::getline(pages, line);) {
+    if (line.starts_with("Pss:")) return std::atof(line.c_str() + 4) / 1024.0;
+  }
+  return 0.0;
+}
+
+/// A thermal camera whose frames are prepared once: noise of a real camera (0.05 K) on a warm blob.
+class PreparedThermalCamera final : public FrameSource {
+ public:
+  explicit PreparedThermalCamera(const Clock& clock) : clock_(clock) {
+    std::mt19937 random(kSeed);
+    std::normal_distribution<double> noise(0.0, 5.0);
+    for (int i = 0; i < kPreparedFrames; ++i) {
+      Image<std::uint16_t> image(kThermalWidth, kThermalHeight);
+      for (int v = 0; v < kThermalHeight; ++v) {
+        for (int u = 0; u < kThermalWidth; ++u) {
+          const double blob =
+              4000.0 / (1.0 + 0.001 * ((u - 190) * (u - 190) + (v - 144) * (v - 144)));
+          image.At(u, v) = static_cast<std::uint16_t>(29'500.0 + blob + noise(random));
+        }
+      }
+      frames_.push_back(std::move(image));
+    }
+  }
+  std::string_view name() const override { return "prepared thermal camera"; }
+  Status Open() override {
+    next_ = clock_.SteadyNow();
+    return OkStatus();
+  }
+  Result<SourceItem> Read(std::stop_token stop) override {
+    Pause(stop, next_ - clock_.SteadyNow());
+    if (stop.stop_requested()) return NothingYet{};
+    latest_ = std::max(latest_.load(), clock_.SteadyNow() - next_);
+    next_ += kThermalPeriod;
+    RawFrame frame;
+    frame.sensor = Sensor::kThermal;
+    frame.arrival_steady = clock_.SteadyNow();
+    frame.arrival_wall = clock_.Now();
+    frame.frame_number = number_;
+    frame.device_ticks =
+        DeviceTicks(std::chrono::microseconds(kThermalPeriod) * static_cast<int>(number_));
+    frame.pixels = frames_[number_ % frames_.size()];
+    ++number_;
+    return frame;
+  }
+  void Close() override {}
+  /// How late a frame was at most: how long this computer left a thread waiting that could run.
+  Nanoseconds latest() const { return latest_; }
+
+ private:
+  const Clock& clock_;
+  std::atomic<Nanoseconds> latest_{Nanoseconds(0)};
+  std::vector<Image<std::uint16_t>> frames_;
+  SteadyTime next_{};
+  std::uint64_t number_ = 0;
+};
+
+class EdgeLoadTest : public ::testing::Test {
+ protected:
+  EdgeLoadTest() {
+    setenv("LD_LIBRARY_PATH", FAKE_OPENNI, 1);
+    camera_.script.pixels = folder_.path() / "depth.raw";
+    WriteDepth(camera_.script.pixels);
+    camera_.Apply();
+    if (const char* text = std::getenv("ISOTHERM_LOAD_SECONDS")) seconds_ = std::atof(text);
+  }
+
+  /// A tilted plane with a step, noise of 1 mm and holes at the step.
+  static void WriteDepth(const std::filesystem::path& path) {
+    std::mt19937 random(kSeed);
+    std::normal_distribution<double> noise(0.0, 1.0);
+    std::ofstream file(path, std::ios::binary);
+    for (int i = 0; i < kPreparedFrames; ++i) {
+      std::vector<std::uint16_t> frame;
+      for (int v = 0; v < 480; ++v) {
+        for (int u = 0; u < 640; ++u) {
+          const double plane = 600.0 + 0.3 * u + 0.1 * v + (u > 320 ? 80.0 : 0.0);
+          const bool hole = std::abs(u - 320) < 8;
+          frame.push_back(hole ? 0 : static_cast<std::uint16_t>(plane + noise(random)));
+        }
+      }
+      file.write(reinterpret_cast<const char*>(frame.data()),
+                 static_cast<std::streamsize>(frame.size() * 2));
+    }
+  }
+
+  std::unique_ptr<CameraPair> MakeCameras() {
+    CameraProcess::Settings settings;
+    settings.name = "depth camera";
+    settings.program = EdgeDaemon();
+    settings.arguments = {"--camera-process", "depth", "--camera-options", "kind: CAMERAS"};
+    auto depth = std::make_unique<CameraProcess>(settings, clock_);
+    depth_ = depth.get();
+    std::vector<CameraPair::Camera> cameras;
+    cameras.push_back({Sensor::kDepth, Supervise(std::move(depth))});
+    auto thermal = std::make_unique<PreparedThermalCamera>(clock_);
+    thermal_ = thermal.get();
+    cameras.push_back({Sensor::kThermal, Supervise(std::move(thermal))});
+    const auto dropped = [this](Sensor sensor) {
+      account_.Count(sensor, FrameFate::kRecordQueueFull);
+      account_.Count(sensor, FrameFate::kPublishQueueFull);
+    };
+    return std::make_unique<CameraPair>(
+        std::move(cameras),
+        CameraPair::Queue{static_cast<std::size_t>(options_.capture_queue_frames()),
+                          OverflowPolicy::kDropOldest, dropped});
+  }
+  std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source) {
+    return std::make_unique<SupervisedSource>(
+        std::move(source), options_.frame_check(), clock_,
+        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kCaptured); },
+        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); });
+  }
+
+  const ::isotherm::testing::TemporaryDirectory folder_;
+  FakeDepthCamera camera_{folder_.path()};
+  double seconds_ = 60.0;
+  EdgeOptions options_;
+  const SystemClock clock_;
+  FrameAccount account_;
+  CameraHealth health_;
+  CameraProcess* depth_ = nullptr;
+  PreparedThermalCamera* thermal_ = nullptr;
+};
+
+TEST_F(EdgeLoadTest, NoFrameIsLostAndMemoryIsBounded) {
+  Process sink({FRAME_SINK, {std::to_string(TestDomain())}, {}, {}});
+  ASSERT_TRUE(sink.WaitForOutput("listening", kPatience));
+  const TransportEnvironment environment(clock_);
+  const auto participant = Participant::Create(environment, TestDomain());
+  ASSERT_TRUE(participant.has_value());
+  PublisherOptions publishing;
+  publishing.policy = PublishPolicy::kLossless;
+  const auto publisher = Publisher::Create(**participant, clock_, publishing);
+  ASSERT_TRUE(publisher.has_value());
+  const std::unique_ptr<CameraPair> cameras = MakeCameras();
+  const Status opened = cameras->Open();
+  ASSERT_TRUE(opened.ok()) << opened.message();
+  const std::filesystem::path file = folder_.path() / "scan.mcap";
+  auto spool = Spool::Create(file, options_.spool(), cameras->rig(), {}, account_);
+  ASSERT_TRUE(spool.has_value());
+  RigDescription rig;
+  rig.session = 1;
+  ASSERT_TRUE((*publisher)->BeginSession(rig).ok());
+
+  EdgePipeline pipeline(
+      options_, {*cameras, **publisher, account_, health_, clock_, std::move(*spool), rig.session});
+  pipeline.StartReceiving();
+  ASSERT_TRUE((*publisher)->WaitForGround(std::chrono::seconds(20), {}));
+  const double cpu_before_s = CpuSeconds(RUSAGE_SELF);
+  const SteadyTime start = clock_.SteadyNow();
+  pipeline.StartCapture();
+  Pause({}, FromSeconds(seconds_));
+  const double memory_mb = Memory_mb("self");
+  const double child_memory_mb = Memory_mb(std::to_string(depth_->pid()));
+  const double cpu_s = CpuSeconds(RUSAGE_SELF) - cpu_before_s;
+  const double wall_s = ToSeconds(clock_.SteadyNow() - start);
+  EXPECT_TRUE(pipeline.Stop().ok());
+  EXPECT_TRUE((*publisher)->Drain(std::chrono::seconds(20)));
+
+  std::printf(
+      "edge: %.1f %% of a core, %.0f MB resident; depth camera's process: %.1f %%, %.0f MB\n",
+      100.0 * cpu_s / wall_s, memory_mb, 100.0 * CpuSeconds(RUSAGE_CHILDREN) / wall_s,
+      child_memory_mb);
+  const auto recording = RecordingReader::Open(file);
+  ASSERT_TRUE(recording.has_value());
+  EXPECT_TRUE((*recording)->info().complete);
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const bool is_depth = sensor == Sensor::kDepth;
+    const SensorAccount account = account_.Get(sensor);
+    const CameraReport report = health_.Get(sensor);
+    const std::uint64_t recorded =
+        (*recording)->info().messages_by_topic.at(is_depth ? "/depth" : "/thermal");
+    std::printf("%s: captured %lu, stamped p50 %.3f ms p99 %.3f ms after arrival\n",
+                is_depth ? "depth" : "thermal", account.captured, report.stamping_p50_s * 1e3,
+                report.stamping_p99_s * 1e3);
+    EXPECT_GT(account.captured, 0U);
+    EXPECT_EQ(account.OnTheWayToDisk(), 0);
+    EXPECT_EQ(account.OnTheWayToGround(), 0);
+    EXPECT_EQ(account.recorded, recorded);
+  }
+  if (thermal_->latest() > kStarved) {
+    GTEST_SKIP() << "this computer is busy: a thread that could run waited for "
+                 << ToSeconds(thermal_->latest())
+                 << " s; accounts close, but losses and memory say nothing";
+  }
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const SensorAccount account = account_.Get(sensor);
+    EXPECT_EQ(account.recorded, account.captured);
+    EXPECT_EQ(account.published, account.captured);
+  }
+  EXPECT_LT(memory_mb + child_memory_mb, kMostMemory_mb);
+  sink.Signal(SIGTERM);
+  EXPECT_EQ(sink.WaitForExit(kPatience), 0);
+  std::ostringstream expected;
+  expected << "received depth=" << account_.Get(Sensor::kDepth).captured
+           << " thermal=" << account_.Get(Sensor::kThermal).captured;
+  EXPECT_NE(sink.output().find(expected.str()), std::string::npos) << sink.output();
+}
+
+}  // namespace
+}  // namespace isotherm::system_test
