@@ -9,6 +9,7 @@
 #include "common/base/check.h"
 #include "edge/edge_options.pb.h"
 #include "edge/thermal_camera/lepton_camera.h"
+#include "edge/thermal_camera/optris_camera.h"
 #include "edge/thermal_camera/p2pro_camera.h"
 #include "edge/thermal_camera/p3_camera.h"
 #include "edge/usb/usb_device.h"
@@ -16,7 +17,8 @@
 namespace isotherm {
 namespace {
 
-using MakeCamera = std::unique_ptr<ThermalCamera> (*)(const DeviceDescription&, const Clock&);
+using MakeCamera = std::unique_ptr<ThermalCamera> (*)(const DeviceDescription&,
+                                                      const ThermalCameraOptions&, const Clock&);
 
 struct KnownCamera {
   std::uint16_t vendor_id;
@@ -28,13 +30,22 @@ struct KnownCamera {
 };
 
 template <typename Camera>
-std::unique_ptr<ThermalCamera> MakeOf(const DeviceDescription& device, const Clock& clock) {
+std::unique_ptr<ThermalCamera> MakeOf(const DeviceDescription& device,
+                                      const ThermalCameraOptions& /*options*/, const Clock& clock) {
   return std::make_unique<Camera>(device.bus_port, clock);
 }
 
 template <int kWidth, int kHeight>
-std::unique_ptr<ThermalCamera> MakeP3(const DeviceDescription& device, const Clock& clock) {
+std::unique_ptr<ThermalCamera> MakeP3(const DeviceDescription& device,
+                                      const ThermalCameraOptions& /*options*/, const Clock& clock) {
   return std::make_unique<P3Camera>(device.bus_port, P3Layout{kWidth, kHeight}, clock);
+}
+
+std::unique_ptr<ThermalCamera> MakeOptris(const DeviceDescription& device,
+                                          const ThermalCameraOptions& options, const Clock& clock) {
+  OptrisSettings settings{options.optris_library(), options.optris_config(),
+                          options.optris_formats()};
+  return std::make_unique<OptrisCamera>(device.bus_port, std::move(settings), clock);
 }
 
 // Identifiers: vendors' descriptors, as collected in docs/thermal-cameras.md.
@@ -44,6 +55,7 @@ constexpr KnownCamera kKnown[] = {
     {0x0BDA, 0x5830, P2ProCamera::kDriver, "InfiRay P2 Pro", "256x192, 25 Hz", MakeOf<P2ProCamera>},
     {0x3474, 0x45A2, P3Camera::kDriver, "Thermal Master P3", "256x192, 25 Hz", MakeP3<256, 192>},
     {0x3474, 0x45C2, P3Camera::kDriver, "Thermal Master P1", "160x120, 25 Hz", MakeP3<160, 120>},
+    {0x0403, 0xDE37, OptrisCamera::kDriver, "Optris", "by the vendor's library", MakeOptris},
 };
 
 const KnownCamera* Find(std::uint16_t vendor_id, std::uint16_t product_id) {
@@ -106,8 +118,11 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
   const std::string driver = DriverName(options.driver());
   std::vector<DeviceDescription> fitting;
   for (const DeviceDescription& device : devices) {
-    const bool fits = (driver.empty() || device.driver == driver) &&
-                      (options.bus_port().empty() || device.bus_port == options.bus_port());
+    // The vendor's library is used only by those who ask for it.
+    const bool right_driver =
+        driver.empty() ? device.driver != OptrisCamera::kDriver : device.driver == driver;
+    const bool fits =
+        right_driver && (options.bus_port().empty() || device.bus_port == options.bus_port());
     if (fits) fitting.push_back(device);
   }
   if (fitting.empty()) {
@@ -129,13 +144,14 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
 }
 
 std::unique_ptr<ThermalCamera> MakeThermalCamera(const DeviceDescription& device,
+                                                 const ThermalCameraOptions& options,
                                                  const Clock& clock) {
   const auto known =
       std::find_if(std::begin(kKnown), std::end(kKnown), [&device](const KnownCamera& camera) {
         return camera.vendor_id == device.vendor_id && camera.product_id == device.product_id;
       });
   CHECK(known != std::end(kKnown));
-  return known->make(device, clock);
+  return known->make(device, options, clock);
 }
 
 }  // namespace isotherm

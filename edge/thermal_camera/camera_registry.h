@@ -26,6 +26,7 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
 /// The driver for `device`, which ListThermalCameras has found; not opened yet. `clock` must
 /// outlive it.
 std::unique_ptr<ThermalCamera> MakeThermalCamera(const DeviceDescription& device,
+                                                 const ThermalCameraOptions& options,
                                                  const Clock& clock);
 
 }  // namespace isotherm

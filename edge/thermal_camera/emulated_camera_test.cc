@@ -39,7 +39,7 @@ class EmulatedCameraTest : public testing::Test {
     ThermalCameraSource::Cameras cameras;
     cameras.list = ListThermalCameras;
     cameras.make = [this](const DeviceDescription& device) {
-      return MakeThermalCamera(device, clock_);
+      return MakeThermalCamera(device, options_, clock_);
     };
     return std::make_unique<ThermalCameraSource>(options_, clock_, cameras);
   }

@@ -39,8 +39,8 @@ std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions&
                                                      const Clock& clock) {
   ThermalCameraSource::Cameras cameras;
   cameras.list = ListThermalCameras;
-  cameras.make = [&clock](const DeviceDescription& device) {
-    return MakeThermalCamera(device, clock);
+  cameras.make = [options, &clock](const DeviceDescription& device) {
+    return MakeThermalCamera(device, options, clock);
   };
   return std::make_unique<ThermalCameraSource>(options, clock, std::move(cameras));
 }
@@ -72,7 +72,8 @@ Status ThermalCameraSource::Open() {
         fmt::format("thermal camera {} at {}", device->driver, device->bus_port));
   }
   const ThermalCameraInfo& info = camera_->info();
-  serial_ = info.serial;
+  // As listed: that is what the next opening compares it with.
+  serial_ = device->serial;
   name_ = fmt::format("thermal camera {}", info.driver);
   novelty_.emplace(info.counter_step, info.native_repeats);
   last_frame_at_ = clock_.SteadyNow() + info.start_time;

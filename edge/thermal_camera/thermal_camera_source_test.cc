@@ -279,6 +279,13 @@ TEST_F(ThermalCameraSourceTest, F03ReplugWithAnotherSerialIsRefused) {
   EXPECT_TRUE(source->Open().ok());
 }
 
+TEST_F(ThermalCameraSourceTest, TheVendorsLibraryIsUsedOnlyIfNamed) {
+  device_.driver = "optris-sdk";
+  EXPECT_EQ(Make()->Open().code(), StatusCode::kUnavailable);
+  options_.set_driver(OPTRIS_SDK);
+  EXPECT_TRUE(Make()->Open().ok());
+}
+
 TEST_F(ThermalCameraSourceTest, NoCameraIsUnavailable) {
   options_.set_bus_port("2-1");
   const Status opened = Make()->Open();

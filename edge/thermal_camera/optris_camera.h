@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/time/clock.h"
+#include "edge/thermal_camera/counter.h"
+#include "edge/thermal_camera/thermal_camera.h"
+
+namespace isotherm {
+
+struct OptrisSettings {
+  std::string library;  ///< The vendor's, a path or a name that the loader finds.
+  std::string config;   ///< The camera's XML file, as the vendor's programs take it.
+  std::string formats;  ///< Folder with the vendor's Formats.def.
+};
+
+/// Optris PI and Xi through the vendor's library, loaded when opened (interface of libirimager as
+/// published with version 2 to 8). The library decides how long a read takes: run it in a process
+/// of its own. Thread-bound.
+class OptrisCamera final : public ThermalCamera {
+ public:
+  static constexpr const char* kDriver = "optris-sdk";
+
+  /// `clock` must outlive it.
+  OptrisCamera(std::string bus_port, OptrisSettings settings, const Clock& clock);
+  ~OptrisCamera() override;
+
+  Status Open() override;
+  const ThermalCameraInfo& info() const override { return info_; }
+  /// Waits for the next frame as long as the library does, whatever `timeout` says.
+  Result<std::optional<RawThermalFrame>> Read(Nanoseconds timeout) override;
+  void Close() override;
+  Status TriggerNuc() override;
+  Status SetAutomaticNuc(bool on) override;
+
+ private:
+  struct Library;
+  Status Load();
+  Status Initialise();
+
+  const Clock& clock_;
+  const OptrisSettings settings_;
+  ThermalCameraInfo info_;
+  std::unique_ptr<Library> library_;
+  bool initialised_ = false;
+  Unwrapper counter_{32};
+};
+
+}  // namespace isotherm
