@@ -40,6 +40,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       clock_(parts.clock),
       spool_(std::move(parts.spool)),
       session_(parts.session),
+      step_watch_(ReadClocks(clock_)),
       depth_timestamper_(options.timestamper(), Sensor::kDepth, Nanoseconds(0)),
       thermal_timestamper_(options.timestamper(), Sensor::kThermal,
                            FromSeconds(parts.rig_thermal_delay_s)),
@@ -59,7 +60,8 @@ void EdgePipeline::StartReceiving() {
     PublisherHandlers handlers;
     handlers.command = [this, &stop](const Command& command) { commands_.Push(command, stop); };
     handlers.feedback = [this, &stop](const Feedback& feedback, CaptureTime arrival) {
-      feedback_.Add(feedback, arrival);
+      // Its age counts on the time line of capture times.
+      feedback_.Add(feedback, arrival - clock_step_total());
       if (spool_) feedback_to_record_.Push({feedback, arrival}, stop);
     };
     publisher_.Run(stop, handlers);
@@ -79,6 +81,11 @@ Status EdgePipeline::Stop() {
        {&capture_thread_, &spool_thread_, &publish_thread_, &receive_thread_}) {
     thread->request_stop();
     if (thread->joinable()) thread->join();
+  }
+  if (clock_steps_ > 0) {
+    LOG(Edge, Warning) << "the wall clock was set during the scan, steps=" << clock_steps_
+                       << "; wall clock minus capture times at the end, s="
+                       << ToSeconds(clock_step_total());
   }
   ReportStamping("depth", depth_timestamper_.counts());
   ReportStamping("thermal", thermal_timestamper_.counts());
@@ -115,6 +122,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
     ServeNucCommands();
     Result<SourceItem> item = source_.Read(stop);
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
+    WatchClock();
     if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
     if (OutsidePose* pose = std::get_if<OutsidePose>(&*item)) Keep(std::move(*pose));
   }
@@ -130,7 +138,20 @@ void EdgePipeline::ServeNucCommands() {
   for (CommandResult& answer : nuc_.TakeAnswers()) nuc_answers_.Push(std::move(answer), {});
 }
 
+void EdgePipeline::WatchClock() {
+  const std::optional<Nanoseconds> step = step_watch_.Observe(ReadClocks(clock_));
+  if (!step) return;
+  clock_steps_ = step_watch_.steps();
+  clock_step_total_ns_ = step_watch_.total().count();
+  LOG(Edge, Warning) << "the wall clock was set, step_s=" << ToSeconds(*step)
+                     << "; capture times go on without it, wall clock minus capture time base, s="
+                     << ToSeconds(step_watch_.total());
+}
+
 void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
+  // From here on, arrival is on the time line that steps of the wall clock do not touch. Arrivals
+  // of sources that do not read the clocks (a replay's) are on a time line of their own.
+  if (raw.arrival_steady != SteadyTime{}) raw.arrival_wall = step_watch_.At(raw.arrival_steady);
   if (raw.sensor == Sensor::kDepth) {
     ProcessDepth(std::move(raw), stop);
   } else {
@@ -147,8 +168,8 @@ void EdgePipeline::Keep(OutsidePose pose) {
 
 void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
   const Stamp stamp = depth_timestamper_.Process(raw, raw.arrival_wall);
-  NoteStamped(raw);
-  feedback_.NoteCapture(stamp.time, clock_.Now());
+  NoteStamped(raw, stamp);
+  feedback_.NoteCapture(stamp.time, TimeLineNow());
   health_.SetBlind(Sensor::kDepth, blind_detector_.Update(raw));
   EncodedDepthFrame frame;
   frame.header = Header(raw, stamp);
@@ -159,7 +180,7 @@ void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
 
 void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   const Stamp stamp = thermal_timestamper_.Process(raw, raw.arrival_wall);
-  NoteStamped(raw);
+  NoteStamped(raw, stamp);
   const NucStatus nuc = nuc_.Process(raw, stamp.time);
   EncodedThermalFrame frame;
   frame.header = Header(raw, stamp);
@@ -173,7 +194,8 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   Emit({std::move(frame), raw.arrival_wall}, stop);
 }
 
-void EdgePipeline::NoteStamped(const RawFrame& raw) {
+void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
+  if (!stamp.synchronised) ++unsynchronised_frames_;
   if (raw.arrival_steady == SteadyTime{}) return;  // Not from a camera.
   health_.AddStamping(raw.sensor, clock_.SteadyNow() - raw.arrival_steady);
 }

@@ -12,6 +12,7 @@
 #include "common/concurrency/bounded_queue.h"
 #include "common/concurrency/latest_value.h"
 #include "common/time/clock.h"
+#include "common/time/step_watch.h"
 #include "common/transport/messages.h"
 #include "edge/camera_health.h"
 #include "edge/encoded_frame.h"
@@ -68,6 +69,12 @@ class EdgePipeline {
   bool finished() const;
   /// The correction as of the newest thermal frame. Thread-safe.
   NucReport nuc() const { return nuc_report_.Get().value_or(NucReport()); }
+  /// Steps of the wall clock since the start and their sum, which capture times do not follow: the
+  /// wall clock is ahead of them by so much. Thread-safe.
+  std::uint64_t clock_steps() const { return clock_steps_; }
+  Nanoseconds clock_step_total() const { return Nanoseconds(clock_step_total_ns_.load()); }
+  /// Frames whose capture time must not be trusted. Thread-safe.
+  std::uint64_t unsynchronised_frames() const { return unsynchronised_frames_; }
   /// What the ground says. Thread-safe.
   const FeedbackMonitor& feedback() const { return feedback_; }
   /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
@@ -76,6 +83,9 @@ class EdgePipeline {
  private:
   void Capture(const std::stop_token& stop);
   void Process(RawFrame raw, const std::stop_token& stop);
+  /// Absorbs and reports steps of the wall clock.
+  void WatchClock();
+  CaptureTime TimeLineNow() const { return step_watch_.At(clock_.SteadyNow()); }
   /// Keeps the pose for the next frame to take along.
   void Keep(OutsidePose pose);
   void PublishOutsidePoses(const EncodedFrame& frame);
@@ -83,7 +93,7 @@ class EdgePipeline {
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
   /// How long it took from arrival to here.
-  void NoteStamped(const RawFrame& raw);
+  void NoteStamped(const RawFrame& raw, const Stamp& stamp);
   FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
   void Record(const std::stop_token& stop);
   void RecordFeedback();
@@ -101,6 +111,10 @@ class EdgePipeline {
   const std::unique_ptr<Spool> spool_;
   const std::uint64_t session_;
 
+  StepWatch step_watch_;  ///< Of the capture thread.
+  std::atomic<std::uint64_t> clock_steps_{0};
+  std::atomic<std::int64_t> clock_step_total_ns_{0};
+  std::atomic<std::uint64_t> unsynchronised_frames_{0};
   Timestamper depth_timestamper_;
   Timestamper thermal_timestamper_;
   NucControl nuc_;

@@ -75,8 +75,8 @@ StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz) {
 void AddHostStatus(const HostStatus& host, EdgeStatus& status) {
   status.disk_free_bytes = host.disk_free_bytes;
   status.cpu_temperature_celsius = host.cpu_temperature_celsius;
-  status.clock_offset_s = host.clock_offset_s;
-  status.clock_error_s = host.clock_error_s;
+  status.clock_offset_s = host.clock.offset_s;
+  status.clock_error_s = host.clock.max_error_s;
 }
 
 std::string_view CameraText(CameraState state) {
@@ -106,20 +106,24 @@ std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal
   return text;
 }
 
+std::string ClockText(const EdgeStatus& status) {
+  if (std::isnan(status.clock_error_s)) return "not synchronised";
+  return fmt::format("within {:.1f} ms", 1e3 * status.clock_error_s);
+}
+
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
                        const std::optional<Feedback>& feedback) {
   const SensorAccount depth = account.Get(Sensor::kDepth);
   const SensorAccount thermal = account.Get(Sensor::kThermal);
   return fmt::format(
       "ground: {} | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  "
-      "dropped "
-      "{}",
+      "dropped {}  clock {}",
       !ground_present ? "absent"
       : feedback      ? FeedbackText(*feedback)
                       : "no feedback yet",
       status.depth.rate_hz, StateText(status.depth_camera), status.thermal.rate_hz,
       StateText(status.thermal_camera), NucText(status.nuc), depth.recorded + thermal.recorded,
-      depth.published + thermal.published, Dropped(depth) + Dropped(thermal));
+      depth.published + thermal.published, Dropped(depth) + Dropped(thermal), ClockText(status));
 }
 
 std::string Summary(const FrameAccount& account, bool recording,

@@ -35,6 +35,9 @@ std::string_view CameraText(CameraState state);
 /// there are none.
 std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal);
 
+/// How far the wall clock may be off, or that it is not synchronised.
+std::string ClockText(const EdgeStatus& status);
+
 /// One line for the operator: what the ground says, then rates, drops and NUC.
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
                        const std::optional<Feedback>& feedback);

@@ -102,6 +102,17 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   EXPECT_THAT(StatusLine({}, account_, true, std::nullopt), HasSubstr("no feedback yet"));
 }
 
+TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
+  EdgeStatus status;
+  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+              HasSubstr("clock not synchronised"));
+  HostStatus host;
+  host.clock = {
+      .synchronised = true, .offset_s = 0.0, .estimated_error_s = 0.0001, .max_error_s = 0.0012};
+  AddHostStatus(host, status);
+  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt), HasSubstr("clock within 1.2 ms"));
+}
+
 TEST(RateMeterTest, CountsPerSecond) {
   RateMeter meter;
   const SteadyTime start{seconds(100)};

@@ -1,7 +1,5 @@
 #include "edge/host_status.h"
 
-#include <sys/timex.h>
-
 #include <fstream>
 #include <system_error>
 
@@ -30,14 +28,7 @@ HostStatus ReadHostStatus(const std::filesystem::path& disk) {
   HostStatus status;
   status.disk_free_bytes = FreeBytes(disk);
   status.cpu_temperature_celsius = CpuTemperature();
-  // chrony keeps the kernel's estimate of the clock current.
-  timex kernel{};
-  const int state = adjtimex(&kernel);
-  if (state != -1 && state != TIME_ERROR) {
-    const double unit_s = (kernel.status & STA_NANO) != 0 ? 1e-9 : 1e-6;
-    status.clock_offset_s = static_cast<double>(kernel.offset) * unit_s;
-    status.clock_error_s = static_cast<double>(kernel.maxerror) * 1e-6;
-  }
+  status.clock = ReadKernelClock();
   return status;
 }
 

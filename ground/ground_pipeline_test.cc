@@ -57,9 +57,10 @@ class GroundPipelineTest : public ::testing::Test {
     frame.header.capture_time = Time(i);
     return pipeline_->ProcessDepth(frame);
   }
-  void Thermal(double at, bool valid = true) {
+  void Thermal(double at, bool valid = true, Nanoseconds sigma = Nanoseconds(0)) {
     auto frame = std::make_shared<ThermalFrame>();
     frame->header.capture_time = Time(at);
+    frame->header.capture_sigma = sigma;
     frame->centikelvin =
         Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);  // 50 °C
     frame->valid = valid;
@@ -128,6 +129,15 @@ TEST_F(GroundPipelineTest, ThermalFramesWaitForTheDepthFrameBehindThem) {
     }
   }
   EXPECT_GT(measured, 1000);
+}
+
+TEST_F(GroundPipelineTest, F10FramesOfAnUncertainTimeAreNotFused) {
+  Depth(0);
+  Thermal(0.3, true, std::chrono::milliseconds(2));
+  Thermal(0.6, true, std::chrono::milliseconds(25));  // As the edge marks what is unsynchronised.
+  Depth(1);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
+  EXPECT_EQ(LeftOut("time_uncertain"), 1U);
 }
 
 TEST_F(GroundPipelineTest, EachThermalFrameIsAccountedFor) {

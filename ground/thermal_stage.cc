@@ -28,6 +28,10 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
     LeaveOut("wrong_size");
     return false;
   }
+  if (ToSeconds(frame->header.capture_sigma) > options_.max_time_sigma_s()) {
+    LeaveOut("time_uncertain");
+    return false;
+  }
   waiting_.push_back({std::move(frame), nuc});
   // A depth stream that stopped must not make the buffer grow.
   constexpr std::size_t kMaxWaiting = 64;
