@@ -12,6 +12,7 @@ namespace isotherm::system_test {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using testing::TemporaryDirectory;
 
@@ -70,7 +71,7 @@ TEST_F(NucTest, F07ACorrectionThatIsAskedForClosesTheShutterAndEnds) {
   edge.Signal(SIGTERM);
   EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
   EXPECT_THAT(Inspect(),
-              AllOf(HasSubstr("8 in progress"), HasSubstr("10 settling"),
+              AllOf(HasSubstr("8 in progress"), ContainsRegex("(9|1[01]) settling"),
                     HasSubstr("info: nuc: correction ordered: asked for"),
                     HasSubstr("info: nuc: shutter closed as ordered"), HasSubstr("event from")));
 }
@@ -101,7 +102,10 @@ TEST_F(NucTest, F08AShutterThatStaysClosedIsReportedAndTheScanGoesOn) {
   ASSERT_TRUE(edge.WaitForOutput("started", kPatience)) << edge.output();
   EXPECT_EQ(Nuc({"--now"}).status, 0);
   EXPECT_TRUE(edge.WaitForOutput("the correction does not end", kPatience)) << edge.output();
-  EXPECT_THAT(Nuc({}).output, HasSubstr("correction    error: shutter closed for"));
+  // The status comes once a second.
+  std::string state;
+  for (int i = 0; i < 20 && state.find("error") == std::string::npos; ++i) state = Nuc({}).output;
+  EXPECT_THAT(state, HasSubstr("correction    error: shutter closed for"));
   edge.Signal(SIGTERM);
   EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
 }
