@@ -9,6 +9,9 @@
 namespace isotherm {
 namespace {
 
+/// Frames that may wait for the codec: a quarter of a second of both cameras, 10 MB.
+constexpr std::size_t kCodecQueueFrames = 16;
+
 OverflowPolicy PolicyFor(const EdgeOptions& options) {
   return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
 }
@@ -47,6 +50,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       nuc_(options, parts.source),
       blind_detector_(options.frame_check()),
       feedback_(TimeBaseOf(options.source())),
+      codec_queue_(kCodecQueueFrames, OverflowPolicy::kBlock),
       spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
       spool_queue_(spool_capacity_, PolicyFor(options),
                    CountDropsAs(FrameFate::kRecordQueueFull, account_)),
@@ -71,6 +75,7 @@ void EdgePipeline::StartReceiving() {
 void EdgePipeline::StartCapture() {
   if (spool_) spool_thread_ = std::jthread([this](const std::stop_token& stop) { Record(stop); });
   publish_thread_ = std::jthread([this](const std::stop_token& stop) { Publish(stop); });
+  codec_thread_ = std::jthread([this](const std::stop_token& stop) { Encode(stop); });
   capture_thread_ = std::jthread([this](const std::stop_token& stop) { Capture(stop); });
 }
 
@@ -78,7 +83,7 @@ Status EdgePipeline::Stop() {
   if (std::exchange(stopped_, true)) return recording_status_;
   // Along the line, so that each stage can still hand on what it has.
   for (std::jthread* thread :
-       {&capture_thread_, &spool_thread_, &publish_thread_, &receive_thread_}) {
+       {&capture_thread_, &codec_thread_, &spool_thread_, &publish_thread_, &receive_thread_}) {
     thread->request_stop();
     if (thread->joinable()) thread->join();
   }
@@ -174,8 +179,7 @@ void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
   EncodedDepthFrame frame;
   frame.header = Header(raw, stamp);
   frame.depth_scale = raw.depth_scale;
-  frame.image = depth_encoder_.Encode(raw.pixels);
-  Emit({std::move(frame), raw.arrival_wall}, stop);
+  HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
 }
 
 void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
@@ -189,9 +193,8 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   frame.seconds_since_nuc = nuc.seconds_since_nuc;
   frame.valid = nuc.valid;
   frame.housekeeping = raw.housekeeping;
-  frame.image = thermal_encoder_.Encode(raw.pixels);
   nuc_report_.Set(nuc_.Report());
-  Emit({std::move(frame), raw.arrival_wall}, stop);
+  HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
 }
 
 void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
@@ -204,9 +207,27 @@ FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const 
   return {session_, raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
 }
 
+void EdgePipeline::HandOn(UncodedFrame uncoded, const std::stop_token& stop) {
+  uncoded.frame.outside_poses = std::exchange(outside_poses_, {});
+  uncoded.frame.log = nuc_.TakeLog();
+  const Sensor sensor = uncoded.frame.sensor();
+  if (codec_queue_.Push(std::move(uncoded), stop)) return;
+  if (spool_) account_.Count(sensor, FrameFate::kRecordQueueFull);
+  account_.Count(sensor, FrameFate::kPublishQueueFull);
+}
+
+void EdgePipeline::Encode(const std::stop_token& stop) {
+  while (std::optional<UncodedFrame> uncoded = codec_queue_.Pop(stop)) {
+    auto& content = uncoded->frame.content;
+    if (auto* depth = std::get_if<EncodedDepthFrame>(&content))
+      depth->image = depth_encoder_.Encode(uncoded->pixels);
+    if (auto* thermal = std::get_if<EncodedThermalFrame>(&content))
+      thermal->image = thermal_encoder_.Encode(uncoded->pixels);
+    Emit(std::move(uncoded->frame), stop);
+  }
+}
+
 void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
-  encoded.outside_poses = std::exchange(outside_poses_, {});
-  encoded.log = nuc_.TakeLog();
   const auto frame = std::make_shared<const EncodedFrame>(std::move(encoded));
   if (spool_ && !spool_queue_.Push(frame, stop)) {
     account_.Count(frame->sensor(), FrameFate::kRecordQueueFull);

@@ -43,11 +43,12 @@ struct EdgeParts {
 
 /// The straight line of the edge and its threads:
 ///
-///   FrameSource -> Timestamper -> NucControl ----> Codec -+-> queue -> Spool
-///    (supervised)                 (thermal only)          +-> queue -> Publisher
-///   |---------------- capture thread --------------------|   spool and publish threads
+///   FrameSource -> Timestamper -> NucControl -> queue -> Codec -+-> queue -> Spool
+///    (supervised)                 (thermal only)                +-> queue -> Publisher
+///   |------------ capture thread -----------|  codec thread     spool and publish threads
 ///
-/// Capture waits for neither disk nor network: full queues drop the oldest frame and count it. Only
+/// Frames are stamped while earlier ones are still packed. Capture waits for neither disk nor
+/// network: full queues drop the oldest frame and count it. Only
 /// unpaced playback (rate 0) waits, because there is nothing to miss. A receive thread serves the
 /// ground's messages. Thread-bound to the thread that starts and stops it, except where noted.
 class EdgePipeline {
@@ -91,6 +92,8 @@ class EdgePipeline {
   void PublishOutsidePoses(const EncodedFrame& frame);
   void ProcessDepth(RawFrame raw, const std::stop_token& stop);
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
+  void HandOn(UncodedFrame uncoded, const std::stop_token& stop);
+  void Encode(const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
   /// How long it took from arrival to here.
   void NoteStamped(const RawFrame& raw, const Stamp& stamp);
@@ -141,12 +144,14 @@ class EdgePipeline {
   BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest};
   BoundedQueue<Command> nuc_commands_{16, OverflowPolicy::kDropOldest};
   BoundedQueue<CommandResult> nuc_answers_{32, OverflowPolicy::kDropOldest};
+  BoundedQueue<UncodedFrame> codec_queue_;
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;
   BoundedQueue<EncodedFramePtr> publish_queue_;
   std::jthread receive_thread_;
   std::jthread spool_thread_;
   std::jthread publish_thread_;
+  std::jthread codec_thread_;
   std::jthread capture_thread_;
 };
 

@@ -223,7 +223,7 @@ TEST_F(EdgePipelineTest, LiveCaptureDoesNotWaitForASlowLink) {
   publisher_.Hold();
   Start("300*d");
   // The source must come to its end although nothing is taken from the link.
-  while (account_.Get(Sensor::kDepth).captured < 300) std::this_thread::yield();
+  while (account_.Get(Sensor::kDepth).recorded < 300) std::this_thread::yield();
   publisher_.Release();
   EXPECT_TRUE(RunToTheEnd().ok());
   ExpectClosedAccount();

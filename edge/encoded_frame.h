@@ -24,6 +24,12 @@ struct EncodedFrame {
   }
 };
 
+/// A frame on its way to the codec: all of it but the picture is as it will be.
+struct UncodedFrame {
+  EncodedFrame frame;
+  Image<std::uint16_t> pixels;
+};
+
 using EncodedFramePtr = std::shared_ptr<const EncodedFrame>;
 
 }  // namespace isotherm

@@ -14,8 +14,8 @@ ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float 
       counts_(counts),
       timing_(timing),
       fuser_(options, *rig.thermal, min_weight),
-      near_holes_(options, fuser_.ideal_camera(), *rig.T_thermal_depth),
-      sight_lines_(options, fuser_.ideal_camera(), *rig.T_thermal_depth) {}
+      near_holes_(options, fuser_.ideal_camera()),
+      sight_lines_(options, fuser_.ideal_camera()) {}
 
 bool ThermalStage::Add(ThermalFramePtr frame) {
   const NucAge nuc = nuc_epochs_.Follow(*frame);
@@ -81,6 +81,10 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
   const double alpha = interval_s > 0.0 ? ToSeconds(time - before.time) / interval_s : 1.0;
   const RigidTransform T_world_depth_at_capture =
       Interpolate(before.T_world_depth, now.T_world_depth, alpha);
+  const RigidTransform T_world_thermal = T_world_depth_at_capture * T_depth_thermal_;
+  const RigidTransform T_view_thermal = depth.view.T_world_depth.inverse() * T_world_thermal;
+  near_holes_.Aim(T_view_thermal);
+  sight_lines_.Aim(T_view_thermal);
   const CaptureConditions capture{
       .motion = MotionBetween(before.T_world_depth * T_depth_thermal_,
                               now.T_world_depth * T_depth_thermal_, interval_s),
@@ -88,16 +92,15 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
       .holes = &near_holes_,
       .sight = &sight_lines_,
       .nuc = waiting.nuc};
-  counts_.fusion +=
-      fuser_.Fuse(*waiting.frame, T_world_depth_at_capture * T_depth_thermal_, depth.view.camera,
-                  T_world_depth_at_capture, depth.tsdf, pool, thermal, capture);
+  counts_.fusion += fuser_.Fuse(*waiting.frame, T_world_thermal, depth.view.camera,
+                                T_world_depth_at_capture, depth.tsdf, pool, thermal, capture);
   ++counts_.thermal_fused;
 }
 
 void ThermalStage::Finish(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool) {
   for (std::size_t i = 0; i < waiting_.size(); ++i) LeaveOut("no_depth_after");
   waiting_.clear();
-  counts_.fusion.dropped += fuser_.ReviewAll(tsdf, thermal, pool);
+  counts_.fusion.dropped += fuser_.FinalReview(tsdf, thermal, pool);
 }
 
 }  // namespace isotherm

@@ -12,7 +12,8 @@ constexpr int kTile = 8;
 /// near range.
 constexpr int kSteps = 10;
 constexpr double kNearestShare = 0.2;
-/// Pixels of a square that must show known surface, and those of them that may have a return.
+/// Pixels of a square that must show known surface, and those of them (of all pixels, where
+/// nothing is known) that may have a return.
 constexpr double kKnownShare = 0.9;
 constexpr double kReturnShare = 0.1;
 /// Pixels of a square that have a return where there certainly is a surface.
@@ -25,12 +26,10 @@ int Tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
 
 }  // namespace
 
-NearHoles::NearHoles(const ThermalOptions& options, const CameraModel& thermal_camera,
-                     const RigidTransform& T_thermal_depth)
+NearHoles::NearHoles(const ThermalOptions& options, const CameraModel& thermal_camera)
     : near_range_m_(options.near_range_m()),
       hole_px_(options.hole_px()),
       thermal_camera_(thermal_camera),
-      T_depth_thermal_(T_thermal_depth.inverse()),
       left_out_(Tiles(thermal_camera.width), Tiles(thermal_camera.height)) {}
 
 NearHoles::Square NearHoles::Look(int column, int row, const Image<float>& depth_m,
@@ -108,16 +107,15 @@ void NearHoles::JudgeColumn(int column) {
   });
 }
 
-bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal,
-                            const CameraModel& model_camera) const {
+bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal) const {
   for (int i = 0; i < kSteps; ++i) {
     const double share = 1.0 + i * (1.0 / kNearestShare - 1.0) / (kSteps - 1);
     const double z_m = near_range_m_ / share;
     const Eigen::Vector3d p =
         T_depth_thermal_ * (z_m * Eigen::Vector3d(xy_thermal.x(), xy_thermal.y(), 1.0));
     if (!(p.z() > 0.0 && p.z() <= near_range_m_)) continue;
-    const double u = model_camera.fx * p.x() / p.z() + model_camera.cx + 0.5;
-    const double v = model_camera.fy * p.y() / p.z() + model_camera.cy + 0.5;
+    const double u = model_camera_.fx * p.x() / p.z() + model_camera_.cx + 0.5;
+    const double v = model_camera_.fy * p.y() / p.z() + model_camera_.cy + 0.5;
     if (!(u >= 0.0 && v >= 0.0)) continue;
     const double column = u / hole_side_;
     const double row = v / hole_side_;
@@ -130,16 +128,23 @@ bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal,
 
 void NearHoles::Update(const Image<float>& depth_m, const SurfaceMaps& model,
                        const CameraModel& model_camera) {
+  model_camera_ = model_camera;
   any_ = false;
-  if (near_range_m_ <= 0.0 || model.width() == 0 || !FindHoles(depth_m, model, model_camera.fx))
-    return;
+  has_holes_ =
+      near_range_m_ > 0.0 && model.width() > 0 && FindHoles(depth_m, model, model_camera.fx);
+}
+
+void NearHoles::Aim(const RigidTransform& T_depth_thermal) {
+  T_depth_thermal_ = T_depth_thermal;
+  any_ = false;
+  if (!has_holes_) return;
   for (int row = 0; row < left_out_.height(); ++row) {
     for (int column = 0; column < left_out_.width(); ++column) {
       const double u = (column + 0.5) * kTile - 0.5;
       const double v = (row + 0.5) * kTile - 0.5;
       const Eigen::Vector2d xy((u - thermal_camera_.cx) / thermal_camera_.fx,
                                (v - thermal_camera_.cy) / thermal_camera_.fy);
-      const bool crosses = CrossesHole(xy, model_camera);
+      const bool crosses = CrossesHole(xy);
       left_out_.At(column, row) = crosses ? 1 : 0;
       any_ = any_ || crosses;
     }
@@ -148,6 +153,7 @@ void NearHoles::Update(const Image<float>& depth_m, const SurfaceMaps& model,
 
 std::int64_t NearHoles::LeaveOut(int y, std::span<ThermalPixel> row) const {
   std::int64_t count = 0;
+  if (!any_) return count;
   for (std::size_t x = 0; x < row.size(); ++x) {
     if (left_out_.At(static_cast<int>(x) / kTile, y / kTile) == 0) continue;
     count += (row[x].flags & ThermalPixel::kAssignable) != 0 ? 1 : 0;

@@ -22,21 +22,27 @@ namespace isotherm {
 class NearHoles {
  public:
   /// `thermal_camera` without distortion.
-  NearHoles(const ThermalOptions& options, const CameraModel& thermal_camera,
-            const RigidTransform& T_thermal_depth);
+  NearHoles(const ThermalOptions& options, const CameraModel& thermal_camera);
 
   /// `depth_m`: the last depth image, 0 = no return. `model`: the model's surface at the same time
   /// from the same pose, seen by the depth camera at the same or a halved size.
   void Update(const Image<float>& depth_m, const SurfaceMaps& model,
               const CameraModel& model_camera);
 
-  /// Whether any thermal pixel is left out.
-  bool any() const { return any_; }
+  /// Where the thermal camera was when the frame to be judged was captured, seen from the depth
+  /// camera of the last Update.
+  void Aim(const RigidTransform& T_depth_thermal);
+
   /// Makes pixels of row `y` that are left out unassignable. Returns how many were assignable.
   std::int64_t LeaveOut(int y, std::span<ThermalPixel> row) const;
 
  private:
-  enum class Kind : std::uint8_t { kNeither, kSurface, kEmpty, kHole };
+  enum class Kind : std::uint8_t {
+    kNeither,
+    kSurface,
+    kEmpty,  ///< No return, and nothing is known behind.
+    kHole,
+  };
   /// hole_px x hole_px pixels of the depth image.
   struct Square {
     Kind kind = Kind::kNeither;
@@ -51,16 +57,18 @@ class NearHoles {
   void JudgeRow(int row, double model_fx);
   void JudgeColumn(int column);
   bool FindHoles(const Image<float>& depth_m, const SurfaceMaps& model, double model_fx);
-  bool CrossesHole(const Eigen::Vector2d& xy_thermal, const CameraModel& model_camera) const;
+  bool CrossesHole(const Eigen::Vector2d& xy_thermal) const;
 
   const double near_range_m_;
   const int hole_px_;
   const CameraModel thermal_camera_;
-  const RigidTransform T_depth_thermal_;
+  RigidTransform T_depth_thermal_ = RigidTransform::Identity();
+  CameraModel model_camera_;
   int hole_side_ = 0;             ///< Of a square, pixels of the model's view.
   Image<Square> squares_;         ///< Of the model's view.
   Image<std::uint8_t> left_out_;  ///< Per tile of the thermal picture.
-  bool any_ = false;
+  bool has_holes_ = false;
+  bool any_ = false;  ///< Whether any thermal pixel is left out.
 };
 
 }  // namespace isotherm

@@ -20,8 +20,9 @@ class NearHolesTest : public ::testing::Test {
   }
   /// Pixels that are left out of the whole thermal picture.
   std::int64_t LeftOut() {
-    NearHoles holes(options_, thermal_camera_, T_thermal_depth_);
+    NearHoles holes(options_, thermal_camera_);
     holes.Update(depth_m_, model_, depth_camera_);
+    holes.Aim(T_thermal_depth_.inverse());
     std::int64_t count = 0;
     picture_.assign(static_cast<std::size_t>(160 * 120), ThermalPixel{});
     for (int y = 0; y < 120; ++y) {

@@ -19,13 +19,16 @@ namespace isotherm {
 class SightLines {
  public:
   /// `thermal_camera` without distortion.
-  SightLines(const ThermalOptions& options, const CameraModel& thermal_camera,
-             const RigidTransform& T_thermal_depth);
+  SightLines(const ThermalOptions& options, const CameraModel& thermal_camera);
 
   /// `model`: the model's surface in world as seen by the depth camera (`model_camera`, perhaps
   /// halved) from `T_world_depth`.
   void Update(const SurfaceMaps& model, const CameraModel& model_camera,
               const RigidTransform& T_world_depth);
+
+  /// Where the thermal camera was when the frame to be judged was captured, seen from the depth
+  /// camera of the last Update. Both move while they wait for each other.
+  void Aim(const RigidTransform& T_depth_thermal);
 
   /// Makes pixels of rows y to y + rows.size() / width - 1 unassignable that the depth camera does
   /// not prove to be seen. Returns how many were assignable. Thread-safe.
@@ -39,8 +42,8 @@ class SightLines {
   const float near_range_m_;  ///< 0 = everything is believed.
   const float tolerance_m_;
   const CameraModel thermal_camera_;
-  const Eigen::Matrix3f R_depth_thermal_;
-  const Eigen::Vector3f t_depth_thermal_;
+  Eigen::Matrix3f R_depth_thermal_ = Eigen::Matrix3f::Identity();
+  Eigen::Vector3f t_depth_thermal_ = Eigen::Vector3f::Zero();
   CameraModel model_camera_;
   Image<float> depth_m_;  ///< Of the model along the depth camera's z; NaN = none.
 };

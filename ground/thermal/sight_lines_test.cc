@@ -43,8 +43,9 @@ class SightLinesTest : public ::testing::Test {
     pixel.depth_m = static_cast<float>(depth_m);
     pixel.flags = ThermalPixel::kSeen | ThermalPixel::kAssignable;
     picture_.assign(160 * 120, pixel);
-    SightLines lines(options_, thermal_camera_, T_thermal_depth_);
+    SightLines lines(options_, thermal_camera_);
     lines.Update(model_, depth_camera_, T_world_depth_);
+    lines.Aim(T_depth_thermal_);
     std::int64_t count = 0;
     for (int y = 0; y < 120; y += 8)
       count += lines.LeaveOut(
@@ -60,8 +61,8 @@ class SightLinesTest : public ::testing::Test {
   static constexpr double kBesideM = 0.06;
   ThermalOptions options_;
   CameraModel depth_camera_, thermal_camera_;
-  RigidTransform T_thermal_depth_ =
-      MakeTransform({kBesideM, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+  RigidTransform T_depth_thermal_ =
+      MakeTransform({-kBesideM, 0.0, 0.0}, Eigen::Quaterniond::Identity());
   RigidTransform T_world_depth_ = MakeTransform(
       {0.3, -0.2, 0.1},
       Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized())));
@@ -90,6 +91,18 @@ TEST_F(SightLinesTest, WhatPassesBehindSomethingIsLeftOut) {
   }
   EXPECT_GT(proven, 3000);
   EXPECT_GT(hidden, 3000);
+}
+
+/// As after a sweep: the thermal camera was where the depth camera is now.
+TEST_F(SightLinesTest, TheCameraIsWhereItWasWhenTheFrameWasCaptured) {
+  T_depth_thermal_ = RigidTransform::Identity();
+  EXPECT_GT(LeaveOut(kWallM), 0) << "behind the screen itself";
+  for (int v = 0; v < 120; ++v) {
+    for (int u = 0; u < 160; ++u) {
+      if (std::abs(u - thermal_camera_.cx) < 6.0) continue;  // A tile and a half.
+      ASSERT_EQ(IsLeftOut(u, v), u < thermal_camera_.cx) << u << " " << v;
+    }
+  }
 }
 
 TEST_F(SightLinesTest, WhatIsSeenFirstIsNeverLeftOut) {

@@ -182,7 +182,7 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
       occluded += counts.occluded;
       smeared += counts.smeared;
       steep += counts.steep;
-      if (capture.holes != nullptr && capture.holes->any())
+      if (capture.holes != nullptr)
         maybe_hidden += capture.holes->LeaveOut(y, {pixels, static_cast<std::size_t>(width)});
       for (int x = 0; x < width; ++x) {
         const float depth = pixels[x].depth_m;
@@ -315,8 +315,8 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
   return report;
 }
 
-std::int64_t ThermalFuser::ReviewAll(const TsdfVolume& tsdf, ThermalVolume& thermal,
-                                     ThreadPool& pool) const {
+std::int64_t ThermalFuser::FinalReview(const TsdfVolume& tsdf, ThermalVolume& thermal,
+                                       ThreadPool& pool) const {
   constexpr int kBlocksPerTask = 64;
   std::atomic<std::int64_t> dropped{0};
   const int count = tsdf.block_count();

@@ -64,9 +64,10 @@ class ThermalFuser {
                     const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal,
                     const CaptureConditions& capture = {});
 
-  /// Reviews all temperatures (TemperatureReview), as Fuse does now and then with those in view.
-  /// Returns how many were dropped.
-  std::int64_t ReviewAll(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool) const;
+  /// The final review of all temperatures (TemperatureReview), once at the end: it also drops those
+  /// beside steep faces, which the reviews of what is in view in Fuse do not. Returns how many were
+  /// dropped.
+  std::int64_t FinalReview(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool) const;
 
   const CameraModel& ideal_camera() const { return rectifier_.ideal_camera(); }
 
