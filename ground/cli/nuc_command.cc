@@ -38,7 +38,7 @@ struct Arguments {
   double timeout_s = 5.0;
 };
 
-std::string Kelvin(double celsius) {
+std::string CelsiusText(double celsius) {
   return std::isfinite(celsius) ? fmt::format("{:.2f} C", celsius) : "unknown";
 }
 
@@ -51,13 +51,14 @@ std::string StatusText(const std::string& edge_id, const NucReport& nuc) {
       fmt::format("{:<14}{}\n", "last one",
                   std::isfinite(nuc.seconds_since) ? fmt::format("{:.1f} s ago", nuc.seconds_since)
                                                    : "none seen yet");
-  text += fmt::format("{:<14}{} corrections, shutter closed for {:.1f} %{}\n", "last minute",
-                      nuc.closings_per_minute,
-                      std::isfinite(nuc.closed_share) ? 100.0 * nuc.closed_share : 0.0,
-                      nuc.storm ? " (storm)" : "");
+  text += fmt::format(
+      "{:<14}corrections {}, shutter closed for {}{}\n", "last minute", nuc.closings_per_minute,
+      std::isfinite(nuc.closed_share) ? fmt::format("{:.1f} %", 100.0 * nuc.closed_share)
+                                      : "an unknown share",
+      nuc.storm ? " (storm)" : "");
   text += fmt::format("{:<14}{}\n", "policy", ToString(nuc.policy));
-  text += fmt::format("{:<14}detector {}, housing {}{}\n", "camera", Kelvin(nuc.fpa_celsius),
-                      Kelvin(nuc.housing_celsius), nuc.warming_up ? ", warming up" : "");
+  text += fmt::format("{:<14}detector {}, housing {}{}\n", "camera", CelsiusText(nuc.fpa_celsius),
+                      CelsiusText(nuc.housing_celsius), nuc.warming_up ? ", warming up" : "");
   return text;
 }
 

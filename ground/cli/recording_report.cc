@@ -257,6 +257,7 @@ Json ToJson(const RecordingReport& report) {
     line["text"] = log.text;
     json["log"].Append(std::move(line));
   }
+  json["log_left_out"] = report.summary.log_left_out;
   for (const auto& [topic, count] : report.info.messages_by_topic) json["messages"][topic] = count;
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) json["metadata"][name][key] = value;

@@ -62,12 +62,13 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
                           "wrong [% of assigned]"};
   const Renderer renderer(FixedScale(scan.scene()), ThermalOptions());
   const RigidTransform T_world_depth = scan.PoseAt(scan.depth_times().front().exposure);
-  double coverage_percent = 0.0;  // Of the last method.
+  double coverage_percent = 0.0;  // With visibility.
   for (const Method& method : methods) {
     const std::vector<CheckedPoint> points =
         CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), *method.thermal, pool);
     const AssignmentCheck check = CheckAssignment(points);
-    coverage_percent = CoveragePercent(scan, points, ThermalOptions());
+    if (&method == &methods.back())
+      coverage_percent = CoveragePercent(scan, points, ThermalOptions());
     report.table.rows.push_back(
         {method.label,
          {static_cast<double>(check.points), static_cast<double>(check.assigned),

@@ -115,8 +115,8 @@ RgbImage Picture(const PlayedScan& played, ThreadPool& pool) {
 Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool) {
   ExperimentReport report;
   report.table.rows_are = "thermal camera";
-  report.table.columns = {"good points", "within 1 K, %", "median error, K",   "95 % below, K",
-                          "largest, K",  "corrections",   "frames left out, %"};
+  report.table.columns = {"good points", "within 1 K, %", "median error, K",  "95 % below, K",
+                          "largest, K",  "corrections",   "shutter closed, %"};
   struct Case {
     Camera camera;
     const char* label;

@@ -28,7 +28,7 @@ enum class AdviceKind {
 /// What advice depends on besides the coverage of the view.
 struct ScanSituation {
   bool tracking_lost = false;
-  bool nuc_running = false;  ///< Shutter closed or settling: no temperature is valid.
+  bool nuc_running = false;  ///< Shutter about to close, closed or settling.
   double speed_m_s = 0.0;    ///< Of the depth camera.
   double turn_rate_deg_s = 0.0;
   double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.

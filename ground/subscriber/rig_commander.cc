@@ -36,11 +36,10 @@ Status RigCommander::Open(const Participant& participant) {
 Result<EdgeStatus> RigCommander::AwaitStatus(Nanoseconds timeout) {
   std::optional<EdgeStatus> found;
   // What is kept of a scan that has ended is not the state now.
-  const CaptureTime asked = clock_.Now();
   const auto take = [&](Received<EdgeStatus>&& received) {
     if (!edge_id_.empty() && received.edge_id != edge_id_) return;
     EdgeStatus& status = received.message;
-    if (status.scan_state == ScanState::kEnded && status.time < asked) return;
+    if (status.scan_state == ScanState::kEnded) return;
     edge_id_ = received.edge_id;
     found = std::move(status);
   };
@@ -50,15 +49,15 @@ Result<EdgeStatus> RigCommander::AwaitStatus(Nanoseconds timeout) {
   });
   if (came) return *found;
   return Err(Unavailable(fmt::format(
-      "no status from {} within {:.1f} s: is isotherm-edge running, in the same domain and with "
-      "the "
-      "same CYCLONEDDS_URI?",
+      "no status from {} within {:.1f} s: is isotherm-edge running, in the same domain and "
+      "with the same CYCLONEDDS_URI?",
       edge_id_.empty() ? "any rig" : fmt::format("rig \"{}\"", edge_id_), ToSeconds(timeout))));
 }
 
 Result<CommandResult> RigCommander::Send(Command command, Nanoseconds timeout) {
   if (!WaitUntil(timeout, [&] { return commands_.matched_readers() > 0; }))
-    return Err(Unavailable(fmt::format("rig \"{}\" takes no commands", edge_id_)));
+    return Err(Unavailable(fmt::format(
+        "rig \"{}\" takes no commands: is it still running, and of this version?", edge_id_)));
   command.time = clock_.Now();
   // Unlike those of a ground station that has been running for longer.
   command.number = static_cast<std::uint64_t>(ToNanoseconds(command.time));
@@ -74,7 +73,9 @@ Result<CommandResult> RigCommander::Send(Command command, Nanoseconds timeout) {
   });
   if (came) return *answer;
   return Err(Unavailable(
-      fmt::format("rig \"{}\" did not answer within {:.1f} s", edge_id_, ToSeconds(timeout))));
+      fmt::format("rig \"{}\" did not answer within {:.1f} s; it may follow the order yet: "
+                  "`isotherm nuc` shows the state",
+                  edge_id_, ToSeconds(timeout))));
 }
 
 bool RigCommander::WaitUntil(Nanoseconds timeout, const std::function<bool()>& done) {
