@@ -33,6 +33,7 @@ void AddEvaluateCommand(CLI::App& app, CommandBody& body);
 void AddExportCommand(CLI::App& app, CommandBody& body);
 void AddSimulateCommand(CLI::App& app, CommandBody& body);
 void AddLimitsCommand(CLI::App& app, CommandBody& body);
+void AddCalibrateCommand(CLI::App& app, CommandBody& body);
 void AddTimingCommand(CLI::App& app, CommandBody& body);
 void AddDevicesCommand(CLI::App& app, CommandBody& body);
 void AddDemoCommand(CLI::App& app, CommandBody& body);

@@ -54,6 +54,7 @@ int Main(int argc, char** argv) {
   AddLimitsCommand(app, body);
   AddExperimentCommand(app, body);
   AddTimingCommand(app, body);
+  AddCalibrateCommand(app, body);
   AddNucCommand(app, body);
   try {
     app.parse(argc, argv);

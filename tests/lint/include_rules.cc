@@ -74,6 +74,8 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
       {"ground/evaluation", with(kCommon, {"ground", "ground/export"})},
       {"ground/experiment", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
                                            "ground/thermal", "ground/renderer", "ground/export"})},
+      {"ground/calibration", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
+                                            "ground/thermal", "ground/export"})},
       {"ground/feedback", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
                                          "ground/thermal", "ground/renderer"})},
   };

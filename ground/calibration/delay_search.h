@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "common/base/status.h"
+
+namespace isotherm {
+
+/// How often each part of a scan counts. All ones is the scan as it is.
+using PartWeights = std::vector<double>;
+
+/// How much the thermal pictures disagree at one delay in seconds, by resampling of the scan's
+/// parts. Every delay must judge the same samples. `fine`: as exactly as possible, otherwise fast.
+using DisagreementOf = std::function<std::vector<double>(
+    double delay_s, bool fine, const std::vector<PartWeights>& resamplings)>;
+
+struct DelaySearchOptions {
+  double range_s = 0.15;  ///< The delay is looked for in [-range_s, range_s].
+  double coarse_step_s = 0.005;
+  double fine_step_s = 0.003;
+  int fine_steps = 5;          ///< To each side of the coarse minimum.
+  double max_sigma_s = 0.002;  ///< An estimate less certain than this is none.
+  /// By this factor at least, pictures must disagree more at the ends of the fine steps than at the
+  /// minimum.
+  double min_contrast = 1.02;
+  int resamplings = 200;
+  std::uint64_t seed = 1;
+};
+
+struct DelayEstimate {
+  double delay_s = 0.0;
+  double sigma_s = 0.0;   ///< Spread over resampled parts of the scan.
+  double contrast = 0.0;  ///< Disagreement at the ends of the fine steps over the least.
+};
+
+/// The delay at which thermal pictures disagree least: on a grid, then on a fine grid around its
+/// minimum, there by a parabola. Resampling the `parts` of the scan (bootstrap) gives the
+/// uncertainty. Fails if the parts are too few, if the minimum lies at the end of the range, is too
+/// flat or too uncertain, and says what the scan lacks. Deterministic. `progress` gets the share
+/// done, 0..1.
+Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, int parts,
+                                  const DelaySearchOptions& options,
+                                  const std::function<void(double)>& progress);
+
+}  // namespace isotherm

@@ -1,0 +1,160 @@
+#include "ground/calibration/point_visibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+// Surfaces more oblique than this (cosine) are left out: emissivity changes with the angle there.
+constexpr double kLeastCosine = 0.7;
+// The surface is cast with pixels this many times as large as the picture's, and a point must be
+// on it in the pixels around too: so far it is from what hides it, and from its own silhouette.
+constexpr int kHalvings = 2;
+// Slope of the most oblique surface times half the diagonal of three such pixels, in focal lengths
+// of the camera; and the noise of the surface.
+constexpr double kNeighbourhood_px = 2.2;
+constexpr double kSurfaceNoise_m = 0.005;
+constexpr double kBorder_px = 4.0;
+constexpr float kLeastWeight = 2.0F;
+
+/// What one pose shows.
+struct PoseView {
+  CaptureTime time;
+  std::vector<std::uint8_t> shows;  ///< By point, 0 or 1.
+};
+
+class PoseViewer {
+ public:
+  PoseViewer(const ScanViews& views, const TsdfVolume& tsdf, ThreadPool& pool)
+      : views_(views),
+        tsdf_(tsdf),
+        pool_(pool),
+        ideal_(views.thermal_camera.WithoutDistortion().Downscaled(kHalvings)),
+        tolerance_per_m_(kNeighbourhood_px / ideal_.fx *
+                         std::sqrt(1.0 - kLeastCosine * kLeastCosine) / kLeastCosine) {
+    const CameraModel& camera = views.thermal_camera;
+    for (const double u : {0.0, camera.width - 1.0}) {
+      for (const double v : {0.0, camera.height - 1.0})
+        max_normalized_ = std::max(max_normalized_, Unproject(camera, {u, v}).norm());
+    }
+  }
+
+  PoseView See(const StampedPose& pose) {
+    const RigidTransform T_world_thermal = pose.T_world_depth * views_.T_thermal_depth.inverse();
+    const RigidTransform T_thermal_world = T_world_thermal.inverse();
+    raycaster_.Cast(tsdf_, ideal_, T_world_thermal, kLeastWeight, pool_, maps_);
+    MakeDepths(T_thermal_world);
+    PoseView view{pose.time, std::vector<std::uint8_t>(views_.points.size(), 0)};
+    constexpr int kPointsPerTask = 1024;
+    const int points = static_cast<int>(views_.points.size());
+    pool_.ParallelFor((points + kPointsPerTask - 1) / kPointsPerTask, [&](int task) {
+      const int end = std::min(points, (task + 1) * kPointsPerTask);
+      for (int i = task * kPointsPerTask; i < end; ++i) {
+        const auto index = static_cast<std::size_t>(i);
+        view.shows[index] = Shows(views_.points[index], T_thermal_world) ? 1 : 0;
+      }
+    });
+    return view;
+  }
+
+ private:
+  void MakeDepths(const RigidTransform& T_thermal_world) {
+    depth_m_.Resize(maps_.width(), maps_.height());
+    for (int y = 0; y < maps_.height(); ++y) {
+      for (int x = 0; x < maps_.width(); ++x) {
+        const Eigen::Vector3d p_world(maps_.vx.At(x, y), maps_.vy.At(x, y), maps_.vz.At(x, y));
+        depth_m_.At(x, y) = static_cast<float>((T_thermal_world * p_world).z());
+      }
+    }
+  }
+
+  bool Shows(const SurfacePoint& point, const RigidTransform& T_thermal_world) const {
+    const Eigen::Vector3d p_thermal = T_thermal_world * point.p_world;
+    if (p_thermal.z() < 0.05) return false;
+    const Eigen::Vector3d n_thermal = T_thermal_world.linear() * point.n_world;
+    if (-n_thermal.dot(p_thermal) < kLeastCosine * p_thermal.norm()) return false;
+    const Eigen::Vector2d normalized = p_thermal.head<2>() / p_thermal.z();
+    // Further out distortion folds back.
+    if (normalized.norm() > max_normalized_) return false;
+    const CameraModel& camera = views_.thermal_camera;
+    const Eigen::Vector2d pixel = ProjectNormalized(camera, normalized);
+    if (!(pixel.x() >= kBorder_px && pixel.y() >= kBorder_px &&
+          pixel.x() < camera.width - 1 - kBorder_px &&
+          pixel.y() < camera.height - 1 - kBorder_px)) {
+      return false;
+    }
+    return Clear(ProjectNormalized(ideal_, normalized), p_thermal.z());
+  }
+
+  /// Whether the surface is at this depth in the pixels around.
+  bool Clear(const Eigen::Vector2d& pixel, double depth_m) const {
+    const auto x = static_cast<int>(std::lround(pixel.x()));
+    const auto y = static_cast<int>(std::lround(pixel.y()));
+    if (x < 1 || y < 1 || x + 1 >= depth_m_.width() || y + 1 >= depth_m_.height()) return false;
+    const double tolerance_m = kSurfaceNoise_m + tolerance_per_m_ * depth_m;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        // No surface is NaN, and not clear.
+        const auto there_m = static_cast<double>(depth_m_.At(x + dx, y + dy));
+        if (!(std::abs(there_m - depth_m) <= tolerance_m)) return false;
+      }
+    }
+    return true;
+  }
+
+  const ScanViews& views_;
+  const TsdfVolume& tsdf_;
+  ThreadPool& pool_;
+  const CameraModel ideal_;
+  const double tolerance_per_m_;
+  double max_normalized_ = 0.0;
+  Raycaster raycaster_{RaycastPrecision::kVisibility};
+  SurfaceMaps maps_;
+  Image<float> depth_m_;
+};
+
+std::vector<std::uint32_t> ShownByAll(const std::deque<PoseView>& window, std::size_t points) {
+  std::vector<std::uint32_t> visible;
+  for (std::size_t i = 0; i < points; ++i) {
+    if (std::all_of(window.begin(), window.end(),
+                    [i](const PoseView& view) { return view.shows[i] != 0; }))
+      visible.push_back(static_cast<std::uint32_t>(i));
+  }
+  return visible;
+}
+
+/// Whether there is a pose for every delay within the range.
+bool Covered(const ScanViews& views, CaptureTime time, double range_s) {
+  constexpr double kStep_s = 0.025;
+  const int steps = static_cast<int>(std::ceil(range_s / kStep_s));
+  for (int k = -steps; k <= steps; ++k) {
+    if (!InterpolatePose(views.trajectory, time + FromSeconds(range_s * k / steps))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views) {
+  PoseViewer viewer(views, tsdf, pool);
+  std::deque<PoseView> window;
+  std::size_t next = 0;
+  for (StampedThermal& frame : views.frames) {
+    frame.visible.clear();
+    if (!Covered(views, frame.time, range_s)) continue;
+    const CaptureTime first = frame.time - FromSeconds(range_s);
+    const CaptureTime last = frame.time + FromSeconds(range_s);
+    while (!window.empty() && window.front().time < first) window.pop_front();
+    for (; next < views.trajectory.size() && views.trajectory[next].time <= last; ++next) {
+      if (views.trajectory[next].time >= first)
+        window.push_back(viewer.See(views.trajectory[next]));
+    }
+    frame.visible = ShownByAll(window, views.points.size());
+  }
+}
+
+}  // namespace isotherm

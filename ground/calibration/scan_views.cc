@@ -1,0 +1,214 @@
+#include "ground/calibration/scan_views.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+#include "common/config/text_proto.h"
+#include "common/recording/recording.h"
+#include "common/simulation/noise.h"
+#include "ground/calibration/point_visibility.h"
+#include "ground/export/surface.h"
+#include "ground/ground_pipeline.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::size_t kMostFrames = 1200;
+constexpr std::size_t kMostPoints = 30'000;
+constexpr std::size_t kLeastPoints = 500;
+constexpr std::size_t kLeastFrames = 40;
+constexpr double kReadShare = 0.8;
+constexpr double kLeastTracked = 0.5;
+// Slower than this, a millisecond is lost in the noise of all pixels together.
+constexpr double kLeastMotion_px_s = 4.0;
+
+std::uint64_t Count(const RecordingInfo& info, const std::string& topic) {
+  const auto found = info.messages_by_topic.find(topic);
+  return found == info.messages_by_topic.end() ? 0 : found->second;
+}
+
+double AppliedDelay(const RecordingInfo& info) {
+  // Simulated stamps are the true exposures, whatever their metadata says a calibration would find.
+  if (info.metadata.contains("simulation")) return 0.0;
+  const auto timing = info.metadata.find("timing");
+  if (timing == info.metadata.end()) return 0.0;
+  const auto value = timing->second.find("thermal_delay_s");
+  return value == timing->second.end() ? 0.0 : std::strtod(value->second.c_str(), nullptr);
+}
+
+Status CheckContents(const RecordingInfo& info, const Rig& rig) {
+  if (Count(info, "/depth") == 0)
+    return FailedPrecondition("the recording has no depth frames, so its motion is not known");
+  if (Count(info, "/thermal") < kLeastFrames) {
+    return FailedPrecondition(fmt::format("the recording has {} thermal frames, {} are needed",
+                                          Count(info, "/thermal"), kLeastFrames));
+  }
+  if (!rig.depth) return FailedPrecondition("the calibration has no depth camera");
+  return CheckThermalFusion(rig);
+}
+
+/// Depth frames through the pipeline, thermal frames kept.
+class Reader {
+ public:
+  Reader(RecordingReader& reader, GroundPipeline& pipeline, const Rig& rig)
+      : reader_(reader),
+        pipeline_(pipeline),
+        rig_(rig),
+        stride_(1 + Count(reader.info(), "/thermal") / kMostFrames) {}
+
+  void Run(const std::function<void(double)>& progress) {
+    std::uint64_t total = 0, read = 0;
+    for (const auto& [topic, count] : reader_.info().messages_by_topic) total += count;
+    while (true) {
+      Result<std::optional<RecordedItem>> item = reader_.Next();
+      ++read;
+      if (!item) {
+        LOG(Calibrate, Warning) << item.error().message();
+        continue;
+      }
+      if (!*item) break;
+      if (auto* depth = std::get_if<RecordedDepth>(&**item)) Take(*depth);
+      if (auto* thermal = std::get_if<RecordedThermal>(&**item)) Take(*thermal);
+      if (progress && total > 0)
+        progress(std::min(1.0, static_cast<double>(read) / static_cast<double>(total)));
+    }
+    pipeline_.Finish();
+  }
+
+  std::vector<StampedThermal> TakeFrames() { return std::move(frames_); }
+
+ private:
+  void Take(const RecordedDepth& recorded) {
+    Result<Image<std::uint16_t>> image = Decode(recorded.frame.image);
+    if (!image) return;
+    DepthFrame frame;
+    frame.header = recorded.frame.header;
+    frame.depth_scale = recorded.frame.depth_scale;
+    frame.depth_raw = std::move(*image);
+    pipeline_.ProcessDepth(frame);
+  }
+
+  void Take(const RecordedThermal& recorded) {
+    if (!recorded.frame.valid || seen_++ % stride_ != 0) return;
+    Result<Image<std::uint16_t>> image = Decode(recorded.frame.image);
+    if (!image || image->width() != rig_.thermal->width || image->height() != rig_.thermal->height)
+      return;
+    frames_.push_back({recorded.frame.header.capture_time, std::move(*image), {}});
+  }
+
+  RecordingReader& reader_;
+  GroundPipeline& pipeline_;
+  const Rig& rig_;
+  const std::uint64_t stride_;
+  std::uint64_t seen_ = 0;
+  std::vector<StampedThermal> frames_;
+};
+
+/// In an order that is random but always the same.
+std::vector<SurfacePoint> SamplePoints(const Surface& surface) {
+  std::vector<std::size_t> order(surface.points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [](std::size_t a, std::size_t b) {
+    return std::pair(MixBits(a), a) < std::pair(MixBits(b), b);
+  });
+  order.resize(std::min(order.size(), kMostPoints));
+  std::vector<SurfacePoint> points;
+  points.reserve(order.size());
+  for (const std::size_t index : order) {
+    const CloudPoint& point = surface.points[index];
+    points.push_back({point.position_m.cast<double>(), point.normal.cast<double>()});
+  }
+  return points;
+}
+
+/// RMS speed of the surface's middle in the thermal picture.
+double Motion(const ScanViews& views) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const SurfacePoint& point : views.points)
+    middle += point.p_world / static_cast<double>(views.points.size());
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < views.trajectory.size(); ++i) {
+    const StampedPose& a = views.trajectory[i - 1];
+    const StampedPose& b = views.trajectory[i];
+    const Eigen::Vector3d p_a = views.T_thermal_depth * (a.T_world_depth.inverse() * middle);
+    const Eigen::Vector3d p_b = views.T_thermal_depth * (b.T_world_depth.inverse() * middle);
+    if (p_a.z() < 0.05 || p_b.z() < 0.05 || b.time <= a.time) continue;
+    const double shift_px =
+        views.thermal_camera.fx * (p_b.head<2>() / p_b.z() - p_a.head<2>() / p_a.z()).norm();
+    const double speed_px_s = shift_px / ToSeconds(b.time - a.time);
+    squares += speed_px_s * speed_px_s;
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
+}
+
+Status CheckViews(const ScanViews& views, const PipelineCounts& counts, double motion_px_s) {
+  const auto tracked = static_cast<double>(counts.depth_tracked + counts.depth_repeated);
+  if (tracked < kLeastTracked * static_cast<double>(counts.depth_in)) {
+    return FailedPrecondition(
+        fmt::format("only {} of {} depth frames could be tracked, so the motion is not known "
+                    "(options as for `isotherm reconstruct`: --config, --set)",
+                    counts.depth_tracked, counts.depth_in));
+  }
+  if (views.points.size() < kLeastPoints)
+    return FailedPrecondition(
+        fmt::format("the surface has {} points, {} are needed", views.points.size(), kLeastPoints));
+  if (views.frames.size() < kLeastFrames)
+    return FailedPrecondition(fmt::format("{} thermal frames are valid, {} are needed",
+                                          views.frames.size(), kLeastFrames));
+  if (motion_px_s < kLeastMotion_px_s) {
+    return FailedPrecondition(
+        fmt::format("the rig hardly moves: the surface goes through the thermal picture at {:.1f} "
+                    "pixels a second, {:.0f} are needed; move it back and forth",
+                    motion_px_s, kLeastMotion_px_s));
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
+                                    const GroundOptions& options, double range_s,
+                                    const std::function<void(double)>& progress) {
+  Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(recording);
+  if (!reader) return Err(reader.error());
+  const Result<Rig> rig = (*reader)->ReadRig();
+  if (!rig) return Err(rig.error().WithContext(recording.string()));
+  if (Status status = CheckContents((*reader)->info(), *rig); !status.ok())
+    return Err(status.WithContext(recording.string()));
+  Rig depth_only = *rig;
+  depth_only.thermal.reset();
+  Result<std::unique_ptr<GroundPipeline>> pipeline =
+      GroundPipeline::Create(options, depth_only, std::nullopt);
+  if (!pipeline) return Err(pipeline.error());
+
+  Reader frames(**reader, **pipeline, *rig);
+  frames.Run([&](double share) {
+    if (progress) progress(kReadShare * share);
+  });
+  ScanForCalibration scan;
+  scan.rig = *rig;
+  scan.applied_delay_s = AppliedDelay((*reader)->info());
+  scan.views = {.thermal_camera = *rig->thermal,
+                .T_thermal_depth = *rig->T_thermal_depth,
+                .trajectory = (*pipeline)->trajectory(),
+                .points = SamplePoints(ExtractSurface((*pipeline)->tsdf(), (*pipeline)->thermal(),
+                                                      {.triangles = false}, (*pipeline)->pool())),
+                .frames = frames.TakeFrames()};
+  scan.motion_px_s = Motion(scan.views);
+  const Status fit = CheckViews(scan.views, (*pipeline)->counts(), scan.motion_px_s);
+  if (!fit.ok()) return Err(fit.WithContext(recording.string()));
+  FindVisiblePoints((*pipeline)->tsdf(), range_s, (*pipeline)->pool(), scan.views);
+  if (progress) progress(1.0);
+  return scan;
+}
+
+}  // namespace isotherm

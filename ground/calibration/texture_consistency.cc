@@ -1,0 +1,154 @@
+#include "ground/calibration/texture_consistency.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "common/frame/frame.h"
+
+namespace isotherm {
+namespace {
+
+// Poses further apart are not interpolated between.
+constexpr double kLongestGap_s = 0.15;
+constexpr double kNoise_k = 0.1;
+constexpr double kMisalignment_px = 0.5;
+constexpr double kLeastFrames = 8.0;
+constexpr double kMostParts = 40.0;
+
+struct Sample {
+  double celsius = 0.0;
+  double gradient_k_px = 0.0;
+};
+
+/// Bilinear value and central differences; nullopt where the picture has no value.
+std::optional<Sample> SampleAt(const Image<std::uint16_t>& picture, double u, double v) {
+  const int x = static_cast<int>(u), y = static_cast<int>(v);
+  if (u < 1.0 || v < 1.0 || x + 2 >= picture.width() || y + 2 >= picture.height())
+    return std::nullopt;
+  const double a = u - x, b = v - y;
+  const double v00 = picture.At(x, y), v10 = picture.At(x + 1, y);
+  const double v01 = picture.At(x, y + 1), v11 = picture.At(x + 1, y + 1);
+  if (v00 == 0.0 || v10 == 0.0 || v01 == 0.0 || v11 == 0.0) return std::nullopt;
+  const double top = v00 + a * (v10 - v00), bottom = v01 + a * (v11 - v01);
+  const double dx = (1.0 - b) * (v10 - v00) + b * (v11 - v01);
+  const double dy = bottom - top;
+  return Sample{(top + b * (bottom - top)) / kCentikelvinPerKelvin - kCelsiusZeroKelvin,
+                std::hypot(dx, dy) / kCentikelvinPerKelvin};
+}
+
+}  // namespace
+
+std::optional<RigidTransform> InterpolatePose(const std::vector<StampedPose>& trajectory,
+                                              CaptureTime time) {
+  const auto after =
+      std::lower_bound(trajectory.begin(), trajectory.end(), time,
+                       [](const StampedPose& pose, CaptureTime at) { return pose.time < at; });
+  if (after == trajectory.begin() || after == trajectory.end()) return std::nullopt;
+  const auto before = after - 1;
+  const double gap_s = ToSeconds(after->time - before->time);
+  if (gap_s > kLongestGap_s) return std::nullopt;
+  return Interpolate(before->T_world_depth, after->T_world_depth,
+                     ToSeconds(time - before->time) / gap_s);
+}
+
+TextureConsistency::TextureConsistency(const ScanViews& views, double part_s, ThreadPool& pool)
+    : views_(views), pool_(pool) {
+  MakeParts(part_s);
+  WeighPoints();
+}
+
+void TextureConsistency::MakeParts(double part_s) {
+  if (views_.frames.empty()) return;
+  const CaptureTime start = views_.frames.front().time;
+  const double length_s =
+      std::max(part_s, ToSeconds(views_.frames.back().time - start) / kMostParts);
+  for (std::size_t i = 0; i < views_.frames.size(); ++i) {
+    if (views_.frames[i].visible.empty()) continue;
+    const auto part = static_cast<std::size_t>(ToSeconds(views_.frames[i].time - start) / length_s);
+    if (part >= parts_.size()) parts_.resize(part + 1);
+    parts_[part].push_back(i);
+  }
+  std::erase_if(parts_, [](const std::vector<std::size_t>& part) { return part.empty(); });
+}
+
+void TextureConsistency::WeighPoints() {
+  const std::size_t points = views_.points.size();
+  weights_.assign(points, 0.0);
+  means_celsius_.assign(points, 0.0);
+  const std::vector<std::vector<PointSums>> parts = MeasureParts(0.0, points);
+  for (std::size_t i = 0; i < points; ++i) {
+    PointSums sum;
+    for (const std::vector<PointSums>& part : parts) {
+      sum.count += part[i].count;
+      sum.value += part[i].value;
+      sum.gradient += part[i].gradient;
+    }
+    if (sum.count < kLeastFrames) continue;
+    means_celsius_[i] = sum.value / sum.count;
+    const double misaligned_k = kMisalignment_px * sum.gradient / sum.count;
+    weights_[i] = 1.0 / (kNoise_k * kNoise_k + misaligned_k * misaligned_k);
+  }
+}
+
+std::vector<double> TextureConsistency::Measure(double delay_s, std::size_t points,
+                                                const std::vector<PartWeights>& resamplings) const {
+  points = std::min(points, views_.points.size());
+  const std::vector<std::vector<PointSums>> parts = MeasureParts(delay_s, points);
+  std::vector<double> result(resamplings.size());
+  pool_.ParallelFor(static_cast<int>(resamplings.size()), [&](int index) {
+    const PartWeights& times = resamplings[static_cast<std::size_t>(index)];
+    double total = 0.0, freedom = 0.0;
+    for (std::size_t i = 0; i < points; ++i) {
+      double count = 0.0, value = 0.0, squares = 0.0;
+      for (std::size_t part = 0; part < parts.size(); ++part) {
+        count += times[part] * parts[part][i].count;
+        value += times[part] * parts[part][i].value;
+        squares += times[part] * parts[part][i].squares;
+      }
+      if (count < kLeastFrames) continue;
+      total += weights_[i] * std::max(0.0, squares - value * value / count);
+      freedom += weights_[i] > 0.0 ? count - 1.0 : 0.0;
+    }
+    result[static_cast<std::size_t>(index)] = freedom > 0.0 ? total / freedom : INFINITY;
+  });
+  return result;
+}
+
+std::vector<std::vector<TextureConsistency::PointSums>> TextureConsistency::MeasureParts(
+    double delay_s, std::size_t points) const {
+  std::vector<std::vector<PointSums>> parts(parts_.size());
+  pool_.ParallelFor(static_cast<int>(parts_.size()), [&](int index) {
+    const auto part = static_cast<std::size_t>(index);
+    parts[part] = MeasurePart(parts_[part], delay_s, points);
+  });
+  return parts;
+}
+
+std::vector<TextureConsistency::PointSums> TextureConsistency::MeasurePart(
+    const std::vector<std::size_t>& frames, double delay_s, std::size_t points) const {
+  std::vector<PointSums> sums(points);
+  for (const std::size_t index : frames) {
+    const StampedThermal& frame = views_.frames[index];
+    const auto T_world_depth =
+        InterpolatePose(views_.trajectory, frame.time + FromSeconds(delay_s));
+    if (!T_world_depth) continue;
+    const RigidTransform T_thermal_world = views_.T_thermal_depth * T_world_depth->inverse();
+    for (const std::uint32_t i : frame.visible) {
+      if (i >= points) break;
+      const auto pixel = Project(views_.thermal_camera, T_thermal_world * views_.points[i].p_world);
+      if (!pixel) continue;
+      const std::optional<Sample> sample = SampleAt(frame.centikelvin, pixel->x(), pixel->y());
+      if (!sample) continue;
+      const double celsius = sample->celsius - means_celsius_[i];
+      sums[i].count += 1.0;
+      sums[i].value += celsius;
+      sums[i].squares += celsius * celsius;
+      sums[i].gradient += sample->gradient_k_px;
+    }
+  }
+  return sums;
+}
+
+}  // namespace isotherm

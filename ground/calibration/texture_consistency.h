@@ -1,0 +1,79 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/image.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/stamped_pose.h"
+#include "common/time/time_types.h"
+#include "ground/calibration/delay_search.h"
+
+namespace isotherm {
+
+/// A point of the scanned surface.
+struct SurfacePoint {
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< Metres.
+  Eigen::Vector3d n_world = Eigen::Vector3d::Zero();  ///< Unit, towards the observer.
+};
+
+/// A thermal picture with its stamp as the recording has it.
+struct StampedThermal {
+  CaptureTime time;
+  Image<std::uint16_t> centikelvin;  ///< As ThermalFrame::centikelvin.
+  /// Indices, ascending, of the points that it shows whatever its delay is within the range that
+  /// is searched; empty if poses are missing there.
+  std::vector<std::uint32_t> visible;
+};
+
+/// What a scan offers for finding the delay of its thermal camera.
+struct ScanViews {
+  CameraModel thermal_camera;
+  RigidTransform T_thermal_depth = RigidTransform::Identity();
+  std::vector<StampedPose> trajectory;  ///< By time.
+  std::vector<SurfacePoint> points;  ///< In random order, so that any number of the first will do.
+  std::vector<StampedThermal> frames;  ///< By time.
+};
+
+/// Interpolated; nullopt outside the trajectory and in its gaps.
+std::optional<RigidTransform> InterpolatePose(const std::vector<StampedPose>& trajectory,
+                                              CaptureTime time);
+
+/// Projects thermal pictures onto the surface at poses that a delay puts them at, and measures how
+/// much they disagree about each point: its variance over the scan, relative to what noise and half
+/// a pixel of misalignment would give there, so that hot edges do not outweigh everything else.
+/// Samples and their weights are the same for all delays. Thread-compatible.
+class TextureConsistency {
+ public:
+  /// `views` and `pool` must outlive it. The scan is resampled in parts of about `part_s` seconds.
+  TextureConsistency(const ScanViews& views, double part_s, ThreadPool& pool);
+
+  /// Of the scan, with samples in them.
+  int parts() const { return static_cast<int>(parts_.size()); }
+
+  /// Mean weighted variance by resampling, with the first `points` of the points.
+  std::vector<double> Measure(double delay_s, std::size_t points,
+                              const std::vector<PartWeights>& resamplings) const;
+
+ private:
+  struct PointSums {
+    double count = 0.0, value = 0.0, squares = 0.0, gradient = 0.0;
+  };
+
+  std::vector<PointSums> MeasurePart(const std::vector<std::size_t>& frames, double delay_s,
+                                     std::size_t points) const;
+  std::vector<std::vector<PointSums>> MeasureParts(double delay_s, std::size_t points) const;
+  void MakeParts(double part_s);
+  void WeighPoints();
+
+  const ScanViews& views_;
+  ThreadPool& pool_;
+  std::vector<std::vector<std::size_t>> parts_;  ///< Indices of frames.
+  std::vector<double> weights_;                  ///< By point, 1/K^2; 0 = seen too rarely.
+  std::vector<double> means_celsius_;            ///< By point, at delay 0: keeps the sums small.
+};
+
+}  // namespace isotherm

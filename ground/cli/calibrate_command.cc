@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "common/base/progress.h"
+#include "common/concurrency/thread_pool.h"
+#include "common/config/text_proto.h"
+#include "ground/calibration/delay_search.h"
+#include "ground/calibration/scan_views.h"
+#include "ground/calibration/texture_consistency.h"
+#include "ground/cli/command.h"
+#include "ground/cli/simulation_files.h"
+#include "ground/ground_options.pb.h"
+#include "ground/validate_options.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Finds thermal_delay_s, which is added to thermal stamps so that they mean the same moment as depth
+stamps. The depth camera is tracked through the recording; then thermal pictures are projected onto the
+surface at the poses that a delay puts them at, and the delay is sought at which they agree. The recording
+should show a surface with clear thermal contrast for 10 s or more while the rig is moved back and forth.
+Parts of the scan are resampled to say how certain the result is; nothing is written if it is not.
+
+Calibrate with the estimator (timestamper.estimator) that scans are made with.
+
+Examples:
+  isotherm calibrate time scan.mcap
+  isotherm calibrate time scan.mcap --rig rig.textproto
+  isotherm calibrate time scan.mcap --rig rig.textproto --output rig_new.textproto)";
+
+constexpr double kPart_s = 1.0;
+constexpr std::size_t kCoarsePoints = 6000, kFinePoints = 30'000;
+constexpr double kReadShare = 0.8;
+
+struct Arguments {
+  std::string recording, rig, output, config;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  DelaySearchOptions search;
+};
+
+std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
+  std::string problems;
+  const auto add = [&](const Status& status) {
+    if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
+  };
+  if (!arguments.config.empty()) add(LoadTextProto(arguments.config, options));
+  for (const std::string& assignment : arguments.overrides)
+    add(ApplyOverride(assignment, options).WithContext("--set"));
+  options.set_threads(arguments.threads);
+  if (problems.empty()) {
+    for (const Status& status : ValidateAll(options)) add(status);
+  }
+  return problems;
+}
+
+/// The calibration with the new delay, into a file that is complete or not there.
+Status WriteRig(const std::string& path, const Rig& rig) {
+  const std::filesystem::path target(path), partial(path + ".part");
+  std::ofstream file(partial);
+  file << ToText(rig);
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(partial, target, error);
+  if (!file || error) return IoError(path + ": cannot be written");
+  return OkStatus();
+}
+
+void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, int parts, double delay_s,
+           double before_s) {
+  fmt::print(
+      "thermal_delay_s: {:.4f} ({:+.1f} ms), uncertain by {:.1f} ms (one standard deviation, {} "
+      "parts "
+      "of the scan)\n",
+      delay_s, 1e3 * delay_s, 1e3 * estimate.sigma_s, parts);
+  fmt::print(
+      "pictures disagree {:.1f} times as much 15 ms away; {} thermal frames, {} surface points, "
+      "{:.0f} px/s\n",
+      estimate.contrast, scan.views.frames.size(), scan.views.points.size(), scan.motion_px_s);
+  if (scan.applied_delay_s != 0.0) {
+    fmt::print("of it, {:+.1f} ms were in the recording's stamps already\n",
+               1e3 * scan.applied_delay_s);
+  }
+  fmt::print("before: {:+.1f} ms, moved by {:+.1f} ms\n", 1e3 * before_s,
+             1e3 * (delay_s - before_s));
+}
+
+int Run(const Arguments& arguments) {
+  GroundOptions options;
+  const std::string problems = CollectOptions(arguments, options);
+  if (!problems.empty()) return FailConfiguration(problems);
+  std::optional<Rig> rig;
+  if (!arguments.rig.empty()) {
+    Result<Rig> loaded = LoadRigCalibration(arguments.rig);
+    if (!loaded) return Fail(loaded.error());
+    rig = std::move(*loaded);
+  }
+  std::optional<ProgressBar> bar;
+  const auto progress = [&bar](double share) {
+    if (!bar) bar.emplace("calibrating", 0, "");
+    bar->Update(share);
+  };
+  const Result<ScanForCalibration> scan =
+      ReadScan(arguments.recording, options, arguments.search.range_s,
+               [&](double share) { progress(kReadShare * share); });
+  if (!scan) return Fail(scan.error());
+  ThreadPool pool(ChosenThreads(arguments.threads));
+  const TextureConsistency consistency(scan->views, kPart_s, pool);
+  const Result<DelayEstimate> estimate = SearchDelay(
+      [&](double delay_s, bool fine, const std::vector<PartWeights>& resamplings) {
+        return consistency.Measure(delay_s, fine ? kFinePoints : kCoarsePoints, resamplings);
+      },
+      consistency.parts(), arguments.search,
+      [&](double share) { progress(kReadShare + (1.0 - kReadShare) * share); });
+  if (estimate && bar) bar->Finish();
+  bar.reset();
+  if (!estimate) return Fail(estimate.error().WithContext(arguments.recording));
+
+  const double delay_s = estimate->delay_s + scan->applied_delay_s;
+  const double before_s = rig                            ? rig->thermal_delay_s
+                          : scan->applied_delay_s != 0.0 ? scan->applied_delay_s
+                                                         : scan->rig.thermal_delay_s;
+  Print(*scan, *estimate, consistency.parts(), delay_s, before_s);
+  const std::string& target = arguments.output.empty() ? arguments.rig : arguments.output;
+  if (target.empty()) return 0;
+  Rig calibrated = rig.value_or(scan->rig);
+  calibrated.thermal_delay_s = std::round(1e6 * delay_s) / 1e6;
+  if (Status written = WriteRig(target, calibrated); !written.ok()) return Fail(written);
+  fmt::print("{}: written\n", target);
+  return 0;
+}
+
+}  // namespace
+
+void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* calibrate =
+      app.add_subcommand("calibrate", "Finds calibration values from a recording");
+  calibrate->require_subcommand(1);
+  CLI::App* command =
+      calibrate->add_subcommand("time", "The constant delay between depth and thermal camera");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
+  command->add_option("--rig", arguments->rig,
+                      "Calibration file to update (text format of isotherm.RigCalibration)");
+  command->add_option("--output", arguments->output,
+                      "Write the calibration here instead; without --rig, the recording's");
+  command
+      ->add_option("--range", arguments->search.range_s,
+                   "The delay is looked for up to this far to either side, seconds")
+      ->check(CLI::Range(0.03, 1.0))
+      ->capture_default_str();
+  command
+      ->add_option("--max-sigma", arguments->search.max_sigma_s,
+                   "A result less certain than this is refused, seconds")
+      ->check(CLI::Range(0.0001, 0.1))
+      ->capture_default_str();
+  command->add_option("--config", arguments->config,
+                      "Configuration file (text format of isotherm.GroundOptions)");
+  command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
+      ->take_all()
+      ->type_name("STAGE.FIELD=VALUE");
+  command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
+  command->footer(kFooter);
+  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace isotherm
