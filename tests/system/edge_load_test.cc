@@ -208,6 +208,11 @@ TEST_F(EdgeLoadTest, NoFrameIsLostAndMemoryIsBounded) {
   const double cpu_s = CpuSeconds(RUSAGE_SELF) - cpu_before_s;
   const double wall_s = ToSeconds(clock_.SteadyNow() - start);
   EXPECT_TRUE(pipeline.Stop().ok());
+  // As the daemon says it: only now the ground knows that no earlier number is still to come.
+  EdgeStatus ended;
+  ended.time = clock_.Now();
+  ended.scan_state = ScanState::kEnded;
+  EXPECT_TRUE((*publisher)->Publish(ended).ok());
   EXPECT_TRUE((*publisher)->Drain(std::chrono::seconds(20)));
 
   std::printf(
