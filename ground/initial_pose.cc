@@ -1,7 +1,8 @@
 #include "ground/initial_pose.h"
 
-#include <algorithm>
 #include <vector>
+
+#include "common/base/quantile.h"
 
 namespace isotherm {
 
@@ -12,11 +13,7 @@ RigidTransform PoseFacingCentre(const VoxelGrid& grid, const Image<float>& depth
   }
   RigidTransform pose = RigidTransform::Identity();
   pose.translation() = 0.5 * (grid.min_m + grid.max_m());
-  if (!depths.empty()) {
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    pose.translation().z() -= *middle;
-  }
+  if (!depths.empty()) pose.translation().z() -= TakeMedian(depths);
   return pose;
 }
 

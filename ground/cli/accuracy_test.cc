@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
+#include "common/base/quantile.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/config/text_proto.h"
 #include "common/dataset/import.h"
@@ -25,12 +25,6 @@ namespace isotherm {
 namespace {
 
 namespace fs = std::filesystem;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 class AccuracyTest : public testing::Test {
  protected:
@@ -170,8 +164,8 @@ shutter { interval_s: 0 first_s: 100 })",
   ASSERT_GT(object.size(), 300U);
   constexpr double kTrueCelsius = 99.95;  // Falls from 100 to 99.85 towards the rim.
   constexpr double kToleranceKelvin = 0.5;
-  EXPECT_NEAR(Median(object), kTrueCelsius, kToleranceKelvin);
-  EXPECT_LT(Median(apparent), kTrueCelsius - 2.0);  // Not interpreted it would be wrong.
+  EXPECT_NEAR(TakeMedian(object), kTrueCelsius, kToleranceKelvin);
+  EXPECT_LT(TakeMedian(apparent), kTrueCelsius - 2.0);  // Not interpreted it would be wrong.
 }
 
 // A phone's LiDAR: 256 x 192 pixels at 60 Hz, another depth unit. Nothing may depend on the usual

@@ -4,17 +4,11 @@
 
 #include <algorithm>
 
+#include "common/base/quantile.h"
 #include "common/transport/messages.h"
 
 namespace isotherm {
 namespace {
-
-template <typename T>
-T Median(std::vector<T> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 void CountNumbers(std::vector<std::pair<std::uint64_t, std::uint64_t>>& numbers,
                   StreamSummary& stream) {
@@ -38,7 +32,8 @@ void MeasurePeriods(std::vector<CaptureTime>& times, StreamSummary& stream) {
   for (std::size_t i = 1; i < times.size(); ++i)
     periods_s.push_back(ToSeconds(times[i] - times[i - 1]));
   if (periods_s.empty()) return;
-  stream.period_s = Median(periods_s);
+  std::vector<double> ordered_s = periods_s;
+  stream.period_s = TakeMedian(ordered_s);
   for (std::size_t i = 0; i < periods_s.size(); ++i) {
     if (periods_s[i] <= kGapPeriods * stream.period_s) continue;
     ++stream.gaps;
@@ -123,7 +118,7 @@ void RecordingSummarizer::FinishStream(Stamps& stamps, StreamSummary& stream) {
   if (stamps.times.empty()) return;
   CountNumbers(stamps.numbers, stream);
   MeasurePeriods(stamps.times, stream);
-  stream.sigma_s = 1e-9 * static_cast<double>(Median(stamps.sigmas_ns));
+  stream.sigma_s = 1e-9 * static_cast<double>(TakeMedian(stamps.sigmas_ns));
 }
 
 RecordingSummary RecordingSummarizer::Finish() {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "common/base/quantile.h"
+
 namespace isotherm {
 
 PointIndex::PointIndex(std::span<const Eigen::Vector3f> points) {
@@ -88,9 +90,7 @@ float TypicalSpacing(std::span<const Eigen::Vector3f> points, const PointIndex& 
     if (nearest <= kLargest_m) distances.push_back(nearest);
   }
   if (distances.empty()) return 0.0F;
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle;
+  return TakeMedian(distances);
 }
 
 }  // namespace isotherm

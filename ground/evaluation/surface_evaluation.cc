@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/quantile.h"
+
 namespace isotherm {
 namespace {
 
@@ -29,10 +31,8 @@ std::vector<PlanePair> Pairs(const std::vector<Eigen::Vector3f>& cloud, std::siz
   }
   if (pairs.empty()) return pairs;
   std::vector<double> sorted = magnitudes;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                   sorted.end());
   constexpr double kOutlierMedians = 3.0;
-  const double limit = kOutlierMedians * sorted[sorted.size() / 2];
+  const double limit = kOutlierMedians * TakeMedian(sorted);
   std::vector<PlanePair> inliers;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (magnitudes[i] <= limit) inliers.push_back(pairs[i]);

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "common/base/quantile.h"
+
 namespace isotherm {
 namespace {
 
@@ -79,9 +81,7 @@ double MedianDepth(const Thumbnail& picture) {
     if (z > 0.0F) seen.push_back(z);
   }
   if (seen.empty()) return 0.0;
-  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
-  std::nth_element(seen.begin(), middle, seen.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(TakeMedian(seen));
 }
 
 /// The best, best first, none near another.

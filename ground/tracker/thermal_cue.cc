@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/base/check.h"
+#include "common/base/quantile.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tracker/surface_maps.h"
 
@@ -37,13 +38,6 @@ constexpr double kSamplesPerValue = 4.0;
 
 /// Older frames say nothing about where the first depth frame was.
 constexpr double kMaxAgeAtStartS = 0.05;
-
-/// Changes their order; there must be some.
-double TakeMedian(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/base/check.h"
+#include "common/base/quantile.h"
 #include "ground/ground_pipeline.h"
 #include "ground/tracker/analytic_views_for_test.h"
 
@@ -52,13 +53,6 @@ const std::vector<DepthFrame>& PeriodFrames() {
     return rendered;
   }();
   return frames;
-}
-
-double Median(std::vector<double> values) {
-  CHECK(!values.empty());
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                   values.end());
-  return values[values.size() / 2];
 }
 
 /// Memory of the process that is in use now.
@@ -117,7 +111,7 @@ void BM_Growth(benchmark::State& state) {
     state.counters["spilled"] = static_cast<double>((*pipeline)->spiller().spilled());
     state.counters["voxel_sum"] = VoxelSum((*pipeline)->tsdf());
     state.counters["blocks"] = static_cast<double>((*pipeline)->tsdf().block_count());
-    state.counters["last_period_p50_ms"] = Median(last_period_ms);
+    state.counters["last_period_p50_ms"] = TakeMedian(last_period_ms);
     for (const auto& [stage, stats] : (*pipeline)->stage_stats())
       state.counters[stage + "_p50_ms"] = stats.Percentile(50);
   }
