@@ -140,11 +140,7 @@ Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool) {
   ExperimentReport report;
   report.table.rows_are = "method";
   report.table.columns = {"points on the disc", "mean error [K]", "largest error [K]"};
-  RendererOptions renderer_options;
-  renderer_options.set_scale(FIXED);
-  renderer_options.set_scale_min_celsius(kSurroundCelsius);
-  renderer_options.set_scale_max_celsius(kDiscCelsius);
-  const Renderer renderer(renderer_options, ThermalOptions());
+  const Renderer renderer(FixedScale(kSurroundCelsius, kDiscCelsius), ThermalOptions());
   const CaptureTime middle = played->scan->depth_times()[played->scan->depth_times().size() / 2]
                                  .exposure;  // At about 40 degrees, as in the thesis.
   constexpr const char* kLabels[] = {"not validated", "validated"};
@@ -156,9 +152,7 @@ Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool) {
         {kLabels[i],
          {static_cast<double>(errors.points), errors.mean_kelvin, errors.largest_kelvin}});
     report.pictures.push_back(
-        {kPictures[i], renderer.Thermal(LookAtModel(pipeline.tsdf(), pipeline.thermal(),
-                                                    *played->scan->rig().depth,
-                                                    played->scan->PoseAt(middle), pool))});
+        {kPictures[i], renderer.Thermal(LookAtModel(pipeline, *played->scan, middle, pool))});
   }
   // Noise of single pixels (0.04 K) is 0.0006 of the difference in radiance.
   report.requirements = {{"largest error of the disc, validated", report.table.rows[1].values[2],

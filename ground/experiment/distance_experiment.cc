@@ -88,13 +88,8 @@ Contrasts MeasureContrasts(const SimulatedScan& scan, const GroundPipeline& pipe
 }
 
 RgbImage Picture(const SimulatedScan& scan, const GroundPipeline& pipeline, ThreadPool& pool) {
-  RendererOptions options;
-  options.set_scale(FIXED);
-  options.set_scale_min_celsius(23.0);
-  options.set_scale_max_celsius(kHotCelsius);
-  return Renderer(options, ThermalOptions())
-      .Thermal(LookAtModel(pipeline.tsdf(), pipeline.thermal(), *scan.rig().depth,
-                           scan.PoseAt(scan.depth_times().front().exposure), pool));
+  return Renderer(FixedScale(23.0, kHotCelsius), ThermalOptions())
+      .Thermal(LookAtModel(pipeline, scan, scan.depth_times().front().exposure, pool));
 }
 
 GroundOptions FineModel(bool validation) {

@@ -18,17 +18,13 @@ struct Method {
   const ThermalVolume* thermal;
 };
 
-RendererOptions FixedScale(const Scene& scene) {
+RendererOptions ScaleOf(const Scene& scene) {
   double low = scene.surround_celsius(), high = low;
   for (const Primitive& primitive : scene.primitives()) {
     low = std::min(low, primitive.temperature.near_celsius);
     high = std::max(high, primitive.temperature.near_celsius);
   }
-  RendererOptions options;
-  options.set_scale(FIXED);
-  options.set_scale_min_celsius(low);
-  options.set_scale_max_celsius(high);
-  return options;
+  return FixedScale(low, high);
 }
 
 /// Share of points with a temperature among those that truly were seen under acceptable conditions,
@@ -60,7 +56,7 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
   report.table.rows_are = "method";
   report.table.columns = {"points", "assigned", "background too warm", "foreground too cold",
                           "wrong [% of assigned]"};
-  const Renderer renderer(FixedScale(scan.scene()), ThermalOptions());
+  const Renderer renderer(ScaleOf(scan.scene()), ThermalOptions());
   const RigidTransform T_world_depth = scan.PoseAt(scan.depth_times().front().exposure);
   double coverage_percent = 0.0;  // With visibility.
   for (const Method& method : methods) {

@@ -1,8 +1,9 @@
 #include "ground/experiment/model_check.h"
 
-#include <limits>
+#include <algorithm>
 #include <optional>
 
+#include "common/base/quantile.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -56,6 +57,23 @@ AssignmentCheck CheckAssignment(const std::vector<CheckedPoint>& points) {
   return check;
 }
 
+ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points) {
+  std::vector<double> errors_k;
+  for (const CheckedPoint& point : points) {
+    if (point.measured()) errors_k.push_back(std::abs(point.ErrorKelvin()));
+  }
+  ErrorSummary summary;
+  summary.measured = errors_k.size();
+  if (errors_k.empty()) return summary;
+  const auto within_1k = std::ranges::count_if(errors_k, [](double e) { return e <= 1.0; });
+  summary.within_1k_percent = Percent(static_cast<std::size_t>(within_1k), errors_k.size());
+  summary.median_k = TakeQuantile(errors_k, 0.5);
+  summary.p95_k = TakeQuantile(errors_k, 0.95);
+  summary.p999_k = TakeQuantile(errors_k, 0.999);
+  summary.largest_k = TakeQuantile(errors_k, 1.0);
+  return summary;
+}
+
 ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                      const CameraModel& camera, const RigidTransform& T_world_camera,
                      ThreadPool& pool) {
@@ -65,6 +83,20 @@ ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
   ViewMaps view;
   SampleView(maps, T_world_camera.translation(), tsdf, thermal, pool, view);
   return view;
+}
+
+ViewMaps LookAtModel(const GroundPipeline& pipeline, const SimulatedScan& scan, CaptureTime time,
+                     ThreadPool& pool) {
+  return LookAtModel(pipeline.tsdf(), pipeline.thermal(), *scan.rig().depth, scan.PoseAt(time),
+                     pool);
+}
+
+RendererOptions FixedScale(double low_celsius, double high_celsius) {
+  RendererOptions options;
+  options.set_scale(FIXED);
+  options.set_scale_min_celsius(low_celsius);
+  options.set_scale_max_celsius(high_celsius);
+  return options;
 }
 
 }  // namespace isotherm

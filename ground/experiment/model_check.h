@@ -1,12 +1,16 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
 #include "common/simulation/scene.h"
+#include "common/simulation/simulated_scan.h"
 #include "ground/export/surface.h"
+#include "ground/ground_pipeline.h"
+#include "ground/renderer/renderer.h"
 #include "ground/renderer/view_maps.h"
 
 namespace isotherm {
@@ -41,9 +45,28 @@ struct AssignmentCheck {
 };
 AssignmentCheck CheckAssignment(const std::vector<CheckedPoint>& points);
 
+/// How far the temperatures of points that have one are off: of absolute errors, kelvin; NaN if no
+/// point has one.
+struct ErrorSummary {
+  std::size_t measured = 0;
+  double within_1k_percent = std::numeric_limits<double>::quiet_NaN();
+  double median_k = std::numeric_limits<double>::quiet_NaN();
+  double p95_k = std::numeric_limits<double>::quiet_NaN();
+  double p999_k = std::numeric_limits<double>::quiet_NaN();
+  double largest_k = std::numeric_limits<double>::quiet_NaN();
+};
+ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points);
+
 /// What the model shows from `T_world_camera`.
 ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                      const CameraModel& camera, const RigidTransform& T_world_camera,
                      ThreadPool& pool);
+
+/// What the model shows the scan's depth camera from where it truly was at `time`.
+ViewMaps LookAtModel(const GroundPipeline& pipeline, const SimulatedScan& scan, CaptureTime time,
+                     ThreadPool& pool);
+
+/// Pictures of temperatures with the same colours whatever they show.
+RendererOptions FixedScale(double low_celsius, double high_celsius);
 
 }  // namespace isotherm

@@ -1,6 +1,4 @@
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "common/simulation/scene_builder.h"
 #include "ground/experiment/experiment.h"
@@ -71,33 +69,29 @@ bool IsAtBorder(const CheckedPoint& point) {
   return std::abs(bars - std::round(bars)) * kBarM < kBorderM;
 }
 
-/// How far the temperatures of points that have one are off, kelvin.
-struct Errors {
-  std::size_t points = 0;
-  std::size_t assigned = 0;
-  double median = std::numeric_limits<double>::quiet_NaN();
-  double p999 = std::numeric_limits<double>::quiet_NaN();
-  double largest = std::numeric_limits<double>::quiet_NaN();
-};
-
-Errors Measure(std::vector<CheckedPoint> points) {
-  std::vector<double> errors;
+ExperimentTable::Row DescribeModel(const char* label, const PlayedScan& played,
+                                   const GroundPipeline& pipeline, ThreadPool& pool) {
+  std::vector<CheckedPoint> points = CheckModel(played.scan->scene(), played.scan->band(),
+                                                pipeline.tsdf(), pipeline.thermal(), pool);
   std::erase_if(points, IsAtBorder);
-  for (const CheckedPoint& point : points) {
-    if (point.measured()) errors.push_back(std::abs(point.ErrorKelvin()));
-  }
-  Errors result;
-  result.points = points.size();
-  result.assigned = errors.size();
-  if (errors.empty()) return result;
-  std::ranges::sort(errors);
-  const auto at = [&](double share) {
-    return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+  const ErrorSummary errors = SummarizeErrors(points);
+  return {label,
+          {static_cast<double>(points.size()), static_cast<double>(errors.measured),
+           static_cast<double>(pipeline.counts().fusion.smeared), errors.median_k, errors.p999_k,
+           errors.largest_k}};
+}
+
+std::vector<Requirement> Require(const ExperimentTable& table) {
+  const auto value = [&](std::size_t row, std::size_t column) {
+    return table.rows[row].values[column];
   };
-  result.median = at(0.5);
-  result.p999 = at(0.999);
-  result.largest = errors.back();
-  return result;
+  return {{"error of 99.9 % of what remains", value(1, 4), Requirement::Sense::kAtMost, 1.0, "K"},
+          {"the same of what is believed without limits, which fails here", value(0, 4),
+           Requirement::Sense::kAtLeast, 1.0, "K"},
+          {"smeared pixels left out", value(1, 2), Requirement::Sense::kAtLeast, 1.0, ""},
+          // The limit must not win by leaving surfaces without temperatures.
+          {"assigned with limits, of what is assigned without", 100.0 * value(1, 1) / value(0, 1),
+           Requirement::Sense::kAtLeast, 50.0, "%"}};
 }
 
 }  // namespace
@@ -110,41 +104,20 @@ Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool) {
   report.table.rows_are = "smeared pixels";
   report.table.columns = {"points",           "assigned",         "smeared pixels left out",
                           "median error [K]", "99.9 % error [K]", "largest error [K]"};
-  RendererOptions renderer_options;
-  renderer_options.set_scale(FIXED);
-  renderer_options.set_scale_min_celsius(kColdCelsius);
-  renderer_options.set_scale_max_celsius(kHotCelsius);
+  RendererOptions renderer_options = FixedScale(kColdCelsius, kHotCelsius);
   renderer_options.set_shading(false);
   const Renderer renderer(renderer_options, ThermalOptions());
-  const RigidTransform T_world_depth =
-      played->scan->PoseAt(played->scan->depth_times().front().exposure);
   constexpr const char* kLabels[] = {"believed", "left out"};
   constexpr const char* kPictures[] = {"believed", "left_out"};
   for (std::size_t i = 0; i < 2; ++i) {
     const GroundPipeline& pipeline = *played->pipelines[i];
-    const Errors errors = Measure(CheckModel(played->scan->scene(), played->scan->band(),
-                                             pipeline.tsdf(), pipeline.thermal(), pool));
-    report.table.rows.push_back(
-        {kLabels[i],
-         {static_cast<double>(errors.points), static_cast<double>(errors.assigned),
-          static_cast<double>(pipeline.counts().fusion.smeared), errors.median, errors.p999,
-          errors.largest}});
+    report.table.rows.push_back(DescribeModel(kLabels[i], *played, pipeline, pool));
     report.pictures.push_back(
         {kPictures[i],
-         renderer.Thermal(LookAtModel(pipeline.tsdf(), pipeline.thermal(),
-                                      *played->scan->rig().depth, T_world_depth, pool))});
+         renderer.Thermal(LookAtModel(pipeline, *played->scan,
+                                      played->scan->depth_times().front().exposure, pool))});
   }
-  const auto value = [&](std::size_t row, std::size_t column) {
-    return report.table.rows[row].values[column];
-  };
-  report.requirements = {
-      {"error of 99.9 % of what remains", value(1, 4), Requirement::Sense::kAtMost, 1.0, "K"},
-      {"the same of what is believed without limits, which fails here", value(0, 4),
-       Requirement::Sense::kAtLeast, 1.0, "K"},
-      {"smeared pixels left out", value(1, 2), Requirement::Sense::kAtLeast, 1.0, ""},
-      // The limit must not win by leaving surfaces without temperatures.
-      {"assigned with limits, of what is assigned without", 100.0 * value(1, 1) / value(0, 1),
-       Requirement::Sense::kAtLeast, 50.0, "%"}};
+  report.requirements = Require(report.table);
   return report;
 }
 

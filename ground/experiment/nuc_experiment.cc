@@ -1,6 +1,4 @@
-#include <cmath>
-
-#include "common/simulation/scene_builder.h"
+#include "ground/experiment/corner_scene.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/experiment_scan.h"
 #include "ground/experiment/model_check.h"
@@ -15,20 +13,8 @@ constexpr double kShutterCelsius = 60.0;
 constexpr double kFromShutterCelsius = 45.0;
 
 StagedScene CoolCorner() {
-  SceneBuilder scene(23.0);
-  scene.UseMaterial({});
-  scene.Box("back wall", {0.02, 0.02, 0.86}, {0.94, 0.94, 0.92}).temperature = Uniform(24.0);
-  scene.Box("side wall", {0.02, 0.02, 0.40}, {0.08, 0.94, 0.86}).temperature = Uniform(28.0);
-  scene.Box("floor", {0.08, 0.80, 0.40}, {0.94, 0.86, 0.86}).temperature = Uniform(26.0);
-  scene.Sphere("sphere", {0.48, 0.64, 0.66}, 0.14).temperature = Uniform(30.0);
-  ScanPath path;
-  path.target_x_m = {0.44, 0.04, 7.0};
-  path.target_y_m = {0.56, 0.03, 5.0};
-  path.target_z_m = {0.72};
-  path.azimuth_rad = {0.2, 0.12, 6.0};
-  path.elevation_rad = {0.30, 0.06, 4.5};
-  path.distance_m = {0.60};
-  return {scene.Build("cool corner"), path, {}};
+  return CornerScene("cool corner",
+                     {.back_wall = 24.0, .side_wall = 28.0, .floor = 26.0, .sphere = 30.0});
 }
 
 /// Three closings of 0.4, 0.7 and 1.0 s.
@@ -132,15 +118,10 @@ Result<ExperimentReport> RunNucExperiment(ThreadPool& pool) {
   report.requirements.push_back({"NUC events in mid-scan",
                                  static_cast<double>((*scan)->nuc_events().size()),
                                  Requirement::Sense::kAtLeast, 3.0, ""});
-  RendererOptions renderer_options;
-  renderer_options.set_scale(FIXED);
-  renderer_options.set_scale_min_celsius(20.0);
-  renderer_options.set_scale_max_celsius(kShutterCelsius);
-  const Renderer renderer(renderer_options, ThermalOptions());
+  const Renderer renderer(FixedScale(20.0, kShutterCelsius), ThermalOptions());
   const auto picture = [&](const GroundPipeline& pipeline) {
-    const RigidTransform T_world_depth = (*scan)->PoseAt((*scan)->depth_times().back().exposure);
-    return renderer.Thermal(LookAtModel(pipeline.tsdf(), pipeline.thermal(), *(*scan)->rig().depth,
-                                        T_world_depth, pool));
+    return renderer.Thermal(
+        LookAtModel(pipeline, **scan, (*scan)->depth_times().back().exposure, pool));
   };
   report.pictures = {{"believed", picture(**ignored)}, {"left_out", picture(**respected)}};
   return report;

@@ -14,10 +14,7 @@ namespace {
 constexpr double kDurationS = 1.6;
 
 RendererOptions ScaleFor(double hot_celsius, bool shading) {
-  RendererOptions options;
-  options.set_scale(FIXED);
-  options.set_scale_min_celsius(20.0);
-  options.set_scale_max_celsius(hot_celsius);
+  RendererOptions options = FixedScale(20.0, hot_celsius);
   options.set_shading(shading);
   options.set_legend(false);  // The picture's pixels are the view's.
   return options;
