@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "common/stamping/lower_hull.h"
+#include "common/stamping/envelope_line.h"
 #include "common/stamping/median_clock.h"
 #include "common/stamping/stamp.h"
 #include "common/time/time_types.h"
@@ -23,18 +23,15 @@ struct EnvelopeOptions {
   double relearn_after_s = 10.0;    ///< Then the estimate is given up.
 };
 
-/// Relates one camera's ticks to the edge's wall clock by the frames that were held up least: a
-/// frame can arrive late but never early, so the line below all differences arrival - ticks is the
-/// camera's offset and skew plus the shortest transport delay (Moon, Skelly and Towsley 1999). The
-/// line is the edge of the lower convex hull over the middle of the last one to two windows: two
-/// hulls, begun one window apart, take turns, so that old drift is forgotten.
+/// Relates one camera's ticks to the edge's wall clock by the frames that were held up least: the
+/// line along which these arrive (EnvelopeLine) is the camera's offset and skew plus the shortest
+/// transport delay. Of every `median_window` frames the one that was held up least counts.
 ///
 ///   warm-up     until there are `median_window` frames: their median (eq. 5.4), less what the
 ///               median is above the line if that is known from before a reset
 ///   reset       ticks that go backwards, or ahead of what arrival says: starts again at that frame
-///   slew        the estimate moves by at most max_slew_ppm, faster only until it has caught up
-///   with
-///               the line once after the start
+///   slew        the estimate moves by at most max_slew_ppm beyond the skew, faster only until it
+///               has caught up with the line once after the start
 ///   residual    all frames of residual_window_s far above the line: the camera's clock jumped or
 ///               drifts too much. Stamps are not synchronised, and after relearn_after_s the
 ///               estimate starts again
@@ -50,15 +47,16 @@ class EnvelopeClock {
   std::uint64_t resets() const { return resets_; }
   std::uint64_t relearned() const { return relearned_; }
   /// There are enough frames for a line.
-  bool warm() const { return warm_; }
+  bool warm() const { return line_.ready(); }
+  /// The estimate has caught up with a line of many frames.
+  bool settled() const { return caught_up_; }
   /// Of the camera's clock against the computer's, positive = the camera's is slow.
-  double skew_ppm() const { return 1e6 * line_.slope; }
+  double skew_ppm() const { return 1e6 * line_.slope(); }
 
  private:
-  struct Sample {
-    double time_s = 0.0;        ///< Camera's, since the first frame after the start.
-    double difference_s = 0.0;  ///< arrival - ticks, less that of the first frame.
-  };
+  /// x: the camera's time since the first frame after the start, seconds; y: arrival - ticks, less
+  /// that of the first frame, seconds.
+  using Sample = EnvelopeLine::Point;
 
   bool IsFromAnotherCounter(DeviceTicks ticks, CaptureTime arrival) const;
   Sample Relative(DeviceTicks ticks, CaptureTime arrival) const;
@@ -79,14 +77,12 @@ class EnvelopeClock {
   DeviceTicks first_ticks_{};
   CaptureTime first_arrival_{};
   std::optional<DeviceTicks> last_ticks_;
-  std::deque<Sample> samples_;  ///< Of the last two windows at most.
-  LowerHull hull_, next_hull_;
-  LowerHull::Line line_;
+  std::deque<Sample> recent_;  ///< Of residual_window_s, and one before.
+  EnvelopeLine line_;
   SlidingMedian median_;
   double median_excess_s_ = 0.0;  ///< Of the median above the line.
   double estimate_s_ = 0.0;       ///< At estimated_at_s_.
   double estimated_at_s_ = 0.0;
-  bool warm_ = false;
   bool caught_up_ = false;
   std::optional<double> off_since_s_;
   std::uint64_t resets_ = 0;

@@ -79,7 +79,7 @@ TEST_F(EnvelopeClockTest, FramesHeldUpForTenSecondsMoveNothing) {
 
 TEST_F(EnvelopeClockTest, SpacingIsTheCamerasButForTheSlew) {
   const EnvelopeOptions options;
-  Run(10 * 30);
+  Run(12 * 30);
   CaptureTime last = stamp_.time;
   for (int i = 0; i < 100 * 30; ++i) {
     Next(i % 7 == 0 ? milliseconds(30) : milliseconds(0));

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/base/quantile.h"
+
 namespace isotherm {
 namespace {
 
 constexpr Nanoseconds kLongestGap = std::chrono::seconds(2);
-// The median of the first intervals is this close to the period, even with milliseconds of jitter.
+// The first estimate of the period is this close, even with milliseconds of jitter.
 constexpr double kMaxPeriodError_ppm = 50'000.0;
 constexpr int kSigmaFactor = 2;
 
@@ -24,12 +26,17 @@ Stamp PeriodTracker::Process(std::uint64_t frame_number, CaptureTime arrival) {
   const auto periods = static_cast<std::int64_t>(frame_number - last_number_);
   last_number_ = frame_number;
   last_arrival_ = arrival;
-  if (!clock_) return WarmUp(arrival, interval / periods);
+  if (!clock_) return WarmUp(frame_number, arrival);
 
   const double period_s = period_s_ * (1.0 + 1e-6 * clock_->skew_ppm());
   counted_ += static_cast<double>(periods);
   const double early_s = ToSeconds(last_stamp_ - arrival) + static_cast<double>(periods) * period_s;
   if (clock_->warm() && early_s > 0.5 * period_s) {
+    if (!clock_->settled()) {
+      // The period itself was wrong.
+      Restart(frame_number, arrival);
+      return {.time = arrival};
+    }
     // What was counted too often makes earlier frames look early, too.
     BeginClock();
     ++slips_;
@@ -52,16 +59,27 @@ void PeriodTracker::Restart(std::uint64_t frame_number, CaptureTime arrival) {
   last_number_ = frame_number;
   last_arrival_ = arrival;
   intervals_.Clear();
+  warm_up_.assign(1, {frame_number, arrival});
   clock_.reset();
   counted_ = 0.0;
 }
 
-Stamp PeriodTracker::WarmUp(CaptureTime arrival, Nanoseconds interval) {
-  intervals_.Add(interval);
+Stamp PeriodTracker::WarmUp(std::uint64_t frame_number, CaptureTime arrival) {
+  const auto periods = [](const Arrival& from, const Arrival& to) {
+    return (to.time - from.time) / static_cast<std::int64_t>(to.frame_number - from.frame_number);
+  };
+  const Arrival now{frame_number, arrival};
+  intervals_.Add(periods(warm_up_.back(), now));
+  warm_up_.push_back(now);
   // One arrival is as uncertain as an interval.
   const double sigma_s = ToSeconds(intervals_.Sigma()) * std::sqrt(double(intervals_.size()));
-  if (intervals_.size() == kWarmUpFrames) {
-    period_s_ = ToSeconds(intervals_.Median());
+  if (warm_up_.size() == kWarmUpFrames) {
+    // Jitter counts the less the longer the span (Theil and Sen's slope, of spans of one length).
+    constexpr std::size_t kSpan = kWarmUpFrames / 2;
+    std::vector<Nanoseconds> of_spans;
+    for (std::size_t i = kSpan; i < warm_up_.size(); ++i)
+      of_spans.push_back(periods(warm_up_[i - kSpan], warm_up_[i]));
+    period_s_ = ToSeconds(TakeMedian(of_spans));
     BeginClock();
   }
   last_stamp_ = arrival;

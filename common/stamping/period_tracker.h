@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "common/stamping/envelope_clock.h"
 #include "common/stamping/median_clock.h"
@@ -13,12 +14,12 @@ namespace isotherm {
 /// Stamps for a camera without a clock: its frames are taken to be equidistant, so that their count
 /// is a clock, whose period and phase EnvelopeClock finds.
 ///
-///   warm-up   the period is the median of the first intervals; stamps are the arrivals
+///   warm-up   the period is estimated from the first frames; stamps are the arrivals
 ///   lost      holes in `frame_number` are periods that passed. Frames that were lost unseen show
-///   as
-///             arrivals that all stay late: after two seconds the count is put right. Until then
-///             their sigma is what they are late by
-///   early     more than half a period before it was expected: the count was wrong and starts again
+///             as arrivals that all stay late: after two seconds the count is put right. Until
+///             then their sigma is what they are late by
+///   early     more than half a period before it was expected: the count was wrong and starts
+///             again; with the period, if that was not yet certain
 ///   gap       longer than two seconds, or frame numbers that do not increase: starts again
 ///
 /// The sigma is twice that of EnvelopeClock, because nobody promised that frames are equidistant.
@@ -35,14 +36,20 @@ class PeriodTracker {
 
  private:
   void Restart(std::uint64_t frame_number, CaptureTime arrival);
-  Stamp WarmUp(CaptureTime arrival, Nanoseconds interval);
+  Stamp WarmUp(std::uint64_t frame_number, CaptureTime arrival);
   /// Counts from 0 with the period as it is known.
   void BeginClock();
   DeviceTicks CountedTicks() const;
 
-  static constexpr std::size_t kWarmUpFrames = 31;
+  struct Arrival {
+    std::uint64_t frame_number;
+    CaptureTime time;
+  };
+
+  static constexpr std::size_t kWarmUpFrames = 32;
   const EnvelopeOptions options_;
   SlidingMedian intervals_{kWarmUpFrames};
+  std::vector<Arrival> warm_up_;
   std::optional<EnvelopeClock> clock_;  ///< Once the period is known.
   bool started_ = false;
   std::uint64_t last_number_ = 0;

@@ -23,7 +23,8 @@ class PeriodTrackerTest : public testing::Test {
   double Next() {
     const double jitter_s =
         -kJitter_s * std::log1p(-UniformNoise(3, static_cast<std::uint64_t>(exposure_)));
-    const CaptureTime exposure = kEpoch + FromSeconds(kPeriod_s * static_cast<double>(exposure_));
+    const CaptureTime exposure =
+        kEpoch + begin_ + FromSeconds(kPeriod_s * static_cast<double>(exposure_));
     stamp_ = tracker_.Process(number_, exposure + FromSeconds(jitter_s));
     ++exposure_;
     ++number_;
@@ -36,6 +37,7 @@ class PeriodTrackerTest : public testing::Test {
   PeriodTracker tracker_{EnvelopeOptions{}};
   std::int64_t exposure_ = 0;  ///< What the camera did, ...
   std::uint64_t number_ = 0;   ///< ... and what the source counted.
+  Nanoseconds begin_{0};       ///< Later exposures are later by this.
   Stamp stamp_;
 };
 
@@ -46,6 +48,19 @@ TEST_F(PeriodTrackerTest, StampsAreEvenAfterTenSeconds) {
     EXPECT_GT(stamp_.sigma, Nanoseconds(0));
   }
   EXPECT_EQ(tracker_.slips(), 0U);
+}
+
+TEST_F(PeriodTrackerTest, AWrongPeriodAtTheStartDoesNotStay) {
+  constexpr milliseconds kSlower{3};  // Per frame, as long as the period is estimated.
+  for (int i = 0; i < 40; ++i) {
+    begin_ += kSlower;
+    Next();
+  }
+  Run(250);
+  const std::uint64_t slips = tracker_.slips();
+  EXPECT_GT(slips, 0U) << "nothing went wrong";
+  for (int i = 0; i < 2500; ++i) EXPECT_LT(std::abs(Next()), kSettled_s) << i;
+  EXPECT_EQ(tracker_.slips(), slips);
 }
 
 TEST_F(PeriodTrackerTest, LostFramesThatWereCountedChangeNothing) {

@@ -16,7 +16,7 @@ StampingResidual Residuals(std::size_t scenario, StampingMethod method, double r
 class StampingTrialTest : public testing::TestWithParam<double> {};
 
 TEST_P(StampingTrialTest, TheEnvelopeKeepsWhatIsPromised) {
-  for (const std::size_t scenario : {0U, 1U, 2U}) {
+  for (const std::size_t scenario : {0U, 1U, 2U, 3U}) {
     const StampingResidual residual = Residuals(scenario, StampingMethod::kEnvelope, GetParam());
     EXPECT_LE(residual.rms_s, kPromisedRms_s) << scenario;
     EXPECT_LE(residual.p99_s, kPromisedP99_s) << scenario;
@@ -42,9 +42,9 @@ TEST_P(StampingTrialTest, RawArrivalsLookLikeTheFigure) {
 }
 
 TEST_P(StampingTrialTest, SigmaSaysHowUncertainTheStampsAre) {
-  // A normal error is within one sigma in 68 % and within three in 99.7 %. The gap that sigma is
-  // made from is itself random, hence the wide margin.
-  for (const std::size_t scenario : {0U, 1U, 2U}) {
+  // A normal error is within one sigma in 68 % and within three in 99.7 %. Jitter that is far
+  // from normal gives a regression less than that, hence the wide margin.
+  for (const std::size_t scenario : {0U, 1U, 2U, 3U}) {
     const StampingResidual residual = Residuals(scenario, StampingMethod::kEnvelope, GetParam());
     EXPECT_GT(residual.within_sigma, 0.45) << scenario;
     EXPECT_LT(residual.within_sigma, 0.85) << scenario;
