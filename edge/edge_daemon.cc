@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/codec/codec.h"
 #include "common/config/text_proto.h"
 #include "edge/edge_options.pb.h"
 #include "edge/edge_pipeline.h"
@@ -62,6 +63,18 @@ void TellAboutRig(const std::optional<Rig>& rig) {
   }
 }
 
+/// Says it at the start, not when the scan is over.
+void TellAboutCounts(const std::vector<CameraDescription>& cameras) {
+  for (const CameraDescription& camera : cameras) {
+    if (!camera.counts_only) continue;
+    LOG(Edge, Warning) << "the thermal camera (" << camera.driver
+                       << ") sends counts, not temperatures: they are recorded and published as "
+                          "that, and the surface will have no temperatures; "
+                          "source.thermal_camera.kelvin_per_count and offset_kelvin could say what "
+                          "counts mean";
+  }
+}
+
 /// The rig as it is published and recorded: capture times already contain the thermal delay.
 std::optional<Rig> WithoutThermalDelay(std::optional<Rig> rig) {
   if (rig) rig->thermal_delay_s = 0.0;
@@ -95,7 +108,10 @@ RigDescription Describe(const EdgeOptions& options, const Start& start) {
     const bool is_depth = camera.sensor == Sensor::kDepth;
     (is_depth ? description.depth : description.thermal) = {
         camera.width, camera.height, camera.rate_hz,
-        is_depth ? Encoding::kDepthRans : Encoding::kThermalRans, camera.serial};
+        is_depth             ? Encoding::kDepthRans
+        : camera.counts_only ? kCounts16
+                             : Encoding::kThermalRans,
+        camera.serial};
   }
   return description;
 }
@@ -227,6 +243,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   }
   const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
   TellAboutRig(rig);
+  TellAboutCounts((*source)->cameras());
   const Start start{clock.Now(), (*source)->cameras(), WithoutThermalDelay(rig),
                     rig ? rig->thermal_delay_s : 0.0};
 

@@ -1,5 +1,6 @@
 #include "edge/edge_pipeline.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
 
@@ -29,6 +30,12 @@ void ReportStamping(std::string_view stream, const StampingCounts& counts) {
                      << " unsynchronised_frames=" << counts.unsynchronised;
 }
 
+bool SendsCounts(const FrameSource& source) {
+  const std::vector<CameraDescription> cameras = source.cameras();
+  return std::any_of(cameras.begin(), cameras.end(),
+                     [](const CameraDescription& camera) { return camera.counts_only; });
+}
+
 auto CountDropsAs(FrameFate fate, FrameAccount& account) {
   return [fate, &account](const EncodedFramePtr& frame) { account.Count(frame->sensor(), fate); };
 }
@@ -43,6 +50,7 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       clock_(parts.clock),
       spool_(std::move(parts.spool)),
       session_(parts.session),
+      thermal_is_counts_(SendsCounts(parts.source)),
       step_watch_(ReadClocks(clock_)),
       depth_timestamper_(options.timestamper(), Sensor::kDepth, Nanoseconds(0)),
       thermal_timestamper_(options.timestamper(), Sensor::kThermal,
@@ -191,7 +199,8 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   frame.nuc_state = nuc.state;
   frame.nuc_source = nuc.source;
   frame.seconds_since_nuc = nuc.seconds_since_nuc;
-  frame.valid = nuc.valid;
+  frame.valid = nuc.valid && !thermal_is_counts_;
+  if (thermal_is_counts_) frame.image.encoding = kCounts16;
   frame.housekeeping = raw.housekeeping;
   nuc_report_.Set(nuc_.Report());
   HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
@@ -221,8 +230,11 @@ void EdgePipeline::Encode(const std::stop_token& stop) {
     auto& content = uncoded->frame.content;
     if (auto* depth = std::get_if<EncodedDepthFrame>(&content))
       depth->image = depth_encoder_.Encode(uncoded->pixels);
-    if (auto* thermal = std::get_if<EncodedThermalFrame>(&content))
-      thermal->image = thermal_encoder_.Encode(uncoded->pixels);
+    if (auto* thermal = std::get_if<EncodedThermalFrame>(&content)) {
+      const bool is_counts = thermal->image.encoding == kCounts16;
+      thermal->image =
+          is_counts ? PackCounts(uncoded->pixels) : thermal_encoder_.Encode(uncoded->pixels);
+    }
     Emit(std::move(uncoded->frame), stop);
   }
 }

@@ -113,6 +113,7 @@ class EdgePipeline {
   const Clock& clock_;
   const std::unique_ptr<Spool> spool_;
   const std::uint64_t session_;
+  const bool thermal_is_counts_;  ///< Of a camera that measures no temperatures.
 
   StepWatch step_watch_;  ///< Of the capture thread.
   std::atomic<std::uint64_t> clock_steps_{0};

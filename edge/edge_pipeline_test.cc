@@ -23,6 +23,7 @@ class EdgePipelineTest : public testing::Test {
   void Start(std::string_view script, bool record = true) {
     auto camera = std::make_unique<FakeSource>(script);
     camera->control_answer = control_answer_;
+    if (counts_only_) camera->DescribeThermal(true);
     camera_ = camera.get();
     source_ = std::make_unique<SupervisedSource>(
         std::move(camera), options_.frame_check(), clock_,
@@ -79,6 +80,7 @@ class EdgePipelineTest : public testing::Test {
   FrameAccount account_;
   CameraHealth health_;
   Status control_answer_ = Unavailable("no shutter");
+  bool counts_only_ = false;
   FakeSource* camera_ = nullptr;
   std::unique_ptr<SupervisedSource> source_;
   std::unique_ptr<EdgePipeline> pipeline_;
@@ -135,6 +137,24 @@ TEST_F(EdgePipelineTest, PixelsSurviveTheCodec) {
   const Result<Image<std::uint16_t>> thermal = Decode(publisher_.thermal().at(0).image);
   ASSERT_TRUE(thermal.has_value());
   EXPECT_EQ(*thermal, Image<std::uint16_t>(6, 4, FakeSource::kCentikelvin));
+}
+
+TEST_F(EdgePipelineTest, CountsAreRecordedAndPublishedAsCountsAndNeverValid) {
+  counts_only_ = true;
+  Start("d 2*t:hot");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  const std::vector<EncodedThermalFrame> published = publisher_.thermal();
+  ASSERT_EQ(published.size(), 2U);
+  for (const EncodedThermalFrame& frame : published) {
+    EXPECT_EQ(frame.image.encoding, kCounts16);
+    EXPECT_FALSE(frame.valid);
+    const Result<Image<std::uint16_t>> counts = Decode(frame.image);
+    ASSERT_TRUE(counts.has_value());
+    EXPECT_EQ(counts->At(0, 0), 65'535);  // Not masked: no temperatures.
+    EXPECT_EQ(counts->At(2, 0), 100);
+    EXPECT_TRUE(DecodeTemperatures(frame.image)->empty());
+  }
+  EXPECT_EQ(recording_.thermal_frames.size(), 2U);
 }
 
 TEST_F(EdgePipelineTest, ThermalDelayIsTheOptionsPlusTheRigs) {

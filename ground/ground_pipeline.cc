@@ -276,6 +276,16 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
 
 void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   ++counts_.thermal_in;
+  // Of a camera that measures no temperatures (kCounts16).
+  const bool is_counts = frame->centikelvin.empty() && !frame->valid;
+  if (is_counts && counts_.thermal_left_out["counts"]++ == 0) {
+    thermal_status_ = FailedPrecondition(
+        "the thermal camera sends counts, which nothing relates to temperatures: none are fused, "
+        "geometry goes on (source.thermal_camera.kelvin_per_count and offset_kelvin of the rig "
+        "could say what counts mean)");
+    LOG(Ground, Warning) << thermal_status_.message();
+  }
+  if (is_counts) return;
   if (!thermal_stage_) {
     ++counts_.thermal_left_out["no_calibration"];
   } else if (thermal_stage_->Add(frame)) {

@@ -225,6 +225,16 @@ TEST_F(GroundPipelineTest, F11FramesWithoutPixelsAreRefusedAndCounted) {
   EXPECT_TRUE(Depth(0).tracked);
 }
 
+TEST_F(GroundPipelineTest, CountsAreLeftOutWithASentenceAndGeometryGoesOn) {
+  EXPECT_TRUE(pipeline_->thermal_status().ok());
+  Depth(0);
+  for (int i = 0; i < 3; ++i) pipeline_->ProcessThermal(std::make_shared<ThermalFrame>());
+  EXPECT_TRUE(Depth(1).tracked);
+  EXPECT_EQ(LeftOut("counts"), 3U);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_NE(pipeline_->thermal_status().message().find("sends counts"), std::string::npos);
+}
+
 TEST_F(GroundPipelineTest, F12AScaleThatIsNoneIsLostAndLeavesNothing) {
   DepthFrame frame = testing::RenderDepth(testing::BallInCorner, *rig_.depth, TruePose(0));
   for (const double bad : {std::nan(""), 0.0, -1000.0, std::numeric_limits<double>::infinity()}) {

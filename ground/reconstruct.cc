@@ -64,7 +64,7 @@ class InlineDriver {
     auto frame = std::make_shared<DepthFrame>();
     frame->header = recorded.frame.header;
     frame->depth_scale = recorded.frame.depth_scale;
-    if (DecodeInto(recorded.frame.image, "depth", frame->header, frame->depth_raw))
+    if (Unpack(Decode(recorded.frame.image), "depth", frame->header, frame->depth_raw))
       assembler_.Add(std::move(frame));
   }
 
@@ -77,8 +77,8 @@ class InlineDriver {
     frame->nuc_source = encoded.nuc_source;
     frame->seconds_since_nuc = encoded.seconds_since_nuc;
     frame->housekeeping = encoded.housekeeping;
-    frame->valid = encoded.valid;
-    if (DecodeInto(encoded.image, "thermal", frame->header, frame->centikelvin))
+    frame->valid = encoded.valid && encoded.image.encoding != kCounts16;
+    if (Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header, frame->centikelvin))
       assembler_.Add(std::move(frame));
   }
 
@@ -87,9 +87,8 @@ class InlineDriver {
   void Take(const RecordedLog& /*log*/) {}
   void Take(const OutsidePose& pose) { pipeline_.ProcessOutsidePose(pose); }
 
-  bool DecodeInto(const EncodedImage& encoded, const char* stream, const FrameHeader& header,
-                  Image<std::uint16_t>& image) {
-    Result<Image<std::uint16_t>> decoded = Decode(encoded);
+  bool Unpack(Result<Image<std::uint16_t>> decoded, const char* stream, const FrameHeader& header,
+              Image<std::uint16_t>& image) {
     if (decoded) {
       image = std::move(*decoded);
       return true;

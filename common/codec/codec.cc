@@ -29,7 +29,8 @@ Status CheckSizes(const EncodedImage& encoded, std::size_t max_pixels) {
   }
   const std::size_t raw_bytes = static_cast<std::size_t>(encoded.width) *
                                 static_cast<std::size_t>(encoded.height) * sizeof(std::uint16_t);
-  if (encoded.encoding == Encoding::kRaw16 && encoded.payload.size() != raw_bytes) {
+  const bool is_raw = encoded.encoding == Encoding::kRaw16 || encoded.encoding == kCounts16;
+  if (is_raw && encoded.payload.size() != raw_bytes) {
     return DataLoss(fmt::format("raw image of {} x {} has {} bytes instead of {}", encoded.width,
                                 encoded.height, encoded.payload.size(), raw_bytes));
   }
@@ -37,6 +38,7 @@ Status CheckSizes(const EncodedImage& encoded, std::size_t max_pixels) {
 }
 
 Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
+  if (encoded.encoding == kCounts16) return DecodeRaw(encoded.payload, image);
   switch (encoded.encoding) {
     case Encoding::kRaw16:
       return DecodeRaw(encoded.payload, image);
@@ -85,6 +87,24 @@ EncodedImage ThermalEncoder::Encode(const Image<std::uint16_t>& centikelvin) {
                        .payload = {}};
   scratch_->codec.Encode(centikelvin, encoded.payload);
   return encoded;
+}
+
+EncodedImage PackCounts(const Image<std::uint16_t>& counts) {
+  EncodedImage packed{
+      .encoding = kCounts16, .width = counts.width(), .height = counts.height(), .payload = {}};
+  packed.payload.reserve(counts.size() * sizeof(std::uint16_t));
+  for (const std::uint16_t count : counts.pixels()) {
+    packed.payload.push_back(static_cast<std::uint8_t>(count));
+    packed.payload.push_back(static_cast<std::uint8_t>(count >> 8));
+  }
+  return packed;
+}
+
+Result<Image<std::uint16_t>> DecodeTemperatures(const EncodedImage& encoded,
+                                                std::size_t max_pixels) {
+  Result<Image<std::uint16_t>> image = Decode(encoded, max_pixels);
+  if (image && encoded.encoding == kCounts16) return Image<std::uint16_t>();
+  return image;
 }
 
 Result<Image<std::uint16_t>> Decode(const EncodedImage& encoded, std::size_t max_pixels) {

@@ -222,6 +222,23 @@ TEST(DecodeTest, PngFromOtherProgramsIsRead) {
   }
 }
 
+TEST(DecodeTest, CountsAreUnpackedButAreNoTemperatures) {
+  Image<std::uint16_t> counts(3, 2);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    counts.data()[i] = static_cast<std::uint16_t>(1'000 + 11'111 * i);
+  }
+  EncodedImage packed = PackCounts(counts);
+  EXPECT_EQ(packed.encoding, kCounts16);
+  EXPECT_EQ(*Decode(packed), counts);
+  ASSERT_TRUE(DecodeTemperatures(packed).has_value());
+  EXPECT_TRUE(DecodeTemperatures(packed)->empty());
+  EXPECT_EQ(*DecodeTemperatures(ThermalEncoder().Encode(counts)), counts);
+  while (!packed.payload.empty()) {
+    packed.payload.pop_back();
+    EXPECT_FALSE(DecodeTemperatures(packed).has_value()) << packed.payload.size();
+  }
+}
+
 TEST(DecodeTest, AnUnknownEncodingIsRefused) {
   const EncodedImage image{
       .encoding = static_cast<Encoding>(200), .width = 2, .height = 2, .payload = {1, 2, 3}};

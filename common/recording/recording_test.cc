@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "common/codec/codec.h"
 #include "common/recording/recording_test_data.h"
 
 namespace isotherm {
@@ -102,6 +103,24 @@ TEST_P(RecordingTest, FramesComeBackAsTheyWere) {
   EXPECT_TRUE(std::isnan(recorded_thermal.frame.housekeeping.housing_celsius));
   EXPECT_TRUE(recorded_thermal.frame.valid);
   EXPECT_EQ(recorded_thermal.arrival, std::nullopt);
+}
+
+TEST_P(RecordingTest, CountsComeBackAsCounts) {
+  EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
+  thermal.image.encoding = kCounts16;
+  thermal.valid = false;
+  {
+    auto writer = WriterTo(disk_, options_);
+    ASSERT_TRUE(writer->Write(thermal, kScanStart).ok());
+    ASSERT_TRUE(writer->Close().ok());
+  }
+  const auto reader = Reader();
+  const auto item = reader->Next();
+  ASSERT_TRUE(item && *item);
+  const auto* back = std::get_if<RecordedThermal>(&**item);
+  ASSERT_NE(back, nullptr);
+  ExpectSame(back->frame.image, thermal.image);
+  EXPECT_FALSE(back->frame.valid);
 }
 
 TEST_P(RecordingTest, RigEventsPosesAndMetadataComeBack) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/codec/codec.h"
+
 namespace isotherm {
 namespace {
 
@@ -59,7 +61,7 @@ std::optional<RefusalCause> CheckFrame(const FrameFields& fields) {
       fields.payload_bytes > pixels * kMaxBytesPerPixel + kMaxCodeOverheadBytes) {
     return RefusalCause::kOversizePayload;
   }
-  if (CheckEnum(fields.encoding, Encoding::kThermalRans)) return RefusalCause::kUnknownEncoding;
+  if (CheckEnum(fields.encoding, kCounts16)) return RefusalCause::kUnknownEncoding;
   if (fields.capture_time_ns < 0 || fields.capture_sigma_ns < 0) {
     return RefusalCause::kNegativeTime;
   }

@@ -66,7 +66,7 @@ TEST(SampleValidatorTest, F60PayloadsThatCannotBeAreRefused) {
 }
 
 TEST(SampleValidatorTest, F60UnknownEncodingIsRefused) {
-  EXPECT_EQ(CheckChanged([](auto& f) { f.encoding = 4; }), RefusalCause::kUnknownEncoding);
+  EXPECT_EQ(CheckChanged([](auto& f) { f.encoding = 5; }), RefusalCause::kUnknownEncoding);
   EXPECT_EQ(CheckChanged([](auto& f) { f.encoding = 255; }), RefusalCause::kUnknownEncoding);
 }
 

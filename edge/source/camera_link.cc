@@ -123,6 +123,7 @@ void ToLink(const std::optional<Rig>& rig, const std::vector<CameraDescription>&
     link.set_height(camera.height);
     link.set_rate_hz(camera.rate_hz);
     link.set_settings(camera.settings);
+    link.set_counts_only(camera.counts_only);
   }
 }
 
@@ -137,7 +138,8 @@ std::vector<CameraDescription> CamerasOf(const LinkOpened& from) {
   std::vector<CameraDescription> cameras;
   for (const LinkCamera& link : from.cameras()) {
     cameras.push_back({ToSensor(link.sensor()), link.driver(), link.model(), link.serial(),
-                       link.width(), link.height(), link.rate_hz(), link.settings()});
+                       link.width(), link.height(), link.rate_hz(), link.settings(),
+                       link.counts_only()});
   }
   return cameras;
 }

@@ -41,6 +41,16 @@ class FakeSource final : public FrameSource {
     return control_answer;
   }
 
+  std::vector<CameraDescription> cameras() const override { return descriptions_; }
+
+  /// It says of itself that it is a thermal camera.
+  void DescribeThermal(bool counts_only) {
+    CameraDescription camera;
+    camera.sensor = Sensor::kThermal;
+    camera.driver = "fake";
+    camera.counts_only = counts_only;
+    descriptions_ = {camera};
+  }
   std::vector<CameraControl> controls;  ///< What was asked for.
   Status control_answer = Unavailable("the source has no shutter to command");
 
@@ -56,6 +66,7 @@ class FakeSource final : public FrameSource {
   RawFrame MakeFrame(const Step& step);
   OutsidePose MakePose() const;
 
+  std::vector<CameraDescription> descriptions_;
   std::vector<Step> steps_;
   std::size_t next_ = 0;
   bool open_ = false;

@@ -21,6 +21,8 @@ class FrameCheck {
 
   /// Takes the expected sizes from the calibration.
   void Expect(const Rig& rig);
+  /// Thermal frames hold counts instead of centi-kelvin: nothing is masked.
+  void KeepCounts(bool keep) { keep_counts_ = keep; }
 
   /// kDataLoss for a frame to be dropped; otherwise `frame` is masked and good.
   Status Process(RawFrame& frame);
@@ -37,6 +39,7 @@ class FrameCheck {
   const std::uint16_t min_centikelvin_;
   const std::uint16_t max_centikelvin_;
   std::array<Size, 2> expected_{};  ///< By Sensor; zero = not known yet.
+  bool keep_counts_ = false;
   std::uint64_t masked_pixels_ = 0;
 };
 

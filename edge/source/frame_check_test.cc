@@ -62,6 +62,14 @@ TEST_F(FrameCheckTest, F12TemperaturesOutOfRangeBecomeNoValue) {
   EXPECT_EQ(check_.masked_pixels(), 3U);
 }
 
+TEST_F(FrameCheckTest, CountsAreNoTemperaturesAndStayAsTheyAre) {
+  check_.KeepCounts(true);
+  RawFrame frame = Frame(Sensor::kThermal, 4, 1, 1'000);
+  ASSERT_TRUE(check_.Process(frame).ok());
+  EXPECT_EQ(frame.pixels.At(2, 0), 1'000);
+  EXPECT_EQ(check_.masked_pixels(), 0U);
+}
+
 TEST_F(FrameCheckTest, F12TemperaturesAtTheLimitsAreKept) {
   FrameCheckOptions options;
   options.set_min_celsius(0);

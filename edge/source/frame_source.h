@@ -41,6 +41,8 @@ struct CameraDescription {
   int height = 0;        ///< Pixels.
   double rate_hz = 0.0;  ///< 0 = not known.
   std::string settings;  ///< What else was set, for people: "unit 1 mm, mirroring off".
+  /// Thermal only: its pixels are counts that nothing relates to temperatures, not centi-kelvin.
+  bool counts_only = false;
 };
 
 /// Delivers frames of one or more sensors as the device and the host gave them, and poses of the

@@ -89,8 +89,16 @@ Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
     if (!*item) return std::nullopt;
     if (auto* depth = std::get_if<RecordedDepth>(&**item))
       return Item(ToRawFrame(std::move(*depth)));
-    if (auto* thermal = std::get_if<RecordedThermal>(&**item))
-      return Item(ToRawFrame(std::move(*thermal)));
+    auto* thermal = std::get_if<RecordedThermal>(&**item);
+    if (thermal != nullptr && thermal->frame.image.encoding == kCounts16) {
+      if (counts_left_out_++ == 0) {
+        LOG(Source, Warning) << name_
+                             << ": thermal frames hold counts, not temperatures, and are "
+                                "not played";
+      }
+      continue;
+    }
+    if (thermal != nullptr) return Item(ToRawFrame(std::move(*thermal)));
     if (auto* pose = std::get_if<OutsidePose>(&**item)) return Item(std::move(*pose));
     if (const auto* nuc = std::get_if<NucEvent>(&**item)) last_nuc_event_ = *nuc;
   }

@@ -66,6 +66,7 @@ class ReplaySource final : public FrameSource {
   std::optional<NucEvent> last_nuc_event_;
   std::array<std::uint64_t, 2> frames_{};  ///< Delivered so far, by Sensor.
   std::uint64_t unreadable_ = 0;
+  std::uint64_t counts_left_out_ = 0;  ///< Thermal frames without temperatures.
   int loops_played_ = 0;
 
   std::optional<Item> pending_;               ///< Read ahead, not due yet.

@@ -38,19 +38,41 @@ void SupervisedSource::Expect(const Rig& rig) {
   sizes_are_calibrated_ = true;
 }
 
+void SupervisedSource::KeepTrying(const Status& reason) {
+  if (!counts_only_) counts_only_ = false;
+  ScheduleReopen(reason);
+}
+
 Status SupervisedSource::OpenSame() {
   ISOTHERM_RETURN_IF_ERROR(source_->Open());
   for (const CameraDescription& camera : source_->cameras()) {
-    std::string& serial = serials_[static_cast<std::size_t>(camera.sensor)];
-    if (!serial.empty() && camera.serial != serial) {
+    if (Status same = CheckSame(camera); !same.ok()) {
       source_->Close();
-      return FailedPrecondition(fmt::format(
-          "the camera with serial number \"{}\" is not used: the scan began with \"{}\", "
-          "and a calibration holds for one camera; start again to change it",
-          camera.serial, serial));
+      return same;
     }
-    serial = camera.serial;
   }
+  return OkStatus();
+}
+
+Status SupervisedSource::CheckSame(const CameraDescription& camera) {
+  std::string& serial = serials_[static_cast<std::size_t>(camera.sensor)];
+  if (!serial.empty() && camera.serial != serial) {
+    return FailedPrecondition(
+        fmt::format("the camera with serial number \"{}\" is not used: the scan began with \"{}\", "
+                    "and a calibration holds for one camera; start again to change it",
+                    camera.serial, serial));
+  }
+  serial = camera.serial;
+  if (camera.sensor != Sensor::kThermal) return OkStatus();
+  if (counts_only_.value_or(camera.counts_only) != camera.counts_only) {
+    return FailedPrecondition(fmt::format(
+        "the thermal camera {} is not used: it sends {}, and the scan began with {}; start again "
+        "to change it",
+        camera.driver, camera.counts_only ? "counts" : "temperatures",
+        *counts_only_ ? "counts" : "temperatures"));
+  }
+  counts_only_ = camera.counts_only;
+  check_.KeepCounts(camera.counts_only);
   return OkStatus();
 }
 

@@ -24,7 +24,8 @@ class FrameCheckOptions;
 ///   open --(failure, too many bad frames)--> waiting --(wait over, Open succeeds)--> open
 ///
 /// A camera with another serial number than the first one's is not used: the calibration is not its
-/// own. Reports each frame through `on_frame` before it is judged and each refused one through
+/// own. Nor is one that sends counts where the scan began with temperatures, or the other way
+/// round. Reports each frame through `on_frame` before it is judged and each refused one through
 /// `on_rejected`. Thread-bound.
 class SupervisedSource final : public FrameSource {
  public:
@@ -42,7 +43,7 @@ class SupervisedSource final : public FrameSource {
   /// program with a sentence.
   Status Open() override;
   /// Instead: goes on after an Open that failed as if the source had failed later.
-  void KeepTrying(const Status& reason) { ScheduleReopen(reason); }
+  void KeepTrying(const Status& reason);
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { source_->Close(); }
   /// A source that cannot restart its thermal camera alone is closed and opened again.
@@ -64,6 +65,7 @@ class SupervisedSource final : public FrameSource {
   void ScheduleReopen(const Status& reason);
   /// Opens, and refuses a camera that is not the one from the start.
   Status OpenSame();
+  Status CheckSame(const CameraDescription& camera);
   void Tell(bool works);
 
   const std::unique_ptr<FrameSource> source_;
@@ -81,7 +83,10 @@ class SupervisedSource final : public FrameSource {
   bool idle_ = false;
   std::array<std::uint64_t, 2> thrown_away_{};  ///< By Sensor: frame numbers before the first.
   std::array<std::string, 2> serials_;  ///< By Sensor, of the cameras from the start; empty: any.
-  std::array<int, 2> bad_in_a_row_{};   ///< By Sensor: one camera may fail while the other works.
+  /// What the thermal camera sends, from the start; a scan that begins without one takes
+  /// temperatures.
+  std::optional<bool> counts_only_;
+  std::array<int, 2> bad_in_a_row_{};  ///< By Sensor: one camera may fail while the other works.
   std::uint64_t reopened_ = 0;
   Nanoseconds next_wait_;
   std::optional<SteadyTime> reopen_at_;  ///< Set while waiting.

@@ -23,6 +23,19 @@ class SupervisedSourceTest : public testing::Test {
     ASSERT_TRUE(source_->Open().ok());
   }
 
+  void StartThermal(std::string_view script, bool counts_only) {
+    auto fake = std::make_unique<FakeSource>(script);
+    fake_ = fake.get();
+    fake->DescribeThermal(counts_only);
+    source_ = std::make_unique<SupervisedSource>(
+        std::move(fake), options_, clock_, [](Sensor) {}, [](Sensor) {}, kNoPause);
+    ASSERT_TRUE(source_->Open().ok());
+  }
+  RawFrame ReadFrame() {
+    const Result<SourceItem> item = source_->Read({});
+    return item && std::holds_alternative<RawFrame>(*item) ? std::get<RawFrame>(*item) : RawFrame{};
+  }
+
   /// Reads so many times; returns how many frames came.
   int Read(int times) {
     int frames = 0;
@@ -107,6 +120,36 @@ TEST_F(SupervisedSourceTest, TheWaitDoublesUpToItsLimit) {
     EXPECT_EQ(fake_->opened(), attempt + 1);
     expected = std::min(2 * expected, milliseconds(5000));
   }
+}
+
+TEST_F(SupervisedSourceTest, CameraThatSendsCountsKeepsThem) {
+  StartThermal("2*t:hot", /*counts_only=*/true);
+  EXPECT_EQ(ReadFrame().pixels.At(0, 0), 65'535);  // No temperature that a camera could see.
+}
+
+TEST_F(SupervisedSourceTest, CameraThatSendsCountsDoesNotReplaceOneThatMeasures) {
+  StartThermal("t ! 3*t", /*counts_only=*/false);
+  EXPECT_EQ(Read(2), 1);
+  fake_->DescribeThermal(/*counts_only=*/true);
+  clock_.Advance(milliseconds(500));
+  EXPECT_EQ(Read(3), 0);
+  EXPECT_EQ(fake_->opened(), 2);
+  fake_->DescribeThermal(/*counts_only=*/false);
+  clock_.Advance(milliseconds(1000));
+  EXPECT_EQ(Read(2), 1);
+}
+
+TEST_F(SupervisedSourceTest, CountsAreRefusedInAScanThatBeganWithoutAThermalCamera) {
+  auto fake = std::make_unique<FakeSource>("3*t");
+  fake->FailToOpen(1);
+  fake->DescribeThermal(/*counts_only=*/true);
+  fake_ = fake.get();
+  source_ = std::make_unique<SupervisedSource>(
+      std::move(fake), options_, clock_, [](Sensor) {}, [](Sensor) {}, kNoPause);
+  source_->KeepTrying(source_->Open());
+  clock_.Advance(milliseconds(500));
+  EXPECT_EQ(Read(2), 0);
+  EXPECT_EQ(fake_->opened(), 2);
 }
 
 TEST_F(SupervisedSourceTest, AFailureToOpenAtStartIsReported) {

@@ -97,7 +97,7 @@ class Reader {
 
   void Take(const RecordedThermal& recorded) {
     if (!recorded.frame.valid || seen_++ % stride_ != 0) return;
-    Result<Image<std::uint16_t>> image = Decode(recorded.frame.image);
+    Result<Image<std::uint16_t>> image = DecodeTemperatures(recorded.frame.image);
     if (!image || image->width() != rig_.thermal->width || image->height() != rig_.thermal->height)
       return;
     frames_.push_back({recorded.frame.header.capture_time, std::move(*image), {}});

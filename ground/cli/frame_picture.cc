@@ -35,13 +35,26 @@ RgbImage Picture(const Image<float>& values, const RendererOptions& options,
   return WithLegend(picture, legend, [&](double value) { return colours.At(scale->Share(value)); });
 }
 
+// Zeroes are no values, as in temperatures.
+RgbImage CountsPicture(const Image<std::uint16_t>& counts) {
+  Image<float> values(counts.width(), counts.height(), NAN);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (counts.pixels()[i] != 0) values.pixels()[i] = counts.pixels()[i];
+  }
+  RendererOptions options;
+  options.set_palette(Palette::GREY);
+  return Picture(values, options, "counts, no temperatures", "");
+}
+
 Result<RgbImage> PictureOf(const RecordedItem& item) {
   const auto* depth = std::get_if<RecordedDepth>(&item);
   const auto* thermal = std::get_if<RecordedThermal>(&item);
   const Result<Image<std::uint16_t>> image =
       Decode(depth != nullptr ? depth->frame.image : thermal->frame.image);
   if (!image) return Err(image.error());
-  return depth != nullptr ? DepthPicture(*image, depth->frame.depth_scale) : ThermalPicture(*image);
+  if (depth != nullptr) return DepthPicture(*image, depth->frame.depth_scale);
+  return thermal->frame.image.encoding == kCounts16 ? CountsPicture(*image)
+                                                    : ThermalPicture(*image);
 }
 
 }  // namespace

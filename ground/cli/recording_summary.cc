@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "common/base/quantile.h"
+#include "common/codec/codec.h"
 #include "common/transport/messages.h"
 
 namespace isotherm {
@@ -46,6 +47,7 @@ void MeasurePeriods(std::vector<CaptureTime>& times, StreamSummary& stream) {
 }  // namespace
 
 std::string EncodingName(Encoding encoding) {
+  if (encoding == kCounts16) return "counts (no temperatures)";
   switch (encoding) {
     case Encoding::kRaw16:
       return "raw";

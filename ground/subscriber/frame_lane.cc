@@ -8,6 +8,14 @@
 namespace isotherm {
 namespace {
 
+Result<Image<std::uint16_t>> PixelsOf(const EncodedDepthFrame& encoded) {
+  return Decode(encoded.image, kMaxFramePixels);
+}
+
+Result<Image<std::uint16_t>> PixelsOf(const EncodedThermalFrame& encoded) {
+  return DecodeTemperatures(encoded.image, kMaxFramePixels);
+}
+
 ReceivedDepth Unpacked(EncodedDepthFrame&& encoded, Image<std::uint16_t>&& pixels,
                        CaptureTime arrival) {
   auto frame = std::make_shared<DepthFrame>();
@@ -28,7 +36,7 @@ ReceivedThermal Unpacked(EncodedThermalFrame&& encoded, Image<std::uint16_t>&& p
   frame->nuc_source = encoded.nuc_source;
   frame->seconds_since_nuc = encoded.seconds_since_nuc;
   frame->housekeeping = encoded.housekeeping;
-  frame->valid = encoded.valid;
+  frame->valid = encoded.valid && encoded.image.encoding != kCounts16;
   return {.frame = std::move(frame),
           .encoded = std::make_shared<const EncodedThermalFrame>(std::move(encoded)),
           .arrival = arrival};
@@ -71,7 +79,7 @@ bool FrameLane<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now
   const FrameHeader header = encoded.header;
   const typename Stream::Session session = stream_.Classify(header.session);
   if (!IsWanted(header, session)) return false;
-  Result<Image<std::uint16_t>> pixels = Decode(encoded.image, kMaxFramePixels);
+  Result<Image<std::uint16_t>> pixels = PixelsOf(encoded);
   if (!pixels) {
     Refuse(RefusalCause::kUndecodable, header);
     return false;

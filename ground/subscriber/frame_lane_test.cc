@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "common/codec/codec.h"
+
 namespace isotherm {
 namespace {
 
@@ -60,6 +62,16 @@ TEST_F(FrameLaneTest, FrameIsUnpackedWithAllThatBelongsToIt) {
   EXPECT_TRUE(frame.valid);
   EXPECT_EQ(delivered_[0].encoded->image.payload.size(), 4U);
   EXPECT_EQ(delivered_[0].arrival, kArrival);
+}
+
+TEST_F(FrameLaneTest, CountsAreNeverTakenForTemperatures) {
+  EncodedThermalFrame counts = MakeFrame(1, 0);  // It even says that it is valid.
+  counts.image.encoding = kCounts16;
+  EXPECT_TRUE(Add(counts));
+  ASSERT_EQ(delivered_.size(), 1U);
+  EXPECT_TRUE(delivered_[0].frame->centikelvin.empty());
+  EXPECT_FALSE(delivered_[0].frame->valid);
+  EXPECT_EQ(delivered_[0].encoded->image.payload, counts.image.payload);  // For the recording.
 }
 
 TEST_F(FrameLaneTest, F20DuplicateIsDeliveredOnce) {
