@@ -270,13 +270,17 @@ Result<std::vector<std::uint8_t>> UsbDevice::BulkIn(std::uint8_t endpoint, std::
   const int code =
       libusb_bulk_transfer(impl_->handle_.get(), endpoint, bytes.data(), static_cast<int>(size),
                            &got, static_cast<unsigned>(wait.count()));
-  if (code == LIBUSB_ERROR_TIMEOUT) {
-    return Err(DataLoss(fmt::format("USB device {}: endpoint 0x{:02x} delivered {} bytes in {} ms",
-                                    impl_->info_.bus_port, endpoint, got, wait.count())));
+  const bool timed_out = code == LIBUSB_ERROR_TIMEOUT;
+  if (Status ok = impl_->Check(timed_out ? 0 : code, "a bulk transfer"); !ok.ok()) {
+    return Err(std::move(ok));
   }
-  if (Status ok = impl_->Check(code, "a bulk transfer"); !ok.ok()) return Err(std::move(ok));
   bytes.resize(static_cast<std::size_t>(got));
   return bytes;
+}
+
+Status UsbDevice::ClearHalt(std::uint8_t endpoint) {
+  return impl_->Check(libusb_clear_halt(impl_->handle_.get(), endpoint),
+                      fmt::format("clearing endpoint 0x{:02x}", endpoint));
 }
 
 Status UsbDevice::StartStream(const UsbStreamPlan& plan, PacketSink sink) {

@@ -37,6 +37,7 @@ Result<std::vector<std::uint8_t>> UsbDevice::ControlIn(const UsbControl&, std::s
 Result<std::vector<std::uint8_t>> UsbDevice::BulkIn(std::uint8_t, std::size_t, Nanoseconds) {
   return Err(NoUsb());
 }
+Status UsbDevice::ClearHalt(std::uint8_t) { return NoUsb(); }
 Status UsbDevice::StartStream(const UsbStreamPlan&, PacketSink) { return NoUsb(); }
 bool UsbDevice::streaming() const { return false; }
 Status UsbDevice::Pump(Nanoseconds) { return NoUsb(); }

@@ -84,9 +84,13 @@ class UsbDevice {
   Status ControlOut(const UsbControl& control, Bytes data);
   /// Reads at most `size` bytes.
   Result<std::vector<std::uint8_t>> ControlIn(const UsbControl& control, std::size_t size);
-  /// One bulk transfer; kDataLoss if nothing came in time.
+  /// One bulk transfer: what has come when it is full, when a short packet has ended it, or when
+  /// `timeout` has passed; empty if that is nothing. What comes later waits in the device.
   Result<std::vector<std::uint8_t>> BulkIn(std::uint8_t endpoint, std::size_t size,
                                            Nanoseconds timeout);
+
+  /// Brings an endpoint back to work, and tells bulk cameras that their stream has ended.
+  Status ClearHalt(std::uint8_t endpoint);
 
   Status StartStream(const UsbStreamPlan& plan, PacketSink sink);
   bool streaming() const;

@@ -24,6 +24,10 @@ constexpr int kTransfers = 8;
 // A transfer spans this much time on the bus: what a frame may wait for its completion, against
 // wake-ups.
 constexpr Nanoseconds kTransferTime = milliseconds(8);
+// Of a bulk transfer: small, so that the first bytes of a frame are dated soon.
+constexpr std::size_t kBulkTransferBytes = 16'384;
+// The longest header is 255 bytes.
+constexpr std::size_t kMostHeaderBytes = 256;
 // Small cameras answer requests one after the other, and refuse what comes too soon.
 constexpr int kTries = 4;
 constexpr Nanoseconds kRetryWait = milliseconds(10);
@@ -87,15 +91,33 @@ Status UvcCamera::Start(const UvcMode& mode) {
   ISOTHERM_RETURN_IF_ERROR(Negotiate(*format, *FindFrame(*format, mode)));
   const Result<UvcAlternate> alternate = ChooseAlternate();
   if (!alternate) return alternate.error();
-  if (alternate->endpoint.kind == UsbTransferKind::kIsochronous) {
+  if (alternate->number != 0) {
     ISOTHERM_RETURN_IF_ERROR(
         device_->SetAlternate(function_.streaming_interface, alternate->number));
   }
   assembler_.emplace(frame_bytes_);
-  return device_->StartStream(PlanFor(*alternate), [this](const UsbPacket& packet) {
-    if (packet.lost) assembler_->NoteLostPacket();
-    assembler_->AddPayload(packet.data, packet.stamp);
-  });
+  const UsbStreamPlan plan = PlanFor(*alternate);
+  joiner_.reset();
+  if (plan.endpoint.kind == UsbTransferKind::kBulk) {
+    joiner_.emplace(static_cast<std::size_t>(plan.transfer_bytes), MostPayloadBytes());
+    bulk_endpoint_ = plan.endpoint.address;
+  }
+  return device_->StartStream(plan, [this](const UsbPacket& packet) { Take(packet); });
+}
+
+void UvcCamera::Take(const UsbPacket& packet) {
+  if (packet.lost) assembler_->NoteLostPacket();
+  if (!joiner_) return assembler_->AddPayload(packet.data, packet.stamp);
+  if (packet.lost) return joiner_->NoteLost();
+  if (joiner_->Add(packet.data, packet.stamp)) {
+    assembler_->AddPayload(joiner_->payload(), joiner_->first_stamp());
+  }
+}
+
+std::size_t UvcCamera::MostPayloadBytes() const {
+  // A payload belongs to one frame, whatever the camera asks for.
+  const std::size_t most = frame_bytes_ + kMostHeaderBytes;
+  return payload_bytes_ == 0 ? most : std::min<std::size_t>(payload_bytes_, most);
 }
 
 Status UvcCamera::Negotiate(const UvcFormat& format, const UvcFrameSize& frame) {
@@ -153,10 +175,11 @@ UsbStreamPlan UvcCamera::PlanFor(const UvcAlternate& alternate) const {
   plan.transfers = kTransfers;
   plan.packet_interval = device_->bus_interval();
   plan.packets_per_transfer = static_cast<int>(kTransferTime / plan.packet_interval);
-  // Bulk: a transfer is a payload. What the camera asks for is bounded by a whole frame.
-  const std::size_t most = frame_bytes_ + 256;
-  const std::size_t asked = payload_bytes_ == 0 ? most : payload_bytes_;
-  plan.transfer_bytes = static_cast<int>(std::min(asked, most));
+  // Whole packets, since the camera may fill its last one.
+  const auto packet = static_cast<std::size_t>(alternate.endpoint.packet_bytes);
+  const std::size_t packets =
+      (std::min(MostPayloadBytes(), kBulkTransferBytes) + packet - 1) / packet;
+  plan.transfer_bytes = static_cast<int>(packets * packet);
   return plan;
 }
 
@@ -177,6 +200,9 @@ Result<std::optional<UvcFrame>> UvcCamera::Read(Nanoseconds timeout) {
 void UvcCamera::Stop() {
   if (!std::exchange(started_, false)) return;
   device_->StopStream();
+  // The class says nothing about ending a stream of bulk transfers; this is what cameras are used
+  // to from Windows and Linux (uvcvideo, uvc_video_stop_streaming). One that is gone cannot.
+  if (joiner_) static_cast<void>(device_->ClearHalt(bulk_endpoint_));
   // Frees the bandwidth: the interface goes back to its alternate setting 0.
   device_->Release(function_.streaming_interface);
 }

@@ -54,6 +54,8 @@ class UvcCamera {
   Status Negotiate(const UvcFormat& format, const UvcFrameSize& frame);
   Result<UvcAlternate> ChooseAlternate() const;
   UsbStreamPlan PlanFor(const UvcAlternate& alternate) const;
+  std::size_t MostPayloadBytes() const;
+  void Take(const UsbPacket& packet);
 
   const std::unique_ptr<UsbDevice> device_;
   const UvcFunction function_;
@@ -63,6 +65,8 @@ class UvcCamera {
   std::uint32_t payload_bytes_ = 0;
   std::uint32_t interval_ = 0;  ///< 100 ns.
   std::optional<UvcAssembler> assembler_;
+  std::optional<UvcBulkJoiner> joiner_;  ///< Only of streams of bulk transfers.
+  std::uint8_t bulk_endpoint_ = 0;
 };
 
 }  // namespace isotherm

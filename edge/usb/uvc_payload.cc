@@ -27,6 +27,25 @@ std::optional<UvcPayloadHeader> ParseUvcPayloadHeader(Bytes payload) {
   return header;
 }
 
+bool UvcBulkJoiner::Add(Bytes transfer, const HostStamp& stamp) {
+  if (received_ == 0 && !skipping_) {
+    payload_.clear();
+    first_stamp_ = stamp;
+  }
+  received_ += transfer.size();
+  if (!skipping_) payload_.insert(payload_.end(), transfer.begin(), transfer.end());
+  const bool ends = transfer.size() < transfer_bytes_ || received_ >= most_payload_bytes_;
+  if (!ends) return false;
+  received_ = 0;
+  return !std::exchange(skipping_, false) && !payload_.empty();
+}
+
+void UvcBulkJoiner::NoteLost() {
+  received_ += transfer_bytes_;
+  skipping_ = received_ < most_payload_bytes_;
+  if (!skipping_) received_ = 0;
+}
+
 void UvcAssembler::AddPayload(Bytes payload, const HostStamp& stamp) {
   if (payload.empty()) return;  // Nothing was due in this bus interval.
   const std::optional<UvcPayloadHeader> header = ParseUvcPayloadHeader(payload);

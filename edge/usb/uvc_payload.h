@@ -39,6 +39,34 @@ struct UvcFrame {
   std::optional<std::uint32_t> presentation_time;
 };
 
+/// Finds payloads in bulk transfers (UVC 1.5, section 2.4.3.2.1): one begins with a transfer, and
+/// ends with a transfer that is not full or when it has the agreed size. Those that are longer than
+/// a transfer are put together. Thread-compatible.
+class UvcBulkJoiner {
+ public:
+  /// `transfer_bytes`: what a full transfer has; `most_payload_bytes`: as agreed with the camera.
+  UvcBulkJoiner(std::size_t transfer_bytes, std::size_t most_payload_bytes)
+      : transfer_bytes_(transfer_bytes), most_payload_bytes_(most_payload_bytes) {}
+
+  /// Takes a transfer; true if it completes a payload.
+  bool Add(Bytes transfer, const HostStamp& stamp);
+  /// A transfer failed: where payloads begin is known again after the end of the one it was part
+  /// of.
+  void NoteLost();
+
+  /// The payload that was completed, and when its first bytes came.
+  Bytes payload() const { return payload_; }
+  const HostStamp& first_stamp() const { return first_stamp_; }
+
+ private:
+  const std::size_t transfer_bytes_;
+  const std::size_t most_payload_bytes_;
+  std::vector<std::uint8_t> payload_;
+  HostStamp first_stamp_;
+  std::size_t received_ = 0;  ///< Of the payload under way.
+  bool skipping_ = false;     ///< Its beginning was lost.
+};
+
 /// Joins payloads to frames. A frame ends with the end-of-frame bit, or where the frame id toggles
 /// without one; payloads between an end and the next toggle are strays. What came before the first
 /// whole frame is left out, since a stream may start anywhere. Thread-compatible.

@@ -11,6 +11,7 @@ namespace {
 
 using Data = std::vector<std::uint8_t>;
 using testing::ElementsAre;
+using testing::IsEmpty;
 
 constexpr std::uint8_t kId = 0x01;
 constexpr std::uint8_t kEnd = 0x02;
@@ -63,6 +64,61 @@ TEST(UvcPayloadHeaderTest, EveryTruncationAndEveryLengthIsSurvived) {
     hostile[0] = static_cast<std::uint8_t>(said);
     EXPECT_EQ(ParseUvcPayloadHeader(hostile).has_value(), said == 12) << said;
   }
+}
+
+/// Transfers of 4 bytes, payloads of at most 10.
+class UvcBulkJoinerTest : public testing::Test {
+ protected:
+  /// The payload that is completed by `transfer`; empty if none is.
+  Data Add(const Data& transfer, int ms = 0) {
+    if (!joiner_.Add(transfer, At(ms))) return {};
+    return {joiner_.payload().begin(), joiner_.payload().end()};
+  }
+  UvcBulkJoiner joiner_{4, 10};
+};
+
+TEST_F(UvcBulkJoinerTest, PayloadEndsWithATransferThatIsNotFull) {
+  EXPECT_THAT(Add({1, 2, 3}), ElementsAre(1, 2, 3));
+  EXPECT_THAT(Add({4, 5, 6, 7}, 10), IsEmpty());
+  EXPECT_THAT(Add({8}, 20), ElementsAre(4, 5, 6, 7, 8));
+  // Dated by its first bytes.
+  EXPECT_EQ(joiner_.first_stamp().steady, At(10).steady);
+  EXPECT_EQ(joiner_.first_stamp().wall, At(10).wall);
+}
+
+TEST_F(UvcBulkJoinerTest, PayloadThatFillsItsTransfersEndsWithOneWithoutBytes) {
+  EXPECT_THAT(Add({1, 2, 3, 4}), IsEmpty());
+  EXPECT_THAT(Add({}), ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(Add({}), IsEmpty());  // Nothing was sent.
+  EXPECT_THAT(Add({5}), ElementsAre(5));
+}
+
+TEST_F(UvcBulkJoinerTest, PayloadOfTheAgreedSizeNeedsNoMark) {
+  UvcBulkJoiner joiner(4, 8);
+  EXPECT_FALSE(joiner.Add(Data{1, 2, 3, 4}, At(0)));
+  EXPECT_TRUE(joiner.Add(Data{5, 6, 7, 8}, At(0)));
+  EXPECT_THAT(joiner.payload(), ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  UvcBulkJoiner whole(4, 4);
+  EXPECT_TRUE(whole.Add(Data{1, 2, 3, 4}, At(0)));
+  EXPECT_TRUE(whole.Add(Data{5, 6, 7, 8}, At(0)));
+  EXPECT_THAT(whole.payload(), ElementsAre(5, 6, 7, 8));
+}
+
+TEST_F(UvcBulkJoinerTest, RestOfALostPayloadIsNotTakenForOne) {
+  EXPECT_THAT(Add({1, 2, 3, 4}), IsEmpty());
+  joiner_.NoteLost();
+  EXPECT_THAT(Add({9}), IsEmpty());
+  EXPECT_THAT(Add({5, 6}), ElementsAre(5, 6));
+  joiner_.NoteLost();  // The first part, this time.
+  EXPECT_THAT(Add({7, 7, 7, 7}), IsEmpty());
+  EXPECT_THAT(Add({7, 7}), IsEmpty());  // Ten bytes: the agreed size.
+  EXPECT_THAT(Add({8}), ElementsAre(8));
+}
+
+TEST_F(UvcBulkJoinerTest, LostTransferThatWasAPayloadCostsOnlyThat) {
+  UvcBulkJoiner joiner(4, 4);
+  joiner.NoteLost();
+  EXPECT_TRUE(joiner.Add(Data{1, 2, 3, 4}, At(0)));
 }
 
 TEST_F(UvcAssemblerTest, JoinsPacketsAndStampsTheFirst) {

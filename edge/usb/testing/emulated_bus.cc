@@ -244,9 +244,11 @@ int EmulatedBus::Impl::DoSmall(unsigned long request, std::uintptr_t argument) {
     case USBDEVFS_RELEASEINTERFACE:
       device_->SetAlternate(static_cast<int>(memory.Get<unsigned>(argument)), 0);
       return 0;
+    case USBDEVFS_CLEAR_HALT:
+      device_->ClearHalt(static_cast<std::uint8_t>(memory.Get<unsigned>(argument)));
+      return 0;
     case USBDEVFS_DISCONNECT_CLAIM:
     case USBDEVFS_CLAIMINTERFACE:
-    case USBDEVFS_CLEAR_HALT:
     case USBDEVFS_RESET:
       return 0;
     case USBDEVFS_GETDRIVER:

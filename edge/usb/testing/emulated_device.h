@@ -38,6 +38,7 @@ class EmulatedDevice {
   virtual std::optional<std::vector<std::uint8_t>> Control(const UsbControl& control, Bytes data,
                                                            std::size_t read_bytes) = 0;
   virtual void SetAlternate(int interface, int alternate) = 0;
+  virtual void ClearHalt(std::uint8_t /*endpoint*/) {}
   /// What it sends in the bus interval at `time` (from an arbitrary zero).
   virtual EmulatedPacket Isochronous(std::uint8_t endpoint, Nanoseconds time, std::size_t most) = 0;
   /// One bulk transfer; nullopt = nothing to send yet.

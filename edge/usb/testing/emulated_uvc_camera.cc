@@ -38,9 +38,12 @@ std::optional<std::vector<std::uint8_t>> EmulatedUvcCamera::Control(const UsbCon
     const UvcCameraLayout::Size& size = layout_.sizes[wanted->frame - 1U];
     probe.max_frame_bytes = static_cast<std::uint32_t>(2 * size.width * size.height);
     probe.max_payload_bytes = layout_.packet_fields.front() & 0x7FFU;
-    if (layout_.bulk) probe.max_payload_bytes = 16'384;
+    if (layout_.bulk) probe.max_payload_bytes = layout_.bulk_payload_bytes;
     // Bulk cameras have no alternate setting that says when to begin.
-    if (control.value == kCommit && layout_.bulk) SetAlternate(kStreamingInterface, 0);
+    if (control.value == kCommit && layout_.bulk) {
+      SetAlternate(kStreamingInterface, 0);
+      bulk_streaming_ = true;
+    }
     return std::vector<std::uint8_t>();
   }
   if (control.value != kProbe && control.value != kCommit) return std::nullopt;
@@ -123,10 +126,33 @@ EmulatedPacket EmulatedUvcCamera::Isochronous(std::uint8_t, Nanoseconds time, st
   return NextPayload(time, most);
 }
 
+bool EmulatedUvcCamera::HasBulkPayload(Nanoseconds time) {
+  if (!bulk_payload_.empty()) return true;
+  if (!bulk_streaming_ || !HasFrame(time)) return false;
+  bulk_payload_ = NextPayload(time, layout_.bulk_payload_bytes).bytes;
+  bulk_sent_ = 0;
+  return !bulk_payload_.empty();
+}
+
 std::optional<std::vector<std::uint8_t>> EmulatedUvcCamera::Bulk(std::uint8_t, Nanoseconds time,
                                                                  std::size_t most) {
-  if (committed_.frame == 0 || most <= header_bytes_ || !HasFrame(time)) return std::nullopt;
-  return NextPayload(time, most).bytes;
+  if (!HasBulkPayload(time)) return std::nullopt;
+  const std::size_t size = std::min(most, bulk_payload_.size() - bulk_sent_);
+  const auto begin = bulk_payload_.begin() + static_cast<std::ptrdiff_t>(bulk_sent_);
+  std::vector<std::uint8_t> transfer(begin, begin + static_cast<std::ptrdiff_t>(size));
+  bulk_sent_ += size;
+  // A full transfer does not show that the payload is at its end: one without bytes follows, unless
+  // the payload has the agreed size.
+  const bool shows_end = size < most || bulk_sent_ == layout_.bulk_payload_bytes;
+  if (bulk_sent_ == bulk_payload_.size() && shows_end) bulk_payload_.clear();
+  return transfer;
+}
+
+void EmulatedUvcCamera::ClearHalt(std::uint8_t) {
+  if (!layout_.bulk) return;
+  bulk_streaming_ = false;
+  bulk_payload_.clear();
+  SetAlternate(kStreamingInterface, 0);
 }
 
 std::optional<EmulatedDevice::Unplugged> EmulatedUvcCamera::TakeUnplugged() {

@@ -15,7 +15,8 @@
 namespace isotherm {
 
 /// A UVC camera that does what a script says: descriptors, agreement on a mode, payloads with
-/// headers, extension units. What the pictures show is the business of derived classes.
+/// headers over isochronous or bulk transfers, extension units. What the pictures show is the
+/// business of derived classes.
 class EmulatedUvcCamera : public EmulatedDevice {
  public:
   EmulatedUvcCamera(EmulatedIdentity identity, UvcCameraLayout layout, int header_bytes,
@@ -25,6 +26,7 @@ class EmulatedUvcCamera : public EmulatedDevice {
   std::optional<std::vector<std::uint8_t>> Control(const UsbControl& control, Bytes data,
                                                    std::size_t read_bytes) override;
   void SetAlternate(int interface, int alternate) override;
+  void ClearHalt(std::uint8_t endpoint) override;
   EmulatedPacket Isochronous(std::uint8_t endpoint, Nanoseconds time, std::size_t most) override;
   std::optional<std::vector<std::uint8_t>> Bulk(std::uint8_t endpoint, Nanoseconds time,
                                                 std::size_t most) override;
@@ -33,6 +35,8 @@ class EmulatedUvcCamera : public EmulatedDevice {
   /// Frames begun so far, and the alternate setting that is active. Thread-safe.
   int frames_sent() const { return frames_sent_; }
   int alternate() const { return alternate_; }
+  /// Of one with bulk transfers: between agreement on a mode and ClearHalt. Thread-safe.
+  bool bulk_streaming() const { return bulk_streaming_; }
 
  protected:
   /// The bytes of the next frame.
@@ -50,6 +54,7 @@ class EmulatedUvcCamera : public EmulatedDevice {
   void Begin(const FaultStep& step);
   /// The next payload of at most `most` bytes.
   EmulatedPacket NextPayload(Nanoseconds time, std::size_t most);
+  bool HasBulkPayload(Nanoseconds time);
   std::vector<std::uint8_t> Header(Nanoseconds time, bool last) const;
 
   EmulatedIdentity identity_;
@@ -62,6 +67,9 @@ class EmulatedUvcCamera : public EmulatedDevice {
   std::optional<Unplugged> unplugged_;
   std::atomic<int> alternate_{0};
   std::atomic<int> frames_sent_{0};
+  std::vector<std::uint8_t> bulk_payload_;  ///< Empty: none under way.
+  std::size_t bulk_sent_ = 0;
+  std::atomic<bool> bulk_streaming_{false};
 
   std::optional<Nanoseconds> next_frame_at_;
   FaultStep step_;

@@ -18,10 +18,11 @@ struct UvcCameraLayout {
     int width = 0;
     int height = 0;
   };
-  std::vector<Size> sizes;                   ///< Frame indices count from 1 in this order.
-  std::uint32_t interval = 333'333;          ///< 100 ns.
-  std::vector<std::uint16_t> packet_fields;  ///< wMaxPacketSize of alternate settings 1, 2, ...
-  bool bulk = false;                         ///< Then one packet field, in alternate setting 0.
+  std::vector<Size> sizes;                    ///< Frame indices count from 1 in this order.
+  std::uint32_t interval = 333'333;           ///< 100 ns.
+  std::vector<std::uint16_t> packet_fields;   ///< wMaxPacketSize of alternate settings 1, 2, ...
+  bool bulk = false;                          ///< Then one packet field, in alternate setting 0.
+  std::uint32_t bulk_payload_bytes = 16'384;  ///< Most bytes of a payload, header included.
 };
 
 /// A configuration descriptor with a video function: control interface 0, streaming interface 1,
