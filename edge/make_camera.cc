@@ -55,9 +55,20 @@ std::string ToText(const DeviceDescription& device) {
   return text;
 }
 
-std::string ToText(const Result<std::vector<DeviceDescription>>& devices) {
+/// What one could connect.
+std::string SupportedText() {
+  std::string text = "  none; there are drivers for\n";
+  for (const DeviceDescription& camera : SupportedThermalCameras()) {
+    text += fmt::format("    {:<11} {} (USB {:04x}:{:04x})\n", camera.driver, camera.product,
+                        camera.vendor_id, camera.product_id);
+  }
+  return text;
+}
+
+std::string ToText(const Result<std::vector<DeviceDescription>>& devices,
+                   const std::string& none = "  none\n") {
   if (!devices) return fmt::format("  {}\n", devices.error().message());
-  if (devices->empty()) return "  none\n";
+  if (devices->empty()) return none;
   std::string text;
   for (const DeviceDescription& device : *devices) text += ToText(device);
   return text;
@@ -107,7 +118,7 @@ int RunCameraProcess(const std::string& sensor_name, const std::string& source_o
 
 std::string ListCameras() {
   return "depth cameras:\n" + ToText(ListDepthCameras()) + "thermal cameras:\n" +
-         ToText(ListThermalCameras());
+         ToText(ListThermalCameras(), SupportedText());
 }
 
 }  // namespace isotherm

@@ -74,6 +74,15 @@ void CheckThermalCamera(const ThermalCameraOptions& options, Problems& problems)
   problems.CheckRange("stall_timeout_s", options.stall_timeout_s(), 0.2, 60.0);
   problems.CheckRange("kelvin_per_count", options.kelvin_per_count(), 0.0, 10.0);
   problems.CheckRange("offset_kelvin", options.offset_kelvin(), -1e5, 1e4);
+  if (options.has_optris_min_celsius() != options.has_optris_max_celsius()) {
+    problems.Add(options.has_optris_min_celsius() ? "optris_max_celsius" : "optris_min_celsius",
+                 "is not set: a range has two ends");
+  } else if (options.has_optris_min_celsius() &&
+             options.optris_max_celsius() <= options.optris_min_celsius()) {
+    problems.Add("optris_max_celsius",
+                 fmt::format("is {}, must be above optris_min_celsius, which is {}",
+                             options.optris_max_celsius(), options.optris_min_celsius()));
+  }
 }
 
 void CheckFrames(const FrameCheckOptions& options, Problems& problems) {

@@ -52,6 +52,17 @@ TEST(ValidateEdgeOptionsTest, ReplayNeedsARecording) {
   EXPECT_TRUE(Validate(options).ok());
 }
 
+TEST(ValidateEdgeOptionsTest, MeasuringRangeHasTwoEndsInOrder) {
+  EdgeOptions options;
+  ThermalCameraOptions& camera = *options.mutable_source()->mutable_thermal_camera();
+  camera.set_optris_min_celsius(100);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("optris_max_celsius: is not set"));
+  camera.set_optris_max_celsius(100);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("must be above optris_min_celsius"));
+  camera.set_optris_max_celsius(250);
+  EXPECT_TRUE(Validate(options).ok());
+}
+
 TEST(ValidateEdgeOptionsTest, TemperatureLimitsMustBeInOrder) {
   EdgeOptions options;
   options.mutable_frame_check()->set_min_celsius(100);

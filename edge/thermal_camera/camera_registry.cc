@@ -12,6 +12,7 @@
 #include "edge/thermal_camera/optris_camera.h"
 #include "edge/thermal_camera/p2pro_camera.h"
 #include "edge/thermal_camera/p3_camera.h"
+#include "edge/thermal_camera/seek_camera.h"
 #include "edge/usb/usb_device.h"
 
 namespace isotherm {
@@ -41,10 +42,20 @@ std::unique_ptr<ThermalCamera> MakeP3(const DeviceDescription& device,
   return std::make_unique<P3Camera>(device.bus_port, P3Layout{kWidth, kHeight}, clock);
 }
 
+template <const SeekModel& kModel>
+std::unique_ptr<ThermalCamera> MakeSeek(const DeviceDescription& device,
+                                        const ThermalCameraOptions& /*options*/,
+                                        const Clock& clock) {
+  return std::make_unique<SeekCamera>(device.bus_port, kModel, clock);
+}
+
 std::unique_ptr<ThermalCamera> MakeOptris(const DeviceDescription& device,
                                           const ThermalCameraOptions& options, const Clock& clock) {
   OptrisSettings settings{options.optris_library(), options.optris_config(),
-                          options.optris_formats()};
+                          options.optris_formats(), std::nullopt};
+  if (options.has_optris_min_celsius() && options.has_optris_max_celsius()) {
+    settings.range = {options.optris_min_celsius(), options.optris_max_celsius()};
+  }
   return std::make_unique<OptrisCamera>(device.bus_port, std::move(settings), clock);
 }
 
@@ -56,6 +67,10 @@ constexpr KnownCamera kKnown[] = {
     {0x3474, 0x45A2, P3Camera::kDriver, "Thermal Master P3", "256x192, 25 Hz", MakeP3<256, 192>},
     {0x3474, 0x45C2, P3Camera::kDriver, "Thermal Master P1", "160x120, 25 Hz", MakeP3<160, 120>},
     {0x0403, 0xDE37, OptrisCamera::kDriver, "Optris", "by the vendor's library", MakeOptris},
+    {0x289D, 0x0010, SeekCamera::kDriver, "Seek Compact", "207x154, 9 Hz, counts only",
+     MakeSeek<kSeekCompact>},
+    {0x289D, 0x0011, SeekCamera::kDriver, "Seek CompactPro", "320x240, 9 Hz, counts only",
+     MakeSeek<kSeekCompactPro>},
 };
 
 const KnownCamera* Find(std::uint16_t vendor_id, std::uint16_t product_id) {
@@ -65,16 +80,21 @@ const KnownCamera* Find(std::uint16_t vendor_id, std::uint16_t product_id) {
   return nullptr;
 }
 
-DeviceDescription Describe(const UsbDeviceInfo& info) {
-  const KnownCamera& known = *Find(info.vendor_id, info.product_id);
+DeviceDescription DescribeKnown(const KnownCamera& known) {
   DeviceDescription device;
   device.driver = known.driver;
-  device.product = info.product.empty() ? std::string(known.product) : info.product;
+  device.product = known.product;
+  device.vendor_id = known.vendor_id;
+  device.product_id = known.product_id;
+  device.modes = {std::string(known.modes)};
+  return device;
+}
+
+DeviceDescription Describe(const UsbDeviceInfo& info) {
+  DeviceDescription device = DescribeKnown(*Find(info.vendor_id, info.product_id));
+  if (!info.product.empty()) device.product = info.product;
   device.serial = info.serial;
   device.bus_port = info.bus_port;
-  device.vendor_id = info.vendor_id;
-  device.product_id = info.product_id;
-  device.modes = {std::string(known.modes)};
   device.problem = info.problem;
   return device;
 }
@@ -100,6 +120,12 @@ std::string Text(const std::vector<DeviceDescription>& devices) {
 }
 
 }  // namespace
+
+std::vector<DeviceDescription> SupportedThermalCameras() {
+  std::vector<DeviceDescription> cameras;
+  for (const KnownCamera& camera : kKnown) cameras.push_back(DescribeKnown(camera));
+  return cameras;
+}
 
 Result<std::vector<DeviceDescription>> ListThermalCameras() {
   const auto known = [](std::uint16_t vendor_id, std::uint16_t product_id) {
@@ -146,11 +172,8 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
 std::unique_ptr<ThermalCamera> MakeThermalCamera(const DeviceDescription& device,
                                                  const ThermalCameraOptions& options,
                                                  const Clock& clock) {
-  const auto known =
-      std::find_if(std::begin(kKnown), std::end(kKnown), [&device](const KnownCamera& camera) {
-        return camera.vendor_id == device.vendor_id && camera.product_id == device.product_id;
-      });
-  CHECK(known != std::end(kKnown));
+  const KnownCamera* known = Find(device.vendor_id, device.product_id);
+  CHECK(known != nullptr);
   return known->make(device, options, clock);
 }
 

@@ -2,16 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
-#include "common/time/clock.h"
-#include "edge/edge_options.pb.h"
+#include "edge/thermal_camera/camera_fixture_for_test.h"
 #include "edge/thermal_camera/testing/emulated_lepton.h"
 #include "edge/thermal_camera/testing/emulated_p2pro.h"
 #include "edge/thermal_camera/testing/emulated_p3.h"
-#include "edge/thermal_camera/thermal_camera_source.h"
-#include "edge/usb/testing/emulated_bus.h"
 
 namespace isotherm {
 namespace {
@@ -19,58 +15,6 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::HasSubstr;
-
-/// Cameras on an emulated bus, used through the genuine libusb.
-class EmulatedCameraTest : public testing::Test {
- protected:
-  void SetUp() override {
-    if (const auto reason = EmulatedBus::Missing()) GTEST_SKIP() << *reason;
-    bus_.emplace();
-  }
-
-  template <typename Camera>
-  std::shared_ptr<Camera> Plug(std::string_view script) {
-    auto camera = std::make_shared<Camera>(script);
-    bus_->Plug(camera);
-    return camera;
-  }
-
-  std::unique_ptr<ThermalCameraSource> MakeSource() {
-    ThermalCameraSource::Cameras cameras;
-    cameras.list = ListThermalCameras;
-    cameras.make = [this](const DeviceDescription& device) {
-      return MakeThermalCamera(device, options_, clock_);
-    };
-    return std::make_unique<ThermalCameraSource>(options_, clock_, cameras);
-  }
-  std::unique_ptr<ThermalCameraSource> Open() {
-    auto source = MakeSource();
-    const Status opened = source->Open();
-    EXPECT_TRUE(opened.ok()) << opened.message();
-    return source;
-  }
-
-  /// Reads until `count` frames came or Read failed.
-  std::vector<RawFrame> ReadFrames(FrameSource& source, std::size_t count) {
-    std::vector<RawFrame> frames;
-    // Patience for a busy computer.
-    const SteadyTime end = clock_.SteadyNow() + seconds(60);
-    while (frames.size() < count && clock_.SteadyNow() < end) {
-      Result<SourceItem> item = source.Read({});
-      if (!item) {
-        failure_ = item.error();
-        break;
-      }
-      if (RawFrame* frame = std::get_if<RawFrame>(&*item)) frames.push_back(std::move(*frame));
-    }
-    return frames;
-  }
-
-  SystemClock clock_;
-  ThermalCameraOptions options_;
-  std::optional<EmulatedBus> bus_;
-  Status failure_;
-};
 
 TEST_F(EmulatedCameraTest, LeptonIsListedWithSerialAndPort) {
   Plug<EmulatedLepton>("f");
@@ -82,19 +26,6 @@ TEST_F(EmulatedCameraTest, LeptonIsListedWithSerialAndPort) {
   EXPECT_EQ(devices->front().product, "PureThermal (fw:v1.3.0)");
   EXPECT_EQ(devices->front().bus_port, EmulatedBus::kBusPort);
   EXPECT_EQ(devices->front().problem, "");
-}
-
-/// Whether each pixel is the emulated camera's ramp plus its noise, in centi-kelvin.
-void ExpectRamp(const RawFrame& frame, double kelvin_per_count, int first, int noise) {
-  ASSERT_FALSE(frame.pixels.empty());
-  for (int y = 0; y < frame.pixels.height(); ++y) {
-    for (int x = 0; x < frame.pixels.width(); ++x) {
-      const double lowest = 100.0 * kelvin_per_count * (first + x);
-      const double highest = 100.0 * kelvin_per_count * (first + x + noise - 1);
-      ASSERT_GE(frame.pixels.At(x, y), std::floor(lowest)) << x << " " << y;
-      ASSERT_LE(frame.pixels.At(x, y), std::ceil(highest)) << x << " " << y;
-    }
-  }
 }
 
 TEST_F(EmulatedCameraTest, LeptonStreamsOverIsochronousTransfers) {
@@ -145,6 +76,23 @@ TEST_F(EmulatedCameraTest, LeptonCorrectsOnOrder) {
   EXPECT_EQ(frames.back().camera_nuc->state, NucState::kIdle);
   EXPECT_TRUE(source->Control(SetAutomaticNuc{false}).ok());
   EXPECT_EQ(camera->ffc_mode(), 0);
+}
+
+TEST_F(EmulatedCameraTest, LeptonTakesItsGainAndItIsReadBack) {
+  const auto camera = Plug<EmulatedLepton>("f");
+  EXPECT_THAT(Open()->cameras().front().settings, HasSubstr("gain high"));  // As found.
+  options_.set_gain(LOW_GAIN);
+  {
+    const auto source = Open();
+    EXPECT_EQ(camera->gain(), 1);
+    EXPECT_THAT(source->cameras().front().settings, HasSubstr("gain low"));
+    EXPECT_EQ(ReadFrames(*source, 2).size(), 2U) << failure_.message();
+  }
+  options_.set_gain(HIGH_GAIN);
+  camera->KeepGain();
+  const Status opened = MakeSource()->Open();
+  EXPECT_EQ(opened.code(), StatusCode::kFailedPrecondition);
+  EXPECT_THAT(opened.message(), HasSubstr("keeps its gain low and was told high"));
 }
 
 TEST_F(EmulatedCameraTest, F04UnpluggedInMidFrameFailsAtOnceAndComesBack) {
@@ -257,7 +205,9 @@ TEST_F(EmulatedCameraTest, SilentCameraIsGivenUp) {
 
 TEST_F(EmulatedCameraTest, P2ProStreamsAtHighSpeedAndIsToldNotToCorrectForEmissivity) {
   const auto camera = Plug<EmulatedP2Pro>("f");
+  options_.set_gain(LOW_GAIN);
   const auto source = Open();
+  EXPECT_THAT(source->cameras().front().settings, HasSubstr("gain low when it answers"));
   const std::vector<RawFrame> frames = ReadFrames(*source, 90);
   ASSERT_EQ(frames.size(), 90U) << failure_.message();
   ExpectRamp(frames[3], 1.0 / 64, EmulatedP2Pro::kFirstCount, EmulatedP2Pro::kNoise);
@@ -266,6 +216,8 @@ TEST_F(EmulatedCameraTest, P2ProStreamsAtHighSpeedAndIsToldNotToCorrectForEmissi
   EXPECT_EQ(frames.back().frame_number, 89U);
   // After three seconds: emissivity and transmission 1, and the shutter is asked.
   EXPECT_EQ(camera->emissivity(), 127);
+  EXPECT_EQ(camera->gain(), 0);
+  EXPECT_THAT(source->cameras().front().settings, testing::EndsWith("gain low"));  // Read back.
   EXPECT_EQ(frames.back().camera_nuc->source, NucSource::kPolled);
   EXPECT_EQ(frames.back().camera_nuc->state, NucState::kIdle);
 

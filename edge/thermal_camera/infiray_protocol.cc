@@ -14,6 +14,7 @@ constexpr Nanoseconds kCorrectionTime = std::chrono::milliseconds(1000);
 // Published programs disagree about the byte order of a command's length: the viewer of LeoDJ,
 // which works with cameras of several owners, has the high byte first. One line to change.
 constexpr bool kLengthHighByteFirst = true;
+constexpr std::uint8_t kAnswerBytes = 2;
 
 void Append(std::vector<std::uint8_t>& bytes, std::uint32_t value, int count) {
   for (int i = count - 1; i >= 0; --i) bytes.push_back(static_cast<std::uint8_t>(value >> 8 * i));
@@ -59,6 +60,20 @@ P2ProLongCommand PackP2ProLongCommand(std::uint16_t word, std::uint16_t paramete
   Append(command.second, 0, 4);
   Append(command.second, 0, 4);
   return command;
+}
+
+P2ProLongCommand PackP2ProQuestion(std::uint16_t word, std::uint16_t parameter) {
+  P2ProLongCommand command = PackP2ProLongCommand(word, parameter, 0);
+  command.second.back() = kAnswerBytes;
+  return command;
+}
+
+Result<std::uint16_t> ParseP2ProAnswer(Bytes bytes) {
+  if (bytes.size() != kAnswerBytes) {
+    return Err(DataLoss(
+        fmt::format("a P2 Pro parameter of {} bytes instead of {}", bytes.size(), kAnswerBytes)));
+  }
+  return static_cast<std::uint16_t>(bytes[0] << 8 | bytes[1]);
 }
 
 P2ProStatus ParseP2ProStatus(std::uint8_t status) {

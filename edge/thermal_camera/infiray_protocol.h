@@ -36,6 +36,10 @@ struct P2ProLongCommand {
 };
 P2ProLongCommand PackP2ProLongCommand(std::uint16_t word, std::uint16_t parameter,
                                       std::uint32_t value);
+/// The same asking for a parameter, which is answered with two bytes, high byte first.
+P2ProLongCommand PackP2ProQuestion(std::uint16_t word, std::uint16_t parameter);
+/// kDataLoss for another size than two bytes.
+Result<std::uint16_t> ParseP2ProAnswer(Bytes bytes);
 
 /// Meaning of the status byte after a command.
 enum class P2ProStatus { kReady, kBusy, kError };
@@ -45,6 +49,7 @@ P2ProStatus ParseP2ProStatus(std::uint8_t status);
 inline constexpr std::uint16_t kP2ProUpdateBackground = 0xC10D;  ///< Correct now.
 inline constexpr std::uint16_t kP2ProAutoShutter = 0x410C;       ///< Parameter 1 on, 0 off.
 inline constexpr std::uint16_t kP2ProShutterState = 0x830C;      ///< Answers 1 byte: 1 = closed.
+inline constexpr std::uint16_t kP2ProGetTemperatureParameter = 0x8514;
 inline constexpr std::uint16_t kP2ProSetTemperatureParameter = 0xC514;
 inline constexpr std::uint16_t kP2ProEmissivity = 3;    ///< Parameter, in 1/127.
 inline constexpr std::uint16_t kP2ProTransmission = 4;  ///< Parameter, in 1/127.

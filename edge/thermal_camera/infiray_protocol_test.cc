@@ -48,6 +48,16 @@ TEST(P2ProProtocolTest, CommandsHaveTheLayoutOfTheViewer) {
   EXPECT_THAT(command.second, ElementsAre(0, 0, 0, 0, 0, 0, 0, 0));
 }
 
+TEST(P2ProProtocolTest, QuestionsHaveTheLayoutOfTheViewerAndTwoBytesOfAnswer) {
+  const P2ProLongCommand question = PackP2ProQuestion(0x8514, 5);
+  EXPECT_THAT(question.first, ElementsAre(0x14, 0x85, 0, 5, 0, 0, 0, 0));
+  EXPECT_THAT(question.second, ElementsAre(0, 0, 0, 0, 0, 0, 0, 2));
+  const std::vector<std::uint8_t> answer = {0x01, 0x02};
+  EXPECT_EQ(*ParseP2ProAnswer(answer), 0x0102);
+  EXPECT_FALSE(ParseP2ProAnswer(Bytes(answer).first(1)).has_value());
+  EXPECT_FALSE(ParseP2ProAnswer({}).has_value());
+}
+
 TEST(P2ProProtocolTest, StatusByte) {
   EXPECT_EQ(ParseP2ProStatus(0x00), P2ProStatus::kReady);
   EXPECT_EQ(ParseP2ProStatus(0x01), P2ProStatus::kBusy);

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <iterator>
+#include <string_view>
 #include <utility>
 
 #include "edge/thermal_camera/lepton_protocol.h"
@@ -24,12 +26,18 @@ constexpr int kCounterStep = 3;
 constexpr UvcGuid kSysUnit = {'p', 't', '1', '-', 'l', 'e', 'p', '-',
                               's', 'y', 's', '-', '0', '0', '0', '0'};
 constexpr std::uint8_t kGainMode = 19;
+constexpr std::size_t kGainModeBytes = 4;
 constexpr std::uint8_t kFfcMode = 16;
 constexpr std::size_t kFfcModeBytes = 32;
 constexpr std::uint8_t kRunFfc = 17;
 
 float CelsiusOf(std::uint16_t centikelvin) {
   return centikelvin == 0 ? kUnknownCelsius : CentikelvinToCelsius(centikelvin);
+}
+
+std::string_view LeptonGainName(std::uint32_t mode) {
+  constexpr std::string_view kNames[] = {"high", "low", "automatic"};
+  return mode < std::size(kNames) ? kNames[mode] : "unknown";
 }
 
 UvcMode ModeOf(const Size& size) {
@@ -130,11 +138,36 @@ Status LeptonCamera::SetAutomaticNuc(bool on) {
 }
 
 Status LeptonCamera::SetGain(ThermalGain gain) {
-  if (gain == ThermalGain::kKeep) return OkStatus();
   ISOTHERM_RETURN_IF_ERROR(CheckOpen());
-  const std::array<std::uint8_t, 4> mode = {
-      static_cast<std::uint8_t>(gain == ThermalGain::kLow ? 1 : 0), 0, 0, 0};
-  return camera_->SetControl(kSysUnit, kGainMode, mode).WithContext("setting the gain");
+  if (gain == ThermalGain::kKeep) {
+    // A Lepton without this control has one range only.
+    const Result<std::uint32_t> found = ReadGain();
+    info_.settings = found ? fmt::format("gain {}", LeptonGainName(*found)) : "gain unknown";
+    return OkStatus();
+  }
+  const std::uint32_t wanted = gain == ThermalGain::kLow ? 1 : 0;
+  const std::array<std::uint8_t, kGainModeBytes> mode = {static_cast<std::uint8_t>(wanted), 0, 0,
+                                                         0};
+  ISOTHERM_RETURN_IF_ERROR(
+      camera_->SetControl(kSysUnit, kGainMode, mode).WithContext("setting the gain"));
+  const Result<std::uint32_t> found = ReadGain();
+  if (!found) return found.error().WithContext("reading the gain back");
+  if (*found != wanted) {
+    return FailedPrecondition(fmt::format("the Lepton at {} keeps its gain {} and was told {}",
+                                          info_.bus_port, LeptonGainName(*found), NameOf(gain)));
+  }
+  info_.settings = fmt::format("gain {}", NameOf(gain));
+  return OkStatus();
+}
+
+Result<std::uint32_t> LeptonCamera::ReadGain() {
+  const auto mode = camera_->GetControl(kSysUnit, kGainMode, kGainModeBytes);
+  if (!mode) return Err(mode.error());
+  if (mode->size() != kGainModeBytes) {
+    return Err(
+        DataLoss(fmt::format("the gain has {} bytes instead of {}", mode->size(), kGainModeBytes)));
+  }
+  return Le32(*mode, 0);
 }
 
 }  // namespace isotherm

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -32,6 +33,8 @@ class LeptonCamera final : public ThermalCamera {
  private:
   Status StartBestMode();
   Status CheckOpen() const;
+  /// 0 high, 1 low, 2 automatic.
+  Result<std::uint32_t> ReadGain();
 
   const Clock& clock_;
   ThermalCameraInfo info_;

@@ -60,7 +60,8 @@ struct OptrisCamera::Library {
   int (*set_shutter_mode)(int automatic) = nullptr;
   int (*trigger_shutter)() = nullptr;
   int (*set_radiation)(float emissivity, float transmissivity, float ambient) = nullptr;
-  int (*get_serial)(unsigned long* serial) = nullptr;  ///< May be missing.
+  int (*get_serial)(unsigned long* serial) = nullptr;            ///< May be missing.
+  int (*set_range)(int min_celsius, int max_celsius) = nullptr;  ///< May be missing.
 
   template <typename Function>
   bool Find(const char* name, Function& function) {
@@ -70,6 +71,7 @@ struct OptrisCamera::Library {
   /// The name of the first function that is missing; nullptr = all are there.
   const char* FindAll() {
     Find("evo_irimager_get_serial", get_serial);
+    Find("evo_irimager_set_temperature_range", set_range);
     if (!Find("evo_irimager_usb_init", usb_init)) return "evo_irimager_usb_init";
     if (!Find("evo_irimager_terminate", terminate)) return "evo_irimager_terminate";
     if (!Find("evo_irimager_get_thermal_image_size", get_size)) {
@@ -144,12 +146,38 @@ Status OptrisCamera::Initialise() {
   if (library_->set_radiation(1.0F, 1.0F, -300.0F) != 0) {
     return IoError("the Optris camera does not take emissivity and transmission for 1");
   }
+  ISOTHERM_RETURN_IF_ERROR(SetRange());
   unsigned long serial = 0;
   if (library_->get_serial != nullptr && library_->get_serial(&serial) == 0) {
     info_.serial = std::to_string(serial);
   }
   counter_.Reset();
   return OkStatus();
+}
+
+Status OptrisCamera::SetRange() {
+  info_.settings = "range as in " + settings_.config;
+  if (!settings_.range) return OkStatus();
+  const auto [lowest, highest] = *settings_.range;
+  if (library_->set_range == nullptr) {
+    return FailedPrecondition(settings_.library +
+                              " has no evo_irimager_set_temperature_range: set the range in "
+                              "the camera's XML file, and leave optris_min_celsius unset");
+  }
+  // It takes a range that the camera is calibrated for, and ends with a correction.
+  if (library_->set_range(lowest, highest) != 0) {
+    return FailedPrecondition(fmt::format(
+        "the Optris camera has no range of {} to {} degrees Celsius: take one that its calibration "
+        "files are named after (source.thermal_camera.optris_min_celsius, optris_max_celsius)",
+        lowest, highest));
+  }
+  info_.settings = fmt::format("range {} to {} degrees Celsius", lowest, highest);
+  return OkStatus();
+}
+
+Status OptrisCamera::SetGain(ThermalGain gain) {
+  if (gain == ThermalGain::kKeep) return OkStatus();
+  return Refuse("has ranges in degrees: optris_min_celsius and optris_max_celsius instead of gain");
 }
 
 Result<std::optional<RawThermalFrame>> OptrisCamera::Read(Nanoseconds) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/time/clock.h"
@@ -13,6 +14,12 @@ struct OptrisSettings {
   std::string library;  ///< The vendor's, a path or a name that the loader finds.
   std::string config;   ///< The camera's XML file, as the vendor's programs take it.
   std::string formats;  ///< Folder with the vendor's Formats.def.
+  /// The measuring range; nullopt: that of the XML file.
+  struct Range {
+    int min_celsius = 0;
+    int max_celsius = 0;
+  };
+  std::optional<Range> range;
 };
 
 /// Optris PI and Xi through the vendor's library, loaded when opened (interface of libirimager as
@@ -33,11 +40,14 @@ class OptrisCamera final : public ThermalCamera {
   void Close() override;
   Status TriggerNuc() override;
   Status SetAutomaticNuc(bool on) override;
+  /// Ranges have names in degrees here: OptrisSettings::range.
+  Status SetGain(ThermalGain gain) override;
 
  private:
   struct Library;
   Status Load();
   Status Initialise();
+  Status SetRange();
 
   const Clock& clock_;
   const OptrisSettings settings_;

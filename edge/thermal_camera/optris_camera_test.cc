@@ -17,7 +17,7 @@ class OptrisCameraTest : public testing::Test {
     return frame && *frame ? **frame : RawThermalFrame{};
   }
   FakeClock clock_;
-  OptrisSettings settings_{FAKE_OPTRIS, "pi450.xml", ""};
+  OptrisSettings settings_{FAKE_OPTRIS, "pi450.xml", "", std::nullopt};
 };
 
 TEST_F(OptrisCameraTest, FramesHaveTemperaturesClockAndHousekeeping) {
@@ -52,12 +52,35 @@ TEST_F(OptrisCameraTest, ShutterIsFollowedInBand) {
 }
 
 TEST_F(OptrisCameraTest, MissingLibraryCameraOrFunctionIsSaid) {
-  OptrisCamera no_library("1-1", {"libnothing_of_the_kind.so", "pi450.xml", ""}, clock_);
+  OptrisCamera no_library("1-1", {"libnothing_of_the_kind.so", "pi450.xml", "", std::nullopt},
+                          clock_);
   EXPECT_THAT(no_library.Open().message(), HasSubstr("optris_library"));
-  OptrisCamera other_library("1-1", {"libc.so.6", "pi450.xml", ""}, clock_);
+  OptrisCamera other_library("1-1", {"libc.so.6", "pi450.xml", "", std::nullopt}, clock_);
   EXPECT_THAT(other_library.Open().message(), HasSubstr("has no evo_irimager_usb_init"));
-  OptrisCamera no_camera("1-1", {FAKE_OPTRIS, "other.xml", ""}, clock_);
+  OptrisCamera no_camera("1-1", {FAKE_OPTRIS, "other.xml", "", std::nullopt}, clock_);
   EXPECT_EQ(no_camera.Open().code(), StatusCode::kUnavailable);
+}
+
+TEST_F(OptrisCameraTest, MeasuringRangeIsSetAndTold) {
+  settings_.range = {0, 250};
+  OptrisCamera camera("1-1", settings_, clock_);
+  const Status opened = camera.Open();
+  ASSERT_TRUE(opened.ok()) << opened.message();
+  EXPECT_EQ(camera.info().settings, "range 0 to 250 degrees Celsius");
+  // The library corrects after a change of the range.
+  EXPECT_TRUE(Read(camera).shutter_closed);
+
+  settings_.range = {0, 251};
+  OptrisCamera other("1-1", settings_, clock_);
+  EXPECT_THAT(other.Open().message(), HasSubstr("no range of 0 to 251"));
+  EXPECT_THAT(camera.SetGain(ThermalGain::kLow).message(), HasSubstr("optris_min_celsius"));
+}
+
+TEST_F(OptrisCameraTest, RangeIsThatOfTheXmlFileUnlessAsked) {
+  OptrisCamera camera("1-1", settings_, clock_);
+  ASSERT_TRUE(camera.Open().ok());
+  EXPECT_EQ(camera.info().settings, "range as in pi450.xml");
+  EXPECT_FALSE(Read(camera).shutter_closed);
 }
 
 TEST_F(OptrisCameraTest, ClosedCameraRefuses) {

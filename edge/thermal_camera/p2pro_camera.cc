@@ -24,6 +24,7 @@ constexpr std::uint16_t kValue = 0x78;
 constexpr std::uint16_t kCommandIndex = 0x1D00;
 constexpr std::uint16_t kLongCommandIndex = 0x9D00;
 constexpr std::uint16_t kDataIndex = 0x1D08;
+constexpr std::uint16_t kLongDataIndex = 0x1D10;
 constexpr std::uint16_t kStatusIndex = 0x0200;
 
 // Measured by p2-viewer: after power-up the camera answers commands 2.9 s after streaming began,
@@ -112,8 +113,10 @@ void P2ProCamera::ConfigureWhenDue(SteadyTime now) {
   next_command_at_ = now + kTryAgainAfter;
   Status done = SetParameter(kP2ProEmissivity, kOne);
   if (done.ok()) done = SetParameter(kP2ProTransmission, kOne);
-  if (done.ok() && gain_ != ThermalGain::kKeep) {
-    done = SetParameter(kP2ProGain, gain_ == ThermalGain::kHigh ? 1 : 0);
+  if (done.ok()) done = ApplyGain();
+  if (done.code() == StatusCode::kFailedPrecondition) {
+    LOG(Thermal, Warning) << done.message();
+    done = OkStatus();  // It keeps its range; asking again would not change that.
   }
   if (done.ok() && automatic_) done = Command(kP2ProAutoShutter, *automatic_ ? 1 : 0);
   if (done.ok()) {
@@ -157,8 +160,26 @@ Status P2ProCamera::SetAutomaticNuc(bool on) {
 
 Status P2ProCamera::SetGain(ThermalGain gain) {
   gain_ = gain;
-  if (!configured_ || gain == ThermalGain::kKeep) return OkStatus();
-  return SetParameter(kP2ProGain, gain == ThermalGain::kHigh ? 1 : 0);
+  info_.settings = gain == ThermalGain::kKeep
+                       ? "gain as found"
+                       : fmt::format("gain {} when it answers", NameOf(gain));
+  return configured_ ? ApplyGain() : OkStatus();
+}
+
+Status P2ProCamera::ApplyGain() {
+  const bool keep = gain_ == ThermalGain::kKeep;
+  const std::uint32_t wanted = gain_ == ThermalGain::kHigh ? 1 : 0;
+  if (!keep) ISOTHERM_RETURN_IF_ERROR(SetParameter(kP2ProGain, wanted));
+  const Result<std::uint16_t> found = GetParameter(kP2ProGain);
+  if (!found) return keep ? OkStatus() : found.error().WithContext("reading the gain back");
+  const ThermalGain gain = *found != 0 ? ThermalGain::kHigh : ThermalGain::kLow;
+  if (!keep && gain != gain_) {
+    return FailedPrecondition(fmt::format("the P2 Pro at {} keeps its gain {} and was told {}",
+                                          info_.bus_port, NameOf(gain), NameOf(gain_)));
+  }
+  info_.settings = fmt::format("gain {}", NameOf(gain));
+  LOG(Thermal, Info) << "thermal camera " << kDriver << ": gain=" << NameOf(gain);
+  return OkStatus();
 }
 
 Status P2ProCamera::Command(std::uint16_t word, std::uint32_t parameter, std::uint16_t length) {
@@ -172,6 +193,17 @@ Status P2ProCamera::SetParameter(std::uint16_t parameter, std::uint32_t value) {
   ISOTHERM_RETURN_IF_ERROR(Send(kLongCommandIndex, command.first));
   ISOTHERM_RETURN_IF_ERROR(Send(kDataIndex, command.second));
   return WaitUntilReady();
+}
+
+Result<std::uint16_t> P2ProCamera::GetParameter(std::uint16_t parameter) {
+  const P2ProLongCommand question = PackP2ProQuestion(kP2ProGetTemperatureParameter, parameter);
+  Status asked = Send(kLongCommandIndex, question.first);
+  if (asked.ok()) asked = Send(kDataIndex, question.second);
+  if (asked.ok()) asked = WaitUntilReady();
+  if (!asked.ok()) return Err(std::move(asked));
+  const auto answer = Receive(kLongDataIndex, 2);
+  if (!answer) return Err(answer.error());
+  return ParseP2ProAnswer(*answer);
 }
 
 Status P2ProCamera::Send(std::uint16_t index, const std::vector<std::uint8_t>& bytes) {

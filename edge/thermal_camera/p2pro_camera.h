@@ -35,6 +35,8 @@ class P2ProCamera final : public ThermalCamera {
   /// Sends eight bytes and waits until the camera has done it.
   Status Command(std::uint16_t word, std::uint32_t parameter, std::uint16_t length = 0);
   Status SetParameter(std::uint16_t parameter, std::uint32_t value);
+  Result<std::uint16_t> GetParameter(std::uint16_t parameter);
+  Status ApplyGain();
   Status Send(std::uint16_t index, const std::vector<std::uint8_t>& bytes);
   Result<std::vector<std::uint8_t>> Receive(std::uint16_t index, std::size_t size);
   Status WaitUntilReady();

@@ -168,9 +168,15 @@ Status P3Camera::TriggerNuc() {
 }
 
 Status P3Camera::SetGain(ThermalGain gain) {
-  if (gain == ThermalGain::kKeep) return OkStatus();
+  if (gain == ThermalGain::kKeep) {
+    info_.settings = "gain as found";
+    return OkStatus();
+  }
   const auto done = Command(kStream, kWrites, gain == ThermalGain::kHigh ? 1 : 0, 0);
-  return done ? OkStatus() : done.error().WithContext("setting the gain");
+  if (!done) return done.error().WithContext("setting the gain");
+  // No way to ask for it was ever published: the camera's acknowledgement is all there is.
+  info_.settings = fmt::format("gain {} (acknowledged, not read back)", NameOf(gain));
+  return OkStatus();
 }
 
 Result<std::vector<std::uint8_t>> P3Camera::Command(std::uint16_t type, std::uint16_t parameter,

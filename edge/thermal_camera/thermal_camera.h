@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/status.h"
@@ -37,6 +38,11 @@ struct RawThermalFrame {
 
 enum class ThermalGain { kKeep, kHigh, kLow };
 
+/// "high" or "low".
+inline std::string_view NameOf(ThermalGain gain) {
+  return gain == ThermalGain::kHigh ? "high" : "low";
+}
+
 struct ThermalCameraInfo {
   std::string driver;    ///< E.g. "lepton-uvc".
   std::string product;   ///< As the camera calls itself.
@@ -45,6 +51,9 @@ struct ThermalCameraInfo {
   int width = 0;
   int height = 0;
   double rate_hz = 0.0;  ///< Nominal.
+  std::string settings;  ///< What it was set to or found at, for people: "gain low".
+  /// It measures no temperatures: no frame is radiometric.
+  bool counts_only = false;
   /// How much the device counter grows from picture to picture; 0 = there is no counter, and
   /// pictures are told apart by their pixels.
   int counter_step = 0;
@@ -74,6 +83,8 @@ class ThermalCamera {
   virtual Status SetAutomaticNuc(bool /*on*/) {
     return Refuse("decides by itself when to correct itself");
   }
+  /// Sets the measuring range, reads it back where the camera lets itself be asked, and puts it
+  /// into info().settings. kFailedPrecondition if the camera keeps another one.
   virtual Status SetGain(ThermalGain gain) {
     return gain == ThermalGain::kKeep ? OkStatus() : Refuse("has one range only");
   }

@@ -82,7 +82,7 @@ Status ThermalCameraSource::Open() {
   incomplete_since_ = 0;
   LOG(Thermal, Info) << name_ << " opened, product=\"" << info.product << "\" serial=\""
                      << info.serial << "\" port=" << info.bus_port << " width=" << info.width
-                     << " height=" << info.height;
+                     << " height=" << info.height << " settings=\"" << info.settings << "\"";
   return OkStatus();
 }
 
@@ -120,7 +120,7 @@ Result<SourceItem> ThermalCameraSource::Judge(RawThermalFrame raw) {
     return Convert(raw);
   }
   incomplete_ = false;
-  if (!EncodingOf(raw).radiometric) {
+  if (!EncodingOf(raw).radiometric && !camera_->info().counts_only) {
     return Err(
         FailedPrecondition(name_ +
                            " sends counts that it does not relate to temperatures; say how in "
@@ -169,6 +169,10 @@ RawFrame ThermalCameraSource::Convert(const RawThermalFrame& raw) {
   frame.camera_nuc = raw.nuc;
   frame.housekeeping = raw.housekeeping;
   if (raw.counts.empty()) return frame;
+  if (!EncodingOf(raw).radiometric) {
+    frame.pixels = raw.counts;
+    return frame;
+  }
   UpdateTable(EncodingOf(raw));
   frame.pixels.Resize(raw.counts.width(), raw.counts.height());
   const std::uint16_t* counts = raw.counts.data();
@@ -211,6 +215,8 @@ std::vector<CameraDescription> ThermalCameraSource::cameras() const {
   description.height = info.height;
   description.rate_hz = info.rate_hz;
   description.settings = "port " + info.bus_port;
+  if (!info.settings.empty()) description.settings += ", " + info.settings;
+  description.counts_only = info.counts_only && options_->kelvin_per_count() == 0.0;
   return {description};
 }
 

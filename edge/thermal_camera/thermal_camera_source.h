@@ -30,7 +30,8 @@ struct ThermalCameraCounts {
   std::uint64_t lost = 0;        ///< Counted by the camera, never seen here.
 };
 
-/// Frames of one thermal camera in centi-kelvin.
+/// Frames of one thermal camera in centi-kelvin; in counts if it measures no temperatures and the
+/// options do not say what counts mean (CameraDescription::counts_only).
 ///
 /// - Repeated pictures are left out; they are no loss.
 /// - Frozen pictures count as taken behind a closed shutter; when they last, the camera is taken

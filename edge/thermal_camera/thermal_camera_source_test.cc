@@ -1,10 +1,13 @@
 #include "edge/thermal_camera/thermal_camera_source.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <deque>
+#include <fstream>
 #include <functional>
+#include <sstream>
 
 #include "edge/edge_options.pb.h"
 
@@ -284,6 +287,32 @@ TEST_F(ThermalCameraSourceTest, TheVendorsLibraryIsUsedOnlyIfNamed) {
   EXPECT_EQ(Make()->Open().code(), StatusCode::kUnavailable);
   options_.set_driver(OPTRIS_SDK);
   EXPECT_TRUE(Make()->Open().ok());
+}
+
+TEST(CameraRegistryTest, EveryCameraWithADriverHasAUdevRule) {
+  std::ostringstream rules;
+  rules << std::ifstream(ISOTHERM_SOURCE_DIR "/deploy/udev/60-isotherm-thermal.rules").rdbuf();
+  for (const DeviceDescription& camera : SupportedThermalCameras()) {
+    EXPECT_THAT(rules.str(),
+                HasSubstr(fmt::format("ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\"",
+                                      camera.vendor_id, camera.product_id)))
+        << camera.product;
+  }
+}
+
+TEST_F(ThermalCameraSourceTest, CameraWithoutTemperaturesSendsCountsUnlessTheOptionsRelateThem) {
+  script_.info.counts_only = true;
+  RawThermalFrame sent = MakeFrame(8'000, 100);
+  sent.encoding = {};
+  Send(sent);
+  const auto source = Open();
+  EXPECT_TRUE(source->cameras().front().counts_only);
+  EXPECT_EQ(ReadFrame(*source).pixels.At(0, 0), 8'000);
+  options_.set_kelvin_per_count(0.04);
+  Send(sent);
+  const auto related = Open();
+  EXPECT_FALSE(related->cameras().front().counts_only);
+  EXPECT_EQ(ReadFrame(*related).pixels.At(0, 0), 32'000);
 }
 
 TEST_F(ThermalCameraSourceTest, NoCameraIsUnavailable) {

@@ -56,7 +56,8 @@ TEST_F(InstallTest, ProgramsConfigurationsAndUnitsAreInPlace) {
        {"bin/isotherm", "bin/isotherm-edge", "bin/isotherm-ground", "etc/isotherm/edge.textproto",
         "etc/isotherm/ground.textproto", "etc/isotherm/cyclonedds-loopback.xml",
         "etc/isotherm/cyclonedds-lan.xml", "lib/systemd/system/isotherm-edge.service",
-        "lib/systemd/system/isotherm-ground.service", "share/doc/isotherm/README.md"}) {
+        "lib/systemd/system/isotherm-ground.service", "lib/udev/rules.d/60-isotherm-thermal.rules",
+        "share/doc/isotherm/README.md"}) {
     EXPECT_TRUE(std::filesystem::exists(prefix_ / path)) << path;
   }
 }

@@ -69,11 +69,19 @@ std::optional<std::vector<std::uint8_t>> EmulatedLepton::VendorControl(const Usb
                                                                        std::size_t read_bytes) {
   constexpr std::uint16_t kFfcMode = 16 << 8;
   constexpr std::uint16_t kRunFfc = 17 << 8;
+  constexpr std::uint16_t kGain = 19 << 8;
   if (control.index != (kSysUnit << 8)) return std::nullopt;
   const bool reads = control.request_type == 0xA1;
   if (control.value == kRunFfc && !reads && data.size() == 1) {
     ++corrections_;
     ordered_frames_ = kFramesOfCorrection;
+    return std::vector<std::uint8_t>();
+  }
+  if (control.value == kGain && reads) {
+    return std::vector<std::uint8_t>{static_cast<std::uint8_t>(gain_.load()), 0, 0, 0};
+  }
+  if (control.value == kGain && data.size() == 4) {
+    if (!keeps_gain_) gain_ = data[0];
     return std::vector<std::uint8_t>();
   }
   if (control.value == kFfcMode && reads) {

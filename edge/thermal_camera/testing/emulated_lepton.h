@@ -21,6 +21,10 @@ class EmulatedLepton final : public EmulatedUvcCamera {
   int corrections() const { return corrections_; }
   /// Mode of corrections: 0 manual, 1 automatic. Thread-safe.
   int ffc_mode() const { return ffc_mode_; }
+  /// 0 high, 1 low. Thread-safe.
+  int gain() const { return gain_; }
+  /// From now on it acknowledges another gain and does not take it.
+  void KeepGain() { keeps_gain_ = true; }
 
  protected:
   std::vector<std::uint8_t> MakeFrame(const FaultStep& step) override;
@@ -36,6 +40,8 @@ class EmulatedLepton final : public EmulatedUvcCamera {
   int ordered_frames_ = 0;  ///< Frames that an ordered correction still takes.
   std::atomic<int> corrections_{0};
   std::atomic<int> ffc_mode_{1};
+  std::atomic<int> gain_{0};
+  std::atomic<bool> keeps_gain_{false};
 };
 
 }  // namespace isotherm

@@ -10,12 +10,16 @@ constexpr int kWidth = 256;
 constexpr int kHeight = 192;
 constexpr int kFramesOfCorrection = 20;  // 0.8 s.
 
-UvcCameraLayout Layout() {
+UvcCameraLayout Layout(std::uint32_t bulk_payload_bytes = 0) {
   UvcCameraLayout layout;
   layout.four_characters = "YUY2";
   layout.sizes = {{kWidth, kHeight}, {kWidth, 2 * kHeight}};
   layout.interval = 400'000;
   layout.packet_fields = {1024};
+  if (bulk_payload_bytes == 0) return layout;
+  layout.bulk = true;
+  layout.packet_fields = {512};
+  layout.bulk_payload_bytes = bulk_payload_bytes;
   return layout;
 }
 
@@ -32,6 +36,10 @@ EmulatedIdentity Identity() {
 
 EmulatedP2Pro::EmulatedP2Pro(std::string_view script)
     : EmulatedUvcCamera(Identity(), Layout(), 12, script), frame_(4 * kWidth * kHeight) {}
+
+EmulatedP2Pro::EmulatedP2Pro(std::string_view script, std::uint32_t bulk_payload_bytes)
+    : EmulatedUvcCamera(Identity(), Layout(bulk_payload_bytes), 12, script),
+      frame_(4 * kWidth * kHeight) {}
 
 std::vector<std::uint8_t> EmulatedP2Pro::MakeFrame(const FaultStep& step) {
   closed_ = step.fault == "nuc" || ordered_frames_ > 0;
@@ -60,6 +68,8 @@ std::optional<std::vector<std::uint8_t>> EmulatedP2Pro::VendorControl(const UsbC
   if (answer.empty()) return answer;
   if (control.index == 0x0200) answer[0] = busy_-- > 0 ? 1 : 0;
   if (control.index == 0x1D08) answer[0] = closed_ ? 1 : 0;
+  // A parameter, high byte first; only the gain is kept.
+  if (control.index == 0x1D10) answer.back() = static_cast<std::uint8_t>(gain_.load());
   return answer;
 }
 
@@ -73,6 +83,7 @@ void EmulatedP2Pro::TakeCommand(std::uint16_t index, Bytes data) {
   // Long: word, parameter and value, high byte first, and done with the second half.
   if (index == 0x1D08 && long_command_.size() == 8 && Le16(long_command_, 0) == 0xC514) {
     if (long_command_[3] == 3) emissivity_ = long_command_[7];
+    if (long_command_[3] == 5) gain_ = long_command_[7];
     return;
   }
   if (index != 0x1D00) return;

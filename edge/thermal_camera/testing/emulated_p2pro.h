@@ -13,6 +13,8 @@ namespace isotherm {
 class EmulatedP2Pro final : public EmulatedUvcCamera {
  public:
   explicit EmulatedP2Pro(std::string_view script);
+  /// One that streams over bulk transfers, in payloads of at most so many bytes.
+  EmulatedP2Pro(std::string_view script, std::uint32_t bulk_payload_bytes);
 
   /// Of pixel (0, 0) without noise, kelvin x 64; columns follow in steps of 1.
   static constexpr std::uint16_t kFirstCount = 18'560;  // 290 K.
@@ -22,6 +24,7 @@ class EmulatedP2Pro final : public EmulatedUvcCamera {
   int corrections() const { return corrections_; }
   int automatic() const { return automatic_; }    ///< -1 = never set.
   int emissivity() const { return emissivity_; }  ///< In 1/127; -1 = never set.
+  int gain() const { return gain_; }              ///< 1 high, 0 low.
 
  protected:
   std::vector<std::uint8_t> MakeFrame(const FaultStep& step) override;
@@ -40,6 +43,7 @@ class EmulatedP2Pro final : public EmulatedUvcCamera {
   std::atomic<int> corrections_{0};
   std::atomic<int> automatic_{-1};
   std::atomic<int> emissivity_{-1};
+  std::atomic<int> gain_{1};
 };
 
 }  // namespace isotherm

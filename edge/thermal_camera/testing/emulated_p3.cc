@@ -8,10 +8,6 @@
 namespace isotherm {
 namespace {
 
-constexpr int kWidth = 256;
-constexpr int kHeight = 192;
-constexpr std::size_t kRowBytes = 2 * kWidth;
-constexpr std::size_t kDataBytes = kRowBytes * (2 * kHeight + 2);
 constexpr Nanoseconds kPeriod = std::chrono::milliseconds(40);
 constexpr std::uint32_t kTicksPerFrame = 600'000;
 constexpr int kFramesOfCorrection = 20;
@@ -19,13 +15,18 @@ constexpr std::string_view kSerial = "P3-SERIAL-7";
 
 }  // namespace
 
-EmulatedP3::EmulatedP3(std::string_view script) : script_(script), data_(kDataBytes) {}
+EmulatedP3::EmulatedP3(std::string_view script, int width, int height, std::uint16_t product_id)
+    : width_(width),
+      height_(height),
+      product_id_(product_id),
+      script_(script),
+      data_(row_bytes() * (2 * static_cast<std::size_t>(height) + 2)) {}
 
 EmulatedIdentity EmulatedP3::identity() const {
   EmulatedIdentity identity;
   identity.vendor_id = 0x3474;
-  identity.product_id = 0x45A2;
-  identity.product = "P3";
+  identity.product_id = product_id_;
+  identity.product = is_p3() ? "P3" : "P1";
   identity.serial = kSerial;
   identity.high_speed = true;
   identity.configuration = {9, 2, 50,   0, 2,    1,    0, 0x80, 50,  // Two interfaces:
@@ -90,14 +91,16 @@ std::vector<std::uint8_t> EmulatedP3::MakeData(const FaultStep& step) {
   const bool frozen = correcting || step.fault == "freeze";
   if (ordered_frames_ > 0) --ordered_frames_;
   if (!frozen) counter_ = static_cast<std::uint16_t>(counter_ + (step.fault == "skip" ? 4 : 1));
-  const std::size_t metadata = kRowBytes * kHeight;
-  PutLe16(data_, metadata + 2 * 64, counter_);
-  PutLe16(data_, metadata + 2 * 169, correcting ? 0 : 1000);
-  PutLe16(data_, metadata + 2 * 170, correcting ? 0 : 1001);
-  for (int i = 0; i < kWidth * kHeight && !frozen; ++i) {
+  const std::size_t metadata = row_bytes() * static_cast<std::size_t>(height_);
+  if (is_p3()) {
+    PutLe16(data_, metadata + 2 * 64, counter_);
+    PutLe16(data_, metadata + 2 * 169, correcting ? 0 : 1000);
+    PutLe16(data_, metadata + 2 * 170, correcting ? 0 : 1001);
+  }
+  for (int i = 0; i < width_ * height_ && !frozen; ++i) {
     noise_ = noise_ * 1'664'525 + 1'013'904'223;
-    const int count = kFirstCount + i % kWidth + static_cast<int>((noise_ >> 24) % kNoise);
-    PutLe16(data_, metadata + 2 * kRowBytes + 2 * static_cast<std::size_t>(i),
+    const int count = kFirstCount + i % width_ + static_cast<int>((noise_ >> 24) % kNoise);
+    PutLe16(data_, metadata + 2 * row_bytes() + 2 * static_cast<std::size_t>(i),
             static_cast<std::uint16_t>(count));
   }
   return data_;
@@ -112,7 +115,8 @@ void EmulatedP3::Begin(const FaultStep& step, Nanoseconds) {
   if (step.fault == "head") payload[0] = 99;
   if (step.fault == "short") payload.resize(payload.size() / 2 + 1);
   if (step.fault == "partial") {
-    payloads_.emplace_back(payload.begin(), payload.begin() + 12 + 36 * kRowBytes);
+    payloads_.emplace_back(payload.begin(),
+                           payload.begin() + 12 + static_cast<std::ptrdiff_t>(36 * row_bytes()));
   }
   if (step.what == "unplug") {
     unplug_after_.emplace();

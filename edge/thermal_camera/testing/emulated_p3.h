@@ -11,12 +11,12 @@
 
 namespace isotherm {
 
-/// A Thermal Master P3 at high speed: bulk transfers of 256x192 pixels with markers. Faults:
+/// A Thermal Master P3 (256x192) at high speed: bulk transfers with markers. Faults:
 /// freeze, nuc, skip, short, head (the start marker is damaged), partial (a piece of a frame comes
 /// first), noend (no end marker), and the steps of FaultScript.
-class EmulatedP3 final : public EmulatedDevice {
+class EmulatedP3 : public EmulatedDevice {
  public:
-  explicit EmulatedP3(std::string_view script);
+  explicit EmulatedP3(std::string_view script) : EmulatedP3(script, 256, 192, 0x45A2) {}
 
   static constexpr std::uint16_t kFirstCount = 18'560;  // 290 K.
   static constexpr int kNoise = 8;
@@ -35,11 +35,20 @@ class EmulatedP3 final : public EmulatedDevice {
   int gain() const { return gain_; }  ///< 0 low, 1 high, -1 never set.
   int alternate() const { return alternate_; }
 
+ protected:
+  /// The metadata of a P3 is known; rows of others hold nothing.
+  EmulatedP3(std::string_view script, int width, int height, std::uint16_t product_id);
+
  private:
+  bool is_p3() const { return product_id_ == 0x45A2; }
+  std::size_t row_bytes() const { return 2 * static_cast<std::size_t>(width_); }
   void Begin(const FaultStep& step, Nanoseconds time);
   std::vector<std::uint8_t> Marker(bool end) const;
   std::vector<std::uint8_t> MakeData(const FaultStep& step);
 
+  const int width_;
+  const int height_;
+  const std::uint16_t product_id_;
   FaultScript script_;
   bool stalled_ = false;
   bool streaming_ = false;
@@ -58,6 +67,12 @@ class EmulatedP3 final : public EmulatedDevice {
   std::atomic<int> corrections_{0};
   std::atomic<int> gain_{-1};
   std::atomic<int> alternate_{0};
+};
+
+/// A Thermal Master P1 (160x120).
+class EmulatedP1 final : public EmulatedP3 {
+ public:
+  explicit EmulatedP1(std::string_view script) : EmulatedP3(script, 160, 120, 0x45C2) {}
 };
 
 }  // namespace isotherm

@@ -57,6 +57,10 @@ int evo_irimager_trigger_shutter_flag() {
   closing = 3;
   return 0;
 }
+int evo_irimager_set_temperature_range(int min, int max) {
+  closing = 3;
+  return min == 0 && max == 250 ? 0 : -1;
+}
 int evo_irimager_set_radiation_parameters(float emissivity, float transmissivity, float ambient) {
   return emissivity == 1.0F && transmissivity == 1.0F && ambient < -273.15F ? 0 : -1;
 }
