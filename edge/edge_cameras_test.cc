@@ -19,40 +19,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// The numbers of "depth    captured 100 = recorded 99 + rejected 1 + queue full 0 + failed 0".
-struct Account {
-  long captured = -1, done = -1, rejected = -1, queue_full = -1, failed = -1;
-  bool Closes() const { return captured >= 0 && captured == done + rejected + queue_full + failed; }
-};
-
-Account AccountOf(const std::string& output, const std::string& done) {
-  Account account;
-  const std::size_t begin = output.find("depth    captured");
-  for (std::size_t at = begin; at != std::string::npos;
-       at = output.find("depth    captured", at + 1)) {
-    const std::string format =
-        "depth captured %ld = " + done + " %ld + rejected %ld + queue full %ld + failed %ld\n";
-    if (std::sscanf(output.c_str() + at, format.c_str(), &account.captured, &account.done,
-                    &account.rejected, &account.queue_full, &account.failed) == 5) {
-      EXPECT_EQ(output.substr(at, output.find('\n', at) - at).find("unaccounted"),
-                std::string::npos);
-      return account;
-    }
-  }
-  return {};
-}
-
-/// Processes that `pid` has started and that still run.
-std::vector<pid_t> ChildrenOf(pid_t pid) {
-  std::vector<pid_t> children;
-  const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
-  for (const auto& task : std::filesystem::directory_iterator(tasks)) {
-    std::ifstream list(task.path() / "children");
-    for (pid_t child = 0; list >> child;) children.push_back(child);
-  }
-  return children;
-}
-
 class CamerasTest : public ::testing::Test {
  protected:
   Command Edge(std::vector<std::string> more = {}) const {
@@ -67,11 +33,11 @@ class CamerasTest : public ::testing::Test {
   std::vector<std::string> Record() const { return {"--record", file_.string()}; }
 
   /// Ends the daemon and checks that each frame is accounted for.
-  Account End(Process& edge) {
+  FrameAccountText End(Process& edge) {
     edge.Signal(SIGTERM);
     EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
-    const Account recorded = AccountOf(edge.output(), "recorded");
-    const Account published = AccountOf(edge.output(), "published");
+    const FrameAccountText recorded = AccountOf(edge.output(), Sensor::kDepth, "recorded");
+    const FrameAccountText published = AccountOf(edge.output(), Sensor::kDepth, "published");
     EXPECT_TRUE(recorded.Closes()) << edge.output();
     EXPECT_TRUE(published.Closes()) << edge.output();
     const RecordingContent content = ReadRecording(file_);
@@ -83,22 +49,6 @@ class CamerasTest : public ::testing::Test {
         << "capture times rise with the frame numbers";
     return recorded;
   }
-  /// Waits until `text` has come `times` times.
-  static bool WaitForRepeated(Process& edge, const std::string& text, int times) {
-    const auto end = std::chrono::steady_clock::now() + kPatience;
-    while (std::chrono::steady_clock::now() < end) {
-      int count = 0;
-      const std::string output = edge.output();
-      for (std::size_t at = output.find(text); at != std::string::npos;
-           at = output.find(text, at + 1)) {
-        ++count;
-      }
-      if (count >= times) return true;
-      if (edge.WaitForExit(Seconds(0.05))) return false;
-    }
-    return false;
-  }
-
   static constexpr const char* kWorking = "depth camera: working";
   static constexpr const char* kLost = "depth camera: lost";
 
@@ -110,7 +60,7 @@ class CamerasTest : public ::testing::Test {
 TEST_F(CamerasTest, RecordsAndPublishesWhatTheCameraSees) {
   Process edge(Edge(Record()));
   ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience)) << edge.output();
-  const Account account = End(edge);
+  const FrameAccountText account = End(edge);
   EXPECT_GT(account.done, 0);
   const RecordingContent content = ReadRecording(file_);
   ASSERT_FALSE(content.depth.empty());
@@ -126,9 +76,9 @@ TEST_F(CamerasTest, F01ACameraThatIsUnpluggedIsLostAndF02UsedAgainWhenItIsBack) 
   ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience)) << edge.output();
   for (int time = 1; time <= 2; ++time) {
     camera_.Plug(false);
-    ASSERT_TRUE(WaitForRepeated(edge, kLost, time)) << edge.output();
+    ASSERT_TRUE(edge.WaitForOutput(kLost, kPatience, time)) << edge.output();
     camera_.Plug(true);
-    ASSERT_TRUE(WaitForRepeated(edge, kWorking, time + 1)) << edge.output();
+    ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience, time + 1)) << edge.output();
   }
   End(edge);
   EXPECT_THAT(edge.output(), HasSubstr("it was unplugged"));
@@ -148,7 +98,7 @@ TEST_F(CamerasTest, F03AnotherCameraInItsPlaceIsNotUsed) {
   camera_.Plug(false);
   camera_.script.serial = "FAKE-1";
   camera_.Plug(true);
-  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience, 2)) << edge.output();
   End(edge);
 }
 
@@ -159,7 +109,7 @@ TEST_F(CamerasTest, F11BadFramesAreCountedAndTenInARowOpenTheCameraAgain) {
   ASSERT_TRUE(edge.WaitForOutput("10 bad frames in a row", kPatience)) << edge.output();
   camera_.script.faults.clear();
   camera_.Apply();
-  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience, 2)) << edge.output();
   EXPECT_GE(End(edge).rejected, 10);
 }
 
@@ -180,7 +130,7 @@ TEST_F(CamerasTest, F14ALibraryThatCrashesTakesOnlyItsOwnProcessDown) {
   ASSERT_TRUE(edge.WaitForOutput("ended by signal 11", kPatience)) << edge.output();
   camera_.script.faults.clear();
   camera_.Apply();
-  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience, 2)) << edge.output();
   End(edge);
 }
 
@@ -192,7 +142,7 @@ TEST_F(CamerasTest, F14ALibraryThatHangsIsReplaced) {
       << edge.output();
   camera_.script.faults.clear();
   camera_.Apply();
-  ASSERT_TRUE(WaitForRepeated(edge, kWorking, 2)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience, 2)) << edge.output();
   End(edge);
 }
 

@@ -92,6 +92,11 @@ struct Start {
   std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
 };
 
+/// "lepton-uvc, PureThermal".
+std::string ModelText(const CameraDescription& camera) {
+  return fmt::format("{}, {}", camera.driver, camera.model);
+}
+
 RigDescription Describe(const EdgeOptions& options, const Start& start) {
   RigDescription description;
   description.session = start.session();
@@ -99,19 +104,22 @@ RigDescription Describe(const EdgeOptions& options, const Start& start) {
   if (start.rig) description.rig = *start.rig;
   const auto mode = [](const std::optional<CameraModel>& camera, Encoding encoding) {
     StreamMode stream;
-    if (camera) stream = {camera->width, camera->height, 0.0, encoding, ""};
+    if (camera) stream = {camera->width, camera->height, 0.0, encoding, "", ""};
     return stream;
   };
   description.depth = mode(description.rig.depth, Encoding::kDepthRans);
   description.thermal = mode(description.rig.thermal, Encoding::kThermalRans);
   for (const CameraDescription& camera : start.cameras) {
     const bool is_depth = camera.sensor == Sensor::kDepth;
-    (is_depth ? description.depth : description.thermal) = {
-        camera.width, camera.height, camera.rate_hz,
-        is_depth             ? Encoding::kDepthRans
-        : camera.counts_only ? kCounts16
-                             : Encoding::kThermalRans,
-        camera.serial};
+    (is_depth ? description.depth : description.thermal) = {camera.width,
+                                                            camera.height,
+                                                            camera.rate_hz,
+                                                            is_depth ? Encoding::kDepthRans
+                                                            : camera.counts_only
+                                                                ? kCounts16
+                                                                : Encoding::kThermalRans,
+                                                            camera.serial,
+                                                            ModelText(camera)};
   }
   return description;
 }
@@ -121,7 +129,7 @@ std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescri
   std::map<std::string, std::string> metadata;
   for (const CameraDescription& camera : cameras) {
     const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
-    metadata[name] = fmt::format("{}, {}", camera.driver, camera.model);
+    metadata[name] = ModelText(camera);
     metadata[name + "_serial"] = camera.serial;
     metadata[name + "_mode"] =
         fmt::format("{}x{}@{:g}", camera.width, camera.height, camera.rate_hz);

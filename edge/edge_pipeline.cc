@@ -141,6 +141,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
   }
   source_.Close();
   while (std::optional<RawFrame> raw = source_.TakeUnread()) Process(std::move(*raw), stop);
+  ServeNucCommands();
   nuc_.End();
   ServeNucCommands();
   source_ended_ = true;
@@ -148,6 +149,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
 
 void EdgePipeline::ServeNucCommands() {
   while (nuc_commands_.size() > 0) nuc_.Obey(*nuc_commands_.Pop({}));
+  nuc_.TakeCameraAnswers();
   for (CommandResult& answer : nuc_.TakeAnswers()) nuc_answers_.Push(std::move(answer), {});
 }
 

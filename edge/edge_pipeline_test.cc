@@ -79,7 +79,7 @@ class EdgePipelineTest : public testing::Test {
   double rig_thermal_delay_s_ = 0.0;
   FrameAccount account_;
   CameraHealth health_;
-  Status control_answer_ = Unavailable("no shutter");
+  Status control_answer_ = FailedPrecondition("no shutter");
   bool counts_only_ = false;
   FakeSource* camera_ = nullptr;
   std::unique_ptr<SupervisedSource> source_;

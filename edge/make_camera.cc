@@ -92,13 +92,14 @@ bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options) {
 }
 
 std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOptions& options,
-                                               const Clock& clock) {
+                                               const Clock& clock, std::stop_token stop) {
   const bool is_depth = sensor == Sensor::kDepth;
   CameraProcess::Settings settings;
   settings.name = is_depth ? "depth camera" : "thermal camera";
   settings.program = "/proc/self/exe";
   settings.arguments = {"--camera-process", is_depth ? "depth" : "thermal", "--camera-options",
                         ToTextProto(options)};
+  settings.stop = std::move(stop);
   return std::make_unique<CameraProcess>(std::move(settings), clock);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "common/base/status.h"
@@ -18,9 +19,10 @@ Result<std::unique_ptr<FrameSource>> MakeCamera(Sensor sensor, const SourceOptio
 
 /// Whether the camera's library may crash or hang without taking the edge along.
 bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options);
-/// The same camera in a process of its own: this program again, with CameraProcessArguments.
+/// The same camera in a process of its own: this program again, with --camera-process. `stop`
+/// ends an opening early.
 std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOptions& options,
-                                               const Clock& clock);
+                                               const Clock& clock, std::stop_token stop);
 /// What the program does when it was started so; the exit status. `sensor_name`: "depth" or
 /// "thermal"; `source_options`: text format.
 int RunCameraProcess(const std::string& sensor_name, const std::string& source_options,

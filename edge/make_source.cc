@@ -36,8 +36,9 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
                                                   : source.thermal_camera().enabled();
     if (!enabled) continue;
     Result<std::unique_ptr<FrameSource>> camera =
-        RunsInOwnProcess(sensor, source) ? MakeCameraProcess(sensor, source, context.clock)
-                                         : MakeCamera(sensor, source, context.clock);
+        RunsInOwnProcess(sensor, source)
+            ? MakeCameraProcess(sensor, source, context.clock, context.stop)
+            : MakeCamera(sensor, source, context.clock);
     if (!camera) {
       LOG(Edge, Warning) << camera.error().message();
       continue;

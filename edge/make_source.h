@@ -22,7 +22,7 @@ struct SourceContext {
   CameraHealth& health;
   /// A calibration that overrides the source's own: frames of other sizes are refused.
   const std::optional<Rig>& calibration;
-  std::stop_token stop;  ///< Ends the rendering of a simulated scan.
+  std::stop_token stop;  ///< Ends the rendering of a simulated scan, or the opening of a camera.
 };
 
 /// The source that the options ask for, supervised: a recording, a simulated scan, or the cameras,

@@ -1,5 +1,7 @@
 #include "edge/nuc_control.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <utility>
 
@@ -35,6 +37,13 @@ CameraControl ToControl(NucOrder order) {
   return TriggerNuc{};
 }
 
+NucOrder OrderOf(const CameraControl& control) {
+  if (std::holds_alternative<RestartCamera>(control)) return NucOrder::kRestartCamera;
+  const auto* automatic = std::get_if<SetAutomaticNuc>(&control);
+  if (automatic == nullptr) return NucOrder::kTrigger;
+  return automatic->on ? NucOrder::kAutomaticOn : NucOrder::kAutomaticOff;
+}
+
 /// As a recording has it.
 std::string LevelName(LogLevel level) {
   switch (level) {
@@ -61,9 +70,14 @@ CommandOutcome OutcomeOf(const Status& status) {
 }  // namespace
 
 NucControl::NucControl(const EdgeOptions& options, FrameSource& source)
-    : source_(source), supervisor_(Resolved(options), RoleFor(options)), pictures_(options.nuc()) {}
+    : source_(source),
+      supervisor_(Resolved(options), RoleFor(options)),
+      pictures_(options.nuc()),
+      patience_(FromSeconds(options.nuc().answer_s())) {}
 
 NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
+  TakeCameraAnswers();
+  CheckPatience(time);
   NucObservation seen;
   seen.time = time;
   seen.shutter_closed = frame.shutter_closed;
@@ -73,15 +87,44 @@ NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
                             (frame.camera_nuc && frame.camera_nuc->state == NucState::kInProgress);
   seen.picture = pictures_.Add(frame.pixels, time, known_closed);
   status_ = supervisor_.Update(seen);
-  if (status_.order) Pass(*status_.order);
+  if (status_.order) Pass(*status_.order, time);
   Tell();
   return status_;
 }
 
-void NucControl::Pass(NucOrder order) {
-  const Status answer = source_.Control(ToControl(order));
+void NucControl::Pass(NucOrder order, CaptureTime time) {
+  if (order == NucOrder::kTrigger) triggered_at_ = time;
+  const std::optional<Status> answer = source_.Control(ToControl(order));
+  if (answer) OnCameraAnswer(order, *answer);
+}
+
+void NucControl::TakeCameraAnswers() {
+  for (const ControlAnswer& answer : source_.TakeControlAnswers()) {
+    const NucOrder order = OrderOf(answer.control);
+    const bool too_late = order == NucOrder::kTrigger && answers_too_late_ > 0;
+    if (too_late) {
+      --answers_too_late_;
+      LOG(Nuc, Warning) << "the camera answers an order too late: "
+                        << (answer.status.ok() ? "done" : answer.status.message());
+      continue;
+    }
+    OnCameraAnswer(order, answer.status);
+  }
+  Tell();
+}
+
+void NucControl::CheckPatience(CaptureTime time) {
+  if (!triggered_at_ || time - *triggered_at_ < patience_) return;
+  ++answers_too_late_;
+  OnCameraAnswer(
+      NucOrder::kTrigger,
+      Unavailable(fmt::format("the camera did not answer within {:.1f} s", ToSeconds(patience_))));
+}
+
+void NucControl::OnCameraAnswer(NucOrder order, const Status& answer) {
   supervisor_.OnAnswer(order, answer);
   if (order != NucOrder::kTrigger) return;
+  triggered_at_.reset();
   for (const std::uint64_t number : std::exchange(waiting_, {})) {
     Answer(number, answer, answer.ok() ? "the camera has the order" : answer.message());
   }
@@ -92,7 +135,7 @@ void NucControl::Obey(const Command& command) {
   switch (command.kind) {
     case CommandKind::kTriggerNuc:
       done = supervisor_.Request();
-      // It will be given with the next frame, and only then is known how the camera takes it.
+      // Only when the camera has answered is known how it takes the order.
       if (done && done->empty()) return waiting_.push_back(command.number);
       break;
     case CommandKind::kHoldNuc:

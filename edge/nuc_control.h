@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,8 +17,8 @@ namespace isotherm {
 class EdgeOptions;
 
 /// Joins the NUC supervisor with the camera that it follows and commands, and with the operator's
-/// commands. What happens is logged and kept for the recording. Thread-bound to the thread that
-/// reads the source.
+/// commands. Those are answered with what the camera says to the order that they lead to. What
+/// happens is logged and kept for the recording. Thread-bound to the thread that reads the source.
 class NucControl {
  public:
   /// `source` must outlive it.
@@ -26,9 +27,11 @@ class NucControl {
   /// Advances to a thermal frame captured at `time`, and gives the camera its order if one is due.
   NucStatus Process(const RawFrame& frame, CaptureTime time);
 
-  /// Takes a command about the NUC; the answer comes with TakeAnswers, at once or after the next
-  /// frames.
+  /// Takes a command about the NUC; the answer comes with TakeAnswers, at once or when the camera
+  /// has answered.
   void Obey(const Command& command);
+  /// Takes what the camera has answered since the last call.
+  void TakeCameraAnswers();
   /// Since the last call.
   std::vector<CommandResult> TakeAnswers() { return std::exchange(answers_, {}); }
   std::vector<RecordedLog> TakeLog() { return std::exchange(log_, {}); }
@@ -38,7 +41,10 @@ class NucControl {
   NucReport Report() const;
 
  private:
-  void Pass(NucOrder order);
+  void Pass(NucOrder order, CaptureTime time);
+  void OnCameraAnswer(NucOrder order, const Status& answer);
+  /// The camera is taken to refuse an order that it has not answered at `time`, in time.
+  void CheckPatience(CaptureTime time);
   void Answer(std::uint64_t number, const Status& status, std::string text);
   void Tell();
 
@@ -47,7 +53,10 @@ class NucControl {
   PictureWatch pictures_;
   NucStatus status_;
   ThermalHousekeeping housekeeping_;
-  std::vector<std::uint64_t> waiting_;  ///< Commands that the next order answers.
+  const Nanoseconds patience_;               ///< With the camera's answer.
+  std::optional<CaptureTime> triggered_at_;  ///< An order that the camera has not answered yet.
+  int answers_too_late_ = 0;                 ///< That are still to come and mean nothing any more.
+  std::vector<std::uint64_t> waiting_;       ///< Commands that the camera's next answer answers.
   std::vector<CommandResult> answers_;
   std::vector<RecordedLog> log_;
 };

@@ -6,8 +6,9 @@
 #include <signal.h>
 
 #include <chrono>
-#include <cstdio>
+#include <fstream>
 #include <string>
+#include <vector>
 
 #include "common/codec/codec.h"
 #include "common/testing/temporary_directory.h"
@@ -22,27 +23,11 @@
 namespace isotherm::system_test {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
-/// The numbers of "thermal  captured 100 = recorded 99 + rejected 1 + queue full 0 + failed 0".
-struct Account {
-  long captured = -1, recorded = -1, rejected = -1, queue_full = -1, failed = -1;
-};
-
-Account AccountOf(const std::string& output) {
-  Account account;
-  for (std::size_t at = output.find("thermal  captured"); at != std::string::npos;
-       at = output.find("thermal  captured", at + 1)) {
-    if (std::sscanf(output.c_str() + at,
-                    "thermal captured %ld = recorded %ld + rejected %ld + queue full %ld + "
-                    "failed %ld",
-                    &account.captured, &account.recorded, &account.rejected, &account.queue_full,
-                    &account.failed) == 5) {
-      return account;
-    }
-  }
-  return {};
-}
+constexpr int kRefused = 69;  // EX_UNAVAILABLE of sysexits.h.
 
 class ThermalDaemonTest : public ::testing::Test {
  protected:
@@ -64,16 +49,15 @@ class ThermalDaemonTest : public ::testing::Test {
   }
 
   /// Ends the daemon and checks that each frame is accounted for.
-  Account End(Process& edge) {
+  FrameAccountText End(Process& edge) {
     edge.Signal(SIGTERM);
     EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
-    const Account account = AccountOf(edge.output());
+    const FrameAccountText account = AccountOf(edge.output(), Sensor::kThermal, "recorded");
     EXPECT_GT(account.captured, 0) << edge.output();
-    EXPECT_EQ(account.captured,
-              account.recorded + account.rejected + account.queue_full + account.failed);
+    EXPECT_TRUE(account.Closes()) << edge.output();
     const RecordingContent content = ReadRecording(file_);
     EXPECT_TRUE(content.complete);
-    EXPECT_EQ(static_cast<long>(content.thermal.size()), account.recorded);
+    EXPECT_EQ(static_cast<long>(content.thermal.size()), account.done);
     return account;
   }
 
@@ -99,6 +83,31 @@ class ThermalDaemonTest : public ::testing::Test {
     }
     EXPECT_GT(frames, 0);
   }
+  static Finished Nuc() {
+    return RunToEnd({Tool(), {"nuc", "--now", "--domain", std::to_string(TestDomain())}, {}, {}},
+                    kPatience);
+  }
+  /// Of pictures that repeat the one before, more than three in a row, none may be valid.
+  void ExpectFrozenFramesAreInvalid() const {
+    const auto recording = RecordingReader::Open(file_);
+    ASSERT_TRUE(recording.has_value());
+    int repeats = 0;
+    int frozen = 0;
+    std::vector<std::uint8_t> last;
+    while (true) {
+      const Result<std::optional<RecordedItem>> item = (*recording)->Next();
+      ASSERT_TRUE(item.has_value());
+      if (!*item) break;
+      const auto* thermal = std::get_if<RecordedThermal>(&**item);
+      if (thermal == nullptr) continue;
+      repeats = thermal->frame.image.payload == last ? repeats + 1 : 0;
+      last = thermal->frame.image.payload;
+      if (repeats == 0) continue;
+      ++frozen;
+      EXPECT_FALSE(thermal->frame.valid) << "frame " << thermal->frame.header.frame_number;
+    }
+    EXPECT_GE(frozen, 10) << "two seconds of them";
+  }
 
   const ::isotherm::testing::TemporaryDirectory folder_;
   const std::filesystem::path file_ = folder_.path() / "scan.mcap";
@@ -119,8 +128,8 @@ TEST_F(ThermalDaemonTest, F04UnpluggedInMidFrameTheScanGoesOnWhenItIsBack) {
     ASSERT_FALSE(edge.WaitForExit(Seconds(0.1)).has_value()) << edge.output();
   }
   EXPECT_FALSE(edge.WaitForExit(Seconds(1.5)).has_value());
-  const Account account = End(edge);
-  EXPECT_GE(account.recorded, 8 + 4) << edge.output();
+  const FrameAccountText account = End(edge);
+  EXPECT_GE(account.done, 8 + 4) << edge.output();
 }
 
 TEST_F(ThermalDaemonTest, F11DamagedFramesAreRefusedAndCounted) {
@@ -132,23 +141,98 @@ TEST_F(ThermalDaemonTest, F11DamagedFramesAreRefusedAndCounted) {
   EXPECT_EQ(End(edge).rejected, 4) << edge.output();
 }
 
-TEST_F(ThermalDaemonTest, F05FrozenCameraIsOpenedAgain) {
-  bus_->Plug(std::make_shared<EmulatedLepton>("6*f 40*f:freeze f"));
-  Process edge(Edge());
+TEST_F(ThermalDaemonTest, F05FrozenFramesAreNotValidAndTheCameraIsOpenedAgainAfterTwoSeconds) {
+  bus_->Plug(std::make_shared<EmulatedLepton>("12*f 40*f:freeze f"));
+  Process edge(Edge({"--set", "nuc.before_scan=false"}));
   bus_->SetChild(edge.pid());
   ASSERT_TRUE(edge.WaitForOutput("the picture is frozen", kPatience)) << edge.output();
-  ASSERT_TRUE(edge.WaitForOutput("sends the same picture", kPatience)) << edge.output();
-  EXPECT_FALSE(edge.WaitForExit(Seconds(1.0)).has_value());
+  ASSERT_TRUE(edge.WaitForOutput("sends the same picture for 2.", kPatience)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience, 2)) << edge.output();
+  End(edge);
+  ExpectFrozenFramesAreInvalid();
+}
+
+/// The same when the source is more patient than the policy of corrections: that one's order to
+/// restart goes through the camera's thread.
+TEST_F(ThermalDaemonTest, F05FrozenCameraIsRestartedByOrder) {
+  bus_->Plug(std::make_shared<EmulatedLepton>("12*f 30*f:freeze f"));
+  Process edge(Edge({"--set", "nuc.before_scan=false", "--set", "nuc.frozen_restart_s=2", "--set",
+                     "source.thermal_camera.stall_timeout_s=60"}));
+  bus_->SetChild(edge.pid());
+  ASSERT_TRUE(edge.WaitForOutput("thermal frames are frozen", kPatience)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput("the thermal camera is restarted", kPatience)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience, 2)) << edge.output();
+  EXPECT_THAT(edge.output(), Not(HasSubstr("sends the same picture")));
+  End(edge);
+  ExpectFrozenFramesAreInvalid();
+}
+
+TEST_F(ThermalDaemonTest, F08CorrectionThatNeverEndsIsReportedAndDoesNotEndTheScan) {
+  const auto camera = std::make_shared<EmulatedLepton>("6*f f:nuc");
+  bus_->Plug(camera);
+  Process edge(Edge());
+  bus_->SetChild(edge.pid());
+  // Within ten seconds: after nuc.max_duration_s.
+  ASSERT_TRUE(
+      edge.WaitForOutput("the correction does not end: the shutter is closed for 5.", kPatience))
+      << edge.output();
+  EXPECT_GE(End(edge).done, 40) << edge.output();
+  EXPECT_LE(camera->corrections(), 1) << "no order on top";
+}
+
+TEST_F(ThermalDaemonTest, AnOrderIsAnsweredWithWhatTheCameraSays) {
+  const auto camera = std::make_shared<EmulatedLepton>("f");
+  bus_->Plug(camera);
+  Process edge(Edge({"--set", "nuc.before_scan=false"}));
+  bus_->SetChild(edge.pid());
+  ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience)) << edge.output();
+  const Finished done = Nuc();
+  EXPECT_EQ(done.status, 0) << done.output;
+  EXPECT_THAT(done.output, HasSubstr("edge: the camera has the order"));
+  EXPECT_EQ(camera->corrections(), 1);
+  EXPECT_TRUE(edge.WaitForOutput("shutter closed as ordered", kPatience)) << edge.output();
   End(edge);
 }
 
-TEST_F(ThermalDaemonTest, F08CorrectionThatNeverEndsDoesNotEndTheScan) {
-  bus_->Plug(std::make_shared<EmulatedLepton>("6*f f:nuc"));
+TEST_F(ThermalDaemonTest, AnOrderThatTheCameraRefusesIsAnsweredWithItsWords) {
+  const auto camera = std::make_shared<EmulatedLepton>("2*f stall f");
+  bus_->Plug(camera);
+  Process edge(Edge({"--set", "nuc.before_scan=false"}));
+  bus_->SetChild(edge.pid());
+  ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience)) << edge.output();
+  const Finished refused = Nuc();
+  EXPECT_EQ(refused.status, kRefused);
+  EXPECT_THAT(refused.output, AllOf(HasSubstr("edge failed: starting a correction"),
+                                    HasSubstr("the device refuses (stall)")));
+  EXPECT_EQ(camera->corrections(), 0);
+  EXPECT_THAT(edge.output(), HasSubstr("correction refused (attempt 1 of 3)"));
+  End(edge);
+}
+
+TEST_F(ThermalDaemonTest, F03ACameraThatTheCalibrationIsNotOfIsNotUsed) {
+  const std::filesystem::path rig = folder_.path() / "rig.textproto";
+  std::ofstream(rig) << "thermal_serial: \"LEPTON-1\"\n";
+  bus_->Plug(std::make_shared<EmulatedLepton>("f", "LEPTON-2"));
+  Process edge(Edge({"--rig", rig.string()}));
+  bus_->SetChild(edge.pid());
+  EXPECT_TRUE(
+      edge.WaitForOutput("\"LEPTON-2\" is not used: the calibration is of \"LEPTON-1\"", kPatience))
+      << edge.output();
+  EXPECT_EQ(edge.WaitForExit(kPatience), kRefused) << "there is no other camera";
+}
+
+TEST_F(ThermalDaemonTest, TheRecordingSaysWhatTheCameraIs) {
+  bus_->Plug(std::make_shared<EmulatedLepton>("f"));
   Process edge(Edge());
   bus_->SetChild(edge.pid());
-  ASSERT_TRUE(edge.WaitForOutput("serial=\"LEPTON-1\"", kPatience)) << edge.output();
-  EXPECT_FALSE(edge.WaitForExit(Seconds(4.0)).has_value());
-  EXPECT_GE(End(edge).recorded, 15) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience)) << edge.output();
+  End(edge);
+  const auto recording = RecordingReader::Open(file_);
+  ASSERT_TRUE(recording.has_value());
+  const auto cameras = (*recording)->info().metadata.at("cameras");
+  EXPECT_THAT(cameras.at("thermal"), HasSubstr("lepton-uvc, "));
+  EXPECT_EQ(cameras.at("thermal_serial"), "LEPTON-1");
+  EXPECT_EQ(cameras.at("thermal_mode"), "160x120@8.7");
 }
 
 TEST_F(ThermalDaemonTest, F03AnotherSerialIsRefusedWithASentence) {
@@ -171,7 +255,7 @@ TEST_F(ThermalDaemonTest, CountsAreRecordedAsCountsAndF04UnpluggingIsSurvived) {
     ASSERT_FALSE(edge.WaitForExit(Seconds(0.1)).has_value()) << edge.output();
   }
   EXPECT_FALSE(edge.WaitForExit(Seconds(2.0)).has_value());
-  EXPECT_GE(End(edge).recorded, 7 + 8) << edge.output();
+  EXPECT_GE(End(edge).done, 7 + 8) << edge.output();
   ExpectRecordedCounts();
 
   const Finished inspected = RunToEnd({Tool(), {"inspect", file_}, {}}, kPatience);

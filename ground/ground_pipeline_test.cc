@@ -5,8 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <utility>
+#include <vector>
 
+#include "ground/export/surface.h"
 #include "ground/tracker/analytic_views_for_test.h"
 
 namespace isotherm {
@@ -17,6 +20,7 @@ using namespace std::chrono_literals;
 class GroundPipelineTest : public ::testing::Test {
  protected:
   static constexpr double kStep = 0.003;  // Metres per frame.
+  static constexpr unsigned kSeed = 12;
 
   GroundPipelineTest() {
     rig_.depth = testing::SmallDepthCamera();
@@ -99,7 +103,7 @@ TEST_F(GroundPipelineTest, ResultDoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(pipeline_->tsdf().block_count(), blocks);
 }
 
-TEST_F(GroundPipelineTest, ACoveredCameraLeavesTheModelAloneAndTrackingComesBack) {
+TEST_F(GroundPipelineTest, F13ACoveredCameraLeavesTheModelAloneAndTrackingComesBack) {
   for (int i = 0; i < 4; ++i) Depth(i);
   const std::uint64_t integrated = pipeline_->counts().depth_integrated;
   for (int i = 4; i < 7; ++i) EXPECT_FALSE(Covered(i).tracked);
@@ -242,6 +246,69 @@ TEST_F(GroundPipelineTest, F12AScaleThatIsNoneIsLostAndLeavesNothing) {
     EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked) << bad;
   }
   EXPECT_EQ(pipeline_->tsdf().block_count(), 0);
+}
+
+TEST_F(GroundPipelineTest, F01WithoutDepthNothingIsFused) {
+  for (int i = 0; i < 3; ++i) Depth(i);
+  const std::int32_t blocks = pipeline_->tsdf().block_count();
+  for (int i = 3; i < 33; ++i) Thermal(i);
+  pipeline_->Finish();
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_EQ(LeftOut("no_depth_after"), 30U);
+  EXPECT_EQ(pipeline_->tsdf().block_count(), blocks);
+}
+
+TEST_F(GroundPipelineTest, F04WithoutThermalGeometryGoesOnAndHasNoTemperature) {
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(Depth(i).tracked);
+  EXPECT_EQ(pipeline_->counts().depth_integrated, 5U);
+  const Surface surface =
+      ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
+  EXPECT_GT(surface.points.size(), 1000U);
+  for (const CloudPoint& point : surface.points) ASSERT_TRUE(std::isnan(point.celsius));
+}
+
+TEST_F(GroundPipelineTest, F07WhileTheShutterIsClosedGeometryGoesOnAndNoTemperatureIsTaken) {
+  Depth(0);
+  for (int i = 1; i < 5; ++i) {
+    Thermal(i - 0.5, /*valid=*/false);
+    EXPECT_TRUE(Depth(i).tracked) << "no loss of tracking";
+  }
+  EXPECT_EQ(LeftOut("nuc"), 4U);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+}
+
+TEST_F(GroundPipelineTest, F12TheMapHoldsNoValueThatIsNone) {
+  std::mt19937 random(kSeed);
+  const auto spoil = [&random](Image<std::uint16_t>& image, std::vector<std::uint16_t> with) {
+    for (std::uint16_t& pixel : image.pixels())
+      if (random() % 5 == 0) pixel = with[random() % with.size()];
+  };
+  for (int i = 0; i < 6; ++i) {
+    DepthFrame depth = testing::RenderDepth(testing::BallInCorner, *rig_.depth, TruePose(i));
+    depth.header.capture_time = Time(i);
+    spoil(depth.depth_raw, {kNoDepth, kNoDepthSaturated, 1, 65'534});
+    auto thermal = std::make_shared<ThermalFrame>();
+    thermal->header.capture_time = Time(i - 0.5);
+    thermal->centikelvin = Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);
+    spoil(thermal->centikelvin, {0});  // As the edge leaves what is out of range.
+    thermal->valid = true;
+    if (i > 0) pipeline_->ProcessThermal(thermal);
+    EXPECT_TRUE(pipeline_->ProcessDepth(depth).tracked) << i;
+  }
+  for (const StampedPose& pose : pipeline_->trajectory())
+    EXPECT_TRUE(pose.T_world_depth.matrix().allFinite());
+  const Surface surface =
+      ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
+  EXPECT_GT(surface.points.size(), 1000U);
+  int measured = 0;
+  for (const CloudPoint& point : surface.points) {
+    ASSERT_TRUE(point.position_m.allFinite());
+    ASSERT_TRUE(point.normal.allFinite());
+    if (std::isnan(point.celsius)) continue;  // Never measured.
+    ++measured;
+    ASSERT_NEAR(point.celsius, 50.0, 0.03) << "of 20 % nothing";
+  }
+  EXPECT_GT(measured, 300);
 }
 
 TEST_F(GroundPipelineTest, F56ACameraWithoutPixelsIsNamed) {

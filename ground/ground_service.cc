@@ -11,6 +11,7 @@
 #include <future>
 #include <memory>
 #include <mutex>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -28,6 +29,13 @@
 
 namespace isotherm {
 namespace {
+
+/// A replay or a simulation has none.
+void TellAboutCamera(std::string_view name, const StreamMode& camera) {
+  if (camera.model.empty()) return;
+  LOG(Ground, Info) << name << " camera: " << camera.model << ", serial=" << camera.serial
+                    << " mode=" << ModeText(camera);
+}
 
 using namespace std::chrono_literals;
 
@@ -145,6 +153,8 @@ class ReconstructionLoop {
   void Handle(const SessionStart& start) {
     End(last_account_);
     start_ = start;
+    TellAboutCamera("depth", start.rig.depth);
+    TellAboutCamera("thermal", start.rig.thermal);
     Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
     if (!scan) {
       LOG(Ground, Error) << "session " << start.rig.session

@@ -1,10 +1,25 @@
 #include "ground/scan_recorder.h"
 
+#include <map>
+#include <string>
+
 #include "common/base/log.h"
 #include "common/config/text_proto.h"
 #include "common/transport/feedback_record.h"
 
 namespace isotherm {
+namespace {
+
+/// As the edge's recording has it; nothing if there is no camera.
+void AddCamera(const std::string& name, const StreamMode& camera,
+               std::map<std::string, std::string>& metadata) {
+  if (camera.model.empty()) return;
+  metadata[name] = camera.model;
+  metadata[name + "_serial"] = camera.serial;
+  metadata[name + "_mode"] = ModeText(camera);
+}
+
+}  // namespace
 
 Result<std::unique_ptr<ScanRecorder>> ScanRecorder::Create(const std::filesystem::path& path,
                                                            const GroundOptions& options) {
@@ -25,7 +40,13 @@ void ScanRecorder::Note(const Status& status) {
   LOG(Ground, Error) << "the recording ends here, the scan goes on: " << status.message();
 }
 
-void ScanRecorder::Write(const RigDescription& rig) { Note(writer_->Write(rig.rig)); }
+void ScanRecorder::Write(const RigDescription& rig) {
+  Note(writer_->Write(rig.rig));
+  std::map<std::string, std::string> cameras;
+  AddCamera("depth", rig.depth, cameras);
+  AddCamera("thermal", rig.thermal, cameras);
+  if (!cameras.empty()) Note(writer_->WriteMetadata("cameras", cameras));
+}
 void ScanRecorder::Write(const ReceivedDepth& depth) {
   Note(writer_->Write(*depth.encoded, depth.arrival));
 }

@@ -86,6 +86,8 @@ Rig FromProto(const RigCalibration& calibration) {
   rig.serial = calibration.serial();
   rig.date = calibration.date();
   rig.method = calibration.method();
+  rig.depth_serial = calibration.depth_serial();
+  rig.thermal_serial = calibration.thermal_serial();
   if (calibration.has_reprojection_error_px()) {
     rig.reprojection_error_px = calibration.reprojection_error_px();
   }
@@ -102,6 +104,8 @@ RigCalibration ToProto(const Rig& rig) {
   if (!rig.serial.empty()) calibration.set_serial(rig.serial);
   if (!rig.date.empty()) calibration.set_date(rig.date);
   if (!rig.method.empty()) calibration.set_method(rig.method);
+  if (!rig.depth_serial.empty()) calibration.set_depth_serial(rig.depth_serial);
+  if (!rig.thermal_serial.empty()) calibration.set_thermal_serial(rig.thermal_serial);
   if (rig.reprojection_error_px) calibration.set_reprojection_error_px(*rig.reprojection_error_px);
   return calibration;
 }

@@ -54,6 +54,7 @@ struct Rig {
   std::optional<RigidTransform> T_thermal_depth;
   double thermal_delay_s = 0.0;  ///< Added to thermal timestamps.
   std::string serial, date, method;
+  std::string depth_serial, thermal_serial;  ///< Of the cameras that were calibrated; empty = any.
   std::optional<double> reprojection_error_px;
 };
 

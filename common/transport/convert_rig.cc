@@ -49,6 +49,7 @@ void ToWireMode(const StreamMode& from, isotherm_wire_StreamMode* to) {
   to->rate_hz = from.rate_hz;
   to->encoding = static_cast<std::uint8_t>(from.encoding);
   CopyText(from.serial, to->serial);
+  CopyText(from.model, to->model);
 }
 
 std::optional<RefusalCause> FromWireMode(const isotherm_wire_StreamMode& from, StreamMode* to) {
@@ -62,6 +63,7 @@ std::optional<RefusalCause> FromWireMode(const isotherm_wire_StreamMode& from, S
   to->rate_hz = from.rate_hz;
   to->encoding = static_cast<Encoding>(from.encoding);
   to->serial = ReadText(from.serial);
+  to->model = ReadText(from.model);
   return std::nullopt;
 }
 

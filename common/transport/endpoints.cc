@@ -5,6 +5,8 @@
 #include <isotherm_control.h>
 #include <isotherm_frames.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "common/transport/bounded_text.h"
@@ -50,6 +52,14 @@ Status CreateTopic(const Participant& participant, TopicId topic, DdsHandle* han
   *handle = DdsHandle(dds_create_topic(participant.handle(), DescriptorOf(topic), TopicName(topic),
                                        qos.get(), nullptr));
   return handle->value() > 0 ? OkStatus() : CreationFailed("topic", topic, handle->value());
+}
+
+/// Takes what dds_get_matched_*_data gives; may be null.
+PeerHandle TakePeer(dds_builtintopic_endpoint_t* endpoint) {
+  if (endpoint == nullptr) return 0;
+  const PeerHandle peer = endpoint->participant_instance_handle;
+  dds_builtintopic_free_endpoint(endpoint);
+  return peer;
 }
 
 /// A wire struct with the lists that ToWire allocated.
@@ -100,6 +110,18 @@ int Writer<Message>::matched_readers() const {
 }
 
 template <typename Message>
+bool Writer<Message>::Reaches(PeerHandle peer) const {
+  constexpr std::size_t kMostReaders = 64;
+  std::array<dds_instance_handle_t, kMostReaders> readers{};
+  const dds_return_t count =
+      dds_get_matched_subscriptions(writer_.value(), readers.data(), readers.size());
+  const auto known = std::clamp<std::ptrdiff_t>(count, 0, kMostReaders);
+  return peer != 0 && std::any_of(readers.begin(), readers.begin() + known, [&](auto reader) {
+           return TakePeer(dds_get_matched_subscription_data(writer_.value(), reader)) == peer;
+         });
+}
+
+template <typename Message>
 bool Writer<Message>::WaitForAcknowledgments(Nanoseconds timeout) const {
   return dds_wait_for_acks(writer_.value(), timeout.count()) == DDS_RETCODE_OK;
 }
@@ -112,8 +134,9 @@ struct Reader<Message>::Impl {
   RefusalCounter* refusals = nullptr;
   WireSample<Message> sample;  // Reused, so that its payload buffer is allocated once.
 
-  void Accept(const std::function<void(Received<Message>&&)>& handle) {
+  void Accept(const std::function<void(Received<Message>&&)>& handle, std::uint64_t writer) {
     Received<Message> received;
+    received.writer = writer;
     received.edge_id = ReadText(sample.wire.edge_id);
     if (const auto cause = FromWire(sample.wire, &received.message)) {
       refusals->Add(*cause, fmt::format("topic={} edge_id={}", TopicName(TopicOf<Message>::kId),
@@ -159,7 +182,8 @@ int Reader<Message>::Take(const std::function<void(Received<Message>&&)>& handle
     dds_sample_info_t info{};
     if (dds_take(impl_->reader.value(), samples, &info, 1, 1) <= 0) break;
     ++taken;
-    if (info.valid_data) impl_->Accept(handle);  // Otherwise a writer came or left.
+    // Otherwise a writer came or left.
+    if (info.valid_data) impl_->Accept(handle, info.publication_handle);
   }
   return taken;
 }
@@ -169,6 +193,11 @@ int Reader<Message>::matched_writers() const {
   dds_liveliness_changed_status_t status{};
   if (dds_get_liveliness_changed_status(impl_->reader.value(), &status) != DDS_RETCODE_OK) return 0;
   return static_cast<int>(status.alive_count);
+}
+
+template <typename Message>
+PeerHandle Reader<Message>::PeerOf(std::uint64_t writer) const {
+  return TakePeer(dds_get_matched_publication_data(impl_->reader.value(), writer));
 }
 
 template <typename Message>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,6 +17,9 @@
 /// the topic and its QoS follow from it (qos.cc).
 namespace isotherm {
 
+/// A participant of the domain as this process knows it; 0 = none.
+using PeerHandle = std::uint64_t;
+
 /// Writes one topic. Thread-safe.
 template <typename Message>
 class Writer {
@@ -29,6 +33,8 @@ class Writer {
   Status Write(std::string_view edge_id, const Message& message);
   /// Readers of this topic that are there now.
   int matched_readers() const;
+  /// Whether `peer` has such a reader, so that it gets what is written from now on.
+  bool Reaches(PeerHandle peer) const;
   /// Waits until all readers have acknowledged everything written. False after `timeout`.
   bool WaitForAcknowledgments(Nanoseconds timeout) const;
 
@@ -41,6 +47,7 @@ template <typename Message>
 struct Received {
   std::string edge_id;
   Message message;
+  std::uint64_t writer = 0;  ///< Which one wrote it; for Reader::PeerOf.
 };
 
 /// Reads one topic. What cannot be right is refused before anything is allocated for it, and
@@ -61,6 +68,8 @@ class Reader {
   int Take(const std::function<void(Received<Message>&&)>& handle, int max_samples = 64);
   /// Living writers of this topic.
   int matched_writers() const;
+  /// Whose writer it is; 0 if it is gone.
+  PeerHandle PeerOf(std::uint64_t writer) const;
   /// For WaitSet.
   std::int32_t read_condition() const;
 

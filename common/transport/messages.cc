@@ -52,6 +52,10 @@ std::string_view ToString(Advice advice) {
   return "?";
 }
 
+std::string ModeText(const StreamMode& mode) {
+  return fmt::format("{}x{}@{:g}", mode.width, mode.height, mode.rate_hz);
+}
+
 std::string_view ToString(NucPolicy policy) {
   switch (policy) {
     case NucPolicy::kAutomatic:

@@ -56,7 +56,11 @@ struct StreamMode {
   double rate_hz = 0.0;  ///< Nominal.
   Encoding encoding = Encoding::kRaw16;
   std::string serial{};  ///< Of the camera; empty = unknown.
+  std::string model{};   ///< Driver and model, for people; empty = not a camera, or unknown.
 };
+
+/// "640x480@30".
+std::string ModeText(const StreamMode& mode);
 
 /// Calibration and active modes. Written at the start of each scan, kept for late joiners.
 struct RigDescription {

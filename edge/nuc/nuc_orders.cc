@@ -28,6 +28,7 @@ Result<std::string> NucSupervisor::Request() {
                     shutter_.closings_per_minute(), options_->max_closings_per_minute())));
   }
   if (waiting_since_) return "a correction was ordered already";
+  if (trigger_unanswered_) return "";
   requested_ = true;
   cannot_trigger_ = false;
   attempts_ = 0;
@@ -90,8 +91,11 @@ void NucSupervisor::OnAnswer(NucOrder order, const Status& answer) {
     case NucOrder::kTrigger:
       break;
   }
+  // The shutter may have closed before the answer came.
+  const bool still_open = std::exchange(trigger_unanswered_, false);
   if (answer.ok()) {
     Note(LogLevel::kInfo, "correction ordered: " + ordered_for_);
+    if (!still_open) return;
     if (tells_) {
       waiting_since_ = now_;
     } else {
@@ -100,7 +104,7 @@ void NucSupervisor::OnAnswer(NucOrder order, const Status& answer) {
     return;
   }
   requested_ = false;
-  cannot_trigger_ = answer.code() == StatusCode::kUnavailable;
+  cannot_trigger_ = answer.code() == StatusCode::kFailedPrecondition;
   Note(LogLevel::kWarning, fmt::format("correction refused ({}): {}",
                                        cannot_trigger_ ? "the camera's own are followed"
                                                        : fmt::format("attempt {} of {}", attempts_,

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+#include <vector>
 
 #include "common/recording/test_seed.h"
 #include "edge/edge_options.pb.h"
@@ -63,6 +65,11 @@ TEST(NucProperties, NoFrameFromClosingToTheEndOfSettlingIsValidAndOrdersKeepThei
     const Nanoseconds apart = FromSeconds(options.min_interval_s());
     CaptureTime now{std::chrono::hours(1)};
     CaptureTime last_closed{}, last_order{};
+    struct Answer {
+      NucOrder order;
+      int frame;  ///< At which it comes.
+    };
+    std::vector<Answer> answers;
     for (int i = 0; i < kFrames; ++i) {
       now += std::chrono::milliseconds(camera.Pick(20, 30));
       const NucObservation seen = camera.Next(now);
@@ -78,10 +85,12 @@ TEST(NucProperties, NoFrameFromClosingToTheEndOfSettlingIsValidAndOrdersKeepThei
         last_order = now;
         camera.Order();
       }
-      if (status.order) {
-        const Status refused(StatusCode::kIoError, "it stalls");
-        supervisor.OnAnswer(*status.order, camera.Chance(0.1) ? refused : OkStatus());
-      }
+      if (status.order) answers.push_back({*status.order, i + std::max(0, camera.Pick(-10, 10))});
+      std::erase_if(answers, [&](const Answer& answer) {
+        if (answer.frame > i) return false;
+        supervisor.OnAnswer(answer.order, camera.Chance(0.1) ? IoError("it stalls") : OkStatus());
+        return true;
+      });
       if (camera.Chance(0.005)) static_cast<void>(supervisor.Request());
       if (camera.Chance(0.002)) static_cast<void>(supervisor.Hold(camera.Pick(0, 100)));
       if (camera.Chance(0.001))

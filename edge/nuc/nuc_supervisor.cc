@@ -20,10 +20,15 @@ NucPolicy PolicyOf(const NucOptions& options) {
       return NucPolicy::kManual;
     case NucOptions::CAMERA:
       return NucPolicy::kCamera;
-    case NucOptions::SUPERVISED:
+    case NucOptions::AUTOMATIC:
       break;
   }
   return NucPolicy::kAutomatic;
+}
+
+/// The driver compares pictures too, and knows how often the camera repeats them.
+bool FoundFrozenByDriver(const NucObservation& seen) {
+  return seen.shutter_closed && seen.camera && seen.camera->source == NucSource::kInferred;
 }
 
 /// Empty if `now` is within `limit_k` of `then`, if either is not known, or without a limit.
@@ -58,9 +63,9 @@ NucStatus NucSupervisor::Update(const NucObservation& seen) {
   FollowStorm();
   FollowWarmUp(seen.housekeeping);
   due_ = DueReason(seen);
+  state_ = NextState(seen);
   NucStatus status;
   status.order = NextOrder(seen);
-  state_ = NextState(seen);
   reason_ = Explain(seen);
   status.state = state_;
   status.valid = IsValid(seen);
@@ -85,6 +90,7 @@ void NucSupervisor::Advance(const NucObservation& seen) {
   now_ += passed;
   if (passed > kSilence && role_ == Role::kSupervise) {
     automatic_.reset();
+    trigger_unanswered_ = false;
     cannot_trigger_ = false;
     attempts_ = 0;
     if (options_->before_scan()) nuc_seen_ = first_nuc_waived_ = false;
@@ -95,6 +101,7 @@ void NucSupervisor::Advance(const NucObservation& seen) {
 }
 
 std::optional<NucSource> NucSupervisor::ClosedBy(const NucObservation& seen) const {
+  if (FoundFrozenByDriver(seen)) return NucSource::kInferred;
   if (seen.camera && seen.camera->state == NucState::kInProgress) return seen.camera->source;
   if (seen.shutter_closed) return NucSource::kInBand;
   if (seen.picture.is_frozen) return NucSource::kInferred;
@@ -105,7 +112,9 @@ std::optional<NucSource> NucSupervisor::ClosedBy(const NucObservation& seen) con
 
 void NucSupervisor::OnShutter(const NucObservation& seen) {
   if (shutter_.just_closed()) {
-    const bool ordered = waiting_since_.has_value() || commanded_until_.has_value();
+    const bool ordered =
+        trigger_unanswered_ || waiting_since_.has_value() || commanded_until_.has_value();
+    trigger_unanswered_ = false;
     waiting_since_.reset();
     if (!storm_) {
       Note(LogLevel::kInfo, fmt::format("shutter closed{}, known by {}",
@@ -136,7 +145,8 @@ void NucSupervisor::OnShutter(const NucObservation& seen) {
 }
 
 bool NucSupervisor::IsFrozen(const NucObservation& seen) const {
-  return seen.picture.is_frozen && shutter_.source() == NucSource::kInferred;
+  const bool frozen = seen.picture.is_frozen || FoundFrozenByDriver(seen);
+  return frozen && shutter_.source() == NucSource::kInferred;
 }
 
 bool NucSupervisor::IsStuck(const NucObservation& seen) const {
@@ -237,8 +247,8 @@ CaptureTime NucSupervisor::EarliestTrigger() const {
 }
 
 bool NucSupervisor::MayTrigger() const {
-  return !due_.empty() && !waiting_since_ && !shutter_.is_closed() && !IsHeld() && !storm_ &&
-         attempts_ < options_->max_attempts() && now_ >= EarliestTrigger();
+  return !due_.empty() && !trigger_unanswered_ && !waiting_since_ && !shutter_.is_closed() &&
+         !IsHeld() && !storm_ && attempts_ < options_->max_attempts() && now_ >= EarliestTrigger();
 }
 
 std::optional<NucOrder> NucSupervisor::NextOrder(const NucObservation& seen) {
@@ -256,6 +266,7 @@ std::optional<NucOrder> NucSupervisor::NextOrder(const NucObservation& seen) {
   }
   if (!MayTrigger()) return std::nullopt;
   last_trigger_ = now_;
+  trigger_unanswered_ = true;
   ++attempts_;
   ordered_for_ = due_;
   return NucOrder::kTrigger;
@@ -268,7 +279,8 @@ NucState NucSupervisor::NextState(const NucObservation& seen) const {
   if (shutter_.opened_at() && now_ - *shutter_.opened_at() < FromSeconds(options_->settle_time_s()))
     return NucState::kSettling;
   if (camera == NucState::kSettling) return NucState::kSettling;
-  if (waiting_since_ || camera == NucState::kImminent) return NucState::kImminent;
+  if (trigger_unanswered_ || waiting_since_ || camera == NucState::kImminent)
+    return NucState::kImminent;
   const bool given_up = !due_.empty() && attempts_ >= options_->max_attempts();
   if (given_up || camera == NucState::kBlocked) return NucState::kBlocked;
   if (NeedsFirstNuc() || WaitsForWarmUp()) return NucState::kUnknown;
@@ -301,7 +313,8 @@ std::string NucSupervisor::Explain(const NucObservation& seen) const {
       return due_.empty() ? "the camera asks for it" : due_;
     }
     case NucState::kImminent:
-      return waiting_since_ ? "ordered: " + ordered_for_ : "announced by the camera";
+      return trigger_unanswered_ || waiting_since_ ? "ordered: " + ordered_for_
+                                                   : "announced by the camera";
     case NucState::kBlocked:
       return due_.empty() ? "the camera says that it cannot"
                           : "the camera does not follow: " + due_;

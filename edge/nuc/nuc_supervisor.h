@@ -36,7 +36,7 @@ struct NucStatus {
   NucSource source = NucSource::kUnknown;
   std::optional<double> seconds_since_nuc;  ///< Since the shutter opened; nullopt = none seen yet.
   bool valid = false;                       ///< Temperatures may reach the model.
-  std::optional<NucOrder> order;            ///< To be passed on; the answer goes to OnAnswer.
+  std::optional<NucOrder> order;  ///< To be passed on; the camera's answer goes to OnAnswer.
 };
 
 /// Something that operator, log and recording should know.
@@ -83,10 +83,12 @@ class NucSupervisor {
 
   /// Advances to a frame. At most one order comes of it.
   NucStatus Update(const NucObservation& seen);
-  /// What became of the last order.
+  /// What the camera says to an order, at once or some frames later. kFailedPrecondition: it takes
+  /// no such order and is not asked again; anything else but ok counts as an attempt.
   void OnAnswer(NucOrder order, const Status& answer);
 
-  /// A NUC as soon as it is allowed. Empty if that is at the next frame, or a sentence that says
+  /// A NUC as soon as it is allowed. Empty if the camera's answer to the order of the next frame,
+  /// or to the one that it has not answered yet, is the answer to this; or a sentence that says
   /// when; an error if it will not be done.
   Result<std::string> Request();
   /// No orders for so long, camera's own included as far as it obeys; 0 ends a hold. Bounded by
@@ -150,7 +152,7 @@ class NucSupervisor {
   bool storm_ = false;
   bool told_stuck_ = false;
   bool tells_ = false;           ///< The camera says when its shutter is closed.
-  bool cannot_trigger_ = false;  ///< The camera takes no such order.
+  bool cannot_trigger_ = false;  ///< The camera has said that it takes no such order.
   bool nuc_seen_ = false;
   bool first_nuc_waived_ = false;  ///< It did not come; the scan goes on without.
   /// At the last NUC, or at the first frame.
@@ -158,6 +160,7 @@ class NucSupervisor {
 
   bool requested_ = false;
   std::optional<CaptureTime> last_trigger_;
+  bool trigger_unanswered_ = false;             ///< An order that the camera has not answered yet.
   std::optional<CaptureTime> waiting_since_;    ///< An order that was accepted and not yet seen.
   std::optional<CaptureTime> commanded_until_;  ///< For cameras that do not tell.
   int attempts_ = 0;

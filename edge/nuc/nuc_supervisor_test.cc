@@ -109,7 +109,7 @@ TEST_F(NucSupervisorTest, TakesTheCamerasAgeUntilItHasSeenACorrection) {
 }
 
 TEST_F(NucSupervisorTest, SwitchesTheCamerasOwnCorrectionsOffAndSaysIfItCannot) {
-  answer_ = Unavailable("it is a Seek");
+  answer_ = FailedPrecondition("it is a Seek");
   Start();
   Frames(S::kSaysIdle, 5);
   ASSERT_EQ(orders_.size(), 1U) << "once, not with every frame";
@@ -144,7 +144,7 @@ TEST_F(NucSupervisorTest, BeforeTheScanACorrectionIsOrderedAndWaitedFor) {
 
 TEST_F(NucSupervisorTest, ACameraThatTakesNoOrdersScansWithoutAFirstCorrection) {
   options_.set_before_scan(true);
-  answer_ = Unavailable("no shutter to command");
+  answer_ = FailedPrecondition("no shutter to command");
   Start();
   Frames(S::kSaysIdle, 1);
   EXPECT_EQ(last_.state, kIdle);

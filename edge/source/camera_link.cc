@@ -58,6 +58,15 @@ bool CameraLink::SendAny(const Message& message) {
   return sent == static_cast<ssize_t>(bytes.size());
 }
 
+void ToLink(const Status& status, LinkStatus* to) {
+  to->set_code(static_cast<int>(status.code()));
+  to->set_message(status.message());
+}
+
+Status FromLink(const LinkStatus& from) {
+  return Status(static_cast<StatusCode>(from.code()), from.message());
+}
+
 void ToLink(const RawFrame& frame, LinkFrame* to) {
   to->set_width(frame.pixels.width());
   to->set_height(frame.pixels.height());

@@ -12,6 +12,7 @@ namespace isotherm {
 class FromCamera;
 class LinkFrame;
 class LinkOpened;
+class LinkStatus;
 class PixelSlots;
 class ToCamera;
 
@@ -40,6 +41,9 @@ class CameraLink {
 
   const int descriptor_;
 };
+
+void ToLink(const Status& status, LinkStatus* to);
+Status FromLink(const LinkStatus& from);
 
 /// Everything but the pixels.
 void ToLink(const RawFrame& frame, LinkFrame* to);

@@ -32,6 +32,7 @@ CameraPair::~CameraPair() { Close(); }
 Status CameraPair::Open() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     members_[i]->opened = {};
+    members_[i]->ended = false;
     members_[i]->thread = std::jthread([this, i](const std::stop_token& stop) { Run(i, stop); });
   }
   std::string missing;
@@ -90,13 +91,36 @@ std::optional<RawFrame> CameraPair::TakeUnread() {
   }
 }
 
-Status CameraPair::Control(const CameraControl& control) {
+CameraPair::Member* CameraPair::Thermal() const {
   for (const std::unique_ptr<Member>& member : members_) {
-    if (member->camera.sensor != Sensor::kThermal) continue;
-    member->controls.Push(control, {});
-    return OkStatus();
+    if (member->camera.sensor == Sensor::kThermal) return member.get();
   }
-  return Unavailable("there is no thermal camera");
+  return nullptr;
+}
+
+std::optional<Status> CameraPair::Control(const CameraControl& control) {
+  Member* const thermal = Thermal();
+  if (thermal == nullptr) return FailedPrecondition("there is no thermal camera");
+  if (open_orders_ == kMostOrders) {
+    return Unavailable(
+        fmt::format("the thermal camera has not answered the last {} orders", kMostOrders));
+  }
+  ++open_orders_;
+  thermal->orders.Push(control, {});
+  return std::nullopt;
+}
+
+std::vector<ControlAnswer> CameraPair::TakeControlAnswers() {
+  std::vector<ControlAnswer> answers;
+  Member* const thermal = Thermal();
+  if (thermal == nullptr) return answers;
+  const bool ended = thermal->ended;  // First: then its thread has given all the answers it will.
+  while (thermal->answers.size() > 0) answers.push_back(std::move(*thermal->answers.Pop({})));
+  while (ended && thermal->orders.size() > 0) {
+    answers.push_back({*thermal->orders.Pop({}), Unavailable("the thermal camera is closed")});
+  }
+  open_orders_ -= answers.size();
+  return answers;
 }
 
 void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
@@ -106,22 +130,30 @@ void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
   if (!opened.ok()) source.KeepTrying(opened);
   member.opened.set_value({opened, opened.ok() ? source.rig() : std::nullopt, source.cameras()});
   while (!stop.stop_requested()) {
-    Obey(member);
+    PassOrders(member);
     source.SetIdle(!reading_);
     Result<SourceItem> item = source.Read(stop);
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
     if (!std::holds_alternative<NothingYet>(*item)) queue_.Push(index, std::move(*item), stop);
   }
   source.Close();
+  for (ControlAnswer& answer : source.TakeControlAnswers()) {
+    member.answers.Push(std::move(answer), {});
+  }
+  member.ended = true;
   queue_.End(index);
 }
 
-void CameraPair::Obey(Member& member) {
-  while (member.controls.size() > 0) {
-    const Status obeyed = member.camera.source->Control(*member.controls.Pop({}));
-    if (!obeyed.ok()) {
-      LOG(Source, Warning) << "the thermal camera does not obey: " << obeyed.message();
+void CameraPair::PassOrders(Member& member) {
+  SupervisedSource& source = *member.camera.source;
+  while (member.orders.size() > 0) {
+    const CameraControl order = *member.orders.Pop({});
+    if (std::optional<Status> answer = source.Control(order)) {
+      member.answers.Push({order, std::move(*answer)}, {});
     }
+  }
+  for (ControlAnswer& answer : source.TakeControlAnswers()) {
+    member.answers.Push(std::move(answer), {});
   }
 }
 

@@ -29,6 +29,8 @@ namespace isotherm {
 /// as any source; the cameras' threads are its own.
 class CameraPair final : public FrameSource {
  public:
+  static constexpr std::size_t kMostOrders = 8;
+
   struct Camera {
     Sensor sensor = Sensor::kDepth;
     std::unique_ptr<SupervisedSource> source;
@@ -50,9 +52,10 @@ class CameraPair final : public FrameSource {
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override;
   std::optional<RawFrame> TakeUnread() override;
-  /// For the thermal camera's thread, which obeys within 0.1 s. What the camera refuses then is
-  /// logged.
-  Status Control(const CameraControl& control) override;
+  /// For the thermal camera's thread, which passes it on within 0.1 s if the camera works. Refused
+  /// while kMostOrders have no answer.
+  std::optional<Status> Control(const CameraControl& control) override;
+  std::vector<ControlAnswer> TakeControlAnswers() override;
   /// What the cameras said of themselves when they were opened at the start.
   std::optional<Rig> rig() const override { return rig_; }
   std::vector<CameraDescription> cameras() const override { return descriptions_; }
@@ -66,16 +69,21 @@ class CameraPair final : public FrameSource {
   };
   struct Member {
     Camera camera;
-    BoundedQueue<CameraControl> controls{8, OverflowPolicy::kDropOldest};
+    // Never full: no more than kMostOrders are under way.
+    BoundedQueue<CameraControl> orders{kMostOrders, OverflowPolicy::kBlock};
+    BoundedQueue<ControlAnswer> answers{kMostOrders, OverflowPolicy::kBlock};
     std::promise<Opened> opened;
+    std::atomic<bool> ended{false};  ///< Its thread takes no orders any more.
     std::jthread thread;
   };
 
   void Run(std::size_t index, const std::stop_token& stop);
-  void Obey(Member& member);
+  static void PassOrders(Member& member);
+  Member* Thermal() const;
   void Keep(const Opened& opened);
 
   std::vector<std::unique_ptr<Member>> members_;
+  std::size_t open_orders_ = 0;  ///< Given and not answered; of the reader's thread.
   std::atomic<bool> reading_{false};
   MergeQueue queue_;
   std::optional<Rig> rig_;

@@ -23,9 +23,11 @@ struct FakeCamera {
   std::atomic<bool> fails{false};  ///< Read fails.
   std::atomic<int> opened{0};
   std::atomic<int> frames{0};
+  std::atomic<bool> blocks{false};  ///< Read does not come back.
   std::atomic<int> nuc_orders{0};
+  Status answer;  ///< To orders.
   Status opening_error = Unavailable("the camera is not there");
-  std::string serial = "A";
+  std::atomic<char> serial{'A'};
 };
 
 class FakeCameraSource final : public FrameSource {
@@ -39,6 +41,7 @@ class FakeCameraSource final : public FrameSource {
   }
   Result<SourceItem> Read(std::stop_token) override {
     std::this_thread::sleep_for(std::chrono::milliseconds(1));  // The camera's period.
+    while (camera_->blocks) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (camera_->fails || !camera_->there) return Err(Unavailable("the cable came off"));
     RawFrame frame;
     frame.sensor = sensor_;
@@ -49,9 +52,10 @@ class FakeCameraSource final : public FrameSource {
     return frame;
   }
   void Close() override {}
-  Status Control(const CameraControl&) override {
+  std::optional<Status> Control(const CameraControl& control) override {
+    if (std::holds_alternative<RestartCamera>(control)) return FailedPrecondition("cannot");
     ++camera_->nuc_orders;
-    return OkStatus();
+    return camera_->answer;
   }
   std::optional<Rig> rig() const override {
     Rig rig;
@@ -64,7 +68,7 @@ class FakeCameraSource final : public FrameSource {
   std::vector<CameraDescription> cameras() const override {
     CameraDescription description;
     description.sensor = sensor_;
-    description.serial = camera_->serial;
+    description.serial = std::string(1, camera_->serial);
     return {description};
   }
 
@@ -108,6 +112,18 @@ class CameraPairTest : public ::testing::Test {
       if (frame->sensor == sensor) --count;
     }
     return count == 0;
+  }
+
+  /// Reads until so many orders are answered, or so many as are by then.
+  std::vector<ControlAnswer> ReadAnswers(std::size_t count) {
+    std::vector<ControlAnswer> answers;
+    const SteadyTime end = clock_.SteadyNow() + kPatience;
+    while (answers.size() < count && clock_.SteadyNow() < end) {
+      static_cast<void>(pair_->Read({}));
+      for (ControlAnswer& answer : pair_->TakeControlAnswers()) answers.push_back(answer);
+    }
+    EXPECT_EQ(answers.size(), count);
+    return answers;
   }
 
   FrameCheckOptions options_;
@@ -206,22 +222,90 @@ TEST_F(CameraPairTest, WhatACameraCannotDoEndsTheStart) {
 
 TEST_F(CameraPairTest, F03AnotherSerialNumberIsNotUsedUntilTheFirstIsBack) {
   ASSERT_TRUE(pair_->Open().ok());
-  ASSERT_TRUE(ReadFrames(Sensor::kDepth, 1));
-  depth_->there = false;
-  while (works_[0]) ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
-  depth_->serial = "B";  // Read by the camera's thread only after `there`.
-  depth_->there = true;
-  const int opened = depth_->opened;
-  while (depth_->opened < opened + 3) ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
-  EXPECT_FALSE(works_[0]);
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const auto index = static_cast<std::size_t>(sensor);
+    const Sensor other = sensor == Sensor::kDepth ? Sensor::kThermal : Sensor::kDepth;
+    FakeCamera& camera = sensor == Sensor::kDepth ? *depth_ : *thermal_;
+    ASSERT_TRUE(ReadFrames(sensor, 1));
+    camera.there = false;
+    while (works_[index]) ASSERT_TRUE(ReadFrames(other, 1));
+    camera.serial = 'B';
+    camera.there = true;
+    const int opened = camera.opened;
+    const int captured = captured_[index];
+    while (camera.opened < opened + 3) ASSERT_TRUE(ReadFrames(other, 1));
+    EXPECT_FALSE(works_[index]);
+    EXPECT_EQ(captured_[index], captured) << "not a frame of it";
+    camera.serial = 'A';
+    while (!works_[index]) ASSERT_TRUE(ReadFrames(other, 1));
+    EXPECT_TRUE(ReadFrames(sensor, 1));
+  }
 }
 
-TEST_F(CameraPairTest, OrdersReachTheThermalCamera) {
+TEST_F(CameraPairTest, OrdersReachTheThermalCameraAndItsAnswerComesBack) {
   ASSERT_TRUE(pair_->Open().ok());
-  ASSERT_TRUE(pair_->Control(TriggerNuc{}).ok());
-  while (thermal_->nuc_orders == 0) ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
+  EXPECT_EQ(pair_->Control(TriggerNuc{}), std::nullopt) << "only its thread can ask the camera";
+  const std::vector<ControlAnswer> answers = ReadAnswers(1);
+  EXPECT_TRUE(answers[0].status.ok()) << answers[0].status.message();
+  EXPECT_TRUE(std::holds_alternative<TriggerNuc>(answers[0].control));
   EXPECT_EQ(thermal_->nuc_orders, 1);
   EXPECT_EQ(depth_->nuc_orders, 0);
+}
+
+TEST_F(CameraPairTest, ARefusalComesBackAsTheCameraSaidIt) {
+  thermal_->answer = IoError("the shutter is stuck");
+  ASSERT_TRUE(pair_->Open().ok());
+  ASSERT_EQ(pair_->Control(SetAutomaticNuc{false}), std::nullopt);
+  const std::vector<ControlAnswer> answers = ReadAnswers(1);
+  EXPECT_EQ(answers[0].status.code(), StatusCode::kIoError);
+  EXPECT_EQ(answers[0].status.message(), "the shutter is stuck");
+}
+
+TEST_F(CameraPairTest, ACameraThatIsLostRefusesForNow) {
+  ASSERT_TRUE(pair_->Open().ok());
+  ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
+  thermal_->there = false;
+  while (works_[1]) ASSERT_TRUE(ReadFrames(Sensor::kDepth, 1));
+  ASSERT_EQ(pair_->Control(TriggerNuc{}), std::nullopt);
+  EXPECT_EQ(ReadAnswers(1)[0].status.code(), StatusCode::kUnavailable);
+  EXPECT_EQ(thermal_->nuc_orders, 0);
+}
+
+TEST_F(CameraPairTest, F05ARestartOpensTheThermalCameraAgainAndOnlyThat) {
+  ASSERT_TRUE(pair_->Open().ok());
+  ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
+  ASSERT_EQ(pair_->Control(RestartCamera{}), std::nullopt);
+  EXPECT_TRUE(ReadAnswers(1)[0].status.ok());
+  while (thermal_->opened < 2) ASSERT_TRUE(ReadFrames(Sensor::kDepth, 1));
+  EXPECT_TRUE(ReadFrames(Sensor::kThermal, 5));
+  EXPECT_EQ(thermal_->opened, 2);
+  EXPECT_EQ(depth_->opened, 1);
+}
+
+TEST_F(CameraPairTest, AThreadThatHangsHoldsUpNeitherTheReaderNorTheOrders) {
+  ASSERT_TRUE(pair_->Open().ok());
+  ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
+  thermal_->blocks = true;
+  for (std::size_t i = 0; i < CameraPair::kMostOrders; ++i) {
+    EXPECT_EQ(pair_->Control(TriggerNuc{}), std::nullopt);
+  }
+  const std::optional<Status> one_more = pair_->Control(TriggerNuc{});
+  ASSERT_TRUE(one_more);
+  EXPECT_THAT(one_more->message(), HasSubstr("has not answered the last 8 orders"));
+  EXPECT_TRUE(ReadFrames(Sensor::kDepth, 20));
+  thermal_->blocks = false;
+  ReadAnswers(CameraPair::kMostOrders);
+  EXPECT_EQ(pair_->Control(TriggerNuc{}), std::nullopt) << "there is room again";
+}
+
+TEST_F(CameraPairTest, OrdersThatComeTooLateForTheCameraAreAnsweredToo) {
+  ASSERT_TRUE(pair_->Open().ok());
+  ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
+  pair_->Close();
+  ASSERT_EQ(pair_->Control(TriggerNuc{}), std::nullopt);
+  const std::vector<ControlAnswer> answers = pair_->TakeControlAnswers();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].status.code(), StatusCode::kUnavailable);
 }
 
 }  // namespace

@@ -103,17 +103,19 @@ Status CameraProcess::WaitUntilOpened() {
     FromCamera message;
     const CameraLink::Received received = link_->Receive(&message, kLongestWait);
     if (received == CameraLink::Received::kClosed) return Ended();
+    if (settings_.stop.stop_requested()) break;
     if (received == CameraLink::Received::kNothingYet) continue;
-    if (message.has_failed()) {
-      return Status(static_cast<StatusCode>(message.failed().code()), message.failed().message());
-    }
+    if (message.has_failed()) return FromLink(message.failed());
     if (!message.has_opened()) continue;
     rig_ = RigOf(message.opened());
     cameras_ = CamerasOf(message.opened());
     last_heard_ = clock_.SteadyNow();
     return OkStatus();
   }
+  // A library in the middle of opening does not see that nobody waits for it any more.
   Reap(Nanoseconds(0));
+  if (settings_.stop.stop_requested())
+    return Unavailable("told to stop while its library opened it");
   return Unavailable(fmt::format("its library did not open it within {:.1f} s and was killed",
                                  ToSeconds(settings_.open_timeout)));
 }
@@ -134,10 +136,8 @@ Result<SourceItem> CameraProcess::Read(std::stop_token stop) {
 }
 
 Result<SourceItem> CameraProcess::Take(const FromCamera& message) {
-  if (message.has_failed()) {
-    return Err(
-        Status(static_cast<StatusCode>(message.failed().code()), message.failed().message()));
-  }
+  if (message.has_failed()) return Err(FromLink(message.failed()));
+  if (message.has_answer()) TakeAnswer(FromLink(message.answer()));
   if (message.has_ended()) return EndOfStream{};
   if (!message.has_frame()) return NothingYet{};
   Result<RawFrame> frame = FromLink(message.frame(), *slots_);
@@ -148,6 +148,12 @@ Result<SourceItem> CameraProcess::Take(const FromCamera& message) {
   frame->frame_number += first_number_;
   next_number_ = frame->frame_number + 1;
   return std::move(*frame);
+}
+
+void CameraProcess::TakeAnswer(const Status& status) {
+  if (open_orders_.empty()) return;
+  answers_.push_back({open_orders_.front(), status});
+  open_orders_.pop_front();
 }
 
 Status CameraProcess::Ended() {
@@ -171,9 +177,10 @@ void CameraProcess::Close() {
   link_.reset();  // The process leaves when it sees it.
   Reap(kTimeToLeave);
   slots_.reset();
+  while (!open_orders_.empty()) TakeAnswer(Unavailable("the camera was closed before it answered"));
 }
 
-Status CameraProcess::Control(const CameraControl& control) {
+std::optional<Status> CameraProcess::Control(const CameraControl& control) {
   if (!link_) return Unavailable("the camera is closed");
   ToCamera order;
   if (std::holds_alternative<TriggerNuc>(control)) {
@@ -184,8 +191,9 @@ Status CameraProcess::Control(const CameraControl& control) {
     // Whoever supervises it closes and opens it instead, which starts another process.
     return FailedPrecondition("the camera's process takes no such order");
   }
-  if (link_->Send(order)) return OkStatus();
-  return Unavailable("the camera's process does not listen");
+  if (!link_->Send(order)) return Unavailable("the camera's process does not listen");
+  open_orders_.push_back(control);
+  return std::nullopt;
 }
 
 }  // namespace isotherm

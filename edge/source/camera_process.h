@@ -3,9 +3,12 @@
 #include <sys/types.h>
 
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/time/clock.h"
@@ -35,6 +38,7 @@ class CameraProcess final : public FrameSource {
     Nanoseconds hang_timeout = std::chrono::seconds(2);
     /// Libraries load firmware when they open a camera.
     Nanoseconds open_timeout = std::chrono::seconds(15);
+    std::stop_token stop = {};  ///< Ends an opening early.
   };
 
   /// `clock` must outlive it.
@@ -45,7 +49,10 @@ class CameraProcess final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override;
-  Status Control(const CameraControl& control) override;
+  /// Refuses to restart: closing and opening it starts another process. Other orders are answered
+  /// by the camera, or by the end of its process.
+  std::optional<Status> Control(const CameraControl& control) override;
+  std::vector<ControlAnswer> TakeControlAnswers() override { return std::exchange(answers_, {}); }
   std::optional<Rig> rig() const override { return rig_; }
   std::vector<CameraDescription> cameras() const override { return cameras_; }
 
@@ -56,6 +63,7 @@ class CameraProcess final : public FrameSource {
   Status Start();
   Status WaitUntilOpened();
   Result<SourceItem> Take(const FromCamera& message);
+  void TakeAnswer(const Status& status);
   /// Why nothing more comes.
   Status Ended();
   /// Waits for the end of the process, at most so long; kills it then. Its wait status.
@@ -68,6 +76,8 @@ class CameraProcess final : public FrameSource {
   std::optional<PixelSlots> slots_;
   std::optional<Rig> rig_;
   std::vector<CameraDescription> cameras_;
+  std::deque<CameraControl> open_orders_;  ///< Given and not answered, oldest first.
+  std::vector<ControlAnswer> answers_;
   SteadyTime last_heard_{};
   std::uint64_t first_number_ = 0;  ///< Of this process's frames.
   std::uint64_t next_number_ = 0;

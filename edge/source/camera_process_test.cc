@@ -8,6 +8,9 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <stop_token>
+#include <thread>
+
 #include "edge/edge_options.pb.h"
 #include "edge/source/camera_pair.h"
 
@@ -19,6 +22,8 @@ using std::chrono::seconds;
 using ::testing::HasSubstr;
 
 constexpr seconds kPatience{20};
+/// What a daemon that is told to stop may take in all.
+constexpr seconds kPromptly{2};
 
 CameraProcess::Settings Fake(const std::string& what, int after_frames) {
   CameraProcess::Settings settings;
@@ -101,14 +106,65 @@ TEST_F(CameraProcessTest, TheCameraTellsWhatItIs) {
   EXPECT_EQ(camera.settings, "all on");
 }
 
-TEST_F(CameraProcessTest, OrdersReachTheCamera) {
+TEST_F(CameraProcessTest, OrdersReachTheCameraAndItsAnswersComeBack) {
   Make("go-on");
   ASSERT_TRUE(camera_->Open().ok());
   EXPECT_FALSE(NextFrame().shutter_closed);
-  ASSERT_TRUE(camera_->Control(TriggerNuc{}).ok());
+  ASSERT_EQ(camera_->Control(TriggerNuc{}), std::nullopt) << "the other process must be asked";
   while (!NextFrame().shutter_closed) ASSERT_FALSE(HasFailure());
-  ASSERT_TRUE(camera_->Control(SetAutomaticNuc{true}).ok());
+  ASSERT_EQ(camera_->Control(SetAutomaticNuc{true}), std::nullopt);
   while (NextFrame().camera_nuc->state != NucState::kDesired) ASSERT_FALSE(HasFailure());
+  const std::vector<ControlAnswer> answers = camera_->TakeControlAnswers();
+  ASSERT_EQ(answers.size(), 2U);
+  EXPECT_TRUE(answers[0].status.ok());
+  EXPECT_TRUE(std::holds_alternative<TriggerNuc>(answers[0].control));
+  EXPECT_TRUE(answers[1].status.ok());
+  EXPECT_TRUE(std::holds_alternative<SetAutomaticNuc>(answers[1].control));
+}
+
+TEST_F(CameraProcessTest, ARefusalKeepsItsCodeAndWords) {
+  Make("refuse");
+  ASSERT_TRUE(camera_->Open().ok());
+  ASSERT_EQ(camera_->Control(TriggerNuc{}), std::nullopt);
+  std::vector<ControlAnswer> answers;
+  while (answers.empty() && !HasFailure()) {
+    NextFrame();
+    answers = camera_->TakeControlAnswers();
+  }
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].status.code(), StatusCode::kFailedPrecondition);
+  EXPECT_EQ(answers[0].status.message(), "its shutter is glued");
+}
+
+TEST_F(CameraProcessTest, F14AnOrderAtWhichTheLibraryHangsIsAnsweredByTheEndOfItsProcess) {
+  Make("hang-at-order");
+  ASSERT_TRUE(camera_->Open().ok());
+  NextFrame();
+  ASSERT_EQ(camera_->Control(TriggerNuc{}), std::nullopt);
+  EXPECT_THAT(Failure().message(), HasSubstr("hung for 0.5 s"));
+  EXPECT_TRUE(camera_->TakeControlAnswers().empty());
+  camera_->Close();
+  const std::vector<ControlAnswer> answers = camera_->TakeControlAnswers();
+  ASSERT_EQ(answers.size(), 1U);
+  EXPECT_EQ(answers[0].status.code(), StatusCode::kUnavailable);
+}
+
+TEST_F(CameraProcessTest, AStopEndsAnOpeningAtOnce) {
+  std::stop_source stop;
+  CameraProcess::Settings settings = Fake("hang-at-open", 0);
+  settings.open_timeout = 10 * kPatience;
+  settings.stop = stop.get_token();
+  camera_ = std::make_unique<CameraProcess>(settings, clock_);
+  SteadyTime told{};
+  // Right whenever it comes; after a moment the process runs and hangs.
+  std::jthread later([&] {
+    std::this_thread::sleep_for(milliseconds(100));
+    told = clock_.SteadyNow();
+    stop.request_stop();
+  });
+  EXPECT_EQ(camera_->Open().code(), StatusCode::kUnavailable);
+  later.join();
+  EXPECT_LT(clock_.SteadyNow() - told, kPromptly);
 }
 
 TEST_F(CameraProcessTest, F14ACrashIsAFailureAndItCanBeStartedAnew) {

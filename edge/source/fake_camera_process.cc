@@ -1,9 +1,11 @@
 // A camera's process whose library does what its arguments say: WHAT AFTER_FRAMES. WHAT is one of
-// crash, hang, fail, end, go-on; with cannot-open and hang-at-open it does so at once.
+// crash, hang, fail, end, go-on; with cannot-open and hang-at-open it does so at once; refuse:
+// orders are refused; hang-at-order: it does when it gets one.
 
 #include <unistd.h>
 
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -34,9 +36,12 @@ class FakeCamera final : public FrameSource {
     return Frame();
   }
   void Close() override {}
-  Status Control(const CameraControl& control) override {
+  std::optional<Status> Control(const CameraControl& control) override {
+    if (what_ == "refuse") return FailedPrecondition("its shutter is glued");
+    if (what_ == "hang-at-order") Hang();
     nuc_ordered_ = std::holds_alternative<TriggerNuc>(control);
-    automatic_ordered_ = !nuc_ordered_ && std::get<SetAutomaticNuc>(control).on;
+    const auto* const automatic = std::get_if<SetAutomaticNuc>(&control);
+    automatic_ordered_ = automatic != nullptr && automatic->on;
     return OkStatus();
   }
   std::optional<Rig> rig() const override {

@@ -39,12 +39,29 @@ Status FakeSource::Open() {
 
 Result<SourceItem> FakeSource::Read(std::stop_token) {
   CHECK(open_);
+  ++reads_;
   if (next_ == steps_.size()) return EndOfStream{};
   const Step& step = steps_[next_++];
   if (step.what == '-') return NothingYet{};
   if (step.what == 'p') return MakePose();
   if (step.what == '!') return Err(Unavailable("the cable came off"));
   return MakeFrame(step);
+}
+
+std::optional<Status> FakeSource::Control(const CameraControl& control) {
+  controls.push_back(control);
+  if (answers_after_reads == 0) return control_answer;
+  open_orders_.push_back({control, reads_ + static_cast<std::size_t>(answers_after_reads)});
+  return std::nullopt;
+}
+
+std::vector<ControlAnswer> FakeSource::TakeControlAnswers() {
+  std::vector<ControlAnswer> answers;
+  while (!open_orders_.empty() && open_orders_.front().answered_at <= reads_) {
+    answers.push_back({open_orders_.front().control, control_answer});
+    open_orders_.pop_front();
+  }
+  return answers;
 }
 
 OutsidePose FakeSource::MakePose() const {

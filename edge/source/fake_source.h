@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,13 +37,11 @@ class FakeSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { open_ = false; }
-  /// Answers with `control_answer`.
-  Status Control(const CameraControl& control) override {
-    controls.push_back(control);
-    return control_answer;
-  }
+  /// Answers with `control_answer`, at once or so many reads later.
+  std::optional<Status> Control(const CameraControl& control) override;
+  std::vector<ControlAnswer> TakeControlAnswers() override;
 
-  std::vector<CameraDescription> cameras() const override { return descriptions_; }
+  std::vector<CameraDescription> cameras() const override { return descriptions; }
 
   /// It says of itself that it is a thermal camera.
   void DescribeThermal(bool counts_only) {
@@ -49,10 +49,13 @@ class FakeSource final : public FrameSource {
     camera.sensor = Sensor::kThermal;
     camera.driver = "fake";
     camera.counts_only = counts_only;
-    descriptions_ = {camera};
+    descriptions = {camera};
   }
-  std::vector<CameraControl> controls;  ///< What was asked for.
-  Status control_answer = Unavailable("the source has no shutter to command");
+
+  std::vector<CameraDescription> descriptions;  ///< What it says of itself.
+  std::vector<CameraControl> controls;          ///< What was asked for.
+  Status control_answer = FailedPrecondition("the source has no shutter to command");
+  int answers_after_reads = 0;  ///< 0: at once.
 
   /// Later calls of Open fail so many times.
   void FailToOpen(int times) { failures_to_open_ = times; }
@@ -66,9 +69,14 @@ class FakeSource final : public FrameSource {
   RawFrame MakeFrame(const Step& step);
   OutsidePose MakePose() const;
 
-  std::vector<CameraDescription> descriptions_;
   std::vector<Step> steps_;
   std::size_t next_ = 0;
+  std::size_t reads_ = 0;
+  struct OpenOrder {
+    CameraControl control;
+    std::size_t answered_at;  ///< Of `reads_`.
+  };
+  std::deque<OpenOrder> open_orders_;
   bool open_ = false;
   int opened_ = 0;
   int failures_to_open_ = 0;

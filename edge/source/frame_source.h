@@ -29,6 +29,13 @@ struct SetAutomaticNuc {
 struct RestartCamera {};
 using CameraControl = std::variant<TriggerNuc, SetAutomaticNuc, RestartCamera>;
 
+/// What the camera says to an order: ok, or why not. kFailedPrecondition: it takes no such order,
+/// now or later; anything else: it did not this time.
+struct ControlAnswer {
+  CameraControl control;
+  Status status;
+};
+
 using SourceItem = std::variant<RawFrame, OutsidePose, NothingYet, EndOfStream>;
 
 /// A camera as it was found when it was opened: what was read back, not what was asked for.
@@ -61,10 +68,14 @@ class FrameSource {
   /// After Close: a frame that was captured but not read, until there is none. Sources with threads
   /// of their own may have some.
   virtual std::optional<RawFrame> TakeUnread() { return std::nullopt; }
-  /// Tells the camera what to do; takes at most some milliseconds. Refused by sources that cannot.
-  virtual Status Control(const CameraControl& /*control*/) {
-    return Unavailable("the source has no shutter to command");
+  /// Tells the camera what to do; takes at most some milliseconds. The camera's answer, as in
+  /// ControlAnswer; nullopt if it comes later with TakeControlAnswers.
+  virtual std::optional<Status> Control(const CameraControl& /*control*/) {
+    return FailedPrecondition("the source has no shutter to command");
   }
+  /// Answers that have come since the last call: one for each order that Control left open, also
+  /// when the camera fails or is closed meanwhile.
+  virtual std::vector<ControlAnswer> TakeControlAnswers() { return {}; }
   /// Calibration that comes with the frames, known after Open; nullopt if the source has none (a
   /// bare camera).
   virtual std::optional<Rig> rig() const { return std::nullopt; }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bitset>
+#include <optional>
 #include <utility>
 
 #include "common/base/log.h"
@@ -37,6 +38,7 @@ class CameraServer {
       if (!item) return Fail(item.error());
       if (const auto* frame = std::get_if<RawFrame>(&*item)) HandOver(*frame);
       if (std::holds_alternative<EndOfStream>(*item)) return End();
+      for (const ControlAnswer& late : source_.TakeControlAnswers()) Answer(late.status);
       ShowLife();
     }
   }
@@ -44,8 +46,7 @@ class CameraServer {
  private:
   void Fail(const Status& status) {
     FromCamera message;
-    message.mutable_failed()->set_code(static_cast<int>(status.code()));
-    message.mutable_failed()->set_message(status.message());
+    ToLink(status, message.mutable_failed());
     link_.Send(message);
   }
 
@@ -92,18 +93,22 @@ class CameraServer {
   }
 
   void Obey(const ToCamera& message) {
-    Status obeyed;
     if (message.has_free_slot() && message.free_slot() >= 0 &&
         message.free_slot() < PixelSlots::kSlots) {
       free_.set(static_cast<std::size_t>(message.free_slot()));
     }
-    if (message.has_trigger_nuc()) obeyed = source_.Control(TriggerNuc{});
-    if (message.has_automatic_nuc()) {
-      obeyed = source_.Control(SetAutomaticNuc{message.automatic_nuc()});
-    }
-    if (!obeyed.ok()) {
-      LOG(Source, Warning) << "the camera does not obey: " << obeyed.message();
-    }
+    if (message.has_trigger_nuc()) Order(TriggerNuc{});
+    if (message.has_automatic_nuc()) Order(SetAutomaticNuc{message.automatic_nuc()});
+  }
+
+  void Order(const CameraControl& control) {
+    if (const std::optional<Status> answer = source_.Control(control)) Answer(*answer);
+  }
+
+  void Answer(const Status& status) {
+    FromCamera message;
+    ToLink(status, message.mutable_answer());
+    link_.Send(message);
   }
 
   FrameSource& source_;

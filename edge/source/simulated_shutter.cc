@@ -20,7 +20,7 @@ Status SimulatedShutter::Control(const CameraControl& control) {
   if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
     const bool has_own = shutter.interval_s() > 0.0 || shutter.drift_k() > 0.0;
     if (automatic->on || !has_own) return OkStatus();
-    return Unavailable(
+    return FailedPrecondition(
         "they are part of the rendered scan (simulation.shutter.interval_s, drift_k)");
   }
   return OkStatus();

@@ -36,6 +36,7 @@ Status SupervisedSource::Open() {
 void SupervisedSource::Expect(const Rig& rig) {
   check_.Expect(rig);
   sizes_are_calibrated_ = true;
+  calibrated_serials_ = {rig.depth_serial, rig.thermal_serial};
 }
 
 void SupervisedSource::KeepTrying(const Status& reason) {
@@ -54,15 +55,28 @@ Status SupervisedSource::OpenSame() {
   return OkStatus();
 }
 
-Status SupervisedSource::CheckSame(const CameraDescription& camera) {
-  std::string& serial = serials_[static_cast<std::size_t>(camera.sensor)];
-  if (!serial.empty() && camera.serial != serial) {
+Status SupervisedSource::CheckSerial(const CameraDescription& camera) const {
+  const auto index = static_cast<std::size_t>(camera.sensor);
+  const std::string& calibrated = calibrated_serials_[index];
+  if (!calibrated.empty() && camera.serial != calibrated) {
+    return FailedPrecondition(fmt::format(
+        "the camera with serial number \"{}\" is not used: the calibration is of \"{}\"; start "
+        "with this camera's calibration (--rig)",
+        camera.serial, calibrated));
+  }
+  const std::string& first = serials_[index];
+  if (!first.empty() && camera.serial != first) {
     return FailedPrecondition(
         fmt::format("the camera with serial number \"{}\" is not used: the scan began with \"{}\", "
                     "and a calibration holds for one camera; start again to change it",
-                    camera.serial, serial));
+                    camera.serial, first));
   }
-  serial = camera.serial;
+  return OkStatus();
+}
+
+Status SupervisedSource::CheckSame(const CameraDescription& camera) {
+  ISOTHERM_RETURN_IF_ERROR(CheckSerial(camera));
+  serials_[static_cast<std::size_t>(camera.sensor)] = camera.serial;
   if (camera.sensor != Sensor::kThermal) return OkStatus();
   if (counts_only_.value_or(camera.counts_only) != camera.counts_only) {
     return FailedPrecondition(fmt::format(
@@ -93,11 +107,14 @@ Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
   return item;
 }
 
-Status SupervisedSource::Control(const CameraControl& control) {
-  if (reopen_at_) return FailedPrecondition("the camera does not work; it is being opened again");
-  Status done = source_->Control(control);
-  if (done.ok() || !std::holds_alternative<RestartCamera>(control)) return done;
-  ScheduleReopen(Status(StatusCode::kUnavailable, "its thermal frames are frozen"));
+std::optional<Status> SupervisedSource::Control(const CameraControl& control) {
+  const bool restart = std::holds_alternative<RestartCamera>(control);
+  if (reopen_at_) {
+    return restart ? OkStatus() : Unavailable("the camera does not work; it is being opened again");
+  }
+  std::optional<Status> done = source_->Control(control);
+  if (!restart || !done || done->ok()) return done;
+  ScheduleReopen(Unavailable("its thermal frames are frozen"));
   return OkStatus();
 }
 

@@ -23,10 +23,10 @@ class FrameCheckOptions;
 ///
 ///   open --(failure, too many bad frames)--> waiting --(wait over, Open succeeds)--> open
 ///
-/// A camera with another serial number than the first one's is not used: the calibration is not its
-/// own. Nor is one that sends counts where the scan began with temperatures, or the other way
-/// round. Reports each frame through `on_frame` before it is judged and each refused one through
-/// `on_rejected`. Thread-bound.
+/// A camera with another serial number than the calibration's or the first one's is not used: the
+/// calibration is not its own. Nor is one that sends counts where the scan began with temperatures,
+/// or the other way round. Reports each frame through `on_frame` before it is judged and each
+/// refused one through `on_rejected`. Thread-bound.
 class SupervisedSource final : public FrameSource {
  public:
   using FrameCallback = std::function<void(Sensor)>;
@@ -47,11 +47,12 @@ class SupervisedSource final : public FrameSource {
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { source_->Close(); }
   /// A source that cannot restart its thermal camera alone is closed and opened again.
-  Status Control(const CameraControl& control) override;
+  std::optional<Status> Control(const CameraControl& control) override;
+  std::vector<ControlAnswer> TakeControlAnswers() override { return source_->TakeControlAnswers(); }
   std::optional<Rig> rig() const override { return source_->rig(); }
   std::vector<CameraDescription> cameras() const override { return source_->cameras(); }
 
-  /// Expected sizes, from a calibration that overrides the source's own.
+  /// Expected sizes and serial numbers, from a calibration that overrides the source's own.
   void Expect(const Rig& rig);
   /// Idle: frames are read, so that the camera keeps going, and thrown away unseen and uncounted.
   /// Numbers start from 0 with the first frame after it.
@@ -63,9 +64,10 @@ class SupervisedSource final : public FrameSource {
   SourceItem Judge(RawFrame frame);
   SourceItem ReopenWhenDue(const std::stop_token& stop);
   void ScheduleReopen(const Status& reason);
-  /// Opens, and refuses a camera that is not the one from the start.
+  /// Opens, and refuses a camera that was not calibrated or is not the one from the start.
   Status OpenSame();
   Status CheckSame(const CameraDescription& camera);
+  Status CheckSerial(const CameraDescription& camera) const;
   void Tell(bool works);
 
   const std::unique_ptr<FrameSource> source_;
@@ -81,7 +83,8 @@ class SupervisedSource final : public FrameSource {
   FrameCheck check_;
   bool sizes_are_calibrated_ = false;
   bool idle_ = false;
-  std::array<std::uint64_t, 2> thrown_away_{};  ///< By Sensor: frame numbers before the first.
+  std::array<std::uint64_t, 2> thrown_away_{};     ///< By Sensor: frame numbers before the first.
+  std::array<std::string, 2> calibrated_serials_;  ///< By Sensor; empty: any.
   std::array<std::string, 2> serials_;  ///< By Sensor, of the cameras from the start; empty: any.
   /// What the thermal camera sends, from the start; a scan that begins without one takes
   /// temperatures.

@@ -160,5 +160,54 @@ TEST_F(SupervisedSourceTest, AFailureToOpenAtStartIsReported) {
   EXPECT_EQ(source.Open().code(), StatusCode::kUnavailable);
 }
 
+TEST_F(SupervisedSourceTest, F03ACameraThatTheCalibrationIsNotOfIsNotUsed) {
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    auto fake = std::make_unique<FakeSource>("d");
+    FakeSource& camera = *fake;
+    camera.descriptions.resize(1);
+    camera.descriptions[0].sensor = sensor;
+    camera.descriptions[0].serial = "NEW-2";
+    SupervisedSource source(
+        std::move(fake), options_, clock_, [](Sensor) {}, [](Sensor) {}, kNoPause);
+    Rig calibration;
+    (sensor == Sensor::kDepth ? calibration.depth_serial : calibration.thermal_serial) = "OLD-1";
+    source.Expect(calibration);
+    const Status opened = source.Open();
+    EXPECT_EQ(opened.code(), StatusCode::kFailedPrecondition);
+    EXPECT_NE(opened.message().find("\"NEW-2\" is not used: the calibration is of \"OLD-1\""),
+              std::string::npos)
+        << opened.message();
+    camera.descriptions[0].serial = "OLD-1";
+    EXPECT_TRUE(source.Open().ok());
+  }
+}
+
+TEST_F(SupervisedSourceTest, F05ASourceThatCannotRestartItsCameraIsOpenedAgain) {
+  Start("d d");
+  Read(1);
+  EXPECT_TRUE(source_->Control(RestartCamera{})->ok());
+  EXPECT_TRUE(source_->Control(RestartCamera{})->ok()) << "it is under way";
+  Read(1);
+  EXPECT_EQ(fake_->opened(), 1) << "not before the wait is over";
+  clock_.Advance(milliseconds(500));
+  EXPECT_EQ(Read(2), 1);
+  EXPECT_EQ(fake_->opened(), 2);
+}
+
+TEST_F(SupervisedSourceTest, ASourceThatRestartsItsCameraItselfIsLeftOpen) {
+  Start("d d");
+  fake_->control_answer = OkStatus();
+  EXPECT_TRUE(source_->Control(RestartCamera{})->ok());
+  EXPECT_EQ(Read(2), 2);
+  EXPECT_EQ(fake_->opened(), 1);
+}
+
+TEST_F(SupervisedSourceTest, WhileItIsReopenedOrdersAreRefusedForNow) {
+  Start("! d");
+  Read(1);
+  EXPECT_EQ(source_->Control(TriggerNuc{})->code(), StatusCode::kUnavailable);
+  EXPECT_TRUE(fake_->controls.empty());
+}
+
 }  // namespace
 }  // namespace isotherm

@@ -27,7 +27,9 @@ class SyntheticSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override {}
-  Status Control(const CameraControl& control) override { return shutter_.Control(control); }
+  std::optional<Status> Control(const CameraControl& control) override {
+    return shutter_.Control(control);
+  }
   std::optional<Rig> rig() const override;
 
  private:

@@ -155,7 +155,7 @@ TEST_F(P1Test, TakesOrdersAndItsGain) {
   EXPECT_EQ(camera->gain(), 0);
   EXPECT_THAT(source->cameras().front().settings, HasSubstr("gain low"));
   ASSERT_EQ(ReadFrames(*source, 2).size(), 2U) << failure_.message();
-  EXPECT_TRUE(source->Control(TriggerNuc{}).ok());
+  EXPECT_TRUE(source->Control(TriggerNuc{})->ok());
   EXPECT_EQ(camera->corrections(), 1);
 }
 

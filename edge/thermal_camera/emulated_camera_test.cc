@@ -64,7 +64,7 @@ TEST_F(EmulatedCameraTest, LeptonCorrectsOnOrder) {
   const auto camera = Plug<EmulatedLepton>("f");
   const auto source = Open();
   ASSERT_EQ(ReadFrames(*source, 2).size(), 2U);
-  const Status ordered = source->Control(TriggerNuc{});
+  const Status ordered = *source->Control(TriggerNuc{});
   ASSERT_TRUE(ordered.ok()) << ordered.message();
   EXPECT_EQ(camera->corrections(), 1);
   const std::vector<RawFrame> frames = ReadFrames(*source, 12);
@@ -74,7 +74,7 @@ TEST_F(EmulatedCameraTest, LeptonCorrectsOnOrder) {
   EXPECT_GE(closed, 7);
   EXPECT_LE(closed, 8);
   EXPECT_EQ(frames.back().camera_nuc->state, NucState::kIdle);
-  EXPECT_TRUE(source->Control(SetAutomaticNuc{false}).ok());
+  EXPECT_TRUE(source->Control(SetAutomaticNuc{false})->ok());
   EXPECT_EQ(camera->ffc_mode(), 0);
 }
 
@@ -189,7 +189,7 @@ TEST_F(EmulatedCameraTest, RefusedOrdersAreFailuresAndTheStreamGoesOn) {
   Plug<EmulatedLepton>("2*f stall f");
   const auto source = Open();
   ASSERT_EQ(ReadFrames(*source, 3).size(), 3U);
-  const Status ordered = source->Control(TriggerNuc{});
+  const Status ordered = *source->Control(TriggerNuc{});
   EXPECT_EQ(ordered.code(), StatusCode::kIoError);
   EXPECT_THAT(ordered.message(), HasSubstr("stall"));
   EXPECT_EQ(ReadFrames(*source, 2).size(), 2U) << failure_.message();
@@ -221,7 +221,7 @@ TEST_F(EmulatedCameraTest, P2ProStreamsAtHighSpeedAndIsToldNotToCorrectForEmissi
   EXPECT_EQ(frames.back().camera_nuc->source, NucSource::kPolled);
   EXPECT_EQ(frames.back().camera_nuc->state, NucState::kIdle);
 
-  ASSERT_TRUE(source->Control(TriggerNuc{}).ok());
+  ASSERT_TRUE(source->Control(TriggerNuc{})->ok());
   EXPECT_EQ(camera->corrections(), 1);
   const std::vector<RawFrame> after = ReadFrames(*source, 30);
   ASSERT_EQ(after.size(), 30U) << failure_.message();
@@ -270,7 +270,7 @@ TEST_F(EmulatedCameraTest, P3StreamsOverBulkTransfers) {
   EXPECT_EQ(std::count_if(frames.begin(), frames.end(),
                           [](const RawFrame& frame) { return frame.shutter_closed; }),
             10);
-  EXPECT_TRUE(source->Control(TriggerNuc{}).ok());
+  EXPECT_TRUE(source->Control(TriggerNuc{})->ok());
   EXPECT_EQ(camera->corrections(), 1);
   source->Close();
   EXPECT_EQ(camera->alternate(), 0);

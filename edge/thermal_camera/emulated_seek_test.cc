@@ -140,10 +140,10 @@ TEST_F(EmulatedSeekTest, ShutterFramesAreCorrectionsOfTheCameraItself) {
     EXPECT_EQ(frames[i].shutter_closed, i == 0 || i == 4) << i;
     EXPECT_EQ(frames[i].frame_number, i);
   }
-  const Status ordered = source->Control(TriggerNuc{});
+  const Status ordered = *source->Control(TriggerNuc{});
   EXPECT_EQ(ordered.code(), StatusCode::kFailedPrecondition);
   EXPECT_THAT(ordered.message(), HasSubstr("closes its shutter when it sees fit"));
-  EXPECT_FALSE(source->Control(SetAutomaticNuc{false}).ok());
+  EXPECT_FALSE(source->Control(SetAutomaticNuc{false})->ok());
 }
 
 TEST_F(EmulatedSeekTest, FramesOfTheCamerasOwnBusinessAreNoLoss) {

@@ -220,13 +220,13 @@ std::vector<CameraDescription> ThermalCameraSource::cameras() const {
   return {description};
 }
 
-Status ThermalCameraSource::Control(const CameraControl& control) {
+std::optional<Status> ThermalCameraSource::Control(const CameraControl& control) {
   if (!camera_) return Unavailable(name_ + " is not open");
   if (std::holds_alternative<TriggerNuc>(control)) return camera_->TriggerNuc();
   if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
     return camera_->SetAutomaticNuc(automatic->on);
   }
-  return FailedPrecondition(name_ + " does not know this order");
+  return FailedPrecondition(name_ + " is restarted by closing and opening it");
 }
 
 }  // namespace isotherm

@@ -56,7 +56,8 @@ class ThermalCameraSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override;
-  Status Control(const CameraControl& control) override;
+  /// Is not restarted by itself: whoever supervises it closes and opens it.
+  std::optional<Status> Control(const CameraControl& control) override;
   std::vector<CameraDescription> cameras() const override;
 
   const ThermalCameraCounts& counts() const { return counts_; }

@@ -341,11 +341,11 @@ TEST_F(ThermalCameraSourceTest, OrdersReachTheCamera) {
   options_.set_gain(LOW_GAIN);
   const auto source = Open();
   EXPECT_EQ(script_.gain, ThermalGain::kLow);
-  EXPECT_TRUE(source->Control(TriggerNuc{}).ok());
+  EXPECT_TRUE(source->Control(TriggerNuc{})->ok());
   EXPECT_EQ(script_.corrections, 1);
-  EXPECT_FALSE(source->Control(SetAutomaticNuc{false}).ok());
+  EXPECT_FALSE(source->Control(SetAutomaticNuc{false})->ok());
   source->Close();
-  EXPECT_EQ(source->Control(TriggerNuc{}).code(), StatusCode::kUnavailable);
+  EXPECT_EQ(source->Control(TriggerNuc{})->code(), StatusCode::kUnavailable);
 }
 
 }  // namespace

@@ -16,16 +16,25 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kFooter =
-    R"(Talks to a running isotherm-edge, beside isotherm-ground or without it. Without an order it shows the
-state. The edge answers whether it takes the order; the exit status is 69 if it does not, or if no
-rig is there.
+    R"(A correction (NUC): the camera looks at its closed shutter and takes its own warmth out of the picture. Meanwhile, and
+half a second after, no temperatures are taken; geometry goes on.
+
+Talks to a running isotherm-edge, beside isotherm-ground or without it. Without an order it shows the state. With one, the
+answer is the camera's own: done, or refused with its reason. Exit status: 0 done, 69 refused or no rig there (the message
+names the rigs that are), 64 several rigs and no --edge-id.
+
+States: idle (all is well), desired (due, and put off), imminent (ordered), in progress (shutter closed), settling,
+blocked (the camera does not follow), error (shutter stays closed, or frozen pictures), unknown (first one still to come).
 
 Examples:
   isotherm nuc                       state, age, temperatures of the camera
   isotherm nuc --now                 a correction before measuring something important
   isotherm nuc --hold 20             none in the next 20 seconds, because it would disturb
   isotherm nuc --hold 0              that is over
-  isotherm nuc --policy manual       only when asked for; automatic: the edge decides; camera: the camera does
+  isotherm nuc --policy manual       only when asked for
+  isotherm nuc --policy automatic    the edge decides: before a scan, by drift and by age
+  isotherm nuc --policy camera       the camera decides, the edge follows
+  isotherm nuc --edge-id drone-2     of several rigs in this domain
 
 Try it without cameras: isotherm-edge --scene furnace-door --set source.loops=0)";
 
@@ -124,7 +133,7 @@ void AddNucCommand(CLI::App& app, CommandBody& body) {
       ->transform(CLI::CheckedTransformer(policies, CLI::ignore_case).description(""))
       ->type_name("POLICY");
   orders->require_option(0, 1);
-  command->add_option("--edge-id", arguments->edge_id, "Which rig; default: the first one seen")
+  command->add_option("--edge-id", arguments->edge_id, "Which rig, if there are several")
       ->type_name("NAME");
   command->add_option("--domain", arguments->domain, "DDS domain, 0..230")
       ->check(CLI::Range(0, kMaxDomainId))

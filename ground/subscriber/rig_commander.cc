@@ -11,6 +11,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds kPollInterval = 20ms;  // For what the middleware does not signal.
+// Rigs on one network answer a newcomer within some milliseconds of each other.
+constexpr Nanoseconds kOthersToo = 300ms;
 
 }  // namespace
 
@@ -34,30 +36,68 @@ Status RigCommander::Open(const Participant& participant) {
 }
 
 Result<EdgeStatus> RigCommander::AwaitStatus(Nanoseconds timeout) {
-  std::optional<EdgeStatus> found;
-  // What is kept of a scan that has ended is not the state now.
-  const auto take = [&](Received<EdgeStatus>&& received) {
-    if (!edge_id_.empty() && received.edge_id != edge_id_) return;
-    EdgeStatus& status = received.message;
-    if (status.scan_state == ScanState::kEnded) return;
-    edge_id_ = received.edge_id;
-    found = std::move(status);
-  };
+  rigs_.clear();
+  const bool any = edge_id_.empty();
   const bool came = WaitUntil(timeout, [&] {
-    statuses_.Take(take);
-    return found.has_value();
+    TakeStatuses();
+    return any ? !rigs_.empty() : rigs_.contains(edge_id_);
   });
-  if (came) return *found;
-  return Err(Unavailable(fmt::format(
-      "no status from {} within {:.1f} s: is isotherm-edge running, in the same domain and "
-      "with the same CYCLONEDDS_URI?",
-      edge_id_.empty() ? "any rig" : fmt::format("rig \"{}\"", edge_id_), ToSeconds(timeout))));
+  if (!came) {
+    const std::string who = any ? "any rig" : fmt::format("rig \"{}\"", edge_id_);
+    return Err(Unavailable(fmt::format("no status from {} within {:.1f} s; {}", who,
+                                       ToSeconds(timeout), KnownNames())));
+  }
+  // The rigs keep their last status for whoever comes later: all have told by then.
+  WaitUntil(kOthersToo, [&] {
+    TakeStatuses();
+    return false;
+  });
+  if (const std::string why = WhyUnclear(); !why.empty()) return Err(InvalidArgument(why));
+  const auto& [name, rig] = any ? *rigs_.begin() : *rigs_.find(edge_id_);
+  edge_id_ = name;
+  peer_ = rig.peer;
+  return rig.status;
+}
+
+void RigCommander::TakeStatuses() {
+  statuses_.Take([this](Received<EdgeStatus>&& received) {
+    // What is kept of a scan that has ended is not the state now.
+    if (received.message.scan_state == ScanState::kEnded) return;
+    const PeerHandle peer = statuses_.PeerOf(received.writer);
+    if (peer == 0) return;  // It has left.
+    KnownRig& rig = rigs_[received.edge_id];
+    rig.ambiguous = rig.ambiguous || (rig.peer != 0 && rig.peer != peer);
+    rig.peer = peer;
+    rig.status = std::move(received.message);
+  });
+}
+
+std::string RigCommander::WhyUnclear() const {
+  if (edge_id_.empty() && rigs_.size() > 1) {
+    return fmt::format("several rigs are there, say which one is meant; {}", KnownNames());
+  }
+  const auto& [name, rig] = edge_id_.empty() ? *rigs_.begin() : *rigs_.find(edge_id_);
+  if (!rig.ambiguous) return "";
+  return fmt::format("two rigs are called \"{}\"; start one of them with another --edge-id", name);
+}
+
+std::string RigCommander::KnownNames() const {
+  if (rigs_.empty()) {
+    return "is isotherm-edge running, in the same domain and with the same CYCLONEDDS_URI?";
+  }
+  std::string names;
+  for (const auto& [name, rig] : rigs_) {
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", name);
+  }
+  return fmt::format("rigs that are there (--edge-id): {}", names);
 }
 
 Result<CommandResult> RigCommander::Send(Command command, Nanoseconds timeout) {
-  if (!WaitUntil(timeout, [&] { return commands_.matched_readers() > 0; }))
+  // Other rigs read commands as well: theirs is not the reader to wait for.
+  if (!WaitUntil(timeout, [&] { return commands_.Reaches(peer_); })) {
     return Err(Unavailable(fmt::format(
         "rig \"{}\" takes no commands: is it still running, and of this version?", edge_id_)));
+  }
   command.time = clock_.Now();
   // Unlike those of a ground station that has been running for longer.
   command.number = static_cast<std::uint64_t>(ToNanoseconds(command.time));

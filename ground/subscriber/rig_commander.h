@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -18,11 +19,12 @@ namespace isotherm {
 /// frames or without one. Thread-bound.
 class RigCommander {
  public:
-  /// `edge_id`: which rig; empty: the first one seen. `participant` and `clock` must outlive it.
+  /// `edge_id`: which rig; empty: the only one. `participant` and `clock` must outlive it.
   static Result<std::unique_ptr<RigCommander>> Create(const Participant& participant,
                                                       const Clock& clock, std::string edge_id);
 
-  /// The rig's next status. kUnavailable after `timeout`; the message names what to check.
+  /// The rig's next status. kUnavailable after `timeout`: the message names the rigs that are there
+  /// and what to check. kInvalidArgument if it is not clear which rig is meant.
   Result<EdgeStatus> AwaitStatus(Nanoseconds timeout);
   /// Sends the order (its number and time are set here) to the rig that AwaitStatus has found and
   /// waits for the answer. kUnavailable after `timeout`.
@@ -31,13 +33,27 @@ class RigCommander {
   const std::string& edge_id() const { return edge_id_; }
 
  private:
+  /// What a rig has told of itself.
+  struct KnownRig {
+    EdgeStatus status;
+    PeerHandle peer = 0;
+    bool ambiguous = false;  ///< Two processes have this name.
+  };
+
   RigCommander(const Clock& clock, std::string edge_id)
       : clock_(clock), edge_id_(std::move(edge_id)) {}
   Status Open(const Participant& participant);
+  void TakeStatuses();
+  /// Empty, or why it is not clear which rig is meant.
+  std::string WhyUnclear() const;
+  /// "edge_id "a", "b"", for messages.
+  std::string KnownNames() const;
   bool WaitUntil(Nanoseconds timeout, const std::function<bool()>& done);
 
   const Clock& clock_;
   std::string edge_id_;
+  PeerHandle peer_ = 0;  ///< The process of the rig that was found.
+  std::map<std::string, KnownRig> rigs_;
   RefusalCounter refusals_;
   Reader<EdgeStatus> statuses_;
   Reader<CommandResult> results_;

@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <memory>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -37,6 +38,7 @@ constexpr std::chrono::milliseconds kStarved{50};
 /// What the edge may hold in memory, with its camera's process.
 constexpr double kMostMemory_mb = 150.0;
 constexpr unsigned kSeed = 20;
+constexpr std::uint64_t kSession = 1;
 
 double CpuSeconds(int who) {
   rusage usage{};
@@ -164,11 +166,99 @@ class EdgeLoadTest : public ::testing::Test {
         [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); });
   }
 
+  /// What the edge needs, without the making of thermal frames.
+  struct Usage {
+    double cpu_share = 0.0;  ///< Of a core.
+    double memory_mb = 0.0;
+    double child_memory_mb = 0.0;  ///< Of the depth camera's process.
+  };
+
+  void StartPublishing() {
+    auto participant = Participant::Create(environment_, TestDomain());
+    ASSERT_TRUE(participant.has_value());
+    participant_ = std::move(*participant);
+    PublisherOptions publishing;
+    publishing.policy = PublishPolicy::kLossless;
+    auto publisher = Publisher::Create(*participant_, clock_, publishing);
+    ASSERT_TRUE(publisher.has_value());
+    publisher_ = std::move(*publisher);
+    RigDescription rig;
+    rig.session = kSession;
+    ASSERT_TRUE(publisher_->BeginSession(rig).ok());
+  }
+
+  /// Captures, records and publishes for as long as the test lasts.
+  void Run(CameraPair& cameras, Usage& usage) {
+    auto spool = Spool::Create(file_, options_.spool(), cameras.rig(), {}, account_);
+    ASSERT_TRUE(spool.has_value());
+    EdgePipeline pipeline(
+        options_, {cameras, *publisher_, account_, health_, clock_, std::move(*spool), kSession});
+    pipeline.StartReceiving();
+    ASSERT_TRUE(publisher_->WaitForGround(std::chrono::seconds(20), {}));
+    const double cpu_before_s = CpuSeconds(RUSAGE_SELF);
+    const SteadyTime start = clock_.SteadyNow();
+    pipeline.StartCapture();
+    Pause({}, FromSeconds(seconds_));
+    usage.memory_mb = Memory_mb("self");
+    usage.child_memory_mb = Memory_mb(std::to_string(depth_->pid()));
+    wall_s_ = ToSeconds(clock_.SteadyNow() - start);
+    usage.cpu_share = (CpuSeconds(RUSAGE_SELF) - cpu_before_s) / wall_s_;
+    EXPECT_TRUE(pipeline.Stop().ok());
+    // As the daemon says it: only now the ground knows that no earlier number is still to come.
+    EdgeStatus ended;
+    ended.time = clock_.Now();
+    ended.scan_state = ScanState::kEnded;
+    EXPECT_TRUE(publisher_->Publish(ended).ok());
+    EXPECT_TRUE(publisher_->Drain(std::chrono::seconds(20)));
+  }
+
+  /// Prints the figures; whatever was lost must have been counted.
+  void ReportAndCheckAccounts(const Usage& usage) {
+    std::printf(
+        "edge: %.1f %% of a core, %.0f MB resident; depth camera's process: %.1f %%, %.0f MB\n",
+        100.0 * usage.cpu_share, usage.memory_mb, 100.0 * CpuSeconds(RUSAGE_CHILDREN) / wall_s_,
+        usage.child_memory_mb);
+    const auto recording = RecordingReader::Open(file_);
+    ASSERT_TRUE(recording.has_value());
+    EXPECT_TRUE((*recording)->info().complete);
+    for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+      const bool is_depth = sensor == Sensor::kDepth;
+      const SensorAccount account = account_.Get(sensor);
+      const CameraReport report = health_.Get(sensor);
+      std::printf("%s: captured %lu, stamped p50 %.3f ms p99 %.3f ms after arrival\n",
+                  is_depth ? "depth" : "thermal", account.captured, report.stamping_p50_s * 1e3,
+                  report.stamping_p99_s * 1e3);
+      EXPECT_GT(account.captured, 0U);
+      EXPECT_EQ(account.OnTheWayToDisk(), 0);
+      EXPECT_EQ(account.OnTheWayToGround(), 0);
+      EXPECT_EQ(account.recorded,
+                (*recording)->info().messages_by_topic.at(is_depth ? "/depth" : "/thermal"));
+    }
+  }
+
+  /// `received`: what the other process says at its end.
+  void ExpectNothingIsLost(const std::string& received) {
+    const SensorAccount depth = account_.Get(Sensor::kDepth);
+    const SensorAccount thermal = account_.Get(Sensor::kThermal);
+    for (const SensorAccount& account : {depth, thermal}) {
+      EXPECT_EQ(account.recorded, account.captured);
+      EXPECT_EQ(account.published, account.captured);
+    }
+    std::ostringstream expected;
+    expected << "received depth=" << depth.captured << " thermal=" << thermal.captured;
+    EXPECT_NE(received.find(expected.str()), std::string::npos) << received;
+  }
+
   const ::isotherm::testing::TemporaryDirectory folder_;
+  const std::filesystem::path file_ = folder_.path() / "scan.mcap";
   FakeDepthCamera camera_{folder_.path()};
   double seconds_ = 60.0;
   EdgeOptions options_;
   const SystemClock clock_;
+  const TransportEnvironment environment_{clock_};
+  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Publisher> publisher_;
+  double wall_s_ = 0.0;  ///< That it ran.
   FrameAccount account_;
   CameraHealth health_;
   CameraProcess* depth_ = nullptr;
@@ -178,81 +268,22 @@ class EdgeLoadTest : public ::testing::Test {
 TEST_F(EdgeLoadTest, NoFrameIsLostAndMemoryIsBounded) {
   Process sink({FRAME_SINK, {std::to_string(TestDomain())}, {}, {}});
   ASSERT_TRUE(sink.WaitForOutput("listening", kPatience));
-  const TransportEnvironment environment(clock_);
-  const auto participant = Participant::Create(environment, TestDomain());
-  ASSERT_TRUE(participant.has_value());
-  PublisherOptions publishing;
-  publishing.policy = PublishPolicy::kLossless;
-  const auto publisher = Publisher::Create(**participant, clock_, publishing);
-  ASSERT_TRUE(publisher.has_value());
+  ASSERT_NO_FATAL_FAILURE(StartPublishing());
   const std::unique_ptr<CameraPair> cameras = MakeCameras();
   const Status opened = cameras->Open();
   ASSERT_TRUE(opened.ok()) << opened.message();
-  const std::filesystem::path file = folder_.path() / "scan.mcap";
-  auto spool = Spool::Create(file, options_.spool(), cameras->rig(), {}, account_);
-  ASSERT_TRUE(spool.has_value());
-  RigDescription rig;
-  rig.session = 1;
-  ASSERT_TRUE((*publisher)->BeginSession(rig).ok());
-
-  EdgePipeline pipeline(
-      options_, {*cameras, **publisher, account_, health_, clock_, std::move(*spool), rig.session});
-  pipeline.StartReceiving();
-  ASSERT_TRUE((*publisher)->WaitForGround(std::chrono::seconds(20), {}));
-  const double cpu_before_s = CpuSeconds(RUSAGE_SELF);
-  const SteadyTime start = clock_.SteadyNow();
-  pipeline.StartCapture();
-  Pause({}, FromSeconds(seconds_));
-  const double memory_mb = Memory_mb("self");
-  const double child_memory_mb = Memory_mb(std::to_string(depth_->pid()));
-  const double cpu_s = CpuSeconds(RUSAGE_SELF) - cpu_before_s;
-  const double wall_s = ToSeconds(clock_.SteadyNow() - start);
-  EXPECT_TRUE(pipeline.Stop().ok());
-  // As the daemon says it: only now the ground knows that no earlier number is still to come.
-  EdgeStatus ended;
-  ended.time = clock_.Now();
-  ended.scan_state = ScanState::kEnded;
-  EXPECT_TRUE((*publisher)->Publish(ended).ok());
-  EXPECT_TRUE((*publisher)->Drain(std::chrono::seconds(20)));
-
-  std::printf(
-      "edge: %.1f %% of a core, %.0f MB resident; depth camera's process: %.1f %%, %.0f MB\n",
-      100.0 * cpu_s / wall_s, memory_mb, 100.0 * CpuSeconds(RUSAGE_CHILDREN) / wall_s,
-      child_memory_mb);
-  const auto recording = RecordingReader::Open(file);
-  ASSERT_TRUE(recording.has_value());
-  EXPECT_TRUE((*recording)->info().complete);
-  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
-    const bool is_depth = sensor == Sensor::kDepth;
-    const SensorAccount account = account_.Get(sensor);
-    const CameraReport report = health_.Get(sensor);
-    const std::uint64_t recorded =
-        (*recording)->info().messages_by_topic.at(is_depth ? "/depth" : "/thermal");
-    std::printf("%s: captured %lu, stamped p50 %.3f ms p99 %.3f ms after arrival\n",
-                is_depth ? "depth" : "thermal", account.captured, report.stamping_p50_s * 1e3,
-                report.stamping_p99_s * 1e3);
-    EXPECT_GT(account.captured, 0U);
-    EXPECT_EQ(account.OnTheWayToDisk(), 0);
-    EXPECT_EQ(account.OnTheWayToGround(), 0);
-    EXPECT_EQ(account.recorded, recorded);
-  }
+  Usage usage;
+  ASSERT_NO_FATAL_FAILURE(Run(*cameras, usage));
+  ASSERT_NO_FATAL_FAILURE(ReportAndCheckAccounts(usage));
   if (thermal_->latest() > kStarved) {
     GTEST_SKIP() << "this computer is busy: a thread that could run waited for "
                  << ToSeconds(thermal_->latest())
                  << " s; accounts close, but losses and memory say nothing";
   }
-  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
-    const SensorAccount account = account_.Get(sensor);
-    EXPECT_EQ(account.recorded, account.captured);
-    EXPECT_EQ(account.published, account.captured);
-  }
-  EXPECT_LT(memory_mb + child_memory_mb, kMostMemory_mb);
+  EXPECT_LT(usage.memory_mb + usage.child_memory_mb, kMostMemory_mb);
   sink.Signal(SIGTERM);
   EXPECT_EQ(sink.WaitForExit(kPatience), 0);
-  std::ostringstream expected;
-  expected << "received depth=" << account_.Get(Sensor::kDepth).captured
-           << " thermal=" << account_.Get(Sensor::kThermal).captured;
-  EXPECT_NE(sink.output().find(expected.str()), std::string::npos) << sink.output();
+  ExpectNothingIsLost(sink.output());
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::TemporaryDirectory;
 
 constexpr int kRefused = 69;  // EX_UNAVAILABLE of sysexits.h.
@@ -27,7 +28,7 @@ class NucTest : public ::testing::Test {
     Command edge{EdgeDaemon(), {"--scene", "plane", "--domain", std::to_string(TestDomain())}, {}};
     edge.arguments.insert(edge.arguments.end(), {"--record", folder_.path() / "edge.mcap"});
     settings.insert(
-        settings.end(),
+        settings.begin(),
         {"source.loops=0", "source.cache_dir=" + folder_.path().string(),
          "source.simulation.duration_s=2", "source.simulation.depth.rate_hz=2",
          "source.simulation.thermal.rate_hz=20", "source.simulation.shutter.interval_s=0"});
@@ -86,6 +87,22 @@ TEST_F(NucTest, F07AShutterOfWhichTheCameraDoesNotTellIsFoundInItsPictures) {
   EXPECT_TRUE(edge.WaitForOutput("shutter open after", kPatience)) << edge.output();
   edge.Signal(SIGTERM);
   EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+}
+
+TEST_F(NucTest, F08AStormIsReportedWithWhatItCostsAndNothingIsOrderedOnTop) {
+  Process edge(Edge({"source.simulation.shutter.interval_s=0.8"}));
+  ASSERT_TRUE(
+      edge.WaitForOutput("storm of corrections: 7 corrections in the last minute, shutter "
+                         "closed for",
+                         kPatience))
+      << edge.output();
+  const Finished refused = Nuc({"--now"});
+  EXPECT_EQ(refused.status, kRefused);
+  EXPECT_THAT(refused.output, HasSubstr("corrections in the last minute, more than 6"));
+  EXPECT_THAT(Nuc({}).output, AllOf(HasSubstr("shutter closed for"), HasSubstr("(storm)")));
+  edge.Signal(SIGTERM);
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  EXPECT_THAT(edge.output(), Not(HasSubstr("correction ordered")));
 }
 
 TEST_F(NucTest, F08AnOrderThatIsNotFollowedIsReported) {

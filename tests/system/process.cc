@@ -15,6 +15,9 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <fstream>
+#include <iterator>
+#include <system_error>
 
 #include "common/base/check.h"
 
@@ -114,9 +117,15 @@ std::optional<ExitStatus> Process::WaitForExit(Seconds timeout) {
   return exit_status_;
 }
 
-bool Process::WaitForOutput(std::string_view text, Seconds timeout) {
+bool Process::WaitForOutput(std::string_view text, Seconds timeout, int times) {
   std::unique_lock lock(mutex_);
-  const auto seen = [&] { return output_.find(text) != std::string::npos; };
+  const auto seen = [&] {
+    std::size_t at = output_.find(text);
+    for (int more = times - 1; more > 0 && at != std::string::npos; --more) {
+      at = output_.find(text, at + 1);
+    }
+    return at != std::string::npos;
+  };
   changed_.wait_for(lock, timeout, [&] { return seen() || output_ended_; });
   return seen();
 }
@@ -141,6 +150,22 @@ void Process::Drain(int pipe) {
     changed_.notify_all();
   }
   close(pipe);
+}
+
+std::vector<pid_t> ChildrenOf(pid_t pid) {
+  std::vector<pid_t> children;
+  std::error_code gone;
+  const std::string tasks = "/proc/" + std::to_string(pid) + "/task";
+  for (const auto& task : std::filesystem::directory_iterator(tasks, gone)) {
+    std::ifstream list(task.path() / "children");
+    for (pid_t child = 0; list >> child;) children.push_back(child);
+  }
+  return children;
+}
+
+std::string CommandLineOf(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 Finished RunToEnd(const Command& command, Seconds timeout) {

@@ -40,9 +40,9 @@ class Process {
   void Signal(int signal) const;
   /// The exit status, or nullopt if the program still runs after `timeout`.
   std::optional<ExitStatus> WaitForExit(Seconds timeout);
-  /// True as soon as `text` has appeared in the output, false if it has not within `timeout` or
-  /// never will.
-  bool WaitForOutput(std::string_view text, Seconds timeout);
+  /// True as soon as `text` has appeared in the output so many times, false if it has not within
+  /// `timeout` or never will.
+  bool WaitForOutput(std::string_view text, Seconds timeout, int times = 1);
   /// Everything written so far; everything at all once WaitForExit has returned a status.
   std::string output() const;
   pid_t pid() const { return pid_; }
@@ -59,6 +59,11 @@ class Process {
   bool output_ended_ = false;
   std::jthread reader_;
 };
+
+/// Processes that `pid` has started and that still run.
+std::vector<pid_t> ChildrenOf(pid_t pid);
+/// The program's arguments, each ended by a zero; empty if there is no such process.
+std::string CommandLineOf(pid_t pid);
 
 /// A program that has ended.
 struct Finished {

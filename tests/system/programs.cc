@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -103,6 +104,21 @@ RecordingContent ReadRecording(const std::filesystem::path& path) {
   SortByNumber(content.depth);
   SortByNumber(content.thermal);
   return content;
+}
+
+FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::string& done) {
+  const std::string name = sensor == Sensor::kDepth ? "depth" : "thermal";
+  // A blank in the format stands for any number of them in the text.
+  const std::string format =
+      name + " captured %ld = " + done + " %ld + rejected %ld + queue full %ld + failed %ld\n";
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    FrameAccountText account;
+    const int numbers = std::sscanf(line.c_str(), format.c_str(), &account.captured, &account.done,
+                                    &account.rejected, &account.queue_full, &account.failed);
+    if (numbers == 5 && line.find("unaccounted") == std::string::npos) return account;
+  }
+  return {};
 }
 
 std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path) {

@@ -54,6 +54,16 @@ struct RecordingContent {
 /// All frames of a recording. Fails the running test if it cannot be read.
 RecordingContent ReadRecording(const std::filesystem::path& path);
 
+/// The numbers of a line of the edge's summary: "depth    captured 100 = recorded 99 + rejected 1 +
+/// queue full 0 + failed 0".
+struct FrameAccountText {
+  long captured = -1, done = -1, rejected = -1, queue_full = -1, failed = -1;
+  bool Closes() const { return captured >= 0 && captured == done + rejected + queue_full + failed; }
+};
+/// `done`: "recorded" or "published". An account that does not close if there is no such line, or
+/// if it speaks of unaccounted frames.
+FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::string& done);
+
 /// Lines that are neither empty nor comments, each split into numbers.
 std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path);
 

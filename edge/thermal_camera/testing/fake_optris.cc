@@ -1,8 +1,19 @@
 // A library with the interface of the vendor's, for tests: 4 x 3 pixels, each call a frame; the
 // flag goes open, closing, closed, opening, open, ...; the fifth frame after an order is open.
+//
+// If the camera's file exists, frames come at the camera's rate, and the words in it say what goes
+// wrong: "crash N" or "hang N" at the N-th frame, "refuse": orders are refused, "hang-at-open".
+#include <unistd.h>
+
+#include <chrono>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <string>
 #include <string_view>
+#include <thread>
 
 namespace {
 
@@ -17,11 +28,44 @@ std::uint32_t frames = 0;
 int closing = 0;
 bool running = false;
 
+struct Script {
+  bool paced = false;
+  std::uint32_t crash_at = 0;  // 0 = never.
+  std::uint32_t hang_at = 0;
+  bool refuses = false;
+  bool hangs_at_open = false;
+};
+Script script;
+
+Script ReadScript(const char* path) {
+  Script read;
+  std::ifstream file(path);
+  read.paced = file.is_open();
+  for (std::string word; file >> word;) {
+    if (word == "crash") file >> read.crash_at;
+    if (word == "hang") file >> read.hang_at;
+    if (word == "refuse") read.refuses = true;
+    if (word == "hang-at-open") read.hangs_at_open = true;
+  }
+  return read;
+}
+
+void PlayScript() {
+  if (script.paced) std::this_thread::sleep_for(std::chrono::microseconds(37'037));
+  if (frames == script.crash_at) std::abort();
+  while (frames == script.hang_at) ::pause();
+}
+
 }  // namespace
 
 extern "C" {
 int evo_irimager_usb_init(const char* config, const char*, const char*) {
-  running = std::string_view(config) == "pi450.xml";
+  running = std::string_view(config).ends_with("pi450.xml");
+  script = ReadScript(config);
+  if (script.hangs_at_open) {
+    std::fputs("the library opens its camera\n", stderr);
+    while (true) ::pause();
+  }
   return running ? 0 : -1;
 }
 int evo_irimager_terminate() {
@@ -43,6 +87,7 @@ int evo_irimager_get_thermal_image_metadata(int* width, int* height, unsigned sh
   *width = 4;
   *height = 3;
   ++frames;
+  PlayScript();
   for (int i = 0; i < 12; ++i) data[i] = static_cast<unsigned short>(1'250 + frames % 7);
   constexpr int kFlags[] = {0, 2, 1, 3};  // Counted down: closing, closed, opening, open.
   const int flag = kFlags[closing];
@@ -54,6 +99,7 @@ int evo_irimager_get_thermal_image_metadata(int* width, int* height, unsigned sh
 }
 int evo_irimager_set_shutter_mode(int) { return 0; }
 int evo_irimager_trigger_shutter_flag() {
+  if (script.refuses) return -1;
   closing = 3;
   return 0;
 }

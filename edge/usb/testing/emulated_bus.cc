@@ -31,6 +31,7 @@ using std::chrono::steady_clock;
 constexpr const char* kSysPath = "/sys/devices/usb1/1-1";
 // The file of an emulated device is always ready, so a client with nothing to do asks again and
 // again: it gets its answer after this time, or when there is something.
+constexpr Nanoseconds kLookAgainAfter = std::chrono::milliseconds(5);
 constexpr Nanoseconds kAnswerNothingAfter = std::chrono::milliseconds(2);
 
 Nanoseconds Now() { return steady_clock::now().time_since_epoch(); }
@@ -94,6 +95,10 @@ class EmulatedBus::Impl {
     requests_.reset();  // They were another process's.
     Poke();
   }
+  void FindChild(std::function<std::optional<pid_t>()> find) {
+    const std::lock_guard lock(mutex_);
+    find_child_ = std::move(find);
+  }
 
  private:
   static gboolean OnIoctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self) {
@@ -119,6 +124,7 @@ class EmulatedBus::Impl {
   std::condition_variable_any changed_;
   bool poked_ = false;
   std::optional<pid_t> child_ = getpid();
+  std::function<std::optional<pid_t>()> find_child_;
   std::shared_ptr<EmulatedDevice> device_;
   std::unique_ptr<EmulatedRequests> requests_;
   UMockdevIoctlBase* handler_ = nullptr;
@@ -150,6 +156,9 @@ void EmulatedBus::Unplug() { impl_->Unplug(); }
 bool EmulatedBus::plugged() const { return impl_->plugged(); }
 void EmulatedBus::ExpectChild() { impl_->SetChild(std::nullopt); }
 void EmulatedBus::SetChild(pid_t child) { impl_->SetChild(child); }
+void EmulatedBus::FindChild(std::function<std::optional<pid_t>()> find) {
+  impl_->FindChild(std::move(find));
+}
 
 void EmulatedBus::Impl::Plug(std::shared_ptr<EmulatedDevice> device) {
   const std::lock_guard plug_lock(plug_mutex_);
@@ -199,6 +208,12 @@ void EmulatedBus::Impl::Handle(UMockdevIoctlClient* client) {
   __builtin_memcpy(&address, argument->data, sizeof(address));
   const unsigned long request = umockdev_ioctl_client_get_request(client);
   std::unique_lock lock(mutex_);
+  while (find_child_) {
+    const std::optional<pid_t> before = std::exchange(child_, find_child_());
+    if (child_ != before) requests_.reset();
+    if (child_) break;
+    changed_.wait_for(lock, kLookAgainAfter);
+  }
   changed_.wait(lock, [this] { return child_.has_value(); });
   if (request == USBDEVFS_REAPURBNDELAY || request == USBDEVFS_REAPURB) {
     reaping_ = UMOCKDEV_IOCTL_CLIENT(g_object_ref(client));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <sys/types.h>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ class EmulatedBus {
   /// wait until SetChild says who it is.
   void ExpectChild();
   void SetChild(pid_t child);
+  /// The same if it is not always the same process: `find` is asked at each request.
+  void FindChild(std::function<std::optional<pid_t>()> find);
 
   /// Where the device is plugged in.
   static constexpr const char* kBusPort = "1-1";
