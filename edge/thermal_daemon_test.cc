@@ -211,7 +211,8 @@ TEST_F(ThermalDaemonTest, AnOrderThatTheCameraRefusesIsAnsweredWithItsWords) {
 
 TEST_F(ThermalDaemonTest, F03ACameraThatTheCalibrationIsNotOfIsNotUsed) {
   const std::filesystem::path rig = folder_.path() / "rig.textproto";
-  std::ofstream(rig) << "thermal_serial: \"LEPTON-1\"\n";
+  std::ofstream(rig) << "thermal { width: 160 height: 120 fx: 150 fy: 150 cx: 79.5 cy: 59.5 }\n"
+                     << "thermal_serial: \"LEPTON-1\"\n";
   bus_->Plug(std::make_shared<EmulatedLepton>("f", "LEPTON-2"));
   Process edge(Edge({"--rig", rig.string()}));
   bus_->SetChild(edge.pid());

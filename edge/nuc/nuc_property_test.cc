@@ -52,7 +52,7 @@ class WilfulCamera {
   float housing_celsius_ = 30.0F;
 };
 
-TEST(NucProperties, NoFrameFromClosingToTheEndOfSettlingIsValidAndOrdersKeepTheirDistance) {
+TEST(NucProperties, F07NoFrameFromClosingToTheEndOfSettlingIsValidAndOrdersKeepTheirDistance) {
   std::mt19937 random(testing::Seed());
   for (int scan = 0; scan < kScans; ++scan) {
     NucOptions options;

@@ -172,7 +172,7 @@ TEST_F(CameraPairTest, TheCamerasTellWhatTheyAre) {
   EXPECT_TRUE(pair_->rig()->thermal);
 }
 
-TEST_F(CameraPairTest, F01WithoutTheDepthCameraTheThermalOneGoesOn) {
+TEST_F(CameraPairTest, F01WithoutTheDepthCameraTheThermalOneGoesOnAndF02ItIsUsedAgain) {
   ASSERT_TRUE(pair_->Open().ok());
   ASSERT_TRUE(ReadFrames(Sensor::kDepth, 1));
   depth_->there = false;

@@ -48,11 +48,14 @@ Result<EdgeStatus> RigCommander::AwaitStatus(Nanoseconds timeout) {
                                        ToSeconds(timeout), KnownNames())));
   }
   // The rigs keep their last status for whoever comes later: all have told by then.
-  WaitUntil(kOthersToo, [&] {
+  const auto never = [&] {
     TakeStatuses();
     return false;
-  });
-  if (const std::string why = WhyUnclear(); !why.empty()) return Err(InvalidArgument(why));
+  };
+  if (any) WaitUntil(kOthersToo, never);
+  if (any && rigs_.size() > 1) {
+    return Err(InvalidArgument("several rigs are there, say which one is meant; " + KnownNames()));
+  }
   const auto& [name, rig] = any ? *rigs_.begin() : *rigs_.find(edge_id_);
   edge_id_ = name;
   peer_ = rig.peer;
@@ -65,20 +68,8 @@ void RigCommander::TakeStatuses() {
     if (received.message.scan_state == ScanState::kEnded) return;
     const PeerHandle peer = statuses_.PeerOf(received.writer);
     if (peer == 0) return;  // It has left.
-    KnownRig& rig = rigs_[received.edge_id];
-    rig.ambiguous = rig.ambiguous || (rig.peer != 0 && rig.peer != peer);
-    rig.peer = peer;
-    rig.status = std::move(received.message);
+    rigs_[received.edge_id] = {std::move(received.message), peer};
   });
-}
-
-std::string RigCommander::WhyUnclear() const {
-  if (edge_id_.empty() && rigs_.size() > 1) {
-    return fmt::format("several rigs are there, say which one is meant; {}", KnownNames());
-  }
-  const auto& [name, rig] = edge_id_.empty() ? *rigs_.begin() : *rigs_.find(edge_id_);
-  if (!rig.ambiguous) return "";
-  return fmt::format("two rigs are called \"{}\"; start one of them with another --edge-id", name);
 }
 
 std::string RigCommander::KnownNames() const {

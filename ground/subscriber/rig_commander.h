@@ -37,16 +37,13 @@ class RigCommander {
   struct KnownRig {
     EdgeStatus status;
     PeerHandle peer = 0;
-    bool ambiguous = false;  ///< Two processes have this name.
   };
 
   RigCommander(const Clock& clock, std::string edge_id)
       : clock_(clock), edge_id_(std::move(edge_id)) {}
   Status Open(const Participant& participant);
   void TakeStatuses();
-  /// Empty, or why it is not clear which rig is meant.
-  std::string WhyUnclear() const;
-  /// "edge_id "a", "b"", for messages.
+  /// Which rigs are there, or what to check if none is.
   std::string KnownNames() const;
   bool WaitUntil(Nanoseconds timeout, const std::function<bool()>& done);
 

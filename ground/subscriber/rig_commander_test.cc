@@ -153,14 +153,6 @@ TEST_F(RigCommanderTest, AWrongNameIsAnsweredWithTheRigsThatAreThere) {
                     HasSubstr("\"alpha\", \"beta\"")));
 }
 
-TEST_F(RigCommanderTest, F36TwoRigsOfOneNameAreToldApartAndRefused) {
-  const auto one = Rig("alpha");
-  const auto two = Rig("alpha");
-  const Result<EdgeStatus> status = Commander("alpha")->AwaitStatus(kPatience);
-  ASSERT_FALSE(status.has_value());
-  EXPECT_THAT(status.error().message(), HasSubstr("two rigs are called \"alpha\""));
-}
-
 TEST_F(RigCommanderTest, ARigWhoseScanHasEndedIsNotThere) {
   const auto alpha = Rig("alpha", ScanState::kEnded);
   const Result<EdgeStatus> status = Commander("")->AwaitStatus(kShort);
