@@ -209,6 +209,20 @@ TEST_F(ThermalDaemonTest, AnOrderThatTheCameraRefusesIsAnsweredWithItsWords) {
   End(edge);
 }
 
+TEST_F(ThermalDaemonTest, ACameraThatTakesNoOrdersSaysSoAndTheScanDoesNotWaitForIt) {
+  bus_->Plug(std::make_shared<EmulatedSeek>("f"));
+  Process edge(Edge({"--set", "nuc.before_scan=true"}));
+  bus_->SetChild(edge.pid());
+  ASSERT_TRUE(edge.WaitForOutput("no first correction: the scan goes on without", kPatience))
+      << edge.output();
+  EXPECT_THAT(edge.output(), Not(HasSubstr("attempt"))) << "it is not asked again";
+  const Finished refused = Nuc();
+  EXPECT_EQ(refused.status, kRefused);
+  EXPECT_THAT(refused.output,
+              AllOf(HasSubstr("edge refuses: "), HasSubstr("closes its shutter when it sees fit")));
+  End(edge);
+}
+
 TEST_F(ThermalDaemonTest, F03ACameraThatTheCalibrationIsNotOfIsNotUsed) {
   const std::filesystem::path rig = folder_.path() / "rig.textproto";
   std::ofstream(rig) << "thermal { width: 160 height: 120 fx: 150 fy: 150 cx: 79.5 cy: 59.5 }\n"

@@ -88,6 +88,14 @@ TEST_F(NucAnswerTest, ACameraThatTakesNoOrdersScansWithoutAFirstCorrectionFromTh
   EXPECT_EQ(Triggers().size(), 1U);
 }
 
+TEST_F(NucAnswerTest, ARequestToACameraThatTakesNoOrdersIsPassedOnToItAtOnce) {
+  RequestAndOrder();
+  supervisor_->OnAnswer(NucOrder::kTrigger, FailedPrecondition("no shutter to command"));
+  Frame(Observe(S::kSaysIdle));
+  EXPECT_EQ(supervisor_->Request().value(), "") << "it is the camera that answers";
+  EXPECT_EQ(Frame(Observe(S::kSaysIdle)).order, NucOrder::kTrigger);
+}
+
 TEST_F(NucAnswerTest, ACameraThatWasAwayIsAskedAgainWithoutIt) {
   RequestAndOrder();
   now_ += std::chrono::seconds(20);

@@ -110,6 +110,8 @@ void NucSupervisor::OnAnswer(NucOrder order, const Status& answer) {
                                                        : fmt::format("attempt {} of {}", attempts_,
                                                                      options_->max_attempts()),
                                        answer.message()));
+  // Nothing has happened that the next request would have to keep its distance from.
+  if (cannot_trigger_) last_trigger_.reset();
   if (cannot_trigger_ || attempts_ >= options_->max_attempts()) GiveUp();
 }
 
