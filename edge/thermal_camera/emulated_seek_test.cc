@@ -48,6 +48,7 @@ TEST_F(EmulatedSeekTest, IsListedByItsProduct) {
   ASSERT_TRUE(devices.has_value()) << devices.error().message();
   ASSERT_EQ(devices->size(), 1U);
   EXPECT_EQ(devices->front().driver, "seek-bulk");
+  EXPECT_EQ(devices->front().product, "Seek CompactPro");
   EXPECT_THAT(devices->front().modes, ElementsAre("320x240, 9 Hz, counts only"));
 }
 

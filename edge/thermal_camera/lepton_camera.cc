@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "edge/thermal_camera/lepton_protocol.h"
-#include "edge/usb/uvc_camera.h"
+#include "edge/thermal_camera/open_uvc_camera.h"
 
 namespace isotherm {
 namespace {
@@ -57,11 +57,7 @@ LeptonCamera::~LeptonCamera() = default;
 
 Status LeptonCamera::Open() {
   Close();
-  Result<std::unique_ptr<UsbDevice>> device = UsbDevice::Open(info_.bus_port, clock_);
-  if (!device) return device.error();
-  info_.product = (*device)->info().product;
-  info_.serial = (*device)->info().serial;
-  Result<std::unique_ptr<UvcCamera>> camera = UvcCamera::Make(std::move(*device));
+  Result<std::unique_ptr<UvcCamera>> camera = OpenUvcCamera(clock_, info_);
   if (!camera) return camera.error();
   camera_ = std::move(*camera);
   uptime_.Reset();
@@ -91,9 +87,7 @@ Result<std::optional<RawThermalFrame>> LeptonCamera::Read(Nanoseconds timeout) {
   if (!received) return Err(received.error());
   if (!*received) return std::optional<RawThermalFrame>();
   const UvcFrame& frame = **received;
-  RawThermalFrame raw;
-  raw.first_packet = frame.first_packet;
-  raw.incomplete = frame.incomplete;
+  RawThermalFrame raw = BeginFrame(frame);
   // The telemetry comes last: of an incomplete frame nothing can be known.
   if (raw.incomplete) return std::optional(std::move(raw));
   Result<LeptonFrame> parsed = ParseLeptonFrame(frame.bytes, info_.width, info_.height);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "edge/usb/uvc_camera.h"
+#include "edge/thermal_camera/open_uvc_camera.h"
 
 namespace isotherm {
 namespace {
@@ -56,11 +56,7 @@ P2ProCamera::~P2ProCamera() = default;
 
 Status P2ProCamera::Open() {
   Close();
-  Result<std::unique_ptr<UsbDevice>> device = UsbDevice::Open(info_.bus_port, clock_);
-  if (!device) return device.error();
-  info_.product = (*device)->info().product;
-  info_.serial = (*device)->info().serial;
-  Result<std::unique_ptr<UvcCamera>> camera = UvcCamera::Make(std::move(*device));
+  Result<std::unique_ptr<UvcCamera>> camera = OpenUvcCamera(clock_, info_);
   if (!camera) return camera.error();
   camera_ = std::move(*camera);
   const Status started = camera_->Start(kMode);
@@ -86,9 +82,7 @@ Result<std::optional<RawThermalFrame>> P2ProCamera::Read(Nanoseconds timeout) {
   AskShutterWhenDue(now);
   if (!*received) return std::optional<RawThermalFrame>();
   const UvcFrame& frame = **received;
-  RawThermalFrame raw;
-  raw.first_packet = frame.first_packet;
-  raw.incomplete = frame.incomplete;
+  RawThermalFrame raw = BeginFrame(frame);
   raw.encoding = kInfirayEncoding;
   if (raw.incomplete) return std::optional(std::move(raw));
   Result<Image<std::uint16_t>> counts = ParseP2ProFrame(frame.bytes);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "edge/thermal_camera/infiray_protocol.h"
+#include "edge/thermal_camera/open_uvc_camera.h"
 #include "edge/usb/usb_device.h"
 
 namespace isotherm {
@@ -134,9 +135,7 @@ Result<std::optional<RawThermalFrame>> P3Camera::Read(Nanoseconds timeout) {
 }
 
 RawThermalFrame P3Camera::Convert(const UvcFrame& frame, P3Frame parsed) {
-  RawThermalFrame raw;
-  raw.first_packet = frame.first_packet;
-  raw.incomplete = frame.incomplete;
+  RawThermalFrame raw = BeginFrame(frame);
   raw.encoding = kInfirayEncoding;
   if (raw.incomplete) return raw;
   raw.counts = std::move(parsed.counts);

@@ -43,7 +43,7 @@ RgbImage CountsPicture(const Image<std::uint16_t>& counts) {
   }
   RendererOptions options;
   options.set_palette(Palette::GREY);
-  return Picture(values, options, "counts, no temperatures", "");
+  return Picture(values, options, "thermal picture", "counts");
 }
 
 Result<RgbImage> PictureOf(const RecordedItem& item) {

@@ -35,7 +35,6 @@ EmulatedIdentity EmulatedSeek::identity() const {
   EmulatedIdentity identity;
   identity.vendor_id = 0x289D;
   identity.product_id = setup_.model.name == kSeekCompactPro.name ? 0x0011 : 0x0010;
-  identity.product = "iAP Interface";
   identity.high_speed = true;
   identity.configuration = {9, 2, 32,   0, 1,    1,    0, 0x80, 50,  // One interface, bulk.
                             9, 4, 0,    0, 2,    0xFF, 0, 0,    0,   //
