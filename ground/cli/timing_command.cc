@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "common/base/progress.h"
-#include "common/stamping/stamping_trial.h"
 #include "ground/cli/command.h"
+#include "ground/evaluation/stamping_trial.h"
 
 namespace isotherm {
 namespace {

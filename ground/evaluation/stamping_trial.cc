@@ -1,4 +1,4 @@
-#include "common/stamping/stamping_trial.h"
+#include "ground/evaluation/stamping_trial.h"
 
 #include <algorithm>
 #include <cmath>
