@@ -1,121 +1,15 @@
 #include <isotherm_control.h>
 
 #include <algorithm>
-#include <span>
 
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
 #include "common/transport/sample_validator.h"
 #include "common/transport/wire_pose.h"
+#include "common/transport/wire_sequence.h"
 
 namespace isotherm {
 namespace {
-
-/// Allocates a list for at most `max` of `count` elements in a zeroed wire sequence; returns its
-/// elements.
-template <typename Sequence>
-auto Allocate(Sequence* sequence, std::size_t count, std::size_t max) {
-  using Element = std::remove_pointer_t<decltype(sequence->_buffer)>;
-  const std::size_t length = std::min(count, max);
-  if (length > 0) {
-    sequence->_buffer = static_cast<Element*>(dds_alloc(length * sizeof(Element)));  // Zeroed.
-  }
-  sequence->_maximum = static_cast<std::uint32_t>(length);
-  sequence->_length = static_cast<std::uint32_t>(length);
-  sequence->_release = true;
-  return std::span<Element>(sequence->_buffer, length);
-}
-
-template <typename Sequence>
-auto Elements(const Sequence& sequence) {
-  using Element = std::remove_pointer_t<decltype(sequence._buffer)>;
-  return std::span<const Element>(sequence._buffer, sequence._length);
-}
-
-void ToWireStream(const StreamStatus& from, isotherm_wire_StreamStatus* to) {
-  to->captured = from.captured;
-  to->published = from.published;
-  to->next_frame_number = from.next_frame_number;
-  to->rate_hz = from.rate_hz;
-  to->queue_frames = from.queue_frames;
-  const auto dropped = Allocate(&to->dropped, from.dropped.size(), kMaxDropReasons);
-  for (std::size_t i = 0; i < dropped.size(); ++i) {
-    CopyText(from.dropped[i].reason, dropped[i].reason);
-    dropped[i].frames = from.dropped[i].frames;
-  }
-}
-
-std::optional<RefusalCause> FromWireStream(const isotherm_wire_StreamStatus& from,
-                                           StreamStatus* to) {
-  if (from.next_frame_number > kMaxFrameNumber + 1 || from.published > from.next_frame_number) {
-    return RefusalCause::kImpossibleNumber;
-  }
-  if (const auto cause = CheckFinite({from.rate_hz})) return cause;
-  to->captured = from.captured;
-  to->published = from.published;
-  to->next_frame_number = from.next_frame_number;
-  to->rate_hz = from.rate_hz;
-  to->queue_frames = from.queue_frames;
-  for (const auto& dropped : Elements(from.dropped)) {
-    to->dropped.push_back({.reason = ReadText(dropped.reason), .frames = dropped.frames});
-  }
-  return std::nullopt;
-}
-
-void ToWireCamera(const CameraReport& from, isotherm_wire_CameraReport* to) {
-  to->state = static_cast<std::uint8_t>(from.state);
-  to->failures = from.failures;
-  to->stamping_p50_s = from.stamping_p50_s;
-  to->stamping_p99_s = from.stamping_p99_s;
-}
-
-std::optional<RefusalCause> FromWireCamera(const isotherm_wire_CameraReport& from,
-                                           CameraReport* to) {
-  if (const auto cause = CheckEnum(from.state, CameraState::kBlind)) return cause;
-  if (const auto cause = CheckFiniteOrUnknown({from.stamping_p50_s, from.stamping_p99_s})) {
-    return cause;
-  }
-  *to = {static_cast<CameraState>(from.state), from.failures, from.stamping_p50_s,
-         from.stamping_p99_s};
-  return std::nullopt;
-}
-
-void ToWireNuc(const NucReport& from, isotherm_wire_EdgeStatus* to) {
-  to->nuc_state = static_cast<std::uint8_t>(from.state);
-  to->has_nuc = true;
-  to->nuc_source = static_cast<std::uint8_t>(from.source);
-  to->nuc_policy = static_cast<std::uint8_t>(from.policy);
-  to->nuc_seconds_since = from.seconds_since;
-  to->nuc_closings_per_minute = from.closings_per_minute;
-  to->nuc_closed_share = from.closed_share;
-  to->nuc_storm = from.storm;
-  to->nuc_warming_up = from.warming_up;
-  to->nuc_fpa_celsius = from.fpa_celsius;
-  to->nuc_housing_celsius = from.housing_celsius;
-  CopyText(from.reason, to->nuc_reason);
-}
-
-std::optional<RefusalCause> FromWireNuc(const isotherm_wire_EdgeStatus& from, NucReport* to) {
-  if (const auto cause = CheckEnum(from.nuc_state, NucState::kError)) return cause;
-  to->state = static_cast<NucState>(from.nuc_state);
-  if (!from.has_nuc) return std::nullopt;
-  if (const auto cause = CheckEnum(from.nuc_source, NucSource::kInferred)) return cause;
-  if (const auto cause = CheckEnum(from.nuc_policy, NucPolicy::kCamera)) return cause;
-  const auto infinite = CheckFiniteOrUnknown({from.nuc_seconds_since, from.nuc_closed_share,
-                                              from.nuc_fpa_celsius, from.nuc_housing_celsius});
-  if (infinite) return infinite;
-  to->source = static_cast<NucSource>(from.nuc_source);
-  to->policy = static_cast<NucPolicy>(from.nuc_policy);
-  to->seconds_since = from.nuc_seconds_since;
-  to->closings_per_minute = from.nuc_closings_per_minute;
-  to->closed_share = from.nuc_closed_share;
-  to->storm = from.nuc_storm;
-  to->warming_up = from.nuc_warming_up;
-  to->fpa_celsius = from.nuc_fpa_celsius;
-  to->housing_celsius = from.nuc_housing_celsius;
-  to->reason = ReadText(from.nuc_reason);
-  return std::nullopt;
-}
 
 void ToWireReceipt(const StreamReceipt& from, isotherm_wire_StreamReceipt* to) {
   to->next_number = from.next;
@@ -201,54 +95,6 @@ std::optional<RefusalCause> FromWireLists(const isotherm_wire_Feedback& from, Fe
 
 }  // namespace
 
-void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
-  to->session = from.session;
-  to->time_ns = ToNanoseconds(from.time);
-  to->scan_state = static_cast<std::uint8_t>(from.scan_state);
-  to->publish_policy = static_cast<std::uint8_t>(from.publish_policy);
-  ToWireNuc(from.nuc, to);
-  ToWireStream(from.depth, &to->depth);
-  ToWireStream(from.thermal, &to->thermal);
-  to->spool_fill_ratio = from.spool_fill_ratio;
-  to->spool_frames = from.spool_frames;
-  to->clock_offset_s = from.clock_offset_s;
-  to->clock_error_s = from.clock_error_s;
-  to->disk_free_bytes = from.disk_free_bytes;
-  to->cpu_temperature_celsius = from.cpu_temperature_celsius;
-  to->feedback_count = from.feedback.count;
-  to->feedback_latency_p50_s = from.feedback.p50_s;
-  to->feedback_latency_p99_s = from.feedback.p99_s;
-  ToWireCamera(from.depth_camera, &to->depth_camera);
-  ToWireCamera(from.thermal_camera, &to->thermal_camera);
-}
-
-std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
-  if (from.time_ns < 0) return RefusalCause::kNegativeTime;
-  if (const auto cause = CheckEnum(from.scan_state, ScanState::kEnded)) return cause;
-  if (const auto cause = CheckEnum(from.publish_policy, PublishPolicy::kLossless)) return cause;
-  if (const auto cause = FromWireNuc(from, &to->nuc)) return cause;
-  const auto infinite = CheckFiniteOrUnknown(
-      {from.spool_fill_ratio, from.clock_offset_s, from.clock_error_s, from.cpu_temperature_celsius,
-       from.feedback_latency_p50_s, from.feedback_latency_p99_s});
-  if (infinite) return infinite;
-  if (const auto cause = FromWireStream(from.depth, &to->depth)) return cause;
-  if (const auto cause = FromWireStream(from.thermal, &to->thermal)) return cause;
-  if (const auto cause = FromWireCamera(from.depth_camera, &to->depth_camera)) return cause;
-  if (const auto cause = FromWireCamera(from.thermal_camera, &to->thermal_camera)) return cause;
-  to->session = from.session;
-  to->time = CaptureTimeFromNanoseconds(from.time_ns);
-  to->scan_state = static_cast<ScanState>(from.scan_state);
-  to->publish_policy = static_cast<PublishPolicy>(from.publish_policy);
-  to->spool_fill_ratio = from.spool_fill_ratio;
-  to->spool_frames = from.spool_frames;
-  to->clock_offset_s = from.clock_offset_s;
-  to->clock_error_s = from.clock_error_s;
-  to->disk_free_bytes = from.disk_free_bytes;
-  to->cpu_temperature_celsius = from.cpu_temperature_celsius;
-  to->feedback = {from.feedback_count, from.feedback_latency_p50_s, from.feedback_latency_p99_s};
-  return std::nullopt;
-}
-
 void ToWire(const Command& from, isotherm_wire_Command* to) {
   to->number = from.number;
   to->time_ns = ToNanoseconds(from.time);
@@ -291,10 +137,12 @@ void ToWire(const Receipt& from, isotherm_wire_Receipt* to) {
   to->session = from.session;
   ToWireReceipt(from.depth, &to->depth);
   ToWireReceipt(from.thermal, &to->thermal);
+  to->clock_ping = from.clock_ping;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Receipt& from, Receipt* to) {
   to->session = from.session;
+  to->clock_ping = from.clock_ping;
   if (const auto cause = FromWireReceipt(from.depth, &to->depth)) return cause;
   return FromWireReceipt(from.thermal, &to->thermal);
 }

@@ -207,8 +207,8 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   sent.depth.published = 100;
   sent.depth.next_frame_number = 103;
   sent.depth.dropped = {{"queue full", 2}, {"clock model warming up", 1}};
-  sent.clock_error_s = 0.002;
-  sent.depth_camera = {CameraState::kLost, 3, 0.0001, 0.0004};
+  sent.clock.max_error_s = 0.002;
+  sent.depth_camera = {CameraState::kLost, 3, 0.0001, 0.0004, 0.0, 0};
   sent.feedback = {.count = 50, .p50_s = 0.05, .p99_s = 0.11};
   sent.nuc = {.state = NucState::kDesired,
               .source = NucSource::kPolled,
@@ -228,7 +228,7 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   ASSERT_EQ(status.depth.dropped.size(), 2U);
   EXPECT_EQ(status.depth.dropped[1].reason, "clock model warming up");
   EXPECT_EQ(status.depth.dropped[0].frames, 2U);
-  EXPECT_EQ(status.clock_error_s, 0.002);
+  EXPECT_EQ(status.clock.max_error_s, 0.002);
   EXPECT_EQ(status.depth_camera.state, CameraState::kLost);
   EXPECT_EQ(status.depth_camera.failures, 3U);
   EXPECT_EQ(status.depth_camera.stamping_p50_s, 0.0001);

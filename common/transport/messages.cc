@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace isotherm {
 namespace {
+
+constexpr double kMsPerS = 1e3;
 
 std::string_view NameOf(Role role) { return role == Role::kEdge ? "edge" : "ground"; }
 
@@ -104,6 +108,47 @@ std::string_view ToString(NucSource source) {
       return "its pictures";
   }
   return "?";
+}
+
+ClockReport ToReport(const KernelClock& clock) {
+  return {.synchronised = clock.synchronised,
+          .offset_s = clock.offset_s,
+          .estimated_error_s = clock.estimated_error_s,
+          .max_error_s = clock.max_error_s};
+}
+
+std::string ToText(const ClockReport& clock) {
+  std::string text = "not synchronised";
+  if (clock.synchronised) {
+    text = "synchronised";
+    if (!std::isnan(clock.estimated_error_s)) {
+      text += fmt::format(", off by about {:.2f} ms", kMsPerS * clock.estimated_error_s);
+    }
+    if (!std::isnan(clock.max_error_s)) {
+      text += fmt::format(", at most {:.1f} ms", kMsPerS * clock.max_error_s);
+    }
+  }
+  if (clock.steps > 0) {
+    text += fmt::format(", set {} time{} by {:+.3f} s in all", clock.steps,
+                        clock.steps == 1 ? "" : "s", clock.step_sum_s);
+  }
+  return text;
+}
+
+std::string StampText(const CameraReport& depth, const CameraReport& thermal) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  // 0 stands for not estimated yet.
+  if (depth.stamp_sigma_s > 0.0)
+    add(fmt::format("+-{:.3f} ms depth", kMsPerS * depth.stamp_sigma_s));
+  if (thermal.stamp_sigma_s > 0.0) {
+    add(fmt::format("+-{:.3f} ms thermal", kMsPerS * thermal.stamp_sigma_s));
+  }
+  if (depth.unsynchronised_frames + thermal.unsynchronised_frames > 0) {
+    add(fmt::format("UNSYNCHRONISED frames {} depth, {} thermal", depth.unsynchronised_frames,
+                    thermal.unsynchronised_frames));
+  }
+  return text;
 }
 
 Status CheckCompatible(const Hello& own, const Hello& peer) {

@@ -12,6 +12,7 @@
 #include "common/geometry/outside_pose.h"
 #include "common/geometry/pose_covariance.h"
 #include "common/geometry/rigid_transform.h"
+#include "common/time/kernel_clock.h"
 #include "common/time/time_types.h"
 
 /// What crosses the link besides frames, in the program's own types. idl/ says how it is packed,
@@ -154,6 +155,38 @@ struct CameraReport {
   /// From the arrival of a frame to its capture time being known. NaN = not measured.
   double stamping_p50_s = std::numeric_limits<double>::quiet_NaN();
   double stamping_p99_s = std::numeric_limits<double>::quiet_NaN();
+  /// One sigma of the newest frame's capture time. NaN = no frame yet, 0 = not estimated yet.
+  double stamp_sigma_s = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t unsynchronised_frames = 0;  ///< Whose capture time must not be trusted.
+};
+
+/// The edge's wall clock as the edge sees it. NaN = not known.
+struct ClockReport {
+  bool synchronised = false;  ///< Somebody (chrony) disciplines it, says the kernel.
+  double offset_s = std::numeric_limits<double>::quiet_NaN();  ///< Still being corrected.
+  double estimated_error_s = std::numeric_limits<double>::quiet_NaN();
+  double max_error_s = std::numeric_limits<double>::quiet_NaN();  ///< Bound of the error.
+  /// How often it was set in this session, and by how much in all. Capture times do not follow:
+  /// the wall clock is ahead of them by the sum.
+  std::uint64_t steps = 0;
+  double step_sum_s = 0.0;
+  friend bool operator==(const ClockReport&, const ClockReport&) = default;
+};
+
+/// Without steps, of which the kernel does not tell.
+ClockReport ToReport(const KernelClock& clock);
+/// "synchronised, off by about 0.12 ms, at most 1.2 ms, set 2 times by +3.020 s in all".
+std::string ToText(const ClockReport& clock);
+/// "+-0.05 ms depth, +-0.09 ms thermal, UNSYNCHRONISED frames 3 depth, 0 thermal"; empty if nothing
+/// is known.
+std::string StampText(const CameraReport& depth, const CameraReport& thermal);
+
+/// The edge's answer to the newest Receipt::clock_ping, by its wall clock: the ground compares it
+/// with its own (ClockComparison).
+struct ClockEcho {
+  std::uint64_t ping = 0;
+  CaptureTime received{};
+  CaptureTime sent{};
 };
 
 /// State of the edge at 1 Hz and at each change of scan_state; the last one is kept for late
@@ -168,9 +201,8 @@ struct EdgeStatus {
   NucReport nuc;  ///< From an edge before wire 1.2: the state alone.
   double spool_fill_ratio = std::numeric_limits<double>::quiet_NaN();  ///< 0..1.
   std::uint64_t spool_frames = 0;  ///< Recorded but not yet published.
-  double clock_offset_s = std::numeric_limits<double>::quiet_NaN();  ///< Local minus reference.
-  double clock_error_s =
-      std::numeric_limits<double>::quiet_NaN();  ///< Bound of the offset's error.
+  ClockReport clock;  ///< From an edge before wire 1.2: neither estimated error nor steps.
+  std::optional<ClockEcho> clock_echo;
   std::uint64_t disk_free_bytes = 0;
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
   FeedbackLatency feedback;  ///< Of this session.
@@ -226,6 +258,7 @@ struct Receipt {
   std::uint64_t session = 0;
   StreamReceipt depth;
   StreamReceipt thermal;
+  std::uint64_t clock_ping = 0;  ///< To be echoed in the status; 0 = none.
 };
 
 enum class TrackingState : std::uint8_t { kWaiting = 0, kTracked = 1, kDegraded = 2, kLost = 3 };

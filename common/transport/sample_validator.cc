@@ -16,6 +16,7 @@ constexpr double kAbsoluteZeroCelsius = -kCelsiusZeroKelvin;
 constexpr double kMaxHousekeepingCelsius = 1000.0;  // No camera survives that.
 constexpr double kMaxSecondsSinceNuc = 1e9;
 constexpr double kMaxDepthScale = 1e6;
+constexpr std::int64_t kYear2100_ns = 4'102'444'800'000'000'000;
 constexpr float kShareTolerance = 1e-3F;  // Rounding of four floats.
 
 std::optional<RefusalCause> CheckTemperature(double celsius) {
@@ -47,6 +48,12 @@ std::optional<RefusalCause> CheckFinite(std::initializer_list<double> values) {
 std::optional<RefusalCause> CheckFiniteOrUnknown(std::initializer_list<double> values) {
   if (std::ranges::none_of(values, [](double value) { return std::isinf(value); })) return {};
   return RefusalCause::kNotFinite;
+}
+
+std::optional<RefusalCause> CheckClockTime(std::int64_t time_ns) {
+  if (time_ns < 0) return RefusalCause::kNegativeTime;
+  if (time_ns > kYear2100_ns) return RefusalCause::kOutOfRange;
+  return std::nullopt;
 }
 
 std::optional<RefusalCause> CheckFrame(const FrameFields& fields) {

@@ -47,6 +47,9 @@ std::optional<RefusalCause> CheckRig(const Rig& rig);
 std::optional<RefusalCause> CheckStreamReceipt(const StreamReceipt& receipt);
 std::optional<RefusalCause> CheckFeedback(const Feedback& feedback);
 
+/// A reading of a wall clock with which one wants to calculate: 1970 to 2100.
+std::optional<RefusalCause> CheckClockTime(std::int64_t time_ns);
+
 /// kNotFinite if any of `values` is.
 std::optional<RefusalCause> CheckFinite(std::initializer_list<double> values);
 /// kNotFinite if any of `values` is infinite; NaN stands for "not known".
