@@ -14,6 +14,9 @@ namespace isotherm {
 struct EncodedFrame {
   std::variant<EncodedDepthFrame, EncodedThermalFrame> content;
   CaptureTime arrival{};
+  /// The wall clock, when the frame came, minus the time line of capture times: steps so far. 0 if
+  /// capture times were not on the wall clock in the first place.
+  Nanoseconds wall_minus_time{0};
   /// What came from outside since the frame before: it travels along, so that order and back
   /// pressure are the same.
   std::vector<OutsidePoseSample> outside_poses{};

@@ -82,6 +82,7 @@ class InlineDriver {
       assembler_.Add(std::move(frame));
   }
 
+  void Take(const ClockStep& /*step*/) {}  // Capture times do not follow the wall clock.
   void Take(const NucEvent& /*event*/) {}  // Each frame carries its NUC state.
   void Take(const RecordedPose& /*pose*/) {}
   void Take(const RecordedLog& /*log*/) {}

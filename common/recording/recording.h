@@ -24,6 +24,13 @@ struct NucEvent {
   NucSource source = NucSource::kUnknown;
 };
 
+/// The wall clock was set during the scan, which capture times do not follow.
+struct ClockStep {
+  CaptureTime time{};              ///< Of the first frame after it.
+  Nanoseconds step{0};             ///< Positive = ahead.
+  Nanoseconds wall_minus_time{0};  ///< What to add to capture times from here on to get UTC.
+};
+
 /// How images are stored. kViewable: foxglove.RawImage, so that any MCAP viewer shows the scan.
 /// kCompact: our lossless codes in messages that are field-compatible with foxglove.CompressedImage
 /// (about a third smaller).
@@ -62,6 +69,7 @@ class RecordingWriter {
   virtual Status Write(const EncodedThermalFrame& frame,
                        const std::optional<CaptureTime>& arrival) = 0;
   virtual Status Write(const NucEvent& event) = 0;
+  virtual Status Write(const ClockStep& step) = 0;
   /// As it came, right or wrong; written as foxglove.PoseInFrame.
   virtual Status Write(const OutsidePose& pose) = 0;
   /// `stream`: "groundtruth" or "trajectory"; written as foxglove.FrameTransform world -> depth.
@@ -100,8 +108,8 @@ struct RecordedLog {
   std::string level{};  ///< debug, info, warning or error.
   std::string text{};
 };
-using RecordedItem =
-    std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose, OutsidePose, RecordedLog>;
+using RecordedItem = std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose,
+                                  OutsidePose, RecordedLog, ClockStep>;
 
 /// What is known about a recording without reading its frames (from the summary, or rebuilt by one
 /// pass over the chunk headers if the file has none).

@@ -266,6 +266,14 @@ NucRecord ToMessage(const NucEvent& event) {
   return message;
 }
 
+ClockStepRecord ToMessage(const ClockStep& step) {
+  ClockStepRecord message;
+  SetTime(step.time, *message.mutable_timestamp());
+  message.set_step_ns(step.step.count());
+  message.set_wall_minus_time_ns(step.wall_minus_time.count());
+  return message;
+}
+
 RigRecord ToMessage(CaptureTime time, const Rig& rig) {
   RigRecord message;
   SetTime(time, *message.mutable_timestamp());
@@ -365,6 +373,14 @@ Result<NucEvent> FromMessage(const NucRecord& message) {
   return NucEvent{.start = *start,
                   .end = *end,
                   .source = KnownOr(message.source(), NucSource::kInferred, NucSource::kUnknown)};
+}
+
+Result<ClockStep> FromMessage(const ClockStepRecord& message) {
+  const std::optional<CaptureTime> time = ToTime(message.timestamp());
+  if (!time) return Err(DataLoss("its time is out of range"));
+  return ClockStep{.time = *time,
+                   .step = Nanoseconds(message.step_ns()),
+                   .wall_minus_time = Nanoseconds(message.wall_minus_time_ns())};
 }
 
 template foxglove::RawImage ToMessage(const EncodedDepthFrame&, const std::optional<CaptureTime>&);

@@ -15,6 +15,7 @@ inline constexpr std::string_view kRigTopic = "/rig";
 inline constexpr std::string_view kDepthInfoTopic = "/depth/camera_info";
 inline constexpr std::string_view kThermalInfoTopic = "/thermal/camera_info";
 inline constexpr std::string_view kNucTopic = "/nuc";
+inline constexpr std::string_view kClockTopic = "/clock";
 inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
 inline constexpr std::string_view kTrajectoryTopic = "/trajectory";
 inline constexpr std::string_view kOutsidePoseTopic = "/outside_pose";
@@ -34,6 +35,7 @@ foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_i
 foxglove::FrameTransform ToMessage(const StampedPose& pose);
 foxglove::PoseInFrame ToMessage(const OutsidePose& pose);
 NucRecord ToMessage(const NucEvent& event);
+ClockStepRecord ToMessage(const ClockStep& step);
 RigRecord ToMessage(CaptureTime time, const Rig& rig);
 foxglove::Log ToLogMessage(CaptureTime time, std::string_view level, std::string_view text);
 
@@ -47,6 +49,7 @@ Result<StampedPose> FromMessage(const foxglove::FrameTransform& message);
 /// Checks nothing but the time: what the numbers are worth is judged where they are used.
 Result<OutsidePose> FromMessage(const foxglove::PoseInFrame& message);
 Result<NucEvent> FromMessage(const NucRecord& message);
+Result<ClockStep> FromMessage(const ClockStepRecord& message);
 Result<RecordedLog> FromMessage(const foxglove::Log& message);
 
 }  // namespace isotherm::recording

@@ -22,6 +22,7 @@ enum class Content {
   kRawThermal,
   kCompressedThermal,
   kNuc,
+  kClock,
   kPose,
   kOutsidePose,
   kLog,
@@ -43,6 +44,7 @@ Content ContentOf(std::string_view topic, std::string_view schema_name) {
     if (Is<foxglove::CompressedImage>(schema_name)) return Content::kCompressedThermal;
   }
   if (topic == rec::kNucTopic && Is<rec::NucRecord>(schema_name)) return Content::kNuc;
+  if (topic == rec::kClockTopic && Is<rec::ClockStepRecord>(schema_name)) return Content::kClock;
   if (topic == rec::kOutsidePoseTopic && Is<foxglove::PoseInFrame>(schema_name))
     return Content::kOutsidePose;
   if (topic == rec::kLogTopic && Is<foxglove::Log>(schema_name)) return Content::kLog;
@@ -186,6 +188,9 @@ class McapRecordingReader final : public RecordingReader {
       case Content::kNuc:
         return ParseItem<rec::NucRecord>(
             message, [](const rec::NucRecord& record) { return rec::FromMessage(record); });
+      case Content::kClock:
+        return ParseItem<rec::ClockStepRecord>(
+            message, [](const rec::ClockStepRecord& record) { return rec::FromMessage(record); });
       case Content::kOutsidePose:
         return ParseItem<foxglove::PoseInFrame>(
             message, [](const foxglove::PoseInFrame& pose) { return rec::FromMessage(pose); });

@@ -137,6 +137,7 @@ TEST_P(RecordingTest, RigEventsPosesAndMetadataComeBack) {
                                      .end = kScanStart + 1600ms,
                                      .source = NucSource::kPolled})
                     .ok());
+    ASSERT_TRUE(writer->Write(ClockStep{kScanStart + 2ms, -3s, -1s}).ok());
     ASSERT_TRUE(writer->WritePose("groundtruth", pose).ok());
     ASSERT_TRUE(writer->WriteLog(kScanStart + 3ms, "warning", "closer").ok());
   }
@@ -154,6 +155,10 @@ TEST_P(RecordingTest, RigEventsPosesAndMetadataComeBack) {
   EXPECT_EQ(nuc.start, kScanStart + 1ms);
   EXPECT_EQ(nuc.end, kScanStart + 1600ms);
   EXPECT_EQ(nuc.source, NucSource::kPolled);
+  const auto step = read.All<ClockStep>().at(0);
+  EXPECT_EQ(step.time, kScanStart + 2ms);
+  EXPECT_EQ(step.step, -3s);
+  EXPECT_EQ(step.wall_minus_time, -1s);
   const auto recorded = read.All<RecordedPose>().at(0);
   EXPECT_EQ(recorded.stream, "groundtruth");
   EXPECT_EQ(recorded.pose.time, pose.time);

@@ -136,6 +136,7 @@ inline CaptureTime TimeOf(const RecordedItem& item) {
     CaptureTime operator()(const RecordedPose& pose) { return pose.pose.time; }
     CaptureTime operator()(const OutsidePose& pose) { return pose.time; }
     CaptureTime operator()(const RecordedLog& log) { return log.time; }
+    CaptureTime operator()(const ClockStep& step) { return step.time; }
   };
   return std::visit(Visitor{}, item);
 }

@@ -45,6 +45,10 @@ class McapRecordingWriter final : public RecordingWriter {
     return Append(rec::kNucTopic, event.start, event.start, rec::ToMessage(event));
   }
 
+  Status Write(const ClockStep& step) override {
+    return Append(rec::kClockTopic, step.time, step.time, rec::ToMessage(step));
+  }
+
   Status Write(const OutsidePose& pose) override {
     // Filed under its own time, unless that is nonsense: it must not stretch the recording.
     constexpr Nanoseconds kFar = std::chrono::seconds(10);

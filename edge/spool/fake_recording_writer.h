@@ -16,6 +16,7 @@ struct FakeRecording {
   std::vector<std::uint64_t> depth_frames;
   std::vector<std::uint64_t> thermal_frames;
   std::vector<NucEvent> nuc_events;
+  std::vector<ClockStep> clock_steps;
   std::vector<OutsidePose> outside_poses;
   std::vector<std::pair<std::string, CaptureTime>> messages;  ///< By topic.
   std::vector<RecordedLog> log;
@@ -38,6 +39,10 @@ class FakeRecordingWriter final : public RecordingWriter {
   }
   Status Write(const NucEvent& event) override {
     recording_.nuc_events.push_back(event);
+    return OkStatus();
+  }
+  Status Write(const ClockStep& step) override {
+    recording_.clock_steps.push_back(step);
     return OkStatus();
   }
   Status Write(const OutsidePose& pose) override {

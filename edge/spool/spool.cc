@@ -59,12 +59,22 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
     ISOTHERM_RETURN_IF_ERROR(writer_->Write(sample.pose));
   for (const RecordedLog& log : frame.log)
     ISOTHERM_RETURN_IF_ERROR(writer_->WriteLog(log.time, log.level, log.text));
+  ISOTHERM_RETURN_IF_ERROR(WriteClockStep(frame));
   if (const auto* depth = std::get_if<EncodedDepthFrame>(&frame.content)) {
     return writer_->Write(*depth, frame.arrival);
   }
   const auto& thermal = std::get<EncodedThermalFrame>(frame.content);
   NoteShutter(thermal);
   return writer_->Write(thermal, frame.arrival);
+}
+
+Status Spool::WriteClockStep(const EncodedFrame& frame) {
+  const Nanoseconds step = frame.wall_minus_time - wall_minus_time_;
+  if (step == Nanoseconds(0)) return OkStatus();
+  wall_minus_time_ = frame.wall_minus_time;
+  const CaptureTime time =
+      std::visit([](const auto& content) { return content.header.capture_time; }, frame.content);
+  return writer_->Write(ClockStep{time, step, frame.wall_minus_time});
 }
 
 void Spool::NoteShutter(const EncodedThermalFrame& frame) {

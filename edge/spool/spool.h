@@ -23,9 +23,9 @@ class SpoolOptions;
 /// for "off".
 std::optional<std::filesystem::path> SpoolPath(const std::string& record, CaptureTime now);
 
-/// The recording on the edge's own disk, with the shutter events that the thermal frames tell of.
-/// After the first write error (disk full) it says so once, keeps what is good and only counts.
-/// Thread-bound: one thread adds and closes.
+/// The recording on the edge's own disk, with the shutter events that the thermal frames tell of
+/// and the steps of the wall clock. After the first write error (disk full) it says so once, keeps
+/// what is good and only counts. Thread-bound: one thread adds and closes.
 class Spool {
  public:
   using Metadata = std::map<std::string, std::map<std::string, std::string>>;
@@ -48,6 +48,8 @@ class Spool {
  private:
   Status WriteFrame(const EncodedFrame& frame);
   void NoteShutter(const EncodedThermalFrame& frame);
+  /// A step that a dropped frame would have told of is told by the next one.
+  Status WriteClockStep(const EncodedFrame& frame);
   void NoteError(const Status& status);
   void UpdateAccount();
 
@@ -57,6 +59,7 @@ class Spool {
   Status first_error_;
   std::array<std::uint64_t, 2> offered_{};  ///< By Sensor.
   std::optional<CaptureTime> shutter_closed_at_;
+  Nanoseconds wall_minus_time_{0};
 };
 
 }  // namespace isotherm

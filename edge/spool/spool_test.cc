@@ -57,6 +57,26 @@ TEST_F(SpoolTest, AFullDiskIsCountedExactlyAndReportedAtTheEnd) {
   EXPECT_EQ(recording_.writes_after_failure, 0) << "a full disk is not tried again for each frame";
 }
 
+TEST_F(SpoolTest, F15AStepOfTheClockIsRecordedOnceEvenIfItsFrameWasDropped) {
+  Start();
+  const auto add = [this](std::int64_t ms, Nanoseconds wall_minus_time) {
+    EncodedFrame frame = Thermal(CaptureTime(milliseconds(ms)), NucState::kIdle);
+    frame.wall_minus_time = wall_minus_time;
+    spool_->Add(frame);
+  };
+  add(0, milliseconds(0));
+  // The frame at 10 ms, the first after the step, did not get here.
+  add(20, milliseconds(-3000));
+  add(30, milliseconds(-3000));
+  add(40, milliseconds(-2500));
+  ASSERT_EQ(recording_.clock_steps.size(), 2U);
+  EXPECT_EQ(recording_.clock_steps[0].time, CaptureTime(milliseconds(20)));
+  EXPECT_EQ(recording_.clock_steps[0].step, milliseconds(-3000));
+  EXPECT_EQ(recording_.clock_steps[0].wall_minus_time, milliseconds(-3000));
+  EXPECT_EQ(recording_.clock_steps[1].step, milliseconds(500));
+  EXPECT_EQ(recording_.clock_steps[1].wall_minus_time, milliseconds(-2500));
+}
+
 TEST_F(SpoolTest, AShutterEventIsRecordedWhenTheShutterOpens) {
   Start();
   const CaptureTime start{std::chrono::seconds(100)};

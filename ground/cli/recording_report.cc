@@ -7,6 +7,7 @@
 #include <ctime>
 
 #include "common/dataset/text_lines.h"
+#include "common/transport/clock_record.h"
 
 namespace isotherm {
 namespace {
@@ -87,6 +88,42 @@ void AppendNuc(const RecordingSummary& summary, std::string& text) {
   for (const NucEvent& event : summary.nuc_events) {
     text += fmt::format("{:<14}event from {} to {} ({:.3f} s)\n", "", FormatStamp(event.start),
                         FormatStamp(event.end), ToSeconds(event.end - event.start));
+  }
+}
+
+/// Of the clock that dated the frames; empty if the recording does not say.
+std::string ClockState(const RecordingInfo& info) {
+  const auto found = info.metadata.find(std::string(kClockMetadata));
+  if (found == info.metadata.end()) return "";
+  const auto value = [&found](const char* key) {
+    const auto at = found->second.find(key);
+    return at == found->second.end() ? std::string() : at->second;
+  };
+  std::string state = value("time_base");
+  if (value("synchronised") == "yes") {
+    state = fmt::format("synchronised, off by about {} s, at most {} s", value("estimated_error_s"),
+                        value("max_error_s"));
+  } else if (!value("synchronised").empty()) {
+    state = "NOT SYNCHRONISED: capture times are right among themselves, but not as UTC";
+  }
+  if (!value("minus_ground_clock_s").empty()) {
+    state += fmt::format("; minus the ground's {} s (+-{} s)", value("minus_ground_clock_s"),
+                         value("minus_ground_clock_uncertainty_s"));
+  }
+  if (const std::string alarms = value("alarms"); !alarms.empty() && alarms != "0")
+    state += ", CLOCK ALARM";
+  return state;
+}
+
+/// How good the clock was that dated the frames, and what to add to their times to get UTC.
+void AppendClock(const RecordingReport& report, std::string& text) {
+  if (const std::string state = ClockState(report.info); !state.empty())
+    text += fmt::format("{:<14}{}\n", "clock", state);
+  for (const ClockStep& step : report.summary.clock_steps) {
+    text += fmt::format(
+        "{:<14}the wall clock was set by {:+.3f} s at {}: from there on UTC = capture time {:+.3f} "
+        "s\n",
+        "", ToSeconds(step.step), FormatStamp(step.time), ToSeconds(step.wall_minus_time));
   }
 }
 
@@ -229,6 +266,7 @@ std::string ToText(const RecordingReport& report) {
   AppendStream("depth", report.summary.depth, text);
   AppendStream("thermal", report.summary.thermal, text);
   AppendNuc(report.summary, text);
+  AppendClock(report, text);
   AppendRig(report, text);
   if (report.summary.unreadable > 0)
     text += fmt::format("{:<14}{} messages\n", "unreadable", report.summary.unreadable);
@@ -247,6 +285,15 @@ Json ToJson(const RecordingReport& report) {
   json["depth"] = StreamJson(report.summary.depth);
   json["thermal"] = StreamJson(report.summary.thermal);
   json["nuc"] = NucJson(report.summary);
+  if (const std::string state = ClockState(report.info); !state.empty())
+    json["clock"]["state"] = state;
+  for (const ClockStep& step : report.summary.clock_steps) {
+    Json item;
+    item["time"] = FormatStamp(step.time);
+    item["step_s"] = ToSeconds(step.step);
+    item["utc_minus_capture_time_s"] = ToSeconds(step.wall_minus_time);
+    json["clock"]["steps"].Append(std::move(item));
+  }
   for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
   for (const auto& [source, count] : report.summary.outside_poses)
     json["outside_poses"][source] = count;

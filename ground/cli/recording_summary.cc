@@ -103,6 +103,9 @@ void RecordingSummarizer::Add(const RecordedItem& item) {
     AddNuc(thermal->frame);
   } else if (const auto* event = std::get_if<NucEvent>(&item)) {
     summary_.nuc_events.push_back(*event);
+  } else if (const auto* step = std::get_if<ClockStep>(&item)) {
+    if (summary_.clock_steps.size() < RecordingSummary::kMostLog)
+      summary_.clock_steps.push_back(*step);
   } else if (const auto* pose = std::get_if<RecordedPose>(&item)) {
     ++summary_.poses[pose->stream];
   } else if (const auto* outside = std::get_if<OutsidePose>(&item)) {

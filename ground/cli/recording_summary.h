@@ -46,6 +46,7 @@ struct RecordingSummary {
   std::map<std::string, std::uint64_t> nuc_states;     ///< Thermal frames by state.
   std::vector<NucRun> nuc_runs;                        ///< Shutter closed, from the frames.
   std::vector<NucEvent> nuc_events;                    ///< As recorded.
+  std::vector<ClockStep> clock_steps;                  ///< The first kMostLog.
   std::map<std::string, std::uint64_t> poses;          ///< By stream: groundtruth, trajectory.
   std::map<std::string, std::uint64_t> outside_poses;  ///< By source.
   std::vector<RecordedLog> log;                        ///< What happened; the first kMostLog.

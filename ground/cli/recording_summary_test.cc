@@ -5,6 +5,7 @@
 
 #include "ground/cli/frame_picture.h"
 #include "ground/cli/numbers.h"
+#include "ground/cli/recording_report.h"
 #include "ground/cli/truth.h"
 
 namespace isotherm {
@@ -157,6 +158,36 @@ TEST(FramePictureTest, HotIsRedAndColdIsBlueBesideALegend) {
 TEST(FramePictureTest, AFrameWithoutAnyValueIsDrawnToo) {
   EXPECT_GT(ThermalPicture(Image<std::uint16_t>(8, 8, 0)).width(), 8);
   EXPECT_GT(DepthPicture(Image<std::uint16_t>(8, 8, 65535), 1000.0).width(), 8);
+}
+
+TEST(RecordingReportTest, F15StepsOfTheClockAreShown) {
+  using std::chrono::seconds;
+  RecordingReport report;
+  report.summary = Summarized({ClockStep{Time(1500), seconds(-3), seconds(-3)},
+                               ClockStep{Time(2500), seconds(1), seconds(-2)}});
+  EXPECT_THAT(ToText(report),
+              HasSubstr("set by -3.000 s at 1.500000000: from there on UTC = capture "
+                        "time -3.000 s"));
+  EXPECT_THAT(ToText(report),
+              HasSubstr("set by +1.000 s at 2.500000000: from there on UTC = capture "
+                        "time -2.000 s"));
+  EXPECT_THAT(ToJson(report).ToText(), HasSubstr("\"utc_minus_capture_time_s\": -3"));
+}
+
+TEST(RecordingReportTest, F17AnUnsynchronisedClockIsShown) {
+  RecordingReport report;
+  EXPECT_THAT(ToText(report), testing::Not(HasSubstr("clock")));
+  report.info.metadata["clock"] = {{"synchronised", "no"}};
+  EXPECT_THAT(ToText(report), HasSubstr("clock         NOT SYNCHRONISED"));
+  report.info.metadata["clock"] = {{"synchronised", "yes"},
+                                   {"estimated_error_s", "0.0001"},
+                                   {"max_error_s", "0.002"},
+                                   {"minus_ground_clock_s", "0.08"},
+                                   {"minus_ground_clock_uncertainty_s", "0.001"},
+                                   {"alarms", "1"}};
+  EXPECT_THAT(ToText(report),
+              HasSubstr("synchronised, off by about 0.0001 s, at most 0.002 s; minus the ground's "
+                        "0.08 s (+-0.001 s), CLOCK ALARM"));
 }
 
 }  // namespace
