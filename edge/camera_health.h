@@ -3,10 +3,12 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <mutex>
 
 #include "common/base/stage_stats.h"
 #include "common/frame/frame.h"
+#include "common/stamping/stamp.h"
 #include "common/time/time_types.h"
 #include "common/transport/messages.h"
 
@@ -22,6 +24,8 @@ class CameraHealth {
   void SetBlind(Sensor sensor, bool blind) { At(sensor).blind = blind; }
   /// How long a frame took from its arrival to its capture time.
   void AddStamping(Sensor sensor, Nanoseconds latency);
+  /// What a frame was stamped with.
+  void NoteStamp(Sensor sensor, const Stamp& stamp);
 
   CameraReport Get(Sensor sensor) const;
 
@@ -31,7 +35,9 @@ class CameraHealth {
     std::atomic<bool> blind{false};
     std::atomic<std::uint32_t> failures{0};
     mutable std::mutex mutex;
-    StageStats stamping_ms;  ///< Guarded by `mutex`.
+    StageStats stamping_ms;  ///< Guarded by `mutex`, as what follows.
+    double stamp_sigma_s = std::numeric_limits<double>::quiet_NaN();
+    std::uint64_t unsynchronised_frames = 0;
   };
   Entry& At(Sensor sensor) { return entries_[static_cast<std::size_t>(sensor)]; }
 

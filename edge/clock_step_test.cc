@@ -11,6 +11,7 @@
 #include "edge/edge_pipeline.h"
 #include "edge/fake_publisher.h"
 #include "edge/source/supervised_source.h"
+#include "edge/spool/fake_recording_writer.h"
 
 namespace isotherm {
 namespace {
@@ -88,6 +89,7 @@ class ClockStepTest : public testing::Test {
  protected:
   void Run(std::map<int, Nanoseconds> steps, bool has_device_clock = true) {
     EdgeOptions options;
+    options.mutable_source()->set_kind(CAMERAS);
     options.mutable_source()->set_rate(0);
     SupervisedSource source(
         std::make_unique<SteppedCamera>(clock_, std::move(steps), has_device_clock),
@@ -95,20 +97,23 @@ class ClockStepTest : public testing::Test {
         [this](Sensor sensor) { account_.Count(sensor, FrameFate::kCaptured); },
         [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
     ASSERT_TRUE(source.Open().ok());
-    EdgePipeline pipeline(options, EdgeParts{.source = source,
-                                             .publisher = publisher_,
-                                             .account = account_,
-                                             .health = health_,
-                                             .clock = clock_,
-                                             .spool = nullptr,
-                                             .session = 1});
+    EdgePipeline pipeline(
+        options,
+        EdgeParts{.source = source,
+                  .publisher = publisher_,
+                  .account = account_,
+                  .health = health_,
+                  .clock = clock_,
+                  .spool = std::make_unique<Spool>(
+                      "scan.mcap", std::make_unique<FakeRecordingWriter>(recording_), account_),
+                  .session = 1});
     pipeline.StartReceiving();
     pipeline.StartCapture();
     while (!pipeline.finished()) std::this_thread::yield();
     ASSERT_TRUE(pipeline.Stop().ok());
     steps_ = pipeline.clock_steps();
     total_ = pipeline.clock_step_total();
-    unsynchronised_ = pipeline.unsynchronised_frames();
+    unsynchronised_ = health_.Get(Sensor::kDepth).unsynchronised_frames;
   }
   /// Every frame has the time it would have had without the steps.
   void ExpectUntouchedTimes() {
@@ -123,6 +128,7 @@ class ClockStepTest : public testing::Test {
   }
 
   SettableClock clock_{kStart};
+  FakeRecording recording_;
   FakePublisher publisher_;
   FrameAccount account_;
   CameraHealth health_;
@@ -138,6 +144,18 @@ TEST_P(F15StepTest, OrderAndSpacingStayAndTheStepIsReportedOnce) {
   ExpectUntouchedTimes();
   EXPECT_EQ(steps_, 1U);
   EXPECT_EQ(total_, seconds(GetParam()));
+}
+
+TEST_P(F15StepTest, TheRecordingChangesItsUtcOnceWithAnEvent) {
+  constexpr seconds kInTime{2};  // Row F15.
+  Run({{kStepAt, seconds(GetParam())}});
+  ASSERT_EQ(recording_.clock_steps.size(), 1U);
+  const ClockStep& step = recording_.clock_steps.front();
+  EXPECT_EQ(step.step, seconds(GetParam()));
+  EXPECT_EQ(step.wall_minus_time, seconds(GetParam()));
+  const CaptureTime stepped = kStart + kStepAt * kPeriod;
+  EXPECT_GE(step.time, stepped);
+  EXPECT_LE(step.time, stepped + kInTime);
 }
 
 TEST_P(F15StepTest, WithoutADeviceClockToo) {

@@ -14,6 +14,7 @@
 #include "common/base/log.h"
 #include "common/codec/codec.h"
 #include "common/config/text_proto.h"
+#include "common/transport/clock_record.h"
 #include "edge/edge_options.pb.h"
 #include "edge/edge_pipeline.h"
 #include "edge/edge_report.h"
@@ -75,6 +76,14 @@ void TellAboutCounts(const std::vector<CameraDescription>& cameras) {
   }
 }
 
+/// A replay that keeps its own times does not care.
+void TellAboutClock(const EdgeOptions& options, const KernelClock& clock) {
+  if (TimeBaseOf(options.source()) != TimeBase::kWallClock) return;
+  if (const std::optional<std::string> problem = ClockProblem(clock)) {
+    LOG(Edge, Warning) << *problem;
+  }
+}
+
 /// The rig as it is published and recorded: capture times already contain the thermal delay.
 std::optional<Rig> WithoutThermalDelay(std::optional<Rig> rig) {
   if (rig) rig->thermal_delay_s = 0.0;
@@ -87,6 +96,7 @@ struct Start {
   std::vector<CameraDescription> cameras;
   std::optional<Rig> rig;            ///< As published and recorded.
   double rig_thermal_delay_s = 0.0;  ///< As calibrated.
+  KernelClock clock;
 
   /// One per start of a scan.
   std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
@@ -146,6 +156,7 @@ Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const Start
   Spool::Metadata metadata = {
       {"configuration", {{"edge", ToTextProto(options)}}},
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
+      {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
       {"timing",
        {{"depth_delay_s", fmt::format("{}", timing.depth_delay_s())},
         {"thermal_delay_s",
@@ -253,7 +264,8 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   TellAboutRig(rig);
   TellAboutCounts((*source)->cameras());
   const Start start{clock.Now(), (*source)->cameras(), WithoutThermalDelay(rig),
-                    rig ? rig->thermal_delay_s : 0.0};
+                    rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
+  TellAboutClock(options, start.clock);
 
   const Result<std::unique_ptr<Participant>> participant =
       Participant::Create(environment, options.link().domain());

@@ -17,11 +17,6 @@ OverflowPolicy PolicyFor(const EdgeOptions& options) {
   return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
 }
 
-TimeBase TimeBaseOf(const SourceOptions& options) {
-  if (options.rate() != 1.0) return TimeBase::kOther;
-  return options.rebase() ? TimeBase::kWallClock : TimeBase::kShifted;
-}
-
 /// What was wrong with a camera's clock, if anything.
 void ReportStamping(std::string_view stream, const StampingCounts& counts) {
   if (counts.resets + counts.moved + counts.unsynchronised == 0) return;
@@ -57,7 +52,8 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
                            FromSeconds(parts.rig_thermal_delay_s)),
       nuc_(options, parts.source),
       blind_detector_(options.frame_check()),
-      feedback_(TimeBaseOf(options.source())),
+      time_base_(TimeBaseOf(options.source())),
+      feedback_(time_base_),
       codec_queue_(kCodecQueueFrames, OverflowPolicy::kBlock),
       spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
       spool_queue_(spool_capacity_, PolicyFor(options),
@@ -209,7 +205,7 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
 }
 
 void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
-  if (!stamp.synchronised) ++unsynchronised_frames_;
+  health_.NoteStamp(raw.sensor, stamp);
   if (raw.arrival_steady == SteadyTime{}) return;  // Not from a camera.
   health_.AddStamping(raw.sensor, clock_.SteadyNow() - raw.arrival_steady);
 }
@@ -221,6 +217,7 @@ FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const 
 void EdgePipeline::HandOn(UncodedFrame uncoded, const std::stop_token& stop) {
   uncoded.frame.outside_poses = std::exchange(outside_poses_, {});
   uncoded.frame.log = nuc_.TakeLog();
+  if (time_base_ == TimeBase::kWallClock) uncoded.frame.wall_minus_time = step_watch_.total();
   const Sensor sensor = uncoded.frame.sensor();
   if (codec_queue_.Push(std::move(uncoded), stop)) return;
   if (spool_) account_.Count(sensor, FrameFate::kRecordQueueFull);

@@ -74,8 +74,6 @@ class EdgePipeline {
   /// wall clock is ahead of them by so much. Thread-safe.
   std::uint64_t clock_steps() const { return clock_steps_; }
   Nanoseconds clock_step_total() const { return Nanoseconds(clock_step_total_ns_.load()); }
-  /// Frames whose capture time must not be trusted. Thread-safe.
-  std::uint64_t unsynchronised_frames() const { return unsynchronised_frames_; }
   /// What the ground says. Thread-safe.
   const FeedbackMonitor& feedback() const { return feedback_; }
   /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
@@ -95,7 +93,7 @@ class EdgePipeline {
   void HandOn(UncodedFrame uncoded, const std::stop_token& stop);
   void Encode(const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
-  /// How long it took from arrival to here.
+  /// How certain the stamp is, and how long it took from arrival to here.
   void NoteStamped(const RawFrame& raw, const Stamp& stamp);
   FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
   void Record(const std::stop_token& stop);
@@ -118,7 +116,6 @@ class EdgePipeline {
   StepWatch step_watch_;  ///< Of the capture thread.
   std::atomic<std::uint64_t> clock_steps_{0};
   std::atomic<std::int64_t> clock_step_total_ns_{0};
-  std::atomic<std::uint64_t> unsynchronised_frames_{0};
   Timestamper depth_timestamper_;
   Timestamper thermal_timestamper_;
   NucControl nuc_;
@@ -132,6 +129,7 @@ class EdgePipeline {
 
   std::atomic<bool> source_ended_{false};
   LatestValue<NucReport> nuc_report_;
+  const TimeBase time_base_;
   bool stopped_ = false;
   Status recording_status_;
 

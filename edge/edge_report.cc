@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 
+#include "common/transport/clock_record.h"
 #include "edge/feedback_text.h"
 
 namespace isotherm {
@@ -21,6 +23,9 @@ std::string NucText(const NucReport& nuc) {
   if (nuc.warming_up) text += ", warming up";
   return text;
 }
+
+// By default the ground raises an alarm at this difference, too (LiveOptions.max_clock_offset_s).
+constexpr double kDoubtfulClock_s = 0.05;
 
 std::uint64_t Dropped(const SensorAccount& account) {
   return account.rejected + account.record_queue_full + account.record_failed +
@@ -75,8 +80,7 @@ StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz) {
 void AddHostStatus(const HostStatus& host, EdgeStatus& status) {
   status.disk_free_bytes = host.disk_free_bytes;
   status.cpu_temperature_celsius = host.cpu_temperature_celsius;
-  status.clock_offset_s = host.clock.offset_s;
-  status.clock_error_s = host.clock.max_error_s;
+  status.clock = ToReport(host.clock);
 }
 
 std::string_view CameraText(CameraState state) {
@@ -106,24 +110,44 @@ std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal
   return text;
 }
 
-std::string ClockText(const EdgeStatus& status) {
-  if (std::isnan(status.clock_error_s)) return "not synchronised";
-  return fmt::format("within {:.1f} ms", 1e3 * status.clock_error_s);
+std::optional<std::string> ClockProblem(const KernelClock& clock) {
+  if (!clock.synchronised) {
+    return "the wall clock is not synchronised: capture times are right among themselves, but not "
+           "as "
+           "UTC, and the recording says so. Install chrony with a server that the rig reaches "
+           "(deploy/chrony, docs/timing.md); chronyc tracking says how it is doing";
+  }
+  const double off_s = std::max(std::abs(clock.offset_s), clock.estimated_error_s);
+  if (!(off_s > kDoubtfulClock_s)) return std::nullopt;
+  return fmt::format(
+      "the wall clock is off by about {:.0f} ms by its own estimate: wait until chrony has "
+      "corrected "
+      "it (chronyc waitsync), or see chronyc sources for a better server",
+      1e3 * off_s);
+}
+
+std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base) {
+  if (time_base != TimeBase::kWallClock) return {{"time_base", "that of the replayed recording"}};
+  std::map<std::string, std::string> metadata = ToMetadata(ToReport(clock));
+  metadata["time_base"] = "wall clock at the start, carried on by the monotonic clock";
+  return metadata;
 }
 
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
                        const std::optional<Feedback>& feedback) {
   const SensorAccount depth = account.Get(Sensor::kDepth);
   const SensorAccount thermal = account.Get(Sensor::kThermal);
+  const std::string stamps = StampText(status.depth_camera, status.thermal_camera);
   return fmt::format(
       "ground: {} | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  "
-      "dropped {}  clock {}",
+      "dropped {}  clock {}{}{}",
       !ground_present ? "absent"
       : feedback      ? FeedbackText(*feedback)
                       : "no feedback yet",
       status.depth.rate_hz, StateText(status.depth_camera), status.thermal.rate_hz,
       StateText(status.thermal_camera), NucText(status.nuc), depth.recorded + thermal.recorded,
-      depth.published + thermal.published, Dropped(depth) + Dropped(thermal), ClockText(status));
+      depth.published + thermal.published, Dropped(depth) + Dropped(thermal), ToText(status.clock),
+      stamps.empty() ? "" : "  stamps ", stamps);
 }
 
 std::string Summary(const FrameAccount& account, bool recording,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -7,6 +8,7 @@
 #include "common/transport/messages.h"
 #include "edge/frame_account.h"
 #include "edge/host_status.h"
+#include "edge/time_base.h"
 
 namespace isotherm {
 
@@ -35,10 +37,13 @@ std::string_view CameraText(CameraState state);
 /// there are none.
 std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal);
 
-/// How far the wall clock may be off, or that it is not synchronised.
-std::string ClockText(const EdgeStatus& status);
+/// What is wrong with the wall clock and what to do about it; nullopt if nothing is.
+std::optional<std::string> ClockProblem(const KernelClock& clock);
 
-/// One line for the operator: what the ground says, then rates, drops and NUC.
+/// What the recording says of the clock that dates its frames, at the start of a scan.
+std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base);
+
+/// One line for the operator: what the ground says, then rates, drops, NUC and clock.
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
                        const std::optional<Feedback>& feedback);
 

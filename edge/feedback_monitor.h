@@ -5,15 +5,9 @@
 
 #include "common/base/stage_stats.h"
 #include "common/transport/messages.h"
+#include "edge/time_base.h"
 
 namespace isotherm {
-
-/// How capture times relate to the edge's wall clock.
-enum class TimeBase : std::uint8_t {
-  kWallClock,  ///< They are on it.
-  kShifted,    ///< A recording's own, played in real time: off by a constant that is not known.
-  kOther,      ///< They pass at another pace.
-};
 
 /// The newest feedback from the ground, and how old the depth frames were that it is about.
 /// Thread-safe.

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "edge/kernel_clock.h"
+#include "common/time/kernel_clock.h"
 
 namespace isotherm {
 

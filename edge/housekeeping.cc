@@ -31,6 +31,7 @@ Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher
       disk_(std::move(disk)),
       picture_file_(std::move(picture_file)),
       terminal_(isatty(STDERR_FILENO) == 1),
+      synchronised_(ReadKernelClock().synchronised),
       next_status_(clock.SteadyNow()),
       next_log_(next_status_ + kLogInterval),
       watchdog_interval_(WatchdogInterval()),
@@ -47,6 +48,7 @@ void Housekeeping::Tick() {
   const EdgeStatus before = std::exchange(status_, {});
   status_ = MakeStatus(ended ? ScanState::kEnded : ScanState::kScanning, now);
   TellCameras(before);
+  TellClock();
   const Status published = publisher_.Publish(status_);
   if (!published.ok()) {
     LOG(Edge, Debug) << "status not published: " << published.message();
@@ -77,6 +79,8 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.depth_camera = health_.Get(Sensor::kDepth);
   status.thermal_camera = health_.Get(Sensor::kThermal);
   AddHostStatus(ReadHostStatus(disk_), status);
+  status.clock.steps = pipeline_.clock_steps();
+  status.clock.step_sum_s = ToSeconds(pipeline_.clock_step_total());
   return status;
 }
 
@@ -96,6 +100,16 @@ void Housekeeping::TellCameras(const EdgeStatus& before) const {
   };
   tell("depth", before.depth_camera, status_.depth_camera);
   tell("thermal", before.thermal_camera, status_.thermal_camera);
+}
+
+void Housekeeping::TellClock() {
+  const bool synchronised = status_.clock.synchronised;
+  if (std::exchange(synchronised_, synchronised) == synchronised) return;
+  if (synchronised) {
+    LOG(Edge, Info) << "the wall clock is " << ToText(status_.clock);
+  } else {
+    LOG(Edge, Warning) << *ClockProblem({});
+  }
 }
 
 void Housekeeping::ShowFeedback() {

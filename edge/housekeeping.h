@@ -36,6 +36,8 @@ class Housekeeping {
   void ShowLine();
   /// What became of the cameras since the last status.
   void TellCameras(const EdgeStatus& before) const;
+  /// That synchronisation was lost or found; how it is at the start is told there.
+  void TellClock();
   void Log();
   void FeedWatchdog(SteadyTime now);
 
@@ -47,6 +49,7 @@ class Housekeeping {
   const std::filesystem::path disk_;
   const std::filesystem::path picture_file_;
   const bool terminal_;
+  bool synchronised_;
   SteadyTime next_status_;
   SteadyTime next_log_;
   const std::optional<Nanoseconds> watchdog_interval_;  ///< Nullopt: nobody watches.

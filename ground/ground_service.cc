@@ -25,6 +25,7 @@
 #include "ground/live_scan.h"
 #include "ground/scan_recorder.h"
 #include "ground/scan_result.h"
+#include "ground/status_teller.h"
 #include "ground/subscriber/subscriber.h"
 
 namespace isotherm {
@@ -44,8 +45,7 @@ struct RecordingOutcome {
   Status status;
 };
 
-/// A new session: both consumers get the same folder, and the reconstruction learns what was
-/// recorded.
+/// A new session: both consumers get the same folder; the reconstruction learns what was recorded.
 struct SessionStart {
   RigDescription rig;
   std::filesystem::path folder;
@@ -54,7 +54,7 @@ struct SessionStart {
 };
 
 using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, OutsidePoseSample,
-                          SessionAccount, Feedback>;
+                          SessionAccount, Feedback, ClockAccount>;
 using ItemQueue = BoundedQueue<Item>;
 
 bool IsFrame(const Item& item) {
@@ -95,6 +95,9 @@ class RecordingLoop {
   void Handle(const Feedback& feedback) {
     // The reconstruction may be behind, and still speak of the session before.
     if (recorder_ && feedback.session == session_) recorder_->Write(feedback);
+  }
+  void Handle(const ClockAccount& clock) {
+    if (recorder_ && clock.session == session_) recorder_->Write(clock);
   }
   template <typename Frame>
   void Handle(const Frame& frame) {
@@ -193,7 +196,8 @@ class ReconstructionLoop {
     recording_.Push(*feedback, stop_);
     scan_->ThinkAhead();
   }
-  void Handle(const Feedback& /*feedback*/) {}  // Comes from here.
+  void Handle(const Feedback& /*feedback*/) {}   // Comes from here.
+  void Handle(const ClockAccount& /*clock*/) {}  // For the recording.
 
   void End(const SessionAccount& account) {
     if (!scan_) return;
@@ -254,8 +258,7 @@ class Distributor {
         reconstruction_(reconstruction),
         recording_(recording) {}
 
-  /// Reconstruction gives up waiting for room when `stop` is requested; the recording takes
-  /// everything.
+  /// Reconstruction stops waiting for room when `stop` is requested; the recording does not.
   void SetStop(std::stop_token stop) { stop_ = std::move(stop); }
 
   void OnRig(const RigDescription& rig) {
@@ -290,6 +293,7 @@ class Distributor {
     early_.push_back(std::move(item));
   }
 
+  void OnClock(const ClockAccount& clock) { recording_.Push(clock, {}); }
   void OnLate(Item item) { recording_.Push(std::move(item), {}); }
   void OnSessionEnd(const SessionAccount& account) {
     if (account.session == session_) Send(account);
@@ -320,10 +324,12 @@ class Distributor {
   std::deque<Item> early_;
 };
 
-/// Feeds the service manager's watchdog while frames move or nothing waits.
+/// Feeds the service manager's watchdog while frames move or nothing waits, and tells the status.
 void GuardUntilStopped(const std::stop_token& stop, const ItemQueue& queue,
-                       const ReconstructionLoop& loop) {
+                       const ReconstructionLoop& loop, const Subscriber& subscriber,
+                       const Clock& clock) {
   const auto interval = WatchdogInterval().value_or(std::chrono::microseconds(500ms));
+  StatusTeller status(clock);
   std::uint64_t seen = 0;
   std::mutex mutex;
   std::condition_variable_any wake;
@@ -332,6 +338,7 @@ void GuardUntilStopped(const std::stop_token& stop, const ItemQueue& queue,
     const std::uint64_t processed = loop.processed();
     if (processed != seen || queue.size() == 0) NotifyWatchdog();
     seen = processed;
+    status.Tell(subscriber.stats());
   }
 }
 
@@ -359,6 +366,7 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
   subscriber_options.edge_id = options.live().edge_id();
   subscriber_options.software_version = ISOTHERM_VERSION;
   subscriber_options.reorder_window = FromSeconds(options.live().reorder_window_s());
+  subscriber_options.max_clock_offset = FromSeconds(options.live().max_clock_offset_s());
   SubscriberHandlers handlers;
   handlers.depth = [&](ReceivedDepth depth) { distributor.OnFrame(std::move(depth)); };
   handlers.thermal = [&](ReceivedThermal thermal) { distributor.OnFrame(std::move(thermal)); };
@@ -366,6 +374,7 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
   handlers.late_thermal = [&](ReceivedThermal thermal) { distributor.OnLate(std::move(thermal)); };
   handlers.outside_pose = [&](const OutsidePoseSample& pose) { distributor.OnFrame(pose); };
   handlers.rig = [&](const RigDescription& rig) { distributor.OnRig(rig); };
+  handlers.clock = [&](const ClockAccount& account) { distributor.OnClock(account); };
   handlers.session_end = [&](const SessionAccount& account) { distributor.OnSessionEnd(account); };
   const Result<std::unique_ptr<Subscriber>> subscriber =
       Subscriber::Create(**participant, clock, subscriber_options, std::move(handlers));
@@ -386,10 +395,9 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
     LOG(Ground, Info) << "ready, domain=" << options.live().domain() << " edge_id=\""
                       << options.live().edge_id()
                       << "\" output_dir=" << options.live().output_dir();
-    GuardUntilStopped(signal.token(), to_reconstruction, reconstruction);
+    GuardUntilStopped(signal.token(), to_reconstruction, reconstruction, **subscriber, clock);
     NotifyStopping();
-    // Reception first, so that nothing new comes; then each consumer empties its queue and closes
-    // its files.
+    // Reception first; then each consumer empties its queue and closes its files.
     receive_thread.request_stop();
     receive_thread.join();
     recording_thread.request_stop();

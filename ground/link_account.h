@@ -8,11 +8,12 @@
 
 namespace isotherm {
 
-/// What became of a session's frames and how soon feedback reached the edge, as it goes into
-/// stats.json.
+/// What became of a session's frames, how soon feedback reached the edge and how good the rig's
+/// clock was, as it goes into stats.json.
 void DescribeAccount(const SessionAccount& account, const RecordingStats& recorded, Json& link);
 
-/// The same for the user: a line per stream, and one about feedback if its age is known.
+/// The same for the user: a line per stream, one about feedback if its age is known, one about the
+/// clock.
 std::string AccountText(const SessionAccount& account, const RecordingStats& recorded);
 
 }  // namespace isotherm

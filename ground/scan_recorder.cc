@@ -1,10 +1,15 @@
 #include "ground/scan_recorder.h"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "common/base/log.h"
 #include "common/config/text_proto.h"
+#include "common/transport/clock_record.h"
 #include "common/transport/feedback_record.h"
 
 namespace isotherm {
@@ -60,7 +65,35 @@ void ScanRecorder::Write(const Feedback& feedback) {
 
 void ScanRecorder::Write(const OutsidePoseSample& sample) { Note(writer_->Write(sample.pose)); }
 
+void ScanRecorder::Write(const ClockAccount& clock) {
+  const ClockAccount before = std::exchange(clock_, clock).value_or(ClockAccount());
+  const double step_s = clock.rig.step_sum_s - before.rig.step_sum_s;
+  if (step_s != 0.0) {
+    const Nanoseconds total = FromSeconds(clock.rig.step_sum_s);
+    Note(writer_->Write(ClockStep{clock.time - total, FromSeconds(step_s), total}));
+  }
+  const auto kind = [](const ClockAccount& account) {
+    return std::tuple(account.rig.synchronised, account.unsynchronised, account.rig.steps,
+                      account.alarm, account.offset.has_value());
+  };
+  if (kind(clock) != kind(before)) WriteClockMetadata();
+}
+
+void ScanRecorder::WriteClockMetadata() {
+  std::map<std::string, std::string> state = ToMetadata(clock_->rig);
+  if (clock_->unsynchronised) state["synchronised"] = "no";
+  state["steps"] = fmt::format("{}", clock_->rig.steps);
+  state["alarms"] = fmt::format("{}", clock_->alarms);
+  if (clock_->offset) {
+    state["minus_ground_clock_s"] = fmt::format("{}", clock_->offset->offset_s);
+    state["minus_ground_clock_uncertainty_s"] = fmt::format("{}", clock_->offset->uncertainty_s);
+  }
+  Note(writer_->WriteMetadata(kClockMetadata, state));
+}
+
 Status ScanRecorder::Close() {
+  if (clock_) WriteClockMetadata();  // As it was in the end.
+  clock_.reset();
   Note(writer_->Close());
   return first_error_;
 }

@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "common/base/status.h"
 #include "common/recording/recording.h"
 #include "common/transport/messages.h"
 #include "ground/ground_options.pb.h"
 #include "ground/subscriber/received_frame.h"
+#include "ground/subscriber/session_account.h"
 
 namespace isotherm {
 
@@ -25,6 +27,9 @@ class ScanRecorder {
   void Write(const ReceivedThermal& thermal);
   void Write(const Feedback& feedback);
   void Write(const OutsidePoseSample& sample);
+  /// Keeps what is known of the rig's clock, and writes what changed in kind: synchronisation,
+  /// steps, alarm.
+  void Write(const ClockAccount& clock);
   /// Writes index and footer. The first error of the recording, or ok. Idempotent.
   Status Close();
 
@@ -33,9 +38,11 @@ class ScanRecorder {
  private:
   explicit ScanRecorder(std::unique_ptr<RecordingWriter> writer) : writer_(std::move(writer)) {}
   void Note(const Status& status);
+  void WriteClockMetadata();
 
   std::unique_ptr<RecordingWriter> writer_;
   Status first_error_;
+  std::optional<ClockAccount> clock_;  ///< The newest.
 };
 
 }  // namespace isotherm

@@ -42,6 +42,12 @@ Status Validate(const LiveOptions& o) {
         fmt::format("live.max_wait_s must be 0 (never leave work out) or 0.05 to 10 s, got {}",
                     o.max_wait_s()));
   }
+  if (!(o.max_clock_offset_s() == 0.0 ||
+        (o.max_clock_offset_s() >= 0.001 && o.max_clock_offset_s() <= 3600.0))) {
+    return InvalidArgument(
+        fmt::format("live.max_clock_offset_s must be 0 (no alarm) or 0.001 to 3600 s, got {}",
+                    o.max_clock_offset_s()));
+  }
   if (o.output_dir().empty()) return InvalidArgument("live.output_dir must name a folder");
   return OkStatus();
 }

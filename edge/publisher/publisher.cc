@@ -126,6 +126,7 @@ class DdsPublisher final : public Publisher {
   Stream thermal_;
   std::uint64_t flow_waits_ = 0;
   std::uint64_t flow_timeouts_ = 0;
+  std::optional<ClockEcho> clock_echo_;  // Not sent yet.
   bool ground_present_ = false;
   bool ground_compatible_ = false;
   std::optional<SteadyTime> stop_deadline_;
@@ -189,8 +190,10 @@ void DdsPublisher::OnPeer(const Received<Hello>& peer) {
 
 void DdsPublisher::OnReceipt(const Receipt& receipt) {
   receipt_.Set(receipt);
+  const ClockEcho echo{.ping = receipt.clock_ping, .received = clock_.Now()};
   const SteadyTime now = clock_.SteadyNow();
   std::scoped_lock lock(mutex_);
+  if (echo.ping != 0) clock_echo_ = echo;
   if (session_ != receipt.session) return;
   depth_.window.OnReceipt(receipt.depth.handled, now);
   thermal_.window.OnReceipt(receipt.thermal.handled, now);
@@ -287,8 +290,10 @@ Status DdsPublisher::Publish(EdgeStatus status) {
     status.depth.next_frame_number = depth_.counts.next_frame_number;
     status.thermal.published = thermal_.counts.published;
     status.thermal.next_frame_number = thermal_.counts.next_frame_number;
+    status.clock_echo = clock_echo_;
   }
   status.publish_policy = policy_;
+  if (status.clock_echo) status.clock_echo->sent = clock_.Now();
   return ends_.status.Write(options_.edge_id, status);
 }
 

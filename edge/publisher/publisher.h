@@ -81,7 +81,8 @@ class Publisher {
   virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
   /// Never waits for the ground: a pose that comes late is worth little.
   virtual Status Publish(const OutsidePoseSample& sample) = 0;
-  /// Writes the status; session, policy and the counts that the publisher knows are filled in here.
+  /// Writes the status; session, policy, the counts that the publisher knows and the echo of the
+  /// ground's clock ping are filled in here.
   virtual Status Publish(EdgeStatus status) = 0;
   virtual Status Answer(const CommandResult& result) = 0;
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <optional>
 
 #include "common/transport/messages.h"
+#include "ground/subscriber/clock_comparison.h"
 
 namespace isotherm {
 
@@ -19,13 +22,29 @@ struct StreamAccount {
       0;  ///< Samples that were dropped as malformed; their numbers stay missing.
 };
 
+/// The rig's wall clock in a session: what the rig says of it, and how it compares with ours.
+struct ClockAccount {
+  std::uint64_t session = 0;
+  ClockReport rig;              ///< As of the newest status.
+  CaptureTime time{};           ///< Of that status, by the rig's clock.
+  bool unsynchronised = false;  ///< At some time in the session.
+  CameraReport depth_camera;    ///< As of the newest status: stamps and their uncertainty.
+  CameraReport thermal_camera;
+  std::optional<ClockOffset> offset;  ///< The newest that is known.
+  /// The most that both clocks have differed by for certain; NaN = never compared.
+  double largest_offset_s = std::numeric_limits<double>::quiet_NaN();
+  bool alarm = false;  ///< They differ by more than is allowed, for certain.
+  std::uint64_t alarms = 0;
+};
+
 struct SessionAccount {
   std::uint64_t session = 0;
   bool ended = false;   ///< The edge has said its final counts.
   bool closed = false;  ///< ... and everything has arrived or was given up.
   StreamAccount depth;
   StreamAccount thermal;
-  FeedbackLatency feedback;  ///< As the edge measured it.
+  FeedbackLatency feedback;           ///< As the edge measured it.
+  std::optional<ClockAccount> clock;  ///< nullopt before the first status.
 };
 
 }  // namespace isotherm

@@ -53,6 +53,10 @@ void SessionBook::OnStatus(const EdgeStatus& status, SteadyTime now) {
   entry.ended = status.scan_state == ScanState::kEnded;
 }
 
+void SessionBook::SetClock(const ClockAccount& clock) {
+  if (Entry* entry = Find(clock.session)) entry->clock = clock;
+}
+
 std::optional<std::uint64_t> SessionBook::newest() const {
   if (entries_.empty()) return std::nullopt;
   return entries_.back().session;
@@ -67,6 +71,7 @@ SessionAccount SessionBook::Account(const StreamTally& depth, const StreamTally&
   account.ended = entry->ended;
   account.closed = entry->closed;
   account.feedback = entry->feedback;
+  account.clock = entry->clock;
   account.depth = MakeAccount(depth, entry->depth_published, entry->ended);
   account.thermal = MakeAccount(thermal, entry->thermal_published, entry->ended);
   return account;

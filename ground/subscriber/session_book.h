@@ -22,6 +22,8 @@ class SessionBook {
   explicit SessionBook(Nanoseconds grace) : grace_(grace) {}
 
   void OnStatus(const EdgeStatus& status, SteadyTime now);
+  /// What is known of the rig's clock; goes into the account of its session, if that was seen.
+  void SetClock(const ClockAccount& clock);
   /// A good frame of `session` has arrived.
   void OnFrame(std::uint64_t session, SteadyTime now);
 
@@ -44,6 +46,7 @@ class SessionBook {
     std::uint64_t depth_published = 0;
     std::uint64_t thermal_published = 0;
     FeedbackLatency feedback{};
+    std::optional<ClockAccount> clock{};
     bool ended = false;
     bool closed = false;
     SteadyTime last_activity{};

@@ -10,6 +10,8 @@
 #include "common/base/log.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/wait_set.h"
+#include "ground/subscriber/clock_comparison.h"
+#include "ground/subscriber/clock_watch.h"
 #include "ground/subscriber/frame_lane.h"
 #include "ground/subscriber/session_book.h"
 
@@ -70,6 +72,7 @@ class DdsSubscriber final : public Subscriber {
   void SendReceipt(SteadyTime now);
   Nanoseconds TimeToNextDuty(SteadyTime now) const;
   void OnPeer(const Received<Hello>& peer);
+  void OnStatus(const EdgeStatus& status);
   /// True for the rig that is followed; without a choice that is the first one seen.
   bool IsFollowed(const std::string& edge_id);
 
@@ -84,6 +87,8 @@ class DdsSubscriber final : public Subscriber {
   FrameLane<ReceivedDepth> depth_;
   FrameLane<ReceivedThermal> thermal_;
   SessionBook book_;
+  ClockComparison clock_comparison_;
+  ClockWatch clock_watch_;
   SteadyTime receipt_due_{};
   int frames_since_receipt_ = 0;
 
@@ -104,6 +109,8 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
       thermal_("thermal", options.reorder_window, &refusals_, handlers_.thermal,
                handlers_.late_thermal),
       book_(options.end_grace),
+      clock_comparison_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))),
+      clock_watch_(options.max_clock_offset),
       edge_id_(options.edge_id),
       // Not from 1, so that the result for an earlier run of this ground is not taken for ours.
       next_command_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))) {}
@@ -163,9 +170,7 @@ int DdsSubscriber::TakeMessages() {
     }
   });
   taken += ends_.status.Take([this](Received<EdgeStatus>&& status) {
-    if (!IsFollowed(status.edge_id)) return;
-    book_.OnStatus(status.message, clock_.SteadyNow());
-    if (handlers_.status) handlers_.status(status.message);
+    if (IsFollowed(status.edge_id)) OnStatus(status.message);
   });
   taken += ends_.results.Take([this](Received<CommandResult>&& result) {
     if (IsFollowed(result.edge_id) && handlers_.command_result) {
@@ -173,6 +178,16 @@ int DdsSubscriber::TakeMessages() {
     }
   });
   return taken;
+}
+
+void DdsSubscriber::OnStatus(const EdgeStatus& status) {
+  const ClockReading now = ReadClocks(clock_);
+  if (status.clock_echo) clock_comparison_.Add(*status.clock_echo, now.steady);
+  clock_watch_.Update(status, clock_comparison_.Offset(now), ReadKernelClock(), now.steady);
+  book_.OnStatus(status, now.steady);
+  book_.SetClock(clock_watch_.account());
+  if (handlers_.status) handlers_.status(status);
+  if (handlers_.clock) handlers_.clock(clock_watch_.account());
 }
 
 template <typename Item>
@@ -254,6 +269,7 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
   std::unique_lock lock(mutex_);
   const std::string edge_id = edge_id_;
   lock.unlock();
+  receipt.clock_ping = clock_comparison_.Ping(clock_.SteadyNow());
   const Status sent = ends_.receipt.Write(edge_id, receipt);
   if (!sent.ok()) {
     LOG(Subscriber, Debug) << "receipt not sent: " << sent.message();
@@ -307,6 +323,9 @@ Status Validate(const SubscriberOptions& options) {
     return InvalidArgument(fmt::format("reorder_window = {} s is outside 0..{}",
                                        ToSeconds(options.reorder_window),
                                        ToSeconds(kMaxReorderWindow)));
+  }
+  if (options.max_clock_offset < Nanoseconds(0)) {
+    return InvalidArgument("max_clock_offset must not be negative");
   }
   if (options.receipt_interval <= Nanoseconds(0) || options.end_grace < Nanoseconds(0)) {
     return InvalidArgument("receipt_interval must be positive and end_grace not negative");

@@ -29,6 +29,8 @@ struct SubscriberOptions {
   /// After the edge has ended its session, missing frames are given up when nothing has come for
   /// this long.
   Nanoseconds end_grace = std::chrono::seconds(2);
+  /// The rig's wall clock may differ from ours by this much before there is an alarm; 0 = no alarm.
+  Nanoseconds max_clock_offset = std::chrono::milliseconds(50);
 };
 
 Status Validate(const SubscriberOptions& options);
@@ -46,6 +48,7 @@ struct SubscriberHandlers {
   std::function<void(const OutsidePoseSample&)> outside_pose;
   std::function<void(const RigDescription&)> rig;
   std::function<void(const EdgeStatus&)> status;
+  std::function<void(const ClockAccount&)> clock;  ///< After each status.
   std::function<void(const CommandResult&)> command_result;
   /// Once per session, when its account is closed: the edge ended it and all is here or given up.
   std::function<void(const SessionAccount&)> session_end;

@@ -21,7 +21,7 @@ std::string ReadAll(const std::filesystem::path& path) {
 }
 
 std::filesystem::path FindProgram(const std::string& name) {
-  for (const char* folder : {"/usr/bin", "/bin", "/usr/local/bin"}) {
+  for (const char* folder : {"/usr/bin", "/bin", "/usr/sbin", "/usr/local/bin"}) {
     if (std::filesystem::exists(std::filesystem::path(folder) / name)) {
       return std::filesystem::path(folder) / name;
     }
@@ -55,7 +55,8 @@ TEST_F(InstallTest, ProgramsConfigurationsAndUnitsAreInPlace) {
   for (const char* path :
        {"bin/isotherm", "bin/isotherm-edge", "bin/isotherm-ground", "etc/isotherm/edge.textproto",
         "etc/isotherm/ground.textproto", "etc/isotherm/cyclonedds-loopback.xml",
-        "etc/isotherm/cyclonedds-lan.xml", "lib/systemd/system/isotherm-edge.service",
+        "etc/isotherm/cyclonedds-lan.xml", "etc/isotherm/chrony-rig.conf",
+        "etc/isotherm/chrony-ground.conf", "lib/systemd/system/isotherm-edge.service",
         "lib/systemd/system/isotherm-ground.service", "lib/udev/rules.d/60-isotherm-thermal.rules",
         "share/doc/isotherm/README.md"}) {
     EXPECT_TRUE(std::filesystem::exists(prefix_ / path)) << path;
@@ -72,6 +73,18 @@ TEST_F(InstallTest, UnitsNameTheInstalledFiles) {
         unit, HasSubstr("ExecStart=" + (prefix_ / "bin/isotherm-").string() + name + " --config " +
                         (prefix_ / "etc/isotherm/").string() + name + ".textproto\n"));
     EXPECT_EQ(unit.find('@' + std::string("INSTALL")), std::string::npos) << unit;
+  }
+}
+
+TEST(ShippedChronyTest, F18ChronyAcceptsTheConfigurations) {
+  const std::filesystem::path chronyd = FindProgram("chronyd");
+  if (chronyd.empty()) GTEST_SKIP() << "chrony is not installed";
+  for (const char* name : {"chrony-rig.conf", "chrony-ground.conf"}) {
+    const std::string file = ISOTHERM_SOURCE_DIR "/deploy/chrony/" + std::string(name);
+    const Finished printed = RunToEnd({chronyd, {"-p", "-f", file}, {}}, kPatience);
+    EXPECT_EQ(printed.status, 0) << printed.output;
+    for (const char* setting : {"authselectmode require", "maxchange 1 3 -1", "makestep"})
+      EXPECT_THAT(printed.output, HasSubstr(setting)) << name;
   }
 }
 

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+
+namespace isotherm {
+
+class SourceOptions;
+
+/// How capture times relate to the edge's wall clock.
+enum class TimeBase : std::uint8_t {
+  kWallClock,  ///< They are on it.
+  kShifted,    ///< A recording's own, played in real time: off by a constant that is not known.
+  kOther,      ///< They pass at another pace.
+};
+
+/// Of the frames that such a source gives.
+TimeBase TimeBaseOf(const SourceOptions& options);
+
+}  // namespace isotherm

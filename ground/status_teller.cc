@@ -1,0 +1,37 @@
+#include "ground/status_teller.h"
+
+#include <fmt/format.h>
+
+#include "common/base/log.h"
+#include "common/base/service.h"
+#include "ground/subscriber/clock_watch.h"
+
+namespace isotherm {
+namespace {
+
+/// "300 of 301 depth".
+std::string ArrivedText(const char* name, const StreamAccount& account) {
+  return fmt::format("{} of {} {}", account.received, account.published, name);
+}
+
+}  // namespace
+
+std::string StatusText(const SubscriberStats& stats) {
+  if (stats.account.session == 0)
+    return stats.edge_present ? "rig found, no scan yet" : "waiting for a rig";
+  std::string text = fmt::format(
+      "{} | received {}, {} | rig's clock: ", stats.edge_present ? "scanning" : "RIG LOST",
+      ArrivedText("depth", stats.account.depth), ArrivedText("thermal", stats.account.thermal));
+  return text + (stats.account.clock ? ClockText(*stats.account.clock) : "unknown");
+}
+
+void StatusTeller::Tell(const SubscriberStats& stats) {
+  if (clock_.SteadyNow() < next_) return;
+  next_ += kInterval;
+  const std::string line = StatusText(stats);
+  NotifyStatus(line);
+  if (stats.account.session == 0 || stats.account.closed) return;
+  LOG(Ground, Info) << line;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/time/kernel_clock.h"
+#include "common/time/time_types.h"
+#include "common/transport/messages.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+/// Watches the rig's wall clock for the operator: says when it loses or finds synchronisation, when
+/// it is set, and raises an alarm when it differs from ours by more than is allowed. The alarm is
+/// raised only for a difference beyond what a slow link may pretend, and ends when the best
+/// estimate is within what is allowed. It is told at most once in `kRepeat`. Thread-compatible.
+class ClockWatch {
+ public:
+  /// `max_offset` 0 = no alarm.
+  explicit ClockWatch(Nanoseconds max_offset) : max_offset_(max_offset) {}
+
+  /// A status of the rig has come; `own` is this computer's clock, for the message only.
+  void Update(const EdgeStatus& status, const std::optional<ClockOffset>& offset,
+              const KernelClock& own, SteadyTime now);
+  /// Of the session of the newest status.
+  const ClockAccount& account() const { return account_; }
+
+  static constexpr Nanoseconds kRepeat = std::chrono::minutes(1);
+
+ private:
+  void Judge(const std::optional<ClockOffset>& offset);
+  void Tell(const ClockReport& before, bool is_first);
+  void TellAlarm(const KernelClock& own, SteadyTime now);
+
+  Nanoseconds max_offset_;
+  bool seen_ = false;  ///< A status.
+  ClockAccount account_;
+  std::optional<SteadyTime> told_at_;  ///< The alarm.
+  bool told_ = false;                  ///< That it is on.
+};
+
+/// "0.3 ms ahead of ours (+-0.4 ms)", "80.1 ms behind ours (+-0.4 ms)".
+std::string OffsetText(const ClockOffset& offset);
+/// One line: synchronisation, steps, difference to ours, alarm, stamps.
+std::string ClockText(const ClockAccount& account);
+
+}  // namespace isotherm
