@@ -1,4 +1,4 @@
-// Edge and ground of wire 1.1 in one, for wire_version_test: peer_1_1 DOMAIN. Writes a hello, a
+// Edge and ground of wire 1.1 in one, for tests/link: peer_1_1 DOMAIN. Writes a hello, a
 // status, a command and a receipt until it has got one of each itself; prints what it got. Knows
 // nothing of today's types.
 #include <dds/dds.h>

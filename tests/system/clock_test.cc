@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 
+#include <fstream>
 #include <iostream>
+#include <memory>
 
 #include "common/testing/temporary_directory.h"
 #include "common/time/kernel_clock.h"
@@ -13,7 +16,6 @@ namespace isotherm::system_test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 using testing::TemporaryDirectory;
 
 class ClockTest : public ::testing::Test {
@@ -25,24 +27,31 @@ class ClockTest : public ::testing::Test {
   static void TearDownTestSuite() { shared_.reset(); }
   std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
 
-  /// A scan in real time; the edge's wall clock is `ahead_ms` ahead from `after_s` on.
-  void Scan(int ahead_ms, int after_s = 0) {
+  /// The ground is there.
+  void SetUp() override {
     std::vector<std::string> arguments = {"--once", "--domain", std::to_string(TestDomain()),
                                           "--output", Path("ground")};
     for (const std::string& argument : QuickModel()) arguments.push_back(argument);
-    Process ground({GroundService(), arguments, {}});
-    ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
-    const Finished edge = RunToEnd(
-        {EdgeDaemon(),
-         {"--recording", shared_->path() / "source.mcap", "--domain", std::to_string(TestDomain()),
-          "--record", Path("edge.mcap"), "--rate", "1", "--wait-for-ground", "--exit-at-end"},
-         {std::string("LD_PRELOAD=") + SHIFTED_CLOCK, "CLOCK_SHIFT_MS=" + std::to_string(ahead_ms),
-          "CLOCK_SHIFT_AFTER_S=" + std::to_string(after_s)}},
-        kPatience);
-    EXPECT_EQ(edge.status, 0) << edge.output;
-    EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
-    edge_output_ = edge.output;
-    ground_output_ = ground.output();
+    ground_ = std::make_unique<Process>(Command{GroundService(), arguments, {}});
+    ASSERT_TRUE(ground_->WaitForOutput("ready", kPatience)) << ground_->output();
+  }
+  /// A scan in real time by an edge whose wall clock is `ahead_ms` ahead, from Step() on if that
+  /// `waits`.
+  void Start(int ahead_ms, bool waits = false) {
+    Command edge{
+        EdgeDaemon(),
+        {"--recording", shared_->path() / "source.mcap", "--domain", std::to_string(TestDomain()),
+         "--record", Path("edge.mcap"), "--rate", "1", "--wait-for-ground", "--set",
+         "source.loops=0"},
+        {std::string("LD_PRELOAD=") + SHIFTED_CLOCK, "CLOCK_SHIFT_MS=" + std::to_string(ahead_ms)}};
+    if (waits) edge.environment.push_back("CLOCK_SHIFT_WHEN=" + Path("now").string());
+    edge_ = std::make_unique<Process>(edge);
+  }
+  void Step() const { std::ofstream(Path("now")) << "now\n"; }
+  void Stop() {
+    edge_->Signal(SIGTERM);
+    EXPECT_EQ(edge_->WaitForExit(kPatience), 0);
+    EXPECT_EQ(ground_->WaitForExit(kPatience), 0);
   }
   double Number(const std::string& name) const {
     return NumberAt(ReadStats(Path("ground")), {"link", "clock", name});
@@ -54,21 +63,23 @@ class ClockTest : public ::testing::Test {
     return RunToEnd({Tool(), {"inspect", Path(recording)}, {}}, kPatience).output;
   }
   void TearDown() override {
-    if (HasFailure())
-      std::cout << "edge:\n" << edge_output_ << "ground:\n" << ground_output_ << std::flush;
+    if (!HasFailure()) return;
+    if (edge_) std::cout << "edge:\n" << edge_->output();
+    std::cout << "ground:\n" << ground_->output() << std::flush;
   }
 
   static std::unique_ptr<TemporaryDirectory> shared_;
   TemporaryDirectory folder_;
-  std::string edge_output_;
-  std::string ground_output_;
+  std::unique_ptr<Process> ground_;
+  std::unique_ptr<Process> edge_;
 };
 
 std::unique_ptr<TemporaryDirectory> ClockTest::shared_;
 
 TEST_F(ClockTest, F18AWrongClockIsAnAlarmInLogAndStats) {
-  Scan(2000);
-  EXPECT_THAT(ground_output_, HasSubstr("CLOCK ALARM: the rig's clock is "));
+  Start(2000);
+  EXPECT_TRUE(ground_->WaitForOutput("CLOCK ALARM: the rig's clock is ", kPatience));
+  Stop();
   EXPECT_EQ(Number("alarms"), 1.0);
   EXPECT_NEAR(Difference("ms"), 2000.0, Difference("uncertainty_ms"));
   EXPECT_GT(Difference("largest_certain_ms"), 50.0);
@@ -76,9 +87,12 @@ TEST_F(ClockTest, F18AWrongClockIsAnAlarmInLogAndStats) {
 }
 
 TEST_F(ClockTest, F15AStepDuringTheScanIsInBothRecordings) {
-  Scan(-3000, /*after_s=*/3);
-  EXPECT_THAT(edge_output_, HasSubstr("the wall clock was set, step_s="));
-  EXPECT_THAT(ground_output_, HasSubstr("the rig's clock was set by -3.000 s"));
+  Start(-3000, /*waits=*/true);
+  ASSERT_TRUE(ground_->WaitForOutput("first depth frame", kPatience));
+  Step();
+  EXPECT_TRUE(edge_->WaitForOutput("the wall clock was set, step_s=", kPatience));
+  EXPECT_TRUE(ground_->WaitForOutput("the rig's clock was set by -3.000 s", kPatience));
+  Stop();
   EXPECT_THAT(Inspect("edge.mcap"), HasSubstr("from there on UTC = capture time -3.000 s"));
   EXPECT_THAT(Inspect("ground/scan.mcap"), HasSubstr("from there on UTC = capture time -3.000 s"));
   EXPECT_EQ(Number("steps"), 1.0);
@@ -86,14 +100,16 @@ TEST_F(ClockTest, F15AStepDuringTheScanIsInBothRecordings) {
 }
 
 TEST_F(ClockTest, F17WhetherTheClockIsSynchronisedIsToldEverywhere) {
-  Scan(0);
+  Start(0);
+  EXPECT_TRUE(ground_->WaitForOutput("| rig's clock: ", kPatience)) << "the status line";
+  Stop();
   EXPECT_EQ(Number("alarms"), 0.0);
   EXPECT_NEAR(Difference("ms"), 0.0, Difference("uncertainty_ms")) << "one computer, one clock";
   const bool synchronised = ReadKernelClock().synchronised;
-  EXPECT_EQ(edge_output_.find("the wall clock is not synchronised") == std::string::npos,
-            synchronised);
-  EXPECT_EQ(ground_output_.find("the rig's clock is not synchronised") == std::string::npos,
-            synchronised);
+  for (const Process* program : {edge_.get(), ground_.get()}) {
+    EXPECT_EQ(program->output().find("clock is not synchronised") == std::string::npos,
+              synchronised);
+  }
   for (const char* recording : {"edge.mcap", "ground/scan.mcap"}) {
     EXPECT_EQ(Inspect(recording).find("NOT SYNCHRONISED") == std::string::npos, synchronised)
         << recording;

@@ -1,8 +1,11 @@
 // Preloaded into a program, shows it a wall clock that is wrong: CLOCK_SHIFT_MS milliseconds ahead,
-// from CLOCK_SHIFT_AFTER_S seconds after the first look on. The monotonic clock stays.
+// from when the file CLOCK_SHIFT_WHEN exists (from the start, if none is named). The monotonic
+// clock stays.
 #include <dlfcn.h>
 #include <time.h>
+#include <unistd.h>
 
+#include <atomic>
 #include <cstdlib>
 
 namespace {
@@ -17,22 +20,17 @@ Function Real() {
   return real;
 }
 
-long FromEnvironment(const char* name) {
-  const char* text = std::getenv(name);
-  return text == nullptr ? 0 : std::atol(text);
-}
-
-double MonotonicSeconds() {
-  timespec now{};
-  Real()(CLOCK_MONOTONIC, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+bool IsTime() {
+  static const char* const when = std::getenv("CLOCK_SHIFT_WHEN");
+  static std::atomic<bool> is_time{when == nullptr};
+  if (!is_time && access(when, F_OK) == 0) is_time = true;
+  return is_time;
 }
 
 long ShiftMs() {
-  static const long shift_ms = FromEnvironment("CLOCK_SHIFT_MS");
-  static const double from_s =
-      MonotonicSeconds() + static_cast<double>(FromEnvironment("CLOCK_SHIFT_AFTER_S"));
-  return MonotonicSeconds() >= from_s ? shift_ms : 0;
+  static const char* const text = std::getenv("CLOCK_SHIFT_MS");
+  static const long shift_ms = text == nullptr ? 0 : std::atol(text);
+  return IsTime() ? shift_ms : 0;
 }
 
 }  // namespace
