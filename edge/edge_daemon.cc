@@ -107,6 +107,11 @@ std::string ModelText(const CameraDescription& camera) {
   return fmt::format("{}, {}", camera.driver, camera.model);
 }
 
+Encoding EncodingOf(const CameraDescription& camera) {
+  if (camera.sensor == Sensor::kDepth) return Encoding::kDepthRans;
+  return camera.counts_only ? kCounts16 : Encoding::kThermalRans;
+}
+
 RigDescription Describe(const EdgeOptions& options, const Start& start) {
   RigDescription description;
   description.session = start.session();
@@ -120,16 +125,9 @@ RigDescription Describe(const EdgeOptions& options, const Start& start) {
   description.depth = mode(description.rig.depth, Encoding::kDepthRans);
   description.thermal = mode(description.rig.thermal, Encoding::kThermalRans);
   for (const CameraDescription& camera : start.cameras) {
-    const bool is_depth = camera.sensor == Sensor::kDepth;
-    (is_depth ? description.depth : description.thermal) = {camera.width,
-                                                            camera.height,
-                                                            camera.rate_hz,
-                                                            is_depth ? Encoding::kDepthRans
-                                                            : camera.counts_only
-                                                                ? kCounts16
-                                                                : Encoding::kThermalRans,
-                                                            camera.serial,
-                                                            ModelText(camera)};
+    StreamMode& stream = camera.sensor == Sensor::kDepth ? description.depth : description.thermal;
+    stream = {camera.width,       camera.height, camera.rate_hz,
+              EncodingOf(camera), camera.serial, ModelText(camera)};
   }
   return description;
 }
