@@ -104,6 +104,7 @@ TEST_F(CameraProcessTest, TheCameraTellsWhatItIs) {
   EXPECT_EQ(camera.serial, "S-9");
   EXPECT_EQ(camera.rate_hz, 40.0);
   EXPECT_EQ(camera.settings, "all on");
+  EXPECT_TRUE(camera.counts_only);
 }
 
 TEST_F(CameraProcessTest, OrdersReachTheCameraAndItsAnswersComeBack) {

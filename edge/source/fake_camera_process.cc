@@ -51,7 +51,7 @@ class FakeCamera final : public FrameSource {
     return rig;
   }
   std::vector<CameraDescription> cameras() const override {
-    return {{Sensor::kThermal, "fake", "Fake 1", "S-9", 5, 3, 40.0, "all on"}};
+    return {{Sensor::kThermal, "fake", "Fake 1", "S-9", 5, 3, 40.0, "all on", true}};
   }
 
  private:

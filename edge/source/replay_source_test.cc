@@ -147,6 +147,20 @@ TEST_F(ReplaySourceTest, DeliversBothSensorsInOrderAsTheyWereRecorded) {
   EXPECT_EQ(frames[2].frame_number, 1U);
 }
 
+TEST_F(ReplaySourceTest, CountsAreNotPlayedAsTemperatures) {
+  WriteDepth(milliseconds(0));
+  EncodedThermalFrame counts;
+  counts.header = Header(milliseconds(7), true);
+  counts.image = PackCounts(Image<std::uint16_t>(6, 4, 16'384));
+  ASSERT_TRUE(writer_->Write(counts, Arrival(milliseconds(7), true)).ok());
+  WriteDepth(milliseconds(33));
+  Open();
+  const std::vector<RawFrame> frames = ReadAll();
+  ASSERT_EQ(frames.size(), 2U);
+  EXPECT_EQ(frames[0].sensor, Sensor::kDepth);
+  EXPECT_EQ(frames[1].sensor, Sensor::kDepth);
+}
+
 TEST_F(ReplaySourceTest, TicksAndArrivalAreThoseRecorded) {
   WriteDepth(milliseconds(0));
   WriteDepth(milliseconds(33));
