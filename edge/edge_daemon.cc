@@ -109,7 +109,7 @@ std::string ModelText(const CameraDescription& camera) {
 
 Encoding EncodingOf(const CameraDescription& camera) {
   if (camera.sensor == Sensor::kDepth) return Encoding::kDepthRans;
-  return camera.counts_only ? kCounts16 : Encoding::kThermalRans;
+  return camera.counts_only ? Encoding::kCounts16 : Encoding::kThermalRans;
 }
 
 RigDescription Describe(const EdgeOptions& options, const Start& start) {

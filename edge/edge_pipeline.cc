@@ -198,7 +198,7 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   frame.nuc_source = nuc.source;
   frame.seconds_since_nuc = nuc.seconds_since_nuc;
   frame.valid = nuc.valid && !thermal_is_counts_;
-  if (thermal_is_counts_) frame.image.encoding = kCounts16;
+  if (thermal_is_counts_) frame.image.encoding = Encoding::kCounts16;
   frame.housekeeping = raw.housekeeping;
   nuc_report_.Set(nuc_.Report());
   HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
@@ -230,7 +230,7 @@ void EdgePipeline::Encode(const std::stop_token& stop) {
     if (auto* depth = std::get_if<EncodedDepthFrame>(&content))
       depth->image = depth_encoder_.Encode(uncoded->pixels);
     if (auto* thermal = std::get_if<EncodedThermalFrame>(&content)) {
-      const bool is_counts = thermal->image.encoding == kCounts16;
+      const bool is_counts = thermal->image.encoding == Encoding::kCounts16;
       thermal->image =
           is_counts ? PackCounts(uncoded->pixels) : thermal_encoder_.Encode(uncoded->pixels);
     }

@@ -146,7 +146,7 @@ TEST_F(EdgePipelineTest, CountsAreRecordedAndPublishedAsCountsAndNeverValid) {
   const std::vector<EncodedThermalFrame> published = publisher_.thermal();
   ASSERT_EQ(published.size(), 2U);
   for (const EncodedThermalFrame& frame : published) {
-    EXPECT_EQ(frame.image.encoding, kCounts16);
+    EXPECT_EQ(frame.image.encoding, Encoding::kCounts16);
     EXPECT_FALSE(frame.valid);
     const Result<Image<std::uint16_t>> counts = Decode(frame.image);
     ASSERT_TRUE(counts.has_value());

@@ -73,7 +73,7 @@ class ThermalDaemonTest : public ::testing::Test {
       const auto* thermal = std::get_if<RecordedThermal>(&**item);
       if (thermal == nullptr) continue;
       ++frames;
-      EXPECT_EQ(thermal->frame.image.encoding, kCounts16);
+      EXPECT_EQ(thermal->frame.image.encoding, Encoding::kCounts16);
       EXPECT_FALSE(thermal->frame.valid);
       const auto counts = Decode(thermal->frame.image);
       ASSERT_TRUE(counts.has_value());

@@ -276,7 +276,7 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
 
 void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   ++counts_.thermal_in;
-  // Of a camera that measures no temperatures (kCounts16).
+  // Of a camera that measures no temperatures (Encoding::kCounts16).
   const bool is_counts = frame->centikelvin.empty() && !frame->valid;
   if (is_counts && counts_.thermal_left_out["counts"]++ == 0) {
     thermal_status_ = FailedPrecondition(

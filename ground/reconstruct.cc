@@ -77,7 +77,7 @@ class InlineDriver {
     frame->nuc_source = encoded.nuc_source;
     frame->seconds_since_nuc = encoded.seconds_since_nuc;
     frame->housekeeping = encoded.housekeeping;
-    frame->valid = encoded.valid && encoded.image.encoding != kCounts16;
+    frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
     if (Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header, frame->centikelvin))
       assembler_.Add(std::move(frame));
   }

@@ -29,7 +29,8 @@ Status CheckSizes(const EncodedImage& encoded, std::size_t max_pixels) {
   }
   const std::size_t raw_bytes = static_cast<std::size_t>(encoded.width) *
                                 static_cast<std::size_t>(encoded.height) * sizeof(std::uint16_t);
-  const bool is_raw = encoded.encoding == Encoding::kRaw16 || encoded.encoding == kCounts16;
+  const bool is_raw =
+      encoded.encoding == Encoding::kRaw16 || encoded.encoding == Encoding::kCounts16;
   if (is_raw && encoded.payload.size() != raw_bytes) {
     return DataLoss(fmt::format("raw image of {} x {} has {} bytes instead of {}", encoded.width,
                                 encoded.height, encoded.payload.size(), raw_bytes));
@@ -38,9 +39,9 @@ Status CheckSizes(const EncodedImage& encoded, std::size_t max_pixels) {
 }
 
 Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
-  if (encoded.encoding == kCounts16) return DecodeRaw(encoded.payload, image);
   switch (encoded.encoding) {
     case Encoding::kRaw16:
+    case Encoding::kCounts16:
       return DecodeRaw(encoded.payload, image);
     case Encoding::kPng16:
       return codec::DecodePng(encoded.payload, image);
@@ -90,8 +91,10 @@ EncodedImage ThermalEncoder::Encode(const Image<std::uint16_t>& centikelvin) {
 }
 
 EncodedImage PackCounts(const Image<std::uint16_t>& counts) {
-  EncodedImage packed{
-      .encoding = kCounts16, .width = counts.width(), .height = counts.height(), .payload = {}};
+  EncodedImage packed{.encoding = Encoding::kCounts16,
+                      .width = counts.width(),
+                      .height = counts.height(),
+                      .payload = {}};
   packed.payload.reserve(counts.size() * sizeof(std::uint16_t));
   for (const std::uint16_t count : counts.pixels()) {
     packed.payload.push_back(static_cast<std::uint8_t>(count));
@@ -103,7 +106,7 @@ EncodedImage PackCounts(const Image<std::uint16_t>& counts) {
 Result<Image<std::uint16_t>> DecodeTemperatures(const EncodedImage& encoded,
                                                 std::size_t max_pixels) {
   Result<Image<std::uint16_t>> image = Decode(encoded, max_pixels);
-  if (image && encoded.encoding == kCounts16) return Image<std::uint16_t>();
+  if (image && encoded.encoding == Encoding::kCounts16) return Image<std::uint16_t>();
   return image;
 }
 

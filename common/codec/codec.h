@@ -29,13 +29,7 @@ class ThermalEncoder {
   std::unique_ptr<Scratch> scratch_;
 };
 
-/// Encoding of pictures of cameras that measure no temperatures: as Encoding::kRaw16, but the
-/// samples are the camera's counts. A value of its own, on the wire and in recordings, so that
-/// nobody takes counts for centi-kelvin: programs that do not know it refuse the frame.
-inline constexpr Encoding kCounts16{4};
-static_assert(static_cast<int>(kCounts16) == static_cast<int>(Encoding::kThermalRans) + 1);
-
-/// Cannot be taken for temperatures: see kCounts16.
+/// Cannot be taken for temperatures: see Encoding::kCounts16.
 EncodedImage PackCounts(const Image<std::uint16_t>& counts);
 
 /// Unpacks any Encoding. Sizes are checked before anything is allocated; a payload that is

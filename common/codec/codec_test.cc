@@ -228,7 +228,7 @@ TEST(DecodeTest, CountsAreUnpackedButAreNoTemperatures) {
     counts.data()[i] = static_cast<std::uint16_t>(1'000 + 11'111 * i);
   }
   EncodedImage packed = PackCounts(counts);
-  EXPECT_EQ(packed.encoding, kCounts16);
+  EXPECT_EQ(packed.encoding, Encoding::kCounts16);
   EXPECT_EQ(*Decode(packed), counts);
   ASSERT_TRUE(DecodeTemperatures(packed).has_value());
   EXPECT_TRUE(DecodeTemperatures(packed)->empty());

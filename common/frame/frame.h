@@ -118,6 +118,9 @@ enum class Encoding : std::uint8_t {
   kDepthRans = 2,  ///< Ranks of the values that occur, predicted, entropy coded (common/codec).
   kThermalRans =
       3,  ///< Values predicted by the median edge detector, entropy coded (common/codec).
+  /// As kRaw16, of a camera that measures no temperatures: its counts. A value of its own, so that
+  /// nobody takes counts for centi-kelvin; programs that do not know it refuse the frame.
+  kCounts16 = 4,
 };
 
 struct EncodedImage {

@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "common/base/check.h"
-#include "common/codec/codec.h"
 #include "common/config/rig_calibration.h"
 #include "common/recording/schema.h"
 
@@ -135,8 +134,9 @@ Result<EncodedImage> TakeImage(foxglove::RawImage& message) {
     return Err(DataLoss(fmt::format("image of {} x {}, step {}, has {} bytes", message.width(),
                                     message.height(), message.step(), message.data().size())));
   }
-  const bool is_counts = message.frame().encoding() == static_cast<std::uint32_t>(kCounts16);
-  EncodedImage image{.encoding = is_counts ? kCounts16 : Encoding::kRaw16,
+  const bool is_counts =
+      message.frame().encoding() == static_cast<std::uint32_t>(Encoding::kCounts16);
+  EncodedImage image{.encoding = is_counts ? Encoding::kCounts16 : Encoding::kRaw16,
                      .width = static_cast<int>(message.width()),
                      .height = static_cast<int>(message.height()),
                      .payload = TakeBytes(message.mutable_data())};
@@ -206,7 +206,7 @@ void SetImageData(EncodedImage&& image, foxglove::CompressedImage& message) {
 }
 
 void SetImageData(EncodedImage&& image, foxglove::RawImage& message) {
-  CHECK(image.encoding == Encoding::kRaw16 || image.encoding == kCounts16);
+  CHECK(image.encoding == Encoding::kRaw16 || image.encoding == Encoding::kCounts16);
   message.mutable_frame()->set_encoding(static_cast<std::uint32_t>(image.encoding));
   message.set_width(static_cast<std::uint32_t>(image.width));
   message.set_height(static_cast<std::uint32_t>(image.height));

@@ -107,7 +107,7 @@ TEST_P(RecordingTest, FramesComeBackAsTheyWere) {
 
 TEST_P(RecordingTest, CountsComeBackAsCounts) {
   EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
-  thermal.image.encoding = kCounts16;
+  thermal.image.encoding = Encoding::kCounts16;
   thermal.valid = false;
   {
     auto writer = WriterTo(disk_, options_);

@@ -128,7 +128,8 @@ class McapRecordingWriter final : public RecordingWriter {
   static Status MakeRaw(EncodedImage& image) {
     Result<Image<std::uint16_t>> pixels = Decode(image);  // Checks the size of raw images as well.
     if (!pixels) return pixels.error().WithContext("frame is not recorded");
-    if (image.encoding == Encoding::kRaw16 || image.encoding == kCounts16) return OkStatus();
+    if (image.encoding == Encoding::kRaw16 || image.encoding == Encoding::kCounts16)
+      return OkStatus();
     image.encoding = Encoding::kRaw16;
     image.payload.clear();
     image.payload.reserve(pixels->size() * sizeof(std::uint16_t));

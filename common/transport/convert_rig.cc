@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "common/codec/codec.h"
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
 #include "common/transport/sample_validator.h"
@@ -57,7 +56,7 @@ std::optional<RefusalCause> FromWireMode(const isotherm_wire_StreamMode& from, S
     return RefusalCause::kImpossibleSize;
   }
   if (const auto cause = CheckFinite({from.rate_hz})) return cause;
-  if (CheckEnum(from.encoding, kCounts16)) return RefusalCause::kUnknownEncoding;
+  if (CheckEnum(from.encoding, Encoding::kCounts16)) return RefusalCause::kUnknownEncoding;
   to->width = static_cast<int>(from.width);
   to->height = static_cast<int>(from.height);
   to->rate_hz = from.rate_hz;

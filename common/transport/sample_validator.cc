@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/codec/codec.h"
 
 namespace isotherm {
 namespace {
@@ -68,7 +67,7 @@ std::optional<RefusalCause> CheckFrame(const FrameFields& fields) {
       fields.payload_bytes > pixels * kMaxBytesPerPixel + kMaxCodeOverheadBytes) {
     return RefusalCause::kOversizePayload;
   }
-  if (CheckEnum(fields.encoding, kCounts16)) return RefusalCause::kUnknownEncoding;
+  if (CheckEnum(fields.encoding, Encoding::kCounts16)) return RefusalCause::kUnknownEncoding;
   if (fields.capture_time_ns < 0 || fields.capture_sigma_ns < 0) {
     return RefusalCause::kNegativeTime;
   }

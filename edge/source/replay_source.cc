@@ -90,7 +90,7 @@ Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
     if (auto* depth = std::get_if<RecordedDepth>(&**item))
       return Item(ToRawFrame(std::move(*depth)));
     auto* thermal = std::get_if<RecordedThermal>(&**item);
-    if (thermal != nullptr && thermal->frame.image.encoding == kCounts16) {
+    if (thermal != nullptr && thermal->frame.image.encoding == Encoding::kCounts16) {
       if (counts_left_out_++ == 0) {
         LOG(Source, Warning) << name_
                              << ": thermal frames hold counts, not temperatures, and are "

@@ -53,8 +53,8 @@ Result<RgbImage> PictureOf(const RecordedItem& item) {
       Decode(depth != nullptr ? depth->frame.image : thermal->frame.image);
   if (!image) return Err(image.error());
   if (depth != nullptr) return DepthPicture(*image, depth->frame.depth_scale);
-  return thermal->frame.image.encoding == kCounts16 ? CountsPicture(*image)
-                                                    : ThermalPicture(*image);
+  return thermal->frame.image.encoding == Encoding::kCounts16 ? CountsPicture(*image)
+                                                              : ThermalPicture(*image);
 }
 
 }  // namespace

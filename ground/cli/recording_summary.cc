@@ -47,7 +47,6 @@ void MeasurePeriods(std::vector<CaptureTime>& times, StreamSummary& stream) {
 }  // namespace
 
 std::string EncodingName(Encoding encoding) {
-  if (encoding == kCounts16) return "counts (no temperatures)";
   switch (encoding) {
     case Encoding::kRaw16:
       return "raw";
@@ -57,6 +56,8 @@ std::string EncodingName(Encoding encoding) {
       return "depth-rans";
     case Encoding::kThermalRans:
       return "thermal-rans";
+    case Encoding::kCounts16:
+      return "counts (no temperatures)";
   }
   return fmt::format("unknown ({})", static_cast<int>(encoding));
 }

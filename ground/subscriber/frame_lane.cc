@@ -36,7 +36,7 @@ ReceivedThermal Unpacked(EncodedThermalFrame&& encoded, Image<std::uint16_t>&& p
   frame->nuc_source = encoded.nuc_source;
   frame->seconds_since_nuc = encoded.seconds_since_nuc;
   frame->housekeeping = encoded.housekeeping;
-  frame->valid = encoded.valid && encoded.image.encoding != kCounts16;
+  frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
   return {.frame = std::move(frame),
           .encoded = std::make_shared<const EncodedThermalFrame>(std::move(encoded)),
           .arrival = arrival};

@@ -66,7 +66,7 @@ TEST_F(FrameLaneTest, FrameIsUnpackedWithAllThatBelongsToIt) {
 
 TEST_F(FrameLaneTest, CountsAreNeverTakenForTemperatures) {
   EncodedThermalFrame counts = MakeFrame(1, 0);  // It even says that it is valid.
-  counts.image.encoding = kCounts16;
+  counts.image.encoding = Encoding::kCounts16;
   EXPECT_TRUE(Add(counts));
   ASSERT_EQ(delivered_.size(), 1U);
   EXPECT_TRUE(delivered_[0].frame->centikelvin.empty());
