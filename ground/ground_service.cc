@@ -11,7 +11,6 @@
 #include <future>
 #include <memory>
 #include <mutex>
-#include <string_view>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -30,13 +29,6 @@
 
 namespace isotherm {
 namespace {
-
-/// A replay or a simulation has none.
-void TellAboutCamera(std::string_view name, const StreamMode& camera) {
-  if (camera.model.empty()) return;
-  LOG(Ground, Info) << name << " camera: " << camera.model << ", serial=" << camera.serial
-                    << " mode=" << ModeText(camera);
-}
 
 using namespace std::chrono_literals;
 
@@ -156,8 +148,7 @@ class ReconstructionLoop {
   void Handle(const SessionStart& start) {
     End(last_account_);
     start_ = start;
-    TellAboutCamera("depth", start.rig.depth);
-    TellAboutCamera("thermal", start.rig.thermal);
+    TellAboutCameras(start.rig);
     Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
     if (!scan) {
       LOG(Ground, Error) << "session " << start.rig.session

@@ -14,7 +14,18 @@ std::string ArrivedText(const char* name, const StreamAccount& account) {
   return fmt::format("{} of {} {}", account.received, account.published, name);
 }
 
+void TellAboutCamera(const char* name, const StreamMode& camera) {
+  if (camera.model.empty()) return;
+  LOG(Ground, Info) << name << " camera: " << camera.model << ", serial=" << camera.serial
+                    << " mode=" << ModeText(camera);
+}
+
 }  // namespace
+
+void TellAboutCameras(const RigDescription& rig) {
+  TellAboutCamera("depth", rig.depth);
+  TellAboutCamera("thermal", rig.thermal);
+}
 
 std::string StatusText(const SubscriberStats& stats) {
   if (stats.account.session == 0)

@@ -10,6 +10,9 @@ namespace isotherm {
 /// One line: what has arrived of the scan, and how the rig's clock is.
 std::string StatusText(const SubscriberStats& stats);
 
+/// Writes what the rig's cameras are into the log; a replay or a simulation has none.
+void TellAboutCameras(const RigDescription& rig);
+
 /// Tells the service manager every ten seconds, and the journal while a scan runs.
 /// Thread-compatible.
 class StatusTeller {
