@@ -263,7 +263,7 @@ TEST_F(GroundPipelineTest, F04WithoutThermalGeometryGoesOnAndHasNoTemperature) {
   EXPECT_EQ(pipeline_->counts().depth_integrated, 5U);
   const Surface surface =
       ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
-  EXPECT_GT(surface.points.size(), 1000U);
+  ASSERT_GT(surface.points.size(), 500U);
   for (const CloudPoint& point : surface.points) ASSERT_TRUE(std::isnan(point.celsius));
 }
 
@@ -299,7 +299,7 @@ TEST_F(GroundPipelineTest, F12TheMapHoldsNoValueThatIsNone) {
     EXPECT_TRUE(pose.T_world_depth.matrix().allFinite());
   const Surface surface =
       ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
-  EXPECT_GT(surface.points.size(), 1000U);
+  ASSERT_GT(surface.points.size(), 500U);
   int measured = 0;
   for (const CloudPoint& point : surface.points) {
     ASSERT_TRUE(point.position_m.allFinite());

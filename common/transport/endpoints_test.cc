@@ -13,7 +13,6 @@ namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
-using ::testing::ElementsAre;
 
 constexpr auto kPatience = 10s;  // Far above anything measured; only a failure waits so long.
 
@@ -310,7 +309,7 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
   EXPECT_FALSE(feedback.T_world_depth_next.has_value());
   EXPECT_EQ(feedback.model.good, 0.5F);
   EXPECT_TRUE(std::isnan(feedback.view.good));
-  EXPECT_THAT(feedback.advice, ElementsAre(Advice::kSlower, Advice::kMoveCloser));
+  EXPECT_THAT(feedback.advice, testing::ElementsAre(Advice::kSlower, Advice::kMoveCloser));
   EXPECT_EQ(feedback.picture, sent.picture);
   ASSERT_EQ(feedback.latencies.size(), 1U);
   EXPECT_EQ(feedback.latencies[0].stage, "track");
