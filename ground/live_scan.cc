@@ -44,6 +44,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       keeps_up_(options.live().max_wait_s() > 0.0 && !rig.waits_for_ground),
       pipeline_(std::move(pipeline)),
       assembler_(rig.rig.thermal.has_value()),
+      delay_check_(options.delay_check(), rig.rig, std::nullopt),
       feedback_(options, rig) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
@@ -71,6 +72,18 @@ void LiveScan::Add(const OutsidePoseSample& sample) {
 void LiveScan::FinishFrames() {
   while (const auto frame = assembler_.Flush()) Process(*frame);
   pipeline_->Finish();
+}
+
+DelayReport LiveScan::CheckDelay() {
+  constexpr Nanoseconds kSilence = std::chrono::seconds(2);
+  const SteadyTime start = clock_.SteadyNow();
+  bool told = false;
+  return delay_check_.Finish(*pipeline_, [&](double share) {
+    if (told || clock_.SteadyNow() - start < kSilence) return;
+    told = true;
+    LOG(Ground, Info) << fmt::format("checking the delay of the thermal camera, {:.0f} % done",
+                                     100.0 * share);
+  });
 }
 
 void LiveScan::NoteTurn(const void* frame) {
@@ -105,6 +118,7 @@ void LiveScan::Process(const Assembler::Frame& frame) {
   if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
     NoteTurn(thermal->get());
     pipeline_->ProcessThermal(*thermal);
+    delay_check_.Add(*thermal, *pipeline_);
     return;
   }
   const DepthFrame& depth = *std::get<DepthFramePtr>(frame);

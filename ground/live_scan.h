@@ -14,6 +14,7 @@
 #include "common/time/clock.h"
 #include "common/transport/messages.h"
 #include "ground/assembler/assembler.h"
+#include "ground/calibration/delay_check.h"
 #include "ground/export/json.h"
 #include "ground/feedback_maker.h"
 #include "ground/ground_options.pb.h"
@@ -40,6 +41,8 @@ class LiveScan {
   void Add(const OutsidePoseSample& sample);
   /// Processes what the assembler still holds back.
   void FinishFrames();
+  /// After that: whether the delay that the edge added to thermal stamps is right.
+  DelayReport CheckDelay();
 
   /// Feedback on the newest depth frame if one is due (LiveOptions.feedback_hz, by capture time).
   std::optional<Feedback> TakeFeedback();
@@ -79,6 +82,7 @@ class LiveScan {
   const bool keeps_up_;
   std::unique_ptr<GroundPipeline> pipeline_;
   Assembler assembler_;
+  DelayCheck delay_check_;
   FeedbackMaker feedback_;
   FeedbackMoment moment_;  ///< Of the newest depth frame.
   bool feedback_waiting_ = false;

@@ -11,6 +11,8 @@
 #include "common/codec/codec.h"
 #include "common/recording/recording.h"
 #include "ground/assembler/assembler.h"
+#include "ground/calibration/delay_check.h"
+#include "ground/calibration/scan_views.h"
 #include "ground/export/results.h"
 #include "ground/scan_result.h"
 
@@ -18,7 +20,15 @@ namespace isotherm {
 namespace {
 
 /// Share of the progress that the frames take; the rest is writing results.
-constexpr double kFramesShare = 0.9;
+constexpr double kFramesShare = 0.85;
+constexpr double kMergeShare = 0.05, kDelayShare = 0.05;
+
+/// In the frames' stamps when they have reached the pipeline; nullopt if that is not known.
+std::optional<double> CalibratedDelay(const RecordingInfo& info, const Rig& rig) {
+  const std::optional<double> applied_s = AppliedDelay(info);
+  if (!applied_s) return std::nullopt;
+  return *applied_s + rig.thermal_delay_s;
+}
 
 /// Frames of a recording, decoded and fed through the assembler into the pipeline.
 class InlineDriver {
@@ -29,6 +39,7 @@ class InlineDriver {
         reader_(reader),
         thermal_delay_(FromSeconds(rig.thermal_delay_s)),
         pipeline_(pipeline),
+        delay_check_(request.options.delay_check(), rig, CalibratedDelay(reader.info(), rig)),
         assembler_(rig.thermal.has_value()) {
     for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
   }
@@ -50,9 +61,16 @@ class InlineDriver {
     while (const auto frame = assembler_.Flush()) Process(*frame);
     pipeline_.Finish([this](double share) {
       if (request_.progress)
-        request_.progress(kFramesShare + (1.0 - kFramesShare) * share, "putting sub-maps together");
+        request_.progress(kFramesShare + kMergeShare * share, "putting sub-maps together");
     });
     return OkStatus();
+  }
+
+  DelayReport CheckDelay() {
+    return delay_check_.Finish(pipeline_, [this](double share) {
+      if (request_.progress)
+        request_.progress(kFramesShare + kMergeShare + kDelayShare * share, "checking the delay");
+    });
   }
 
   std::uint64_t bad_messages() const { return bad_messages_; }
@@ -104,7 +122,9 @@ class InlineDriver {
     if (const auto* depth = std::get_if<DepthFramePtr>(&frame)) {
       pipeline_.ProcessDepth(**depth);
     } else {
-      pipeline_.ProcessThermal(std::get<ThermalFramePtr>(frame));
+      const ThermalFramePtr& thermal = std::get<ThermalFramePtr>(frame);
+      pipeline_.ProcessThermal(thermal);
+      delay_check_.Add(thermal, pipeline_);
     }
   }
 
@@ -118,6 +138,7 @@ class InlineDriver {
   RecordingReader& reader_;
   const Nanoseconds thermal_delay_;
   GroundPipeline& pipeline_;
+  DelayCheck delay_check_;
   Assembler assembler_;
   std::uint64_t total_ = 0;
   std::uint64_t read_ = 0;
@@ -168,6 +189,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   const auto start = std::chrono::steady_clock::now();
   InlineDriver driver(request, **reader, *rig, **pipeline);
   if (Status status = driver.Run(); !status.ok()) return Err(status);
+  const DelayReport delay = driver.CheckDelay();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
   Json stats = DescribeScan(**pipeline, options, *rig);
@@ -179,10 +201,11 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   stats["source"]["out_of_order_frames"] = driver.out_of_order();
   stats["elapsed_s"] = elapsed.count();
   const auto progress = [&](std::string_view what, double share) {
-    if (request.progress) request.progress(kFramesShare + (1.0 - kFramesShare) * share, what);
+    constexpr double kBefore = kFramesShare + kMergeShare + kDelayShare;
+    if (request.progress) request.progress(kBefore + (1.0 - kBefore) * share, what);
   };
   const Result<std::string> text =
-      WriteScan(**pipeline, options, std::move(stats), request.output_dir, progress);
+      WriteScan(**pipeline, options, delay, std::move(stats), request.output_dir, progress);
   if (!text) return Err(text.error());
   const PipelineCounts& counts = (*pipeline)->counts();
   return ReconstructSummary{counts.depth_in,   counts.depth_repeated, counts.depth_tracked,

@@ -92,11 +92,12 @@ Json ReconstructionLoop::DescribeEnd(const SessionAccount& account,
 void ReconstructionLoop::End(const SessionAccount& account) {
   if (!scan_) return;
   scan_->FinishFrames();
+  const DelayReport delay = scan_->CheckDelay();
   RecordingOutcome recording;
   if (start_.recording.wait_for(1s) == std::future_status::ready)
     recording = start_.recording.get();
   const Result<std::string> text = WriteScan(
-      scan_->pipeline(), options_, DescribeEnd(account, recording), start_.folder, nullptr);
+      scan_->pipeline(), options_, delay, DescribeEnd(account, recording), start_.folder, nullptr);
   scan_.reset();
   if (!text) {
     status_ = text.error();

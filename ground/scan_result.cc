@@ -118,6 +118,24 @@ std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t reloca
   return text.empty() ? text : fmt::format("         {}\n", text);
 }
 
+Json DescribeDelay(const DelayReport& delay) {
+  constexpr double kMsPerS = 1e3;
+  Json json;
+  json["verdict"] = ToString(delay.verdict);
+  if (!delay.reason.empty()) json["reason"] = delay.reason;
+  if (delay.verdict == DelayVerdict::kOff) return json;
+  const double calibrated_s = delay.calibrated_s.value_or(NAN);
+  json["calibrated_ms"] = kMsPerS * calibrated_s;
+  json["elapsed_s"] = delay.elapsed_s;
+  if (!delay.off_by) return json;
+  json["estimated_ms"] = kMsPerS * (calibrated_s + delay.off_by->delay_s);
+  json["off_by_ms"] = kMsPerS * delay.off_by->delay_s;
+  json["sigma_ms"] = kMsPerS * delay.off_by->sigma_s;
+  json["parts"] = delay.off_by->parts;
+  json["contrast"] = delay.off_by->contrast;
+  return json;
+}
+
 /// Lines on closed loops and on what was not joined, or nothing.
 std::string DescribeSubMaps(const Atlas& atlas) {
   std::string text;
@@ -206,9 +224,10 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
 }
 
 Result<std::string> WriteScan(
-    GroundPipeline& pipeline, const GroundOptions& options, Json stats,
+    GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Json stats,
     const std::filesystem::path& dir,
     const std::function<void(std::string_view what, double share)>& progress) {
+  stats["delay_check"] = DescribeDelay(delay);
   const bool has_view = pipeline.view().maps.width() > 0;
   const SurfaceMaps view = has_view ? pipeline.CastFullView() : SurfaceMaps();
   const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
@@ -253,6 +272,8 @@ Result<std::string> WriteScan(
       counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));
   if (!pipeline.thermal_status().ok())
     text += fmt::format("         {}\n", pipeline.thermal_status().message());
+  if (counts.thermal_in > 0 && delay.verdict != DelayVerdict::kOff)
+    text += fmt::format("delay    {}\n", Describe(delay));
   const auto share = [&](std::size_t part) {
     return summary->points == 0
                ? 0.0

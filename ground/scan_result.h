@@ -7,6 +7,7 @@
 
 #include "common/base/status.h"
 #include "common/geometry/camera.h"
+#include "ground/calibration/delay_check.h"
 #include "ground/export/json.h"
 #include "ground/ground_pipeline.h"
 
@@ -19,9 +20,9 @@ Json DescribeStage(const StageStats& stats);
 Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig);
 
 /// Writes all result files of a scan into `dir` and returns one screen of text for the user.
-/// `stats` is DescribeScan() plus whatever the driver adds.
+/// `stats` is DescribeScan() plus whatever the driver adds; `delay` goes into both.
 Result<std::string> WriteScan(
-    GroundPipeline& pipeline, const GroundOptions& options, Json stats,
+    GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Json stats,
     const std::filesystem::path& dir,
     const std::function<void(std::string_view what, double share)>& progress);
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/geometry/pose_text.h"
+#include "ground/calibration/delay_check.h"
 #include "ground/export/interpretation.h"
 #include "ground/export/results.h"
 #include "ground/feedback/advice.h"
@@ -69,6 +70,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   check(Validate(options.interpretation()));
   check(Validate(options.live()));
   check(Validate(options.feedback()));
+  check(Validate(options.delay_check()));
   if (options.threads() < 0 || options.threads() > 256) {
     check(InvalidArgument(
         fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));

@@ -14,7 +14,10 @@ namespace {
 
 // Of the scan, for a spread between them to mean something.
 constexpr int kLeastParts = 5;
-constexpr double kCoarseShare = 0.5;
+constexpr double kCoarseShare = 0.4, kAgainShare = 0.5;
+// To each side of the first minimum, when samples are weighed for it.
+constexpr int kAgainSteps = 4;
+constexpr int kWeighings = 2;
 // Grid points to either side of the lowest that the parabola is laid through.
 constexpr std::ptrdiff_t kParabolaReach = 3;
 
@@ -112,8 +115,8 @@ Status CheckEstimate(const DelayEstimate& estimate, const DelaySearchOptions& op
 
 }  // namespace
 
-Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, int parts,
-                                  const DelaySearchOptions& options,
+Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, const WeighAt& weigh_at,
+                                  int parts, const DelaySearchOptions& options,
                                   const std::function<void(double)>& progress) {
   const auto share = [&](double from, double to) {
     return [&progress, from, to](double done) {
@@ -131,7 +134,13 @@ Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, int parts,
   const auto coarse_steps = static_cast<int>(std::lround(options.range_s / options.coarse_step_s));
   const Grid coarse = Evaluate(disagreement, 0.0, options.coarse_step_s, coarse_steps, false, whole,
                                share(0.0, kCoarseShare));
-  const std::optional<double> near = Minimum(coarse, 0);
+  std::optional<double> near = Minimum(coarse, 0);
+  for (int round = 0; near && round < kWeighings; ++round) {
+    weigh_at(*near);
+    const Grid around = Evaluate(disagreement, *near, options.coarse_step_s, kAgainSteps, false,
+                                 whole, share(kCoarseShare, kAgainShare));
+    near = Minimum(around, 0);
+  }
   const double reach_s = options.fine_steps * options.fine_step_s;
   if (!near || std::abs(*near) + reach_s > options.range_s) {
     return Err(FailedPrecondition(fmt::format(
@@ -141,11 +150,12 @@ Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, int parts,
         1e3 * (options.range_s - reach_s))));
   }
   const Grid fine = Evaluate(disagreement, *near, options.fine_step_s, options.fine_steps, true,
-                             resamplings, share(kCoarseShare, 1.0));
+                             resamplings, share(kAgainShare, 1.0));
   const std::optional<double> minimum = Minimum(fine, 0);
   const std::vector<double> curve = fine.Curve(0);
   const double least = *std::min_element(curve.begin(), curve.end());
   DelayEstimate estimate;
+  estimate.parts = parts;
   estimate.delay_s = minimum.value_or(*near);
   estimate.sigma_s = minimum ? Spread(fine) : INFINITY;
   estimate.contrast = 0.5 * (curve.front() + curve.back()) / std::max(least, 1e-12);

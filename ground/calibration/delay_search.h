@@ -16,6 +16,10 @@ using PartWeights = std::vector<double>;
 using DisagreementOf = std::function<std::vector<double>(
     double delay_s, bool fine, const std::vector<PartWeights>& resamplings)>;
 
+/// Weighs the samples for delays near this one in seconds. Weights made for another delay pull the
+/// result towards it, for its samples on edges count less than others.
+using WeighAt = std::function<void(double delay_s)>;
+
 struct DelaySearchOptions {
   double range_s = 0.15;  ///< The delay is looked for in [-range_s, range_s].
   double coarse_step_s = 0.005;
@@ -33,6 +37,7 @@ struct DelayEstimate {
   double delay_s = 0.0;
   double sigma_s = 0.0;   ///< Spread over resampled parts of the scan.
   double contrast = 0.0;  ///< Disagreement at the ends of the fine steps over the least.
+  int parts = 0;          ///< Of the scan, that were resampled.
 };
 
 /// The delay at which thermal pictures disagree least: on a grid, then on a fine grid around its
@@ -40,8 +45,8 @@ struct DelayEstimate {
 /// uncertainty. Fails if the parts are too few, if the minimum lies at the end of the range, is too
 /// flat or too uncertain, and says what the scan lacks. Deterministic. `progress` gets the share
 /// done, 0..1.
-Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, int parts,
-                                  const DelaySearchOptions& options,
+Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, const WeighAt& weigh_at,
+                                  int parts, const DelaySearchOptions& options,
                                   const std::function<void(double)>& progress);
 
 }  // namespace isotherm

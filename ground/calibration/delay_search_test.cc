@@ -36,8 +36,10 @@ DisagreementOf Bowl(double scatter_s, double steepness = 1.0) {
   };
 }
 
+const WeighAt kAnyWeights = [](double) {};
+
 TEST(DelaySearchTest, TheMinimumIsFoundBetweenTheGridPoints) {
-  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0), kParts, {}, {});
+  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0), kAnyWeights, kParts, {}, {});
   ASSERT_TRUE(found.has_value()) << found.error().message();
   EXPECT_NEAR(found->delay_s, kTruth_s, kTolerance_s);
   EXPECT_LT(found->sigma_s, kTolerance_s);
@@ -45,7 +47,7 @@ TEST(DelaySearchTest, TheMinimumIsFoundBetweenTheGridPoints) {
 
 TEST(DelaySearchTest, PartsThatDisagreeMakeItUncertain) {
   constexpr double kScatter_s = 0.003;
-  const Result<DelayEstimate> found = SearchDelay(Bowl(kScatter_s), kParts, {}, {});
+  const Result<DelayEstimate> found = SearchDelay(Bowl(kScatter_s), kAnyWeights, kParts, {}, {});
   ASSERT_TRUE(found.has_value()) << found.error().message();
   // Of the mean of eight.
   const double expected_s = kScatter_s / std::sqrt(double{kParts});
@@ -55,13 +57,13 @@ TEST(DelaySearchTest, PartsThatDisagreeMakeItUncertain) {
 }
 
 TEST(DelaySearchTest, TooUncertainIsRefused) {
-  const Result<DelayEstimate> found = SearchDelay(Bowl(0.015), kParts, {}, {});
+  const Result<DelayEstimate> found = SearchDelay(Bowl(0.015), kAnyWeights, kParts, {}, {});
   ASSERT_FALSE(found.has_value());
   EXPECT_THAT(found.error().message(), HasSubstr("cannot be told"));
 }
 
 TEST(DelaySearchTest, WithoutContrastItIsRefused) {
-  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0, 0.01), kParts, {}, {});
+  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0, 0.01), kAnyWeights, kParts, {}, {});
   ASSERT_FALSE(found.has_value());
   EXPECT_THAT(found.error().message(), HasSubstr("thermal contrast"));
 }
@@ -69,13 +71,13 @@ TEST(DelaySearchTest, WithoutContrastItIsRefused) {
 TEST(DelaySearchTest, ADelayOutsideTheRangeIsRefused) {
   DelaySearchOptions options;
   options.range_s = 0.02;
-  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0), kParts, options, {});
+  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0), kAnyWeights, kParts, options, {});
   ASSERT_FALSE(found.has_value());
   EXPECT_THAT(found.error().message(), HasSubstr("--range"));
 }
 
 TEST(DelaySearchTest, AShortScanIsRefused) {
-  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0), 2, {}, {});
+  const Result<DelayEstimate> found = SearchDelay(Bowl(0.0), kAnyWeights, 2, {}, {});
   ASSERT_FALSE(found.has_value());
   EXPECT_THAT(found.error().message(), HasSubstr("scan for longer"));
 }

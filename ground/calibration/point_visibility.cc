@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
+#include <utility>
 
+#include "common/simulation/noise.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -20,6 +23,9 @@ constexpr double kNeighbourhood_px = 2.2;
 constexpr double kSurfaceNoise_m = 0.005;
 constexpr double kBorder_px = 4.0;
 constexpr float kLeastWeight = 2.0F;
+constexpr std::size_t kPointViews = 60;
+// Poses closer in time than this show the same.
+constexpr double kPoseSpacing_s = 0.045;
 
 /// What one pose shows.
 struct PoseView {
@@ -72,7 +78,7 @@ class PoseViewer {
     }
   }
 
-  bool Shows(const SurfacePoint& point, const RigidTransform& T_thermal_world) const {
+  bool Shows(const TexturePoint& point, const RigidTransform& T_thermal_world) const {
     const Eigen::Vector3d p_thermal = T_thermal_world * point.p_world;
     if (p_thermal.z() < 0.05) return false;
     const Eigen::Vector3d n_thermal = T_thermal_world.linear() * point.n_world;
@@ -137,21 +143,58 @@ bool Covered(const ScanViews& views, CaptureTime time, double range_s) {
   return true;
 }
 
+/// In random order that is always the same.
+void Shuffle(std::vector<TexturePoint>& points) {
+  for (std::size_t i = points.size(); i > 1; --i)
+    std::swap(points[i - 1], points[static_cast<std::size_t>(MixBits(i) % i)]);
+}
+
 }  // namespace
 
-void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views) {
+std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& views,
+                                     std::size_t most, ThreadPool& pool) {
+  std::vector<TexturePoint> points;
+  if (views.frames.empty()) return points;
+  const CameraModel camera = views.thermal_camera.WithoutDistortion().Downscaled(kHalvings);
+  const std::size_t count = std::min(kPointViews, views.frames.size());
+  Raycaster raycaster;
+  SurfaceMaps maps;
+  for (std::size_t view = 0; view < count; ++view) {
+    const StampedThermal& frame = views.frames[view * views.frames.size() / count];
+    const auto T_world_depth = InterpolatePose(views.trajectory, frame.time);
+    if (!T_world_depth) continue;
+    raycaster.Cast(tsdf, camera, *T_world_depth * views.T_thermal_depth.inverse(), kLeastWeight,
+                   pool, maps);
+    const std::uint64_t stream = NoiseStream(1, 0x706f696e7473, view);
+    for (std::uint64_t i = 0; i < most / count; ++i) {
+      const auto x = static_cast<int>(UniformNoise(stream, 2 * i) * maps.width());
+      const auto y = static_cast<int>(UniformNoise(stream, 2 * i + 1) * maps.height());
+      if (std::isnan(maps.vz.At(x, y))) continue;  // No surface.
+      points.push_back({{maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y)},
+                        {maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y)}});
+    }
+  }
+  Shuffle(points);
+  return points;
+}
+
+void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views,
+                       const std::function<void(double)>& progress) {
   PoseViewer viewer(views, tsdf, pool);
   std::deque<PoseView> window;
-  std::size_t next = 0;
+  std::size_t next = 0, done = 0;
   for (StampedThermal& frame : views.frames) {
+    if (progress) progress(static_cast<double>(done++) / static_cast<double>(views.frames.size()));
     frame.visible.clear();
     if (!Covered(views, frame.time, range_s)) continue;
     const CaptureTime first = frame.time - FromSeconds(range_s);
     const CaptureTime last = frame.time + FromSeconds(range_s);
     while (!window.empty() && window.front().time < first) window.pop_front();
     for (; next < views.trajectory.size() && views.trajectory[next].time <= last; ++next) {
-      if (views.trajectory[next].time >= first)
-        window.push_back(viewer.See(views.trajectory[next]));
+      const StampedPose& pose = views.trajectory[next];
+      const bool is_new =
+          window.empty() || pose.time - window.back().time >= FromSeconds(kPoseSpacing_s);
+      if (pose.time >= first && is_new) window.push_back(viewer.See(pose));
     }
     frame.visible = ShownByAll(window, views.points.size());
   }

@@ -1,14 +1,26 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
+#include <vector>
+
 #include "common/concurrency/thread_pool.h"
 #include "ground/calibration/texture_consistency.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
 
+/// Draws up to `most` points of the surface of `tsdf` (in the trajectory's `world`) as the thermal
+/// camera sees it from poses of the frames, so that the time this takes does not grow with the
+/// surface. In random order that is always the same.
+std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& views,
+                                     std::size_t most, ThreadPool& pool);
+
 /// Fills StampedThermal::visible: the points that the thermal camera sees from all poses of the
 /// trajectory within `range_s` of the picture's stamp, clear of silhouettes and not too obliquely.
-/// The surface of `tsdf` (in the trajectory's `world`) decides, cast once from each pose.
-void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views);
+/// The surface of `tsdf` (in the trajectory's `world`) decides, cast from poses a few hundredths of
+/// a second apart. `progress` gets the share done, 0..1.
+void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views,
+                       const std::function<void(double)>& progress);
 
 }  // namespace isotherm

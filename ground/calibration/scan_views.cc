@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
 #include "common/config/text_proto.h"
 #include "common/recording/recording.h"
-#include "common/simulation/noise.h"
+#include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/point_visibility.h"
-#include "ground/export/surface.h"
 #include "ground/ground_pipeline.h"
 
 namespace isotherm {
@@ -32,15 +30,6 @@ constexpr double kLeastMotion_px_s = 4.0;
 std::uint64_t Count(const RecordingInfo& info, const std::string& topic) {
   const auto found = info.messages_by_topic.find(topic);
   return found == info.messages_by_topic.end() ? 0 : found->second;
-}
-
-double AppliedDelay(const RecordingInfo& info) {
-  // Simulated stamps are the true exposures, whatever their metadata says a calibration would find.
-  if (info.metadata.contains("simulation")) return 0.0;
-  const auto timing = info.metadata.find("timing");
-  if (timing == info.metadata.end()) return 0.0;
-  const auto value = timing->second.find("thermal_delay_s");
-  return value == timing->second.end() ? 0.0 : std::strtod(value->second.c_str(), nullptr);
 }
 
 Status CheckContents(const RecordingInfo& info, const Rig& rig) {
@@ -100,7 +89,9 @@ class Reader {
     Result<Image<std::uint16_t>> image = DecodeTemperatures(recorded.frame.image);
     if (!image || image->width() != rig_.thermal->width || image->height() != rig_.thermal->height)
       return;
-    frames_.push_back({recorded.frame.header.capture_time, std::move(*image), {}});
+    frames_.push_back({recorded.frame.header.capture_time,
+                       std::make_shared<const Image<std::uint16_t>>(std::move(*image)),
+                       {}});
   }
 
   RecordingReader& reader_;
@@ -111,27 +102,20 @@ class Reader {
   std::vector<StampedThermal> frames_;
 };
 
-/// In an order that is random but always the same.
-std::vector<SurfacePoint> SamplePoints(const Surface& surface) {
-  std::vector<std::size_t> order(surface.points.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [](std::size_t a, std::size_t b) {
-    return std::pair(MixBits(a), a) < std::pair(MixBits(b), b);
-  });
-  order.resize(std::min(order.size(), kMostPoints));
-  std::vector<SurfacePoint> points;
-  points.reserve(order.size());
-  for (const std::size_t index : order) {
-    const CloudPoint& point = surface.points[index];
-    points.push_back({point.position_m.cast<double>(), point.normal.cast<double>()});
-  }
-  return points;
+Status CheckTracked(const PipelineCounts& counts) {
+  const auto tracked = static_cast<double>(counts.depth_tracked + counts.depth_repeated);
+  if (tracked >= kLeastTracked * static_cast<double>(counts.depth_in)) return OkStatus();
+  return FailedPrecondition(
+      fmt::format("only {} of {} depth frames could be tracked, so the motion is not known "
+                  "(options as for `isotherm reconstruct`: --config, --set)",
+                  counts.depth_tracked, counts.depth_in));
 }
 
-/// RMS speed of the surface's middle in the thermal picture.
-double Motion(const ScanViews& views) {
+}  // namespace
+
+double PictureSpeed(const ScanViews& views) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-  for (const SurfacePoint& point : views.points)
+  for (const TexturePoint& point : views.points)
     middle += point.p_world / static_cast<double>(views.points.size());
   double squares = 0.0;
   std::size_t count = 0;
@@ -150,30 +134,44 @@ double Motion(const ScanViews& views) {
   return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
 }
 
-Status CheckViews(const ScanViews& views, const PipelineCounts& counts, double motion_px_s) {
-  const auto tracked = static_cast<double>(counts.depth_tracked + counts.depth_repeated);
-  if (tracked < kLeastTracked * static_cast<double>(counts.depth_in)) {
-    return FailedPrecondition(
-        fmt::format("only {} of {} depth frames could be tracked, so the motion is not known "
-                    "(options as for `isotherm reconstruct`: --config, --set)",
-                    counts.depth_tracked, counts.depth_in));
-  }
-  if (views.points.size() < kLeastPoints)
-    return FailedPrecondition(
-        fmt::format("the surface has {} points, {} are needed", views.points.size(), kLeastPoints));
-  if (views.frames.size() < kLeastFrames)
+std::optional<double> AppliedDelay(const RecordingInfo& info) {
+  const auto value = [&info](const char* name, const char* key) -> const std::string* {
+    const auto metadata = info.metadata.find(name);
+    if (metadata == info.metadata.end()) return nullptr;
+    const auto found = metadata->second.find(key);
+    return found == metadata->second.end() ? nullptr : &found->second;
+  };
+  // Simulated stamps are the true exposures, whatever their metadata says a calibration would find.
+  if (info.metadata.contains("simulation")) return 0.0;
+  if (const std::string* delay_s = value("timing", "thermal_delay_s"))
+    return std::strtod(delay_s->c_str(), nullptr);
+  const std::string* program = value("configuration", "program");
+  if (program != nullptr && *program == "isotherm-ground") return std::nullopt;
+  return 0.0;
+}
+
+Status AddSurface(const TsdfVolume& tsdf, std::size_t most_points, double range_s, ThreadPool& pool,
+                  ScanViews& views, const std::function<void(double)>& progress) {
+  if (views.frames.size() < kLeastFrames) {
     return FailedPrecondition(fmt::format("{} thermal frames are valid, {} are needed",
                                           views.frames.size(), kLeastFrames));
-  if (motion_px_s < kLeastMotion_px_s) {
+  }
+  views.points = DrawPoints(tsdf, views, most_points, pool);
+  if (views.points.size() < kLeastPoints) {
+    return FailedPrecondition(
+        fmt::format("the thermal camera sees {} points of the surface, {} are needed",
+                    views.points.size(), kLeastPoints));
+  }
+  const double speed_px_s = PictureSpeed(views);
+  if (speed_px_s < kLeastMotion_px_s) {
     return FailedPrecondition(
         fmt::format("the rig hardly moves: the surface goes through the thermal picture at {:.1f} "
                     "pixels a second, {:.0f} are needed; move it back and forth",
-                    motion_px_s, kLeastMotion_px_s));
+                    speed_px_s, kLeastMotion_px_s));
   }
+  FindVisiblePoints(tsdf, range_s, pool, views, progress);
   return OkStatus();
 }
-
-}  // namespace
 
 Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
                                     const GroundOptions& options, double range_s,
@@ -191,22 +189,18 @@ Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
   if (!pipeline) return Err(pipeline.error());
 
   Reader frames(**reader, **pipeline, *rig);
-  frames.Run([&](double share) {
-    if (progress) progress(kReadShare * share);
-  });
-  ScanForCalibration scan;
-  scan.rig = *rig;
-  scan.applied_delay_s = AppliedDelay((*reader)->info());
-  scan.views = {.thermal_camera = *rig->thermal,
-                .T_thermal_depth = *rig->T_thermal_depth,
-                .trajectory = (*pipeline)->trajectory(),
-                .points = SamplePoints(ExtractSurface((*pipeline)->tsdf(), (*pipeline)->thermal(),
-                                                      {.triangles = false}, (*pipeline)->pool())),
-                .frames = frames.TakeFrames()};
-  scan.motion_px_s = Motion(scan.views);
-  const Status fit = CheckViews(scan.views, (*pipeline)->counts(), scan.motion_px_s);
+  frames.Run(PartOf(progress, 0.0, kReadShare));
+  ScanForCalibration scan{{}, *rig, AppliedDelay((*reader)->info())};
+  scan.views.thermal_camera = *rig->thermal;
+  scan.views.T_thermal_depth = *rig->T_thermal_depth;
+  scan.views.trajectory = (*pipeline)->trajectory();
+  scan.views.frames = frames.TakeFrames();
+  Status fit = CheckTracked((*pipeline)->counts());
+  if (fit.ok()) {
+    fit = AddSurface((*pipeline)->tsdf(), kMostPoints, range_s, (*pipeline)->pool(), scan.views,
+                     PartOf(progress, kReadShare, 1.0));
+  }
   if (!fit.ok()) return Err(fit.WithContext(recording.string()));
-  FindVisiblePoints((*pipeline)->tsdf(), range_s, (*pipeline)->pool(), scan.views);
   if (progress) progress(1.0);
   return scan;
 }

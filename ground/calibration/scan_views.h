@@ -2,20 +2,36 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 #include "common/base/status.h"
+#include "common/concurrency/thread_pool.h"
 #include "ground/calibration/texture_consistency.h"
+#include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
 
 class GroundOptions;
+struct RecordingInfo;
 
-/// What a recording's own metadata says of delays that its stamps contain already.
+/// Adds up to `most_points` points of the surface of `tsdf` (in the trajectory's `world`) to
+/// thermal frames and a trajectory, and which of them the frames show at all delays in [-range_s,
+/// range_s]. Fails with what is missing: frames, surface, motion. `progress` gets the share done,
+/// 0..1.
+Status AddSurface(const TsdfVolume& tsdf, std::size_t most_points, double range_s, ThreadPool& pool,
+                  ScanViews& views, const std::function<void(double)>& progress);
+
+/// RMS speed of the surface's middle in the thermal picture, pixels per second.
+double PictureSpeed(const ScanViews& views);
+
+/// The delay that a recording's thermal stamps contain already: that of the edge that made it, in
+/// seconds; 0 for other recordings; nullopt if it was made by the ground, which is not told.
+std::optional<double> AppliedDelay(const RecordingInfo& info);
+
 struct ScanForCalibration {
   ScanViews views;
-  Rig rig;                       ///< As recorded.
-  double applied_delay_s = 0.0;  ///< In the thermal stamps already (an edge made the recording).
-  double motion_px_s = 0.0;      ///< RMS speed of the surface in the thermal picture.
+  Rig rig;                                ///< As recorded.
+  std::optional<double> applied_delay_s;  ///< See AppliedDelay.
 };
 
 /// Tracks the depth camera through a recording and takes a sample of the surface and of the valid

@@ -56,7 +56,7 @@ std::optional<RigidTransform> InterpolatePose(const std::vector<StampedPose>& tr
 TextureConsistency::TextureConsistency(const ScanViews& views, double part_s, ThreadPool& pool)
     : views_(views), pool_(pool) {
   MakeParts(part_s);
-  WeighPoints();
+  WeighAt(0.0);
 }
 
 void TextureConsistency::MakeParts(double part_s) {
@@ -73,11 +73,11 @@ void TextureConsistency::MakeParts(double part_s) {
   std::erase_if(parts_, [](const std::vector<std::size_t>& part) { return part.empty(); });
 }
 
-void TextureConsistency::WeighPoints() {
+void TextureConsistency::WeighAt(double delay_s) {
   const std::size_t points = views_.points.size();
   weights_.assign(points, 0.0);
   means_celsius_.assign(points, 0.0);
-  const std::vector<std::vector<PointSums>> parts = MeasureParts(0.0, points);
+  const std::vector<std::vector<PointSums>> parts = MeasureParts(delay_s, points);
   for (std::size_t i = 0; i < points; ++i) {
     PointSums sum;
     for (const std::vector<PointSums>& part : parts) {
@@ -139,7 +139,7 @@ std::vector<TextureConsistency::PointSums> TextureConsistency::MeasurePart(
       if (i >= points) break;
       const auto pixel = Project(views_.thermal_camera, T_thermal_world * views_.points[i].p_world);
       if (!pixel) continue;
-      const std::optional<Sample> sample = SampleAt(frame.centikelvin, pixel->x(), pixel->y());
+      const std::optional<Sample> sample = SampleAt(*frame.centikelvin, pixel->x(), pixel->y());
       if (!sample) continue;
       const double celsius = sample->celsius - means_celsius_[i];
       sums[i].count += 1.0;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -15,7 +16,7 @@
 namespace isotherm {
 
 /// A point of the scanned surface.
-struct SurfacePoint {
+struct TexturePoint {
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  ///< Metres.
   Eigen::Vector3d n_world = Eigen::Vector3d::Zero();  ///< Unit, towards the observer.
 };
@@ -23,7 +24,7 @@ struct SurfacePoint {
 /// A thermal picture with its stamp as the recording has it.
 struct StampedThermal {
   CaptureTime time;
-  Image<std::uint16_t> centikelvin;  ///< As ThermalFrame::centikelvin.
+  std::shared_ptr<const Image<std::uint16_t>> centikelvin;  ///< As ThermalFrame::centikelvin.
   /// Indices, ascending, of the points that it shows whatever its delay is within the range that
   /// is searched; empty if poses are missing there.
   std::vector<std::uint32_t> visible;
@@ -34,7 +35,7 @@ struct ScanViews {
   CameraModel thermal_camera;
   RigidTransform T_thermal_depth = RigidTransform::Identity();
   std::vector<StampedPose> trajectory;  ///< By time.
-  std::vector<SurfacePoint> points;  ///< In random order, so that any number of the first will do.
+  std::vector<TexturePoint> points;  ///< In random order, so that any number of the first will do.
   std::vector<StampedThermal> frames;  ///< By time.
 };
 
@@ -50,6 +51,9 @@ class TextureConsistency {
  public:
   /// `views` and `pool` must outlive it. The scan is resampled in parts of about `part_s` seconds.
   TextureConsistency(const ScanViews& views, double part_s, ThreadPool& pool);
+
+  /// Weighs points by what they show at this delay; by delay 0 to begin with.
+  void WeighAt(double delay_s);
 
   /// Of the scan, with samples in them.
   int parts() const { return static_cast<int>(parts_.size()); }
@@ -67,13 +71,12 @@ class TextureConsistency {
                                      std::size_t points) const;
   std::vector<std::vector<PointSums>> MeasureParts(double delay_s, std::size_t points) const;
   void MakeParts(double part_s);
-  void WeighPoints();
 
   const ScanViews& views_;
   ThreadPool& pool_;
   std::vector<std::vector<std::size_t>> parts_;  ///< Indices of frames.
   std::vector<double> weights_;                  ///< By point, 1/K^2; 0 = seen too rarely.
-  std::vector<double> means_celsius_;            ///< By point, at delay 0: keeps the sums small.
+  std::vector<double> means_celsius_;            ///< By point, where weighed: keeps the sums small.
 };
 
 }  // namespace isotherm

@@ -8,9 +8,8 @@
 #include "common/base/progress.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/config/text_proto.h"
-#include "ground/calibration/delay_search.h"
+#include "ground/calibration/find_delay.h"
 #include "ground/calibration/scan_views.h"
-#include "ground/calibration/texture_consistency.h"
 #include "ground/cli/command.h"
 #include "ground/cli/simulation_files.h"
 #include "ground/ground_options.pb.h"
@@ -33,15 +32,13 @@ Examples:
   isotherm calibrate time scan.mcap --rig rig.textproto
   isotherm calibrate time scan.mcap --rig rig.textproto --output rig_new.textproto)";
 
-constexpr double kPart_s = 1.0;
-constexpr std::size_t kCoarsePoints = 6000, kFinePoints = 30'000;
 constexpr double kReadShare = 0.8;
 
 struct Arguments {
   std::string recording, rig, output, config;
   std::vector<std::string> overrides;
   int threads = 0;
-  DelaySearchOptions search;
+  FindDelayOptions find;
 };
 
 std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
@@ -71,23 +68,47 @@ Status WriteRig(const std::string& path, const Rig& rig) {
   return OkStatus();
 }
 
-void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, int parts, double delay_s,
-           double before_s) {
-  fmt::print(
-      "thermal_delay_s: {:.4f} ({:+.1f} ms), uncertain by {:.1f} ms (one standard deviation, {} "
-      "parts "
-      "of the scan)\n",
-      delay_s, 1e3 * delay_s, 1e3 * estimate.sigma_s, parts);
-  fmt::print(
-      "pictures disagree {:.1f} times as much 15 ms away; {} thermal frames, {} surface points, "
-      "{:.0f} px/s\n",
-      estimate.contrast, scan.views.frames.size(), scan.views.points.size(), scan.motion_px_s);
-  if (scan.applied_delay_s != 0.0) {
-    fmt::print("of it, {:+.1f} ms were in the recording's stamps already\n",
-               1e3 * scan.applied_delay_s);
+/// What a calibration says before and after.
+struct Change {
+  double before_s = 0.0;
+  double after_s = 0.0;
+};
+
+/// Fails if it is not known which delay the stamps contain.
+Result<Change> ChangeOf(const ScanForCalibration& scan, const std::optional<Rig>& rig,
+                        double estimate_s) {
+  // The ground records what an edge sent, and the edge knows which delay it added: its
+  // calibration's.
+  if (!scan.applied_delay_s && !rig) {
+    return Err(FailedPrecondition(fmt::format(
+        "the stamps are off by {:+.1f} ms, but this recording was made by the ground, which does "
+        "not know the delay that they contain: name the calibration file that the edge used "
+        "(--rig), or take the edge's own recording",
+        1e3 * estimate_s)));
   }
-  fmt::print("before: {:+.1f} ms, moved by {:+.1f} ms\n", 1e3 * before_s,
-             1e3 * (delay_s - before_s));
+  const double applied_s = scan.applied_delay_s.value_or(rig ? rig->thermal_delay_s : 0.0);
+  const double before_s = rig                ? rig->thermal_delay_s
+                          : applied_s != 0.0 ? applied_s
+                                             : scan.rig.thermal_delay_s;
+  return Change{before_s, applied_s + estimate_s};
+}
+
+void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, const Change& change) {
+  fmt::print(
+      "thermal_delay_s: {:.4f} ({:+.1f} ms), uncertain by {:.1f} ms (one standard deviation, from "
+      "{} parts of the scan)\n",
+      change.after_s, 1e3 * change.after_s, 1e3 * estimate.sigma_s, estimate.parts);
+  fmt::print(
+      "pictures disagree {:.1f} times as much 15 ms away; {} thermal frames, {} surface "
+      "points, {:.0f} px/s\n",
+      estimate.contrast, scan.views.frames.size(), scan.views.points.size(),
+      PictureSpeed(scan.views));
+  if (scan.applied_delay_s.value_or(0.0) != 0.0) {
+    fmt::print("of it, {:+.1f} ms were in the recording's stamps already\n",
+               1e3 * *scan.applied_delay_s);
+  }
+  fmt::print("before: {:+.1f} ms, moved by {:+.1f} ms\n", 1e3 * change.before_s,
+             1e3 * (change.after_s - change.before_s));
 }
 
 int Run(const Arguments& arguments) {
@@ -106,30 +127,23 @@ int Run(const Arguments& arguments) {
     bar->Update(share);
   };
   const Result<ScanForCalibration> scan =
-      ReadScan(arguments.recording, options, arguments.search.range_s,
+      ReadScan(arguments.recording, options, arguments.find.search.range_s,
                [&](double share) { progress(kReadShare * share); });
   if (!scan) return Fail(scan.error());
   ThreadPool pool(ChosenThreads(arguments.threads));
-  const TextureConsistency consistency(scan->views, kPart_s, pool);
-  const Result<DelayEstimate> estimate = SearchDelay(
-      [&](double delay_s, bool fine, const std::vector<PartWeights>& resamplings) {
-        return consistency.Measure(delay_s, fine ? kFinePoints : kCoarsePoints, resamplings);
-      },
-      consistency.parts(), arguments.search,
-      [&](double share) { progress(kReadShare + (1.0 - kReadShare) * share); });
+  const Result<DelayEstimate> estimate =
+      FindDelay(scan->views, arguments.find, pool,
+                [&](double share) { progress(kReadShare + (1.0 - kReadShare) * share); });
   if (estimate && bar) bar->Finish();
   bar.reset();
   if (!estimate) return Fail(estimate.error().WithContext(arguments.recording));
-
-  const double delay_s = estimate->delay_s + scan->applied_delay_s;
-  const double before_s = rig                            ? rig->thermal_delay_s
-                          : scan->applied_delay_s != 0.0 ? scan->applied_delay_s
-                                                         : scan->rig.thermal_delay_s;
-  Print(*scan, *estimate, consistency.parts(), delay_s, before_s);
+  const Result<Change> change = ChangeOf(*scan, rig, estimate->delay_s);
+  if (!change) return Fail(change.error().WithContext(arguments.recording));
+  Print(*scan, *estimate, *change);
   const std::string& target = arguments.output.empty() ? arguments.rig : arguments.output;
   if (target.empty()) return 0;
   Rig calibrated = rig.value_or(scan->rig);
-  calibrated.thermal_delay_s = std::round(1e6 * delay_s) / 1e6;
+  calibrated.thermal_delay_s = std::round(1e6 * change->after_s) / 1e6;
   if (Status written = WriteRig(target, calibrated); !written.ok()) return Fail(written);
   fmt::print("{}: written\n", target);
   return 0;
@@ -150,12 +164,12 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
   command->add_option("--output", arguments->output,
                       "Write the calibration here instead; without --rig, the recording's");
   command
-      ->add_option("--range", arguments->search.range_s,
+      ->add_option("--range", arguments->find.search.range_s,
                    "The delay is looked for up to this far to either side, seconds")
       ->check(CLI::Range(0.03, 1.0))
       ->capture_default_str();
   command
-      ->add_option("--max-sigma", arguments->search.max_sigma_s,
+      ->add_option("--max-sigma", arguments->find.search.max_sigma_s,
                    "A result less certain than this is refused, seconds")
       ->check(CLI::Range(0.0001, 0.1))
       ->capture_default_str();

@@ -3,18 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
+
+#include "ground/cli/tool_for_test.h"
 
 namespace {
 
 namespace fs = std::filesystem;
+using isotherm::testing::Outcome;
+using isotherm::testing::ReadAll;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -22,42 +22,8 @@ using testing::Not;
 constexpr int kUsage = 64, kData = 65, kNoInput = 66, kCannotCreate = 73, kIo = 74,
               kConfiguration = 78;
 
-std::string ReadAll(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-struct Outcome {
-  int status = -1;
-  std::string out;
-  std::string err;
-};
-
-class ToolTest : public testing::Test {
+class ToolTest : public isotherm::testing::ToolRun {
  protected:
-  ToolTest() {
-    std::string pattern = (fs::temp_directory_path() / "isotherm-tool-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~ToolTest() override {
-    std::error_code error;
-    fs::remove_all(folder_, error);
-  }
-
-  // `arguments` are words for the shell; the program runs in the test's folder.
-  Outcome Run(const std::string& arguments, const std::string& environment = "") const {
-    const std::string command = "cd '" + folder_.string() + "' && " + environment +
-                                " '" ISOTHERM_PROGRAM "' " + arguments +
-                                " >out.txt 2>err.txt </dev/null";
-    const int raw = std::system(command.c_str());
-    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, ReadAll(folder_ / "out.txt"),
-            ReadAll(folder_ / "err.txt")};
-  }
-
-  void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-
   // A small scan of a corner with a sphere, with truth: scan.mcap and scan.ply.
   void Simulate(const std::string& more = "") const {
     const Outcome outcome = Run(
@@ -140,8 +106,6 @@ class ToolTest : public testing::Test {
                 HasSubstr("interpretation.emissivity must be above 0 and at most 1, got 1.2"));
     EXPECT_EQ(Run("export nowhere.iso -o wrong").status, kNoInput);
   }
-
-  fs::path folder_;
 };
 
 TEST_F(ToolTest, HelpTeachesAndVersionNamesTheProgram) {

@@ -1,0 +1,162 @@
+#include "ground/calibration/delay_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "common/base/log.h"
+#include "ground/calibration/part_of_progress.h"
+#include "ground/calibration/scan_views.h"
+#include "ground/ground_pipeline.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kSigmas = 3.0;
+// A frame that is dated less certainly says little.
+constexpr double kMostStampSigma_s = 0.003;
+constexpr double kVisibilityShare = 0.4;
+// Fewer than a calibration takes, for the operator waits.
+constexpr std::size_t kMostPoints = 12'000, kCoarsePoints = 2000, kFinePoints = kMostPoints;
+constexpr int kResamplings = 100;
+
+/// How fast the picture moves, pixels per second, by the last two poses.
+double SpeedNow(const GroundPipeline& pipeline, const CameraModel& camera) {
+  const std::optional<StampedPose> before = pipeline.tracker().motion().before_last();
+  const std::optional<StampedPose> now = pipeline.tracker().motion().last();
+  if (!before || !now || now->time <= before->time) return 0.0;
+  const double shift_rad = RotationAngle(before->T_world_depth, now->T_world_depth) +
+                           TranslationDistance(before->T_world_depth, now->T_world_depth) /
+                               pipeline.uncertainty().mean_depth_m();
+  return camera.fx * shift_rad / ToSeconds(now->time - before->time);
+}
+
+std::string InMilliseconds(const DelayEstimate& off_by, double calibrated_s) {
+  return fmt::format("{:+.1f} ms (one sigma {:.1f} ms)", 1e3 * (calibrated_s + off_by.delay_s),
+                     1e3 * off_by.sigma_s);
+}
+
+std::string WhatToDo() {
+  return "calibrate it again: `isotherm calibrate time RECORDING --rig RIG_FILE`";
+}
+
+}  // namespace
+
+Status Validate(const DelayCheckOptions& o) {
+  if (!(o.max_shift_s() > 0.0 && o.max_shift_s() <= 0.1)) {
+    return InvalidArgument(fmt::format(
+        "delay_check.max_shift_s must be above 0 and at most 0.1 s, got {}", o.max_shift_s()));
+  }
+  if (!(o.max_sigma_s() > 0.0 && o.max_sigma_s() <= 0.1)) {
+    return InvalidArgument(fmt::format(
+        "delay_check.max_sigma_s must be above 0 and at most 0.1 s, got {}", o.max_sigma_s()));
+  }
+  if (o.max_frames() < 50 || o.max_frames() > 2000) {
+    return InvalidArgument(
+        fmt::format("delay_check.max_frames must be 50..2000, got {}", o.max_frames()));
+  }
+  return OkStatus();
+}
+
+std::string_view ToString(DelayVerdict verdict) {
+  switch (verdict) {
+    case DelayVerdict::kOff:
+      return "off";
+    case DelayVerdict::kNotJudged:
+      return "could not be judged";
+    case DelayVerdict::kAgrees:
+      return "agrees";
+    case DelayVerdict::kMoved:
+      return "moved";
+  }
+  return "?";
+}
+
+DelayVerdict Judge(const DelayEstimate& off_by, double max_shift_s) {
+  const double shift_s = std::abs(off_by.delay_s);
+  return shift_s > std::max(max_shift_s, kSigmas * off_by.sigma_s) ? DelayVerdict::kMoved
+                                                                   : DelayVerdict::kAgrees;
+}
+
+std::string Describe(const DelayReport& report) {
+  if (!report.off_by) {
+    return report.verdict == DelayVerdict::kOff ? "not checked (delay_check.enabled)"
+                                                : "could not be checked: " + report.reason;
+  }
+  const bool moved = report.verdict == DelayVerdict::kMoved;
+  if (!report.calibrated_s) {
+    return fmt::format("thermal stamps are off by {}: {}", InMilliseconds(*report.off_by, 0.0),
+                       moved ? WhatToDo() : "as calibrated");
+  }
+  return fmt::format("thermal camera calibrated {:+.1f} ms, this scan says {}: {}",
+                     1e3 * *report.calibrated_s,
+                     InMilliseconds(*report.off_by, *report.calibrated_s),
+                     moved ? "moved; " + WhatToDo() : "agrees");
+}
+
+DelayCheck::DelayCheck(const DelayCheckOptions& options, const Rig& rig,
+                       std::optional<double> calibrated_s)
+    : options_(options),
+      rig_(rig),
+      calibrated_s_(calibrated_s),
+      selection_(static_cast<std::size_t>(std::max(2, options.max_frames()))) {}
+
+void DelayCheck::Add(const ThermalFramePtr& frame, const GroundPipeline& pipeline) {
+  if (!options_.enabled() || !rig_.thermal || !frame->valid ||
+      ToSeconds(frame->header.capture_sigma) > kMostStampSigma_s)
+    return;
+  if (frame->centikelvin.width() != rig_.thermal->width ||
+      frame->centikelvin.height() != rig_.thermal->height)
+    return;
+  selection_.Add(frame, SpeedNow(pipeline, *rig_.thermal));
+}
+
+DelayReport DelayCheck::Finish(GroundPipeline& pipeline,
+                               const std::function<void(double)>& progress) const {
+  DelayReport report;
+  report.calibrated_s = calibrated_s_;
+  if (!options_.enabled()) return report;
+  const auto start = std::chrono::steady_clock::now();
+  const Result<DelayEstimate> estimate = Estimate(pipeline, progress);
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  report.elapsed_s = elapsed.count();
+  if (!estimate) {
+    report.verdict = DelayVerdict::kNotJudged;
+    report.reason = estimate.error().message();
+    return report;
+  }
+  report.off_by = *estimate;
+  report.verdict = Judge(*estimate, options_.max_shift_s());
+  if (report.verdict == DelayVerdict::kMoved) {
+    LOG(Calibrate, Warning) << "the delay between depth and thermal camera has changed: "
+                            << Describe(report);
+  }
+  return report;
+}
+
+Result<DelayEstimate> DelayCheck::Estimate(GroundPipeline& pipeline,
+                                           const std::function<void(double)>& progress) const {
+  if (Status status = CheckThermalFusion(rig_); !status.ok()) return Err(status);
+  FindDelayOptions options;
+  options.search.max_sigma_s = options_.max_sigma_s();
+  options.search.resamplings = kResamplings;
+  options.coarse_points = kCoarsePoints;
+  options.fine_points = kFinePoints;
+  ScanViews views;
+  views.thermal_camera = *rig_.thermal;
+  views.T_thermal_depth = *rig_.T_thermal_depth;
+  views.trajectory = pipeline.trajectory();
+  for (const ThermalFramePtr& frame : selection_.frames()) {
+    views.frames.push_back({frame->header.capture_time, {frame, &frame->centikelvin}, {}});
+  }
+  const Status surface =
+      AddSurface(pipeline.tsdf(), kMostPoints, options.search.range_s, pipeline.pool(), views,
+                 PartOf(progress, 0.0, kVisibilityShare));
+  if (!surface.ok()) return Err(surface);
+  return FindDelay(views, options, pipeline.pool(), PartOf(progress, kVisibilityShare, 1.0));
+}
+
+}  // namespace isotherm

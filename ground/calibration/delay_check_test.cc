@@ -1,0 +1,214 @@
+#include "ground/calibration/delay_check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <memory>
+
+#include "common/config/text_proto.h"
+#include "common/simulation/noise.h"
+#include "common/simulation/simulated_scan.h"
+#include "common/simulation/simulation_options.pb.h"
+#include "common/testing/temporary_directory.h"
+#include "ground/ground_pipeline.h"
+
+namespace isotherm {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr std::uint64_t kSeed = 20;
+// Small cameras and large voxels: poses lag by more than with the usual ones.
+constexpr double kTolerance_s = 0.003;
+
+/// A simulated scan with small cameras, reconstructed once. Its thermal stamps are the true
+/// exposures, to which tests add an error.
+class DelayCheckTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    const isotherm::testing::TemporaryDirectory folder;
+    std::ofstream(folder.path() / "rig.textproto") << R"(
+depth { width: 256 height: 192 fx: 227 fy: 227 cx: 128.4 cy: 96.9 }
+thermal { width: 191 height: 144 fx: 185.7 fy: 186 cx: 102.5 cy: 75 k1: -0.44 k2: 0.29 k3: -0.11 }
+T_thermal_depth { tx: 0.05 ty: 0.01 tz: 0 qx: 0 qy: 0 qz: 0 qw: 1 })";
+    SimulationOptions simulation;
+    const Status parsed = ParseTextProto(R"(
+duration_s: 12
+depth { depth_scale: 4000 disparity_noise_px: 0.03 disparity_step_px: 0.03125 }
+shutter { first_s: 5 })",
+                                         "simulation", simulation);
+    ASSERT_TRUE(parsed.ok()) << parsed.message();
+    simulation.set_seed(kSeed);
+    simulation.set_rig_file(folder.path() / "rig.textproto");
+    Result<std::unique_ptr<SimulatedScan>> scan = SimulatedScan::Create(simulation);
+    ASSERT_TRUE(scan) << scan.error().message();
+    rig_ = std::make_unique<Rig>((*scan)->rig());
+    GroundOptions options;
+    options.mutable_volume()->set_voxel_size_m(0.004);
+    options.mutable_tsdf()->set_truncation_distance_m(0.016);
+    Result<std::unique_ptr<GroundPipeline>> pipeline =
+        GroundPipeline::Create(options, *rig_, (*scan)->PoseAt((*scan)->depth_times()[0].exposure));
+    ASSERT_TRUE(pipeline) << pipeline.error().message();
+    pipeline_ = std::move(*pipeline);
+    Reconstruct(**scan);
+  }
+  static void TearDownTestSuite() {
+    frames_.clear();
+    pipeline_.reset();
+    rig_.reset();
+  }
+
+  static void Reconstruct(const SimulatedScan& scan) {
+    SimulatedScan::Scratch scratch;
+    for (std::uint64_t i = 0; i < scan.depth_times().size(); ++i) {
+      RawFrame raw = scan.RenderDepth(i, scratch);
+      DepthFrame frame;
+      frame.header.frame_number = i;
+      frame.header.capture_time = scan.depth_times()[i].exposure;
+      frame.depth_raw = std::move(raw.pixels);
+      frame.depth_scale = raw.depth_scale;
+      pipeline_->ProcessDepth(frame);
+    }
+    pipeline_->Finish();
+    for (std::uint64_t i = 0; i < scan.thermal_times().size(); i += 2) {
+      auto frame = std::make_shared<ThermalFrame>();
+      frame->header.frame_number = i;
+      frame->header.capture_time = scan.thermal_times()[i].exposure;
+      frame->valid = !scan.IsShutterClosed(frame->header.capture_time);
+      frame->centikelvin = scan.RenderThermal(i, scratch).pixels;
+      frames_.push_back(std::move(frame));
+    }
+  }
+
+  /// With thermal stamps late by `late_s`, each off by some more.
+  static DelayReport Check(double late_s, std::optional<double> calibrated_s,
+                           const DelayCheckOptions& options = {}) {
+    constexpr double kJitter_s = 0.001;
+    DelayCheck check(options, *rig_, calibrated_s);
+    for (const std::shared_ptr<ThermalFrame>& frame : frames_) {
+      auto late = std::make_shared<ThermalFrame>(*frame);
+      late->header.capture_time +=
+          FromSeconds(late_s + kJitter_s * NormalNoise(kSeed, frame->header.frame_number));
+      check.Add(std::move(late), *pipeline_);
+    }
+    const DelayReport report = check.Finish(*pipeline_, {});
+    std::printf("seed %d, stamps late by %+.1f ms, %.2f s: %s\n", static_cast<int>(kSeed),
+                1e3 * late_s, report.elapsed_s, Describe(report).c_str());
+    return report;
+  }
+
+  inline static std::unique_ptr<Rig> rig_;
+  inline static std::unique_ptr<GroundPipeline> pipeline_;
+  inline static std::vector<std::shared_ptr<ThermalFrame>> frames_;
+};
+
+TEST_F(DelayCheckTest, TheRightDelayAgrees) {
+  for (const double late_s : {0.0, 0.0005}) {
+    const DelayReport report = Check(late_s, -0.03);
+    ASSERT_EQ(report.verdict, DelayVerdict::kAgrees) << report.reason;
+    EXPECT_NEAR(report.off_by->delay_s, -late_s, kTolerance_s);
+    EXPECT_LT(report.off_by->sigma_s, 0.002);
+    EXPECT_THAT(Describe(report), AllOf(HasSubstr("calibrated -30.0 ms"), HasSubstr("agrees")));
+  }
+}
+
+TEST_F(DelayCheckTest, AWrongDelayHasMoved) {
+  for (const double late_s : {-0.06, 0.012, 0.0427}) {
+    const DelayReport report = Check(late_s, 0.0);
+    ASSERT_EQ(report.verdict, DelayVerdict::kMoved) << report.reason;
+    EXPECT_NEAR(report.off_by->delay_s, -late_s, kTolerance_s);
+    EXPECT_THAT(Describe(report), AllOf(HasSubstr("moved"), HasSubstr("isotherm calibrate time")));
+  }
+}
+
+TEST_F(DelayCheckTest, WhatAnEdgeAddedIsNotClaimed) {
+  EXPECT_THAT(Describe(Check(0.02, std::nullopt)),
+              AllOf(HasSubstr("stamps are off by -"), ::testing::Not(HasSubstr("calibrated +"))));
+}
+
+TEST_F(DelayCheckTest, AFewFramesDoNotJudge) {
+  const std::vector<std::shared_ptr<ThermalFrame>> all = frames_;
+  frames_.resize(60);  // Three seconds.
+  const DelayReport report = Check(0.02, 0.0);
+  frames_ = all;
+  EXPECT_EQ(report.verdict, DelayVerdict::kNotJudged);
+  EXPECT_FALSE(report.off_by);
+  EXPECT_THAT(report.reason, HasSubstr("scan for longer"));
+}
+
+TEST_F(DelayCheckTest, ASceneWithoutThermalContrastIsNotJudged) {
+  const std::vector<std::shared_ptr<ThermalFrame>> all = frames_;
+  for (std::shared_ptr<ThermalFrame>& frame : frames_) {
+    frame = std::make_shared<ThermalFrame>(*frame);
+    const std::uint64_t stream = NoiseStream(kSeed, 9, frame->header.frame_number);
+    std::uint64_t counter = 0;
+    for (std::uint16_t& pixel : frame->centikelvin.pixels())
+      pixel = static_cast<std::uint16_t>(30'000.0F + 4.0F * NormalNoise(stream, counter++));
+  }
+  const DelayReport report = Check(0.02, 0.0);
+  frames_ = all;
+  EXPECT_EQ(report.verdict, DelayVerdict::kNotJudged);
+  EXPECT_THAT(report.reason, HasSubstr("thermal contrast"));
+}
+
+TEST_F(DelayCheckTest, FramesWithoutACertainStampAreNotUsed) {
+  const std::vector<std::shared_ptr<ThermalFrame>> all = frames_;
+  for (std::shared_ptr<ThermalFrame>& frame : frames_) {
+    frame = std::make_shared<ThermalFrame>(*frame);
+    frame->header.capture_sigma = std::chrono::milliseconds(20);
+  }
+  const DelayReport report = Check(0.02, 0.0);
+  frames_ = all;
+  EXPECT_EQ(report.verdict, DelayVerdict::kNotJudged);
+  EXPECT_THAT(report.reason, HasSubstr("0 thermal frames"));
+}
+
+TEST_F(DelayCheckTest, OffKeepsAndSaysNothing) {
+  DelayCheckOptions options;
+  options.set_enabled(false);
+  DelayCheck check(options, *rig_, 0.0);
+  check.Add(frames_.front(), *pipeline_);
+  EXPECT_EQ(frames_.front().use_count(), 1);
+  EXPECT_EQ(check.Finish(*pipeline_, {}).verdict, DelayVerdict::kOff);
+}
+
+TEST_F(DelayCheckTest, ABoundedNumberOfFramesIsKept) {
+  DelayCheckOptions options;
+  options.set_max_frames(50);
+  DelayCheck check(options, *rig_, 0.0);
+  for (const std::shared_ptr<ThermalFrame>& frame : frames_) check.Add(frame, *pipeline_);
+  long kept = 0;
+  for (const std::shared_ptr<ThermalFrame>& frame : frames_) kept += frame.use_count() - 1;
+  EXPECT_GE(kept, 25);
+  EXPECT_LE(kept, 50);
+}
+
+TEST(DelayJudgementTest, MovedIsWhatIsBothLargeAndCertain) {
+  const auto judge = [](double off_s, double sigma_s) {
+    return Judge({.delay_s = off_s, .sigma_s = sigma_s}, 0.003);
+  };
+  EXPECT_EQ(judge(0.0029, 0.0001), DelayVerdict::kAgrees) << "too small to matter";
+  EXPECT_EQ(judge(0.0031, 0.0001), DelayVerdict::kMoved);
+  EXPECT_EQ(judge(-0.0031, 0.0001), DelayVerdict::kMoved);
+  EXPECT_EQ(judge(0.0055, 0.0019), DelayVerdict::kAgrees) << "within three sigma";
+  EXPECT_EQ(judge(0.0060, 0.0019), DelayVerdict::kMoved);
+}
+
+TEST(DelayJudgementTest, OptionsAreChecked) {
+  EXPECT_TRUE(Validate(DelayCheckOptions()).ok());
+  DelayCheckOptions options;
+  options.set_max_shift_s(0.0);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.max_shift_s"));
+  options = DelayCheckOptions();
+  options.set_max_sigma_s(1.0);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.max_sigma_s"));
+  options = DelayCheckOptions();
+  options.set_max_frames(10);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.max_frames"));
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "common/base/status.h"
+#include "common/concurrency/thread_pool.h"
+#include "ground/calibration/delay_search.h"
+#include "ground/calibration/texture_consistency.h"
+
+namespace isotherm {
+
+struct FindDelayOptions {
+  DelaySearchOptions search;
+  std::size_t coarse_points = 6000;  ///< Of the surface, for the grid; more: slower.
+  std::size_t fine_points = 30'000;  ///< For the result and its uncertainty.
+};
+
+/// The delay, to be added to the stamps, at which the thermal pictures of a scan agree about the
+/// surface. Its sigma holds, beside the spread of parts of the scan, what poses lag. Fails and says
+/// what the scan lacks. Deterministic. `progress` gets the share done, 0..1.
+Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& options,
+                                ThreadPool& pool, const std::function<void(double)>& progress);
+
+}  // namespace isotherm

@@ -1,0 +1,159 @@
+#include "ground/calibration/find_delay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "common/simulation/noise.h"
+
+namespace isotherm {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr CaptureTime kStart{std::chrono::seconds(100)};
+constexpr int kWidth = 160, kHeight = 120;
+constexpr double kFocal_px = 150.0;
+
+// The poses here do not lag; what is left is their noise and the pixels'.
+constexpr double kTolerance_s = 0.0003;
+
+/// What is simulated beside the delay.
+struct Disturbances {
+  std::uint64_t seed = 1;
+  double pixel_noise_k = 0.05;
+  double pose_noise_m = 0.0001;
+};
+
+/// A wall at z = 1 m with a wavy temperature; the rig swings in front of it.
+RigidTransform PoseAt(double time_s) {
+  RigidTransform pose = RigidTransform::Identity();
+  pose.translation() = Eigen::Vector3d(0.08 * std::sin(2.4 * time_s), 0.05 * std::sin(3.1 * time_s),
+                                       0.05 * std::sin(0.9 * time_s));
+  pose.linear() =
+      Eigen::AngleAxisd(0.1 * std::sin(1.3 * time_s), Eigen::Vector3d::UnitZ()).matrix();
+  return pose;
+}
+
+double Celsius(double x_m, double y_m) {
+  return 40.0 + 5.0 * std::sin(60.0 * x_m) * std::cos(45.0 * y_m);
+}
+
+/// The wall's temperature by the exact line of sight of each pixel.
+Image<std::uint16_t> Render(double time_s, const Disturbances& disturbances) {
+  const RigidTransform T_world_thermal = PoseAt(time_s);
+  const std::uint64_t stream =
+      NoiseStream(disturbances.seed, 1, std::bit_cast<std::uint64_t>(time_s));
+  Image<std::uint16_t> picture(kWidth, kHeight);
+  for (int v = 0; v < kHeight; ++v) {
+    for (int u = 0; u < kWidth; ++u) {
+      const Eigen::Vector3d ray =
+          T_world_thermal.linear() *
+          Eigen::Vector3d((u - 80.0) / kFocal_px, (v - 60.0) / kFocal_px, 1.0);
+      const Eigen::Vector3d& from = T_world_thermal.translation();
+      const Eigen::Vector3d p = from + ray * (1.0 - from.z()) / ray.z();
+      const double noise_k = disturbances.pixel_noise_k *
+                             NormalNoise(stream, static_cast<std::uint64_t>(v * kWidth + u));
+      const double celsius = Celsius(p.x(), p.y()) + noise_k;
+      picture.At(u, v) = static_cast<std::uint16_t>(std::lround(100.0 * (celsius + 273.15)));
+    }
+  }
+  return picture;
+}
+
+/// All that a scan of 10 s offers whose thermal stamps need `delay_s` to be added.
+ScanViews SwingInFrontOfAWall(double delay_s, const Disturbances& disturbances = {}) {
+  ScanViews views;
+  views.thermal_camera = {
+      .width = kWidth, .height = kHeight, .fx = kFocal_px, .fy = kFocal_px, .cx = 80, .cy = 60};
+  for (int i = 0; i < 300; ++i) {
+    RigidTransform pose = PoseAt(i / 30.0);
+    const std::uint64_t stream = NoiseStream(disturbances.seed, 2, static_cast<std::uint64_t>(i));
+    for (int axis = 0; axis < 3; ++axis)
+      pose.translation()[axis] +=
+          disturbances.pose_noise_m * NormalNoise(stream, static_cast<std::uint64_t>(axis));
+    views.trajectory.push_back({kStart + FromSeconds(i / 30.0), pose});
+  }
+  for (std::uint64_t i = 0; i < 800; ++i) {
+    const double x_m = 0.7 * (UniformNoise(1, 2 * i) - 0.5);
+    const double y_m = 0.5 * (UniformNoise(1, 2 * i + 1) - 0.5);
+    views.points.push_back({{x_m, y_m, 1.0}, -Eigen::Vector3d::UnitZ()});
+  }
+  for (int i = 10; i < 390; i += 3) {
+    const double time_s = i / 40.0, stamp_s = time_s - delay_s;
+    views.frames.push_back(
+        {kStart + FromSeconds(stamp_s),
+         std::make_shared<const Image<std::uint16_t>>(Render(time_s, disturbances)),
+         {}});
+    // All points stay in the picture. Poses are known for all delays that are tried.
+    if (stamp_s < 0.2 || stamp_s > 9.75) continue;
+    for (std::uint32_t point = 0; point < views.points.size(); ++point)
+      views.frames.back().visible.push_back(point);
+  }
+  return views;
+}
+
+Result<DelayEstimate> Find(const ScanViews& views, const FindDelayOptions& options = {}) {
+  ThreadPool pool(2);
+  return FindDelay(views, options, pool, {});
+}
+
+TEST(FindDelayTest, SeveralDelaysAreFoundWithinTheirUncertainty) {
+  Disturbances disturbances;
+  for (const double delay_s : {-0.0427, -0.1, 0.0, 0.0073, 0.08}) {
+    ++disturbances.seed;
+    const Result<DelayEstimate> found = Find(SwingInFrontOfAWall(delay_s, disturbances));
+    ASSERT_TRUE(found.has_value()) << found.error().message();
+    std::printf("seed %d: %+.2f ms found as %+.2f +- %.2f ms\n",
+                static_cast<int>(disturbances.seed), 1e3 * delay_s, 1e3 * found->delay_s,
+                1e3 * found->sigma_s);
+    EXPECT_NEAR(found->delay_s, delay_s, kTolerance_s) << "seed " << disturbances.seed;
+    EXPECT_LT(found->sigma_s, 0.0011);
+  }
+}
+
+TEST(FindDelayTest, WithoutThermalContrastNothingIsFound) {
+  ScanViews views = SwingInFrontOfAWall(0.01);
+  std::uint64_t counter = 0;
+  for (StampedThermal& frame : views.frames) {
+    Image<std::uint16_t> picture = *frame.centikelvin;
+    for (std::uint16_t& pixel : picture.pixels())
+      pixel = static_cast<std::uint16_t>(31'300.0F + 4.0F * NormalNoise(9, counter++));
+    frame.centikelvin = std::make_shared<const Image<std::uint16_t>>(std::move(picture));
+  }
+  const Result<DelayEstimate> found = Find(views);
+  ASSERT_FALSE(found.has_value());
+  EXPECT_THAT(found.error().message(), HasSubstr("thermal contrast"));
+}
+
+TEST(FindDelayTest, WithoutMotionNothingIsFound) {
+  ScanViews views = SwingInFrontOfAWall(0.01);
+  for (StampedPose& pose : views.trajectory) pose.T_world_depth = RigidTransform::Identity();
+  for (StampedThermal& frame : views.frames) frame.centikelvin = views.frames.front().centikelvin;
+  EXPECT_FALSE(Find(views).has_value());
+}
+
+TEST(FindDelayTest, TooUncertainIsRefused) {
+  FindDelayOptions options;
+  options.search.max_sigma_s = 0.00001;
+  const Result<DelayEstimate> found = Find(SwingInFrontOfAWall(0.01), options);
+  ASSERT_FALSE(found.has_value());
+  EXPECT_THAT(found.error().message(), HasSubstr("uncertain by"));
+}
+
+TEST(FindDelayTest, ThreadsDoNotChangeTheResult) {
+  const ScanViews views = SwingInFrontOfAWall(-0.02);
+  ThreadPool one(1), three(3);
+  const Result<DelayEstimate> a = FindDelay(views, {}, one, {});
+  const Result<DelayEstimate> b = FindDelay(views, {}, three, {});
+  ASSERT_TRUE(a.has_value() && b.has_value());
+  EXPECT_EQ(a->delay_s, b->delay_s);
+  EXPECT_EQ(a->sigma_s, b->sigma_s);
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace isotherm::testing {
+
+inline std::string ReadAll(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string err;
+};
+
+/// Runs the program ISOTHERM_PROGRAM as a user does, in an empty folder that disappears afterwards.
+class ToolRun : public ::testing::Test {
+ protected:
+  ToolRun() {
+    std::string pattern =
+        (std::filesystem::temp_directory_path() / "isotherm-tool-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~ToolRun() override {
+    std::error_code error;
+    std::filesystem::remove_all(folder_, error);
+  }
+
+  // `arguments` are words for the shell; the program runs in the test's folder.
+  Outcome Run(const std::string& arguments, const std::string& environment = "") const {
+    const std::string command = "cd '" + folder_.string() + "' && " + environment +
+                                " '" ISOTHERM_PROGRAM "' " + arguments +
+                                " >out.txt 2>err.txt </dev/null";
+    const int raw = std::system(command.c_str());
+    return {WIFEXITED(raw) ? WEXITSTATUS(raw) : -1, ReadAll(folder_ / "out.txt"),
+            ReadAll(folder_ / "err.txt")};
+  }
+
+  void Write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+
+  std::filesystem::path folder_;
+};
+
+}  // namespace isotherm::testing
