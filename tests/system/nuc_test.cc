@@ -90,7 +90,9 @@ TEST_F(NucTest, F07AShutterOfWhichTheCameraDoesNotTellIsFoundInItsPictures) {
 }
 
 TEST_F(NucTest, F08AStormIsReportedWithWhatItCostsAndNothingIsOrderedOnTop) {
-  Process edge(Edge({"source.simulation.shutter.interval_s=0.8"}));
+  Process edge(
+      Edge({"source.simulation.shutter.first_s=0.4", "source.simulation.shutter.interval_s=0.8",
+            "source.simulation.shutter.duration_s=0.2"}));
   ASSERT_TRUE(
       edge.WaitForOutput("storm of corrections: 7 corrections in the last minute, shutter "
                          "closed for",
