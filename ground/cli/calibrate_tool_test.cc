@@ -27,7 +27,7 @@ using ::testing::Not;
 constexpr int kUsage = 64, kData = 65;
 // What is asked of the calibration, of real cameras' resolution.
 constexpr double kTolerance_s = 0.001;
-// The poses of a small camera in a coarse model follow the rig by more than a millisecond.
+// Small cameras in a coarse model come out 1.1 to 1.4 ms late; presumably tracked poses lag.
 constexpr double kSmallCameraTolerance_s = 0.002;
 
 constexpr const char* kRig = R"(# Of a simulated rig.

@@ -225,9 +225,11 @@ class EdgeLoadTest : public ::testing::Test {
       const bool is_depth = sensor == Sensor::kDepth;
       const SensorAccount account = account_.Get(sensor);
       const CameraReport report = health_.Get(sensor);
-      std::printf("%s: captured %lu, stamped p50 %.3f ms p99 %.3f ms after arrival\n",
-                  is_depth ? "depth" : "thermal", account.captured, report.stamping_p50_s * 1e3,
-                  report.stamping_p99_s * 1e3);
+      std::printf(
+          "%s: captured %lu, recorded %lu, published %lu; stamped p50 %.3f ms p99 %.3f ms after "
+          "arrival\n",
+          is_depth ? "depth" : "thermal", account.captured, account.recorded, account.published,
+          report.stamping_p50_s * 1e3, report.stamping_p99_s * 1e3);
       EXPECT_GT(account.captured, 0U);
       EXPECT_EQ(account.OnTheWayToDisk(), 0);
       EXPECT_EQ(account.OnTheWayToGround(), 0);
