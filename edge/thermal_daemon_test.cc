@@ -15,6 +15,7 @@
 #ifdef FAKE_OPENNI
 #include "edge/openni/fake_depth_camera.h"
 #endif
+#include "edge/source/missed_frames.h"
 #include "edge/thermal_camera/testing/emulated_lepton.h"
 #include "edge/thermal_camera/testing/emulated_seek.h"
 #include "edge/usb/testing/emulated_bus.h"
@@ -139,6 +140,25 @@ TEST_F(ThermalDaemonTest, F11DamagedFramesAreRefusedAndCounted) {
   ASSERT_TRUE(edge.WaitForOutput("has no pixels", kPatience)) << edge.output();
   EXPECT_FALSE(edge.WaitForExit(Seconds(2.5)).has_value());
   EXPECT_EQ(End(edge).rejected, 4) << edge.output();
+}
+
+TEST_F(ThermalDaemonTest, F09AFlippedBitOfTheFrameCounterCostsNoFrameAndNoNumbers) {
+  const auto camera = std::make_shared<EmulatedLepton>("8*f f:flip f");
+  bus_->Plug(camera);
+  Process edge(Edge({"--set", "nuc.before_scan=false"}));
+  bus_->SetChild(edge.pid());
+  ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience)) << edge.output();
+  while (camera->frames() < 20) {
+    ASSERT_FALSE(edge.WaitForExit(Seconds(0.1)).has_value()) << edge.output();
+  }
+  const FrameAccountText account = End(edge);
+  EXPECT_EQ(account.done, account.captured) << edge.output();
+  const std::vector<StoredFrame> frames = ReadRecording(file_).thermal;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    EXPECT_GT(frames[i].frame_number, frames[i - 1].frame_number);
+  }
+  // A busy computer may lose some on the emulated bus; 2^24 / 3 would be the flipped bit.
+  EXPECT_LT(frames.back().frame_number, frames.size() + MissedFrames::kMostMissed);
 }
 
 TEST_F(ThermalDaemonTest, F05FrozenFramesAreNotValidAndTheCameraIsOpenedAgainAfterTwoSeconds) {

@@ -38,6 +38,7 @@ using std::chrono::milliseconds;
 
 constexpr const char* kUri = "fake-depth://0";
 constexpr milliseconds kPollInterval{20};
+constexpr int kFlippedBit = 1 << 20;
 // A Carmine's: f = 120 mm / (0.1042 mm x 1280 / width).
 constexpr std::uint64_t kZeroPlaneDistance_mm = 120;
 constexpr double kZeroPlanePixel_mm = 0.1042;
@@ -184,7 +185,7 @@ class FakeStream final : public oni::driver::StreamBase {
     std::memcpy(frame->data, frames_.data() + offset, pixels * 2);
     frame->sensorType = ONI_SENSOR_DEPTH;
     frame->timestamp = what.timestamp_us;
-    frame->frameIndex = what.index;
+    frame->frameIndex = what.fault == FakeDepthFault::kFlip ? what.index ^ kFlippedBit : what.index;
     frame->videoMode = mode_;
     frame->width = mode_.resolutionX;
     frame->height = mode_.resolutionY;

@@ -13,11 +13,12 @@ struct FaultName {
   FakeDepthFault fault;
   std::string_view name;
 };
-constexpr std::array<FaultName, 7> kFaults = {{{FakeDepthFault::kShort, "short"},
+constexpr std::array<FaultName, 8> kFaults = {{{FakeDepthFault::kShort, "short"},
                                                {FakeDepthFault::kWrongSize, "size"},
                                                {FakeDepthFault::kDrop, "drop"},
                                                {FakeDepthFault::kStall, "stall"},
                                                {FakeDepthFault::kJump, "jump"},
+                                               {FakeDepthFault::kFlip, "flip"},
                                                {FakeDepthFault::kCrash, "crash"},
                                                {FakeDepthFault::kHang, "hang"}}};
 

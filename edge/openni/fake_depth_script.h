@@ -17,6 +17,7 @@ enum class FakeDepthFault {
   kDrop,       ///< The frame is lost in the camera; its number is used up.
   kStall,      ///< No frame from here on.
   kJump,       ///< The camera's clock moves, then goes on.
+  kFlip,       ///< A bit of the frame's number is wrong.
   kCrash,      ///< The library dies: the process gets SIGSEGV.
   kHang,       ///< The library never returns: the process is stopped.
 };

@@ -11,8 +11,6 @@ namespace isotherm {
 namespace {
 
 constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
-// More frames cannot have been lost without a stall; a larger step is a counter that was set anew.
-constexpr int kMostLost = 1000;
 
 }  // namespace
 
@@ -30,7 +28,7 @@ Status OpenniDepthSource::Open() {
   if (!device) return device.error();
   device_ = std::move(*device);
   unwrapper_ = {};
-  last_index_.reset();
+  missed_.emplace(1);
   last_frame_at_ = clock_.SteadyNow();
   const CameraDescription& found = device_->description();
   LOG(Openni, Info) << found.model << ", serial=" << (found.serial.empty() ? "?" : found.serial)
@@ -68,11 +66,7 @@ RawFrame OpenniDepthSource::ToRawFrame(OpenniDevice::Frame frame) {
 }
 
 std::uint64_t OpenniDepthSource::Number(int index) {
-  if (last_index_) {
-    const std::int64_t step = std::int64_t{index} - *last_index_;
-    if (step > 1 && step <= kMostLost) next_number_ += static_cast<std::uint64_t>(step - 1);
-  }
-  last_index_ = index;
+  next_number_ += missed_->Process(static_cast<std::uint64_t>(std::int64_t{index}));
   return next_number_++;
 }
 

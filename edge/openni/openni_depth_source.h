@@ -9,6 +9,7 @@
 #include "edge/openni/openni_device.h"
 #include "edge/openni/tick_unwrapper.h"
 #include "edge/source/frame_source.h"
+#include "edge/source/missed_frames.h"
 
 namespace isotherm {
 
@@ -45,7 +46,7 @@ class OpenniDepthSource final : public FrameSource {
   const Clock& clock_;
   std::unique_ptr<OpenniDevice> device_;  ///< Null: closed.
   TickUnwrapper unwrapper_;
-  std::optional<int> last_index_;  ///< Since Open.
+  std::optional<MissedFrames> missed_;  ///< Since Open.
   std::uint64_t next_number_ = 0;
   SteadyTime last_frame_at_{};
   std::optional<CaptureTime> file_start_;

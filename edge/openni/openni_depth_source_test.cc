@@ -222,6 +222,18 @@ TEST_F(OpenniDepthSourceTest, FramesLostInTheCameraLeaveHoles) {
   EXPECT_GE(frames.back().frame_number, 10U) << "three were dropped";
 }
 
+TEST_F(OpenniDepthSourceTest, F09AFlippedBitOfAFramesNumberCostsNoNumbers) {
+  camera_.script.faults[4] = {FakeDepthFault::kFlip, 1, 0};
+  ASSERT_TRUE(Open().ok());
+  const std::vector<RawFrame> frames = Read(8);
+  ASSERT_EQ(frames.size(), 8U);
+  const DeviceTicks first = frames[0].device_ticks;
+  for (const RawFrame& frame : frames) {
+    const double periods = ToSeconds(frame.device_ticks - first) * 60.0;
+    EXPECT_EQ(frame.frame_number, static_cast<std::uint64_t>(std::lround(periods)));
+  }
+}
+
 TEST_F(OpenniDepthSourceTest, F09A32BitClockIsUnwrapped) {
   camera_.script.wraps_at_32_bits = true;
   camera_.script.first_timestamp_us = (1ULL << 32U) - 50'000;  // Wraps after three frames.

@@ -20,7 +20,7 @@ bool IsCorrecting(const RawThermalFrame& frame) {
 
 Novelty FrameNovelty::Process(const RawThermalFrame& frame) {
   const std::uint64_t hash = HashOf(frame.counts);
-  const bool same_counter = counter_step_ > 0 && frame.device_counter == counter_;
+  const bool same_counter = missed_ && frame.device_counter == counter_;
   const bool repeated = hash_ && (hash == hash_ || (frame.device_counter && same_counter));
   Novelty novelty;
   if (repeated) {
@@ -38,13 +38,12 @@ Novelty FrameNovelty::Process(const RawThermalFrame& frame) {
   return novelty;
 }
 
-std::uint64_t FrameNovelty::LostBefore(const RawThermalFrame& frame) const {
+std::uint64_t FrameNovelty::LostBefore(const RawThermalFrame& frame) {
+  if (!missed_ || !frame.device_counter) return 0;
   // While it corrects itself a camera's counter may stand still, and jumps afterwards.
-  if (counter_step_ == 0 || !counter_ || !frame.device_counter || was_correcting_) return 0;
-  if (*frame.device_counter <= *counter_) return 0;  // It was reset.
-  const std::uint64_t steps =
-      (*frame.device_counter - *counter_ + counter_step_ / 2) / counter_step_;
-  return steps > 1 ? steps - 1 : 0;
+  if (!was_correcting_) return missed_->Process(*frame.device_counter);
+  missed_->Restart(*frame.device_counter);
+  return 0;
 }
 
 }  // namespace isotherm

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "edge/source/missed_frames.h"
 #include "edge/thermal_camera/thermal_camera.h"
 
 namespace isotherm {
@@ -24,17 +25,17 @@ struct Novelty {
 class FrameNovelty {
  public:
   /// `counter_step`, `native_repeats`: see ThermalCameraInfo.
-  FrameNovelty(int counter_step, int native_repeats)
-      : counter_step_(static_cast<std::uint64_t>(counter_step)),
-        most_repeats_(3 * native_repeats) {}
+  FrameNovelty(int counter_step, int native_repeats) : most_repeats_(3 * native_repeats) {
+    if (counter_step > 0) missed_.emplace(static_cast<std::uint64_t>(counter_step));
+  }
 
   Novelty Process(const RawThermalFrame& frame);
 
  private:
-  std::uint64_t LostBefore(const RawThermalFrame& frame) const;
+  std::uint64_t LostBefore(const RawThermalFrame& frame);
 
-  const std::uint64_t counter_step_;
   const int most_repeats_;
+  std::optional<MissedFrames> missed_;  ///< Absent: the camera does not count.
   std::optional<std::uint64_t> counter_;
   std::optional<std::uint64_t> hash_;
   int repeats_ = 0;

@@ -85,6 +85,50 @@ TEST_F(FrameNoveltyTest, F09ResetCounterIsNoLoss) {
   EXPECT_EQ(next.lost, 0U);
 }
 
+TEST_F(FrameNoveltyTest, F09AFlippedBitOfTheCounterCostsNoNumbers) {
+  // Beyond what a bit can add or take while it still looks like frames that were lost: 3 * 1000.
+  for (int bit = 12; bit < 32; ++bit) {
+    FrameNovelty novelty(3, 1);
+    std::uint64_t lost = 0;
+    std::uint64_t counter = 1'000'000'000;
+    for (int i = 0; i < 20; ++i, counter += 3) {
+      const std::uint64_t flipped = counter ^ (i == 7 ? std::uint64_t{1} << bit : 0U);
+      const Novelty next = Next(novelty, static_cast<std::uint16_t>(i), flipped);
+      EXPECT_EQ(next.kind, Kind::kNew) << "bit " << bit << ", frame " << i;
+      lost += next.lost;
+    }
+    EXPECT_EQ(lost, 0U) << "bit " << bit;
+  }
+}
+
+TEST_F(FrameNoveltyTest, F09WhatIsLostBesideAFlippedBitIsCountedStill) {
+  FrameNovelty novelty(3, 1);
+  Next(novelty, 1, 3'000);
+  EXPECT_EQ(Next(novelty, 2, 3'003 + (1U << 24U)).lost, 0U);
+  EXPECT_EQ(Next(novelty, 3, 3'018).lost, 4U) << "3006, 3009, 3012 and 3015";
+}
+
+TEST_F(FrameNoveltyTest, F09ACounterThatWasSetForwardGoesOnFromThere) {
+  FrameNovelty novelty(3, 1);
+  Next(novelty, 1, 3'000);
+  EXPECT_EQ(Next(novelty, 2, 9'000'000).lost, 0U);
+  EXPECT_EQ(Next(novelty, 3, 9'000'003).lost, 0U);
+  EXPECT_EQ(Next(novelty, 4, 9'000'012).lost, 2U);
+}
+
+TEST_F(FrameNoveltyTest, F09ACounterThatIsNoiseNeverMakesNumbersJump) {
+  FrameNovelty novelty(3, 1);
+  std::uint64_t lost = 0;
+  std::uint32_t noise = 1;
+  constexpr int kFrames = 1'000;
+  for (std::uint16_t i = 0; i < kFrames; ++i) {
+    noise = noise * 1'664'525 + 1'013'904'223;
+    lost += Next(novelty, i, noise).lost;
+  }
+  // By chance a value follows another one closely: 3000 of 2^32, twice a frame.
+  EXPECT_LE(lost, 3 * MissedFrames::kMostMissed);
+}
+
 TEST_F(FrameNoveltyTest, JumpAfterACorrectionIsNoLoss) {
   FrameNovelty novelty(1, 1);
   correcting_ = true;

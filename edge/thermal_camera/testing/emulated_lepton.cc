@@ -10,6 +10,7 @@ constexpr int kHeight = 120;
 constexpr std::uint32_t kPeriodMs = 115;  // 8.7 Hz.
 constexpr int kFramesOfCorrection = 8;    // 23 of 26 per second inside.
 constexpr std::uint8_t kSysUnit = 6;
+constexpr std::uint32_t kFlippedBit = 1U << 24U;
 
 UvcCameraLayout Layout() {
   UvcCameraLayout layout;
@@ -38,6 +39,7 @@ EmulatedLepton::EmulatedLepton(std::string_view script, std::string_view serial)
       frame_(2 * kWidth * (kHeight + 2)) {}
 
 std::vector<std::uint8_t> EmulatedLepton::MakeFrame(const FaultStep& step) {
+  ++frames_;
   if (step.fault == "reset") uptime_ms_ = 0;
   uptime_ms_ += kPeriodMs;
   if (step.fault != "freeze") counter_ += step.fault == "skip" ? 12 : 3;
@@ -55,7 +57,7 @@ std::vector<std::uint8_t> EmulatedLepton::MakeFrame(const FaultStep& step) {
   PutLe16(telemetry, 0, 0x000E);
   PutLe32(telemetry, 2 * 1, uptime_ms_);
   PutLe32(telemetry, 2 * 3, state << 4);
-  PutLe32(telemetry, 2 * 20, counter_);
+  PutLe32(telemetry, 2 * 20, step.fault == "flip" ? counter_ ^ kFlippedBit : counter_);
   PutLe16(telemetry, 2 * 24, 30'815);
   PutLe16(telemetry, 2 * 26, 30'315);
   PutLe32(telemetry, 2 * 30, uptime_at_ffc_ms_);

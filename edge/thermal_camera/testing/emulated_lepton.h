@@ -17,6 +17,8 @@ class EmulatedLepton final : public EmulatedUvcCamera {
   static constexpr std::uint16_t kFirstCentikelvin = 29'000;
   static constexpr int kNoise = 8;  ///< Values 0..kNoise-1 are added.
 
+  /// Frames that it has made. Thread-safe.
+  int frames() const { return frames_; }
   /// Corrections that were ordered. Thread-safe.
   int corrections() const { return corrections_; }
   /// Mode of corrections: 0 manual, 1 automatic. Thread-safe.
@@ -38,6 +40,7 @@ class EmulatedLepton final : public EmulatedUvcCamera {
   std::uint32_t uptime_at_ffc_ms_ = 1'000;
   std::uint32_t noise_ = 1;
   int ordered_frames_ = 0;  ///< Frames that an ordered correction still takes.
+  std::atomic<int> frames_{0};
   std::atomic<int> corrections_{0};
   std::atomic<int> ffc_mode_{1};
   std::atomic<int> gain_{0};

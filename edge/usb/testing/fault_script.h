@@ -22,7 +22,7 @@ struct FaultStep {
 ///   f:short    the end is missing        f:head   a payload with a damaged header
 ///   f:error    the error bit is set      f:lost   the bus lost a packet
 ///   f:noeof    no end-of-frame bit       f:skip   three pictures were not sent
-///   f:reset    the camera's clock starts again
+///   f:reset    the camera's clock starts again   f:flip  a bit of the frame counter is wrong
 ///   -          nothing for the time of a frame
 ///   stall, unstall   requests are refused from here on, or answered again; takes no time
 ///   unplug[:MS]      the cable comes off in the middle of a frame, and on again after MS ms
