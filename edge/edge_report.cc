@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "common/transport/clock_record.h"
-#include "edge/feedback_text.h"
+#include "common/transport/feedback_text.h"
 
 namespace isotherm {
 namespace {

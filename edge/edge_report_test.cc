@@ -93,7 +93,7 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   feedback.covered_area_m2 = 0.5;
   feedback.advice = {Advice::kGoBackToRelocalise};
   EXPECT_THAT(StatusLine({}, account_, true, feedback),
-              HasSubstr("ground: LOST, all 34 % of 0.50 m2, go back"));
+              HasSubstr("ground: go back, LOST, all 34 % of 0.50 m2"));
   feedback.tracking_state = TrackingState::kDegraded;
   feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
   EXPECT_THAT(StatusLine({}, account_, true, feedback),
@@ -114,10 +114,11 @@ TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
   status.clock.step_sum_s = 3.02;
   status.depth_camera.stamp_sigma_s = 0.00005;
   status.thermal_camera.unsynchronised_frames = 7;
-  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
-              HasSubstr("clock synchronised, off by about 0.10 ms, at most 1.2 ms, set 2 times by "
-                        "+3.020 s in all  stamps +-0.050 ms depth, UNSYNCHRONISED frames 0 depth, 7 "
-                        "thermal"));
+  EXPECT_THAT(
+      StatusLine(status, account_, true, std::nullopt),
+      HasSubstr("clock synchronised, off by about 0.10 ms, at most 1.2 ms, set 2 times by "
+                "+3.020 s in all  stamps +-0.050 ms depth, UNSYNCHRONISED frames 0 depth, 7 "
+                "thermal"));
 }
 
 TEST_F(EdgeReportTest, F17WhatIsWrongWithTheClockIsSaidWithWhatToDo) {

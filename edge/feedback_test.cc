@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "common/testing/temporary_directory.h"
+#include "common/transport/feedback_text.h"
 #include "edge/feedback_monitor.h"
-#include "edge/feedback_text.h"
 #include "edge/picture_file.h"
 
 namespace isotherm {
@@ -82,9 +82,28 @@ TEST(FeedbackTextTest, OneLineHasStateCoverageAdviceAndWay) {
   feedback.advice = {Advice::kMoveCloser};
   feedback.advice_reason = "40 % of the surface is farther than 0.60 m";
   feedback.T_depth_next = MakeTransform({0.3, 0, 0}, Eigen::Quaterniond::Identity());
+  EXPECT_EQ(
+      FeedbackText(feedback),
+      "closer (40 % of the surface is farther than 0.60 m), tracked, view 62 % good, all 25 % "
+      "of 0.80 m2, next view: 0.30 m right");
+}
+
+TEST(FeedbackTextTest, WithoutAdviceTheOperatorGoesOn) {
+  Feedback feedback;
+  EXPECT_EQ(AdviceText(feedback), "go on");
+  feedback.advice_reason = "90 % in view is measured well: go on";
+  EXPECT_EQ(AdviceText(feedback), "90 % in view is measured well: go on");
+}
+
+TEST(FeedbackTextTest, WhileLostTheLineSaysWhereTrackingWorked) {
+  Feedback feedback;
+  feedback.tracking_state = TrackingState::kLost;
+  feedback.advice = {Advice::kGoBackToRelocalise};
+  feedback.advice_reason = "tracking is lost: return to where it worked";
+  feedback.T_world_depth_next = MakeTransform({0.5, 0.59, -0.11}, Eigen::Quaterniond::Identity());
   EXPECT_EQ(FeedbackText(feedback),
-            "tracked, view 62 % good, all 25 % of 0.80 m2, closer (40 % of the surface is farther "
-            "than 0.60 m), next view: 0.30 m right");
+            "go back (tracking is lost: return to where it worked), LOST, it worked at (0.50 0.59 "
+            "-0.11) m looking (0.00 0.00 1.00)");
 }
 
 TEST(FeedbackNarratorTest, TellsChangesOfStateOnly) {

@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "common/time/clock.h"
+#include "common/transport/feedback_text.h"
 #include "edge/camera_health.h"
 #include "edge/edge_pipeline.h"
 #include "edge/edge_report.h"
-#include "edge/feedback_text.h"
 #include "edge/frame_account.h"
 #include "edge/publisher/publisher.h"
 

@@ -155,12 +155,6 @@ void FeedbackMaker::AddNextPose(const GroundPipeline& pipeline, const RigidTrans
                                 Feedback& feedback) const {
   if (T_map_depth == nullptr) {
     feedback.T_world_depth_next = LastKnownPose(pipeline);
-    if (!feedback.T_world_depth_next) return;
-    const Eigen::Vector3d p = feedback.T_world_depth_next->translation();
-    const Eigen::Vector3d ahead = feedback.T_world_depth_next->linear().col(2);
-    feedback.advice_reason +=
-        fmt::format(", at ({:.2f} {:.2f} {:.2f}) m looking ({:.2f} {:.2f} {:.2f})", p.x(), p.y(),
-                    p.z(), ahead.x(), ahead.y(), ahead.z());
     return;
   }
   if (feedback.done || !planner_ || planned_map_ != pipeline.atlas().active_index()) return;

@@ -1,4 +1,4 @@
-#include "edge/feedback_text.h"
+#include "common/transport/feedback_text.h"
 
 #include <fmt/format.h>
 
@@ -45,23 +45,43 @@ std::string MoveText(const RigidTransform& T_depth_next) {
   return text.empty() ? "here" : text;
 }
 
-std::string FeedbackText(const Feedback& feedback) {
-  std::string text(ToString(feedback.tracking_state));
+std::string AdviceText(const Feedback& feedback) {
+  std::string text;
+  for (const Advice advice : feedback.advice) Append(std::string(ToString(advice)), text);
+  if (text.empty()) return feedback.advice_reason.empty() ? "go on" : feedback.advice_reason;
+  return feedback.advice_reason.empty() ? text
+                                        : fmt::format("{} ({})", text, feedback.advice_reason);
+}
+
+std::vector<std::string> FeedbackParts(const Feedback& feedback) {
+  std::vector<std::string> parts = {AdviceText(feedback)};
+  std::string& tracking = parts.emplace_back(ToString(feedback.tracking_state));
   if (feedback.pose_covariance) {
     const PoseSigma sigma = LargestSigma(*feedback.pose_covariance);
-    text += fmt::format(" within {:.1f} mm {:.2f} deg", 1e3 * sigma.translation_m,
-                        sigma.rotation_rad * kDegPerRad);
+    tracking += fmt::format(" within {:.1f} mm {:.2f} deg", 1e3 * sigma.translation_m,
+                            sigma.rotation_rad * kDegPerRad);
   }
   if (std::isfinite(feedback.view.good))
-    text += fmt::format(", view {:.0f} % good", 100.0 * feedback.view.good);
+    parts.push_back(fmt::format("view {:.0f} % good", 100.0 * feedback.view.good));
   if (std::isfinite(feedback.model.good)) {
-    text += fmt::format(", all {:.0f} % of {:.2f} m2", 100.0 * feedback.model.good,
-                        feedback.covered_area_m2);
+    parts.push_back(fmt::format("all {:.0f} % of {:.2f} m2", 100.0 * feedback.model.good,
+                                feedback.covered_area_m2));
   }
-  for (const Advice advice : feedback.advice) text += fmt::format(", {}", ToString(advice));
-  if (!feedback.advice_reason.empty()) text += fmt::format(" ({})", feedback.advice_reason);
-  if (feedback.T_depth_next)
-    text += fmt::format(", next view: {}", MoveText(*feedback.T_depth_next));
+  if (feedback.T_depth_next) {
+    parts.push_back(fmt::format("next view: {}", MoveText(*feedback.T_depth_next)));
+  } else if (feedback.tracking_state == TrackingState::kLost && feedback.T_world_depth_next) {
+    const Eigen::Vector3d p = feedback.T_world_depth_next->translation();
+    const Eigen::Vector3d ahead = feedback.T_world_depth_next->linear().col(2);
+    parts.push_back(
+        fmt::format("it worked at ({:.2f} {:.2f} {:.2f}) m looking ({:.2f} {:.2f} {:.2f})", p.x(),
+                    p.y(), p.z(), ahead.x(), ahead.y(), ahead.z()));
+  }
+  return parts;
+}
+
+std::string FeedbackText(const Feedback& feedback) {
+  std::string text;
+  for (std::string& part : FeedbackParts(feedback)) Append(std::move(part), text);
   return text;
 }
 
