@@ -36,7 +36,8 @@ constexpr const char* kFooter =
     "\n"
     "Each scan leaves scan.mcap (what was received), cloud.ply, mesh.ply, trajectory.txt, renders/ "
     "and stats.json.\n"
-    "SIGTERM and Ctrl-C end it with everything flushed. The network is chosen by CYCLONEDDS_URI "
+    "SIGTERM, SIGHUP and Ctrl-C end it with everything flushed. The network is chosen by "
+    "CYCLONEDDS_URI "
     "(default: loopback\n"
     "only). Options come from the defaults, the configuration file, --set and the other options, "
     "the later winning.\n"
@@ -46,7 +47,7 @@ constexpr const char* kFooter =
     "  64  wrong command line\n"
     "  65  the rig's calibration is not usable\n"
     "  66  a file does not exist\n"
-    "  69  the network is not available\n"
+    "  69  the network is not available (--once; a service waits for it)\n"
     "  73  results or recording cannot be written, or the disk is full\n"
     "  74  writing failed\n"
     "  78  wrong configuration (all problems are listed)";

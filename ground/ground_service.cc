@@ -7,9 +7,10 @@
 #include <thread>
 #include <utility>
 
+#include "common/base/exit_deadline.h"
 #include "common/base/log.h"
 #include "common/base/service.h"
-#include "common/transport/participant.h"
+#include "common/transport/join_domain.h"
 #include "ground/distributor.h"
 #include "ground/export/results.h"
 #include "ground/reconstruction_loop.h"
@@ -21,6 +22,9 @@ namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
+
+// All results are written by then. With its network interface down, the middleware never ends.
+constexpr auto kTimeToLeaveNetwork = 500ms;
 
 /// Feeds the service manager's watchdog while frames move or nothing waits, and tells the status.
 void GuardUntilStopped(const std::stop_token& stop, const ItemQueue& queue,
@@ -45,15 +49,25 @@ int Fail(const Status& status) {
   return ExitCode(status);
 }
 
+/// Somebody who waits for one scan wants to know at once that the network is not there.
+Result<std::unique_ptr<Participant>> Join(int domain, const ServiceMode& mode,
+                                          const TransportEnvironment& environment,
+                                          const Clock& clock, const std::stop_token& stop) {
+  if (mode.single_scan) return Participant::Create(environment, domain);
+  return JoinDomain(environment, domain, clock, stop,
+                    [](const Status& reason) { NotifyWaiting(reason.message()); });
+}
+
 }  // namespace
 
 int RunGround(const GroundOptions& options, const ServiceMode& mode,
               const TransportEnvironment& environment, const Clock& clock, StopSignal& signal) {
   if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
     return Fail(prepared);
+  ExitDeadline leaving;  // Outlives the participant.
   const Result<std::unique_ptr<Participant>> participant =
-      Participant::Create(environment, options.live().domain());
-  if (!participant) return Fail(participant.error());
+      Join(options.live().domain(), mode, environment, clock, signal.token());
+  if (!participant) return signal.token().stop_requested() ? 0 : Fail(participant.error());
 
   const auto capacity = static_cast<std::size_t>(options.live().queue_frames());
   ItemQueue to_reconstruction(capacity, OverflowPolicy::kBlock);
@@ -101,8 +115,10 @@ int RunGround(const GroundOptions& options, const ServiceMode& mode,
     recording_thread.request_stop();
     reconstruction_thread.request_stop();
   }
-  if (!recording.status().ok()) return ExitCode(recording.status());
-  return ExitCode(reconstruction.status());
+  const int exit_code =
+      ExitCode(recording.status().ok() ? reconstruction.status() : recording.status());
+  leaving.Arm(kTimeToLeaveNetwork, exit_code, "the middleware");
+  return exit_code;
 }
 
 }  // namespace isotherm

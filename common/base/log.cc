@@ -1,10 +1,11 @@
 #include "common/base/log.h"
 
-#include <spdlog/sinks/stdout_sinks.h>
-#include <spdlog/spdlog.h>
+#include <fmt/format.h>
 
 #include <atomic>
 #include <cstdlib>
+
+#include "common/base/standard_error.h"
 
 namespace isotherm {
 namespace {
@@ -13,17 +14,6 @@ std::atomic<LogLevel> g_level{LogLevel::kInfo};
 
 // systemd sets JOURNAL_STREAM for services whose standard error is the journal (sd-daemon(3)).
 bool WritesToJournal() { return std::getenv("JOURNAL_STREAM") != nullptr; }
-
-spdlog::logger& Sink() {
-  static spdlog::logger logger = [] {
-    spdlog::logger created("isotherm", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-    created.set_pattern("%v");
-    created.set_level(spdlog::level::trace);
-    created.flush_on(spdlog::level::trace);
-    return created;
-  }();
-  return logger;
-}
 
 std::string_view Prefix(LogLevel level) {
   static const bool journal = WritesToJournal();
@@ -47,7 +37,12 @@ void SetLogLevel(LogLevel level) { g_level = level; }
 bool IsLogged(LogLevel level) { return level >= g_level.load(std::memory_order_relaxed); }
 
 void WriteLog(LogLevel level, std::string_view category, std::string_view message) {
-  Sink().info("{}{}: {}", Prefix(level), category, message);
+  if (const std::uint64_t left_out = TakeLeftOutOfStandardError(); left_out > 0) {
+    WriteStandardError(
+        fmt::format("{}Log: nobody read standard error for a while, lines left out={}\n",
+                    Prefix(LogLevel::kWarning), left_out));
+  }
+  WriteStandardError(fmt::format("{}{}: {}\n", Prefix(level), category, message));
 }
 
 }  // namespace isotherm

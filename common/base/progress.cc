@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/base/standard_error.h"
+
 namespace isotherm {
 
 ProgressBar::ProgressBar(std::string title, std::uint64_t total, std::string unit)
@@ -23,7 +25,14 @@ ProgressBar::ProgressBar(std::string title, std::uint64_t total, std::string uni
       start_(now_()) {}
 
 ProgressBar::~ProgressBar() {
-  if (open_line_) std::fputc('\n', out_);
+  if (open_line_) Print("\n");
+}
+
+void ProgressBar::Print(const std::string& text) {
+  // Progress is not worth waiting for a reader that has stopped reading.
+  if (out_ == stderr) return WriteStandardError(text);
+  std::fputs(text.c_str(), out_);
+  std::fflush(out_);
 }
 
 void ProgressBar::Update(double fraction) {
@@ -39,9 +48,8 @@ void ProgressBar::Finish() {
   if (finished_) return;
   finished_ = true;
   Show(Line(1.0, true));
-  if (open_line_) std::fputc('\n', out_);
+  if (open_line_) Print("\n");
   open_line_ = false;
-  std::fflush(out_);
 }
 
 std::string ProgressBar::Line(double fraction, bool finished) const {
@@ -71,12 +79,11 @@ void ProgressBar::Show(const std::string& line) {
   if (line == shown_) return;
   if (terminal_) {
     constexpr const char* kClearToEnd = "\x1b[K";
-    fmt::print(out_, "\r{}{}", line, kClearToEnd);
+    Print(fmt::format("\r{}{}", line, kClearToEnd));
     open_line_ = true;
   } else {
-    fmt::print(out_, "{}\n", line);
+    Print(line + "\n");
   }
-  std::fflush(out_);
   shown_ = line;
 }
 

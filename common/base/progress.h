@@ -35,6 +35,7 @@ class ProgressBar {
   std::string Line(double fraction, bool finished) const;
   double ElapsedSeconds() const;
   void Show(const std::string& line);
+  void Print(const std::string& text);
 
   const std::string title_;
   const std::uint64_t total_;

@@ -18,7 +18,17 @@ sigset_t StopSignals() {
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  // nohup asks for SIGHUP to be ignored; sigwait would take it all the same.
+  struct sigaction hang_up {};
+  const bool is_ignored =
+      sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler == SIG_IGN;
+  if (!is_ignored) sigaddset(&signals, SIGHUP);
   return signals;
+}
+
+std::string_view Reason(int signal) {
+  if (signal == SIGINT) return "interrupted";
+  return signal == SIGHUP ? "the terminal is gone" : "asked to stop";
 }
 
 void Notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_str())); }
@@ -27,6 +37,9 @@ void Notify(const std::string& state) { static_cast<void>(sd_notify(0, state.c_s
 
 void NotifyReady(std::string_view status) { Notify("READY=1\nSTATUS=" + std::string(status)); }
 void NotifyStatus(std::string_view status) { Notify("STATUS=" + std::string(status)); }
+void NotifyWaiting(std::string_view reason) {
+  Notify("READY=1\nWATCHDOG=1\nSTATUS=" + std::string(reason));
+}
 void NotifyWatchdog() { Notify("WATCHDOG=1"); }
 void NotifyStopping() { Notify("STOPPING=1"); }
 
@@ -36,9 +49,11 @@ std::optional<std::chrono::microseconds> WatchdogInterval() {
   return std::chrono::microseconds(microseconds / 2);
 }
 
-StopSignal::StopSignal() {
-  const sigset_t signals = StopSignals();
-  CHECK(pthread_sigmask(SIG_BLOCK, &signals, nullptr) == 0);
+void IgnoreBrokenPipes() { CHECK(::signal(SIGPIPE, SIG_IGN) != SIG_ERR); }
+
+StopSignal::StopSignal() : signals_(StopSignals()) {
+  IgnoreBrokenPipes();
+  CHECK(pthread_sigmask(SIG_BLOCK, &signals_, nullptr) == 0);
   waiter_ = std::jthread([this](const std::stop_token& end) { Wait(end); });
 }
 
@@ -48,19 +63,17 @@ StopSignal::~StopSignal() {
   pthread_kill(waiter_.native_handle(), SIGTERM);
   waiter_.join();
   // Signals of its lifetime that nobody took are not for whoever comes next.
-  const sigset_t signals = StopSignals();
   const timespec now{};
-  while (sigtimedwait(&signals, nullptr, &now) > 0) {
+  while (sigtimedwait(&signals_, nullptr, &now) > 0) {
   }
 }
 
 void StopSignal::Wait(const std::stop_token& end) {
-  const sigset_t signals = StopSignals();
   while (true) {
     int signal = 0;
-    if (sigwait(&signals, &signal) != 0 || end.stop_requested()) return;
+    if (sigwait(&signals_, &signal) != 0 || end.stop_requested()) return;
     if (!stop_.request_stop()) continue;
-    LOG(Service, Info) << (signal == SIGINT ? "interrupted" : "asked to stop") << ", leaving";
+    LOG(Service, Info) << Reason(signal) << ", leaving";
   }
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <signal.h>
+
 #include <chrono>
 #include <optional>
 #include <stop_token>
@@ -12,6 +14,9 @@ namespace isotherm {
 /// nothing. Thread-safe.
 void NotifyReady(std::string_view status);
 void NotifyStatus(std::string_view status);
+/// The daemon runs, is alive, and waits for `reason` to pass: ready, with that as its status. To be
+/// called again and again meanwhile.
+void NotifyWaiting(std::string_view reason);
 void NotifyWatchdog();
 void NotifyStopping();
 
@@ -19,10 +24,15 @@ void NotifyStopping();
 /// watchdog.
 std::optional<std::chrono::microseconds> WatchdogInterval();
 
-/// Turns SIGTERM and SIGINT into a stop token. Create it in main before any other thread, so that
-/// all threads inherit the blocked signals. The first signal requests stop; later ones change
-/// nothing: the program is already leaving and must not be torn down while it flushes. The signals
-/// stay blocked to the end of the process.
+/// From now on a pipe or terminal whose reader is gone makes writing fail instead of ending the
+/// process with SIGPIPE.
+void IgnoreBrokenPipes();
+
+/// Turns SIGTERM, SIGINT and SIGHUP (a terminal or ssh session that is gone; not under nohup) into
+/// a stop token, and ignores broken pipes. Create it in main before any other thread, so that all
+/// threads inherit the blocked signals. The first signal requests stop; later ones change nothing:
+/// the program is already leaving and must not be torn down while it flushes. The signals stay
+/// blocked to the end of the process.
 class StopSignal {
  public:
   StopSignal();
@@ -37,6 +47,7 @@ class StopSignal {
  private:
   void Wait(const std::stop_token& end);
 
+  const sigset_t signals_;
   std::stop_source stop_;
   std::jthread waiter_;
 };

@@ -6,6 +6,7 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <condition_variable>
 #include <cstdlib>
 #include <mutex>
@@ -29,6 +30,36 @@ TEST(StopSignalTest, F38SigtermBecomesAStopRequestAndASecondOneIsHarmless) {
   EXPECT_TRUE(signal.token().stop_requested());
   ASSERT_EQ(kill(getpid(), SIGTERM), 0);
   ASSERT_EQ(kill(getpid(), SIGINT), 0);
+}
+
+TEST(StopSignalTest, F38ATerminalThatIsGoneStopsToo) {
+  StopSignal signal;
+  ASSERT_EQ(kill(getpid(), SIGHUP), 0);
+  WaitForStop(signal.token());
+  EXPECT_TRUE(signal.token().stop_requested());
+}
+
+TEST(StopSignalTest, UnderNohupTheTerminalDoesNotMatter) {
+  ASSERT_NE(::signal(SIGHUP, SIG_IGN), SIG_ERR);
+  {
+    testing::internal::CaptureStderr();
+    StopSignal signal;
+    ASSERT_EQ(kill(getpid(), SIGHUP), 0);
+    ASSERT_EQ(kill(getpid(), SIGTERM), 0);
+    WaitForStop(signal.token());
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "Service: asked to stop, leaving\n");
+  ASSERT_NE(::signal(SIGHUP, SIG_DFL), SIG_ERR);
+}
+
+TEST(StopSignalTest, ABrokenPipeDoesNotEndTheProcess) {
+  const StopSignal signal;
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  close(ends[0]);
+  EXPECT_EQ(write(ends[1], "x", 1), -1);
+  EXPECT_EQ(errno, EPIPE);
+  close(ends[1]);
 }
 
 TEST(StopSignalTest, EndsWithoutASignal) {

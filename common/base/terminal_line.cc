@@ -4,8 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
+
+#include "common/base/standard_error.h"
 
 namespace isotherm {
 namespace {
@@ -48,14 +49,13 @@ std::string FitLine(std::span<const std::string> parts, std::string_view separat
 TerminalLine::TerminalLine() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
 TerminalLine::~TerminalLine() {
-  if (shown_) std::fputs("\n", stderr);
+  if (shown_) WriteStandardError("\n");
 }
 
 void TerminalLine::Show(std::span<const std::string> parts, std::string_view separator) {
   if (!terminal_) return;
   shown_ = true;
-  std::fprintf(stderr, "\033[2K%s\r", FitLine(parts, separator, TerminalColumns()).c_str());
-  std::fflush(stderr);
+  WriteStandardError("\033[2K" + FitLine(parts, separator, TerminalColumns()) + "\r");
 }
 
 }  // namespace isotherm

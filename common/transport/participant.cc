@@ -3,6 +3,8 @@
 #include <dds/dds.h>
 #include <fmt/format.h>
 
+#include <string>
+
 namespace isotherm {
 
 DdsHandle::DdsHandle(DdsHandle&& other) noexcept : value_(std::exchange(other.value_, 0)) {}
@@ -16,9 +18,18 @@ DdsHandle::~DdsHandle() {
   if (value_ > 0) static_cast<void>(dds_delete(value_));
 }
 
+namespace {
+
+std::string ReasonOf(const TransportEnvironment& environment, dds_return_t code) {
+  std::string error = environment.last_error();
+  while (error.ends_with('.')) error.pop_back();
+  return error.empty() ? dds_strretcode(code) : error;
+}
+
+}  // namespace
+
 Result<std::unique_ptr<Participant>> Participant::Create(const TransportEnvironment& environment,
                                                          int domain_id) {
-  static_cast<void>(environment);  // Its existence is what counts.
   if (domain_id < 0 || domain_id > kMaxDomainId) {
     return Err(
         InvalidArgument(fmt::format("DDS domain {} is outside 0..{}", domain_id, kMaxDomainId)));
@@ -27,9 +38,9 @@ Result<std::unique_ptr<Participant>> Participant::Create(const TransportEnvironm
       dds_create_participant(static_cast<dds_domainid_t>(domain_id), nullptr, nullptr));
   if (handle.value() < 0) {
     return Err(Unavailable(
-        fmt::format("cannot join DDS domain {} ({}): see the middleware's message above; check the "
-                    "profile in CYCLONEDDS_URI and its network interface",
-                    domain_id, dds_strretcode(handle.value()))));
+        fmt::format("cannot join DDS domain {} ({}); check the profile in CYCLONEDDS_URI and that "
+                    "its network interface is there and up (ip address)",
+                    domain_id, ReasonOf(environment, handle.value()))));
   }
   return std::unique_ptr<Participant>(new Participant(std::move(handle)));
 }

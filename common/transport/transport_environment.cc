@@ -41,6 +41,8 @@ struct TransportEnvironment::LogSink {
     while (text.ends_with('\n') || text.ends_with('\0')) text.remove_suffix(1);
     {
       std::scoped_lock lock(mutex);
+      if (LevelOf(data.priority) == LogLevel::kError) last_error = text;
+      if (is_quiet) return;
       if (std::uint64_t* refused = RefusalIn(text); refused != nullptr && ++*refused > 1) return;
       if (!limiter.Admit(clock.SteadyNow())) return;
     }
@@ -63,7 +65,20 @@ struct TransportEnvironment::LogSink {
   std::mutex mutex;  // Guards what follows.
   MiddlewareRefusals refusals;
   LineLimiter limiter{kMaxLogLinesPerSecond};
+  std::string last_error;
+  bool is_quiet = false;
 };
+
+TransportEnvironment::Quiet::Quiet(const TransportEnvironment& environment)
+    : environment_(environment) {
+  std::scoped_lock lock(environment_.sink_->mutex);
+  environment_.sink_->is_quiet = true;
+}
+
+TransportEnvironment::Quiet::~Quiet() {
+  std::scoped_lock lock(environment_.sink_->mutex);
+  environment_.sink_->is_quiet = false;
+}
 
 TransportEnvironment::TransportEnvironment(const Clock& clock)
     : sink_(std::make_unique<LogSink>(clock)) {
@@ -74,6 +89,11 @@ TransportEnvironment::TransportEnvironment(const Clock& clock)
 }
 
 TransportEnvironment::~TransportEnvironment() { dds_set_log_sink(nullptr, nullptr); }
+
+std::string TransportEnvironment::last_error() const {
+  std::scoped_lock lock(sink_->mutex);
+  return sink_->last_error;
+}
 
 std::uint64_t TransportEnvironment::suppressed_log_lines() const {
   std::scoped_lock lock(sink_->mutex);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "common/time/clock.h"
 
@@ -31,6 +32,21 @@ class TransportEnvironment {
   TransportEnvironment(const TransportEnvironment&) = delete;
   TransportEnvironment& operator=(const TransportEnvironment&) = delete;
 
+  /// Keeps the middleware's messages out of the log during its life, for what is tried again and
+  /// again.
+  class Quiet {
+   public:
+    explicit Quiet(const TransportEnvironment& environment);
+    ~Quiet();
+    Quiet(const Quiet&) = delete;
+    Quiet& operator=(const Quiet&) = delete;
+
+   private:
+    const TransportEnvironment& environment_;
+  };
+
+  /// The newest error of the middleware, in its words; empty if there was none.
+  std::string last_error() const;
   /// Messages of the middleware that were left out of the log because there were too many.
   std::uint64_t suppressed_log_lines() const;
   /// Logged once per cause. Known from the middleware's messages only: a lower bound.

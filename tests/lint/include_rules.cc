@@ -101,7 +101,6 @@ const std::map<std::string_view, std::string_view>& SdkHomes() {
       {"umockdev", "edge/usb/testing"},
       {"boost/beast", "ground/console"},
       {"boost/asio", "ground/console"},
-      {"spdlog/", "common/base"},
       {"systemd/", "common/base"},
   };
   return kHomes;

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <thread>
+
+namespace isotherm {
+
+/// Ends the process when leaving takes too long, for instance because a library cannot be torn down
+/// (the middleware, while its network interface is down) or a disk does not answer. Nothing happens
+/// before Arm() and after its own end. Thread-compatible.
+class ExitDeadline {
+ public:
+  using Duration = std::chrono::nanoseconds;
+
+  ExitDeadline() = default;
+  ExitDeadline(const ExitDeadline&) = delete;
+  ExitDeadline& operator=(const ExitDeadline&) = delete;
+
+  /// The process has `limit` left from now on, instead of what it had before. After that
+  /// `last_words` is called if there is one, `what` is named in the log, and the process ends with
+  /// `status` as it is, without destructors.
+  void Arm(Duration limit, int status, std::string what, std::function<void()> last_words = {});
+
+ private:
+  std::jthread thread_;
+};
+
+}  // namespace isotherm

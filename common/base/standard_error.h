@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+namespace isotherm {
+
+/// A text output that never waits for whoever reads it. What the reader does not take at once is
+/// kept, up to kKeptBytes, and offered again with the next text; beyond that texts are left out and
+/// counted. A reader that is gone costs the text and nothing else, if SIGPIPE is ignored
+/// (IgnoreBrokenPipes()). Thread-safe.
+class UnblockedOutput {
+ public:
+  static constexpr std::size_t kKeptBytes = 64U << 10;
+
+  /// `descriptor` stays the caller's and may be pointed elsewhere in between (dup2).
+  explicit UnblockedOutput(int descriptor) : descriptor_(descriptor) {}
+  ~UnblockedOutput();
+  UnblockedOutput(const UnblockedOutput&) = delete;
+  UnblockedOutput& operator=(const UnblockedOutput&) = delete;
+
+  /// `text` is left out as a whole or not at all.
+  void Write(std::string_view text);
+  /// How many texts were left out since the last call; 0 while there is no room for saying so.
+  std::uint64_t TakeLeftOut();
+  /// Offers what is kept for so long; for the end of the program.
+  void Flush(int patience_ms);
+
+ private:
+  enum class Kind : std::uint8_t { kDirect, kReopened, kSocket, kPolled };
+
+  void LookAtDescriptor();
+  /// Offers what is kept; true if nothing is left.
+  bool Offer();
+  /// Bytes taken: 0 if there is no room, below 0 if there never will be any.
+  std::ptrdiff_t TryWrite(std::string_view text) const;
+
+  const int descriptor_;
+  mutable std::mutex mutex_;  // Guards what follows.
+  Kind kind_ = Kind::kDirect;
+  int own_ = -1;  ///< Of kReopened: the same file, but never waiting.
+  std::uint64_t device_ = 0;
+  std::uint64_t inode_ = 0;
+  std::string kept_;
+  std::uint64_t left_out_ = 0;
+};
+
+/// Writes to standard error by way of the process's one UnblockedOutput. Thread-safe.
+void WriteStandardError(std::string_view text);
+/// UnblockedOutput::TakeLeftOut of it.
+std::uint64_t TakeLeftOutOfStandardError();
+
+}  // namespace isotherm

@@ -1,0 +1,51 @@
+#include "common/transport/join_domain.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <mutex>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/time/back_off.h"
+
+namespace isotherm {
+namespace {
+
+constexpr Nanoseconds kTellInterval = std::chrono::milliseconds(250);
+
+void Sleep(const std::stop_token& stop, Nanoseconds duration) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  std::unique_lock lock(mutex);
+  never.wait_for(lock, stop, duration, [] { return false; });
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Participant>> JoinDomain(const TransportEnvironment& environment,
+                                                int domain_id, const Clock& clock,
+                                                const std::stop_token& stop,
+                                                const WaitingForNetwork& waiting) {
+  Result<std::unique_ptr<Participant>> joined = Participant::Create(environment, domain_id);
+  const bool waits = !joined && joined.error().code() == StatusCode::kUnavailable;
+  if (!waits) return joined;
+  LOG(Transport, Warning) << joined.error().message() << "; trying again until it works";
+  // The middleware would repeat its reason each time.
+  const TransportEnvironment::Quiet quiet(environment);
+  BackOff back_off;
+  while (!joined && !stop.stop_requested()) {
+    const SteadyTime due = clock.SteadyNow() + back_off.Next();
+    for (SteadyTime now = clock.SteadyNow(); now < due && !stop.stop_requested();
+         now = clock.SteadyNow()) {
+      waiting(joined.error());
+      Sleep(stop, std::min<Nanoseconds>(due - now, kTellInterval));
+    }
+    if (!stop.stop_requested()) joined = Participant::Create(environment, domain_id);
+  }
+  if (joined) {
+    LOG(Transport, Info) << "joined DDS domain " << domain_id;
+  }
+  return joined;
+}
+
+}  // namespace isotherm
