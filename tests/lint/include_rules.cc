@@ -21,10 +21,9 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
     folders.insert(folders.end(), more.begin(), more.end());
     return folders;
   };
-  static const Folders kCommon =
-      with(kFrameParts, {"common/radiometry", "common/codec", "common/config", "common/recording",
-                         "common/dataset", "common/simulation", "common/stamping",
-                         "common/transport"});
+  static const Folders kCommon = with(
+      kFrameParts, {"common/radiometry", "common/codec", "common/config", "common/recording",
+                    "common/dataset", "common/simulation", "common/stamping", "common/transport"});
   static const std::map<std::string_view, Folders> kAllowed = {
       {"common/base", {}},
       {"common/time", {"common/base"}},
