@@ -58,6 +58,7 @@ void DescribeAccount(const SessionAccount& account, const RecordingStats& record
   link["depth"] = DescribeStream(account.depth, recorded.depth_frames);
   link["thermal"] = DescribeStream(account.thermal, recorded.thermal_frames);
   link["recording_failed_frames"] = recorded.failed;
+  link["refused_samples"] = account.refused_samples;
   if (account.clock) DescribeClock(*account.clock, link["clock"]);
   Json& feedback = link["feedback"];
   feedback["received_by_edge"] = account.feedback.count;

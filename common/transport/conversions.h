@@ -5,8 +5,8 @@
 #include "common/transport/refusal.h"
 #include "common/transport/topics.h"
 
-/// Between our messages and what idlc generated, field by field. The key edge_id is handled by the
-/// endpoints.
+/// Between our messages and what idlc generated, field by field. The key edge_id and the mark at
+/// the end are handled by the endpoints.
 namespace isotherm {
 
 /// Fills `to`, which must be all zero. Payloads are borrowed from `from`; short lists are allocated
@@ -35,5 +35,21 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_CommandResult& from, Co
 std::optional<RefusalCause> FromWire(const isotherm_wire_Receipt& from, Receipt* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedback* to);
 std::optional<RefusalCause> FromWire(const isotherm_wire_Hello& from, Hello* to);
+
+/// Says with which members a sample of this major version ends at least; the hello's type is
+/// frozen and has no mark.
+template <typename Wire>
+void SetMark(Wire* to) {
+  if constexpr (requires { to->mark; }) to->mark = kWireMark;
+}
+
+/// As FromWire, for what a peer sent: refuses what ends too early, whose members read as zero.
+template <typename Wire, typename Message>
+std::optional<RefusalCause> Receive(const Wire& from, Message* to) {
+  if constexpr (requires { from.mark; }) {
+    if (from.mark != kWireMark) return RefusalCause::kIncomplete;
+  }
+  return FromWire(from, to);
+}
 
 }  // namespace isotherm

@@ -72,7 +72,6 @@ std::optional<RefusalCause> FromWireCamera(const isotherm_wire_CameraReport& fro
 void ToWireClock(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
   to->clock_offset_s = from.clock.offset_s;
   to->clock_error_s = from.clock.max_error_s;
-  to->has_clock = true;
   to->clock_synchronised = from.clock.synchronised;
   to->clock_estimated_error_s = from.clock.estimated_error_s;
   to->clock_steps = from.clock.steps;
@@ -84,24 +83,20 @@ void ToWireClock(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
 }
 
 std::optional<RefusalCause> FromWireClock(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
-  const double estimated_error_s =
-      from.has_clock ? from.clock_estimated_error_s : std::numeric_limits<double>::quiet_NaN();
   const auto infinite =
-      CheckFiniteOrUnknown({from.clock_offset_s, from.clock_error_s, estimated_error_s});
+      CheckFiniteOrUnknown({from.clock_offset_s, from.clock_error_s, from.clock_estimated_error_s});
   if (infinite) return infinite;
   if (const auto cause = CheckFinite({from.clock_step_sum_s})) return cause;
-  if (from.clock_error_s < 0.0 || estimated_error_s < 0.0 ||
+  if (from.clock_error_s < 0.0 || from.clock_estimated_error_s < 0.0 ||
       std::abs(from.clock_step_sum_s) > kMaxClockStep_s) {
     return RefusalCause::kOutOfRange;
   }
-  // An edge before wire 1.2 gave the bound only while synchronised.
-  to->clock = {
-      .synchronised = from.has_clock ? from.clock_synchronised : !std::isnan(from.clock_error_s),
-      .offset_s = from.clock_offset_s,
-      .estimated_error_s = estimated_error_s,
-      .max_error_s = from.clock_error_s,
-      .steps = from.clock_steps,
-      .step_sum_s = from.clock_step_sum_s};
+  to->clock = {.synchronised = from.clock_synchronised,
+               .offset_s = from.clock_offset_s,
+               .estimated_error_s = from.clock_estimated_error_s,
+               .max_error_s = from.clock_error_s,
+               .steps = from.clock_steps,
+               .step_sum_s = from.clock_step_sum_s};
   if (from.echo_ping == 0) return std::nullopt;
   if (const auto cause = CheckClockTime(from.echo_received_ns)) return cause;
   if (const auto cause = CheckClockTime(from.echo_sent_ns)) return cause;
@@ -113,7 +108,6 @@ std::optional<RefusalCause> FromWireClock(const isotherm_wire_EdgeStatus& from, 
 
 void ToWireNuc(const NucReport& from, isotherm_wire_EdgeStatus* to) {
   to->nuc_state = static_cast<std::uint8_t>(from.state);
-  to->has_nuc = true;
   to->nuc_source = static_cast<std::uint8_t>(from.source);
   to->nuc_policy = static_cast<std::uint8_t>(from.policy);
   to->nuc_seconds_since = from.seconds_since;
@@ -129,7 +123,6 @@ void ToWireNuc(const NucReport& from, isotherm_wire_EdgeStatus* to) {
 std::optional<RefusalCause> FromWireNuc(const isotherm_wire_EdgeStatus& from, NucReport* to) {
   if (const auto cause = CheckEnum(from.nuc_state, NucState::kError)) return cause;
   to->state = static_cast<NucState>(from.nuc_state);
-  if (!from.has_nuc) return std::nullopt;
   if (const auto cause = CheckEnum(from.nuc_source, NucSource::kInferred)) return cause;
   if (const auto cause = CheckEnum(from.nuc_policy, NucPolicy::kCamera)) return cause;
   const auto infinite = CheckFiniteOrUnknown({from.nuc_seconds_since, from.nuc_closed_share,
@@ -182,10 +175,8 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeS
   if (infinite) return infinite;
   if (const auto cause = FromWireStream(from.depth, &to->depth)) return cause;
   if (const auto cause = FromWireStream(from.thermal, &to->thermal)) return cause;
-  if (from.has_clock) {  // All zero from an edge before wire 1.2.
-    if (const auto cause = FromWireCamera(from.depth_camera, &to->depth_camera)) return cause;
-    if (const auto cause = FromWireCamera(from.thermal_camera, &to->thermal_camera)) return cause;
-  }
+  if (const auto cause = FromWireCamera(from.depth_camera, &to->depth_camera)) return cause;
+  if (const auto cause = FromWireCamera(from.thermal_camera, &to->thermal_camera)) return cause;
   to->session = from.session;
   to->time = CaptureTimeFromNanoseconds(from.time_ns);
   to->scan_state = static_cast<ScanState>(from.scan_state);

@@ -66,23 +66,6 @@ TEST(ConvertStatusTest, F17AnUnsynchronisedClockSaysSo) {
   EXPECT_TRUE(std::isnan(status.clock.estimated_error_s));
 }
 
-/// What an edge before wire 1.2 does not send reads as zero.
-TEST(ConvertStatusTest, ZerosOfAnOldEdgeAreNotTakenForMeasurements) {
-  isotherm_wire_EdgeStatus wire{};
-  wire.clock_error_s = 0.002;
-  EdgeStatus status;
-  ASSERT_EQ(FromWire(wire, &status), std::nullopt);
-  EXPECT_TRUE(status.clock.synchronised) << "it gave a bound only while synchronised";
-  EXPECT_EQ(status.clock.max_error_s, 0.002);
-  EXPECT_TRUE(std::isnan(status.clock.estimated_error_s));
-  EXPECT_TRUE(std::isnan(status.depth_camera.stamp_sigma_s));
-  EXPECT_TRUE(std::isnan(status.depth_camera.stamping_p99_s));
-  EXPECT_FALSE(status.clock_echo.has_value());
-  wire.clock_error_s = std::numeric_limits<double>::quiet_NaN();
-  ASSERT_EQ(FromWire(wire, &status), std::nullopt);
-  EXPECT_FALSE(status.clock.synchronised);
-}
-
 TEST(ConvertStatusTest, F60HostileClocksAreRefused) {
   using Wire = isotherm_wire_EdgeStatus;
   struct Case {

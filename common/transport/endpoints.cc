@@ -94,6 +94,7 @@ Status Writer<Message>::Write(std::string_view edge_id, const Message& message) 
   WireSample<Message> sample;
   CopyText(edge_id, sample.wire.edge_id);
   ToWire(message, &sample.wire);
+  SetMark(&sample.wire);
   const dds_return_t code = dds_write(writer_.value(), &sample.wire);
   if (code == DDS_RETCODE_OK) return OkStatus();
   const std::string text = fmt::format("{}: {}", TopicName(kTopic), dds_strretcode(code));
@@ -138,7 +139,7 @@ struct Reader<Message>::Impl {
     Received<Message> received;
     received.writer = writer;
     received.edge_id = ReadText(sample.wire.edge_id);
-    if (const auto cause = FromWire(sample.wire, &received.message)) {
+    if (const auto cause = isotherm::Receive(sample.wire, &received.message)) {
       refusals->Add(*cause, fmt::format("topic={} edge_id={}", TopicName(TopicOf<Message>::kId),
                                         received.edge_id));
       return;
@@ -162,7 +163,7 @@ Status Reader<Message>::Open(const Participant& participant, RefusalCounter* ref
   auto impl = std::make_unique<Impl>();
   impl->refusals = refusals;
   ISOTHERM_RETURN_IF_ERROR(CreateTopic(participant, kTopic, &impl->topic));
-  const QosPtr qos = MakeQos(kTopic);
+  const QosPtr qos = MakeReaderQos(kTopic);
   impl->reader =
       DdsHandle(dds_create_reader(participant.handle(), impl->topic.value(), qos.get(), nullptr));
   if (impl->reader.value() < 0) return CreationFailed("reader", kTopic, impl->reader.value());

@@ -32,6 +32,7 @@ Sample GoodSample(std::vector<std::uint8_t>* payload) {
   Sample sample{};
   std::strcpy(sample.edge_id, "test-edge");
   sample.stamp.session = 1;
+  sample.mark = kWireMark;
   sample.image.width = 64;
   sample.image.height = 48;
   *payload = Bytes(64 * 48 * 2);

@@ -21,9 +21,12 @@
 namespace isotherm {
 
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
-/// Major: they do not, and say so (CheckCompatible()).
-inline constexpr std::uint16_t kWireMajor = 1;
-inline constexpr std::uint16_t kWireMinor = 2;
+/// Major: they do not and say so (CheckCompatible()); the topics have other names (qos.cc).
+inline constexpr std::uint16_t kWireMajor = 2;
+inline constexpr std::uint16_t kWireMinor = 0;
+
+/// Ends each sample (idl/isotherm_frames.idl). Not 0, which is what a missing member reads as.
+inline constexpr std::uint8_t kWireMark = 0xA5;
 
 inline constexpr std::size_t kMaxIdBytes = 32;     ///< edge_id, serial numbers, names of stages.
 inline constexpr std::size_t kMaxTextBytes = 256;  ///< Sentences.
@@ -198,10 +201,10 @@ struct EdgeStatus {
   PublishPolicy publish_policy = PublishPolicy::kLive;
   StreamStatus depth;
   StreamStatus thermal;
-  NucReport nuc;  ///< From an edge before wire 1.2: the state alone.
+  NucReport nuc;
   double spool_fill_ratio = std::numeric_limits<double>::quiet_NaN();  ///< 0..1.
   std::uint64_t spool_frames = 0;  ///< Recorded but not yet published.
-  ClockReport clock;  ///< From an edge before wire 1.2: neither estimated error nor steps.
+  ClockReport clock;
   std::optional<ClockEcho> clock_echo;
   std::uint64_t disk_free_bytes = 0;
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
@@ -308,7 +311,7 @@ struct Feedback {
   std::vector<std::uint8_t>
       picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
   std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
-  /// Of T_world_depth, relative to the model; absent while lost and from a ground before wire 1.1.
+  /// Of T_world_depth, relative to the model; absent while lost.
   std::optional<PoseCovariance> pose_covariance;
   std::string advice_reason{};  ///< Why, or what to do, with numbers; at most kMaxTextBytes.
   bool done = false;            ///< Enough of the whole surface is measured well.

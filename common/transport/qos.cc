@@ -2,6 +2,7 @@
 
 #include <dds/dds.h>
 
+#include <algorithm>
 #include <array>
 
 namespace isotherm {
@@ -12,7 +13,7 @@ namespace {
 struct Profile {
   const char* name;
   /// Samples kept per rig, on both sides.
-  int history;
+  std::int32_t history;
   /// Kept for readers that come later (transient-local). Frames too: what is written between the
   /// moment the writer sees the reader and the moment the reader sees the writer would be lost
   /// otherwise.
@@ -23,22 +24,26 @@ struct Profile {
   dds_duration_t liveliness;
 };
 
+constexpr std::int32_t kLeastReaderHistory = 16;
 constexpr dds_duration_t kFrameBlocking = DDS_MSECS(100);
 constexpr dds_duration_t kSmallBlocking = DDS_MSECS(50);
 constexpr dds_duration_t kLease = DDS_SECS(1);
 
+// The major version is in the names, so that what a peer of another one sends is not even
+// delivered. The hello has none, and its type is frozen: it is how they tell each other.
+static_assert(kWireMajor == 2);
 constexpr std::array<Profile, 10> kProfiles = {{
-    {"isotherm/depth", kFrameHistory, true, kFrameBlocking, kLease},
-    {"isotherm/thermal", kFrameHistory, true, kFrameBlocking, kLease},
-    {"isotherm/rig", 1, true, kSmallBlocking, kLease},
-    {"isotherm/edge_status", 1, true, kSmallBlocking, kLease},
+    {"isotherm/2/depth", kFrameHistory, true, kFrameBlocking, kLease},
+    {"isotherm/2/thermal", kFrameHistory, true, kFrameBlocking, kLease},
+    {"isotherm/2/rig", 1, true, kSmallBlocking, kLease},
+    {"isotherm/2/edge_status", 1, true, kSmallBlocking, kLease},
     // No order may be overwritten by the next one, and none may reach an edge that starts later.
-    {"isotherm/command", 16, false, kSmallBlocking, kLease},
-    {"isotherm/command_result", 16, false, kSmallBlocking, kLease},
-    {"isotherm/receipt", 1, false, kSmallBlocking, kLease},
-    {"isotherm/feedback", 1, false, kSmallBlocking, kLease},
+    {"isotherm/2/command", 16, false, kSmallBlocking, kLease},
+    {"isotherm/2/command_result", 16, false, kSmallBlocking, kLease},
+    {"isotherm/2/receipt", 1, false, kSmallBlocking, kLease},
+    {"isotherm/2/feedback", 1, false, kSmallBlocking, kLease},
     {"isotherm/hello", 1, true, kSmallBlocking, kLease},
-    {"isotherm/outside_pose", kOutsidePoseHistory, true, kSmallBlocking, kLease},
+    {"isotherm/2/outside_pose", kOutsidePoseHistory, true, kSmallBlocking, kLease},
 }};
 
 const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }
@@ -63,6 +68,13 @@ QosPtr MakeQos(TopicId topic) {
   // A writer that leaves does not take its last samples with it.
   dds_qset_writer_data_lifecycle(qos.get(), false);
   dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  return qos;
+}
+
+QosPtr MakeReaderQos(TopicId topic) {
+  QosPtr qos = MakeQos(topic);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST,
+                   std::max(ProfileOf(topic).history, kLeastReaderHistory));
   return qos;
 }
 

@@ -24,5 +24,8 @@ using QosPtr = std::unique_ptr<dds_qos, DdsQosDeleter>;
 const char* TopicName(TopicId topic);
 /// The same for topic, writer and reader, so that both sides cannot disagree.
 QosPtr MakeQos(TopicId topic);
+/// For a reader, which keeps more of what is not yet taken than a writer does: somebody else's
+/// sample under the same key must not push out the one that matters.
+QosPtr MakeReaderQos(TopicId topic);
 
 }  // namespace isotherm

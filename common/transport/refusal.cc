@@ -8,6 +8,8 @@ namespace isotherm {
 
 std::string_view ToString(RefusalCause cause) {
   switch (cause) {
+    case RefusalCause::kIncomplete:
+      return "members are missing";
     case RefusalCause::kOversizePayload:
       return "oversize payload";
     case RefusalCause::kEmptyPayload:

@@ -43,6 +43,7 @@ struct SessionAccount {
   bool closed = false;  ///< ... and everything has arrived or was given up.
   StreamAccount depth;
   StreamAccount thermal;
+  std::uint64_t refused_samples = 0;  ///< Of all topics, since this process runs.
   FeedbackLatency feedback;           ///< As the edge measured it.
   std::optional<ClockAccount> clock;  ///< nullopt before the first status.
 };

@@ -235,6 +235,7 @@ void DdsSubscriber::Housekeep() {
   if (const auto session = book_.newest()) {
     account = book_.Account(depth_.stream().tally(*session), thermal_.stream().tally(*session));
   }
+  account.refused_samples = refusals_.total();
   std::scoped_lock lock(mutex_);
   stats_.account = account;
   stats_.refused = refusals_.total();
@@ -245,9 +246,10 @@ void DdsSubscriber::Housekeep() {
 
 void DdsSubscriber::CloseSessions(SteadyTime now) {
   while (const auto session = book_.oldest_open()) {
-    const auto account =
+    auto account =
         book_.TryClose(depth_.stream().tally(*session), thermal_.stream().tally(*session), now);
     if (!account) return;
+    account->refused_samples = refusals_.total();
     // Complete, but perhaps waiting for numbers that were never published.
     depth_.DeliverAll();
     thermal_.DeliverAll();

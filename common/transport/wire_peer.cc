@@ -1,15 +1,18 @@
-// Edge and ground of wire 1.1 in one, for tests/link: peer_1_1 DOMAIN. Writes a hello, a
-// status, a command and a receipt until it has got one of each itself; prints what it got. Knows
-// nothing of today's types.
+// Edge and ground of another version in one, for tests/link: DOMAIN [SECONDS]. Built once with the
+// types of wire 1.1 and once with those of a minor version to come; knows nothing of today's.
+// Writes a hello, a status, a command and a receipt until it has got one of each itself (of another
+// major: the hello), and for SECONDS more; prints what it got.
 #include <dds/dds.h>
-#include <wire_1_1.h>
+#include PEER_TYPES
 
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <thread>
 
 #include "common/base/check.h"
+#include "common/transport/messages.h"
 #include "common/transport/qos.h"
 
 namespace isotherm {
@@ -20,17 +23,20 @@ constexpr const char* kProfile =
     "</General></Domain></CycloneDDS>";
 constexpr dds_duration_t kRepeat = DDS_MSECS(50);
 constexpr int kMostRepeats = 1200;  // A minute: nobody is there any more.
+constexpr bool kSameMajor = PEER_MAJOR == kWireMajor;
+// A peer of wire 1 had no version in the names.
+constexpr const char* kTopics = PEER_MAJOR == 1 ? "isotherm/" : "isotherm/2/";
 
 /// Writes and reads one topic.
 template <typename Sample>
 class Ends {
  public:
   Ends(dds_entity_t participant, dds_entity_t waiter, const dds_topic_descriptor_t& descriptor,
-       TopicId id)
+       TopicId id, const std::string& name)
       : descriptor_(descriptor) {
     const QosPtr qos = MakeQos(id);
     const dds_entity_t topic =
-        dds_create_topic(participant, &descriptor, TopicName(id), qos.get(), nullptr);
+        dds_create_topic(participant, &descriptor, name.c_str(), qos.get(), nullptr);
     writer_ = dds_create_writer(participant, topic, qos.get(), nullptr);
     reader_ = dds_create_reader(participant, topic, qos.get(), nullptr);
     CHECK(writer_ > 0 && reader_ > 0);
@@ -52,6 +58,14 @@ class Ends {
     }
   }
   bool got() const { return got_; }
+  /// Whether somebody reads or writes this topic besides.
+  bool IsShared() const {
+    dds_publication_matched_status_t readers{};
+    dds_subscription_matched_status_t writers{};
+    CHECK(dds_get_publication_matched_status(writer_, &readers) == DDS_RETCODE_OK);
+    CHECK(dds_get_subscription_matched_status(reader_, &writers) == DDS_RETCODE_OK);
+    return readers.total_count + writers.total_count > 0;
+  }
 
  private:
   const dds_topic_descriptor_t& descriptor_;
@@ -63,26 +77,31 @@ class Ends {
 template <typename Sample>
 Sample Named() {
   Sample sample{};
-  std::strcpy(sample.edge_id, "old");
+  std::strcpy(sample.edge_id, "edge");
+  if constexpr (requires { sample.mark; }) sample.mark = kWireMark;
   return sample;
 }
 
-int Main(int domain) {
+int Main(int domain, int seconds) {
   setenv("CYCLONEDDS_URI", kProfile, /*overwrite=*/1);
   const dds_entity_t participant =
       dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
   CHECK(participant > 0);
   const dds_entity_t waiter = dds_create_waitset(participant);
-  Ends<isotherm_wire_Hello> hello(participant, waiter, isotherm_wire_Hello_desc, TopicId::kHello);
+  const std::string topics = kTopics;
   Ends<isotherm_wire_EdgeStatus> status(participant, waiter, isotherm_wire_EdgeStatus_desc,
-                                        TopicId::kEdgeStatus);
+                                        TopicId::kEdgeStatus, topics + "edge_status");
   Ends<isotherm_wire_Command> command(participant, waiter, isotherm_wire_Command_desc,
-                                      TopicId::kCommand);
+                                      TopicId::kCommand, topics + "command");
   Ends<isotherm_wire_Receipt> receipt(participant, waiter, isotherm_wire_Receipt_desc,
-                                      TopicId::kReceipt);
+                                      TopicId::kReceipt, topics + "receipt");
+  // Last: who has met this one has met the others, as the middleware announces them in order.
+  Ends<isotherm_wire_Hello> hello(participant, waiter, isotherm_wire_Hello_desc, TopicId::kHello,
+                                  "isotherm/hello");
   auto own_hello = Named<isotherm_wire_Hello>();
-  own_hello.wire_major = 1;
-  own_hello.wire_minor = 1;
+  own_hello.wire_major = PEER_MAJOR;
+  own_hello.wire_minor = PEER_MINOR;
+  std::strcpy(own_hello.software_version, "of another day");
   auto own_status = Named<isotherm_wire_EdgeStatus>();
   own_status.session = 11;
   own_status.time_ns = 1'700'000'000'000'000'000;
@@ -100,8 +119,12 @@ int Main(int domain) {
   own_receipt.thermal.next_number = own_receipt.thermal.received = 40;
 
   for (int i = 0; i < kMostRepeats; ++i) {
-    if (hello.got() && status.got() && command.got() && receipt.got()) break;
-    hello.Write(own_hello);
+    const bool got_all = status.got() && command.got() && receipt.got();
+    if (hello.got() && (!kSameMajor || got_all)) break;
+    for (std::uint8_t role = 0; role < 2; ++role) {
+      own_hello.role = role;
+      hello.Write(own_hello);
+    }
     status.Write(own_status);
     command.Write(own_command);
     receipt.Write(own_receipt);
@@ -125,7 +148,11 @@ int Main(int domain) {
                       s.thermal.holes._length > 0 ? s.thermal.holes._buffer[0].last : 0));
     });
   }
+  std::printf("shared: status %d command %d receipt %d\n", status.IsShared(), command.IsShared(),
+              receipt.IsShared());
   std::puts("got all");
+  std::fflush(stdout);
+  std::this_thread::sleep_for(std::chrono::seconds(seconds));  // Hellos stay as long as we do.
   dds_delete(participant);
   return 0;
 }
@@ -133,4 +160,7 @@ int Main(int domain) {
 }  // namespace
 }  // namespace isotherm
 
-int main(int argc, char** argv) { return argc == 2 ? isotherm::Main(std::atoi(argv[1])) : 64; }
+int main(int argc, char** argv) {
+  if (argc != 2 && argc != 3) return 64;
+  return isotherm::Main(std::atoi(argv[1]), argc == 3 ? std::atoi(argv[2]) : 0);
+}
