@@ -52,7 +52,9 @@ void ToWireMode(const StreamMode& from, isotherm_wire_StreamMode* to) {
 }
 
 std::optional<RefusalCause> FromWireMode(const isotherm_wire_StreamMode& from, StreamMode* to) {
-  if (std::size_t{from.width} * from.height > kMaxFramePixels) {
+  // Each of them as well: beside a side of 0 the other one could be anything.
+  if (from.width > kMaxFramePixels || from.height > kMaxFramePixels ||
+      std::size_t{from.width} * from.height > kMaxFramePixels) {
     return RefusalCause::kImpossibleSize;
   }
   if (const auto cause = CheckFinite({from.rate_hz})) return cause;
