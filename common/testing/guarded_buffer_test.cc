@@ -2,16 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
+#include <algorithm>
+#include <atomic>
+#include <string_view>
 #include <vector>
 
 namespace isotherm::testing {
 namespace {
 
-/// The byte at `index`, which may lie outside; what the compiler cannot foresee.
+/// The byte at `index`, which may lie outside; really read.
 std::uint8_t ByteAt(const GuardedBuffer& buffer, std::size_t index) {
-  const volatile std::uint8_t* const begin = buffer.bytes().data();
-  return begin[index];
+  return std::atomic_ref(buffer.bytes().data()[index]).load();
 }
 
 TEST(GuardedBufferTest, HoldsTheBytesWhateverTheirNumber) {
