@@ -45,7 +45,11 @@ void Distributor::OnFrame(Item item) {
   constexpr std::size_t kMaxEarly = 128;
   if (early_.size() == kMaxEarly) {
     early_.pop_front();
-    LOG(Ground, Warning) << "frames arrive but no rig description: is the edge of another version?";
+    if (const auto left_out = early_limiter_.Admit(clock_.SteadyNow())) {
+      LOG(Ground, Warning)
+          << "frames arrive but no rig description: is the edge of another version?"
+          << LeftOutText(*left_out);
+    }
   }
   early_.push_back(std::move(item));
 }

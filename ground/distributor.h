@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/time/clock.h"
+#include "common/time/line_limiter.h"
 #include "ground/ground_options.pb.h"
 #include "ground/session_item.h"
 
@@ -44,6 +45,7 @@ class Distributor {
   std::stop_token stop_;
   std::optional<std::uint64_t> session_;
   std::deque<Item> early_;
+  LineLimiter early_limiter_;
 };
 
 }  // namespace isotherm

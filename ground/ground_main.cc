@@ -11,6 +11,7 @@
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/base/status.h"
+#include "common/config/protobuf_log.h"
 #include "common/config/text_proto.h"
 #include "common/time/clock.h"
 #include "common/transport/transport_environment.h"
@@ -112,6 +113,7 @@ int Main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
   SetLogLevel(line.log_level);
+  LimitProtobufLog();
   GroundOptions options;
   if (const Status applied = ApplyCommandLine(line, options); !applied.ok()) {
     LOG(Ground, Error) << applied.message();

@@ -210,10 +210,15 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   if (frame.depth_raw.width() != rig_.depth->width ||
       frame.depth_raw.height() != rig_.depth->height) {
     ++counts_.depth_refused;
+    if (wrong_size_++ > 0) return report;  // Told when it began.
     LOG(Ground, Warning) << "depth frame of another size than the calibration's, frame="
                          << frame.header.frame_number << " width_px=" << frame.depth_raw.width()
-                         << " height_px=" << frame.depth_raw.height();
+                         << " height_px=" << frame.depth_raw.height()
+                         << ": refused, as are all that follow of this size";
     return report;
+  }
+  if (const std::uint64_t refused = std::exchange(wrong_size_, 0); refused > 0) {
+    LOG(Ground, Info) << "depth frames have the calibration's size again, refused=" << refused;
   }
   if (IsRepeated(frame)) {
     ++counts_.depth_repeated;

@@ -153,7 +153,8 @@ class GroundPipeline {
   const PreparedDepth* last_depth_ = nullptr;  ///< Of the last depth frame; the preprocessor's.
   BlockSpiller spiller_;
   VisibleBlocks near_view_;
-  bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
+  std::uint64_t wrong_size_ = 0;  ///< Depth frames of another size, without a right one between.
+  bool has_room_ = true;          ///< For temperatures; false once the disk to spill to is full.
   std::vector<MapPose> tracked_;
   std::vector<StampedPose> trajectory_;  ///< Of tracked_ what is joined, in world.
   std::vector<PoseSigma> trajectory_sigmas_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -177,9 +178,13 @@ TEST_F(GroundPipelineTest, F11AFrameOfAnotherSizeIsRefusedAndCounted) {
   Depth(0);
   DepthFrame frame;
   frame.depth_raw = Image<std::uint16_t>(17, 3, 500);
-  EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked);
-  EXPECT_EQ(pipeline_->counts().depth_refused, 1U);
+  ::testing::internal::CaptureStderr();
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked);
+  EXPECT_EQ(pipeline_->counts().depth_refused, 100U);
   EXPECT_TRUE(Depth(1).tracked);
+  const std::string log = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::ranges::count(log, '\n'), 2) << log;  // When it began, and when it was over.
+  EXPECT_NE(log.find("refused=100"), std::string::npos) << log;
 }
 
 TEST_F(GroundPipelineTest, WithoutAPoseTheVolumesCentreLiesOnTheFirstAxis) {

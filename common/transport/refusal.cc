@@ -1,8 +1,10 @@
 #include "common/transport/refusal.h"
 
 #include <numeric>
+#include <optional>
 
 #include "common/base/log.h"
+#include "common/time/clock.h"
 
 namespace isotherm {
 
@@ -41,14 +43,22 @@ std::string_view ToString(RefusalCause cause) {
 }
 
 void RefusalCounter::Add(RefusalCause cause, std::string_view detail) {
-  std::uint64_t count = 0;
+  const auto index = static_cast<std::size_t>(cause);
+  std::optional<std::uint64_t> left_out;
   {
     std::scoped_lock lock(mutex_);
-    count = ++counts_.at(static_cast<std::size_t>(cause));
+    ++counts_.at(index);
+    if (whole_ == nullptr) left_out = limiters_.at(index).Admit(SystemClock().SteadyNow());
   }
-  if (count > 1) return;
-  LOG(Transport, Warning) << "sample refused: " << ToString(cause) << " (" << detail
-                          << "); further ones are only counted";
+  if (whole_ != nullptr) return whole_->Add(cause, detail);
+  if (!left_out) return;
+  LOG(Transport, Warning) << "sample refused: " << ToString(cause) << " (" << detail << ")"
+                          << LeftOutText(*left_out);
+}
+
+RefusalCounts RefusalCounter::counts() const {
+  std::scoped_lock lock(mutex_);
+  return counts_;
 }
 
 std::uint64_t RefusalCounter::count(RefusalCause cause) const {

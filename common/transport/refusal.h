@@ -1,9 +1,12 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <mutex>
 #include <string_view>
+
+#include "common/time/line_limiter.h"
 
 namespace isotherm {
 
@@ -28,17 +31,28 @@ enum class RefusalCause : std::uint8_t {
 /// One or two words, e.g. "oversize payload".
 std::string_view ToString(RefusalCause cause);
 
-/// Counts what was refused, per cause, and logs the first of each cause. Thread-safe.
+/// How many samples were refused, by cause.
+using RefusalCounts = std::array<std::uint64_t, static_cast<std::size_t>(RefusalCause::kCount)>;
+
+/// Counts what was refused, per cause, and logs it: of each cause the first, then one in ten
+/// seconds with the number of those between. Thread-safe.
 class RefusalCounter {
  public:
+  RefusalCounter() = default;
+  /// Everything is also added to `whole`, which writes the log; it must outlive this counter.
+  explicit RefusalCounter(RefusalCounter* whole) : whole_(whole) {}
+
   /// `detail` says which sample: it goes into the log line.
   void Add(RefusalCause cause, std::string_view detail);
   std::uint64_t count(RefusalCause cause) const;
   std::uint64_t total() const;
+  RefusalCounts counts() const;
 
  private:
-  mutable std::mutex mutex_;
-  std::array<std::uint64_t, static_cast<std::size_t>(RefusalCause::kCount)> counts_{};
+  RefusalCounter* const whole_ = nullptr;
+  mutable std::mutex mutex_;  // Guards what follows.
+  RefusalCounts counts_{};
+  std::array<LineLimiter, static_cast<std::size_t>(RefusalCause::kCount)> limiters_{};
 };
 
 }  // namespace isotherm

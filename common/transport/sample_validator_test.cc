@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "common/transport/bounded_text.h"
-#include "common/transport/line_limiter.h"
 
 namespace isotherm {
 namespace {
@@ -150,7 +149,7 @@ TEST(SampleValidatorTest, F60FeedbackMustBeFinite) {
   EXPECT_EQ(CheckFeedback(feedback), RefusalCause::kOutOfRange);
 }
 
-TEST(RefusalCounterTest, F60EachCauseIsCountedAndLoggedOnce) {
+TEST(RefusalCounterTest, F60EachCauseIsCountedAndLoggedWithALimit) {
   RefusalCounter counter;
   ::testing::internal::CaptureStderr();
   for (int i = 0; i < 100; ++i) counter.Add(RefusalCause::kNegativeTime, "frame_number=1");
@@ -160,6 +159,16 @@ TEST(RefusalCounterTest, F60EachCauseIsCountedAndLoggedOnce) {
   EXPECT_EQ(counter.total(), 101U);
   EXPECT_EQ(std::ranges::count(log, '\n'), 2);
   EXPECT_THAT(log, HasSubstr("negative time (frame_number=1)"));
+}
+
+TEST(RefusalCounterTest, AStreamsCounterAddsToTheWhole) {
+  RefusalCounter all;
+  RefusalCounter depth(&all);
+  RefusalCounter thermal(&all);
+  depth.Add(RefusalCause::kNegativeTime, "");
+  thermal.Add(RefusalCause::kNegativeTime, "");
+  EXPECT_EQ(depth.count(RefusalCause::kNegativeTime), 1U);
+  EXPECT_EQ(all.count(RefusalCause::kNegativeTime), 2U);
 }
 
 TEST(BoundedTextTest, TextIsCutBetweenCharacters) {
@@ -174,16 +183,6 @@ TEST(BoundedTextTest, ControlCharactersOfAPeerDoNotReachTheLog) {
   EXPECT_EQ(ReadText(text), "a?b?[2J");
   char full[3] = {'a', 'b', 'c'};  // Without an end.
   EXPECT_EQ(ReadText(full), "abc");
-}
-
-TEST(LineLimiterTest, TenLinesPerSecondPassAndTheRestIsCounted) {
-  LineLimiter limiter(10);
-  SteadyTime now{1h};
-  int admitted = 0;
-  for (int i = 0; i < 1000; ++i) admitted += limiter.Admit(now) ? 1 : 0;
-  EXPECT_EQ(admitted, 10);
-  EXPECT_EQ(limiter.suppressed(), 990U);
-  EXPECT_TRUE(limiter.Admit(now + 1s));
 }
 
 TEST(HelloTest, AMajorDifferenceNamesTheSideToUpdate) {

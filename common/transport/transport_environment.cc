@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "common/base/log.h"
-#include "common/transport/line_limiter.h"
+#include "common/time/line_limiter.h"
 
 namespace isotherm {
 namespace {
@@ -64,7 +64,7 @@ struct TransportEnvironment::LogSink {
   const Clock& clock;
   std::mutex mutex;  // Guards what follows.
   MiddlewareRefusals refusals;
-  LineLimiter limiter{kMaxLogLinesPerSecond};
+  LineLimiter limiter{kMaxLogLinesPerSecond, std::chrono::seconds(1)};
   std::string last_error;
   bool is_quiet = false;
 };

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "common/config/protobuf_log.h"
 #include "ground/cli/command.h"
 
 namespace isotherm {
@@ -68,6 +69,7 @@ int Main(int argc, char** argv) {
     std::fputs(app.help().c_str(), stdout);
     return 0;
   }
+  LimitProtobufLog();
   const int status = body();
   // A full disk behind a redirected output shows only here.
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
