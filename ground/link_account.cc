@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "ground/subscriber/clock_watch.h"
@@ -19,13 +20,21 @@ Json DescribeStream(const StreamAccount& account, std::uint64_t recorded) {
   json["late"] = account.late;
   json["duplicates"] = account.duplicates;
   json["refused"] = account.refused;
+  for (std::size_t i = 0; i < account.refused_by_cause.size(); ++i) {
+    if (account.refused_by_cause[i] == 0) continue;
+    std::string cause(ToString(static_cast<RefusalCause>(i)));
+    std::ranges::replace(cause, ' ', '_');
+    json["refused_by_cause"][cause] = account.refused_by_cause[i];
+  }
   json["recorded"] = recorded;
   return json;
 }
 
 std::string StreamText(const char* name, const StreamAccount& account, std::uint64_t recorded) {
-  return fmt::format("{:<8} {} published = {} received + {} missing; {} recorded\n", name,
-                     account.published, account.received, account.missing, recorded);
+  std::string text = fmt::format("{:<8} {} published = {} received + {} missing; {} recorded", name,
+                                 account.published, account.received, account.missing, recorded);
+  if (account.refused > 0) text += fmt::format("; {} samples refused", account.refused);
+  return text + "\n";
 }
 
 void DescribeClock(const ClockAccount& clock, Json& json) {

@@ -138,11 +138,14 @@ void ToWire(const Receipt& from, isotherm_wire_Receipt* to) {
   ToWireReceipt(from.depth, &to->depth);
   ToWireReceipt(from.thermal, &to->thermal);
   to->clock_ping = from.clock_ping;
+  to->verdict = static_cast<std::uint8_t>(from.verdict);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Receipt& from, Receipt* to) {
   to->session = from.session;
   to->clock_ping = from.clock_ping;
+  if (const auto cause = CheckEnum(from.verdict, SessionVerdict::kOtherRig)) return cause;
+  to->verdict = static_cast<SessionVerdict>(from.verdict);
   if (const auto cause = FromWireReceipt(from.depth, &to->depth)) return cause;
   return FromWireReceipt(from.thermal, &to->thermal);
 }

@@ -1,6 +1,9 @@
-// Sends frames that cannot be, for tests/link: hostile_peer DOMAIN. Ends when all are delivered.
+// Sends frames that cannot be, for tests/link: hostile_peer DOMAIN. Prints "sent" when all are
+// delivered and waits for a signal.
 #include <dds/dds.h>
 #include <hostile_frames.h>
+#include <isotherm_frames.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -25,26 +28,6 @@ constexpr const char* kProfile =
     "</General></Domain></CycloneDDS>";
 
 std::vector<std::uint8_t> Bytes(std::size_t count) { return std::vector<std::uint8_t>(count, 7); }
-
-/// A sample whose image is right: 64 x 48, raw.
-template <typename Sample>
-Sample GoodSample(std::vector<std::uint8_t>* payload) {
-  Sample sample{};
-  std::strcpy(sample.edge_id, "test-edge");
-  sample.stamp.session = 1;
-  sample.mark = kWireMark;
-  sample.image.width = 64;
-  sample.image.height = 48;
-  *payload = Bytes(64 * 48 * 2);
-  return sample;
-}
-
-template <typename Sample>
-void Lend(std::vector<std::uint8_t>* payload, Sample* sample) {
-  const auto bytes = static_cast<std::uint32_t>(payload->size());
-  sample->image.payload = {
-      ._maximum = bytes, ._length = bytes, ._buffer = payload->data(), ._release = false};
-}
 
 class RawWriter {
  public:
@@ -72,7 +55,37 @@ class RawWriter {
   dds_entity_t writer_ = 0;
 };
 
-void SendDepth(const RawWriter& writer) {
+/// What an edge says before it sends frames of a session.
+void Announce(const RawWriter& writer, std::uint64_t session) {
+  isotherm_wire_Rig rig{};
+  std::strcpy(rig.edge_id, "test-edge");
+  rig.session = session;
+  rig.mark = kWireMark;
+  writer.Write(&rig);
+  writer.Finish();
+}
+
+/// A sample whose image is right: 64 x 48, raw.
+template <typename Sample>
+Sample GoodSample(std::vector<std::uint8_t>* payload) {
+  Sample sample{};
+  std::strcpy(sample.edge_id, "test-edge");
+  sample.stamp.session = 1;
+  sample.mark = kWireMark;
+  sample.image.width = 64;
+  sample.image.height = 48;
+  *payload = Bytes(64 * 48 * 2);
+  return sample;
+}
+
+template <typename Sample>
+void Lend(std::vector<std::uint8_t>* payload, Sample* sample) {
+  const auto bytes = static_cast<std::uint32_t>(payload->size());
+  sample->image.payload = {
+      ._maximum = bytes, ._length = bytes, ._buffer = payload->data(), ._release = false};
+}
+
+void SendDepth(const RawWriter& rig, const RawWriter& writer) {
   using Sample = hostile_DepthFrame;
   using Payload = std::vector<std::uint8_t>;
   const std::vector<std::function<void(Sample&, Payload&)>> cases = {
@@ -94,12 +107,14 @@ void SendDepth(const RawWriter& writer) {
       [](Sample&, Payload& p) { p = Bytes(12U << 20U); },
       [](Sample& s, Payload&) { s.stamp.session = 2, s.stamp.frame_number = 1; },
   };
+  std::uint64_t announced = 0;
   for (const auto& change : cases) {
     Payload payload;
     auto sample = GoodSample<Sample>(&payload);
     sample.depth_scale = 1000.0;
     sample.added_later = 42;
     change(sample, payload);
+    if (sample.stamp.session > announced) Announce(rig, announced = sample.stamp.session);
     Lend(&payload, &sample);
     for (int i = 0; i < kRepeats; ++i) writer.Write(&sample);
     writer.Finish();
@@ -119,6 +134,7 @@ void SendThermal(const RawWriter& writer) {
   for (const auto& change : cases) {
     std::vector<std::uint8_t> payload;
     auto sample = GoodSample<Sample>(&payload);
+    sample.stamp.session = 2;  // The newest of SendDepth.
     change(sample);
     Lend(&payload, &sample);
     for (int i = 0; i < kRepeats; ++i) writer.Write(&sample);
@@ -137,12 +153,15 @@ int Main(int domain) {
                         TopicId::kDepth);
   const RawWriter thermal(participant, hostile_ThermalFrame_desc, "isotherm::wire::ThermalFrame",
                           TopicId::kThermal);
+  const RawWriter rig(participant, isotherm_wire_Rig_desc, "isotherm::wire::Rig", TopicId::kRig);
+  rig.AwaitReader();
   depth.AwaitReader();
   thermal.AwaitReader();
-  SendDepth(depth);
+  SendDepth(rig, depth);
   SendThermal(thermal);
   std::puts("sent");
-  dds_delete(participant);
+  std::fflush(stdout);
+  pause();  // Until a signal ends it: who has left cannot be asked who it was.
   return 0;
 }
 

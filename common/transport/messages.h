@@ -23,7 +23,7 @@ namespace isotherm {
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
 /// Major: they do not and say so (CheckCompatible()); the topics have other names (qos.cc).
 inline constexpr std::uint16_t kWireMajor = 2;
-inline constexpr std::uint16_t kWireMinor = 0;
+inline constexpr std::uint16_t kWireMinor = 1;
 
 /// Ends each sample (idl/isotherm_frames.idl). Not 0, which is what a missing member reads as.
 inline constexpr std::uint8_t kWireMark = 0xA5;
@@ -257,11 +257,18 @@ struct StreamReceipt {
   std::vector<FrameRange> holes{};  ///< Newest kMaxHoles ranges that are missing, ascending.
 };
 
+/// What a ground station makes of a session.
+enum class SessionVerdict : std::uint8_t {
+  kFollowed = 0,
+  kOtherRig = 1,  ///< Refused: another process has this name, and it came first.
+};
+
 struct Receipt {
-  std::uint64_t session = 0;
+  std::uint64_t session = 0;  ///< 0 = none: the ground follows this rig and waits for it.
   StreamReceipt depth;
   StreamReceipt thermal;
   std::uint64_t clock_ping = 0;  ///< To be echoed in the status; 0 = none.
+  SessionVerdict verdict = SessionVerdict::kFollowed;
 };
 
 enum class TrackingState : std::uint8_t { kWaiting = 0, kTracked = 1, kDegraded = 2, kLost = 3 };

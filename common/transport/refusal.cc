@@ -36,6 +36,12 @@ std::string_view ToString(RefusalCause cause) {
       return "payload does not decode";
     case RefusalCause::kOtherVersion:
       return "other wire version";
+    case RefusalCause::kOtherWriter:
+      return "another process of the same name";
+    case RefusalCause::kUnannounced:
+      return "session was not announced";
+    case RefusalCause::kImplausibleTime:
+      return "implausible capture time";
     case RefusalCause::kCount:
       break;
   }

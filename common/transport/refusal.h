@@ -25,6 +25,9 @@ enum class RefusalCause : std::uint8_t {
   kOtherSession,      ///< Of a session that is over.
   kUndecodable,       ///< The payload does not decode.
   kOtherVersion,      ///< The peer speaks another major version.
+  kOtherWriter,       ///< It calls itself the rig, but another process is.
+  kUnannounced,       ///< Of a session that the rig has not announced.
+  kImplausibleTime,   ///< Capture time that cannot be next in its session.
   kCount
 };
 

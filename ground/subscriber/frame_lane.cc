@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "common/base/log.h"
 #include "common/codec/codec.h"
 
@@ -64,9 +66,6 @@ bool FrameLane<Item>::IsWanted(const FrameHeader& header, typename Stream::Sessi
     case Stream::Verdict::kDuplicate:
       stream_.CountDuplicate();
       return false;
-    case Stream::Verdict::kImpossible:
-      Refuse(RefusalCause::kImpossibleNumber, header);
-      return false;
     case Stream::Verdict::kInOrder:
     case Stream::Verdict::kLate:
       break;
@@ -84,21 +83,82 @@ bool FrameLane<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now
     Refuse(RefusalCause::kUndecodable, header);
     return false;
   }
-  if (session == Stream::Session::kNew) {
-    DeliverAll();
-    stream_.BeginSession(header.session);
-    LOG(Subscriber, Info) << "first " << name_ << " frame, session=" << header.session
-                          << " frame_number=" << header.frame_number;
-  }
+  if (session == Stream::Session::kNew) BeginSession(header);
+  const FrameMark mark{header.frame_number, header.capture_time, now};
   Item item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
-  const auto verdict = stream_.Add(header.frame_number, std::move(item), now);
-  // Add leaves a late item where it is.
-  if (verdict == Stream::Verdict::kLate && deliver_late_) deliver_late_(std::move(item));
+  if (newest_) {
+    if (const auto cause = CheckFollows(*newest_, mark)) {
+      return Suspect(std::move(item), mark, *cause);
+    }
+  }
+  RefuseAside();
+  Accept(std::move(item), mark);
   return true;
 }
 
 template <typename Item>
+void FrameLane<Item>::BeginSession(const FrameHeader& header) {
+  DeliverAll();
+  if (newest_) previous_ = tally(stream_.tally().session);
+  refused_before_ = newest_ ? refusals_->counts() : RefusalCounts{};
+  newest_.reset();
+  stream_.BeginSession(header.session);
+  LOG(Subscriber, Info) << "first " << name_ << " frame, session=" << header.session
+                        << " frame_number=" << header.frame_number;
+}
+
+template <typename Item>
+void FrameLane<Item>::Accept(Item&& item, const FrameMark& mark) {
+  if (!newest_ || mark.number > newest_->number) newest_ = mark;
+  const auto verdict = stream_.Add(mark.number, std::move(item), mark.arrival);
+  // Add leaves a late item where it is.
+  if (verdict == Stream::Verdict::kLate && deliver_late_) deliver_late_(std::move(item));
+}
+
+template <typename Item>
+bool FrameLane<Item>::Suspect(Item&& item, const FrameMark& mark, RefusalCause cause) {
+  if (!aside_.empty()) {
+    const FrameMark& last = aside_.back().mark;
+    if (mark.number <= last.number || CheckFollows(last, mark)) RefuseAside();
+  }
+  aside_.push_back({std::move(item), mark, cause});
+  if (aside_.size() < kConfirm) return false;
+  std::vector<Aside> believed = std::exchange(aside_, {});
+  const FrameMark& first = believed.front().mark;
+  LOG(Subscriber, Warning) << "the " << name_
+                           << " stream has jumped, from frame_number=" << newest_->number << " to "
+                           << first.number << ", capture time by "
+                           << ToSeconds(first.time - newest_->time)
+                           << " s; it goes on there: look at the clocks of rig and camera";
+  while (std::optional<Item> waiting = stream_.Flush()) {
+    if (deliver_) deliver_(std::move(*waiting));
+  }
+  stream_.Resync(first.number);
+  newest_.reset();
+  for (Aside& next : believed) Accept(std::move(next.item), next.mark);
+  return true;
+}
+
+template <typename Item>
+void FrameLane<Item>::RefuseAside() {
+  for (const Aside& aside : aside_) Refuse(aside.cause, aside.item.frame->header);
+  aside_.clear();
+}
+
+template <typename Item>
+StreamTally FrameLane<Item>::tally(std::uint64_t session) const {
+  if (previous_ && previous_->session == session) return *previous_;
+  StreamTally tally = stream_.tally(session);
+  if (newest_ && session == stream_.tally().session) {
+    tally.refused = refusals_->counts();
+    for (std::size_t i = 0; i < tally.refused.size(); ++i) tally.refused[i] -= refused_before_[i];
+  }
+  return tally;
+}
+
+template <typename Item>
 void FrameLane<Item>::DeliverDue(SteadyTime now) {
+  if (!aside_.empty() && now >= aside_.front().mark.arrival + kMaxAside) RefuseAside();
   while (std::optional<Item> item = stream_.Next(now)) {
     if (deliver_) deliver_(std::move(*item));
   }
@@ -106,6 +166,7 @@ void FrameLane<Item>::DeliverDue(SteadyTime now) {
 
 template <typename Item>
 void FrameLane<Item>::DeliverAll() {
+  RefuseAside();
   while (std::optional<Item> item = stream_.Flush()) {
     if (deliver_) deliver_(std::move(*item));
   }

@@ -4,24 +4,31 @@
 #include <optional>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "common/transport/refusal.h"
+#include "ground/subscriber/frame_plausibility.h"
 #include "ground/subscriber/frame_stream.h"
 #include "ground/subscriber/received_frame.h"
 
 namespace isotherm {
 
 /// The way of one stream from the link to its consumer: session, number and payload are checked,
-/// the payload is unpacked, the order is restored. Item is ReceivedDepth or ReceivedThermal. No
-/// DDS, no clock. Thread-compatible.
+/// the payload is unpacked, the order is restored. A frame whose number or capture time cannot
+/// follow those before is kept aside: when kConfirm in a row agree with each other, the stream has
+/// really jumped and goes on with them; otherwise they are refused, and one wild frame stops none
+/// behind it. Item is ReceivedDepth or ReceivedThermal. No DDS, no clock. Thread-compatible.
 template <typename Item>
 class FrameLane {
  public:
   using Encoded = std::remove_const_t<typename decltype(Item::encoded)::element_type>;
   using Consumer = std::function<void(Item)>;
+  static constexpr std::size_t kConfirm = 3;
+  /// Frames that are kept aside are refused after this time.
+  static constexpr Nanoseconds kMaxAside = std::chrono::seconds(1);
 
-  /// `refusals` must outlive the lane. `deliver` gets frames in order; `deliver_late` those behind
-  /// the reorder window. Empty consumers are skipped.
+  /// `refusals` are this stream's and must outlive the lane. `deliver` gets frames in order;
+  /// `deliver_late` those behind the reorder window. Empty consumers are skipped.
   FrameLane(std::string_view name, Nanoseconds reorder_window, RefusalCounter* refusals,
             Consumer deliver, Consumer deliver_late);
 
@@ -33,12 +40,19 @@ class FrameLane {
   void DeliverAll();
 
   const FrameStream<Item>& stream() const { return stream_; }
+  /// As FrameStream::tally, with what was refused.
+  StreamTally tally(std::uint64_t session) const;
 
  private:
   using Stream = FrameStream<Item>;
 
   /// True if a frame with this header would be taken; counts it if not.
   bool IsWanted(const FrameHeader& header, typename Stream::Session session);
+  void BeginSession(const FrameHeader& header);
+  void Accept(Item&& item, const FrameMark& mark);
+  /// Keeps a frame aside that `cause` speaks against; true if it is believed now.
+  bool Suspect(Item&& item, const FrameMark& mark, RefusalCause cause);
+  void RefuseAside();
   void Refuse(RefusalCause cause, const FrameHeader& header);
 
   const std::string_view name_;
@@ -46,6 +60,15 @@ class FrameLane {
   const Consumer deliver_;
   const Consumer deliver_late_;
   Stream stream_;
+  std::optional<FrameMark> newest_;  ///< Of the frames that were taken.
+  struct Aside {
+    Item item;
+    FrameMark mark;
+    RefusalCause cause;
+  };
+  std::vector<Aside> aside_;        ///< Each follows the one before it.
+  RefusalCounts refused_before_{};  ///< When the session began.
+  std::optional<StreamTally> previous_;
 };
 
 extern template class FrameLane<ReceivedDepth>;

@@ -28,6 +28,12 @@ EncodedThermalFrame MakeFrame(std::uint64_t session, std::uint64_t number) {
   return frame;
 }
 
+EncodedThermalFrame At(std::uint64_t session, std::uint64_t number, Nanoseconds time) {
+  EncodedThermalFrame frame = MakeFrame(session, number);
+  frame.header.capture_time = CaptureTimeFromNanoseconds(time.count());
+  return frame;
+}
+
 class FrameLaneTest : public ::testing::Test {
  protected:
   bool Add(EncodedThermalFrame frame) {
@@ -119,11 +125,66 @@ TEST_F(FrameLaneTest, F60FrameOfASessionThatIsOverIsRefused) {
   EXPECT_EQ(lane_.stream().tally().session, 2U);
 }
 
-TEST_F(FrameLaneTest, F60ImpossibleNumberIsRefused) {
-  Add(MakeFrame(1, 0));
-  EXPECT_FALSE(Add(MakeFrame(1, 1ULL << 39U)));
+TEST_F(FrameLaneTest, F60OneImpossibleNumberStopsNoneBehindIt) {
+  Add(At(1, 0, 0ms));
+  EXPECT_FALSE(Add(At(1, 5'600'000, 40ms)));
+  for (std::uint64_t i = 1; i <= 500; ++i) {
+    now_ += 40ms;
+    EXPECT_TRUE(Add(At(1, i, i * 40ms)));
+  }
   EXPECT_EQ(refusals_.count(RefusalCause::kImpossibleNumber), 1U);
-  EXPECT_EQ(lane_.stream().tally().next, 1U);
+  EXPECT_EQ(refusals_.total(), 1U);
+  EXPECT_EQ(delivered_.size(), 501U);
+  const StreamTally tally = lane_.tally(1);
+  EXPECT_EQ(tally.next, 501U);
+  EXPECT_EQ(tally.refused[static_cast<std::size_t>(RefusalCause::kImpossibleNumber)], 1U);
+}
+
+TEST_F(FrameLaneTest, F60OneFarFutureTimeStopsNoneBehindIt) {
+  Add(At(1, 0, 0ms));
+  EXPECT_FALSE(Add(At(1, 1, 24h)));  // Of an attacker, before the good one of this number.
+  EXPECT_TRUE(Add(At(1, 1, 40ms)));
+  EXPECT_TRUE(Add(At(1, 2, 80ms)));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 1, 2));
+  EXPECT_EQ(refusals_.count(RefusalCause::kImplausibleTime), 1U);
+}
+
+TEST_F(FrameLaneTest, F23ARealJumpIsFollowedWithoutLoss) {
+  Add(At(1, 0, 0ms));
+  EXPECT_FALSE(Add(At(1, 5'600'000, 40ms)));
+  EXPECT_FALSE(Add(At(1, 5'600'001, 80ms)));
+  EXPECT_TRUE(Add(At(1, 5'600'002, 120ms)));
+  EXPECT_TRUE(Add(At(1, 5'600'003, 160ms)));
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 5'600'000, 5'600'001, 5'600'002, 5'600'003));
+  EXPECT_EQ(refusals_.total(), 0U);
+}
+
+TEST_F(FrameLaneTest, F23AWildFirstNumberDoesNotMakeAllOthersLate) {
+  Add(At(1, 1ULL << 39U, 0ms));
+  for (std::uint64_t i = 0; i < 10; ++i) Add(At(1, i, (i + 1) * 40ms));
+  EXPECT_EQ(delivered_.size(), 11U);
+  EXPECT_THAT(Numbers(late_), IsEmpty());
+}
+
+TEST_F(FrameLaneTest, AJumpThatNothingConfirmsIsRefusedInTheEnd) {
+  Add(At(1, 0, 0ms));
+  Add(At(1, 1, 24h));
+  now_ += FrameLane<ReceivedThermal>::kMaxAside;
+  lane_.DeliverDue(now_);
+  EXPECT_EQ(refusals_.count(RefusalCause::kImplausibleTime), 1U);
+  Add(At(1, 1, 24h));
+  lane_.DeliverAll();
+  EXPECT_EQ(refusals_.count(RefusalCause::kImplausibleTime), 2U);
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0));
+}
+
+TEST_F(FrameLaneTest, WhatWasRefusedBelongsToItsSession) {
+  Add(MakeFrame(1, 0));
+  refusals_.Add(RefusalCause::kOtherWriter, "");
+  Add(MakeFrame(2, 0));
+  EXPECT_EQ(lane_.tally(1).refused[static_cast<std::size_t>(RefusalCause::kOtherWriter)], 1U);
+  EXPECT_EQ(lane_.tally(2).refused[static_cast<std::size_t>(RefusalCause::kOtherWriter)], 0U);
+  EXPECT_EQ(lane_.tally(1).received, 1U);
 }
 
 TEST_F(FrameLaneTest, ANewSessionFirstDeliversWhatWaitedInTheOldOne) {

@@ -19,16 +19,13 @@ template <typename T>
 class FrameSequencer {
  public:
   enum class Verdict {
-    kInOrder,     ///< Goes (or went) into the line.
-    kLate,        ///< New, but the line has passed its place.
-    kDuplicate,   ///< Was here before.
-    kImpossible,  ///< Too far ahead of what came before.
+    kInOrder,    ///< Goes (or went) into the line.
+    kLate,       ///< New, but the line has passed its place.
+    kDuplicate,  ///< Was here before.
   };
 
   /// Frames that may wait for a missing one; beyond, the missing one is given up at once.
   static constexpr std::size_t kMaxWaiting = 64;
-  /// Nine hours at 30 Hz: no outage that a session survives is longer.
-  static constexpr std::uint64_t kMaxJump = 1'000'000;
 
   explicit FrameSequencer(Nanoseconds window) : window_(window) {}
 
@@ -36,7 +33,6 @@ class FrameSequencer {
   Verdict Check(std::uint64_t number) const {
     if (!ledger_.IsNew(number)) return Verdict::kDuplicate;
     if (number < handled_) return Verdict::kLate;
-    if (ledger_.received() > 0 && number > ledger_.next() + kMaxJump) return Verdict::kImpossible;
     return Verdict::kInOrder;
   }
 
@@ -60,6 +56,9 @@ class FrameSequencer {
     if (waiting_.empty()) return std::nullopt;
     return Pop();
   }
+
+  /// The numbers go on at `number`, above or below. What waits must have been flushed.
+  void Resync(std::uint64_t number) { handled_ = number; }
 
   /// When the first missing frame is given up; nullopt if nothing waits.
   std::optional<SteadyTime> deadline() const {

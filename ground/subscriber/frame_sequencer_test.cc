@@ -91,11 +91,13 @@ TEST_F(FrameSequencerTest, WaitingFramesAreBounded) {
   EXPECT_EQ(TakeAll().size(), kMax + 1);
 }
 
-TEST_F(FrameSequencerTest, F60AnImpossibleJumpIsRefused) {
-  Add(0);
-  constexpr auto kJump = FrameSequencer<int>::kMaxJump;
-  EXPECT_EQ(Add(1 + kJump + 1), Verdict::kImpossible);
-  EXPECT_EQ(Add(1 + kJump), Verdict::kInOrder);
+TEST_F(FrameSequencerTest, AfterAResyncTheLineGoesOnThere) {
+  Add(1'000'000);
+  EXPECT_EQ(sequencer_.Flush(), 1'000'000);
+  EXPECT_EQ(Add(1), Verdict::kLate);
+  sequencer_.Resync(2);
+  EXPECT_EQ(Add(2), Verdict::kInOrder);
+  EXPECT_THAT(TakeAll(), ElementsAre(2));
 }
 
 TEST_F(FrameSequencerTest, FlushDeliversWhatWaits) {

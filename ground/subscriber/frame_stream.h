@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/frame/frame.h"
+#include "common/transport/refusal.h"
 #include "ground/subscriber/frame_sequencer.h"
 
 namespace isotherm {
@@ -18,6 +19,7 @@ struct StreamTally {
   std::uint64_t received = 0;
   std::uint64_t late = 0;
   std::uint64_t duplicates = 0;
+  RefusalCounts refused{};  ///< Samples since the session began, by cause.
 };
 
 /// One stream over its sessions: a FrameSequencer for the newest session, and the tally of the one
@@ -62,6 +64,7 @@ class FrameStream {
 
   std::optional<T> Next(SteadyTime now) { return sequencer_->Next(now); }
   std::optional<T> Flush() { return sequencer_->Flush(); }
+  void Resync(std::uint64_t number) { sequencer_->Resync(number); }
   std::optional<SteadyTime> deadline() const { return sequencer_->deadline(); }
 
   /// Of the current session.

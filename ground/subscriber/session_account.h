@@ -5,12 +5,13 @@
 #include <optional>
 
 #include "common/transport/messages.h"
+#include "common/transport/refusal.h"
 #include "ground/subscriber/clock_comparison.h"
 
 namespace isotherm {
 
 /// published = received + missing, always. `received` are distinct frames that were good; late ones
-/// included.
+/// included. Samples that arrived = received + duplicates + refused.
 struct StreamAccount {
   std::uint64_t published =
       0;  ///< As the edge says; while it has not said it yet, what can be inferred.
@@ -18,8 +19,9 @@ struct StreamAccount {
   std::uint64_t missing = 0;
   std::uint64_t late = 0;        ///< Of those received: behind the reorder window.
   std::uint64_t duplicates = 0;  ///< Further copies, dropped.
-  std::uint64_t refused =
-      0;  ///< Samples that were dropped as malformed; their numbers stay missing.
+  /// Samples that were not used; the numbers that only they had stay missing.
+  std::uint64_t refused = 0;
+  RefusalCounts refused_by_cause{};
 };
 
 /// The rig's wall clock in a session: what the rig says of it, and how it compares with ours.

@@ -1,6 +1,7 @@
 #include "ground/subscriber/session_book.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace isotherm {
 namespace {
@@ -16,6 +17,8 @@ StreamAccount MakeAccount(const StreamTally& tally, std::uint64_t published, boo
   account.missing = account.published - account.received;
   account.late = tally.late;
   account.duplicates = tally.duplicates;
+  account.refused_by_cause = tally.refused;
+  account.refused = std::accumulate(tally.refused.begin(), tally.refused.end(), std::uint64_t{0});
   return account;
 }
 

@@ -10,7 +10,12 @@ using namespace std::chrono_literals;
 constexpr Nanoseconds kGrace = 2s;
 
 StreamTally Tally(std::uint64_t session, std::uint64_t received, std::uint64_t next) {
-  return {.session = session, .next = next, .received = received, .late = 0, .duplicates = 0};
+  return {.session = session,
+          .next = next,
+          .received = received,
+          .late = 0,
+          .duplicates = 0,
+          .refused = {}};
 }
 
 EdgeStatus Status(std::uint64_t session, ScanState state, std::uint64_t depth,

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <mutex>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "common/base/log.h"
 #include "common/transport/endpoints.h"
@@ -13,6 +16,9 @@
 #include "ground/subscriber/clock_comparison.h"
 #include "ground/subscriber/clock_watch.h"
 #include "ground/subscriber/frame_lane.h"
+#include "ground/subscriber/peer_table.h"
+#include "ground/subscriber/rig_gate.h"
+#include "ground/subscriber/rig_roster.h"
 #include "ground/subscriber/session_book.h"
 
 namespace isotherm {
@@ -20,10 +26,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kFramesPerTurn = 8;     // Of one stream before the other has its turn.
+constexpr int kFramesPerTurn = 8;  // Of one stream before the other has its turn.
+constexpr int kMessagesPerTurn = 64;
 constexpr int kFramesPerReceipt = 8;  // A fast sender must not wait for the next interval.
 constexpr Nanoseconds kMaxReorderWindow = 200ms;
 constexpr Nanoseconds kIdleInterval = 100ms;  // How often presence is looked at.
+constexpr Nanoseconds kRivalInterval = 1s;    // How often a second edge is told that it is refused.
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -62,30 +70,59 @@ class DdsSubscriber final : public Subscriber {
  private:
   /// Takes some of what has arrived; false if there was nothing.
   bool TakeTurn();
-  template <typename Item>
-  void TakeFrames(Reader<typename FrameLane<Item>::Encoded>* reader, FrameLane<Item>* lane,
-                  int* taken);
   int TakeMessages();
+  /// Hands what has arrived at `reader` to the gate; samples of other rigs are only counted.
+  template <typename Message>
+  int TakeSamples(Reader<Message>* reader, int max_samples);
   /// What is due: deliveries, receipts, closed sessions, statistics.
   void Housekeep();
   void CloseSessions(SteadyTime now);
   void SendReceipt(SteadyTime now);
   Nanoseconds TimeToNextDuty(SteadyTime now) const;
   void OnPeer(const Received<Hello>& peer);
-  void OnStatus(const EdgeStatus& status);
+  // What the gate lets through.
+  void On(const RigDescription& rig, CaptureTime arrival);
+  void On(const EdgeStatus& status, CaptureTime arrival);
+  void On(const OutsidePoseSample& sample, CaptureTime arrival);
+  void On(const CommandResult& result, CaptureTime arrival);
+  void On(EncodedDepthFrame&& frame, CaptureTime arrival) {
+    OnFrame(std::move(frame), &depth_, arrival);
+  }
+  void On(EncodedThermalFrame&& frame, CaptureTime arrival) {
+    OnFrame(std::move(frame), &thermal_, arrival);
+  }
+  template <typename Item>
+  void OnFrame(typename FrameLane<Item>::Encoded&& frame, FrameLane<Item>* lane,
+               CaptureTime arrival);
+  void Refuse(const RigSample& sample, RefusalCause cause);
+  /// Who is there, who is the rig, and who only says so.
+  void LookAround(SteadyTime now);
+  void TellRivals(SteadyTime now);
+  std::string followed() const;  ///< Empty before there is one.
   /// True for the rig that is followed; without a choice that is the first one seen.
   bool IsFollowed(const std::string& edge_id);
+  /// Follows `edge_id` if no choice was made yet.
+  void FollowFirst(const std::string& edge_id);
 
   const Clock& clock_;
   const SubscriberOptions options_;
   const SubscriberHandlers handlers_;
   const Hello own_hello_;
-  RefusalCounter refusals_;
+  RefusalCounter refusals_;  ///< Everything.
+  RefusalCounter depth_refusals_{&refusals_};
+  RefusalCounter thermal_refusals_{&refusals_};
   GroundEndpoints ends_;
 
   // Of the thread in Run().
   FrameLane<ReceivedDepth> depth_;
   FrameLane<ReceivedThermal> thermal_;
+  PeerTable peers_;
+  RigGate gate_;
+  RigRoster roster_;
+  OtherRigsTeller other_rigs_;
+  std::vector<RigGate::Rival> rivals_;
+  SteadyTime look_due_{};
+  SteadyTime rivals_due_{};
   SessionBook book_;
   ClockComparison clock_comparison_;
   ClockWatch clock_watch_;
@@ -105,9 +142,16 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
       handlers_(std::move(handlers)),
       own_hello_{
           .role = Role::kGround, .software_version = options.software_version, .host = HostName()},
-      depth_("depth", options.reorder_window, &refusals_, handlers_.depth, handlers_.late_depth),
-      thermal_("thermal", options.reorder_window, &refusals_, handlers_.thermal,
+      depth_("depth", options.reorder_window, &depth_refusals_, handlers_.depth,
+             handlers_.late_depth),
+      thermal_("thermal", options.reorder_window, &thermal_refusals_, handlers_.thermal,
                handlers_.late_thermal),
+      gate_(
+          [this](RigSample&& sample) {
+            std::visit([&](auto&& message) { On(std::move(message), sample.arrival); },
+                       std::move(sample.content));
+          },
+          [this](const RigSample& sample, RefusalCause cause) { Refuse(sample, cause); }),
       book_(options.end_grace),
       clock_comparison_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))),
       clock_watch_(options.max_clock_offset),
@@ -116,8 +160,8 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
       next_command_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))) {}
 
 Status DdsSubscriber::Open(const Participant& participant) {
-  ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant, &refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant, &depth_refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant, &thermal_refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.outside_poses.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant, &refusals_));
@@ -153,34 +197,45 @@ void DdsSubscriber::Run(std::stop_token stop) {
 }
 
 bool DdsSubscriber::TakeTurn() {
-  int taken = TakeMessages();
-  TakeFrames(&ends_.depth, &depth_, &taken);
-  TakeFrames(&ends_.thermal, &thermal_, &taken);
-  return taken > 0;
+  const int taken = TakeMessages();
+  return taken + TakeSamples(&ends_.depth, kFramesPerTurn) +
+             TakeSamples(&ends_.thermal, kFramesPerTurn) >
+         0;
 }
 
 int DdsSubscriber::TakeMessages() {
-  int taken = ends_.peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
-  taken += ends_.rig.Take([this](Received<RigDescription>&& rig) {
-    if (IsFollowed(rig.edge_id) && handlers_.rig) handlers_.rig(rig.message);
-  });
-  taken += ends_.outside_poses.Take([this](Received<OutsidePoseSample>&& sample) {
-    if (IsFollowed(sample.edge_id) && handlers_.outside_pose) {
-      handlers_.outside_pose(sample.message);
-    }
-  });
-  taken += ends_.status.Take([this](Received<EdgeStatus>&& status) {
-    if (IsFollowed(status.edge_id)) OnStatus(status.message);
-  });
-  taken += ends_.results.Take([this](Received<CommandResult>&& result) {
-    if (IsFollowed(result.edge_id) && handlers_.command_result) {
-      handlers_.command_result(result.message);
-    }
-  });
-  return taken;
+  const int taken = ends_.peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
+  return taken + TakeSamples(&ends_.rig, kMessagesPerTurn) +
+         TakeSamples(&ends_.outside_poses, kMessagesPerTurn) +
+         TakeSamples(&ends_.status, kMessagesPerTurn) +
+         TakeSamples(&ends_.results, kMessagesPerTurn);
 }
 
-void DdsSubscriber::OnStatus(const EdgeStatus& status) {
+template <typename Message>
+int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
+  return reader->Take(
+      [this, reader](Received<Message>&& received) {
+        if (!IsFollowed(received.edge_id)) return;
+        gate_.Add(peers_.Identify(*reader, received.writer),
+                  {.content = std::move(received.message), .arrival = clock_.Now()},
+                  clock_.SteadyNow());
+      },
+      max_samples);
+}
+
+void DdsSubscriber::On(const RigDescription& rig, CaptureTime /*arrival*/) {
+  if (handlers_.rig) handlers_.rig(rig);
+}
+
+void DdsSubscriber::On(const OutsidePoseSample& sample, CaptureTime /*arrival*/) {
+  if (handlers_.outside_pose) handlers_.outside_pose(sample);
+}
+
+void DdsSubscriber::On(const CommandResult& result, CaptureTime /*arrival*/) {
+  if (handlers_.command_result) handlers_.command_result(result);
+}
+
+void DdsSubscriber::On(const EdgeStatus& status, CaptureTime /*arrival*/) {
   const ClockReading now = ReadClocks(clock_);
   if (status.clock_echo) clock_comparison_.Add(*status.clock_echo, now.steady);
   clock_watch_.Update(status, clock_comparison_.Offset(now), ReadKernelClock(), now.steady);
@@ -191,28 +246,39 @@ void DdsSubscriber::OnStatus(const EdgeStatus& status) {
 }
 
 template <typename Item>
-void DdsSubscriber::TakeFrames(Reader<typename FrameLane<Item>::Encoded>* reader,
-                               FrameLane<Item>* lane, int* taken) {
-  using Encoded = typename FrameLane<Item>::Encoded;
-  *taken += reader->Take(
-      [this, lane](Received<Encoded>&& received) {
-        if (!IsFollowed(received.edge_id)) return;
-        const SteadyTime now = clock_.SteadyNow();
-        const std::uint64_t session = received.message.header.session;
-        if (!lane->Add(std::move(received.message), clock_.Now(), now)) return;
-        book_.OnFrame(session, now);
-        ++frames_since_receipt_;
-        lane->DeliverDue(now);
-      },
-      kFramesPerTurn);
+void DdsSubscriber::OnFrame(typename FrameLane<Item>::Encoded&& frame, FrameLane<Item>* lane,
+                            CaptureTime arrival) {
+  const SteadyTime now = clock_.SteadyNow();
+  const std::uint64_t session = frame.header.session;
+  if (!lane->Add(std::move(frame), arrival, now)) return;
+  book_.OnFrame(session, now);
+  ++frames_since_receipt_;
+  lane->DeliverDue(now);
+}
+
+void DdsSubscriber::Refuse(const RigSample& sample, RefusalCause cause) {
+  const std::uint64_t session = SessionOf(sample);
+  if (const auto* depth = std::get_if<EncodedDepthFrame>(&sample.content)) {
+    depth_refusals_.Add(cause, fmt::format("stream=depth session={} frame_number={}", session,
+                                           depth->header.frame_number));
+  } else if (const auto* thermal = std::get_if<EncodedThermalFrame>(&sample.content)) {
+    thermal_refusals_.Add(cause, fmt::format("stream=thermal session={} frame_number={}", session,
+                                             thermal->header.frame_number));
+  } else {
+    refusals_.Add(cause, fmt::format("a message of session={}", session));
+  }
+}
+
+void DdsSubscriber::FollowFirst(const std::string& edge_id) {
+  std::scoped_lock lock(mutex_);
+  if (!edge_id_.empty()) return;
+  edge_id_ = edge_id;
+  LOG(Subscriber, Info) << "following the first rig seen, edge_id=" << edge_id;
 }
 
 bool DdsSubscriber::IsFollowed(const std::string& edge_id) {
+  FollowFirst(edge_id);
   std::scoped_lock lock(mutex_);
-  if (edge_id_.empty()) {
-    edge_id_ = edge_id;
-    LOG(Subscriber, Info) << "following the first rig seen, edge_id=" << edge_id;
-  }
   if (edge_id == edge_id_) return true;
   ++stats_.other_edge;
   return false;
@@ -221,7 +287,10 @@ bool DdsSubscriber::IsFollowed(const std::string& edge_id) {
 void DdsSubscriber::OnPeer(const Received<Hello>& peer) {
   if (peer.message.role != Role::kEdge) return;
   const Status compatible = CheckCompatible(own_hello_, peer.message);
-  if (!compatible.ok()) refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
+  if (!compatible.ok()) return refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
+  roster_.Add(peers_.Identify(ends_.peers, peer.writer), peer.edge_id, peer.message.host);
+  // An edge that waits for a ground has sent nothing else.
+  FollowFirst(peer.edge_id);
 }
 
 void DdsSubscriber::Housekeep() {
@@ -230,26 +299,85 @@ void DdsSubscriber::Housekeep() {
   thermal_.DeliverDue(now);
   if (now >= receipt_due_ || frames_since_receipt_ >= kFramesPerReceipt) SendReceipt(now);
   CloseSessions(now);
-  const bool edge_present = ends_.status.matched_writers() > 0;
+  if (now >= look_due_) LookAround(now);
   SessionAccount account;
   if (const auto session = book_.newest()) {
-    account = book_.Account(depth_.stream().tally(*session), thermal_.stream().tally(*session));
+    account = book_.Account(depth_.tally(*session), thermal_.tally(*session));
   }
   account.refused_samples = refusals_.total();
   std::scoped_lock lock(mutex_);
   stats_.account = account;
+  stats_.refusals = refusals_.counts();
   stats_.refused = refusals_.total();
-  if (edge_present == stats_.edge_present) return;
-  stats_.edge_present = edge_present;
-  LOG(Subscriber, Info) << (edge_present ? "rig found" : "rig lost");
+}
+
+void DdsSubscriber::LookAround(SteadyTime now) {
+  look_due_ = now + kIdleInterval;
+  const auto is_present = [this](PeerHandle peer) { return peers_.IsPresent(peer); };
+  gate_.Update(now, is_present);
+  roster_.Update(is_present);
+  TellRivals(now);
+  const std::string edge_id = followed();
+  const bool present = is_present(gate_.owner()) || roster_.Has(edge_id);
+  const std::vector<std::string> others = roster_.Others(edge_id);
+  const std::string others_text = present || edge_id.empty() ? "" : OtherRigsText(edge_id, others);
+  if (other_rigs_.Update(!others_text.empty(), now)) {
+    LOG(Subscriber, Warning) << others_text;
+  }
+  std::scoped_lock lock(mutex_);
+  stats_.rig_problem =
+      rivals_.empty() ? others_text
+                      : fmt::format("{} MORE of the name \"{}\", refused: give each rig a name",
+                                    rivals_.size(), edge_id_);
+  if (present == stats_.edge_present) return;
+  stats_.edge_present = present;
+  LOG(Subscriber, Info) << (present ? "rig found" : "rig lost");
+}
+
+void DdsSubscriber::TellRivals(SteadyTime now) {
+  const std::vector<RigGate::Rival> before = std::exchange(rivals_, gate_.rivals());
+  const auto has = [](const std::vector<RigGate::Rival>& rivals, PeerHandle peer) {
+    return std::ranges::find(rivals, peer, &RigGate::Rival::peer) != rivals.end();
+  };
+  for (const RigGate::Rival& rival : rivals_) {
+    if (has(before, rival.peer)) continue;
+    LOG(Subscriber, Error) << fmt::format(
+        "a second rig of the name \"{}\", on the computer \"{}\", is refused (its session {}): "
+        "the scan of the first one, on \"{}\", goes on. Give one of them another name (--edge-id "
+        "of isotherm-edge)",
+        followed(), roster_.HostOf(rival.peer), rival.session, roster_.HostOf(gate_.owner()));
+  }
+  for (const RigGate::Rival& rival : before) {
+    if (has(rivals_, rival.peer)) continue;
+    LOG(Subscriber, Info) << (rival.peer == gate_.owner()
+                                  ? "the second rig of this name is followed "
+                                    "now, session="
+                                  : "a second rig of this name has left, "
+                                    "session=")
+                          << rival.session;
+  }
+  if (rivals_ == before && now < rivals_due_) return;
+  rivals_due_ = now + kRivalInterval;
+  for (const RigGate::Rival& rival : rivals_) {
+    if (rival.session == 0) continue;
+    Receipt refusal;
+    refusal.session = rival.session;
+    refusal.verdict = SessionVerdict::kOtherRig;
+    static_cast<void>(ends_.receipt.Write(followed(), refusal));  // Repeated every second.
+  }
+}
+
+std::string DdsSubscriber::followed() const {
+  std::scoped_lock lock(mutex_);
+  return edge_id_;
 }
 
 void DdsSubscriber::CloseSessions(SteadyTime now) {
   while (const auto session = book_.oldest_open()) {
-    auto account =
-        book_.TryClose(depth_.stream().tally(*session), thermal_.stream().tally(*session), now);
+    auto account = book_.TryClose(depth_.tally(*session), thermal_.tally(*session), now);
     if (!account) return;
     account->refused_samples = refusals_.total();
+    gate_.OnClosed(*session);
     // Complete, but perhaps waiting for numbers that were never published.
     depth_.DeliverAll();
     thermal_.DeliverAll();
@@ -262,15 +390,14 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
   frames_since_receipt_ = 0;
   // From the deadline before, so that the rate does not drift; from now after a pause.
   receipt_due_ = std::max(receipt_due_ + options_.receipt_interval, now);
-  const auto session = book_.newest();
-  if (!session) return;
-  Receipt receipt;
-  receipt.session = *session;
-  receipt.depth = depth_.stream().receipt(*session);
-  receipt.thermal = thermal_.stream().receipt(*session);
-  std::unique_lock lock(mutex_);
-  const std::string edge_id = edge_id_;
-  lock.unlock();
+  const std::string edge_id = followed();
+  if (edge_id.empty()) return;
+  Receipt receipt;  // Without a session it says only which rig this ground follows.
+  if (const auto session = book_.newest()) {
+    receipt.session = *session;
+    receipt.depth = depth_.stream().receipt(*session);
+    receipt.thermal = thermal_.stream().receipt(*session);
+  }
   receipt.clock_ping = clock_comparison_.Ping(clock_.SteadyNow());
   const Status sent = ends_.receipt.Write(edge_id, receipt);
   if (!sent.ok()) {
@@ -280,7 +407,7 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
 
 Nanoseconds DdsSubscriber::TimeToNextDuty(SteadyTime now) const {
   SteadyTime next = now + kIdleInterval;
-  if (book_.newest()) next = std::min(next, receipt_due_);
+  next = std::min(next, receipt_due_);
   for (const auto& deadline :
        {depth_.stream().deadline(), thermal_.stream().deadline(), book_.deadline()}) {
     if (deadline) next = std::min(next, *deadline);
@@ -289,9 +416,7 @@ Nanoseconds DdsSubscriber::TimeToNextDuty(SteadyTime now) const {
 }
 
 Status DdsSubscriber::Publish(const Feedback& feedback) {
-  std::unique_lock lock(mutex_);
-  const std::string edge_id = edge_id_;
-  lock.unlock();
+  const std::string edge_id = followed();
   if (edge_id.empty()) return Unavailable("no rig seen yet");
   return ends_.feedback.Write(edge_id, feedback);
 }

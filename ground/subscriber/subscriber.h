@@ -57,8 +57,12 @@ struct SubscriberHandlers {
 struct SubscriberStats {
   SessionAccount account;        ///< Of the newest session.
   std::uint64_t refused = 0;     ///< All causes.
+  RefusalCounts refusals{};      ///< Of all topics since the start, by cause.
   std::uint64_t other_edge = 0;  ///< Samples of rigs that are not followed.
   bool edge_present = false;
+  /// What is wrong with the rigs that are there, for the operator: another one than the one that is
+  /// followed, or two of one name. Empty = nothing.
+  std::string rig_problem;
 };
 
 /// The ground's end of the link: samples in, checked frames in order out; receipts, feedback and

@@ -72,6 +72,7 @@ class EdgeSide {
   }
 
   Publisher& publisher() { return *publisher_; }
+  const Participant& participant() const { return *participant_; }
 
   /// Sends the whole plan and says that the session has ended. True if the ground confirmed
   /// everything.

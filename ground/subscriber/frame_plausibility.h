@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/time/time_types.h"
+#include "common/transport/refusal.h"
+
+namespace isotherm {
+
+/// What a frame says of its place in the stream, and when it came.
+struct FrameMark {
+  std::uint64_t number = 0;
+  CaptureTime time{};
+  SteadyTime arrival{};  ///< Ground.
+};
+
+/// A camera that delivers gives a frame at least so often.
+inline constexpr Nanoseconds kMaxFramePeriod = std::chrono::seconds(1);
+/// Frames of a camera per second, more than any has.
+inline constexpr double kMaxFrameRateHz = 200.0;
+/// Numbers that may be missing whatever the times say.
+inline constexpr std::uint64_t kFreeNumbers = 64;
+/// How much sooner than the frame before a frame may arrive.
+inline constexpr Nanoseconds kMaxJitter = std::chrono::milliseconds(250);
+
+/// Why `frame` cannot be in one stream with `before`, nullopt if it can: capture times rise with
+/// the numbers; they advance no more than the ground's clock did, or than the frames between
+/// explain (a replay is faster, a burst after an outage too); numbers advance no faster than
+/// cameras do. The wall clocks of both sides need not agree.
+std::optional<RefusalCause> CheckFollows(const FrameMark& before, const FrameMark& frame);
+
+}  // namespace isotherm

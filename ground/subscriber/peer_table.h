@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <utility>
+
+#include "common/transport/endpoints.h"
+
+namespace isotherm {
+
+/// Which process wrote a sample. Remembers the writers, because one that has left cannot be asked
+/// about, and its last samples may still come. Bounded. Thread-compatible.
+class PeerTable {
+ public:
+  static constexpr std::size_t kMaxWriters = 512;
+
+  /// The process of `writer`, as Received::writer of `reader`, which must outlive the table; 0 if
+  /// it left before anything of it was seen, or if there are too many.
+  template <typename Message>
+  PeerHandle Identify(const Reader<Message>& reader, std::uint64_t writer) {
+    if (const auto known = writers_.find(writer); known != writers_.end())
+      return known->second.peer;
+    const PeerHandle peer = reader.PeerOf(writer);
+    if (peer == 0) return 0;
+    if (writers_.size() == kMaxWriters) ForgetTheGone();
+    if (writers_.size() == kMaxWriters) return 0;
+    writers_.emplace(writer, Entry{peer, [&reader, writer] { return reader.PeerOf(writer) != 0; }});
+    return peer;
+  }
+
+  /// Whether a writer of `peer` that was seen is still there.
+  bool IsPresent(PeerHandle peer) const {
+    for (const auto& [writer, entry] : writers_)
+      if (entry.peer == peer && entry.is_there()) return true;
+    return false;
+  }
+
+ private:
+  struct Entry {
+    PeerHandle peer = 0;
+    std::function<bool()> is_there;
+  };
+
+  void ForgetTheGone() {
+    std::erase_if(writers_, [](const auto& item) { return !item.second.is_there(); });
+  }
+
+  std::map<std::uint64_t, Entry> writers_;
+};
+
+}  // namespace isotherm

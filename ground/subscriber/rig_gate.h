@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "common/frame/frame.h"
+#include "common/time/time_types.h"
+#include "common/transport/endpoints.h"
+#include "common/transport/messages.h"
+#include "common/transport/refusal.h"
+
+namespace isotherm {
+
+/// A sample that says it is of the rig that is followed.
+struct RigSample {
+  std::variant<RigDescription, EdgeStatus, OutsidePoseSample, CommandResult, EncodedDepthFrame,
+               EncodedThermalFrame>
+      content;
+  CaptureTime arrival{};  ///< Ground wall clock.
+};
+
+/// Decides whose samples are used. A name is no proof: anybody may write it, and two rigs may have
+/// the same one. The rig is the process (DDS participant) that announced the session by its
+/// RigDescription; it keeps it until the session is closed or the process is gone:
+///
+///   another process --(the owner is heard kTrial later)--------------------> refused
+///   another process --(the owner is gone, and not back after kTrial)-------> owner
+///   another process --(the owner is there, but silent for kSilence)--------> owner
+///   another process --(the owner's session is closed, or was never announced)--> owner at once
+///
+/// Until that is decided the samples of one other process are kept, within kMaxHeldBytes, so that
+/// an edge that was killed and started again loses nothing. Samples of a session that the owner has
+/// not announced are kept for kPatience. What is not used is refused with a cause. Pure: time
+/// enters through arguments. Thread-compatible.
+class RigGate {
+ public:
+  static constexpr Nanoseconds kTrial = std::chrono::seconds(1);
+  static constexpr Nanoseconds kSilence = std::chrono::seconds(5);
+  static constexpr Nanoseconds kPatience = std::chrono::seconds(5);
+  static constexpr std::size_t kMaxHeldBytes = 32U << 20U;  ///< Of one process; of two at most.
+  static constexpr std::size_t kMaxHeldSamples = 512;
+  static constexpr std::size_t kMaxProcesses = 16;
+
+  using Pass = std::function<void(RigSample&&)>;
+  using Refuse = std::function<void(const RigSample&, RefusalCause)>;
+  using IsPresent = std::function<bool(PeerHandle)>;
+
+  /// `pass` gets what is used, in the order of its arrival; a session's rig comes first.
+  RigGate(Pass pass, Refuse refuse) : pass_(std::move(pass)), refuse_(std::move(refuse)) {}
+
+  /// A sample of `peer` has arrived.
+  void Add(PeerHandle peer, RigSample&& sample, SteadyTime now);
+  /// The account of `session` is closed: nothing of it will come.
+  void OnClosed(std::uint64_t session);
+  /// Decides what time decides. To be called several times in a second.
+  void Update(SteadyTime now, const IsPresent& is_present);
+
+  /// The rig's process; 0 before the first sample.
+  PeerHandle owner() const { return owner_; }
+  /// A process that is refused although it calls itself the rig.
+  struct Rival {
+    PeerHandle peer = 0;
+    std::uint64_t session = 0;  ///< That it has announced; 0 = none.
+    friend bool operator==(const Rival&, const Rival&) = default;
+  };
+  std::vector<Rival> rivals() const;
+
+ private:
+  struct Held {
+    RigSample sample;
+    SteadyTime time;
+  };
+  struct Process {
+    PeerHandle peer = 0;
+    SteadyTime since;                   ///< When it began to ask for the owner's place.
+    SteadyTime heard;                   ///< The newest sample.
+    bool refused = false;               ///< It was decided that it is not the rig.
+    std::optional<RigSample> rig{};     ///< The newest.
+    std::optional<RigSample> status{};  ///< The newest that was not passed.
+    std::deque<Held> held{};
+    std::size_t held_bytes = 0;
+  };
+
+  Process* Find(PeerHandle peer);
+  Process* FindOrCreate(PeerHandle peer, SteadyTime now);
+  /// Session that it has announced, if that can become ours.
+  std::optional<std::uint64_t> OpenSession(const Process& process) const;
+  bool IsOver(std::uint64_t session) const;
+  bool MayHold(const Process& process) const;
+  void Hold(Process& process, RigSample&& sample, SteadyTime now);
+  void Drop(Process& process, RefusalCause cause);
+  void AddOwn(Process& owner, RigSample&& sample, SteadyTime now);
+  void AddOther(Process& process, RigSample&& sample, SteadyTime now);
+  void BeginSession(std::uint64_t session);
+  /// Passes what was kept of the announced session.
+  void Release(Process& owner);
+  void MakeOwner(Process& process, SteadyTime now);
+  bool IsFree(const Process& candidate, SteadyTime now, const IsPresent& is_present) const;
+
+  const Pass pass_;
+  const Refuse refuse_;
+  std::deque<Process> processes_;
+  PeerHandle owner_ = 0;
+  bool announced_ = false;     ///< The owner has announced session_.
+  std::uint64_t session_ = 0;  ///< Newest that an owner announced.
+  bool closed_ = false;        ///< session_ is.
+  std::deque<std::uint64_t> over_;
+};
+
+/// Of a sample of a session; 0 = of none.
+std::uint64_t SessionOf(const RigSample& sample);
+
+}  // namespace isotherm

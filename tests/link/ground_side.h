@@ -1,0 +1,128 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "ground/subscriber/subscriber.h"
+#include "tests/link/edge_side.h"
+
+namespace isotherm {
+
+/// A ground station that only looks at what it gets.
+class GroundSide {
+ public:
+  GroundSide(const TransportEnvironment& environment, const Clock& clock, int domain,
+             Nanoseconds work_per_frame = Nanoseconds(0))
+      : work_per_frame_(work_per_frame) {
+    participant_ = std::move(*Participant::Create(environment, domain));
+    SubscriberOptions options;
+    options.edge_id = "test-edge";
+    SubscriberHandlers handlers;
+    handlers.depth = [this](ReceivedDepth item) { Take(*item.encoded, &depth_); };
+    handlers.thermal = [this](ReceivedThermal item) { Take(*item.encoded, &thermal_); };
+    handlers.outside_pose = [this](const OutsidePoseSample& sample) {
+      Update([&] { outside_poses_.push_back(sample.number); });
+    };
+    handlers.rig = [this](const RigDescription& rig) {
+      Update([&] { rig_session_ = rig.session; });
+    };
+    handlers.command_result = [this](const CommandResult& result) {
+      Update([&] { result_ = result; });
+    };
+    handlers.session_end = [this](const SessionAccount& account) {
+      Update([&] { ended_.push_back(account); });
+    };
+    subscriber_ = std::move(*Subscriber::Create(*participant_, clock, options, handlers));
+    receiver_ = std::jthread([this](const std::stop_token& stop) { subscriber_->Run(stop); });
+  }
+
+  Subscriber& subscriber() { return *subscriber_; }
+  void Stop() {
+    receiver_.request_stop();
+    receiver_.join();
+  }
+
+  /// The account of the session that ended as number `count`.
+  std::optional<SessionAccount> AwaitSessionEnd(std::size_t count = 1) {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait_for(lock, kLinkPatience, [&] { return ended_.size() >= count; })) return {};
+    return ended_[count - 1];
+  }
+  bool AwaitDepth(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    return changed_.wait_for(lock, kLinkPatience, [&] { return depth_.size() >= count; });
+  }
+  std::vector<std::uint64_t> AwaitOutsidePoses(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLinkPatience, [&] { return outside_poses_.size() >= count; });
+    return outside_poses_;
+  }
+  std::optional<CommandResult> AwaitResult() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLinkPatience, [&] { return result_.has_value(); });
+    return result_;
+  }
+  std::vector<std::uint64_t> depth() const {
+    std::scoped_lock lock(mutex_);
+    return depth_;
+  }
+  std::vector<std::uint64_t> thermal() const {
+    std::scoped_lock lock(mutex_);
+    return thermal_;
+  }
+  int corrupt() const {
+    std::scoped_lock lock(mutex_);
+    return corrupt_;
+  }
+  std::optional<std::uint64_t> rig_session() const {
+    std::scoped_lock lock(mutex_);
+    return rig_session_;
+  }
+
+ private:
+  template <typename Function>
+  void Update(Function update) {
+    std::scoped_lock lock(mutex_);
+    update();
+    changed_.notify_all();
+  }
+  template <typename Encoded>
+  void Take(const Encoded& frame, std::vector<std::uint64_t>* numbers) {
+    const std::uint64_t number = frame.header.frame_number;
+    // A consumer that is slower than the sender.
+    if (work_per_frame_ > Nanoseconds(0)) std::this_thread::sleep_for(work_per_frame_);
+    bool good = true;
+    for (std::size_t i = 0; i < frame.image.payload.size(); i += kMarkEvery) {
+      good = good && frame.image.payload[i] == Mark(number, i);
+    }
+    Update([&] {
+      numbers->push_back(number);
+      if (!good) ++corrupt_;
+    });
+  }
+
+  const Nanoseconds work_per_frame_;
+  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Subscriber> subscriber_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::uint64_t> depth_, thermal_, outside_poses_;
+  std::optional<std::uint64_t> rig_session_;
+  std::optional<CommandResult> result_;
+  std::vector<SessionAccount> ended_;
+  int corrupt_ = 0;
+  std::jthread receiver_;
+};
+
+inline std::vector<std::uint64_t> Range(std::uint64_t first, std::uint64_t end) {
+  std::vector<std::uint64_t> numbers;
+  for (std::uint64_t i = first; i < end; ++i) numbers.push_back(i);
+  return numbers;
+}
+
+}  // namespace isotherm
