@@ -28,11 +28,13 @@ void TellAboutCameras(const RigDescription& rig) {
 }
 
 std::string StatusText(const SubscriberStats& stats) {
+  const std::string problem = stats.rig_problem.empty() ? "" : stats.rig_problem + " | ";
   if (stats.account.session == 0)
-    return stats.edge_present ? "rig found, no scan yet" : "waiting for a rig";
-  std::string text = fmt::format(
-      "{} | received {}, {} | rig's clock: ", stats.edge_present ? "scanning" : "RIG LOST",
-      ArrivedText("depth", stats.account.depth), ArrivedText("thermal", stats.account.thermal));
+    return problem + (stats.edge_present ? "rig found, no scan yet" : "waiting for a rig");
+  std::string text = problem + fmt::format("{} | received {}, {} | rig's clock: ",
+                                           stats.edge_present ? "scanning" : "RIG LOST",
+                                           ArrivedText("depth", stats.account.depth),
+                                           ArrivedText("thermal", stats.account.thermal));
   return text + (stats.account.clock ? ClockText(*stats.account.clock) : "unknown");
 }
 

@@ -54,12 +54,17 @@ Status CreateTopic(const Participant& participant, TopicId topic, DdsHandle* han
   return handle->value() > 0 ? OkStatus() : CreationFailed("topic", topic, handle->value());
 }
 
-/// Takes what dds_get_matched_*_data gives; may be null.
+/// Takes what dds_get_matched_*_data gives; may be null. Made from the participant's GUID (FNV-1a):
+/// when an outage lets the middleware forget a participant, it comes back with another instance
+/// handle, but with the same GUID.
 PeerHandle TakePeer(dds_builtintopic_endpoint_t* endpoint) {
   if (endpoint == nullptr) return 0;
-  const PeerHandle peer = endpoint->participant_instance_handle;
+  PeerHandle peer = 0xCBF29CE484222325ULL;
+  for (const std::uint8_t byte : endpoint->participant_key.v) {
+    peer = (peer ^ byte) * 0x100000001B3ULL;
+  }
   dds_builtintopic_free_endpoint(endpoint);
-  return peer;
+  return peer == 0 ? 1 : peer;
 }
 
 /// A wire struct with the lists that ToWire allocated.

@@ -258,11 +258,11 @@ TEST_F(ImpostorTest, F64AThousandFramesOfAnUnknownSessionWriteAFewLines) {
   for (std::uint64_t i = 0; i < 1000; ++i) impostor->Frame(99, i);
   SendBeside(std::move(impostor));
   const RefusalCounter& refusals = ground_->subscriber().refusals();
-  EXPECT_TRUE(Await([&] { return refusals.count(RefusalCause::kOtherWriter) >= 500; }));
+  EXPECT_TRUE(Await([&] { return refusals.count(RefusalCause::kOtherWriter) > 0; }));
   ExpectAWholeScan();
   const std::string log = ::testing::internal::GetCapturedStderr();
   EXPECT_LE(Count(log, "warning: "), 5) << log;
-  EXPECT_GE(Count(log, "from another process of the same name"), 1) << log;
+  EXPECT_GE(Count(log, "another process of the same name"), 1) << log;
   EXPECT_GT(account_.depth.refused, 0U);
 }
 
