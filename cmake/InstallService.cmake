@@ -1,5 +1,5 @@
-# Run by `cmake --install`: configurations and systemd units, with paths that follow the prefix of this installation.
-# Set by the caller: SOURCE_DIR, BINARY_DIR, CONFIGURATIONS (files below SOURCE_DIR).
+# Run by `cmake --install`: configurations, systemd units and what they need, with paths that follow the prefix of this
+# installation. Set by the caller: SOURCE_DIR, BINARY_DIR, CONFIGURATIONS (files below SOURCE_DIR).
 set(prefix ${CMAKE_INSTALL_PREFIX})
 set(INSTALL_BIN ${prefix}/bin)
 set(INSTALL_DOC ${prefix}/share/doc/isotherm)
@@ -9,23 +9,34 @@ if(prefix STREQUAL "/usr" OR prefix STREQUAL "/")
 endif()
 
 # What somebody has edited is theirs: the shipped file goes beside it.
-foreach(configuration IN LISTS CONFIGURATIONS)
-  get_filename_component(name ${configuration} NAME)
+function(install_configuration shipped)
+  get_filename_component(name ${shipped} NAME)
   set(installed $ENV{DESTDIR}${INSTALL_CONFIG}/${name})
   set(rename ${name})
   if(EXISTS ${installed})
     file(SHA256 ${installed} installed_hash)
-    file(SHA256 ${SOURCE_DIR}/${configuration} shipped_hash)
+    file(SHA256 ${shipped} shipped_hash)
     if(NOT installed_hash STREQUAL shipped_hash)
       set(rename ${name}.new)
       message(STATUS "Kept: ${installed} was edited; the new one is ${name}.new")
     endif()
   endif()
-  file(INSTALL DESTINATION ${INSTALL_CONFIG} TYPE FILE RENAME ${rename}
-    FILES ${SOURCE_DIR}/${configuration})
+  file(INSTALL DESTINATION ${INSTALL_CONFIG} TYPE FILE RENAME ${rename} FILES ${shipped})
+endfunction()
+
+foreach(configuration IN LISTS CONFIGURATIONS)
+  install_configuration(${SOURCE_DIR}/${configuration})
 endforeach()
+configure_file(${SOURCE_DIR}/systemd/network.env.in ${BINARY_DIR}/systemd/network.env @ONLY)
+install_configuration(${BINARY_DIR}/systemd/network.env)
 
 foreach(unit IN ITEMS isotherm-edge.service isotherm-ground.service)
   configure_file(${SOURCE_DIR}/systemd/${unit}.in ${BINARY_DIR}/systemd/${unit} @ONLY)
   file(INSTALL DESTINATION ${prefix}/lib/systemd/system TYPE FILE FILES ${BINARY_DIR}/systemd/${unit})
 endforeach()
+file(INSTALL DESTINATION ${prefix}/lib/sysusers.d TYPE FILE RENAME isotherm.conf
+  FILES ${SOURCE_DIR}/systemd/isotherm.sysusers)
+file(INSTALL DESTINATION ${prefix}/lib/sysctl.d TYPE FILE RENAME 60-isotherm.conf
+  FILES ${SOURCE_DIR}/systemd/60-isotherm.sysctl)
+message(STATUS "The services use the network that ${INSTALL_CONFIG}/network.env names: this computer only, unless "
+  "somebody chose another")

@@ -24,9 +24,13 @@ packages="build-essential cmake ninja-build ccache pkg-config git ca-certificate
 
 # Recordings are checked against the format's reference implementation, which is JavaScript. Node.js may come from
 # elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).
-# Emulated USB devices need umockdev.
+# Emulated USB devices need umockdev; the units are started by a systemd in a container; sources are formatted by
+# clang-format 14.
 add_test_packages() {
-  packages="$packages umockdev libumockdev-dev"
+  packages="$packages umockdev libumockdev-dev systemd systemd-container clang-format"
+  # Checks the configurations for it that we ship. Where services run it would take this computer's clock over from
+  # another one, so there its test is skipped unless it is installed.
+  [ -d /run/systemd/system ] || packages="$packages chrony"
   command -v node >/dev/null 2>&1 || packages="$packages nodejs"
   command -v npm >/dev/null 2>&1 || packages="$packages npm"
 }

@@ -19,6 +19,7 @@
 #include "edge/edge_daemon.h"
 #include "edge/edge_options.pb.h"
 #include "edge/make_camera.h"
+#include "edge/rig_name.h"
 #include "edge/validate_options.h"
 
 namespace isotherm {
@@ -102,7 +103,9 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_option("--record", line.record,
                  "Record into FILE, or into a new file in folder FILE; \"off\" = do not")
       ->type_name("FILE");
-  app.add_option("--edge-id", line.edge_id, "Name of this rig on the link")->type_name("NAME");
+  app.add_option("--edge-id", line.edge_id,
+                 "Name of this rig on the link; \"\" = that of this computer")
+      ->type_name("NAME");
   app.add_option("--domain", line.domain, "DDS domain, 0..230")->type_name("N");
   app.add_flag("--exit-at-end", line.exit_at_end, "Leave when the source has ended");
   app.add_flag("--wait-for-ground", line.wait_for_ground,
@@ -180,6 +183,7 @@ Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
   if (line.rate) source.set_rate(*line.rate);
   if (line.record) options.mutable_spool()->set_record(*line.record);
   if (line.edge_id) options.mutable_link()->set_edge_id(*line.edge_id);
+  if (options.link().edge_id().empty()) options.mutable_link()->set_edge_id(HostRigName());
   if (line.domain) options.mutable_link()->set_domain(*line.domain);
   if (line.wait_for_ground) options.mutable_link()->set_wait_for_ground(true);
   if (line.exit_at_end) options.set_exit_at_end(true);

@@ -147,7 +147,7 @@ void CheckSpool(const SpoolOptions& options, Problems& problems) {
 
 void CheckLink(const LinkOptions& options, Problems& problems) {
   problems.Stage("link");
-  if (!IsPlainName(options.edge_id())) {
+  if (!options.edge_id().empty() && !IsPlainName(options.edge_id())) {
     problems.Add("edge_id",
                  fmt::format("is \"{}\", must be 1 to 32 letters, digits, '_', '-' or '.'",
                              options.edge_id()));

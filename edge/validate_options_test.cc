@@ -44,6 +44,12 @@ TEST(ValidateEdgeOptionsTest, F59AllProblemsAreListed) {
   EXPECT_THAT(status.message(), HasSubstr("link.edge_id: is \"drone 1\""));
 }
 
+TEST(ValidateEdgeOptionsTest, WithoutANameItIsTheComputers) {
+  EdgeOptions options;
+  options.mutable_link()->set_edge_id("");
+  EXPECT_TRUE(Validate(options).ok()) << Validate(options).message();
+}
+
 TEST(ValidateEdgeOptionsTest, ReplayNeedsARecording) {
   EdgeOptions options;
   options.mutable_source()->set_kind(REPLAY);

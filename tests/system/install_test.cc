@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/system/process.h"
 
@@ -55,9 +58,11 @@ TEST_F(InstallTest, ProgramsConfigurationsAndUnitsAreInPlace) {
   for (const char* path :
        {"bin/isotherm", "bin/isotherm-edge", "bin/isotherm-ground", "etc/isotherm/edge.textproto",
         "etc/isotherm/ground.textproto", "etc/isotherm/cyclonedds-loopback.xml",
-        "etc/isotherm/cyclonedds-lan.xml", "etc/isotherm/chrony-rig.conf",
+        "etc/isotherm/cyclonedds-lan.xml", "etc/isotherm/cyclonedds-radio.xml",
+        "etc/isotherm/network.env", "etc/isotherm/chrony-rig.conf",
         "etc/isotherm/chrony-ground.conf", "lib/systemd/system/isotherm-edge.service",
         "lib/systemd/system/isotherm-ground.service", "lib/udev/rules.d/60-isotherm-thermal.rules",
+        "lib/sysusers.d/isotherm.conf", "lib/sysctl.d/60-isotherm.conf",
         "share/doc/isotherm/README.md"}) {
     EXPECT_TRUE(std::filesystem::exists(prefix_ / path)) << path;
   }
@@ -68,7 +73,10 @@ TEST_F(InstallTest, UnitsNameTheInstalledFiles) {
   for (const std::string name : {"edge", "ground"}) {
     const std::string unit = ReadAll(Unit("isotherm-" + name + ".service"));
     EXPECT_THAT(unit, HasSubstr("Type=notify\n"));
-    EXPECT_THAT(unit, HasSubstr("Restart=on-failure\n"));
+    EXPECT_THAT(unit, HasSubstr("Restart=always\n"));
+    EXPECT_THAT(unit, HasSubstr("StartLimitIntervalSec=0\n"));
+    EXPECT_THAT(unit, HasSubstr("EnvironmentFile=-" +
+                                (prefix_ / "etc/isotherm/network.env").string() + '\n'));
     EXPECT_THAT(
         unit, HasSubstr("ExecStart=" + (prefix_ / "bin/isotherm-").string() + name + " --config " +
                         (prefix_ / "etc/isotherm/").string() + name + ".textproto\n"));
@@ -118,6 +126,38 @@ TEST_F(InstallTest, TheServiceManagerAcceptsTheUnits) {
       kPatience);
   EXPECT_EQ(verify.status, 0) << verify.output;
   EXPECT_EQ(verify.output.find("isotherm-"), std::string::npos) << verify.output;
+}
+
+TEST_F(InstallTest, TheNetworkIsChosenInOneFile) {
+  ASSERT_EQ(Install().status, 0);
+  std::vector<std::string> chosen, offered;
+  std::istringstream lines(ReadAll(prefix_ / "etc/isotherm/network.env"));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t uri = line.find("CYCLONEDDS_URI=file://");
+    if (uri == std::string::npos) continue;
+    const std::string profile = line.substr(line.find("//") + 2);
+    EXPECT_TRUE(std::filesystem::exists(profile)) << profile;
+    (uri == 0 ? chosen : offered).push_back(std::filesystem::path(profile).filename());
+  }
+  EXPECT_THAT(chosen, ::testing::ElementsAre("cyclonedds-loopback.xml"));
+  EXPECT_THAT(offered, ::testing::ElementsAre("cyclonedds-lan.xml", "cyclonedds-radio.xml"));
+}
+
+/// What systemd-analyze finds to criticise, 0 (nothing) to 10. Without the network (1.1 of it),
+/// reading the state of the clock (0.6) and, on the edge, devices, neither would be of use.
+TEST_F(InstallTest, TheUnitsAreClosedAsFarAsTheyCanBe) {
+  const std::filesystem::path analyze = FindProgram("systemd-analyze");
+  if (analyze.empty()) GTEST_SKIP() << "systemd-analyze is not installed";
+  ASSERT_EQ(Install().status, 0);
+  for (const auto& [name, limit] : {std::pair{"edge", "16"}, std::pair{"ground", "14"}}) {
+    const Finished judged =
+        RunToEnd({analyze,
+                  {"security", "--offline=yes", "--no-pager", "--threshold=" + std::string(limit),
+                   Unit("isotherm-" + std::string(name) + ".service")},
+                  {}},
+                 kPatience);
+    EXPECT_EQ(judged.status, 0) << judged.output;
+  }
 }
 
 }  // namespace
