@@ -36,8 +36,21 @@ if [ "$headless" = 0 ]; then
   cat <<TEXT
   cloud.ply   points with temperature and measurement classes: open in CloudCompare or MeshLab
   mesh.ply    the same as a triangle mesh
-  renders/    pictures: temperature, measurement classes, coverage; others: isotherm render out/demo -o PICTURE.png
+  renders/    pictures: temperature, measurement classes, coverage
   stats.json  what was measured and how long it took
+  scan.mcap   the scan itself, to reconstruct again
+Further pictures:   build/release/bin/isotherm render out/demo -o PICTURE.png --size 800x600
+The tool anywhere:  export PATH="$PWD/build/release/bin:\$PATH"
 The web console is not part of this version.
 TEXT
+fi
+
+# What an inspector would take home, in the words of the two programs.
+measured=$(sed -n 's/^surface .* points, \(.*\) with a temperature, \(.*\) measured well.*/\1 has a temperature and \2 was measured well/p' \
+  out/demo/ground.log | tail -n 1)
+advice=$(sed -n 's/.*Edge: ground: \([^,|]*[^,| ]\).*/\1/p' out/demo/edge.log | tail -n 1)
+if [ -n "$measured" ]; then
+  say "in a sentence"
+  echo "Of the scanned surface $measured (near enough, not too oblique, the camera freshly corrected);"
+  echo "the last advice to whoever guides the rig: ${advice:-none}."
 fi
