@@ -126,15 +126,18 @@ std::optional<std::string> UnitsTest::obstacle_;
 
 class UnitsScanTest : public UnitsTest {
  protected:
-  /// The edge plays a simulated scan of 20 s as if it were its cameras; everything else is as
-  /// shipped, but for a coarser model.
-  static void Prepare() {
-    Configure(
-        "edge.textproto",
-        "source { kind: SYNTHETIC simulation { scene { scene: CORNER_SPHERE } duration_s: 20\n"
-        "  depth { rate_hz: 10 } thermal { rate_hz: 10 } } }\n"
-        "spool { record: \"/var/lib/isotherm/edge/\" }\n"
-        "link { edge_id: \"\" wait_for_ground: true }\n");
+  enum class Plays { kOnce, kForEver };
+  /// The edge plays a simulated scan as if it were its cameras; everything else is as shipped, but
+  /// for a coarser model.
+  static void Prepare(int duration_s, Plays plays) {
+    const bool once = plays == Plays::kOnce;
+    Configure("edge.textproto",
+              fmt::format("source {{ kind: SYNTHETIC loops: {} simulation {{ duration_s: {}\n"
+                          "  scene {{ scene: CORNER_SPHERE }}\n"
+                          "  depth {{ rate_hz: 10 }} thermal {{ rate_hz: 10 }} }} }}\n"
+                          "spool {{ record: \"/var/lib/isotherm/edge/\" }}\n"
+                          "link {{ edge_id: \"\" wait_for_ground: {} }}\n",
+                          once ? 1 : 0, duration_s, once));
     container_->Output(
         "sed -i s/voxel_size_m:.*/voxel_size_m:0.006/ /etc/isotherm/ground.textproto; "
         "echo 'tsdf { truncation_distance_m: 0.024 }' >>/etc/isotherm/ground.textproto");
@@ -204,7 +207,7 @@ class UnitsScanTest : public UnitsTest {
 };
 
 TEST_F(UnitsScanTest, AScanBetweenTheTwoServices) {
-  Prepare();
+  Prepare(20, Plays::kOnce);
   const Finished started = Run({"systemctl", "start", kGround, kEdge});
   ASSERT_EQ(started.status, 0) << started.output;
   ASSERT_TRUE(Until(kPatience, [&] { return JournalHas("the source has ended"); }));
@@ -252,8 +255,9 @@ TEST_F(UnitsTest, F37F40StartedAgainAtOnceHoweverOftenItIsKilled) {
 TEST_F(UnitsTest, TheSandboxAllowsWhatIsNeededAndNoMore) {
   std::filesystem::copy_file(SANDBOX_PROBE, root() / "usr/bin/sandbox_probe",
                              std::filesystem::copy_options::overwrite_existing);
+  container_->Output("touch /srv/camera; chown root:plugdev /srv/camera; chmod 0660 /srv/camera");
   const std::map<std::string, std::vector<std::string>> allowed = {
-      {kEdge, {"reads-clock", "landlock"}}, {kGround, {"reads-clock"}}};
+      {kEdge, {"reads-clock", "cameras", "landlock"}}, {kGround, {"reads-clock", "cameras"}}};
   for (const auto& [unit, words] : allowed) {
     since_ = Now();
     AddToUnit(unit, "Type=oneshot\nRestart=no\nExecStart=\nExecStart=/usr/bin/sandbox_probe\n");
