@@ -1,5 +1,6 @@
-// Tracking that knows when it is lost, and comes back, on a recorded scan with truth whose frames
-// are left out, covered or shown in another order: rows F52 and F53 of the failure catalogue.
+// Tracking that knows when it is lost, and comes back, on a scan with truth whose frames are left
+// out, covered or shown in another order: rows F52 and F53 of the failure catalogue. The scan was
+// rendered by a program that shares no code with this one; an excerpt of it comes with the tests.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,7 +65,9 @@ class RecordedRecoveryTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     const std::filesystem::path folder = TestData("furnace_dev");
-    if (folder.empty()) return;
+    if (!folder.empty()) Load(folder);
+  }
+  static void Load(const std::filesystem::path& folder) {
     auto dataset = OpenDataset({folder, {}, {}});
     ASSERT_TRUE(dataset) << dataset.error().message();
     recording_ = new Recording{*std::move(dataset), {}, {}, {}};
@@ -295,6 +298,68 @@ TEST_F(RecordedRecoveryTest, F53AWhipPanIsNotFusedAtAWrongPose) {
   EXPECT_GE(outcome.until_found, 0);
   EXPECT_LE(outcome.until_found, kFoundWithin);
   ExpectAsGoodAsCalm(outcome);
+}
+
+/// A third of the scan, every second frame at half the resolution: 49 frames, 15 per second.
+class RecordedExcerptTest : public RecordedRecoveryTest {
+ protected:
+  static constexpr double kPeriod = 1.0 / 15.0;
+
+  static void SetUpTestSuite() { Load(ISOTHERM_SOURCE_DIR "/tests/data/furnace_excerpt"); }
+
+  static Script Slowed(Script script) {
+    for (Shot& shot : script.shots) shot.seconds *= kPeriod / kFrame;
+    return script;
+  }
+};
+
+TEST_F(RecordedExcerptTest, EveryFrameIsTrackedAtItsTruePose) {
+  EXPECT_EQ(FrameCount(), 49);
+  EXPECT_EQ(Calm().lost, 0);
+  EXPECT_EQ(Calm().believed_wrong, 0);
+  EXPECT_LE(Calm().surface.distance_m.rms, 0.001);
+}
+
+TEST_F(RecordedExcerptTest, F52ACameraCoveredForASecondIsLostAndFindsItsWayBack) {
+  constexpr int kFirst = 16;
+  constexpr int kCovered = 15;
+  Script script;
+  script.Play(0, kFirst);
+  script.disturbed = script.shots.size();
+  for (int i = 0; i < kCovered; ++i) {
+    const bool comes_or_goes = i < 2 || i >= kCovered - 2;
+    script.shots.push_back(
+        {kFirst + i, kFrame, comes_or_goes ? Shot::Cover::kHand : Shot::Cover::kTooNear});
+  }
+  script.back = script.shots.size();
+  script.Play(kFirst + kCovered, FrameCount());
+  const Outcome outcome = Run(Slowed(std::move(script)));
+  Print("covered for 1 s", outcome);
+  EXPECT_EQ(outcome.until_lost, 0);
+  EXPECT_GE(outcome.lost, kCovered);
+  EXPECT_GE(outcome.until_found, 0);
+  EXPECT_LE(outcome.until_found, kFoundWithin / 2) << "a second";
+  EXPECT_EQ(outcome.fused_wrong, 0);
+  EXPECT_EQ(outcome.fused_covered, 0);
+  EXPECT_LE(outcome.believed_wrong, kLostWithin);
+}
+
+TEST_F(RecordedExcerptTest, F52AJumpBackIsNoticedAndFound) {
+  constexpr int kFrom = 40;
+  constexpr int kTo = 14;
+  ASSERT_GT(TranslationDistance(Truth(kFrom), Truth(kTo)), 0.15);
+  Script script;
+  script.Play(0, kFrom);
+  script.disturbed = script.back = script.shots.size();
+  script.Play(kTo, FrameCount());
+  const Outcome outcome = Run(Slowed(std::move(script)));
+  Print("jump", outcome);
+  EXPECT_GE(outcome.until_lost, 0);
+  EXPECT_LE(outcome.until_lost, kLostWithin);
+  EXPECT_GE(outcome.until_found, 0);
+  EXPECT_LE(outcome.until_found, kFoundWithin / 2) << "a second";
+  EXPECT_EQ(outcome.fused_wrong, 0);
+  EXPECT_LE(outcome.believed_wrong, kLostWithin);
 }
 
 }  // namespace

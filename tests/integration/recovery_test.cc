@@ -125,6 +125,8 @@ TEST_F(RecoveryTest, F52TwoSecondsMissingAreNoticedAndFoundAgain) {
   Print("2 s missing", outcome.error);
   std::cout << "found after " << outcome.until_found << " frames\n";
   EXPECT_EQ(outcome.fused_wrong, 0);
+  EXPECT_GE(outcome.until_found, 0) << "the scan never comes back";
+  EXPECT_LE(outcome.until_found, 30) << "a second";
 }
 
 TEST_F(RecoveryTest, F53AWhipPanIsNotFusedAtAWrongPose) {
