@@ -62,8 +62,14 @@ function(isotherm_library)
   endif()
 endfunction()
 
+# Tests of what has several threads: the thread sanitizer watches these.
+set(isotherm_threaded_tests base_test block_spiller_test camera_process_test clock_link_test concurrency_test
+  edge_pipeline_test edge_source_test endpoints_test ground_pipeline_test hostile_test link_test live_scan_test
+  nuc_control_test openni_test rig_commander_test service_test spool_test thermal_test tsdf_test)
+
 # isotherm_test(NAME <name> SRCS <files> [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>])
-# Labels: unit (default), integration, system, hardware, lint.
+# Labels: unit (default), integration, system, hardware, lint; experiment (figures of the thesis, which sanitizers need not
+# judge); threads is added to what isotherm_threaded_tests names.
 function(isotherm_test)
   cmake_parse_arguments(ARG "" "NAME;TIMEOUT" "SRCS;DEPS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
@@ -71,6 +77,9 @@ function(isotherm_test)
   endif()
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
+  endif()
+  if(ARG_NAME IN_LIST isotherm_threaded_tests)
+    list(APPEND ARG_LABELS threads)
   endif()
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 120)
@@ -94,4 +103,10 @@ function(isotherm_test)
   endif()
   add_test(NAME ${ARG_NAME} COMMAND ${ARG_NAME})
   set_tests_properties(${ARG_NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+  foreach(label IN LISTS ARG_LABELS)  # What deploy/test.sh builds for a label.
+    if(NOT TARGET tests_${label})
+      add_custom_target(tests_${label})
+    endif()
+    add_dependencies(tests_${label} ${ARG_NAME})
+  endforeach()
 endfunction()

@@ -4,11 +4,16 @@
 #   deploy/test.sh                 release build, all tests
 #   deploy/test.sh -L unit         the same build, ctest arguments passed on
 #   PRESET=asan deploy/test.sh     another preset of CMakePresets.json (dev, asan, tsan)
+#   LABELS="unit lint" deploy/test.sh   builds and runs only the tests with one of these labels
+#   STRICT=1 deploy/test.sh        fails if a case is skipped that tests/skips.txt does not list, or if a package without which
+#                                  tests would be left out is missing (continuous integration does)
 #
-# Tests on real data look for it in $ISOTHERM_DATA_DIR (or ../shared/data) and say so when they skip.
+# Tests on recorded data look for it in $ISOTHERM_DATA_DIR (or ../shared/data) and say so when they skip.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 preset=${PRESET:-release}
+labels=${LABELS:-}
+strict=${STRICT:-0}
 
 say() { printf '== %s\n' "$*"; }
 
@@ -38,8 +43,11 @@ say "formatting"
 check_format
 
 say "build ($preset)"
-cmake --preset "$preset" >/dev/null
-NINJA_STATUS="[%f/%t %es] " cmake --build --preset "$preset"
+cmake --preset "$preset" -DISOTHERM_ALL_TESTS="$strict" >/dev/null
+targets=()
+for label in $labels; do targets+=(--target "tests_$label"); done
+[ -z "$labels" ] || set -- -L "^(${labels// /|})\$" "$@"
+NINJA_STATUS="[%f/%t %es] " cmake --build --preset "$preset" "${targets[@]}"
 
 say "tests ($preset)"
 log=build/$preset/Testing/ctest.log
@@ -54,6 +62,12 @@ if [ -f "$details" ]; then
   if [ -n "$skipped" ]; then
     say "skipped cases (reasons in $details)"
     echo "$skipped"
+    unlisted=$(echo "$skipped" | sed 's/^\[  SKIPPED \] //' | grep -vxFf <(grep -v '^#' tests/skips.txt) || true)
+    if [ "$strict" = 1 ] && [ -n "$unlisted" ]; then
+      say "skipped, but not in tests/skips.txt"
+      echo "$unlisted"
+      status=1
+    fi
   fi
 fi
 say "result"
