@@ -148,7 +148,7 @@ class UsbDevice::Impl {
  public:
   Impl(Context context, const Clock& clock) : context_(std::move(context)), clock_(clock) {}
   ~Impl() {
-    stream_.reset();
+    StopStream();
     while (!claimed_.empty()) Release(claimed_.back());
     if (!unsound_) return;
     static_cast<void>(handle_.release());
@@ -188,6 +188,17 @@ class UsbDevice::Impl {
     libusb_release_interface(handle_.get(), interface);
   }
 
+  void StopStream() { Discard(std::move(stream_)); }
+
+  /// Destroys it, unless the kernel still has some of its memory.
+  void Discard(std::unique_ptr<LibusbStream> stream) {
+    if (!stream || stream->Stop()) return;
+    LOG(Usb, Error) << "USB device " << info_.bus_port
+                    << ": cancelled transfers did not come back; their memory is given up";
+    static_cast<void>(stream.release());
+    unsound_ = true;
+  }
+
   Status SetAlternate(int interface, int alternate) {
     const int code = libusb_set_interface_alt_setting(handle_.get(), interface, alternate);
     if (code == LIBUSB_ERROR_NO_DEVICE) unsound_ = true;
@@ -198,8 +209,9 @@ class UsbDevice::Impl {
   Context context_;
   const Clock& clock_;
   Handle handle_;
-  /// libusb 1.0.26 unlocks a mutex that it has not locked if an alternate setting is asked of a
-  /// device that was just unplugged, and then aborts when the device is closed: it never is.
+  /// The device and libusb's context are never closed: transfers are still in flight, or libusb
+  /// 1.0.26 has unlocked a mutex that it had not locked, as it does if an alternate setting is
+  /// asked of a device that was just unplugged, and would abort.
   bool unsound_ = false;
   UsbDeviceInfo info_;
   UsbConfiguration configuration_;
@@ -288,6 +300,7 @@ Status UsbDevice::StartStream(const UsbStreamPlan& plan, PacketSink sink) {
   auto stream = std::make_unique<LibusbStream>(impl_->context_.get(), impl_->handle_.get(), plan,
                                                impl_->clock_, std::move(sink));
   if (const int code = stream->Start(); code != 0) {
+    impl_->Discard(std::move(stream));
     return impl_->Check(code, "starting its stream");
   }
   impl_->stream_ = std::move(stream);
@@ -318,6 +331,6 @@ Status UsbDevice::Pump(Nanoseconds timeout) {
                              impl_->stream_->failure()));
 }
 
-void UsbDevice::StopStream() { impl_->stream_.reset(); }
+void UsbDevice::StopStream() { impl_->StopStream(); }
 
 }  // namespace isotherm

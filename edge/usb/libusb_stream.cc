@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "common/base/log.h"
+#include "common/base/check.h"
 
 namespace isotherm {
 namespace {
@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 // Transfers that fail one after the other before the stream is given up.
 constexpr int kMostErrorsInARow = 16;
 // The kernel gives cancelled transfers back within a bus interval or two.
-constexpr int kStopTries = 200;
+constexpr milliseconds kLongestStop{500};
 constexpr milliseconds kStopTry{10};
 
 void LIBUSB_CALL OnTransferDone(libusb_transfer* transfer) {
@@ -42,18 +42,16 @@ LibusbStream::LibusbStream(libusb_context* context, libusb_device_handle* handle
                            UsbDevice::PacketSink sink)
     : context_(context), handle_(handle), plan_(plan), clock_(clock), sink_(std::move(sink)) {}
 
-LibusbStream::~LibusbStream() {
+LibusbStream::~LibusbStream() { CHECK(in_flight_ == 0); }
+
+bool LibusbStream::Stop() {
   CancelAll();
-  for (int i = 0; i < kStopTries && in_flight_ > 0; ++i) {
+  const SteadyTime end = clock_.SteadyNow() + kLongestStop;
+  while (in_flight_ > 0 && clock_.SteadyNow() < end) {
     timeval wait{0, kStopTry.count() * 1000};
     libusb_handle_events_timeout_completed(context_, &wait, nullptr);
   }
-  if (in_flight_ == 0) return;
-  // The kernel may still write into these buffers: losing them is the lesser evil.
-  LOG(Usb, Error) << "transfers did not come back, lost=" << in_flight_;
-  for (std::unique_ptr<Transfer>& transfer : transfers_) {
-    if (transfer->in_flight) static_cast<void>(transfer.release());
-  }
+  return in_flight_ == 0;
 }
 
 int LibusbStream::Start() {

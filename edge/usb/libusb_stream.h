@@ -13,7 +13,8 @@ struct libusb_transfer;
 namespace isotherm {
 
 /// Keeps several transfers of one endpoint in flight and hands over what they bring. Callbacks run
-/// wherever libusb's events are handled. Thread-bound.
+/// wherever libusb's events are handled. May only be destroyed when Stop has said that nothing is
+/// in flight any more. Thread-bound.
 class LibusbStream {
  public:
   enum class State { kRunning, kGone, kFailed };
@@ -21,13 +22,16 @@ class LibusbStream {
   /// All must outlive it.
   LibusbStream(libusb_context* context, libusb_device_handle* handle, const UsbStreamPlan& plan,
                const Clock& clock, UsbDevice::PacketSink sink);
-  /// Cancels what is in flight and waits until it has come back.
   ~LibusbStream();
   LibusbStream(const LibusbStream&) = delete;
   LibusbStream& operator=(const LibusbStream&) = delete;
 
   /// 0 or libusb's error code.
   int Start();
+  /// Cancels what is in flight and waits until it has come back, for a bounded time. False: some is
+  /// still in flight, and the kernel may write into its buffers at any time; this stream, the
+  /// device's handle and the context must stay for good. Nothing is handed over any more.
+  bool Stop();
   State state() const { return state_; }
   const std::string& failure() const { return failure_; }
 

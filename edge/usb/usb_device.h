@@ -97,7 +97,8 @@ class UsbDevice {
   /// Handles what has happened, waiting at most `timeout` for something. kUnavailable if the device
   /// is gone, kIoError if the stream has stopped.
   Status Pump(Nanoseconds timeout);
-  /// Cancels all transfers and waits until each has come back. Idempotent.
+  /// Cancels all transfers and waits until each has come back, at most half a second: the memory of
+  /// those that have not is given up. Idempotent.
   void StopStream();
 
  private:

@@ -44,6 +44,8 @@ class EmulatedDevice {
   /// One bulk transfer; nullopt = nothing to send yet.
   virtual std::optional<std::vector<std::uint8_t>> Bulk(std::uint8_t endpoint, Nanoseconds time,
                                                         std::size_t most) = 0;
+  /// False: transfers that are cancelled stay away for as long as it says so.
+  virtual bool GivesBackCancelled() const { return true; }
   /// The cable came off. When it comes back, if it does.
   struct Unplugged {
     std::optional<Nanoseconds> back_after;

@@ -57,7 +57,11 @@ int EmulatedRequests::Discard(std::uintptr_t address) {
   if (found == in_flight_.end()) return EINVAL;
   const Request request = *found;
   in_flight_.erase(found);
-  Finish(request, -ENOENT);
+  if (device_.GivesBackCancelled()) {
+    Finish(request, -ENOENT);
+  } else {
+    withheld_.push_back(request);
+  }
   return 0;
 }
 
@@ -72,6 +76,9 @@ std::optional<std::uintptr_t> EmulatedRequests::Reap() {
 }
 
 void EmulatedRequests::Serve(Nanoseconds now) {
+  if (device_.GivesBackCancelled()) {
+    for (const Request& request : std::exchange(withheld_, {})) Finish(request, -ENOENT);
+  }
   std::deque<Request> waiting = std::exchange(in_flight_, {});
   while (!waiting.empty()) {
     Request request = waiting.front();
@@ -86,6 +93,7 @@ void EmulatedRequests::Serve(Nanoseconds now) {
 
 std::optional<Nanoseconds> EmulatedRequests::NextDue(Nanoseconds now) const {
   std::optional<Nanoseconds> next;
+  if (!withheld_.empty()) next = now + kBulkPoll;
   for (const Request& request : in_flight_) {
     const bool isochronous = request.type == USBDEVFS_URB_TYPE_ISO;
     const Nanoseconds due = isochronous ? request.due : now + kBulkPoll;
@@ -96,6 +104,7 @@ std::optional<Nanoseconds> EmulatedRequests::NextDue(Nanoseconds now) const {
 
 void EmulatedRequests::EndAll() {
   for (const Request& request : std::exchange(in_flight_, {})) Finish(request, -ESHUTDOWN);
+  for (const Request& request : std::exchange(withheld_, {})) Finish(request, -ESHUTDOWN);
 }
 
 void EmulatedRequests::ServeControl(Request request) {

@@ -61,6 +61,7 @@ class EmulatedRequests {
   const Nanoseconds interval_;  ///< Of the bus.
   std::deque<Request> in_flight_;
   std::deque<Request> finished_;
+  std::deque<Request> withheld_;                         ///< Cancelled and not given back.
   std::map<std::uint8_t, Nanoseconds> isochronous_end_;  ///< Of the last request, by endpoint.
 };
 
