@@ -12,21 +12,23 @@
 
 #include "common/testing/temporary_directory.h"
 #include "edge/openni/fake_depth_camera.h"
+#include "edge/openni/record_oni_for_test.h"
 #include "tests/system/programs.h"
 
 namespace isotherm::system_test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class CamerasTest : public ::testing::Test {
  protected:
   Command Edge(std::vector<std::string> more = {}) const {
-    std::vector<std::string> arguments = {"--source", "cameras",
-                                          "--set",    "source.thermal_camera.enabled=false",
-                                          "--set",    "frame_check.retry_min_s=0.1",
-                                          "--set",    "frame_check.retry_max_s=0.2",
-                                          "--domain", std::to_string(TestDomain())};
+    std::vector<std::string> arguments = {
+        "--source", "cameras", "--set", "source.thermal_camera.enabled=false", "--domain",
+        std::to_string(TestDomain()),
+        // The fake driver reads there what it shall do.
+        "--set", "source.camera_sandbox.read=\"" + folder_.path().string() + "\""};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), std::move(arguments), {"LD_LIBRARY_PATH=" FAKE_OPENNI}, {}};
   }
@@ -170,6 +172,39 @@ TEST_F(CamerasTest, AStallIsFoundInTheCamerasProcess) {
       Edge({"--record", file_.string(), "--set", "source.depth_camera.stall_timeout_s=0.5"}));
   ASSERT_TRUE(edge.WaitForOutput("no frame for 0.", kPatience)) << edge.output();
   End(edge);
+}
+
+TEST_F(CamerasTest, AnOniFileIsPlayedInAProcessOfItsOwnAndNoFrameOfItIsLost) {
+  constexpr int kFrames = 40;
+  const std::filesystem::path oni = folder_.path() / "scan.oni";
+  ASSERT_NO_FATAL_FAILURE(RecordOni(oni, kFrames));
+  const Finished edge = RunToEnd(Edge({"--record", file_.string(), "--depth-camera", oni.string(),
+                                       "--rate", "0", "--exit-at-end"}),
+                                 kPatience);
+  EXPECT_EQ(edge.status, 0) << edge.output;
+  EXPECT_THAT(edge.output, HasSubstr("is confined to its camera"));
+  EXPECT_THAT(edge.output, Not(HasSubstr("signal")));
+  const FrameAccountText account = AccountOf(edge.output, Sensor::kDepth, "recorded");
+  EXPECT_TRUE(account.Closes()) << edge.output;
+  EXPECT_EQ(account.done, account.captured);
+  const RecordingContent content = ReadRecording(file_);
+  ASSERT_GE(content.depth.size(), static_cast<std::size_t>(kFrames));
+  for (std::size_t i = 0; i < content.depth.size(); ++i) {
+    EXPECT_EQ(content.depth[i].frame_number, i);
+    ASSERT_EQ(content.depth[i].pixels.size(), 320U * 240U);
+    EXPECT_EQ(content.depth[i].pixels[100 * 320 + 200], FakePlane_mm(200, 100));
+  }
+}
+
+TEST_F(CamerasTest, F11AnOniFileThatIsGarbageIsRefusedWithASentence) {
+  const std::filesystem::path oni = folder_.path() / "garbage.oni";
+  std::ofstream(oni, std::ios::binary) << "NI10" << std::string(100'000, '\xFF');
+  const Finished edge = RunToEnd(Edge({"--record", file_.string(), "--depth-camera", oni.string(),
+                                       "--rate", "0", "--exit-at-end"}),
+                                 kPatience);
+  EXPECT_GT(edge.status, 0) << edge.output;
+  EXPECT_LT(edge.status, 128) << "ended by a signal: " << edge.output;
+  EXPECT_THAT(edge.output, HasSubstr("depth camera"));
 }
 
 TEST_F(CamerasTest, TheListShowsTheCamera) {

@@ -28,7 +28,7 @@ std::string NucText(const NucReport& nuc) {
 constexpr double kDoubtfulClock_s = 0.05;
 
 std::uint64_t Dropped(const SensorAccount& account) {
-  return account.rejected + account.record_queue_full + account.record_failed +
+  return account.rejected + account.left_out + account.record_queue_full + account.record_failed +
          account.publish_queue_full + account.publish_failed;
 }
 
@@ -38,6 +38,9 @@ std::string Equation(std::string_view done, const SensorAccount& account, std::u
   std::string text =
       fmt::format("captured {} = {} {} + rejected {} + queue full {} + failed {}", account.captured,
                   done, succeeded, account.rejected, queue_full, failed);
+  if (account.left_out != 0) {
+    text += fmt::format(" + no free slot in the camera's process {}", account.left_out);
+  }
   if (on_the_way != 0) text += fmt::format(" + unaccounted {}", on_the_way);
   return text;
 }
@@ -72,6 +75,7 @@ StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz) {
   status.rate_hz = rate_hz;
   status.queue_frames = static_cast<std::uint32_t>(account.OnTheWayToGround());
   status.dropped = {{"rejected", account.rejected},
+                    {"no free slot in the camera's process", account.left_out},
                     {"queue full", account.publish_queue_full},
                     {"publish failed", account.publish_failed}};
   return status;
@@ -165,6 +169,10 @@ std::string Summary(const FrameAccount& account, bool recording,
     text += fmt::format("{}  {}\n", name,
                         Equation("published", counts, counts.published, counts.publish_queue_full,
                                  counts.publish_failed, counts.OnTheWayToGround()));
+    if (counts.lost_in_camera > 0) {
+      text +=
+          fmt::format("{}  lost in the camera or its library {}\n", name, counts.lost_in_camera);
+    }
     if (receipt) {
       text +=
           fmt::format("{}  {}\n", name, ReceiptText(is_depth ? receipt->depth : receipt->thermal));

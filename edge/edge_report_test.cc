@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "edge/frame_account.h"
 
 namespace isotherm {
@@ -41,6 +43,26 @@ TEST_F(EdgeReportTest, SummaryIsTheAccountAsAnEquation) {
   EXPECT_THAT(text,
               HasSubstr("captured 10 = published 10 + rejected 0 + queue full 0 + failed 0\n"));
   EXPECT_THAT(text, Not(HasSubstr("unaccounted")));
+}
+
+TEST_F(EdgeReportTest, FramesThatTheCamerasProcessLeftOutAreCapturedAndDropped) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 10);
+  Count(Sensor::kDepth, FrameFate::kLeftOut, 3);
+  Count(Sensor::kDepth, FrameFate::kRecorded, 7);
+  Count(Sensor::kDepth, FrameFate::kPublished, 7);
+  Count(Sensor::kDepth, FrameFate::kLostInCamera, 4);
+  const SensorAccount depth = account_.Get(Sensor::kDepth);
+  EXPECT_EQ(depth.OnTheWayToDisk(), 0);
+  EXPECT_EQ(depth.OnTheWayToGround(), 0);
+  const std::string text = Summary(account_, true, std::nullopt, {});
+  EXPECT_THAT(text, HasSubstr("captured 10 = recorded 7 + rejected 0 + queue full 0 + failed 0 + "
+                              "no free slot in the camera's process 3\n"));
+  EXPECT_THAT(text, HasSubstr("depth    lost in the camera or its library 4\n"));
+  EXPECT_THAT(text, Not(HasSubstr("unaccounted")));
+  const std::vector<DropCount> dropped = ToStreamStatus(depth, 30.0).dropped;
+  EXPECT_TRUE(std::ranges::any_of(dropped, [](const auto& drop) {
+    return drop.reason == "no free slot in the camera's process" && drop.frames == 3;
+  }));
 }
 
 TEST_F(EdgeReportTest, SummarySaysWhatTheGroundHas) {

@@ -3,12 +3,12 @@
 namespace isotherm {
 
 std::int64_t SensorAccount::OnTheWayToDisk() const {
-  return static_cast<std::int64_t>(captured - rejected - recorded - record_queue_full -
+  return static_cast<std::int64_t>(captured - rejected - left_out - recorded - record_queue_full -
                                    record_failed);
 }
 
 std::int64_t SensorAccount::OnTheWayToGround() const {
-  return static_cast<std::int64_t>(captured - rejected - published - publish_queue_full -
+  return static_cast<std::int64_t>(captured - rejected - left_out - published - publish_queue_full -
                                    publish_failed);
 }
 
@@ -27,6 +27,8 @@ SensorAccount FrameAccount::Get(Sensor sensor) const {
   account.publish_queue_full = count(FrameFate::kPublishQueueFull);
   account.publish_failed = count(FrameFate::kPublishFailed);
   account.rejected = count(FrameFate::kRejected);
+  account.left_out = count(FrameFate::kLeftOut);
+  account.lost_in_camera = count(FrameFate::kLostInCamera);
   account.captured = count(FrameFate::kCaptured);
   return account;
 }

@@ -9,10 +9,12 @@
 namespace isotherm {
 
 /// What becomes of a captured frame. Each frame has one fate on the way to the disk and one on the
-/// way to the ground; a rejected frame goes neither way.
+/// way to the ground; a frame that was rejected or left out goes neither way.
 enum class FrameFate : std::uint8_t {
   kCaptured,
-  kRejected,  ///< Garbage, short, wrong size.
+  kRejected,      ///< Garbage, short, wrong size.
+  kLeftOut,       ///< Its camera's process had no free slot: the edge did not take frames in time.
+  kLostInCamera,  ///< Not captured: the camera counted it, and it never came.
   kRecorded,
   kRecordQueueFull,  ///< The disk was slower than the cameras.
   kRecordFailed,     ///< The disk refused it (full, broken).
@@ -26,6 +28,8 @@ enum class FrameFate : std::uint8_t {
 struct SensorAccount {
   std::uint64_t captured = 0;
   std::uint64_t rejected = 0;
+  std::uint64_t left_out = 0;
+  std::uint64_t lost_in_camera = 0;  ///< Not in `captured`.
   std::uint64_t recorded = 0;
   std::uint64_t record_queue_full = 0;
   std::uint64_t record_failed = 0;
@@ -42,7 +46,9 @@ struct SensorAccount {
 /// The account of all frames of a session. Thread-safe.
 class FrameAccount {
  public:
-  void Count(Sensor sensor, FrameFate fate) { At(sensor, fate).fetch_add(1); }
+  void Count(Sensor sensor, FrameFate fate, std::uint64_t frames = 1) {
+    At(sensor, fate).fetch_add(frames);
+  }
   /// For counts that somebody else keeps.
   void Set(Sensor sensor, FrameFate fate, std::uint64_t count) { At(sensor, fate) = count; }
   SensorAccount Get(Sensor sensor) const;

@@ -7,6 +7,7 @@
 
 #include "common/base/log.h"
 #include "common/config/text_proto.h"
+#include "edge/camera_access.h"
 #include "edge/edge_options.pb.h"
 #include "edge/source/camera_process.h"
 #include "edge/source/device_description.h"
@@ -87,8 +88,7 @@ bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options) {
     // The other drivers are ours.
     return ThermalDriver_Name(options.thermal_camera().driver()) == "OPTRIS_SDK";
   }
-  const DepthCameraOptions& depth = options.depth_camera();
-  return depth.own_process() && !depth.uri().ends_with(".oni");
+  return options.depth_camera().own_process();
 }
 
 std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOptions& options,
@@ -110,7 +110,12 @@ int RunCameraProcess(const std::string& sensor_name, const std::string& source_o
   const Sensor sensor = sensor_name == "depth" ? Sensor::kDepth : Sensor::kThermal;
   if (status.ok()) {
     Result<std::unique_ptr<FrameSource>> camera = MakeCamera(sensor, options, clock);
-    if (camera) return ServeCamera(**camera, clock);
+    if (camera) {
+      const bool is_file = options.depth_camera().uri().ends_with(".oni");
+      return ServeCamera(**camera, clock,
+                         {.sandbox = AccessFor(sensor, options),
+                          .waits = sensor == Sensor::kDepth && is_file && options.rate() == 0.0});
+    }
     status = camera.error();
   }
   LOG(Edge, Error) << status.message();

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "edge/count_losses.h"
 #include "edge/edge_options.pb.h"
 #include "edge/make_camera.h"
 #include "edge/source/camera_pair.h"
@@ -46,6 +47,7 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
     auto supervised = Supervise(std::move(*camera), options, context);
     supervised->OnWorks(
         [&health = context.health, sensor](bool works) { health.SetWorks(sensor, works); });
+    CountLosses(*supervised, context.account);
     cameras.push_back({sensor, std::move(supervised)});
   }
   if (cameras.empty()) return Err(Unavailable("no camera can be used"));

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "edge/openni/fake_depth_script.h"
+#include "edge/openni/shared_counter.h"
 
 // The driver interface wants the allocation macros of a library that is not shipped with it.
 #define XN_NEW(type, ...) new type(__VA_ARGS__)
@@ -66,7 +67,7 @@ OniStatus Take(const void* data, int size, T& value) {
 
 class FakeStream final : public oni::driver::StreamBase {
  public:
-  explicit FakeStream(const FakeDepthScript& script) : script_(script) {
+  explicit FakeStream(const FakeDepthScript& script) : script_(script), made_(script.counter) {
     mirroring_ = TRUE;  // As some cameras start.
   }
   ~FakeStream() override { stop(); }
@@ -176,6 +177,7 @@ class FakeStream final : public oni::driver::StreamBase {
   void Send(const FakeDepthFrame& what) {
     if (what.fault == FakeDepthFault::kCrash) raise(SIGSEGV);
     if (what.fault == FakeDepthFault::kHang) raise(SIGSTOP);
+    made_.Count();
     OniFrame* frame = getServices().acquireFrame();
     if (frame == nullptr) return;
     const std::size_t pixels =
@@ -200,6 +202,7 @@ class FakeStream final : public oni::driver::StreamBase {
   }
 
   const FakeDepthScript script_;
+  SharedCounter made_;
   OniVideoMode mode_ = kModes[2];  // As PrimeSense's start: quarter size.
   OniBool mirroring_ = FALSE;
   std::uint64_t close_range_ = 0;

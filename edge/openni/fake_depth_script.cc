@@ -44,6 +44,7 @@ std::string FakeDepthScript::ToText() const {
        << "\nregistration " << has_registration << "\nmirroring_stays_on " << mirroring_stays_on
        << "\ntimestamps " << first_timestamp_us << ' ' << wraps_at_32_bits << '\n';
   if (!pixels.empty()) text << "pixels " << pixels.string() << '\n';
+  if (!counter.empty()) text << "counter " << counter.string() << '\n';
   for (const auto& [frame, fault] : faults) {
     for (const FaultName& known : kFaults) {
       if (known.fault != fault.fault) continue;
@@ -75,6 +76,7 @@ std::optional<FakeDepthScript> ReadFakeDepthScript() {
     if (key == "mirroring_stays_on") line >> script.mirroring_stays_on;
     if (key == "timestamps") line >> script.first_timestamp_us >> script.wraps_at_32_bits;
     if (key == "pixels") line >> script.pixels;
+    if (key == "counter") line >> script.counter;
     if (key == "at") ReadFault(line, script);
   }
   return script;

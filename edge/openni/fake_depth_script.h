@@ -46,6 +46,8 @@ struct FakeDepthScript {
   /// Raw 16-bit frames of the mode's size (millimetres), one after the other, sent in turn; empty:
   /// a tilted plane.
   std::filesystem::path pixels;
+  /// A file of 8 bytes in which the driver counts the frames that it has made; empty: none.
+  std::filesystem::path counter;
   /// By number of the frame since the stream started, from 1.
   std::map<int, Fault> faults;
 

@@ -1,6 +1,5 @@
 // OpenniDepthSource plays what OpenNI2's own recorder wrote.
 
-#include <OpenNI.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "edge/edge_options.pb.h"
 #include "edge/openni/fake_depth_camera.h"
 #include "edge/openni/openni_depth_source.h"
+#include "edge/openni/record_oni_for_test.h"
 
 namespace isotherm {
 namespace {
@@ -20,39 +20,7 @@ constexpr std::chrono::microseconds kRounding{1};
 
 class OniFileTest : public ::testing::Test {
  protected:
-  OniFileTest() { Record(); }
-
-  /// At least kFrames frames of the fake camera.
-  void Record() {
-    ASSERT_EQ(openni::OpenNI::initialize(), openni::STATUS_OK);
-    {
-      openni::Device device;
-      ASSERT_EQ(device.open(openni::ANY_DEVICE), openni::STATUS_OK);
-      openni::VideoStream stream;
-      ASSERT_EQ(stream.create(device, openni::SENSOR_DEPTH), openni::STATUS_OK);
-      openni::VideoMode mode;
-      mode.setPixelFormat(openni::PIXEL_FORMAT_DEPTH_1_MM);
-      mode.setResolution(320, 240);
-      mode.setFps(60);
-      ASSERT_EQ(stream.setVideoMode(mode), openni::STATUS_OK);
-      stream.setMirroringEnabled(false);
-      openni::Recorder recorder;
-      ASSERT_EQ(recorder.create(file_.c_str()), openni::STATUS_OK);
-      ASSERT_EQ(recorder.attach(stream), openni::STATUS_OK);
-      ASSERT_EQ(stream.start(), openni::STATUS_OK);
-      ASSERT_EQ(recorder.start(), openni::STATUS_OK);
-      openni::VideoFrameRef frame;
-      for (int i = 0; i < kFrames + 3; ++i) {
-        ASSERT_EQ(stream.readFrame(&frame), openni::STATUS_OK);
-      }
-      recorder.stop();
-      stream.stop();
-      recorder.destroy();
-      stream.destroy();
-      device.close();
-    }
-    openni::OpenNI::shutdown();
-  }
+  void SetUp() override { ASSERT_NO_FATAL_FAILURE(RecordOni(file_, kFrames)); }
 
   std::vector<RawFrame> Play(double rate) {
     DepthCameraOptions options;
@@ -108,6 +76,22 @@ TEST_F(OniFileTest, PlaysInRealTimeToo) {
   // The library hands over the newest only, so a busy computer may miss some.
   EXPECT_GE(frames.size(), 3U);
   EXPECT_GE(clock_.SteadyNow() - start, (kFrames - 2) * kPeriod);
+}
+
+TEST_F(OniFileTest, ItIsLetGoOfAtAnyMomentAndPlayedAgain) {
+  DepthCameraOptions options;
+  options.set_uri(file_.string());
+  for (const double rate : {0.0, 1.0}) {
+    for (int wanted = 0; wanted < 5; ++wanted) {
+      OpenniDepthSource source(options, rate, clock_);
+      ASSERT_TRUE(source.Open().ok());
+      for (int frames = 0; frames < wanted;) {
+        const Result<SourceItem> item = source.Read({});
+        ASSERT_TRUE(item.has_value());
+        if (std::holds_alternative<RawFrame>(*item)) ++frames;
+      }
+    }
+  }
 }
 
 TEST_F(OniFileTest, WhatIsNoRecordingIsRefused) {

@@ -39,17 +39,34 @@ class UnplugListener final : public openni::OpenNI::DeviceDisconnectedListener {
   std::atomic<bool> unplugged_{false};
 };
 
+/// What the library gave us.
+struct Handles {
+  const OpenniLibrary library;
+  openni::Device device;
+  openni::VideoStream stream;
+};
+
 class OpenedDevice final : public OpenniDevice {
  public:
+  OpenedDevice() = default;
+  OpenedDevice(const OpenedDevice&) = delete;
+  OpenedDevice& operator=(const OpenedDevice&) = delete;
   ~OpenedDevice() override {
     stream_.stop();
-    stream_.destroy();
     unplug_.reset();
+    if (is_file_) {
+      // The player's thread walks the list of streams without a lock, until its device is closed,
+      // and a stream must be taken from the list before: now and then it reads what was freed. A
+      // stopped one that stays in the list does no harm. A camera's process ends soon.
+      static_cast<void>(handles_.release());
+      return;
+    }
+    stream_.destroy();
     device_.close();
   }
 
   Status Start(const DepthCameraOptions& options, double file_rate) {
-    if (!library_.status().ok()) return library_.status();
+    if (!handles_->library.status().ok()) return handles_->library.status();
     ISOTHERM_RETURN_IF_ERROR(IsFile(options.uri()) ? OpenFile(options.uri()) : OpenCamera(options));
     if (stream_.create(device_, openni::SENSOR_DEPTH) != openni::STATUS_OK) {
       return Unavailable(
@@ -180,10 +197,10 @@ class OpenedDevice final : public OpenniDevice {
     return frame;
   }
 
-  const OpenniLibrary library_;
-  openni::Device device_;
+  std::unique_ptr<Handles> handles_ = std::make_unique<Handles>();
+  openni::Device& device_ = handles_->device;
+  openni::VideoStream& stream_ = handles_->stream;
   std::optional<UnplugListener> unplug_;  ///< Cameras only.
-  openni::VideoStream stream_;
   bool is_file_ = false;
   int frames_in_file_ = 0;
   int last_index_ = 0;

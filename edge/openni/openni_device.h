@@ -15,7 +15,8 @@ namespace isotherm {
 class DepthCameraOptions;
 
 /// One depth camera or .oni file, opened and streaming: the thin layer over OpenNI2. What was asked
-/// for is set and read back. Thread-bound.
+/// for is set and read back. A file that was played to its end or let go of before keeps its memory
+/// and an idle thread until the process ends, because OpenNI2 cannot close it safely. Thread-bound.
 class OpenniDevice {
  public:
   struct Frame {

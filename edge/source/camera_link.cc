@@ -21,7 +21,14 @@ namespace {
 // Longer than any message; a rig with all its texts has a few hundred bytes.
 constexpr std::size_t kLongestMessage = 16'384;
 
-Sensor ToSensor(int value) { return value == 0 ? Sensor::kDepth : Sensor::kThermal; }
+constexpr const char* kNotOfASoundProcess = "its process sent what no sound one sends: ";
+
+/// The process runs a vendor's library: whatever it sends may be garbage.
+bool IsOneOf(int value, int last) { return value >= 0 && value <= last; }
+
+bool IsSensor(int value) { return IsOneOf(value, static_cast<int>(Sensor::kThermal)); }
+bool IsNucState(int value) { return IsOneOf(value, static_cast<int>(NucState::kError)); }
+bool IsNucSource(int value) { return IsOneOf(value, static_cast<int>(NucSource::kInferred)); }
 
 }  // namespace
 
@@ -64,7 +71,17 @@ void ToLink(const Status& status, LinkStatus* to) {
 }
 
 Status FromLink(const LinkStatus& from) {
+  if (!IsOneOf(from.code(), static_cast<int>(StatusCode::kInternal))) {
+    return DataLoss(
+        fmt::format("{}status {}, \"{}\"", kNotOfASoundProcess, from.code(), from.message()));
+  }
   return Status(static_cast<StatusCode>(from.code()), from.message());
+}
+
+Status FailureFromLink(const LinkStatus& from) {
+  Status status = FromLink(from);
+  if (!status.ok()) return status;
+  return DataLoss(fmt::format("{}a failure without a reason", kNotOfASoundProcess));
 }
 
 void ToLink(const RawFrame& frame, LinkFrame* to) {
@@ -95,11 +112,17 @@ Result<RawFrame> FromLink(const LinkFrame& from, const PixelSlots& slots) {
   const std::int64_t height = from.height();
   if (from.slot() < 0 || from.slot() >= PixelSlots::kSlots || width < 0 || height < 0 ||
       width * height > static_cast<std::int64_t>(PixelSlots::kPixelsPerSlot)) {
-    return Err(DataLoss(fmt::format("its process sent a frame that cannot be: slot {}, {}x{}",
-                                    from.slot(), width, height)));
+    return Err(DataLoss(fmt::format("{}a frame of {}x{} in slot {}", kNotOfASoundProcess, width,
+                                    height, from.slot())));
+  }
+  if (!IsSensor(from.sensor()) || !IsNucState(from.nuc_state()) ||
+      !IsNucSource(from.nuc_source())) {
+    return Err(DataLoss(fmt::format("{}a frame of sensor {} with NUC state {} from source {}",
+                                    kNotOfASoundProcess, from.sensor(), from.nuc_state(),
+                                    from.nuc_source())));
   }
   RawFrame frame;
-  frame.sensor = ToSensor(from.sensor());
+  frame.sensor = static_cast<Sensor>(from.sensor());
   frame.frame_number = from.frame_number();
   frame.device_ticks = DeviceTicks(std::chrono::microseconds(from.device_ticks_us()));
   frame.has_device_clock = from.has_device_clock();
@@ -143,11 +166,15 @@ std::optional<Rig> RigOf(const LinkOpened& from) {
   return FromProto(rig);
 }
 
-std::vector<CameraDescription> CamerasOf(const LinkOpened& from) {
+Result<std::vector<CameraDescription>> CamerasOf(const LinkOpened& from) {
   std::vector<CameraDescription> cameras;
   for (const LinkCamera& link : from.cameras()) {
-    cameras.push_back({ToSensor(link.sensor()), link.driver(), link.model(), link.serial(),
-                       link.width(), link.height(), link.rate_hz(), link.settings(),
+    if (!IsSensor(link.sensor())) {
+      return Err(
+          DataLoss(fmt::format("{}a camera of sensor {}", kNotOfASoundProcess, link.sensor())));
+    }
+    cameras.push_back({static_cast<Sensor>(link.sensor()), link.driver(), link.model(),
+                       link.serial(), link.width(), link.height(), link.rate_hz(), link.settings(),
                        link.counts_only()});
   }
   return cameras;

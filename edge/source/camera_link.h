@@ -43,7 +43,10 @@ class CameraLink {
 };
 
 void ToLink(const Status& status, LinkStatus* to);
+/// kDataLoss: a code that there is not.
 Status FromLink(const LinkStatus& from);
+/// The same for what says that something failed: never ok.
+Status FailureFromLink(const LinkStatus& from);
 
 /// Everything but the pixels.
 void ToLink(const RawFrame& frame, LinkFrame* to);
@@ -53,6 +56,7 @@ Result<RawFrame> FromLink(const LinkFrame& from, const PixelSlots& slots);
 void ToLink(const std::optional<Rig>& rig, const std::vector<CameraDescription>& cameras,
             LinkOpened* to);
 std::optional<Rig> RigOf(const LinkOpened& from);
-std::vector<CameraDescription> CamerasOf(const LinkOpened& from);
+/// kDataLoss: as with frames.
+Result<std::vector<CameraDescription>> CamerasOf(const LinkOpened& from);
 
 }  // namespace isotherm

@@ -20,7 +20,8 @@ std::string_view NameOf(Sensor sensor) {
 }  // namespace
 
 CameraPair::CameraPair(std::vector<Camera> cameras, Queue queue)
-    : queue_(cameras.size(), queue.capacity, queue.policy, std::move(queue.on_drop)) {
+    : waits_(queue.policy == OverflowPolicy::kBlock),
+      queue_(cameras.size(), queue.capacity, queue.policy, std::move(queue.on_drop)) {
   for (Camera& camera : cameras) {
     members_.push_back(std::make_unique<Member>());
     members_.back()->camera = std::move(camera);
@@ -131,7 +132,7 @@ void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
   member.opened.set_value({opened, opened.ok() ? source.rig() : std::nullopt, source.cameras()});
   while (!stop.stop_requested()) {
     PassOrders(member);
-    source.SetIdle(!reading_);
+    source.SetIdle(!reading_ && !waits_);
     Result<SourceItem> item = source.Read(stop);
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
     if (!std::holds_alternative<NothingYet>(*item)) queue_.Push(index, std::move(*item), stop);

@@ -24,7 +24,8 @@ namespace isotherm {
 ///   |------------ camera thread -------------|   +-> Read, in order of arrival
 ///   thermal camera -> SupervisedSource -> queue -+
 ///
-/// The cameras run from Open on; what they deliver counts from the first Read on. A camera that is
+/// The cameras run from Open on; what they deliver counts from the first Read on, unless the queue
+/// makes them wait: then nothing is thrown away. A camera that is
 /// missing at the start is tried again like one that is lost later. Thread-bound,
 /// as any source; the cameras' threads are its own.
 class CameraPair final : public FrameSource {
@@ -85,6 +86,7 @@ class CameraPair final : public FrameSource {
   std::vector<std::unique_ptr<Member>> members_;
   std::size_t open_orders_ = 0;  ///< Given and not answered; of the reader's thread.
   std::atomic<bool> reading_{false};
+  const bool waits_;  ///< Full queues do.
   MergeQueue queue_;
   std::optional<Rig> rig_;
   std::vector<CameraDescription> descriptions_;

@@ -15,7 +15,7 @@
 #include <cstring>
 #include <utility>
 
-#include "common/base/check.h"
+#include "common/base/log.h"
 #include "edge/source/camera_link.pb.h"
 #include "edge/source/camera_process_descriptors.h"
 
@@ -27,6 +27,10 @@ namespace {
 constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
 // A camera that is let go properly is there for whoever opens it next.
 constexpr Nanoseconds kTimeToLeave = std::chrono::seconds(1);
+// A process that is killed is gone in milliseconds, unless the kernel waits for its device.
+constexpr Nanoseconds kTimeToDie = std::chrono::milliseconds(250);
+// Some minutes of frames: who claims more is not believed.
+constexpr std::uint64_t kMostMissing = 100'000;
 
 /// Starts `program` with the link as descriptor 3, the pixels as 4 and nothing else open.
 Result<pid_t> Spawn(const std::string& program, const std::vector<std::string>& arguments, int link,
@@ -56,7 +60,16 @@ Result<pid_t> Spawn(const std::string& program, const std::vector<std::string>& 
   return pid;
 }
 
-std::string EndText(int wait_status) {
+/// False: `patience` was not enough.
+bool WaitForEnd(int process, Nanoseconds patience) {
+  pollfd wait{process, POLLIN, 0};
+  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
+  return process >= 0 && ::poll(&wait, 1, static_cast<int>(ms)) > 0;
+}
+
+std::string EndText(std::optional<int> status) {
+  if (!status) return "its process does not end although it was killed";
+  const int wait_status = *status;
   if (WIFSIGNALED(wait_status)) {
     return fmt::format("its process was ended by signal {} ({})", WTERMSIG(wait_status),
                        strsignal(WTERMSIG(wait_status)));
@@ -73,6 +86,7 @@ CameraProcess::~CameraProcess() { Close(); }
 
 Status CameraProcess::Open() {
   Close();
+  ISOTHERM_RETURN_IF_ERROR(CheckLeftBehind());
   ISOTHERM_RETURN_IF_ERROR(Start());
   const Status opened = WaitUntilOpened();
   if (!opened.ok()) Close();
@@ -94,6 +108,7 @@ Status CameraProcess::Start() {
   if (!pid) return pid.error();
   pid_ = *pid;
   first_number_ = next_number_;
+  left_out_counted_ = {};
   last_heard_ = clock_.SteadyNow();
   return OkStatus();
 }
@@ -105,10 +120,13 @@ Status CameraProcess::WaitUntilOpened() {
     if (received == CameraLink::Received::kClosed) return Ended();
     if (settings_.stop.stop_requested()) break;
     if (received == CameraLink::Received::kNothingYet) continue;
-    if (message.has_failed()) return FromLink(message.failed());
+    if (message.has_failed()) return FailureFromLink(message.failed());
     if (!message.has_opened()) continue;
+    Result<std::vector<CameraDescription>> cameras = CamerasOf(message.opened());
+    if (!cameras) return cameras.error();
     rig_ = RigOf(message.opened());
-    cameras_ = CamerasOf(message.opened());
+    cameras_ = std::move(*cameras);
+    if (message.opened().has_sandbox()) TellSandbox(FromLink(message.opened().sandbox()));
     last_heard_ = clock_.SteadyNow();
     return OkStatus();
   }
@@ -118,6 +136,19 @@ Status CameraProcess::WaitUntilOpened() {
     return Unavailable("told to stop while its library opened it");
   return Unavailable(fmt::format("its library did not open it within {:.1f} s and was killed",
                                  ToSeconds(settings_.open_timeout)));
+}
+
+void CameraProcess::TellSandbox(const Status& sandbox) {
+  for (CameraDescription& camera : cameras_) {
+    camera.settings += sandbox.ok() ? ", confined" : ", not confined";
+  }
+  if (sandbox.ok()) {
+    LOG(Source, Info) << settings_.name << ": its process " << pid_
+                      << " is confined to its camera, without a network";
+  } else {
+    LOG(Source, Warning) << settings_.name << ": its process " << pid_
+                         << " is not confined to its camera: " << sandbox.message();
+  }
 }
 
 Result<SourceItem> CameraProcess::Read(std::stop_token stop) {
@@ -136,7 +167,7 @@ Result<SourceItem> CameraProcess::Read(std::stop_token stop) {
 }
 
 Result<SourceItem> CameraProcess::Take(const FromCamera& message) {
-  if (message.has_failed()) return Err(FromLink(message.failed()));
+  if (message.has_failed()) return Err(FailureFromLink(message.failed()));
   if (message.has_answer()) TakeAnswer(FromLink(message.answer()));
   if (message.has_ended()) return EndOfStream{};
   if (!message.has_frame()) return NothingYet{};
@@ -145,8 +176,13 @@ Result<SourceItem> CameraProcess::Take(const FromCamera& message) {
   ToCamera answer;
   answer.set_free_slot(message.frame().slot());
   link_->Send(answer);  // A process that does not take it is found out by its silence.
-  frame->frame_number += first_number_;
-  next_number_ = frame->frame_number + 1;
+  const std::uint64_t number = frame->frame_number + first_number_;
+  if (number < next_number_ || number - next_number_ > kMostMissing) {
+    return Err(DataLoss(fmt::format("its process sent frame {} behind frame {}",
+                                    frame->frame_number, next_number_ - first_number_)));
+  }
+  frame->frame_number = number;
+  next_number_ = number + 1;
   return std::move(*frame);
 }
 
@@ -161,19 +197,53 @@ Status CameraProcess::Ended() {
   return Unavailable(EndText(Reap(kTimeToLeave)));
 }
 
-int CameraProcess::Reap(Nanoseconds patience) {
+std::optional<int> CameraProcess::Reap(Nanoseconds patience) {
   if (pid_ < 0) return 0;
   const int process = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));
-  pollfd wait{process, POLLIN, 0};
-  const auto ms = std::chrono::ceil<std::chrono::milliseconds>(patience).count();
-  if (process < 0 || ::poll(&wait, 1, static_cast<int>(ms)) <= 0) ::kill(pid_, SIGKILL);
+  if (!WaitForEnd(process, patience)) {
+    ::kill(pid_, SIGKILL);
+    WaitForEnd(process, kTimeToDie);
+  }
   if (process >= 0) ::close(process);
+  const pid_t pid = std::exchange(pid_, -1);
   int status = 0;
-  ::waitpid(std::exchange(pid_, -1), &status, 0);
-  return status;
+  if (::waitpid(pid, &status, WNOHANG) != 0) return status;
+  left_behind_ = pid;
+  LOG(Source, Error) << settings_.name << ": process " << pid
+                     << " does not end although it was killed: the kernel waits for the device. "
+                        "It is left behind; unplug the camera if it does not come back";
+  return std::nullopt;
+}
+
+Status CameraProcess::CheckLeftBehind() {
+  if (left_behind_ < 0 || ::waitpid(left_behind_, nullptr, WNOHANG) != 0) {
+    left_behind_ = -1;
+    return OkStatus();
+  }
+  return Unavailable(
+      fmt::format("its earlier process {} was killed and has not ended: the kernel still waits "
+                  "for the device; unplug the camera",
+                  left_behind_));
+}
+
+void CameraProcess::CountLeftOut() {
+  if (!slots_) return;
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const auto index = static_cast<std::size_t>(sensor);
+    const std::uint64_t now = slots_->left_out(sensor);
+    const std::uint64_t before = std::exchange(left_out_counted_[index], now);
+    if (now > before) left_out_[index] += std::min(now - before, kMostMissing);
+  }
+}
+
+std::array<std::uint64_t, 2> CameraProcess::TakeLeftOut() {
+  CountLeftOut();
+  return std::exchange(left_out_, {});
 }
 
 void CameraProcess::Close() {
+  // First: what it captures after it was told to leave is nobody's loss.
+  CountLeftOut();
   link_.reset();  // The process leaves when it sees it.
   Reap(kTimeToLeave);
   slots_.reset();

@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <memory>
@@ -13,6 +14,7 @@
 
 #include "common/time/clock.h"
 #include "edge/source/camera_link.h"
+#include "edge/source/camera_sandbox.h"
 #include "edge/source/frame_source.h"
 #include "edge/source/pixel_slots.h"
 
@@ -26,8 +28,10 @@ namespace isotherm {
 ///                 -- free slots, orders ----------------->
 ///                 <= pixels in shared memory =============
 ///
-/// Frames that find no free slot are left out; their numbers are missing. Reopening goes on behind
-/// the last number. The process ends with this one, however that ends. Thread-bound.
+/// Frames that find no free slot are left out and counted; their numbers are missing. Reopening
+/// goes on behind the last number. The process ends with this one, however that ends. One that
+/// cannot be ended, because the kernel waits for the device, is left behind: nothing here waits for
+/// it, and no other is started until it is gone. Thread-bound.
 class CameraProcess final : public FrameSource {
  public:
   struct Settings {
@@ -49,6 +53,7 @@ class CameraProcess final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override;
+  std::array<std::uint64_t, 2> TakeLeftOut() override;
   /// Refuses to restart: closing and opening it starts another process. Other orders are answered
   /// by the camera, or by the end of its process.
   std::optional<Status> Control(const CameraControl& control) override;
@@ -62,29 +67,45 @@ class CameraProcess final : public FrameSource {
  private:
   Status Start();
   Status WaitUntilOpened();
+  void TellSandbox(const Status& sandbox);
   Result<SourceItem> Take(const FromCamera& message);
   void TakeAnswer(const Status& status);
   /// Why nothing more comes.
   Status Ended();
-  /// Waits for the end of the process, at most so long; kills it then. Its wait status.
-  int Reap(Nanoseconds patience);
+  /// Waits for the end of the process, at most so long, and kills it then. Its wait status; nullopt
+  /// if it does not end even so.
+  std::optional<int> Reap(Nanoseconds patience);
+  /// Fails while a process that could not be ended is still there.
+  Status CheckLeftBehind();
+  void CountLeftOut();
 
   const Settings settings_;
   const Clock& clock_;
   pid_t pid_ = -1;
+  pid_t left_behind_ = -1;  ///< Killed and not gone; -1: none.
   std::unique_ptr<CameraLink> link_;
   std::optional<PixelSlots> slots_;
   std::optional<Rig> rig_;
   std::vector<CameraDescription> cameras_;
   std::deque<CameraControl> open_orders_;  ///< Given and not answered, oldest first.
   std::vector<ControlAnswer> answers_;
+  std::array<std::uint64_t, 2> left_out_counted_{};  ///< Of this process.
+  std::array<std::uint64_t, 2> left_out_{};          ///< And not taken yet.
   SteadyTime last_heard_{};
   std::uint64_t first_number_ = 0;  ///< Of this process's frames.
   std::uint64_t next_number_ = 0;
 };
 
-/// The camera's side, in a program started by CameraProcess: opens the source and hands its frames
-/// over until it fails, ends, or the other side is gone. The exit status.
-int ServeCamera(FrameSource& source, const Clock& clock);
+/// How a camera's process goes about it.
+struct ServeSettings {
+  std::optional<CameraSandbox> sandbox = std::nullopt;  ///< Absent: not confined.
+  /// The source waits until there is room for its next frame; otherwise that is left out.
+  bool waits = false;
+};
+
+/// The camera's side, in a program started by CameraProcess: confines itself, opens the source and
+/// hands its frames over until it fails, ends, or the other side is gone. A sandbox that cannot be
+/// had is no failure; the other side says so. The exit status.
+int ServeCamera(FrameSource& source, const Clock& clock, const ServeSettings& settings = {});
 
 }  // namespace isotherm

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <stop_token>
@@ -13,6 +14,7 @@
 
 #include "edge/edge_options.pb.h"
 #include "edge/source/camera_pair.h"
+#include "edge/source/process_holder_for_test.h"
 
 namespace isotherm {
 namespace {
@@ -237,6 +239,64 @@ TEST_F(CameraProcessTest, ClosingEndsTheProcess) {
   EXPECT_EQ(::kill(pid, 0), -1);
 }
 
+TEST_F(CameraProcessTest, F14AProcessThatCannotBeEndedIsLeftBehindUntilItIsGone) {
+  Make("hang", 2);
+  ASSERT_TRUE(camera_->Open().ok());
+  NextFrame();
+  NextFrame();
+  const pid_t pid = camera_->pid();
+  ProcessHolder holder(pid);
+  if (!holder.holds()) GTEST_SKIP() << "processes may not be traced here";
+  EXPECT_THAT(Failure().message(), HasSubstr("hung for 0.5 s"));
+  const SteadyTime told = clock_.SteadyNow();
+  camera_->Close();
+  EXPECT_LT(clock_.SteadyNow() - told, kPromptly);
+  EXPECT_EQ(::kill(pid, 0), 0) << "it is still there";
+  const Status refused = camera_->Open();
+  EXPECT_EQ(refused.code(), StatusCode::kUnavailable);
+  EXPECT_THAT(refused.message(), HasSubstr("has not ended"));
+  EXPECT_EQ(camera_->pid(), -1) << "one that is stuck is enough";
+  holder.Release();
+  const SteadyTime end = clock_.SteadyNow() + kPatience;
+  Status opened = camera_->Open();
+  while (!opened.ok() && clock_.SteadyNow() < end) opened = camera_->Open();
+  ASSERT_TRUE(opened.ok()) << opened.message();
+  EXPECT_EQ(::kill(pid, 0), -1) << "taken when it was gone";
+  EXPECT_EQ(NextFrame().frame_number, 2U);
+}
+
+TEST_F(CameraProcessTest, WhatNoSoundProcessSendsIsRefused) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"bad-sensor", "sensor 2"},
+      {"bad-nuc-state", "NUC state 99"},
+      {"bad-nuc-source", "from source 99"},
+      {"bad-status", "status 99"},
+      {"ok-as-failure", "without a reason"},
+      {"bad-number", "sent frame 1152921504606846976"}};
+  for (const auto& [what, message] : cases) {
+    Make(what, 1);
+    ASSERT_TRUE(camera_->Open().ok());
+    EXPECT_EQ(NextFrame().frame_number, 0U) << what;
+    const Status failure = Failure();
+    EXPECT_EQ(failure.code(), StatusCode::kDataLoss) << what;
+    EXPECT_THAT(failure.message(), HasSubstr(message));
+  }
+  Make("bad-camera");
+  const Status opened = camera_->Open();
+  EXPECT_EQ(opened.code(), StatusCode::kDataLoss);
+  EXPECT_THAT(opened.message(), HasSubstr("a camera of sensor 7"));
+}
+
+TEST_F(CameraProcessTest, TheProcessCannotTakeTheSharedMemoryAway) {
+  Make("shrink", 2);
+  ASSERT_TRUE(camera_->Open().ok());
+  for (std::uint64_t i = 0; i < 5; ++i) {
+    const RawFrame frame = NextFrame();
+    EXPECT_EQ(frame.frame_number, i);
+    EXPECT_EQ(frame.pixels.At(0, 0), i);
+  }
+}
+
 TEST_F(CameraProcessTest, FramesThatNobodyReadsAreLeftOutAndTheirNumbersMissing) {
   Make("go-on");
   ASSERT_TRUE(camera_->Open().ok());
@@ -248,7 +308,38 @@ TEST_F(CameraProcessTest, FramesThatNobodyReadsAreLeftOutAndTheirNumbersMissing)
     EXPECT_EQ(frame.frame_number, i);
     EXPECT_EQ(frame.pixels.data()[0], i) << "a slot was overwritten";
   }
-  EXPECT_GT(NextFrame().frame_number, static_cast<std::uint64_t>(PixelSlots::kSlots));
+  const std::uint64_t next = NextFrame().frame_number;
+  EXPECT_GT(next, static_cast<std::uint64_t>(PixelSlots::kSlots));
+  // Every number is either a frame or counted; more may have been left out since.
+  const auto left_out = camera_->TakeLeftOut();
+  EXPECT_GE(left_out[static_cast<std::size_t>(Sensor::kThermal)], next - PixelSlots::kSlots);
+  EXPECT_EQ(left_out[static_cast<std::size_t>(Sensor::kDepth)], 0U);
+}
+
+TEST_F(CameraProcessTest, ASourceThatWaitsLosesNothingHoweverLateItIsRead) {
+  Make("patient");
+  ASSERT_TRUE(camera_->Open().ok());
+  const SteadyTime until = clock_.SteadyNow() + milliseconds(200);
+  while (clock_.SteadyNow() < until) std::this_thread::yield();
+  for (std::uint64_t i = 0; i < 3 * PixelSlots::kSlots; ++i) {
+    EXPECT_EQ(NextFrame().frame_number, i);
+  }
+  EXPECT_EQ(camera_->TakeLeftOut()[static_cast<std::size_t>(Sensor::kThermal)], 0U);
+}
+
+TEST_F(CameraProcessTest, F14FramesThatWereLeftOutAreCountedAlsoWhenTheProcessDies) {
+  constexpr int kFrames = 60;
+  Make("crash", kFrames);
+  ASSERT_TRUE(camera_->Open().ok());
+  // Nobody reads until it has crashed: exactly the slots' frames get through.
+  siginfo_t ended{};
+  ASSERT_EQ(::waitid(P_PID, static_cast<id_t>(camera_->pid()), &ended, WEXITED | WNOWAIT), 0);
+  for (std::uint64_t i = 0; i < PixelSlots::kSlots; ++i) EXPECT_EQ(NextFrame().frame_number, i);
+  EXPECT_THAT(Failure().message(), HasSubstr("signal 6"));
+  camera_->Close();
+  constexpr auto kThermal = static_cast<std::size_t>(Sensor::kThermal);
+  EXPECT_EQ(camera_->TakeLeftOut()[kThermal], kFrames - PixelSlots::kSlots);
+  EXPECT_EQ(camera_->TakeLeftOut()[kThermal], 0U) << "taken once";
 }
 
 /// Counts up in this process, a frame a millisecond.

@@ -1,23 +1,33 @@
 // A camera's process whose library does what its arguments say: WHAT AFTER_FRAMES. WHAT is one of
-// crash, hang, fail, end, go-on; with cannot-open and hang-at-open it does so at once; refuse:
-// orders are refused; hang-at-order: it does when it gets one.
+// crash, hang, fail, end, go-on, patient (it waits for whoever reads it); with cannot-open and
+// hang-at-open it does so at once; refuse: orders are refused; hang-at-order: it does when it gets
+// one. What no sound process does: bad-sensor, bad-nuc-state, bad-nuc-source, bad-status,
+// bad-number, ok-as-failure; bad-camera at once; shrink: it takes the shared memory away. With a
+// third argument, a folder: it is confined to the file "allowed" in it, and the pixels of each
+// frame are what ProbeSandbox says; free: it is not confined; local: it may have local sockets;
+// unit-filter: a request for Landlock would end it.
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <string>
 #include <thread>
 
 #include "edge/source/camera_process.h"
+#include "edge/source/camera_process_descriptors.h"
+#include "edge/source/sandbox_probe.h"
 
 namespace isotherm {
 namespace {
 
 class FakeCamera final : public FrameSource {
  public:
-  FakeCamera(std::string what, int after_frames)
-      : what_(std::move(what)), after_frames_(after_frames) {}
+  FakeCamera(std::string what, int after_frames, std::string probed_folder)
+      : what_(std::move(what)),
+        after_frames_(after_frames),
+        probed_folder_(std::move(probed_folder)) {}
 
   std::string_view name() const override { return "fake"; }
   Status Open() override {
@@ -31,9 +41,14 @@ class FakeCamera final : public FrameSource {
       if (what_ == "hang") Hang();
       if (what_ == "fail") return Err(DataLoss("the camera sends nonsense"));
       if (what_ == "end") return EndOfStream{};
+      if (what_ == "bad-status") return Err(Status(static_cast<StatusCode>(99), "?"));
+      if (what_ == "ok-as-failure") return Err(OkStatus());
+      if (what_ == "shrink" && ::ftruncate(kCameraPixelsDescriptor, 0) == 0) ::_exit(0);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));  // The camera's period.
-    return Frame();
+    RawFrame frame = Frame();
+    if (frame.frame_number == static_cast<std::uint64_t>(after_frames_)) Spoil(frame);
+    return frame;
   }
   void Close() override {}
   std::optional<Status> Control(const CameraControl& control) override {
@@ -51,12 +66,20 @@ class FakeCamera final : public FrameSource {
     return rig;
   }
   std::vector<CameraDescription> cameras() const override {
-    return {{Sensor::kThermal, "fake", "Fake 1", "S-9", 5, 3, 40.0, "all on", true}};
+    const Sensor sensor = what_ == "bad-camera" ? static_cast<Sensor>(7) : Sensor::kThermal;
+    return {{sensor, "fake", "Fake 1", "S-9", 5, 3, 40.0, "all on", true}};
   }
 
  private:
   [[noreturn]] static void Hang() {
     while (true) ::pause();
+  }
+
+  void Spoil(RawFrame& frame) const {
+    if (what_ == "bad-sensor") frame.sensor = static_cast<Sensor>(2);
+    if (what_ == "bad-nuc-state") frame.camera_nuc->state = static_cast<NucState>(99);
+    if (what_ == "bad-nuc-source") frame.camera_nuc->source = static_cast<NucSource>(99);
+    if (what_ == "bad-number") frame.frame_number = std::uint64_t{1} << 60U;
   }
 
   RawFrame Frame() {
@@ -72,6 +95,10 @@ class FakeCamera final : public FrameSource {
       frame.pixels.data()[i] =
           static_cast<std::uint16_t>(1000 * i + static_cast<std::size_t>(frames_));
     }
+    if (!probed_folder_.empty()) {
+      const SandboxResults results = ProbeSandbox(probed_folder_);
+      std::copy(results.begin(), results.end(), frame.pixels.data());
+    }
     frame.depth_scale = 10'000.0;
     frame.shutter_closed = nuc_ordered_;
     frame.camera_nuc = CameraNuc{automatic_ordered_ ? NucState::kDesired : NucState::kSettling,
@@ -83,6 +110,7 @@ class FakeCamera final : public FrameSource {
 
   const std::string what_;
   const int after_frames_;
+  const std::string probed_folder_;  ///< Empty: none.
   const SystemClock clock_;
   int frames_ = 0;
   bool nuc_ordered_ = false;
@@ -93,7 +121,17 @@ class FakeCamera final : public FrameSource {
 }  // namespace isotherm
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 64;
-  isotherm::FakeCamera camera(argv[1], std::atoi(argv[2]));
-  return isotherm::ServeCamera(camera, isotherm::SystemClock());
+  if (argc != 3 && argc != 4) return 64;
+  const std::string what = argv[1];
+  const std::string folder = argc == 4 ? argv[3] : "";
+  isotherm::FakeCamera camera(what, std::atoi(argv[2]), folder);
+  isotherm::ServeSettings settings;
+  settings.waits = what == "patient";
+  if (!folder.empty() && what != "free") {
+    isotherm::CameraSandbox& sandbox = settings.sandbox.emplace();
+    sandbox.read = {folder + "/allowed", folder + "/missing", "/proc/self"};
+    sandbox.local_sockets = what == "local";
+  }
+  if (what == "unit-filter") isotherm::ForbidLandlock();
+  return isotherm::ServeCamera(camera, isotherm::SystemClock(), settings);
 }

@@ -11,6 +11,8 @@ namespace {
 constexpr std::chrono::microseconds kPeriod[] = {std::chrono::microseconds(33'333),
                                                  std::chrono::microseconds(25'000)};
 
+constexpr std::uint64_t kMissing = 3;
+
 }  // namespace
 
 FakeSource::FakeSource(std::string_view script) {
@@ -77,6 +79,8 @@ RawFrame FakeSource::MakeFrame(const Step& step) {
   frame.sensor = step.what == 'd' ? Sensor::kDepth : Sensor::kThermal;
   const bool depth = frame.sensor == Sensor::kDepth;
   const auto index = static_cast<std::size_t>(frame.sensor);
+  if (step.fault == "lost" || step.fault == "left") frames_[index] += kMissing;
+  if (step.fault == "left") left_out_[index] += kMissing;
   frame.frame_number = frames_[index]++;
   const auto time = static_cast<int>(frame.frame_number) * kPeriod[index];
   if (step.fault == "reset") device_zero_[index] = time;

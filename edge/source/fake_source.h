@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "edge/source/frame_source.h"
@@ -22,7 +24,8 @@ namespace isotherm {
 ///   d:empty   the frame has no pixels             d:size    ... the wrong size
 ///   d:reset   the camera's counter starts again   t:shut    the shutter is closed
 ///   t:hot     every other pixel is out of range   d:holes   every other pixel is 0 or 65535
-///   t:same    the picture before once more
+///   t:same    the picture before once more        d:lost    three numbers are missing before it
+///   d:left    ... because its frames were left out (TakeLeftOut)
 ///
 /// At the end of the script the stream ends. Opening again goes on with the script. Thread-bound.
 class FakeSource final : public FrameSource {
@@ -40,6 +43,7 @@ class FakeSource final : public FrameSource {
   /// Answers with `control_answer`, at once or so many reads later.
   std::optional<Status> Control(const CameraControl& control) override;
   std::vector<ControlAnswer> TakeControlAnswers() override;
+  std::array<std::uint64_t, 2> TakeLeftOut() override { return std::exchange(left_out_, {}); }
 
   std::vector<CameraDescription> cameras() const override { return descriptions; }
 
@@ -81,6 +85,7 @@ class FakeSource final : public FrameSource {
   int opened_ = 0;
   int failures_to_open_ = 0;
   std::uint64_t frames_[2] = {};
+  std::array<std::uint64_t, 2> left_out_{};
   std::uint16_t noise_ = 0;  ///< In one pixel of the newest thermal picture.
   std::chrono::microseconds device_zero_[2] = {};
 };

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -68,6 +70,9 @@ class FrameSource {
   /// After Close: a frame that was captured but not read, until there is none. Sources with threads
   /// of their own may have some.
   virtual std::optional<RawFrame> TakeUnread() { return std::nullopt; }
+  /// By Sensor: frames that were captured since the last call and left out before Read could give
+  /// them, because they were not read in time; they leave holes in the numbers. Also after Close.
+  virtual std::array<std::uint64_t, 2> TakeLeftOut() { return {}; }
   /// Tells the camera what to do; takes at most some milliseconds. The camera's answer, as in
   /// ControlAnswer; nullopt if it comes later with TakeControlAnswers.
   virtual std::optional<Status> Control(const CameraControl& /*control*/) {

@@ -22,8 +22,14 @@ constexpr Nanoseconds kNoWait{0};
 
 class CameraServer {
  public:
-  CameraServer(FrameSource& source, const Clock& clock, PixelSlots slots)
-      : source_(source), clock_(clock), slots_(std::move(slots)), link_(kCameraLinkDescriptor) {
+  CameraServer(FrameSource& source, const Clock& clock, PixelSlots slots, bool waits,
+               std::optional<Status> sandbox)
+      : source_(source),
+        clock_(clock),
+        slots_(std::move(slots)),
+        waits_(waits),
+        sandbox_(std::move(sandbox)),
+        link_(kCameraLinkDescriptor) {
     free_.set();
   }
 
@@ -31,6 +37,7 @@ class CameraServer {
     if (const Status opened = source_.Open(); !opened.ok()) return Fail(opened);
     FromCamera message;
     ToLink(source_.rig(), source_.cameras(), message.mutable_opened());
+    if (sandbox_) ToLink(*sandbox_, message.mutable_opened()->mutable_sandbox());
     last_sent_ = clock_.SteadyNow();
     if (!link_.Send(message)) return;
     while (Listen(kNoWait)) {
@@ -58,8 +65,14 @@ class CameraServer {
   }
 
   void HandOver(const RawFrame& frame) {
+    while (waits_ && free_.none()) {
+      if (!Listen(kSignOfLifeInterval)) return;
+      ShowLife();
+    }
     // Nobody reads: the frame is left out and its number with it.
-    if (free_.none() || frame.pixels.size() > PixelSlots::kPixelsPerSlot) return;
+    if (free_.none() || frame.pixels.size() > PixelSlots::kPixelsPerSlot) {
+      return slots_.CountLeftOut(frame.sensor);
+    }
     int slot = 0;
     while (!free_.test(static_cast<std::size_t>(slot))) ++slot;
     const std::span<const std::uint16_t> pixels = frame.pixels.pixels();
@@ -67,7 +80,7 @@ class CameraServer {
     FromCamera message;
     ToLink(frame, message.mutable_frame());
     message.mutable_frame()->set_slot(slot);
-    if (!link_.Send(message)) return;
+    if (!link_.Send(message)) return slots_.CountLeftOut(frame.sensor);
     free_.reset(static_cast<std::size_t>(slot));
     last_sent_ = clock_.SteadyNow();
   }
@@ -114,6 +127,8 @@ class CameraServer {
   FrameSource& source_;
   const Clock& clock_;
   const PixelSlots slots_;
+  const bool waits_;
+  const std::optional<Status> sandbox_;  ///< How confining went; absent: not asked for.
   CameraLink link_;
   std::bitset<PixelSlots::kSlots> free_;
   SteadyTime last_sent_{};
@@ -121,7 +136,7 @@ class CameraServer {
 
 }  // namespace
 
-int ServeCamera(FrameSource& source, const Clock& clock) {
+int ServeCamera(FrameSource& source, const Clock& clock, const ServeSettings& settings) {
   // A terminal's Ctrl-C and the service manager's request are for the edge; it ends us.
   ::signal(SIGINT, SIG_IGN);
   ::signal(SIGTERM, SIG_IGN);
@@ -131,7 +146,9 @@ int ServeCamera(FrameSource& source, const Clock& clock) {
     LOG(Source, Error) << slots.error().message();
     return ExitCode(slots.error());
   }
-  CameraServer(source, clock, std::move(*slots)).Run();
+  std::optional<Status> confined;
+  if (settings.sandbox) confined = EnterSandbox(*settings.sandbox);
+  CameraServer(source, clock, std::move(*slots), settings.waits, std::move(confined)).Run();
   source.Close();
   return 0;
 }

@@ -99,6 +99,7 @@ void SupervisedSource::Tell(bool works) {
 Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
   if (reopen_at_) return ReopenWhenDue(stop);
   Result<SourceItem> item = source_->Read(stop);
+  CountLeftOut();
   if (!item) {
     ScheduleReopen(item.error());
     return NothingYet{};
@@ -118,13 +119,40 @@ std::optional<Status> SupervisedSource::Control(const CameraControl& control) {
   return OkStatus();
 }
 
+void SupervisedSource::Close() {
+  source_->Close();
+  CountLeftOut();
+}
+
+void SupervisedSource::CountLeftOut() {
+  const std::array<std::uint64_t, 2> left_out = source_->TakeLeftOut();
+  if (idle_) return;
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const auto index = static_cast<std::size_t>(sensor);
+    left_out_[index] += left_out[index];
+    if (left_out[index] > 0 && on_loss_) on_loss_(sensor, Loss::kLeftOut, left_out[index]);
+  }
+}
+
+void SupervisedSource::CountMissing(Sensor sensor, std::uint64_t number) {
+  const auto index = static_cast<std::size_t>(sensor);
+  const std::uint64_t expected = std::exchange(expected_numbers_[index], number + 1);
+  if (number <= expected) return;
+  const std::uint64_t missing = number - expected;
+  const std::uint64_t explained = std::min(missing, left_out_[index]);
+  left_out_[index] -= explained;
+  if (missing > explained && on_loss_) on_loss_(sensor, Loss::kInCamera, missing - explained);
+}
+
 SourceItem SupervisedSource::Judge(RawFrame frame) {
   std::uint64_t& thrown_away = thrown_away_[static_cast<std::size_t>(frame.sensor)];
   if (idle_) {
     thrown_away = frame.frame_number + 1;
+    expected_numbers_[static_cast<std::size_t>(frame.sensor)] = 0;
     return NothingYet{};
   }
   frame.frame_number -= thrown_away;
+  CountMissing(frame.sensor, frame.frame_number);
   on_frame_(frame.sensor);
   int& bad_in_a_row = bad_in_a_row_[static_cast<std::size_t>(frame.sensor)];
   const Status verdict = check_.Process(frame);
@@ -147,7 +175,7 @@ SourceItem SupervisedSource::Judge(RawFrame frame) {
 void SupervisedSource::ScheduleReopen(const Status& reason) {
   LOG(Source, Error) << name() << ": " << reason.message()
                      << "; opening it again, wait_s=" << ToSeconds(next_wait_);
-  source_->Close();
+  Close();
   Tell(false);
   reopen_at_ = clock_.SteadyNow() + next_wait_;
   next_wait_ = std::min(2 * next_wait_, retry_max_);

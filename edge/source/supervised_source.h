@@ -32,6 +32,12 @@ class SupervisedSource final : public FrameSource {
   using FrameCallback = std::function<void(Sensor)>;
   /// True: frames come (again). False: the source failed and waits to be opened again.
   using WorksCallback = std::function<void(bool works)>;
+  /// How frames that the camera counted did not get here.
+  enum class Loss {
+    kLeftOut,   ///< Captured, and left out because the source was not read in time.
+    kInCamera,  ///< Only their numbers are missing: lost in the camera or its library.
+  };
+  using LossCallback = std::function<void(Sensor, Loss, std::uint64_t frames)>;
 
   /// `clock` must outlive the source. `longest_pause` bounds one Read while waiting.
   SupervisedSource(std::unique_ptr<FrameSource> source, const FrameCheckOptions& options,
@@ -45,7 +51,7 @@ class SupervisedSource final : public FrameSource {
   /// Instead: goes on after an Open that failed as if the source had failed later.
   void KeepTrying(const Status& reason);
   Result<SourceItem> Read(std::stop_token stop) override;
-  void Close() override { source_->Close(); }
+  void Close() override;
   /// A source that cannot restart its thermal camera alone is closed and opened again.
   std::optional<Status> Control(const CameraControl& control) override;
   std::vector<ControlAnswer> TakeControlAnswers() override { return source_->TakeControlAnswers(); }
@@ -58,10 +64,15 @@ class SupervisedSource final : public FrameSource {
   /// Numbers start from 0 with the first frame after it.
   void SetIdle(bool idle) { idle_ = idle; }
   void OnWorks(WorksCallback on_works) { on_works_ = std::move(on_works); }
+  /// For sources that number frames from 0.
+  void OnLoss(LossCallback on_loss) { on_loss_ = std::move(on_loss); }
   std::uint64_t reopened() const { return reopened_; }
 
  private:
   SourceItem Judge(RawFrame frame);
+  void CountLeftOut();
+  /// Counts the numbers that are missing before this one.
+  void CountMissing(Sensor sensor, std::uint64_t number);
   SourceItem ReopenWhenDue(const std::stop_token& stop);
   void ScheduleReopen(const Status& reason);
   /// Opens, and refuses a camera that was not calibrated or is not the one from the start.
@@ -75,6 +86,7 @@ class SupervisedSource final : public FrameSource {
   const FrameCallback on_frame_;
   const FrameCallback on_rejected_;
   WorksCallback on_works_;
+  LossCallback on_loss_;
   std::optional<bool> works_;  ///< As told last.
   const int max_bad_in_a_row_;
   const Nanoseconds retry_min_;
@@ -83,7 +95,9 @@ class SupervisedSource final : public FrameSource {
   FrameCheck check_;
   bool sizes_are_calibrated_ = false;
   bool idle_ = false;
-  std::array<std::uint64_t, 2> thrown_away_{};     ///< By Sensor: frame numbers before the first.
+  std::array<std::uint64_t, 2> thrown_away_{};  ///< By Sensor: frame numbers before the first.
+  std::array<std::uint64_t, 2> expected_numbers_{};
+  std::array<std::uint64_t, 2> left_out_{};  ///< Whose numbers are not yet seen to be missing.
   std::array<std::string, 2> calibrated_serials_;  ///< By Sensor; empty: any.
   std::array<std::string, 2> serials_;  ///< By Sensor, of the cameras from the start; empty: any.
   /// What the thermal camera sends, from the start; a scan that begins without one takes

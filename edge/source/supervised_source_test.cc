@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <utility>
+
 #include "edge/edge_options.pb.h"
 #include "edge/source/fake_source.h"
 
@@ -10,6 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
+using Loss = SupervisedSource::Loss;
 constexpr Nanoseconds kNoPause{0};
 
 class SupervisedSourceTest : public testing::Test {
@@ -96,6 +100,32 @@ TEST_F(SupervisedSourceTest, F11GoodFramesOfTheOtherCameraDoNotHideTheBadOnes) {
   clock_.Advance(milliseconds(500));
   Read(1);
   EXPECT_EQ(source_->reopened(), 1U);
+}
+
+TEST_F(SupervisedSourceTest, FramesThatWereLeftOutAndFramesThatTheCameraLostAreToldApart) {
+  Start("2*d d:left d d:lost t t:left d:left");
+  std::map<std::pair<Sensor, Loss>, std::uint64_t> losses;
+  source_->OnLoss([&losses](Sensor sensor, Loss loss, std::uint64_t frames) {
+    losses[{sensor, loss}] += frames;
+  });
+  EXPECT_EQ(Read(8), 8);
+  EXPECT_EQ((losses[{Sensor::kDepth, Loss::kLeftOut}]), 6U);
+  EXPECT_EQ((losses[{Sensor::kDepth, Loss::kInCamera}]), 3U);
+  EXPECT_EQ((losses[{Sensor::kThermal, Loss::kLeftOut}]), 3U);
+  EXPECT_EQ((losses[{Sensor::kThermal, Loss::kInCamera}]), 0U);
+}
+
+TEST_F(SupervisedSourceTest, WhatIsLostBeforeTheScanBeginsCountsNothing) {
+  Start("d:lost d:left d d:lost");
+  std::uint64_t lost = 0;
+  source_->OnLoss([&lost](Sensor, Loss, std::uint64_t frames) { lost += frames; });
+  source_->SetIdle(true);
+  Read(2);
+  source_->SetIdle(false);
+  EXPECT_EQ(ReadFrame().frame_number, 0U);
+  EXPECT_EQ(lost, 0U);
+  EXPECT_EQ(ReadFrame().frame_number, 4U);
+  EXPECT_EQ(lost, 3U);
 }
 
 TEST_F(SupervisedSourceTest, AFailedReadReopensTheSource) {
