@@ -109,16 +109,29 @@ RecordingContent ReadRecording(const std::filesystem::path& path) {
 FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::string& done) {
   const std::string name = sensor == Sensor::kDepth ? "depth" : "thermal";
   // A blank in the format stands for any number of them in the text.
-  const std::string format =
-      name + " captured %ld = " + done + " %ld + rejected %ld + queue full %ld + failed %ld\n";
+  const std::string format = name + " captured %ld = " + done +
+                             " %ld + rejected %ld + queue full %ld + failed %ld"
+                             " + no free slot in the camera's process %ld\n";
   std::istringstream lines(output);
   for (std::string line; std::getline(lines, line);) {
     FrameAccountText account;
-    const int numbers = std::sscanf(line.c_str(), format.c_str(), &account.captured, &account.done,
-                                    &account.rejected, &account.queue_full, &account.failed);
-    if (numbers == 5 && line.find("unaccounted") == std::string::npos) return account;
+    const int numbers =
+        std::sscanf(line.c_str(), format.c_str(), &account.captured, &account.done,
+                    &account.rejected, &account.queue_full, &account.failed, &account.left_out);
+    if (numbers >= 5 && line.find("unaccounted") == std::string::npos) return account;
   }
   return {};
+}
+
+long LostInCamera(const std::string& output, Sensor sensor) {
+  const std::string format = std::string(sensor == Sensor::kDepth ? "depth" : "thermal") +
+                             " lost in the camera or its library %ld";
+  std::istringstream lines(output);
+  for (std::string line; std::getline(lines, line);) {
+    long lost = 0;
+    if (std::sscanf(line.c_str(), format.c_str(), &lost) == 1) return lost;
+  }
+  return 0;
 }
 
 std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path) {

@@ -58,11 +58,17 @@ RecordingContent ReadRecording(const std::filesystem::path& path);
 /// queue full 0 + failed 0".
 struct FrameAccountText {
   long captured = -1, done = -1, rejected = -1, queue_full = -1, failed = -1;
-  bool Closes() const { return captured >= 0 && captured == done + rejected + queue_full + failed; }
+  long left_out = 0;  ///< " + no free slot in the camera's process 3"; not there: none.
+  bool Closes() const {
+    return captured >= 0 && captured == done + rejected + queue_full + failed + left_out;
+  }
 };
 /// `done`: "recorded" or "published". An account that does not close if there is no such line, or
 /// if it speaks of unaccounted frames.
 FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::string& done);
+
+/// "depth    lost in the camera or its library 3"; 0 if there is no such line.
+long LostInCamera(const std::string& output, Sensor sensor);
 
 /// Lines that are neither empty nor comments, each split into numbers.
 std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path);
