@@ -12,7 +12,7 @@
 
 #include "common/testing/temporary_directory.h"
 #include "edge/openni/fake_depth_camera.h"
-#include "edge/openni/record_oni_for_test.h"
+#include "edge/openni/record_oni.h"
 #include "tests/system/programs.h"
 
 namespace isotherm::system_test {
@@ -177,7 +177,8 @@ TEST_F(CamerasTest, AStallIsFoundInTheCamerasProcess) {
 TEST_F(CamerasTest, AnOniFileIsPlayedInAProcessOfItsOwnAndNoFrameOfItIsLost) {
   constexpr int kFrames = 40;
   const std::filesystem::path oni = folder_.path() / "scan.oni";
-  ASSERT_NO_FATAL_FAILURE(RecordOni(oni, kFrames));
+  const Status recorded_file = RecordOni(oni, kFrames);
+  ASSERT_TRUE(recorded_file.ok()) << recorded_file.message();
   const Finished edge = RunToEnd(Edge({"--record", file_.string(), "--depth-camera", oni.string(),
                                        "--rate", "0", "--exit-at-end"}),
                                  kPatience);

@@ -9,7 +9,7 @@
 #include "edge/edge_options.pb.h"
 #include "edge/openni/fake_depth_camera.h"
 #include "edge/openni/openni_depth_source.h"
-#include "edge/openni/record_oni_for_test.h"
+#include "edge/openni/record_oni.h"
 
 namespace isotherm {
 namespace {
@@ -20,7 +20,10 @@ constexpr std::chrono::microseconds kRounding{1};
 
 class OniFileTest : public ::testing::Test {
  protected:
-  void SetUp() override { ASSERT_NO_FATAL_FAILURE(RecordOni(file_, kFrames)); }
+  void SetUp() override {
+    const Status recorded = RecordOni(file_, kFrames);
+    ASSERT_TRUE(recorded.ok()) << recorded.message();
+  }
 
   std::vector<RawFrame> Play(double rate) {
     DepthCameraOptions options;
