@@ -1,10 +1,13 @@
 #include "ground/ground_service.h"
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
+#include <cstdio>
 #include <memory>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "common/base/exit_deadline.h"
@@ -13,10 +16,14 @@
 #include "common/transport/join_domain.h"
 #include "ground/distributor.h"
 #include "ground/export/results.h"
+#include "ground/health.h"
 #include "ground/reconstruction_loop.h"
 #include "ground/recording_loop.h"
+#include "ground/result_writer.h"
+#include "ground/scan_board.h"
 #include "ground/status_teller.h"
 #include "ground/subscriber/subscriber.h"
+#include "ground/worker.h"
 
 namespace isotherm {
 namespace {
@@ -26,27 +33,20 @@ using namespace std::chrono_literals;
 // All results are written by then. With its network interface down, the middleware never ends.
 constexpr auto kTimeToLeaveNetwork = 500ms;
 
-/// Feeds the service manager's watchdog while frames move or nothing waits, and tells the status.
-void GuardUntilStopped(const std::stop_token& stop, const ItemQueue& queue,
-                       const ReconstructionLoop& loop, const Subscriber& subscriber,
-                       const Clock& clock) {
-  const auto interval = WatchdogInterval().value_or(std::chrono::microseconds(500ms));
-  StatusTeller status(clock);
-  std::uint64_t seen = 0;
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  std::unique_lock lock(mutex);
-  while (!wake.wait_for(lock, stop, interval, [&] { return stop.stop_requested(); })) {
-    const std::uint64_t processed = loop.processed();
-    if (processed != seen || queue.size() == 0) NotifyWatchdog();
-    seen = processed;
-    status.Tell(subscriber.stats());
-  }
-}
-
 int Fail(const Status& status) {
   LOG(Ground, Error) << status.message();
   return ExitCode(status);
+}
+
+/// Six seconds of a rig's frames.
+constexpr RecordingQueue::Limits kRecordingLimits{.items = 450, .bytes = 128U << 20};
+
+/// A disk may be slow for longer than the service manager lets the service be silent, but not for
+/// ever.
+Nanoseconds DiskLimit() {
+  constexpr int kIntervals = 12;
+  constexpr std::chrono::microseconds kUnwatched = 5s;
+  return kIntervals * Nanoseconds(WatchdogInterval().value_or(kUnwatched));
 }
 
 /// Somebody who waits for one scan wants to know at once that the network is not there.
@@ -58,67 +58,231 @@ Result<std::unique_ptr<Participant>> Join(int domain, const ServiceMode& mode,
                     [](const Status& reason) { NotifyWaiting(reason.message()); });
 }
 
+/// The service's threads and what joins them. Thread-bound to the main thread.
+class GroundService {
+ public:
+  GroundService(const GroundOptions& options, const ServiceMode& mode, const Clock& clock,
+                StopSignal& signal)
+      : options_(options),
+        mode_(mode),
+        clock_(clock),
+        signal_(signal),
+        health_(DiskLimit()),
+        to_reconstruction_(static_cast<std::size_t>(options.live().queue_frames()),
+                           OverflowPolicy::kBlock),
+        to_recording_(kRecordingLimits),
+        distributor_(options, mode.single_scan, clock, to_reconstruction_, to_recording_, board_,
+                     health_.receive) {}
+
+  /// Joins the link.
+  Status Open(const TransportEnvironment& environment);
+  /// Serves until the signal, then lets everything end. The exit status.
+  int Run();
+
+ private:
+  SubscriberOptions LinkOptions() const;
+  SubscriberHandlers Handlers();
+  /// Tells the service manager that all is well, while it is, and the operator how it goes.
+  void GuardUntilStopped();
+  void FeedWatchdog();
+  GroundSituation Situation() const;
+  /// Waits for a thread's end as long as all goes on. False: given up, something is stuck.
+  bool WaitForEnd(Worker& worker);
+  bool WaitForRecording(Worker& worker);
+  /// Ends the process although a thread is stuck in it.
+  [[noreturn]] void LeaveBehind(const std::string& what);
+
+  const GroundOptions& options_;
+  const ServiceMode mode_;
+  const Clock& clock_;
+  StopSignal& signal_;
+  ScanBoard board_;
+  Health health_;
+  ItemQueue to_reconstruction_;
+  RecordingQueue to_recording_;
+  Distributor distributor_;
+  ExitDeadline leaving_;  // Outlives the participant.
+  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Subscriber> subscriber_;
+  SteadyTime next_feed_{};
+  std::optional<std::string> told_problem_;
+};
+
+SubscriberOptions GroundService::LinkOptions() const {
+  SubscriberOptions link;
+  link.edge_id = options_.live().edge_id();
+  link.software_version = ISOTHERM_VERSION;
+  link.reorder_window = FromSeconds(options_.live().reorder_window_s());
+  link.max_clock_offset = FromSeconds(options_.live().max_clock_offset_s());
+  return link;
+}
+
+SubscriberHandlers GroundService::Handlers() {
+  SubscriberHandlers handlers;
+  Distributor& to = distributor_;
+  handlers.depth = [&to](ReceivedDepth depth) { to.OnFrame(std::move(depth)); };
+  handlers.thermal = [&to](ReceivedThermal thermal) { to.OnFrame(std::move(thermal)); };
+  handlers.late_depth = [&to](ReceivedDepth depth) { to.OnLate(std::move(depth)); };
+  handlers.late_thermal = [&to](ReceivedThermal thermal) { to.OnLate(std::move(thermal)); };
+  handlers.outside_pose = [&to](const OutsidePoseSample& pose) { to.OnFrame(pose); };
+  handlers.rig = [&to](const RigDescription& rig) { to.OnRig(rig); };
+  handlers.clock = [&to](const ClockAccount& account) { to.OnClock(account); };
+  handlers.session_end = [&to](const SessionAccount& account) { to.OnSessionEnd(account); };
+  handlers.status = [this](const EdgeStatus& status) { board_.edge.Set(status); };
+  handlers.turn = [this] { health_.receive.Busy(clock_.SteadyNow()); };
+  return handlers;
+}
+
+Status GroundService::Open(const TransportEnvironment& environment) {
+  Result<std::unique_ptr<Participant>> participant =
+      Join(options_.live().domain(), mode_, environment, clock_, signal_.token());
+  if (!participant) return participant.error();
+  participant_ = std::move(*participant);
+  Result<std::unique_ptr<Subscriber>> subscriber =
+      Subscriber::Create(*participant_, clock_, LinkOptions(), Handlers());
+  if (!subscriber) return subscriber.error();
+  subscriber_ = std::move(*subscriber);
+  return OkStatus();
+}
+
+int GroundService::Run() {
+  const auto written = [this] {
+    if (mode_.single_scan) signal_.Request();
+  };
+  const auto account = [this](std::uint64_t session) { return subscriber_->account(session); };
+  ResultWriter results(options_, clock_, account, board_, health_.results, written);
+  RecordingLoop recording(options_, clock_, board_, health_.recording);
+  ReconstructionLoop reconstruction(options_, clock_, *subscriber_, to_recording_, results, board_,
+                                    health_.reconstruction);
+  {
+    Worker result_thread([&](const std::stop_token& stop) { results.Run(stop); });
+    Worker recording_thread(
+        [&](const std::stop_token& stop) { recording.Run(to_recording_, stop); });
+    Worker reconstruction_thread(
+        [&](const std::stop_token& stop) { reconstruction.Run(to_reconstruction_, stop); });
+    Worker receive_thread([&](const std::stop_token& stop) {
+      distributor_.SetStop(stop);
+      subscriber_->Run(stop);
+      health_.receive.Idle();
+    });
+    NotifyReady("waiting for an edge");
+    LOG(Ground, Info) << "ready, domain=" << options_.live().domain() << " edge_id=\""
+                      << options_.live().edge_id()
+                      << "\" output_dir=" << options_.live().output_dir();
+    GuardUntilStopped();
+    NotifyStopping();
+    // Reception first; then each consumer empties its queue and closes its files.
+    receive_thread.RequestStop();
+    if (!WaitForEnd(receive_thread)) LeaveBehind("reception is stuck");
+    recording_thread.RequestStop();
+    reconstruction_thread.RequestStop();
+    if (!WaitForEnd(reconstruction_thread)) LeaveBehind("the reconstruction is stuck");
+    result_thread.RequestStop();
+    if (!WaitForEnd(result_thread))
+      LeaveBehind("the disk is stuck: results are not complete, output_dir=" +
+                  options_.live().output_dir());
+    if (!WaitForRecording(recording_thread)) {
+      const auto ledger = board_.recording.Get();
+      LeaveBehind("the disk is stuck: the recording is not complete, file=" +
+                  (ledger ? (*ledger)->Get().path.string() : "?"));
+    }
+  }
+  int exit_code = 0;
+  for (const Status& status : {recording.status(), results.status(), reconstruction.status()}) {
+    if (exit_code == 0) exit_code = ExitCode(status);
+  }
+  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "the middleware");
+  return exit_code;
+}
+
+void GroundService::GuardUntilStopped() {
+  constexpr Nanoseconds kTick = 200ms;
+  StatusTeller status(clock_);
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  const std::stop_token stop = signal_.token();
+  while (!wake.wait_for(lock, stop, kTick, [&] { return stop.stop_requested(); })) {
+    FeedWatchdog();
+    status.Tell(Situation());
+  }
+}
+
+void GroundService::FeedWatchdog() {
+  const SteadyTime now = clock_.SteadyNow();
+  const std::optional<std::string> problem = health_.Problem(now);
+  if (problem && !told_problem_) {
+    LOG(Ground, Error) << *problem << "; the service manager is not told any more that all is well";
+  } else if (!problem && told_problem_) {
+    LOG(Ground, Info) << "all goes on again";
+  }
+  told_problem_ = problem;
+  if (problem || now < next_feed_) return;
+  constexpr std::chrono::microseconds kUnwatched = 1s;
+  next_feed_ = now + WatchdogInterval().value_or(kUnwatched);
+  NotifyWatchdog();
+}
+
+GroundSituation GroundService::Situation() const {
+  GroundSituation situation{.link = subscriber_->stats(),
+                            .feedback = board_.feedback.Get(),
+                            .edge = board_.edge.Get(),
+                            .behind = board_.behind.Get().value_or(BehindCounts()),
+                            .recording = {},
+                            .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
+                            .scans_being_written = board_.scans_being_written,
+                            .problem = told_problem_};
+  if (const auto ledger = board_.recording.Get()) situation.recording = (*ledger)->Get();
+  return situation;
+}
+
+bool GroundService::WaitForEnd(Worker& worker) {
+  constexpr Nanoseconds kTick = 100ms;
+  constexpr std::chrono::microseconds kExtension = 10s;
+  // Shorter than while scanning: somebody waits for the end.
+  constexpr Nanoseconds kLimit = 10s;
+  while (!worker.WaitForEnd(kTick)) {
+    const SteadyTime now = clock_.SteadyNow();
+    const Nanoseconds longest =
+        std::max({health_.receive.AtItFor(now), health_.reconstruction.AtItFor(now),
+                  health_.results.AtItFor(now)});
+    if (longest > kLimit) return false;
+    NotifyExtendTimeout(kExtension);
+    FeedWatchdog();
+  }
+  return true;
+}
+
+bool GroundService::WaitForRecording(Worker& worker) {
+  constexpr Nanoseconds kTick = 50ms;
+  constexpr Nanoseconds kLimit = 1500ms;
+  while (!worker.WaitForEnd(kTick)) {
+    if (health_.recording.AtItFor(clock_.SteadyNow()) > kLimit) return false;
+  }
+  return true;
+}
+
+void GroundService::LeaveBehind(const std::string& what) {
+  const int exit_code = ExitCode(IoError(""));
+  LOG(Ground, Error) << what << "; leaving without it";
+  // Tells the rig that nobody is here any more.
+  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "the middleware");
+  subscriber_.reset();
+  participant_.reset();
+  std::fflush(nullptr);
+  _exit(exit_code);
+}
+
 }  // namespace
 
 int RunGround(const GroundOptions& options, const ServiceMode& mode,
               const TransportEnvironment& environment, const Clock& clock, StopSignal& signal) {
   if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
     return Fail(prepared);
-  ExitDeadline leaving;  // Outlives the participant.
-  const Result<std::unique_ptr<Participant>> participant =
-      Join(options.live().domain(), mode, environment, clock, signal.token());
-  if (!participant) return signal.token().stop_requested() ? 0 : Fail(participant.error());
-
-  const auto capacity = static_cast<std::size_t>(options.live().queue_frames());
-  ItemQueue to_reconstruction(capacity, OverflowPolicy::kBlock);
-  ItemQueue to_recording(capacity, OverflowPolicy::kBlock);
-  Distributor distributor(options, mode.single_scan, clock, to_reconstruction, to_recording);
-
-  SubscriberOptions subscriber_options;
-  subscriber_options.edge_id = options.live().edge_id();
-  subscriber_options.software_version = ISOTHERM_VERSION;
-  subscriber_options.reorder_window = FromSeconds(options.live().reorder_window_s());
-  subscriber_options.max_clock_offset = FromSeconds(options.live().max_clock_offset_s());
-  SubscriberHandlers handlers;
-  handlers.depth = [&](ReceivedDepth depth) { distributor.OnFrame(std::move(depth)); };
-  handlers.thermal = [&](ReceivedThermal thermal) { distributor.OnFrame(std::move(thermal)); };
-  handlers.late_depth = [&](ReceivedDepth depth) { distributor.OnLate(std::move(depth)); };
-  handlers.late_thermal = [&](ReceivedThermal thermal) { distributor.OnLate(std::move(thermal)); };
-  handlers.outside_pose = [&](const OutsidePoseSample& pose) { distributor.OnFrame(pose); };
-  handlers.rig = [&](const RigDescription& rig) { distributor.OnRig(rig); };
-  handlers.clock = [&](const ClockAccount& account) { distributor.OnClock(account); };
-  handlers.session_end = [&](const SessionAccount& account) { distributor.OnSessionEnd(account); };
-  const Result<std::unique_ptr<Subscriber>> subscriber =
-      Subscriber::Create(**participant, clock, subscriber_options, std::move(handlers));
-  if (!subscriber) return Fail(subscriber.error());
-
-  RecordingLoop recording(options);
-  ReconstructionLoop reconstruction(options, mode, clock, **subscriber, to_recording, signal);
-  {
-    std::jthread recording_thread(
-        [&](const std::stop_token& stop) { recording.Run(to_recording, stop); });
-    std::jthread reconstruction_thread(
-        [&](const std::stop_token& stop) { reconstruction.Run(to_reconstruction, stop); });
-    std::jthread receive_thread([&](const std::stop_token& stop) {
-      distributor.SetStop(stop);
-      (*subscriber)->Run(stop);
-    });
-    NotifyReady("waiting for an edge");
-    LOG(Ground, Info) << "ready, domain=" << options.live().domain() << " edge_id=\""
-                      << options.live().edge_id()
-                      << "\" output_dir=" << options.live().output_dir();
-    GuardUntilStopped(signal.token(), to_reconstruction, reconstruction, **subscriber, clock);
-    NotifyStopping();
-    // Reception first; then each consumer empties its queue and closes its files.
-    receive_thread.request_stop();
-    receive_thread.join();
-    recording_thread.request_stop();
-    reconstruction_thread.request_stop();
-  }
-  const int exit_code =
-      ExitCode(recording.status().ok() ? reconstruction.status() : recording.status());
-  leaving.Arm(kTimeToLeaveNetwork, exit_code, "the middleware");
-  return exit_code;
+  GroundService service(options, mode, clock, signal);
+  if (const Status opened = service.Open(environment); !opened.ok())
+    return signal.token().stop_requested() ? 0 : Fail(opened);
+  return service.Run();
 }
 
 }  // namespace isotherm

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ground/subscriber/clock_watch.h"
 
@@ -12,7 +13,8 @@ namespace {
 
 constexpr double kMsPerS = 1e3;
 
-Json DescribeStream(const StreamAccount& account, std::uint64_t recorded) {
+Json DescribeStream(const StreamAccount& account, std::uint64_t recorded,
+                    const NotRecordedCounts& left_out) {
   Json json;
   json["published"] = account.published;
   json["received"] = account.received;
@@ -27,7 +29,38 @@ Json DescribeStream(const StreamAccount& account, std::uint64_t recorded) {
     json["refused_by_cause"][cause] = account.refused_by_cause[i];
   }
   json["recorded"] = recorded;
+  for (std::size_t i = 0; i < left_out.size(); ++i) {
+    if (left_out[i] > 0)
+      json["not_recorded_by_reason"][ToString(static_cast<NotRecorded>(i))] = left_out[i];
+  }
   return json;
+}
+
+/// What the recording lacks and why, or nothing.
+std::string RecordingText(const RecordingAccount& recording) {
+  const auto sum = [&](NotRecorded reason) {
+    const auto i = static_cast<std::size_t>(reason);
+    return recording.depth_left_out[i] + recording.thermal_left_out[i];
+  };
+  std::string text;
+  if (const std::uint64_t frames = sum(NotRecorded::kDiskTooSlow); frames > 0) {
+    text += fmt::format(
+        "         {} frames are not in the recording, because the disk did not take them in time\n",
+        frames);
+  }
+  if (const std::uint64_t frames = sum(NotRecorded::kDiskNearlyFull); frames > 0) {
+    text += fmt::format(
+        "         {} frames are not in the recording: what was left of the disk was kept for the "
+        "results\n",
+        frames);
+  }
+  if (recording.stats.failed > 0) {
+    text += fmt::format("         {} frames could not be written to the recording: {}\n",
+                        recording.stats.failed, recording.status.message());
+  }
+  if (!recording.path.empty() && !recording.closed)
+    text += "         the recording is not finished: the disk is slow or stuck\n";
+  return text;
 }
 
 std::string StreamText(const char* name, const StreamAccount& account, std::uint64_t recorded) {
@@ -63,11 +96,26 @@ void DescribeClock(const ClockAccount& clock, Json& json) {
 
 }  // namespace
 
-void DescribeAccount(const SessionAccount& account, const RecordingStats& recorded, Json& link) {
-  link["depth"] = DescribeStream(account.depth, recorded.depth_frames);
-  link["thermal"] = DescribeStream(account.thermal, recorded.thermal_frames);
-  link["recording_failed_frames"] = recorded.failed;
+void DescribeAccount(const SessionAccount& account, const RecordingAccount& recording, Json& link) {
+  link["depth"] =
+      DescribeStream(account.depth, recording.stats.depth_frames, recording.depth_left_out);
+  link["thermal"] =
+      DescribeStream(account.thermal, recording.stats.thermal_frames, recording.thermal_left_out);
+  // What the stuck disk has not taken yet.
+  const bool waits = !recording.path.empty() && !recording.closed;
+  const auto add_waiting = [&](const char* sensor, const StreamAccount& stream,
+                               std::uint64_t recorded, const NotRecordedCounts& left_out) {
+    const std::uint64_t settled = std::accumulate(left_out.begin(), left_out.end(), recorded);
+    if (waits && stream.received > settled)
+      link[sensor]["not_recorded_by_reason"]["still_waiting"] = stream.received - settled;
+  };
+  add_waiting("depth", account.depth, recording.stats.depth_frames, recording.depth_left_out);
+  add_waiting("thermal", account.thermal, recording.stats.thermal_frames,
+              recording.thermal_left_out);
+  link["recording_failed_frames"] = recording.stats.failed;
   link["refused_samples"] = account.refused_samples;
+  link["recording_finished"] = recording.closed;
+  if (!recording.status.ok()) link["recording_failed_because"] = recording.status.message();
   if (account.clock) DescribeClock(*account.clock, link["clock"]);
   Json& feedback = link["feedback"];
   feedback["received_by_edge"] = account.feedback.count;
@@ -76,9 +124,13 @@ void DescribeAccount(const SessionAccount& account, const RecordingStats& record
   feedback["latency_p99_ms"] = kMsPerS * account.feedback.p99_s;
 }
 
-std::string AccountText(const SessionAccount& account, const RecordingStats& recorded) {
-  std::string text = StreamText("link", account.depth, recorded.depth_frames) +
-                     StreamText("", account.thermal, recorded.thermal_frames);
+std::string AccountText(const SessionAccount& account, const RecordingAccount& recording) {
+  std::string text = StreamText("link", account.depth, recording.stats.depth_frames) +
+                     StreamText("", account.thermal, recording.stats.thermal_frames);
+  if (!account.ended) {
+    text += "         the rig had not said its last word: what it sent after these is not known\n";
+  }
+  text += RecordingText(recording);
   if (account.clock)
     text += fmt::format("{:<8} of the rig: {}\n", "clock", ClockText(*account.clock));
   if (!std::isfinite(account.feedback.p50_s)) return text;

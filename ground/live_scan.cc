@@ -69,16 +69,25 @@ void LiveScan::Add(const OutsidePoseSample& sample) {
   pipeline_->ProcessOutsidePose(sample.pose);
 }
 
-void LiveScan::FinishFrames() {
+void LiveScan::FinishFrames(const std::function<void(double share)>& progress) {
   while (const auto frame = assembler_.Flush()) Process(*frame);
-  pipeline_->Finish();
+  pipeline_->Finish(progress);
 }
 
-DelayReport LiveScan::CheckDelay() {
+BehindCounts LiveScan::behind() const {
+  const PipelineCounts& counts = pipeline_->counts();
+  const auto thermal = counts.thermal_left_out.find("behind");
+  return {.now = is_behind_,
+          .thermal_frames = thermal == counts.thermal_left_out.end() ? 0 : thermal->second,
+          .depth_frames = counts.depth_behind};
+}
+
+DelayReport LiveScan::CheckDelay(const std::function<void()>& progress) {
   constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   const SteadyTime start = clock_.SteadyNow();
   bool told = false;
   return delay_check_.Finish(*pipeline_, [&](double share) {
+    if (progress) progress();
     if (told || clock_.SteadyNow() - start < kSilence) return;
     told = true;
     LOG(Ground, Info) << fmt::format("checking the delay of the thermal camera, {:.0f} % done",

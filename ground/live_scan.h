@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "ground/feedback_maker.h"
 #include "ground/ground_options.pb.h"
 #include "ground/ground_pipeline.h"
+#include "ground/scan_board.h"
 #include "ground/subscriber/received_frame.h"
 
 namespace isotherm {
@@ -40,9 +42,9 @@ class LiveScan {
   /// Not held back: frames wait for each other, so poses are there before them.
   void Add(const OutsidePoseSample& sample);
   /// Processes what the assembler still holds back.
-  void FinishFrames();
+  void FinishFrames(const std::function<void(double share)>& progress = {});
   /// After that: whether the delay that the edge added to thermal stamps is right.
-  DelayReport CheckDelay();
+  DelayReport CheckDelay(const std::function<void()>& progress = {});
 
   /// Feedback on the newest depth frame if one is due (LiveOptions.feedback_hz, by capture time).
   std::optional<Feedback> TakeFeedback();
@@ -55,6 +57,8 @@ class LiveScan {
   const StageStats& waiting() const { return waiting_; }
 
   std::uint64_t session() const { return session_; }
+  /// What was left out to keep up.
+  BehindCounts behind() const;
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }
   std::uint64_t outside_poses_received() const { return outside_poses_received_; }
   /// Numbers below the highest received that did not come.

@@ -1,32 +1,41 @@
 #include "ground/reconstruction_loop.h"
 
-#include <chrono>
-#include <cstdio>
+#include <fmt/format.h>
+
+#include <utility>
 
 #include "common/base/log.h"
-#include "ground/link_account.h"
-#include "ground/scan_result.h"
 #include "ground/status_teller.h"
 
 namespace isotherm {
+namespace {
 
-using namespace std::chrono_literals;
+/// What the results of a model take per block of 512 voxels, about: model.iso, cloud and mesh.
+constexpr std::uint64_t kResultBytesPerBlock = 6'000;
+/// Pictures, trajectory, statistics.
+constexpr std::uint64_t kResultBytesAtLeast = 4U << 20;
+
+}  // namespace
 
 void ReconstructionLoop::Run(ItemQueue& queue, const std::stop_token& stop) {
   stop_ = stop;
   while (std::optional<Item> item = queue.Pop(stop)) {
+    progress_.Busy(clock_.SteadyNow());
     if (stop.stop_requested() && IsFrame(*item)) {
       ++unprocessed_;
-      continue;
+    } else {
+      std::visit([this](const auto& value) { Handle(value); }, *item);
     }
-    std::visit([this](const auto& value) { Handle(value); }, *item);
+    progress_.Idle();
   }
-  End(subscriber_.stats().account);
+  End();
+  progress_.Idle();
 }
 
 void ReconstructionLoop::Handle(const SessionStart& start) {
-  End(last_account_);
+  End();
   start_ = start;
+  started_ = true;
   TellAboutCameras(start.rig);
   Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
   if (!scan) {
@@ -44,9 +53,8 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
 }
 
 void ReconstructionLoop::Handle(const SessionAccount& account) {
-  last_account_ = account;
-  End(account);
-  if (mode_.single_scan) signal_.Request();
+  LOG(Ground, Info) << "scan ended, session=" << account.session;
+  End();
 }
 
 void ReconstructionLoop::Handle(const OutsidePoseSample& sample) {
@@ -57,56 +65,49 @@ template <typename Frame>
 void ReconstructionLoop::HandleFrame(const Frame& frame) {
   if (!scan_) return;
   scan_->Add(frame);
-  ++processed_;
   const std::optional<Feedback> feedback = scan_->TakeFeedback();
   if (!feedback) return;
-  if (const Status status = subscriber_.Publish(*feedback); !status.ok()) {
+  SendFeedback(*feedback);
+  EstimateResults();
+  scan_->ThinkAhead();
+}
+
+void ReconstructionLoop::EstimateResults() {
+  if (board_.scans_being_written == 0) ended_result_bytes_ = 0;
+  const auto blocks = static_cast<std::uint64_t>(scan_->pipeline().tsdf().block_count());
+  result_bytes_ = kResultBytesAtLeast + kResultBytesPerBlock * blocks;
+  board_.result_bytes = ended_result_bytes_ + result_bytes_;
+}
+
+void ReconstructionLoop::SendFeedback(const Feedback& feedback) {
+  const BehindCounts behind = scan_->behind();
+  board_.feedback.Set(feedback);
+  board_.behind.Set(behind);
+  // The edge has no member for this; its operator is told in words.
+  Feedback sent = feedback;
+  if (behind.thermal_frames > 0) {
+    sent.advice_reason +=
+        fmt::format("{}the ground is behind, {} thermal frames were left out",
+                    sent.advice_reason.empty() ? "" : "; ", behind.thermal_frames);
+  }
+  if (const Status status = subscriber_.Publish(sent); !status.ok()) {
     LOG(Ground, Debug) << "feedback not sent: " << status.message();
   }
-  recording_.Push(*feedback, stop_);
-  scan_->ThinkAhead();
+  recording_.Offer(std::move(sent), {}, stop_);
 }
 
 void ReconstructionLoop::Handle(const ReceivedDepth& frame) { HandleFrame(frame); }
 
 void ReconstructionLoop::Handle(const ReceivedThermal& frame) { HandleFrame(frame); }
 
-Json ReconstructionLoop::DescribeEnd(const SessionAccount& account,
-                                     const RecordingOutcome& recording) const {
-  Json stats = DescribeScan(scan_->pipeline(), options_, scan_->rig());
-  Json& link = stats["link"];
-  link["session"] = account.session;
-  link["closed"] = account.closed;
-  link["not_processed_at_stop"] = unprocessed_;
-  link["waiting"] = DescribeStage(scan_->waiting());
-  link["out_of_order_frames"] = scan_->out_of_order();
-  if (scan_->outside_poses_received() > 0) {
-    link["outside_poses"]["received"] = scan_->outside_poses_received();
-    link["outside_poses"]["missing"] = scan_->outside_poses_missing();
-  }
-  DescribeAccount(account, recording.stats, link);
-  stats["feedback"] = scan_->DescribeFeedback();
-  return stats;
-}
-
-void ReconstructionLoop::End(const SessionAccount& account) {
-  if (!scan_) return;
-  scan_->FinishFrames();
-  const DelayReport delay = scan_->CheckDelay();
-  RecordingOutcome recording;
-  if (start_.recording.wait_for(1s) == std::future_status::ready)
-    recording = start_.recording.get();
-  const Result<std::string> text = WriteScan(
-      scan_->pipeline(), options_, delay, DescribeEnd(account, recording), start_.folder, nullptr);
-  scan_.reset();
-  if (!text) {
-    status_ = text.error();
-    LOG(Ground, Error) << status_.message();
-    return;
-  }
-  const std::string summary = *text + AccountText(account, recording.stats);
-  std::fputs(summary.c_str(), stdout);
-  std::fflush(stdout);
+void ReconstructionLoop::End() {
+  if (!std::exchange(started_, false)) return;
+  board_.feedback.Take();
+  board_.behind.Take();
+  ended_result_bytes_ += std::exchange(result_bytes_, 0);
+  progress_.Idle();  // If it has to wait, then for the results of others.
+  results_.Hand({std::move(start_), std::move(scan_), std::exchange(unprocessed_, 0)});
+  progress_.Busy(clock_.SteadyNow());
 }
 
 }  // namespace isotherm

@@ -1,40 +1,40 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <stop_token>
 
-#include "common/base/service.h"
 #include "common/time/clock.h"
 #include "ground/ground_options.pb.h"
-#include "ground/ground_service.h"
 #include "ground/live_scan.h"
+#include "ground/recording_queue.h"
+#include "ground/result_writer.h"
+#include "ground/scan_board.h"
 #include "ground/session_item.h"
 #include "ground/subscriber/subscriber.h"
 
 namespace isotherm {
 
-/// Reconstructs one session after the other, writes its results and sends feedback. Thread-bound to
-/// the reconstruction thread, but for `processed`.
+/// Reconstructs one session after the other, hands ended ones over to have their results written,
+/// and sends feedback. Thread-bound to the reconstruction thread.
 class ReconstructionLoop {
  public:
-  /// `recording` gets the feedback.
-  ReconstructionLoop(const GroundOptions& options, const ServiceMode& mode, const Clock& clock,
-                     Subscriber& subscriber, ItemQueue& recording, StopSignal& signal)
+  /// `recording` gets the feedback, `results` the scans that have ended.
+  ReconstructionLoop(const GroundOptions& options, const Clock& clock, Subscriber& subscriber,
+                     RecordingQueue& recording, ResultWriter& results, ScanBoard& board,
+                     ThreadProgress& progress)
       : clock_(clock),
         options_(options),
-        mode_(mode),
         subscriber_(subscriber),
         recording_(recording),
-        signal_(signal) {}
+        results_(results),
+        board_(board),
+        progress_(progress) {}
 
   /// Until stop is requested; frames that wait then are counted and left out.
   void Run(ItemQueue& queue, const std::stop_token& stop);
-  /// The last failure.
+  /// The last failure. Not while it runs.
   const Status& status() const { return status_; }
-  /// Frames so far.
-  std::uint64_t processed() const { return processed_; }
 
  private:
   void Handle(const SessionStart& start);
@@ -46,21 +46,25 @@ class ReconstructionLoop {
   void Handle(const ClockAccount& /*clock*/) {}  // For the recording.
   template <typename Frame>
   void HandleFrame(const Frame& frame);
-  void End(const SessionAccount& account);
-  Json DescribeEnd(const SessionAccount& account, const RecordingOutcome& recording) const;
+  void SendFeedback(const Feedback& feedback);
+  /// Tells how much of the disk the results will need.
+  void EstimateResults();
+  void End();
 
   const Clock& clock_;
   const GroundOptions& options_;
-  const ServiceMode mode_;
   Subscriber& subscriber_;
-  ItemQueue& recording_;
-  StopSignal& signal_;
+  RecordingQueue& recording_;
+  ResultWriter& results_;
+  ScanBoard& board_;
+  ThreadProgress& progress_;
   std::stop_token stop_;
-  SessionStart start_;
+  bool started_ = false;  ///< A session; without a scan if that could not be begun.
+  SessionStart start_;    ///< Of that session.
   std::unique_ptr<LiveScan> scan_;
-  SessionAccount last_account_;
-  std::uint64_t unprocessed_ = 0;
-  std::atomic<std::uint64_t> processed_{0};
+  std::uint64_t unprocessed_ = 0;  ///< Of this session.
+  std::uint64_t result_bytes_ = 0;
+  std::uint64_t ended_result_bytes_ = 0;  ///< Of scans that are still being written.
   Status status_;
 };
 

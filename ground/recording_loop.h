@@ -1,24 +1,31 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
-#include <future>
 #include <memory>
 #include <stop_token>
 
+#include "common/time/clock.h"
+#include "common/time/thread_progress.h"
 #include "ground/ground_options.pb.h"
+#include "ground/recording_queue.h"
+#include "ground/scan_board.h"
 #include "ground/scan_recorder.h"
 #include "ground/session_item.h"
 
 namespace isotherm {
 
-/// Records one session after the other. Thread-bound to the recording thread.
+/// Records one session after the other, and leaves room on the disk for the results: the recording
+/// ends when no more than these are expected to take is free. Thread-bound to the recording thread.
 class RecordingLoop {
  public:
-  explicit RecordingLoop(const GroundOptions& options) : options_(options) {}
+  RecordingLoop(const GroundOptions& options, const Clock& clock, const ScanBoard& board,
+                ThreadProgress& progress)
+      : options_(options), clock_(clock), board_(board), progress_(progress) {}
 
   /// Until stop is requested and the queue is empty.
-  void Run(ItemQueue& queue, const std::stop_token& stop);
-  /// The last failure.
+  void Run(RecordingQueue& queue, const std::stop_token& stop);
+  /// The last failure. Not while it runs.
   const Status& status() const { return status_; }
 
  private:
@@ -26,16 +33,31 @@ class RecordingLoop {
   void Handle(const SessionAccount& /*account*/) { End(); }
   void Handle(const Feedback& feedback);
   void Handle(const ClockAccount& clock);
+  void Handle(const OutsidePoseSample& sample);
+  void Handle(const ReceivedDepth& frame) { HandleFrame(frame, Sensor::kDepth); }
+  void Handle(const ReceivedThermal& frame) { HandleFrame(frame, Sensor::kThermal); }
   template <typename Frame>
-  void Handle(const Frame& frame) {
-    if (recorder_) recorder_->Write(frame);
-  }
+  void HandleFrame(const Frame& frame, Sensor sensor);
+  void Open();
+  /// Looks from time to time how much is free; false if that is for the results.
+  bool HasRoom();
+  std::uint64_t ReserveBytes(std::uint64_t capacity) const;
+  void StopForReserve();
+  void Fail(const Status& status);
+  /// What was written so far, into the account.
+  void Enter();
   void End();
 
   const GroundOptions& options_;
+  const Clock& clock_;
+  const ScanBoard& board_;
+  ThreadProgress& progress_;
+  SessionStart start_;
   std::unique_ptr<ScanRecorder> recorder_;
-  std::uint64_t session_ = 0;
-  std::shared_ptr<std::promise<RecordingOutcome>> promise_;
+  bool nearly_full_ = false;  ///< The recording was ended for the results' sake.
+  bool flushed_ = true;
+  SteadyTime opened_{};
+  SteadyTime next_look_{};
   Status status_;
 };
 

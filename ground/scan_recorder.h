@@ -30,6 +30,8 @@ class ScanRecorder {
   /// Keeps what is known of the rig's clock, and writes what changed in kind: synchronisation,
   /// steps, alarm.
   void Write(const ClockAccount& clock);
+  /// Hands what was written so far to the operating system.
+  void Flush() { Note(writer_->Flush()); }
   /// Writes index and footer. The first error of the recording, or ok. Idempotent.
   Status Close();
 

@@ -153,6 +153,19 @@ std::string DescribeSubMaps(const Atlas& atlas) {
   return text;
 }
 
+/// model.iso, and one more for each sub-map that was never joined.
+Status SaveModels(const GroundPipeline& pipeline, const GroundOptions& options,
+                  const std::filesystem::path& dir) {
+  if (!options.export_().model()) return OkStatus();
+  Status first;
+  for (int i = 0; i < pipeline.atlas().size(); ++i) {
+    const std::string name = i == 0 ? "model.iso" : fmt::format("model-{}.iso", i + 1);
+    const Status saved = pipeline.Save(dir / name, i);
+    if (first.ok()) first = saved;
+  }
+  return first;
+}
+
 }  // namespace
 
 Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig) {
@@ -243,14 +256,12 @@ Result<std::string> WriteScan(
                             options.export_(),
                             interpreted ? &*interpretation : nullptr,
                             std::move(stats)};
+  // All others can be made again from the model.
+  const Status saved = SaveModels(pipeline, options, dir);
+  if (progress) progress("results", 0.0);
   const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
+  if (!saved.ok()) return Err(saved);
   if (!summary) return Err(summary.error());
-  if (options.export_().model()) {
-    for (int i = 0; i < pipeline.atlas().size(); ++i) {
-      const std::string name = i == 0 ? "model.iso" : fmt::format("model-{}.iso", i + 1);
-      if (Status status = pipeline.Save(dir / name, i); !status.ok()) return Err(status);
-    }
-  }
 
   const PipelineCounts& counts = pipeline.counts();
   std::string text =

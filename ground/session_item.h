@@ -1,31 +1,22 @@
 #pragma once
 
 #include <filesystem>
-#include <future>
 #include <memory>
 #include <variant>
 
-#include "common/base/status.h"
 #include "common/concurrency/bounded_queue.h"
-#include "common/recording/recording.h"
 #include "common/transport/messages.h"
+#include "ground/recording_ledger.h"
 #include "ground/subscriber/received_frame.h"
 #include "ground/subscriber/session_account.h"
 
 namespace isotherm {
 
-/// What became of a session's recording.
-struct RecordingOutcome {
-  RecordingStats stats;
-  Status status;
-};
-
-/// A new session: both consumers get the same folder; the reconstruction learns what was recorded.
+/// A new session: both consumers get the same folder and the account of what is recorded.
 struct SessionStart {
   RigDescription rig;
   std::filesystem::path folder;
-  std::shared_ptr<std::promise<RecordingOutcome>> recording_promise;
-  std::shared_future<RecordingOutcome> recording;
+  std::shared_ptr<RecordingLedger> recording;
 };
 
 using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, OutsidePoseSample,

@@ -42,6 +42,9 @@ void NotifyWaiting(std::string_view reason) {
 }
 void NotifyWatchdog() { Notify("WATCHDOG=1"); }
 void NotifyStopping() { Notify("STOPPING=1"); }
+void NotifyExtendTimeout(std::chrono::microseconds duration) {
+  Notify("EXTEND_TIMEOUT_USEC=" + std::to_string(duration.count()));
+}
 
 std::optional<std::chrono::microseconds> WatchdogInterval() {
   std::uint64_t microseconds = 0;

@@ -19,6 +19,9 @@ void NotifyStatus(std::string_view status);
 void NotifyWaiting(std::string_view reason);
 void NotifyWatchdog();
 void NotifyStopping();
+/// Asks for `duration` from now before the service manager loses patience while the daemon starts
+/// or stops.
+void NotifyExtendTimeout(std::chrono::microseconds duration);
 
 /// How often NotifyWatchdog should be called (half of WatchdogSec); nullopt if the unit has no
 /// watchdog.

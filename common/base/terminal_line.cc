@@ -40,8 +40,8 @@ std::string FitLine(std::span<const std::string> parts, std::string_view separat
   if (parts.empty()) return {};
   std::string line(FirstColumns(parts.front(), columns));
   for (const std::string& part : parts.subspan(1)) {
-    if (Columns(line) + Columns(separator) + Columns(part) > columns) break;
-    line.append(separator).append(part);
+    if (Columns(line) + Columns(separator) + Columns(part) <= columns)
+      line.append(separator).append(part);
   }
   return line;
 }

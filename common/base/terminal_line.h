@@ -8,7 +8,7 @@
 namespace isotherm {
 
 /// Joins `parts`, the most important first, by `separator` and keeps to `columns`: a part that does
-/// not fit is left out with all behind it. Only a first part that is too long is cut.
+/// not fit is left out. Only a first part that is too long is cut.
 std::string FitLine(std::span<const std::string> parts, std::string_view separator,
                     std::size_t columns);
 

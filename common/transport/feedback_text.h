@@ -18,7 +18,7 @@ std::string MoveText(const RigidTransform& T_depth_next);
 std::string AdviceText(const Feedback& feedback);
 
 /// What the ground says, a part per fact, the most important first: advice, tracking, coverage of
-/// view and model, where to go next. For FitLine(): what does not fit is left out from the end.
+/// view and model, where to go next. For FitLine(): what does not fit is left out.
 std::vector<std::string> FeedbackParts(const Feedback& feedback);
 
 /// The same in one line.

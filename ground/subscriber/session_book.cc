@@ -60,6 +60,12 @@ void SessionBook::SetClock(const ClockAccount& clock) {
   if (Entry* entry = Find(clock.session)) entry->clock = clock;
 }
 
+std::vector<std::uint64_t> SessionBook::sessions() const {
+  std::vector<std::uint64_t> sessions;
+  for (const Entry& entry : entries_) sessions.push_back(entry.session);
+  return sessions;
+}
+
 std::optional<std::uint64_t> SessionBook::newest() const {
   if (entries_.empty()) return std::nullopt;
   return entries_.back().session;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <optional>
+#include <vector>
 
 #include "common/time/time_types.h"
 #include "common/transport/messages.h"
@@ -27,6 +28,8 @@ class SessionBook {
   /// A good frame of `session` has arrived.
   void OnFrame(std::uint64_t session, SteadyTime now);
 
+  /// The last sessions that were seen, the newest last.
+  std::vector<std::uint64_t> sessions() const;
   /// The session that was seen last; nullopt before the first.
   std::optional<std::uint64_t> newest() const;
   SessionAccount Account(const StreamTally& depth, const StreamTally& thermal) const;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <deque>
 #include <mutex>
 #include <utility>
 #include <variant>
@@ -65,6 +66,7 @@ class DdsSubscriber final : public Subscriber {
   Status Publish(const Feedback& feedback) override;
   Result<std::uint64_t> Send(Command command) override;
   SubscriberStats stats() const override;
+  SessionAccount account(std::uint64_t session) const override;
   const RefusalCounter& refusals() const override { return refusals_; }
 
  private:
@@ -77,6 +79,8 @@ class DdsSubscriber final : public Subscriber {
   /// What is due: deliveries, receipts, closed sessions, statistics.
   void Housekeep();
   void CloseSessions(SteadyTime now);
+  /// Keeps the accounts of the newest session and of the one before, as they are now.
+  void KeepAccounts();
   void SendReceipt(SteadyTime now);
   Nanoseconds TimeToNextDuty(SteadyTime now) const;
   void OnPeer(const Received<Hello>& peer);
@@ -133,6 +137,7 @@ class DdsSubscriber final : public Subscriber {
   std::string edge_id_;
   std::uint64_t next_command_;
   SubscriberStats stats_;
+  std::deque<SessionAccount> accounts_;  ///< Oldest first; at most kMaxAccounts.
 };
 
 DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& options,
@@ -294,19 +299,16 @@ void DdsSubscriber::OnPeer(const Received<Hello>& peer) {
 }
 
 void DdsSubscriber::Housekeep() {
+  if (handlers_.turn) handlers_.turn();
   const SteadyTime now = clock_.SteadyNow();
   depth_.DeliverDue(now);
   thermal_.DeliverDue(now);
   if (now >= receipt_due_ || frames_since_receipt_ >= kFramesPerReceipt) SendReceipt(now);
   CloseSessions(now);
   if (now >= look_due_) LookAround(now);
-  SessionAccount account;
-  if (const auto session = book_.newest()) {
-    account = book_.Account(depth_.tally(*session), thermal_.tally(*session));
-  }
-  account.refused_samples = refusals_.total();
+  KeepAccounts();
   std::scoped_lock lock(mutex_);
-  stats_.account = account;
+  stats_.account = accounts_.empty() ? SessionAccount() : accounts_.back();
   stats_.refusals = refusals_.counts();
   stats_.refused = refusals_.total();
 }
@@ -372,6 +374,29 @@ std::string DdsSubscriber::followed() const {
   return edge_id_;
 }
 
+void DdsSubscriber::KeepAccounts() {
+  constexpr std::size_t kMaxAccounts = 8;
+  const std::vector<std::uint64_t> sessions = book_.sessions();
+  // The streams know no more than two; the accounts of older ones are as they were.
+  const std::size_t first = sessions.size() - std::min<std::size_t>(sessions.size(), 2);
+  std::scoped_lock lock(mutex_);
+  for (std::size_t i = first; i < sessions.size(); ++i) {
+    const std::uint64_t session = sessions[i];
+    SessionAccount account = book_.Account(depth_.tally(session), thermal_.tally(session));
+    const auto kept = std::ranges::find(accounts_, session, &SessionAccount::session);
+    const bool newest = i + 1 == sessions.size();
+    // Samples are refused before it is known whose they are.
+    account.refused_samples =
+        newest || kept == accounts_.end() ? refusals_.total() : kept->refused_samples;
+    if (kept != accounts_.end()) {
+      *kept = account;
+      continue;
+    }
+    if (accounts_.size() == kMaxAccounts) accounts_.pop_front();
+    accounts_.push_back(account);
+  }
+}
+
 void DdsSubscriber::CloseSessions(SteadyTime now) {
   while (const auto session = book_.oldest_open()) {
     auto account = book_.TryClose(depth_.tally(*session), thermal_.tally(*session), now);
@@ -382,6 +407,7 @@ void DdsSubscriber::CloseSessions(SteadyTime now) {
     depth_.DeliverAll();
     thermal_.DeliverAll();
     SendReceipt(now);
+    KeepAccounts();
     if (handlers_.session_end) handlers_.session_end(*account);
   }
 }
@@ -435,6 +461,15 @@ Result<std::uint64_t> DdsSubscriber::Send(Command command) {
 SubscriberStats DdsSubscriber::stats() const {
   std::scoped_lock lock(mutex_);
   return stats_;
+}
+
+SessionAccount DdsSubscriber::account(std::uint64_t session) const {
+  std::scoped_lock lock(mutex_);
+  const auto kept = std::ranges::find(accounts_, session, &SessionAccount::session);
+  if (kept != accounts_.end()) return *kept;
+  SessionAccount unknown;
+  unknown.session = session;
+  return unknown;
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ struct SubscriberHandlers {
   std::function<void(const EdgeStatus&)> status;
   std::function<void(const ClockAccount&)> clock;  ///< After each status.
   std::function<void(const CommandResult&)> command_result;
+  /// Again and again, at least every 100 ms: reception goes on.
+  std::function<void()> turn;
   /// Once per session, when its account is closed: the edge ended it and all is here or given up.
   std::function<void(const SessionAccount&)> session_end;
 };
@@ -85,6 +87,9 @@ class Subscriber {
   virtual Result<std::uint64_t> Send(Command command) = 0;
 
   virtual SubscriberStats stats() const = 0;
+  /// The newest account of one of the last sessions, also of one that never ended; only the number
+  /// is set if it was not seen.
+  virtual SessionAccount account(std::uint64_t session) const = 0;
   virtual const RefusalCounter& refusals() const = 0;
 };
 

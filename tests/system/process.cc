@@ -186,17 +186,28 @@ NotifySocket::NotifySocket(const std::filesystem::path& folder) : path_(folder /
 
 NotifySocket::~NotifySocket() { close(socket_); }
 
+bool NotifySocket::Receive(Seconds timeout) {
+  if (!WaitReadable(socket_, timeout)) return false;
+  std::array<char, 4096> buffer{};
+  const ssize_t count = recv(socket_, buffer.data(), buffer.size(), 0);
+  if (count > 0) received_.append(buffer.data(), static_cast<std::size_t>(count)).append("\n");
+  return true;
+}
+
 bool NotifySocket::WaitFor(std::string_view line, Seconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
   const std::string wanted = "\n" + std::string(line) + "\n";
   while (received_.find(wanted) == std::string::npos) {
     const Seconds left = deadline - std::chrono::steady_clock::now();
-    if (left.count() <= 0 || !WaitReadable(socket_, left)) return false;
-    std::array<char, 4096> buffer{};
-    const ssize_t count = recv(socket_, buffer.data(), buffer.size(), 0);
-    if (count > 0) received_.append(buffer.data(), static_cast<std::size_t>(count)).append("\n");
+    if (left.count() <= 0 || !Receive(left)) return false;
   }
   return true;
+}
+
+void NotifySocket::Forget() {
+  while (Receive(Seconds(0))) {
+  }
+  received_ = "\n";
 }
 
 }  // namespace isotherm::system_test

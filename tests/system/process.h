@@ -90,8 +90,14 @@ class NotifySocket {
   /// True as soon as a message with the line `line` (e.g. "READY=1") has come, false after
   /// `timeout`.
   bool WaitFor(std::string_view line, Seconds timeout);
+  /// What came until now is not waited for any more.
+  void Forget();
+  /// What has come since, a line per message and variable.
+  const std::string& received() const { return received_; }
 
  private:
+  bool Receive(Seconds timeout);
+
   std::filesystem::path path_;
   int socket_ = -1;
   std::string received_ = "\n";

@@ -1,0 +1,130 @@
+#include "ground/result_writer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <system_error>
+#include <utility>
+
+#include "common/base/log.h"
+#include "ground/export/results.h"
+#include "ground/link_account.h"
+#include "ground/scan_result.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+namespace fs = std::filesystem;
+
+/// The recording's end is written at the same time. A disk that takes longer is slow or stuck.
+constexpr Nanoseconds kClosingPatience = 1s;
+
+Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionAccount& account,
+                 const RecordingAccount& recording, std::uint64_t unprocessed) {
+  Json stats = DescribeScan(scan.pipeline(), options, scan.rig());
+  Json& link = stats["link"];
+  link["session"] = account.session;
+  link["closed"] = account.closed;
+  link["final"] = account.ended;
+  link["not_processed_at_stop"] = unprocessed;
+  link["waiting"] = DescribeStage(scan.waiting());
+  link["out_of_order_frames"] = scan.out_of_order();
+  if (scan.outside_poses_received() > 0) {
+    link["outside_poses"]["received"] = scan.outside_poses_received();
+    link["outside_poses"]["missing"] = scan.outside_poses_missing();
+  }
+  DescribeAccount(account, recording, link);
+  stats["feedback"] = scan.DescribeFeedback();
+  return stats;
+}
+
+/// Where results go that cannot be written where they belong.
+fs::path SecondFolder(const fs::path& folder) {
+  std::error_code error;
+  const fs::path base = fs::temp_directory_path(error);
+  const fs::path name = fs::absolute(folder, error).lexically_normal();
+  return base /
+         ("isotherm-" + (name.has_filename() ? name : name.parent_path()).filename().string());
+}
+
+}  // namespace
+
+void ResultWriter::Hand(EndedScan ended) {
+  ++board_.scans_being_written;
+  std::unique_lock lock(mutex_);
+  if (waiting_) {
+    LOG(Ground, Warning) << "two scans wait for their results: the next is not reconstructed "
+                            "before one is written";
+  }
+  changed_.wait(lock, [this] { return !waiting_; });
+  waiting_ = std::move(ended);
+  changed_.notify_all();
+}
+
+std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  if (!changed_.wait(lock, stop, [this] { return waiting_.has_value(); })) return std::nullopt;
+  std::optional<EndedScan> ended = std::exchange(waiting_, std::nullopt);
+  changed_.notify_all();
+  return ended;
+}
+
+void ResultWriter::Run(const std::stop_token& stop) {
+  while (std::optional<EndedScan> ended = Take(stop)) {
+    progress_.Busy(clock_.SteadyNow());
+    Write(std::move(*ended));
+    progress_.Idle();
+    --board_.scans_being_written;
+    written_();
+  }
+}
+
+void ResultWriter::Write(EndedScan ended) {
+  if (!ended.scan) return;  // Recorded only.
+  LiveScan& scan = *ended.scan;
+  const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
+  scan.FinishFrames([&](double) { go_on(); });
+  const DelayReport delay = scan.CheckDelay([&] { go_on(); });
+  go_on();
+  const RecordingAccount recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
+  const SessionAccount account = account_(scan.session());
+  const Json stats = DescribeEnd(scan, options_, account, recording, ended.unprocessed);
+  const Result<std::string> text = WriteSomewhere(scan, delay, stats, ended.start.folder);
+  if (!text) {
+    status_ = text.error();
+    LOG(Ground, Error) << status_.message();
+    return;
+  }
+  const std::string summary = *text + AccountText(account, recording);
+  std::fputs(summary.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+Result<std::string> ResultWriter::WriteSomewhere(LiveScan& scan, const DelayReport& delay,
+                                                 const Json& stats, const fs::path& folder) {
+  const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
+  const auto write = [&](const fs::path& to) -> Result<std::string> {
+    if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
+    return WriteScan(scan.pipeline(), options_, delay, stats, to, progress);
+  };
+  const Result<std::string> first = write(folder);
+  if (first) return first;
+  status_ = first.error();
+  const fs::path second_folder = SecondFolder(folder);
+  LOG(Ground, Error) << "the results of this scan cannot be written: " << first.error().message()
+                     << "; trying " << second_folder.string();
+  Result<std::string> second = write(second_folder);
+  if (!second) {
+    return Err(first.error().WithContext("the results are lost: writing to " +
+                                         second_folder.string() + " failed too, " +
+                                         second.error().message()));
+  }
+  LOG(Ground, Warning) << "the results are in " << second_folder.string()
+                       << ", because they could not be written to " << folder.string();
+  return *second + fmt::format("         not in {}, which could not be written\n", folder.string());
+}
+
+}  // namespace isotherm

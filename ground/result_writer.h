@@ -1,0 +1,71 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "common/time/clock.h"
+#include "common/time/thread_progress.h"
+#include "ground/export/json.h"
+#include "ground/ground_options.pb.h"
+#include "ground/live_scan.h"
+#include "ground/scan_board.h"
+#include "ground/session_item.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+/// A scan whose last frame was processed.
+struct EndedScan {
+  SessionStart start;
+  std::unique_ptr<LiveScan> scan;  ///< nullptr if it was recorded only.
+  std::uint64_t unprocessed = 0;   ///< Frames that were left in the queue at the stop.
+};
+
+/// Writes the results of one scan after the other, so that the next scan can be received and
+/// reconstructed meanwhile. At most one more waits: there are never more than three models in
+/// memory. Hand() is for the reconstruction thread; the rest is bound to the thread of results.
+class ResultWriter {
+ public:
+  /// What is known of a session's frames by now.
+  using AccountSource = std::function<SessionAccount(std::uint64_t session)>;
+  /// `written` is called after each scan, whatever became of its results.
+  ResultWriter(const GroundOptions& options, const Clock& clock, AccountSource account,
+               ScanBoard& board, ThreadProgress& progress, std::function<void()> written)
+      : options_(options),
+        clock_(clock),
+        account_(std::move(account)),
+        board_(board),
+        progress_(progress),
+        written_(std::move(written)) {}
+
+  /// Waits while another scan waits already.
+  void Hand(EndedScan ended);
+  /// Until stop is requested and no scan waits.
+  void Run(const std::stop_token& stop);
+  /// The last failure. Not while it runs.
+  const Status& status() const { return status_; }
+
+ private:
+  std::optional<EndedScan> Take(const std::stop_token& stop);
+  void Write(EndedScan ended);
+  /// Into the scan's folder or, if that fails, into another. The summary.
+  Result<std::string> WriteSomewhere(LiveScan& scan, const DelayReport& delay, const Json& stats,
+                                     const std::filesystem::path& folder);
+
+  const GroundOptions& options_;
+  const Clock& clock_;
+  const AccountSource account_;
+  ScanBoard& board_;
+  ThreadProgress& progress_;
+  const std::function<void()> written_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<EndedScan> waiting_;
+  Status status_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,324 @@
+// The ground and its disk: stuck, slow, full; results that take long; a rig that dies. Edge and
+// ground as two processes over DDS on loopback.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <regex>
+#include <thread>
+
+#include "common/testing/temporary_directory.h"
+#include "tests/system/programs.h"
+
+namespace isotherm::system_test {
+namespace {
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using testing::TemporaryDirectory;
+
+constexpr double kScanSeconds = 2.0;
+constexpr ExitStatus kDiskFull = 73;
+constexpr ExitStatus kDiskStuck = 74;
+
+/// Waits for a file that another process makes.
+bool WaitForFile(const std::filesystem::path& path, Seconds patience) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (!std::filesystem::exists(path)) {
+    if (std::chrono::steady_clock::now() > deadline) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
+/// What the ground's log says of the scans that it began.
+struct Scan {
+  std::uint64_t session = 0;
+  std::filesystem::path folder;
+};
+std::vector<Scan> ScansIn(const std::string& log) {
+  static const std::regex line("scan started, session=([0-9]+) results=(\\S+)");
+  std::vector<Scan> scans;
+  for (std::sregex_iterator i(log.begin(), log.end(), line), end; i != end; ++i)
+    scans.push_back({std::stoull((*i)[1]), (*i)[2].str()});
+  return scans;
+}
+
+class GroundDiskTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    shared_ = std::make_unique<TemporaryDirectory>();
+    SimulateScan(Source(), kScanSeconds);
+  }
+  static void TearDownTestSuite() { shared_.reset(); }
+  static std::filesystem::path Source() { return shared_->path() / "source.mcap"; }
+
+  std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
+
+  /// As fast as the ground takes it.
+  static Command Edge(int loops) {
+    Command edge = EndlessEdge();
+    edge.arguments.insert(edge.arguments.end(),
+                          {"--rate", "0", "--wait-for-ground", "--exit-at-end", "--set",
+                           "source.loops=" + std::to_string(loops)});
+    return edge;
+  }
+  /// As a camera would.
+  static Command EndlessEdge() {
+    return {EdgeDaemon(),
+            {"--recording", Source(), "--domain", std::to_string(TestDomain()), "--set",
+             "source.loops=0"},
+            {}};
+  }
+  Command Ground(const std::vector<std::string>& more = {}) const {
+    Command ground{GroundService(),
+                   {"--domain", std::to_string(TestDomain()), "--output", Path("ground")},
+                   {}};
+    const std::vector<std::string> quick = QuickModel();
+    ground.arguments.insert(ground.arguments.end(), more.begin(), more.end());
+    ground.arguments.insert(ground.arguments.end(), quick.begin(), quick.end());
+    return ground;
+  }
+
+  /// A recording that never gets anywhere: nobody opens the other end.
+  void PutPipeInPlaceOfTheRecording() const {
+    std::filesystem::create_directories(Path("ground"));
+    ASSERT_EQ(mkfifo(Path("ground/scan.mcap").c_str(), 0600), 0);
+  }
+
+  /// Everything that was published arrived and was reconstructed; of the recording, all is known.
+  static void ExpectWholeAccount(const google::protobuf::Struct& stats, const char* sensor) {
+    const auto count = [&](const std::string& what) {
+      return NumberAt(stats, {"link", sensor, what});
+    };
+    EXPECT_GT(count("published"), 0) << sensor;
+    EXPECT_EQ(count("received"), count("published")) << sensor;
+    EXPECT_EQ(count("missing"), 0) << sensor;
+    EXPECT_EQ(NumberAt(stats, {"frames", sensor, "in"}), count("received")) << sensor;
+    double not_recorded = 0.0;
+    const auto& stream = stats.fields().at("link").struct_value().fields().at(sensor);
+    const auto& fields = stream.struct_value().fields();
+    if (fields.contains("not_recorded_by_reason")) {
+      for (const auto& [reason, frames] :
+           fields.at("not_recorded_by_reason").struct_value().fields())
+        not_recorded += frames.number_value();
+    }
+    EXPECT_EQ(count("recorded") + not_recorded, count("received")) << sensor;
+  }
+
+  static std::unique_ptr<TemporaryDirectory> shared_;
+  TemporaryDirectory folder_;
+};
+
+std::unique_ptr<TemporaryDirectory> GroundDiskTest::shared_;
+
+TEST_F(GroundDiskTest, F42AStuckRecordingCostsTheRecordingOnly) {
+  PutPipeInPlaceOfTheRecording();
+  Process ground(Ground({"--once"}));
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  // More frames than may wait for the disk.
+  const Finished edge = RunToEnd(Edge(5), kPatience);
+  EXPECT_EQ(edge.status, 0) << edge.output;
+  EXPECT_EQ(ground.WaitForExit(kPatience), kDiskStuck) << ground.output();
+  EXPECT_THAT(ground.output(), HasSubstr("the disk does not take the recording fast enough"));
+  EXPECT_THAT(ground.output(), HasSubstr("the disk is stuck: the recording is not complete"));
+  EXPECT_THAT(ground.output(), HasSubstr("frames are not in the recording"));
+  const auto stats = ReadStats(Path("ground"));
+  ExpectWholeAccount(stats, "depth");
+  ExpectWholeAccount(stats, "thermal");
+  EXPECT_GT(NumberAt(stats, {"link", "depth", "not_recorded_by_reason", "disk_too_slow"}), 0);
+  EXPECT_GT(NumberAt(stats, {"frames", "depth", "tracked"}), 100);
+  EXPECT_TRUE(std::filesystem::exists(Path("ground/cloud.ply")));
+  EXPECT_TRUE(std::filesystem::exists(Path("ground/model.iso")));
+  if (HasFailure()) std::cout << "edge:\n" << edge.output << "ground:\n" << ground.output();
+}
+
+TEST_F(GroundDiskTest, F38SigtermEndsTheGroundWhileItsRecordingIsStuck) {
+  PutPipeInPlaceOfTheRecording();
+  Process ground(Ground({"--once"}));
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  Process edge(EndlessEdge());
+  ASSERT_TRUE(edge.WaitForOutput("tracked", kPatience)) << edge.output() << ground.output();
+  const auto asked = std::chrono::steady_clock::now();
+  ground.Signal(SIGTERM);
+  // Two seconds on a computer that does nothing else; a stuck one never ends.
+  EXPECT_EQ(ground.WaitForExit(Seconds(20)), kDiskStuck) << ground.output();
+  std::cout << "left after " << Seconds(std::chrono::steady_clock::now() - asked).count() << " s\n";
+  EXPECT_THAT(ground.output(), HasSubstr("the disk is stuck: the recording is not complete"));
+  EXPECT_TRUE(std::filesystem::exists(Path("ground/cloud.ply"))) << ground.output();
+}
+
+TEST_F(GroundDiskTest, F39TheWatchdogIsNotFedAnyMoreWhenTheDiskIsStuckForLong) {
+  PutPipeInPlaceOfTheRecording();
+  const TemporaryDirectory folder;
+  NotifySocket manager(folder.path());
+  Command command = Ground({"--once"});
+  command.environment = {manager.environment(), "WATCHDOG_USEC=500000"};
+  Process ground(command);
+  ASSERT_TRUE(manager.WaitFor("READY=1", kPatience)) << ground.output();
+  ASSERT_TRUE(manager.WaitFor("WATCHDOG=1", kPatience)) << ground.output();
+  Process edge(EndlessEdge());
+  ASSERT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output() << edge.output();
+  manager.Forget();
+  EXPECT_TRUE(manager.WaitFor("WATCHDOG=1", kPatience)) << "a disk may be slow for a while";
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (
+      !ground.WaitForOutput("the recording (is the disk stuck?) has not gone on", Seconds(0.1))) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline) << ground.output();
+    manager.Forget();  // Who does not listen holds the service up.
+  }
+  manager.Forget();
+  EXPECT_FALSE(manager.WaitFor("WATCHDOG=1", Seconds(3))) << "fed six times as often before";
+  EXPECT_THAT(manager.received(), ContainsRegex("STATUS=STUCK: the recording")) << "and it is said";
+}
+
+/// The second scan arrives while the first one's results cannot be written.
+TEST_F(GroundDiskTest, ANewScanLosesNothingWhileResultsAreWritten) {
+  const std::filesystem::path stuck = Path("stuck");
+  std::ofstream(stuck).put('\n');
+  Command command = Ground();
+  command.environment = {"LD_PRELOAD=" STUCK_DISK, "STUCK_DISK_NAME=cloud.ply",
+                         "STUCK_DISK_WHILE=" + stuck.string()};
+  Process ground(command);
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  const Finished first = RunToEnd(Edge(1), kPatience);
+  EXPECT_EQ(first.status, 0) << first.output;
+  ASSERT_TRUE(WaitForFile(stuck.string() + ".reached", kPatience)) << ground.output();
+  const Finished second = RunToEnd(Edge(1), kPatience);
+  EXPECT_EQ(second.status, 0) << second.output;
+  EXPECT_TRUE(ground.WaitForOutput("scan ended", kPatience, 2)) << ground.output();
+  EXPECT_THAT(second.output, Not(HasSubstr("publishing without")));
+  std::filesystem::remove(stuck);
+  EXPECT_TRUE(ground.WaitForOutput("results  ", kPatience, 2)) << ground.output();
+  ground.Signal(SIGTERM);
+  EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+
+  const std::vector<Scan> scans = ScansIn(ground.output());
+  ASSERT_EQ(scans.size(), 2U) << ground.output();
+  for (const Scan& scan : scans) {
+    const auto stats = ReadStats(scan.folder);
+    ExpectWholeAccount(stats, "depth");
+    ExpectWholeAccount(stats, "thermal");
+    EXPECT_EQ(NumberAt(stats, {"link", "session"}), static_cast<double>(scan.session));
+    EXPECT_TRUE(ReadRecording(scan.folder / "scan.mcap").complete);
+  }
+  if (HasFailure()) std::cout << "edge:\n" << second.output << "ground:\n" << ground.output();
+}
+
+TEST_F(GroundDiskTest, F33TheScanOfAKilledEdgeHasItsOwnAccount) {
+  Process ground(Ground());
+  ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+  {
+    Process killed(EndlessEdge());
+    ASSERT_TRUE(killed.WaitForOutput("tracked", kPatience)) << killed.output() << ground.output();
+    killed.Signal(SIGKILL);
+    EXPECT_EQ(killed.WaitForExit(kPatience), 128 + SIGKILL);
+  }
+  const Finished again = RunToEnd(Edge(1), kPatience);
+  EXPECT_EQ(again.status, 0) << again.output;
+  EXPECT_TRUE(ground.WaitForOutput("results  ", kPatience, 2)) << ground.output();
+  ground.Signal(SIGTERM);
+  EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
+
+  const std::vector<Scan> scans = ScansIn(ground.output());
+  ASSERT_EQ(scans.size(), 2U) << ground.output();
+  ASSERT_NE(scans[0].session, scans[1].session);
+  for (const Scan& scan : scans) {
+    const auto stats = ReadStats(scan.folder);
+    EXPECT_EQ(NumberAt(stats, {"link", "session"}), static_cast<double>(scan.session));
+    const RecordingContent recording = ReadRecording(scan.folder / "scan.mcap");
+    for (const char* sensor : {"depth", "thermal"}) {
+      const auto count = [&](const char* what) { return NumberAt(stats, {"link", sensor, what}); };
+      const auto& frames = sensor == std::string("depth") ? recording.depth : recording.thermal;
+      EXPECT_GT(count("received"), 0) << sensor;
+      EXPECT_EQ(count("published"), count("received") + count("missing")) << sensor;
+      EXPECT_EQ(count("received"), static_cast<double>(frames.size())) << sensor;
+      EXPECT_EQ(count("recorded"), count("received")) << sensor;
+      EXPECT_EQ(NumberAt(stats, {"frames", sensor, "in"}), count("received")) << sensor;
+    }
+    const bool last_word =
+        stats.fields().at("link").struct_value().fields().at("final").bool_value();
+    EXPECT_EQ(last_word, scan.session == scans[1].session);
+  }
+  EXPECT_THAT(ground.output(), HasSubstr("the rig had not said its last word"));
+  if (HasFailure()) std::cout << "ground:\n" << ground.output();
+}
+
+/// Runs the ground for one scan with a small file system as its output folder, whose content is in
+/// Path("kept") afterwards; nullopt if this computer does not allow that.
+class SmallDiskTest : public GroundDiskTest {
+ protected:
+  std::optional<Finished> RunGround(const std::string& size, int loops) {
+    const auto unshared = [](const std::string& script) {
+      return Command{
+          "/usr/bin/unshare", {"--map-root-user", "--mount", "/bin/sh", "-c", script}, {}};
+    };
+    const std::string disk = Path("ground").string();
+    std::filesystem::create_directories(disk);
+    std::filesystem::create_directories(Path("elsewhere"));
+    const std::string mount = "mount -t tmpfs -o size=" + size + " none '" + disk + "'";
+    if (!std::filesystem::exists("/usr/bin/unshare") ||
+        RunToEnd(unshared(mount), kPatience).status != 0)
+      return std::nullopt;
+    std::string program = "'" + GroundService().string() + "'";
+    for (const std::string& argument : Ground({"--once"}).arguments)
+      program += " '" + argument + "'";
+    Command command = unshared(mount + " && " + program + "; status=$?; cp -r '" + disk + "' '" +
+                               Path("kept").string() + "'; df -k '" + disk + "'; exit $status");
+    command.environment = {"TMPDIR=" + Path("elsewhere").string()};
+    Process ground(command);
+    EXPECT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
+    const Finished edge = RunToEnd(Edge(loops), kPatience);
+    EXPECT_EQ(edge.status, 0) << edge.output;
+    Finished finished;
+    finished.status = ground.WaitForExit(kPatience).value_or(-1);
+    finished.output = ground.output();
+    return finished;
+  }
+};
+
+TEST_F(SmallDiskTest, F41AFullDiskCostsTheRecordingsEndNotTheResults) {
+  const std::optional<Finished> ground = RunGround("30m", 6);
+  if (!ground) GTEST_SKIP() << "mounting a small file system is not allowed here";
+  EXPECT_EQ(ground->status, kDiskFull) << ground->output;
+  EXPECT_THAT(ground->output, HasSubstr("are kept for the results"));
+  EXPECT_THAT(ground->output, HasSubstr("what was left of the disk was kept for the results"));
+  for (const char* name : {"model.iso", "cloud.ply", "mesh.ply", "trajectory.txt"})
+    EXPECT_TRUE(std::filesystem::exists(Path("kept") / name)) << name << "\n" << ground->output;
+  const auto stats = ReadStats(Path("kept"));
+  ExpectWholeAccount(stats, "depth");
+  ExpectWholeAccount(stats, "thermal");
+  EXPECT_GT(NumberAt(stats, {"link", "depth", "not_recorded_by_reason", "disk_nearly_full"}), 0);
+  const RecordingContent recording = ReadRecording(Path("kept/scan.mcap"));
+  EXPECT_TRUE(recording.complete) << "it ends in order";
+  EXPECT_EQ(static_cast<double>(recording.depth.size()),
+            NumberAt(stats, {"link", "depth", "recorded"}));
+  EXPECT_THAT(recording.depth, Not(IsEmpty()));
+  if (HasFailure()) std::cout << ground->output;
+}
+
+TEST_F(SmallDiskTest, F41ResultsThatFindNoRoomGoElsewhereAndItIsSaid) {
+  const std::optional<Finished> ground = RunGround("1m", 1);
+  if (!ground) GTEST_SKIP() << "mounting a small file system is not allowed here";
+  EXPECT_EQ(ground->status, kDiskFull) << ground->output;
+  const std::filesystem::path elsewhere = Path("elsewhere/isotherm-ground");
+  EXPECT_THAT(ground->output, HasSubstr("the results are in " + elsewhere.string()));
+  for (const char* name : {"model.iso", "cloud.ply", "mesh.ply", "trajectory.txt", "stats.json"})
+    EXPECT_TRUE(std::filesystem::exists(elsewhere / name)) << name << "\n" << ground->output;
+  const auto stats = ReadStats(elsewhere);
+  ExpectWholeAccount(stats, "depth");
+  ExpectWholeAccount(stats, "thermal");
+  if (HasFailure()) std::cout << ground->output;
+}
+
+}  // namespace
+}  // namespace isotherm::system_test
