@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <fstream>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include "common/testing/temporary_directory.h"
 #include "tests/system/programs.h"
@@ -113,10 +115,13 @@ TEST_F(DaemonsTest, NothingIsLostWhenTheEdgeStartsFirst) {
   if (HasFailure()) std::cout << "edge:\n" << edge.output() << "ground:\n" << ground.output();
 }
 
-/// Position and orientation components, metres and quaternion: both drivers run the same stages on
-/// the same frames, so only the last digits of the text may differ.
-constexpr double kPoseTolerance = 1e-6;
+std::string ReadAll(const std::filesystem::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
 
+/// Both drivers run the same stages on the same frames.
 TEST_F(DaemonsTest, TheLiveResultEqualsTheReconstructionOfTheGroundsRecording) {
   Process ground(Ground({"--once"}));
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
@@ -130,16 +135,6 @@ TEST_F(DaemonsTest, TheLiveResultEqualsTheReconstructionOfTheGroundsRecording) {
       kPatience);
   ASSERT_EQ(inline_run.status, 0) << inline_run.output;
 
-  const auto live = ReadNumbers(Path("ground/trajectory.txt"));
-  const auto again = ReadNumbers(Path("inline/trajectory.txt"));
-  ASSERT_EQ(live.size(), again.size());
-  ASSERT_GT(live.size(), 10U);
-  for (std::size_t i = 0; i < live.size(); ++i) {
-    ASSERT_EQ(live[i].size(), 8U);
-    for (std::size_t k = 0; k < live[i].size(); ++k) {
-      ASSERT_NEAR(live[i][k], again[i][k], kPoseTolerance) << "pose " << i;
-    }
-  }
   const auto stats = ReadStats(Path("ground"));
   const auto inline_stats = ReadStats(Path("inline"));
   for (const auto& path : std::vector<std::vector<std::string>>{{"frames", "depth", "tracked"},
@@ -148,8 +143,11 @@ TEST_F(DaemonsTest, TheLiveResultEqualsTheReconstructionOfTheGroundsRecording) {
                                                                 {"volume", "blocks"}}) {
     EXPECT_EQ(NumberAt(stats, path), NumberAt(inline_stats, path)) << path.back();
   }
-  EXPECT_EQ(std::filesystem::file_size(Path("ground/cloud.ply")),
-            std::filesystem::file_size(Path("inline/cloud.ply")));
+  for (const char* name : {"cloud.ply", "mesh.ply", "model.iso", "trajectory.txt"}) {
+    const std::string file = ReadAll(Path("ground") / name);
+    EXPECT_GT(file.size(), 1000U) << name;
+    EXPECT_TRUE(file == ReadAll(Path("inline") / name)) << name << " is not the same, bit for bit";
+  }
 }
 
 TEST_F(DaemonsTest, F38SigtermEndsBothSoonWithEverythingFlushed) {
