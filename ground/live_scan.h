@@ -57,6 +57,8 @@ class LiveScan {
   const StageStats& waiting() const { return waiting_; }
 
   std::uint64_t session() const { return session_; }
+  /// The model's surface by how well it was measured.
+  SurfaceAreas areas() const { return feedback_.areas(); }
   /// What was left out to keep up.
   BehindCounts behind() const;
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }

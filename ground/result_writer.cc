@@ -50,6 +50,30 @@ fs::path SecondFolder(const fs::path& folder) {
          ("isotherm-" + (name.has_filename() ? name : name.parent_path()).filename().string());
 }
 
+/// What to do next, for whoever holds the rig.
+std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
+                           const RecordingAccount& recording) {
+  std::string text;
+  if (const BehindCounts behind = scan.behind(); behind.thermal_frames > 0) {
+    text += fmt::format(
+        "behind   {} thermal frames were left out to keep up: isotherm reconstruct {} -o FOLDER "
+        "uses them\n",
+        behind.thermal_frames, recording.path.empty() ? "RECORDING" : recording.path.string());
+  }
+  const SurfaceAreas areas = scan.areas();
+  if (!(areas.total_m2() > 0.0)) return text;
+  const auto percent = [&](double area_m2) { return 100.0 * area_m2 / areas.total_m2(); };
+  text += fmt::format("next     measured well: {:.0f} % of {:.2f} m2", percent(areas.good_m2),
+                      areas.total_m2());
+  if (areas.good_m2 >= options.feedback().done_share() * areas.total_m2())
+    return text + ", as was asked for: the scan is done\n";
+  return text + fmt::format(
+                    ", {:.0f} % are asked for: go on with the {:.0f} % that were never measured "
+                    "and the {:.0f} % from a bad distance or angle\n",
+                    100.0 * options.feedback().done_share(), percent(areas.never_m2),
+                    percent(areas.bad_m2));
+}
+
 }  // namespace
 
 void ResultWriter::Hand(EndedScan ended) {
@@ -98,7 +122,8 @@ void ResultWriter::Write(EndedScan ended) {
     LOG(Ground, Error) << status_.message();
     return;
   }
-  const std::string summary = *text + AccountText(account, recording);
+  const std::string summary =
+      *text + AccountText(account, recording) + ConclusionText(scan, options_, recording);
   std::fputs(summary.c_str(), stdout);
   std::fflush(stdout);
 }

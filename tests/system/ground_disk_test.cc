@@ -11,7 +11,6 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
-#include <regex>
 #include <thread>
 
 #include "common/testing/temporary_directory.h"
@@ -46,10 +45,16 @@ struct Scan {
   std::filesystem::path folder;
 };
 std::vector<Scan> ScansIn(const std::string& log) {
-  static const std::regex line("scan started, session=([0-9]+) results=(\\S+)");
+  const std::string before_session = "scan started, session=";
+  const std::string before_folder = " results=";
   std::vector<Scan> scans;
-  for (std::sregex_iterator i(log.begin(), log.end(), line), end; i != end; ++i)
-    scans.push_back({std::stoull((*i)[1]), (*i)[2].str()});
+  for (std::size_t at = log.find(before_session); at != std::string::npos;
+       at = log.find(before_session, at + 1)) {
+    const std::size_t session = at + before_session.size();
+    const std::size_t folder = log.find(before_folder, session) + before_folder.size();
+    scans.push_back(
+        {std::stoull(log.substr(session)), log.substr(folder, log.find('\n', folder) - folder)});
+  }
   return scans;
 }
 
