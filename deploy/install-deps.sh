@@ -15,10 +15,10 @@ set -eu
 packages="build-essential cmake ninja-build ccache pkg-config git ca-certificates
   cyclonedds-dev cyclonedds-tools
   libeigen3-dev libhwy-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev libopencv-calib3d-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev
   libprotobuf-dev protobuf-compiler
   libexpected-dev libfmt-dev libcli11-dev
-  libzstd-dev zlib1g-dev libsystemd-dev
+  libzstd-dev zlib1g-dev libpng-dev libsystemd-dev
   libusb-1.0-0-dev libopenni2-dev
   libgtest-dev libgmock-dev libbenchmark-dev"
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/codec/image_codecs.h"
+#include "common/png/png.h"
 
 namespace isotherm {
 namespace {
@@ -44,7 +45,7 @@ Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
     case Encoding::kCounts16:
       return DecodeRaw(encoded.payload, image);
     case Encoding::kPng16:
-      return codec::DecodePng(encoded.payload, image);
+      return DecodeGrey16Png(encoded.payload, image);
     case Encoding::kDepthRans: {
       thread_local codec::DepthCodec decoder;
       return decoder.Decode(encoded.payload, image);

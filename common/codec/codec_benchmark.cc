@@ -9,13 +9,12 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "common/codec/codec.h"
+#include "common/png/png.h"
 
 namespace isotherm {
 namespace {
@@ -43,11 +42,12 @@ std::vector<Pixels> Load(const std::string& data_set, const std::string& stream)
   }
   std::vector<Pixels> frames;
   for (std::size_t i = 0; i < kFrames && !names.empty(); ++i) {
-    const cv::Mat file =
-        cv::imread((folder / names[i * names.size() / kFrames]).string(), cv::IMREAD_UNCHANGED);
-    if (file.type() != CV_16UC1) continue;
-    Pixels& frame = frames.emplace_back(file.cols, file.rows);
-    file.copyTo(cv::Mat(file.rows, file.cols, CV_16UC1, frame.data()));
+    std::ifstream file(folder / names[i * names.size() / kFrames], std::ios::binary);
+    const Bytes bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    const Result<PngHead> head = ReadPngHead(bytes);
+    if (!head) continue;
+    Pixels frame(static_cast<int>(head->width), static_cast<int>(head->height));
+    if (DecodeGrey16Png(bytes, frame).ok()) frames.push_back(std::move(frame));
   }
   return frames;
 }
@@ -147,14 +147,10 @@ class Rvl {
   std::size_t nibbles_ = 0;
 };
 
-Candidate Png(int level) {
-  return {"png_" + std::to_string(level),
-          [level](const Pixels& image) {
-            const cv::Mat pixels(image.height(), image.width(), CV_16UC1,
-                                 const_cast<std::uint16_t*>(image.data()));
-            Bytes file;
-            cv::imencode(".png", pixels, file, {cv::IMWRITE_PNG_COMPRESSION, level});
-            EncodedImage encoded = Packed(image, std::move(file));
+Candidate Png() {
+  return {"png",
+          [](const Pixels& image) {
+            EncodedImage encoded = Packed(image, *EncodeGrey16Png(image));
             encoded.encoding = Encoding::kPng16;
             return encoded;
           },
@@ -194,8 +190,7 @@ std::vector<Candidate> Candidates(bool depth) {
                           },
                           nullptr});
   }
-  candidates.push_back(Png(1));
-  candidates.push_back(Png(6));
+  candidates.push_back(Png());
   return candidates;
 }
 

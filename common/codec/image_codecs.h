@@ -41,7 +41,4 @@ class ThermalCodec {
   std::unique_ptr<Scratch> scratch_;
 };
 
-/// PNG as other programs write it: 16-bit grey.
-Status DecodePng(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image);
-
 }  // namespace isotherm::codec

@@ -5,14 +5,16 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
+
+#include "common/png/png.h"
 
 namespace isotherm {
 
 /// A small dataset folder that is complete and correct, for tests to break. Removed at the end.
 class DatasetFolder {
  public:
+  using Grey = Image<std::uint16_t>;
   static constexpr int kDepthWidth = 32, kDepthHeight = 24, kThermalWidth = 20, kThermalHeight = 15;
   static constexpr int kDepthFrames = 4, kThermalFrames = 6;
 
@@ -33,12 +35,12 @@ class DatasetFolder {
     for (int i = 0; i < kDepthFrames; ++i) {
       depth += "100." + std::to_string(100 + 33 * i) + " depth/" + std::to_string(i) + ".png\n";
       WriteImage("depth/" + std::to_string(i) + ".png",
-                 cv::Mat(kDepthHeight, kDepthWidth, CV_16U, 500.0 + i));
+                 Grey(kDepthWidth, kDepthHeight, static_cast<std::uint16_t>(500 + i)));
     }
     for (int i = 0; i < kThermalFrames; ++i) {
       thermal += "100." + std::to_string(100 + 25 * i) + " thermal/" + std::to_string(i) + ".png\n";
       WriteImage("thermal/" + std::to_string(i) + ".png",
-                 cv::Mat(kThermalHeight, kThermalWidth, CV_16U, 30000.0 + i));
+                 Grey(kThermalWidth, kThermalHeight, static_cast<std::uint16_t>(30000 + i)));
     }
     Write("depth.txt", depth);
     Write("thermal.txt", thermal);
@@ -57,8 +59,21 @@ class DatasetFolder {
   void Write(const std::string& name, const std::string& text) const {
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
-  void WriteImage(const std::string& name, const cv::Mat& image) const {
-    cv::imwrite((folder_ / name).string(), image);
+  void WriteImage(const std::string& name, const Grey& image) const {
+    WriteBytes(name, *EncodeGrey16Png(image));
+  }
+  /// A PNG of a kind that data sets must not have; all bytes are 1.
+  void WriteOtherPng(const std::string& name, int width, int height, int channels, int bits) const {
+    const std::vector<std::uint8_t> bytes(
+        static_cast<std::size_t>(width * height * channels * bits / 8), 1);
+    WriteBytes(name, *EncodePng({.width = width,
+                                 .height = height,
+                                 .channels = channels,
+                                 .bits = bits,
+                                 .bytes = bytes}));
+  }
+  void WriteBytes(const std::string& name, const std::vector<std::uint8_t>& bytes) const {
+    Write(name, std::string(bytes.begin(), bytes.end()));
   }
   void Remove(const std::string& name) const { std::filesystem::remove_all(folder_ / name); }
   void Rename(const std::string& from, const std::string& to) const {

@@ -5,7 +5,7 @@
 #include <sys/resource.h>
 
 #include <csignal>
-#include <opencv2/core.hpp>
+#include <random>
 
 #include "common/codec/codec.h"
 #include "common/dataset/dataset_folder_for_test.h"
@@ -166,14 +166,14 @@ TEST(NucMarkerTest, RepeatsOfAFrozenPictureBehindTheIntervalAreInvalidToo) {
 }
 
 TEST_F(ImportTest, BadImageEndsItWithItsPlaceAndLeavesNothing) {
-  folder_.WriteImage("depth/2.png", cv::Mat(24, 32, CV_8U, 1.0));
+  folder_.WriteOtherPng("depth/2.png", 32, 24, 1, 8);
   EXPECT_THAT(Error(), AllOf(HasSubstr("depth.txt:4"), HasSubstr("2.png"), HasSubstr("8 bits"),
                              HasSubstr("--skip-bad")));
   EXPECT_TRUE(Outputs().empty());
 }
 
 TEST_F(ImportTest, SkipBadLeavesBadImagesOutAndCountsThem) {
-  folder_.WriteImage("depth/2.png", cv::Mat(24, 32, CV_8U, 1.0));
+  folder_.WriteOtherPng("depth/2.png", 32, 24, 1, 8);
   folder_.Write("thermal/0.png", "no picture");
   request_.skip_bad = true;
   const auto summary = ImportDataset(request_);
@@ -214,8 +214,9 @@ TEST_F(ImportTest, DevicesAndFoldersAreNoPlaceForARecording) {
 }
 
 TEST_F(ImportTest, FullDiskIsSaidAndLeavesNothing) {
-  cv::Mat noise(24, 32, CV_16U);
-  cv::randu(noise, 0, 65535);
+  Image<std::uint16_t> noise(32, 24);
+  std::mt19937 random(1);
+  for (std::uint16_t& pixel : noise.pixels()) pixel = static_cast<std::uint16_t>(random());
   for (int i = 0; i < 4; ++i) folder_.WriteImage("depth/" + std::to_string(i) + ".png", noise);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   rlimit old_limit{};

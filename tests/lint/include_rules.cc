@@ -21,9 +21,10 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
     folders.insert(folders.end(), more.begin(), more.end());
     return folders;
   };
-  static const Folders kCommon = with(
-      kFrameParts, {"common/radiometry", "common/codec", "common/config", "common/recording",
-                    "common/dataset", "common/simulation", "common/stamping", "common/transport"});
+  static const Folders kCommon =
+      with(kFrameParts,
+           {"common/radiometry", "common/png", "common/codec", "common/config", "common/recording",
+            "common/dataset", "common/simulation", "common/stamping", "common/transport"});
   static const std::map<std::string_view, Folders> kAllowed = {
       {"common/base", {}},
       {"common/time", {"common/base"}},
@@ -32,10 +33,12 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
       {"common/radiometry", {"common/base", "common/geometry"}},
       {"common/stamping", {"common/base", "common/time", "common/simulation/noise.h"}},
       {"common/frame", kFrameParts},
-      {"common/codec", kFrameParts},
+      {"common/png", kFrameParts},
+      {"common/codec", with(kFrameParts, {"common/png"})},
       {"common/config", kFrameParts},
       {"common/recording", with(kFrameParts, {"common/codec", "common/config"})},
-      {"common/dataset", with(kFrameParts, {"common/codec", "common/config", "common/recording"})},
+      {"common/dataset",
+       with(kFrameParts, {"common/png", "common/codec", "common/config", "common/recording"})},
       {"common/simulation", with(kFrameParts, {"common/radiometry", "common/codec", "common/config",
                                                "common/recording"})},
       {"common/transport",
@@ -100,6 +103,7 @@ const std::map<std::string_view, std::string_view>& SdkHomes() {
       {"umockdev", "edge/usb/testing"},
       {"boost/beast", "ground/console"},
       {"boost/asio", "ground/console"},
+      {"png.h", "common/png"},
       {"systemd/", "common/base"},
   };
   return kHomes;
@@ -116,6 +120,7 @@ struct ForbiddenHeader {
 };
 constexpr ForbiddenHeader kForbidden[] = {
     {"bits/", "include the standard header"},
+    {"opencv2/imgcodecs.hpp", "it opens every format there is; common/png reads and writes images"},
     {"regex", "slow to compile and to run; parse by hand"},
     {"codecvt", "deprecated"},
     {"strstream", "deprecated"},

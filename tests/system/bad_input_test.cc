@@ -102,13 +102,11 @@ INSTANTIATE_TEST_SUITE_P(
                       [](const DatasetFolder& d) { d.Rename("depth/1.png", "depth/l.png"); },
                       kNoInput, "depth/1.png"},
         BrokenDataset{"EightBitImage",
-                      [](const DatasetFolder& d) {
-                        d.WriteImage("depth/1.png", cv::Mat(24, 32, CV_8U, 7.0));
-                      },
+                      [](const DatasetFolder& d) { d.WriteOtherPng("depth/1.png", 32, 24, 1, 8); },
                       kBadData, "depth/1.png"},
         BrokenDataset{"ImageOfAnotherSize",
                       [](const DatasetFolder& d) {
-                        d.WriteImage("thermal/1.png", cv::Mat(24, 32, CV_16U, 30000.0));
+                        d.WriteImage("thermal/1.png", {32, 24, 30000});
                       },
                       kBadData, "thermal/1.png"},
         BrokenDataset{"NotAnImage", [](const DatasetFolder& d) { d.Write("depth/1.png", "hello"); },
