@@ -11,7 +11,7 @@ namespace isotherm::mcap {
 namespace {
 
 /// Two hours of recording have a summary of about 3 MB.
-constexpr std::uint64_t kMaxSummaryBytes = 64U << 20;
+constexpr std::uint64_t kMaxSummaryBytes = 32U << 20;
 
 Status CheckMagic(const ByteSource& source) {
   std::array<std::uint8_t, kMagic.size()> magic{};
@@ -61,11 +61,20 @@ Bytes ReadSummaryBytes(const ByteSource& source) {
   return bytes;
 }
 
-bool AddMetadata(const ByteSource& source, const MetadataIndex& index, FileIndex& file) {
-  if (index.length < kRecordPrefixBytes || index.length > kMaxSummaryBytes ||
-      index.offset > source.size() || index.length > source.size() - index.offset) {
+struct Summary {
+  FileIndex file;
+  std::optional<Statistics> statistics;
+  /// Read so far: an index may list the same record many times.
+  std::uint64_t metadata_bytes = 0;
+};
+
+bool AddMetadata(const ByteSource& source, const MetadataIndex& index, Summary& summary) {
+  if (index.length < kRecordPrefixBytes ||
+      index.length > kMaxMetadataBytes - summary.metadata_bytes || index.offset > source.size() ||
+      index.length > source.size() - index.offset) {
     return false;
   }
+  summary.metadata_bytes += index.length;
   Bytes bytes(static_cast<std::size_t>(index.length));
   if (!source.Read(index.offset, bytes).ok()) return false;
   RecordWalker walker(bytes);
@@ -73,12 +82,13 @@ bool AddMetadata(const ByteSource& source, const MetadataIndex& index, FileIndex
   Metadata metadata;
   if (!record || record->opcode != Opcode::kMetadata || !Parse(record->content, metadata))
     return false;
-  file.metadata.push_back(std::move(metadata));
+  summary.file.metadata.push_back(std::move(metadata));
   return true;
 }
 
-bool AddSummaryRecord(const ByteSource& source, const RecordWalker::Record& record, FileIndex& file,
-                      std::optional<Statistics>& statistics) {
+bool AddSummaryRecord(const ByteSource& source, const RecordWalker::Record& record,
+                      Summary& summary) {
+  FileIndex& file = summary.file;
   switch (record.opcode) {
     case Opcode::kChunkIndex: {
       ChunkIndex chunk;
@@ -93,10 +103,10 @@ bool AddSummaryRecord(const ByteSource& source, const RecordWalker::Record& reco
              chunk.chunk_length <= source.size() - chunk.chunk_offset;
     }
     case Opcode::kStatistics:
-      return Parse(record.content, statistics.emplace());
+      return Parse(record.content, summary.statistics.emplace());
     case Opcode::kMetadataIndex: {
       MetadataIndex index;
-      return Parse(record.content, index) && AddMetadata(source, index, file);
+      return Parse(record.content, index) && AddMetadata(source, index, summary);
     }
     default:
       file.definitions.Add(record);
@@ -114,20 +124,20 @@ bool CoversEverything(const FileIndex& file, const Statistics& statistics) {
 }
 
 std::optional<FileIndex> ReadSummary(const ByteSource& source) {
-  const Bytes summary = ReadSummaryBytes(source);
-  if (summary.empty()) return std::nullopt;
-  FileIndex file;
-  file.complete = true;
-  std::optional<Statistics> statistics;
-  RecordWalker walker(summary);
+  const Bytes bytes = ReadSummaryBytes(source);
+  if (bytes.empty()) return std::nullopt;
+  Summary summary;
+  RecordWalker walker(bytes);
   while (const auto record = walker.Next()) {
-    if (!AddSummaryRecord(source, *record, file, statistics)) return std::nullopt;
+    if (!AddSummaryRecord(source, *record, summary)) return std::nullopt;
   }
+  auto& [file, statistics, metadata_bytes] = summary;
+  file.complete = true;
   if (!walker.AtEnd() || !statistics || !CoversEverything(file, *statistics)) return std::nullopt;
   file.message_counts = std::move(statistics->channel_message_counts);
   std::sort(file.segments.begin(), file.segments.end(),
             [](const Segment& a, const Segment& b) { return a.offset < b.offset; });
-  return file;
+  return std::move(file);
 }
 
 }  // namespace
@@ -135,14 +145,18 @@ std::optional<FileIndex> ReadSummary(const ByteSource& source) {
 Result<FileIndex> ReadFileIndex(const ByteSource& source) {
   if (Status status = CheckMagic(source); !status.ok()) return Err(std::move(status));
   Result<Header> header = ReadHeader(source);
-  if (!header) return Err(std::move(header.error()));
   std::optional<FileIndex> file = ReadSummary(source);
   if (!file) file = ScanFile(source);
-  file->header = std::move(*header);
-  for (const std::string& compression : file->compressions) {
-    if (IsSupportedCompression(compression)) continue;
-    return Err(FailedPrecondition(fmt::format(
-        "compression \"{}\" is not supported: write the file with zstd or none", compression)));
+  // The header says nothing that is needed, so damage in it costs nothing.
+  if (!header && file->segments.empty()) return Err(std::move(header.error()));
+  if (header) file->header = std::move(*header);
+  const auto supported = [](const std::string& name) { return IsSupportedCompression(name); };
+  const auto& compressions = file->compressions;
+  // One name that is unknown among others that are known is damage.
+  if (!compressions.empty() && std::none_of(compressions.begin(), compressions.end(), supported)) {
+    return Err(FailedPrecondition(
+        fmt::format("compression \"{}\" is not supported: write the file with zstd or none",
+                    *compressions.begin())));
   }
   return std::move(*file);
 }

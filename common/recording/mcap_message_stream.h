@@ -10,18 +10,21 @@ namespace isotherm::mcap {
 
 /// Delivers the messages of a file in the order of log time (of equal times: file order), however
 /// its chunks overlap. Holds at most `cache_bytes` of unpacked chunks, or the one chunk that is
-/// needed if that is larger, and a few bytes per message of the chunks that overlap.
+/// needed if that is larger, and a few bytes per message of the chunks that overlap, of which there
+/// are at most kMaxOpenMessages. One pass unpacks no more than an UnpackBudget allows.
 /// Thread-compatible.
 class MessageStream {
  public:
-  static constexpr std::size_t kDefaultCacheBytes = 64U << 20;
+  static constexpr std::size_t kDefaultCacheBytes = 32U << 20;
+  static constexpr std::size_t kMaxOpenMessages = 1U << 20;
 
   /// `source` and `index` must outlive the stream.
   MessageStream(const ByteSource& source, const FileIndex& index,
                 std::size_t cache_bytes = kDefaultCacheBytes);
 
   /// The next message, whose data is valid until the next call; nullopt at the end. On an error (a
-  /// damaged chunk) the next call goes on behind it.
+  /// damaged chunk) the next call goes on behind it; after kResourceExhausted there is nothing
+  /// more.
   Result<std::optional<Message>> Next();
 
   /// Goes on with the first message at or after `log_time`.
@@ -46,12 +49,15 @@ class MessageStream {
   Status OpenSegment(std::size_t segment);
   Result<std::shared_ptr<const SegmentContent>> Content(std::size_t segment);
   void TrimCache();
+  void CloseLastCursor();
 
   const ByteSource& source_;
   const FileIndex& index_;
   const std::size_t cache_bytes_;
   std::vector<std::size_t> order_;  ///< Segments by start time.
   std::size_t next_in_order_ = 0;
+  UnpackBudget budget_;
+  std::size_t open_messages_ = 0;                  ///< Of all cursors.
   std::uint64_t begin_ = 0;                        ///< Earlier messages are skipped.
   std::vector<Cursor> cursors_;                    ///< Heap.
   std::list<Cached> cache_;                        ///< Most recently used first.

@@ -4,6 +4,8 @@
 #include <optional>
 #include <utility>
 
+#include "common/recording/mcap_resync.h"
+
 namespace isotherm::mcap {
 namespace {
 
@@ -11,50 +13,35 @@ namespace {
 constexpr std::uint64_t kMaxSmallRecordBytes = 16U << 20;
 /// Messages outside chunks are read in stretches of about this size.
 constexpr std::uint64_t kLooseSegmentBytes = 1U << 20;
-/// Chunk fields with the longest plausible name of a compression.
-constexpr std::uint64_t kChunkFieldsBytes = 8 + 8 + 8 + 4 + 4 + 32 + 8;
+/// Two days of a recorder that writes two chunks a second, and what their message indexes count.
+constexpr std::size_t kMaxSegments = 400'000;
+constexpr std::size_t kMaxCounts = 1'000'000;
 
-/// One record as seen from outside.
-struct RecordPosition {
-  Opcode opcode{};
-  std::uint64_t offset = 0;
-  std::uint64_t content_length = 0;
-
-  std::uint64_t length() const { return kRecordPrefixBytes + content_length; }
-  std::uint64_t end() const { return offset + length(); }
-};
-
-/// nullopt if no whole record starts at `offset`.
-std::optional<RecordPosition> RecordAt(const ByteSource& source, std::uint64_t offset) {
-  if (source.size() - offset < kRecordPrefixBytes) return std::nullopt;
-  std::array<std::uint8_t, kRecordPrefixBytes> prefix{};
-  if (!source.Read(offset, prefix).ok()) return std::nullopt;
-  const auto [opcode, length] = ParseRecordPrefix(prefix);
-  constexpr auto kNoOpcode =
-      Opcode{0};  // What a file that was never written to the end is full of.
-  if (opcode == kNoOpcode || length > source.size() - offset - kRecordPrefixBytes)
-    return std::nullopt;
-  return RecordPosition{.opcode = opcode, .offset = offset, .content_length = length};
-}
-
+/// Goes through a file once, from record to record. Where no sound record follows, it looks for the
+/// next place where one does and notes the gap.
 class Scanner {
  public:
-  explicit Scanner(const ByteSource& source) : source_(source) {}
+  explicit Scanner(const ByteSource& source) : source_(source), budget_(source.size()) {}
 
   FileIndex Run() {
     std::uint64_t offset = kMagic.size();
-    while (const auto record = RecordAt(source_, offset)) {
+    while (offset < source_.size() && !closed_) {
+      const auto record = SoundRecordAt(source_, offset);
+      if (!record) {
+        offset = Resynchronise(offset);
+        continue;
+      }
       Visit(*record);
       offset = record->end();
-      if (record->opcode == Opcode::kFooter) {
-        closed_ = true;
-        offset = std::min(offset + kMagic.size(), source_.size());
-        break;
-      }
     }
-    file_.bytes_ignored += source_.size() - offset;
+    offset = std::min(offset + (closed_ ? kMagic.size() : 0), source_.size());
+    if (offset < source_.size())
+      AddGap({.offset = offset, .length = source_.size() - offset, .message_counts = {}});
     CountUnindexedChunks();
     if (!closed_) DropDamagedTail();
+    file_.definitions.Merge(std::move(loose_definitions_));
+    std::sort(file_.gaps.begin(), file_.gaps.end(),
+              [](const Gap& a, const Gap& b) { return a.offset < b.offset; });
     for (const Scanned& scanned : scanned_) {
       file_.segments.push_back(scanned.segment);
       for (const auto& [channel, count] : scanned.counts) file_.message_counts[channel] += count;
@@ -68,6 +55,34 @@ class Scanner {
     std::map<ChannelId, std::uint64_t> counts;
     bool checked = false;  ///< Its content was read and is good.
   };
+  /// What the next message indexes are about.
+  enum class Indexed { kNothing, kChunk, kGap };
+
+  /// Notes the gap from `bad` to where the file goes on, and returns that place.
+  std::uint64_t Resynchronise(std::uint64_t bad) {
+    std::uint64_t from = bad + 1;
+    while (const auto record = FindRecord(source_, from)) {
+      if (record->opcode != Opcode::kChunk || IsGoodChunk(*record)) {
+        AddGap({.offset = bad, .length = record->offset - bad, .message_counts = {}});
+        if (record->opcode == Opcode::kMessageIndex) indexed_ = Indexed::kGap;
+        return record->offset;
+      }
+      if (budget_.exhausted()) break;
+      from = record->offset + 1;
+    }
+    AddGap({.offset = bad, .length = source_.size() - bad, .message_counts = {}});
+    return source_.size();
+  }
+
+  void AddGap(Gap gap) {
+    file_.bytes_ignored += gap.length;
+    if (file_.gaps.size() < FileIndex::kMaxGaps) file_.gaps.push_back(std::move(gap));
+  }
+
+  bool IsGoodChunk(const RecordPosition& record) {
+    return ReadSegment(source_, {.offset = record.offset, .length = record.length()}, budget_)
+        .has_value();
+  }
 
   void Visit(const RecordPosition& record) {
     switch (record.opcode) {
@@ -81,53 +96,60 @@ class Scanner {
       case Opcode::kChannel:
       case Opcode::kMetadata:
         return VisitSmall(record);
+      case Opcode::kFooter:
+        closed_ = true;
+        return;
       default:
-        return;  // Derived, or newer than this program.
+        indexed_ = Indexed::kNothing;  // Derived, or newer than this program.
     }
   }
 
   void VisitChunk(const RecordPosition& record) {
-    Bytes fields(static_cast<std::size_t>(std::min(record.content_length, kChunkFieldsBytes)));
-    ChunkHeader header;
-    if (!source_.Read(record.offset + kRecordPrefixBytes, fields).ok() || !Parse(fields, header)) {
-      file_.bytes_ignored += record.length();
-      return;
+    const std::optional<ChunkHeader> header = ChunkHeaderAt(source_, record);
+    if (!header || scanned_.size() == kMaxSegments) {
+      indexed_ = Indexed::kNothing;
+      return AddGap({.offset = record.offset, .length = record.length(), .message_counts = {}});
     }
     scanned_.push_back({.segment = {.is_chunk = true,
                                     .offset = record.offset,
                                     .length = record.length(),
-                                    .start = header.start,
-                                    .end = header.end},
+                                    .start = header->start,
+                                    .end = header->end},
                         .counts = {}});
-    file_.compressions.insert(header.compression);
+    file_.compressions.insert(header->compression);
+    indexed_ = Indexed::kChunk;
   }
 
   void VisitMessageIndex(const RecordPosition& record) {
     constexpr std::uint64_t kEntryBytes = 16;
     constexpr std::uint64_t kFieldsBytes = 2 + 4;
     std::array<std::uint8_t, sizeof(ChannelId)> id{};
-    if (scanned_.empty() || !scanned_.back().segment.is_chunk ||
-        record.content_length < kFieldsBytes ||
+    if (indexed_ == Indexed::kNothing || counts_ == kMaxCounts ||
         !source_.Read(record.offset + kRecordPrefixBytes, id).ok()) {
       return;
     }
+    ++counts_;
     const auto channel = static_cast<ChannelId>(id[0] | id[1] << 8);
-    scanned_.back().counts[channel] += (record.content_length - kFieldsBytes) / kEntryBytes;
+    auto& counts =
+        indexed_ == Indexed::kChunk ? scanned_.back().counts : file_.gaps.back().message_counts;
+    counts[channel] += (record.content_length - kFieldsBytes) / kEntryBytes;
   }
 
   void VisitMessage(const RecordPosition& record) {
+    indexed_ = Indexed::kNothing;
     constexpr std::uint64_t kFieldsBytes = 2 + 4 + 8 + 8;
     Bytes fields(static_cast<std::size_t>(std::min(record.content_length, kFieldsBytes)));
     Message message;
     if (!source_.Read(record.offset + kRecordPrefixBytes, fields).ok() || !Parse(fields, message)) {
-      file_.bytes_ignored += record.length();
-      return;
+      return AddGap({.offset = record.offset, .length = record.length(), .message_counts = {}});
     }
     const bool continues =
         !scanned_.empty() && !scanned_.back().segment.is_chunk &&
         scanned_.back().segment.length < kLooseSegmentBytes &&
         scanned_.back().segment.offset + scanned_.back().segment.length == record.offset;
     if (!continues) {
+      if (scanned_.size() == kMaxSegments)
+        return AddGap({.offset = record.offset, .length = record.length(), .message_counts = {}});
       scanned_.push_back({.segment = {.is_chunk = false,
                                       .offset = record.offset,
                                       .length = 0,
@@ -144,12 +166,16 @@ class Scanner {
   }
 
   void VisitSmall(const RecordPosition& record) {
-    if (record.content_length > kMaxSmallRecordBytes) return;
+    const std::uint64_t room = record.opcode == Opcode::kMetadata
+                                   ? kMaxMetadataBytes - metadata_bytes_
+                                   : kMaxDefinitionBytes;
+    if (record.content_length > room) return;
     Bytes content(static_cast<std::size_t>(record.content_length));
     if (!source_.Read(record.offset + kRecordPrefixBytes, content).ok()) return;
-    file_.definitions.Add({.opcode = record.opcode, .offset = 0, .content = content});
+    loose_definitions_.Add({.opcode = record.opcode, .offset = 0, .content = content});
     Metadata metadata;
     if (record.opcode == Opcode::kMetadata && Parse(content, metadata)) {
+      metadata_bytes_ += content.size();
       file_.metadata.push_back(std::move(metadata));
     }
   }
@@ -163,32 +189,42 @@ class Scanner {
 
   /// Reads the chunk: counts its messages and learns its channels.
   bool ReadContent(Scanned& scanned) {
-    Result<SegmentContent> content = ReadSegment(source_, scanned.segment);
+    Result<SegmentContent> content = ReadSegment(source_, scanned.segment, budget_);
     if (!content) return false;
     scanned.checked = true;
     scanned.counts.clear();
     for (const auto& entry : content->entries) ++scanned.counts[entry.channel_id];
-    file_.definitions.schemas.merge(content->definitions.schemas);
-    file_.definitions.channels.merge(content->definitions.channels);
+    file_.definitions.Merge(std::move(content->definitions));
     return true;
   }
 
   void CountUnindexedChunks() {
     for (Scanned& scanned : scanned_) {
-      if (scanned.segment.is_chunk && IsUnknown(scanned)) ReadContent(scanned);
+      if (scanned.segment.is_chunk && IsUnknown(scanned) && !budget_.exhausted())
+        ReadContent(scanned);
     }
   }
 
   void DropDamagedTail() {
     while (!scanned_.empty() && !scanned_.back().checked && !ReadContent(scanned_.back())) {
-      file_.bytes_ignored += scanned_.back().segment.length;
+      if (budget_.exhausted()) return;
+      Scanned& last = scanned_.back();
+      AddGap({.offset = last.segment.offset,
+              .length = last.segment.length,
+              .message_counts = std::move(last.counts)});
       scanned_.pop_back();
     }
   }
 
   const ByteSource& source_;
+  UnpackBudget budget_;
   FileIndex file_;
+  /// From outside the chunks, where no checksum covers them: chunks know better.
+  Definitions loose_definitions_;
   std::vector<Scanned> scanned_;
+  Indexed indexed_ = Indexed::kNothing;
+  std::size_t counts_ = 0;
+  std::uint64_t metadata_bytes_ = 0;
   bool closed_ = false;
 };
 

@@ -4,6 +4,8 @@
 #include <zstd.h>
 
 #include <algorithm>
+#include <utility>
+
 namespace isotherm::mcap {
 namespace {
 
@@ -45,7 +47,7 @@ Status Unpack(const Segment& segment, const ChunkHeader& header,
 }
 
 /// The chunk's records, unpacked; `bytes` is the whole chunk record.
-Result<Bytes> UnpackChunk(const Segment& segment, const Bytes& bytes) {
+Result<Bytes> UnpackChunk(const Segment& segment, const Bytes& bytes, UnpackBudget& budget) {
   const auto [opcode, length] = ParseRecordPrefix(bytes);
   if (opcode != Opcode::kChunk || length != bytes.size() - kRecordPrefixBytes) {
     return Err(Damaged(segment, "is not where the index says"));
@@ -55,12 +57,14 @@ Result<Bytes> UnpackChunk(const Segment& segment, const Bytes& bytes) {
   if (!Parse(content, header)) return Err(Damaged(segment, "its header is damaged"));
   if (Status status = CheckHeader(segment, header); !status.ok()) return Err(std::move(status));
   // The packed records follow the fields, whose length depends on one string only.
-  const std::size_t fields_bytes = 8 + 8 + 8 + 4 + 4 + header.compression.size() + 8;
+  const std::uint64_t fields_bytes = ChunkContentBytes(header) - header.compressed_size;
   if (header.compressed_size > content.size() - fields_bytes) {
     return Err(Damaged(segment, "claims more bytes than it has"));
   }
-  const auto packed =
-      content.subspan(fields_bytes, static_cast<std::size_t>(header.compressed_size));
+  if (Status status = budget.Take(header.uncompressed_size); !status.ok())
+    return Err(std::move(status));
+  const auto packed = content.subspan(static_cast<std::size_t>(fields_bytes),
+                                      static_cast<std::size_t>(header.compressed_size));
   Bytes records;
   if (Status status = Unpack(segment, header, packed, records); !status.ok()) {
     return Err(std::move(status));
@@ -75,6 +79,9 @@ Status IndexRecords(const Segment& segment, SegmentContent& content) {
     if (record->opcode != Opcode::kMessage) continue;
     Message message;
     if (!Parse(record->content, message)) return Damaged(segment, "holds a damaged message");
+    if (content.entries.size() == kMaxChunkMessages) {
+      return Damaged(segment, fmt::format("holds more than {} messages", kMaxChunkMessages));
+    }
     content.entries.push_back(
         {.log_time = message.log_time, .offset = record->offset, .channel_id = message.channel_id});
   }
@@ -90,17 +97,62 @@ bool IsSupportedCompression(std::string_view compression) {
   return compression.empty() || compression == "zstd";
 }
 
+Status UnpackBudget::Take(std::uint64_t bytes) {
+  if (bytes <= left_ && !exhausted_) {
+    left_ -= bytes;
+    return OkStatus();
+  }
+  exhausted_ = true;
+  return ResourceExhausted(fmt::format(
+      "reading was given up: unpacking the file takes more than {} MB and {} times its size, which "
+      "no scan does",
+      kFloorBytes >> 20, kMaxRatio));
+}
+
+std::uint64_t ChunkContentBytes(const ChunkHeader& header) {
+  return 8 + 8 + 8 + 4 + 4 + header.compression.size() + 8 + header.compressed_size;
+}
+
 void Definitions::Add(const RecordWalker::Record& record) {
+  if (record.content.size() > kMaxDefinitionBytes) return;
   if (record.opcode == Opcode::kSchema) {
     Schema schema;
-    if (Parse(record.content, schema) && schema.id != 0) schemas.try_emplace(schema.id, schema);
+    if (Parse(record.content, schema)) AddNew(std::move(schema));
   } else if (record.opcode == Opcode::kChannel) {
     Channel channel;
-    if (Parse(record.content, channel)) channels.try_emplace(channel.id, channel);
+    if (Parse(record.content, channel)) AddNew(std::move(channel));
   }
 }
 
-Result<SegmentContent> ReadSegment(const ByteSource& source, const Segment& segment) {
+void Definitions::Merge(Definitions other) {
+  for (auto& [id, schema] : other.schemas) AddNew(std::move(schema));
+  for (auto& [id, channel] : other.channels) AddNew(std::move(channel));
+}
+
+void Definitions::AddNew(Schema schema) {
+  const std::size_t size = schema.name.size() + schema.encoding.size() + schema.data.size();
+  if (schema.id == 0 || schemas.contains(schema.id) || !Fits(size)) return;
+  const SchemaId id = schema.id;
+  schemas.emplace(id, std::move(schema));
+}
+
+void Definitions::AddNew(Channel channel) {
+  constexpr std::size_t kEntryBytes = 128;  // What a map takes for an entry without text.
+  std::size_t size = channel.topic.size() + channel.message_encoding.size();
+  for (const auto& [key, value] : channel.metadata) size += kEntryBytes + key.size() + value.size();
+  if (channels.contains(channel.id) || !Fits(size)) return;
+  const ChannelId id = channel.id;
+  channels.emplace(id, std::move(channel));
+}
+
+bool Definitions::Fits(std::size_t size) {
+  if (size > kMaxDefinitionsBytes - bytes_) return false;
+  bytes_ += size;
+  return true;
+}
+
+Result<SegmentContent> ReadSegment(const ByteSource& source, const Segment& segment,
+                                   UnpackBudget& budget) {
   // Compression never grows a chunk by more than a small fraction.
   if (segment.length > kMaxChunkBytes + kMaxChunkBytes / 64 ||
       segment.length < kRecordPrefixBytes || segment.offset > source.size() ||
@@ -108,12 +160,13 @@ Result<SegmentContent> ReadSegment(const ByteSource& source, const Segment& segm
     return Err(
         Damaged(segment, fmt::format("its length of {} bytes is impossible", segment.length)));
   }
+  if (Status status = budget.Take(segment.length); !status.ok()) return Err(std::move(status));
   Bytes bytes(static_cast<std::size_t>(segment.length));
   if (Status status = source.Read(segment.offset, bytes); !status.ok())
     return Err(std::move(status));
   SegmentContent content;
   if (segment.is_chunk) {
-    Result<Bytes> records = UnpackChunk(segment, bytes);
+    Result<Bytes> records = UnpackChunk(segment, bytes, budget);
     if (!records) return Err(std::move(records.error()));
     content.records = std::move(*records);
   } else {

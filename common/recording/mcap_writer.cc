@@ -64,7 +64,10 @@ Status Writer::WriteMessage(ChannelId channel, std::uint64_t log_time, std::uint
   if (!chunk_.records.empty()) {
     const std::uint64_t start = std::min(chunk_.start, log_time);
     const std::uint64_t end = std::max(chunk_.end, log_time);
-    if (end - start > options_.chunk_duration_ns) ISOTHERM_RETURN_IF_ERROR(Flush());
+    if (end - start > options_.chunk_duration_ns ||
+        chunk_.records.size() + data.size() > kMaxMessageBytes) {
+      ISOTHERM_RETURN_IF_ERROR(Flush());
+    }
   }
   if (chunk_.records.empty()) chunk_.start = chunk_.end = log_time;
   chunk_.start = std::min(chunk_.start, log_time);

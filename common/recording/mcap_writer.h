@@ -36,7 +36,8 @@ class Writer {
   SchemaId AddSchema(std::string_view name, std::string_view encoding, std::string_view data);
   ChannelId AddChannel(SchemaId schema, std::string_view topic, std::string_view message_encoding);
 
-  /// kInvalidArgument for a message larger than kMaxMessageBytes; the file stays as it was.
+  /// kInvalidArgument for a message larger than kMaxMessageBytes; the file stays as it was. A chunk
+  /// never becomes larger than a reader accepts (kMaxChunkBytes).
   Status WriteMessage(ChannelId channel, std::uint64_t log_time, std::uint64_t publish_time,
                       std::span<const std::uint8_t> data);
   Status WriteMetadata(const Metadata& metadata);
@@ -50,7 +51,7 @@ class Writer {
   /// Bytes handed to the sink.
   std::uint64_t bytes() const { return offset_; }
 
-  static constexpr std::size_t kMaxMessageBytes = 64U << 20;
+  static constexpr std::size_t kMaxMessageBytes = 36U << 20;
 
  private:
   struct ZstdDeleter {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
@@ -111,28 +112,38 @@ struct RecordedLog {
 using RecordedItem = std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose,
                                   OutsidePose, RecordedLog, ClockStep>;
 
+/// A part of the file that is damaged or was never finished.
+struct RecordingGap {
+  std::uint64_t offset = 0;
+  std::uint64_t bytes = 0;
+  /// Messages that were in it, as far as what is left of the file tells.
+  std::map<std::string, std::uint64_t> messages_by_topic;
+};
+
 /// What is known about a recording without reading its frames (from the summary, or rebuilt by one
 /// pass over the chunk headers if the file has none).
 struct RecordingInfo {
   bool complete = false;            ///< Has footer and summary.
-  std::uint64_t bytes_ignored = 0;  ///< Damaged or unfinished tail that is not read.
+  std::uint64_t bytes_ignored = 0;  ///< Damaged or unfinished parts that are not read.
+  std::vector<RecordingGap> gaps;   ///< Where these are; the first thousand.
   std::map<std::string, std::uint64_t> messages_by_topic;
   std::optional<CaptureTime> start, end;
   std::map<std::string, std::map<std::string, std::string>> metadata;
 };
 
-/// Reads scans back in the order of log time within bounded memory (a chunk or two at a time). A
-/// truncated or damaged file is read up to its last good chunk. Thread-compatible.
+/// Reads scans back in the order of log time within bounded memory (a chunk or two at a time). Of a
+/// truncated or damaged file all good chunks are read. Thread-compatible.
 class RecordingReader {
  public:
   static Result<std::unique_ptr<RecordingReader>> Open(const std::filesystem::path& path);
   virtual ~RecordingReader() = default;
 
   virtual const RecordingInfo& info() const = 0;
-  /// The rig calibration in the file; kNotFound if it has none.
+  /// The first rig calibration in the file that can be read; kNotFound if it has none.
   virtual Result<Rig> ReadRig() = 0;
   /// Next item in log-time order; nullopt at the end. kDataLoss for a message that cannot be read:
-  /// the next call goes on behind it.
+  /// the next call goes on behind it. kResourceExhausted once, before the end, if the file takes
+  /// far more work than its size justifies.
   virtual Result<std::optional<RecordedItem>> Next() = 0;
   /// Starts again at the first item at or after `time`.
   virtual Status Seek(CaptureTime time) = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/recording/mcap_file_index.h"
 #include "common/recording/mcap_records.h"
 #include "common/recording/recording_test_data.h"
 #include "common/recording/test_seed.h"
@@ -115,19 +116,85 @@ TEST(RecordingFaultTest, F44EveryTruncationIsReadWithoutErrors) {
   EXPECT_EQ(before, SmallScan().depth.size() + SmallScan().thermal.size());
 }
 
-TEST(RecordingFaultTest, DamagedRecordingsNeverCrash) {
+/// True if the frame is bit for bit the one of its number in `frames`.
+template <typename Recorded, typename Frame>
+bool IsOneOf(const Recorded& read, const std::vector<Frame>& frames) {
+  const std::uint64_t number = read.frame.header.frame_number;
+  return number < frames.size() &&
+         read.frame.header.capture_time == frames[number].header.capture_time &&
+         read.frame.image.payload == frames[number].image.payload;
+}
+
+TEST(RecordingFaultTest, F45WhatIsReadFromDamagedRecordingsIsWhatWasWritten) {
   std::mt19937 random(testing::Seed());
   const std::vector<std::uint8_t> whole = SmallFile();
+  const testing::Scan scan = SmallScan();
+  const MemorySource source(whole);
+  const auto index = mcap::ReadFileIndex(source);
+  ASSERT_TRUE(index);
+  std::size_t frames_read = 0, whole_chunks = 0;
   for (int i = 0; i < 1000; ++i) {
     std::vector<std::uint8_t> damaged = whole;
     for (auto flips = random() % 6 + 1; flips > 0; --flips) {
-      damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
+      damaged[8 + random() % (damaged.size() - 8)] = static_cast<std::uint8_t>(random());
     }
     auto reader = ReaderOf(damaged);
-    if (!reader) continue;
-    ReadAll(**reader);
-    static_cast<void>((*reader)->ReadRig());
+    std::size_t good_chunks = 0;
+    for (const mcap::Segment& chunk : index->segments) {
+      const auto begin = static_cast<std::ptrdiff_t>(chunk.offset);
+      good_chunks += std::equal(whole.begin() + begin,
+                                whole.begin() + begin + static_cast<std::ptrdiff_t>(chunk.length),
+                                damaged.begin() + begin)
+                         ? 1
+                         : 0;
+    }
+    if (!reader) {
+      // Only what says that it is of another version is refused as long as a chunk is good.
+      ASSERT_TRUE(good_chunks == 0 || reader.error().code() == StatusCode::kFailedPrecondition)
+          << reader.error().message();
+      continue;
+    }
+    whole_chunks += good_chunks;
+    const ReadBack read = ReadAll(**reader);
+    for (const RecordedDepth& depth : read.All<RecordedDepth>())
+      ASSERT_TRUE(IsOneOf(depth, scan.depth)) << i;
+    for (const RecordedThermal& thermal : read.All<RecordedThermal>())
+      ASSERT_TRUE(IsOneOf(thermal, scan.thermal)) << i;
+    const std::size_t frames =
+        read.All<RecordedDepth>().size() + read.All<RecordedThermal>().size();
+    ASSERT_GE(frames, 3 * good_chunks) << i << ": each chunk has three frames or more";
+    frames_read += frames;
   }
+  EXPECT_GT(whole_chunks, 500U) << "the damage leaves something";
+  EXPECT_GT(frames_read, 3 * whole_chunks - 1);
+}
+
+TEST(RecordingFaultTest, F45RigIsFoundWhenItsFirstChunkIsDamaged) {
+  const auto disk = std::make_shared<MemorySink::Disk>();
+  {
+    auto writer = WriterTo(disk, {.flush_interval = 500ms});
+    ASSERT_TRUE(writer->Write(testing::MakeRig()).ok());
+    for (int i = 0; i < 25; ++i) {
+      ASSERT_TRUE(
+          writer->Write(MakeDepth(static_cast<std::uint64_t>(i), kScanStart + i * 1s), std::nullopt)
+              .ok());
+    }
+  }
+  const MemorySource source(disk->bytes);
+  const auto index = mcap::ReadFileIndex(source);
+  ASSERT_TRUE(index);
+  const auto intact = ReaderOf(disk->bytes);
+  ASSERT_TRUE(intact);
+  EXPECT_EQ((*intact)->info().messages_by_topic.at("/rig"), 3U) << "at 0, 10 and 20 s";
+  std::vector<std::uint8_t> damaged = disk->bytes;
+  const mcap::Segment first = index->segments[0];
+  for (std::uint64_t i = first.length / 2; i < first.length / 2 + 3; ++i)
+    damaged[static_cast<std::size_t>(first.offset + i)] ^= 0x55;
+  const auto reader = ReaderOf(damaged);
+  ASSERT_TRUE(reader);
+  const Result<Rig> rig = (*reader)->ReadRig();
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_EQ(rig->depth->fx, testing::MakeRig().depth->fx);
 }
 
 /// A file whose recording version says `version`.

@@ -4,6 +4,7 @@
 #include <google/protobuf/descriptor.h>
 #include <google/protobuf/descriptor.pb.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -28,10 +29,10 @@ void SetTime(CaptureTime time, Timestamp& message) {
   message.set_nanos(static_cast<std::int32_t>(ns % kNanosecondsPerSecond));
 }
 
-/// nullopt if the time does not fit into ours.
+/// nullopt if the time is none that a scan can have. Sums of two times that are left do not
+/// overflow.
 std::optional<CaptureTime> ToTime(const Timestamp& message) {
-  constexpr std::int64_t kMaxSeconds =
-      std::numeric_limits<std::int64_t>::max() / kNanosecondsPerSecond;
+  constexpr std::int64_t kMaxSeconds = kMaxRecordedNanoseconds / kNanosecondsPerSecond;
   if (message.seconds() < 0 || message.seconds() >= kMaxSeconds || message.nanos() < 0 ||
       message.nanos() >= kNanosecondsPerSecond) {
     return std::nullopt;
@@ -93,8 +94,12 @@ Result<FrameHeader> GetHeader(const Message& message, CaptureTime log_time,
   const FrameInfo& frame = message.frame();
   header.session = frame.session();
   header.frame_number = frame.frame_number();
+  constexpr std::int64_t kMaxTicks = kMaxRecordedNanoseconds / 1000;
+  if (frame.device_ticks() > kMaxTicks || frame.device_ticks() < -kMaxTicks)
+    return Err(DataLoss("its camera's clock is out of range"));
   header.device_ticks = DeviceTicks(std::chrono::microseconds(frame.device_ticks()));
-  header.capture_sigma = Nanoseconds(frame.capture_sigma_ns());
+  header.capture_sigma =
+      Nanoseconds(std::clamp<std::int64_t>(frame.capture_sigma_ns(), 0, kMaxRecordedNanoseconds));
   return header;
 }
 

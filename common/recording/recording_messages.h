@@ -9,6 +9,9 @@
 /// Between the types of a scan and the messages in its recording.
 namespace isotherm::recording {
 
+/// Start of the year 2100: later times are damage.
+inline constexpr std::int64_t kMaxRecordedNanoseconds = 4'102'444'800'000'000'000;
+
 inline constexpr std::string_view kDepthTopic = "/depth";
 inline constexpr std::string_view kThermalTopic = "/thermal";
 inline constexpr std::string_view kRigTopic = "/rig";

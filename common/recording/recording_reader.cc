@@ -88,7 +88,7 @@ Result<std::optional<RecordedItem>> ParseThermal(const mcap::Message& message, C
 }
 
 CaptureTime ToCaptureTime(std::uint64_t log_time) {
-  constexpr auto kLast = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  constexpr auto kLast = static_cast<std::uint64_t>(rec::kMaxRecordedNanoseconds);
   return CaptureTimeFromNanoseconds(static_cast<std::int64_t>(std::min(log_time, kLast)));
 }
 
@@ -98,6 +98,13 @@ class McapRecordingReader final : public RecordingReader {
       : source_(std::move(source)), index_(std::move(index)), stream_(*source_, index_) {
     info_.complete = index_.complete;
     info_.bytes_ignored = index_.bytes_ignored;
+    for (const mcap::Gap& gap : index_.gaps) {
+      RecordingGap& copy = info_.gaps.emplace_back();
+      copy.offset = gap.offset;
+      copy.bytes = gap.length;
+      for (const auto& [id, count] : gap.message_counts)
+        copy.messages_by_topic[TopicOf(id)] += count;
+    }
     for (const auto& [id, channel] : index_.definitions.channels) {
       const auto schema = index_.definitions.schemas.find(channel.schema_id);
       contents_[id] = schema == index_.definitions.schemas.end()
@@ -121,16 +128,18 @@ class McapRecordingReader final : public RecordingReader {
   const RecordingInfo& info() const override { return info_; }
 
   Result<Rig> ReadRig() override {
-    if (info_.messages_by_topic.contains(std::string(rec::kRigTopic))) {
-      mcap::MessageStream stream(*source_, index_);
-      while (true) {
-        const auto message = stream.Next();
-        if (!message) continue;  // A damaged chunk: there may be another copy behind it.
-        if (!message->has_value()) break;
-        if (ContentOfChannel((*message)->channel_id) == Content::kRig) return ParseRig(**message);
-      }
+    Status problem = NotFound("the recording has no rig calibration");
+    if (!info_.messages_by_topic.contains(std::string(rec::kRigTopic))) return Err(problem);
+    mcap::MessageStream stream(*source_, index_);
+    while (true) {
+      const auto message = stream.Next();
+      if (!message) continue;  // A damaged chunk: there is another copy behind it.
+      if (!message->has_value()) return Err(problem);
+      if (ContentOfChannel((*message)->channel_id) != Content::kRig) continue;
+      Result<Rig> rig = ParseRig(**message);
+      if (rig) return rig;
+      if (problem.code() == StatusCode::kNotFound) problem = rig.error();
     }
-    return Err(NotFound("the recording has no rig calibration"));
   }
 
   Result<std::optional<RecordedItem>> Next() override {

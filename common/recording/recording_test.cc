@@ -17,6 +17,7 @@ using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using testing::kScanStart;
 using testing::MakeDepth;
+using testing::MakeRig;
 using testing::MakeScan;
 using testing::MakeThermal;
 using testing::ReadAll;
@@ -25,28 +26,6 @@ using testing::ReaderOf;
 using testing::TimeOf;
 using testing::WriterTo;
 using testing::WriteScan;
-
-Rig MakeRig() {
-  Rig rig;
-  rig.depth = CameraModel{.width = 640, .height = 480, .fx = 580, .fy = 581, .cx = 319, .cy = 239};
-  rig.thermal = CameraModel{.width = 382,
-                            .height = 288,
-                            .fx = 600,
-                            .fy = 601,
-                            .cx = 190,
-                            .cy = 143,
-                            .k1 = -0.25,
-                            .k2 = 0.1,
-                            .p1 = 1e-3,
-                            .p2 = -2e-3,
-                            .k3 = 0.01};
-  rig.depth_scale = 5000;
-  rig.T_thermal_depth =
-      MakeTransform({0.05, -0.01, 0.002}, Eigen::Quaterniond(0.99, 0.01, -0.1, 0.02));
-  rig.thermal_delay_s = -0.0427;
-  rig.serial = "A-7";
-  return rig;
-}
 
 void ExpectSame(const FrameHeader& a, const FrameHeader& b) {
   EXPECT_EQ(a.session, b.session);

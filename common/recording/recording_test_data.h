@@ -14,6 +14,28 @@ namespace isotherm::testing {
 
 inline constexpr CaptureTime kScanStart{std::chrono::seconds(1'700'000'000)};
 
+inline Rig MakeRig() {
+  Rig rig;
+  rig.depth = CameraModel{.width = 640, .height = 480, .fx = 580, .fy = 581, .cx = 319, .cy = 239};
+  rig.thermal = CameraModel{.width = 382,
+                            .height = 288,
+                            .fx = 600,
+                            .fy = 601,
+                            .cx = 190,
+                            .cy = 143,
+                            .k1 = -0.25,
+                            .k2 = 0.1,
+                            .p1 = 1e-3,
+                            .p2 = -2e-3,
+                            .k3 = 0.01};
+  rig.depth_scale = 5000;
+  rig.T_thermal_depth =
+      MakeTransform({0.05, -0.01, 0.002}, Eigen::Quaterniond(0.99, 0.01, -0.1, 0.02));
+  rig.thermal_delay_s = -0.0427;
+  rig.serial = "A-7";
+  return rig;
+}
+
 inline EncodedImage RandomRawImage(int width, int height, std::uint32_t seed) {
   EncodedImage image{.encoding = Encoding::kRaw16, .width = width, .height = height, .payload = {}};
   std::minstd_rand random(seed + 1);

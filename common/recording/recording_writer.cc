@@ -24,11 +24,9 @@ class McapRecordingWriter final : public RecordingWriter {
 
   Status Write(const Rig& rig) override {
     // Before the first frame nothing says what time it is.
-    if (!last_time_) {
-      waiting_rig_ = rig;
-      return OkStatus();
-    }
-    return WriteRig(*last_time_, rig);
+    rig_ = rig;
+    rig_written_at_.reset();
+    return last_time_ ? WriteRig(*last_time_) : OkStatus();
   }
 
   Status Write(const EncodedDepthFrame& frame, const std::optional<CaptureTime>& arrival) override {
@@ -87,7 +85,10 @@ class McapRecordingWriter final : public RecordingWriter {
   Status Flush() override { return closed_ ? AlreadyClosed() : writer_->Flush(); }
 
   Status Close() override {
-    if (!closed_ && waiting_rig_) static_cast<void>(Announce(CaptureTime{}));
+    if (!closed_ && rig_ && !last_time_) {
+      last_time_ = CaptureTime{};
+      static_cast<void>(WriteRig(*last_time_));
+    }
     closed_ = true;
     return writer_->Close();
   }
@@ -102,6 +103,8 @@ class McapRecordingWriter final : public RecordingWriter {
   }
 
  private:
+  static constexpr Nanoseconds kRigInterval = std::chrono::seconds(10);
+
   struct TopicChannel {
     mcap::ChannelId id = 0;
     std::string schema_name;
@@ -140,7 +143,11 @@ class McapRecordingWriter final : public RecordingWriter {
     return OkStatus();
   }
 
-  Status WriteRig(CaptureTime time, const Rig& rig) {
+  /// Writes the rig, again if it was written before: without it a recording is of little use, and
+  /// the chunk that has it may be the one that is damaged.
+  Status WriteRig(CaptureTime time) {
+    rig_written_at_ = time;
+    const Rig& rig = *rig_;
     ISOTHERM_RETURN_IF_ERROR(Append(rec::kRigTopic, time, time, rec::ToMessage(time, rig)));
     if (rig.depth) {
       ISOTHERM_RETURN_IF_ERROR(
@@ -149,13 +156,6 @@ class McapRecordingWriter final : public RecordingWriter {
     if (!rig.thermal) return OkStatus();
     return Append(rec::kThermalInfoTopic, time, time,
                   rec::ToMessage(time, "thermal", *rig.thermal));
-  }
-
-  /// Writes what waited for the first time stamp.
-  Status Announce(CaptureTime time) {
-    last_time_ = time;
-    const std::optional<Rig> rig = std::exchange(waiting_rig_, std::nullopt);
-    return rig ? WriteRig(time, *rig) : OkStatus();
   }
 
   template <typename Message>
@@ -174,8 +174,9 @@ class McapRecordingWriter final : public RecordingWriter {
     if (log_ns < 0) {
       return InvalidArgument(fmt::format("time {} ns lies before the Unix epoch", log_ns));
     }
-    if (!last_time_) ISOTHERM_RETURN_IF_ERROR(Announce(time));
-    last_time_ = std::max(*last_time_, time);
+    last_time_ = std::max(last_time_.value_or(time), time);
+    if (rig_ && (!rig_written_at_ || time - *rig_written_at_ >= kRigInterval))
+      ISOTHERM_RETURN_IF_ERROR(WriteRig(time));
     const std::int64_t publish_ns = std::max<std::int64_t>(ToNanoseconds(publish_time), 0);
     return writer_->WriteMessage(
         channel, static_cast<std::uint64_t>(log_ns), static_cast<std::uint64_t>(publish_ns),
@@ -211,7 +212,8 @@ class McapRecordingWriter final : public RecordingWriter {
   std::map<std::string, TopicChannel, std::less<>> channels_;
   std::map<std::string, mcap::SchemaId, std::less<>> schemas_;
   std::optional<CaptureTime> last_time_;
-  std::optional<Rig> waiting_rig_;
+  std::optional<Rig> rig_;
+  std::optional<CaptureTime> rig_written_at_;
   std::uint64_t offered_ = 0;
   bool closed_ = false;
 };
