@@ -24,8 +24,12 @@ namespace {
 
 namespace pb = google::protobuf;
 
-constexpr std::uintmax_t kMaxFileBytes = 16U << 20;  // Far above any configuration.
+constexpr std::uintmax_t kMaxFileBytes = 1U << 20;  // Far above any configuration.
 constexpr std::size_t kMaxErrors = 50;
+constexpr std::size_t kMaxMessageBytes = 300;  // Protobuf quotes what it found, however long.
+// Text that is parsed again and again to list all errors: enough for any real file.
+constexpr std::size_t kMaxRepairBytes = 4U << 20;
+constexpr int kMaxNesting = 64;
 
 struct Location {
   int line = 0;  // From 0, as protobuf counts.
@@ -48,7 +52,8 @@ struct Token {
 class Collector final : public pb::io::ErrorCollector {
  public:
   void AddError(int line, pb::io::ColumnNumber column, const std::string& message) override {
-    errors.push_back({{line, column}, message});
+    if (errors.size() < kMaxErrors)
+      errors.push_back({{line, column}, message.substr(0, kMaxMessageBytes)});
   }
   std::vector<TextError> errors;
 };
@@ -72,13 +77,19 @@ std::vector<Token> Tokenize(const std::string& text) {
   tokenizer.set_require_space_after_number(false);
   tokenizer.set_allow_multiline_strings(true);
   std::vector<Token> tokens;
+  int line = -1, column = 0;
+  std::size_t offset = 0;
   while (tokenizer.Next()) {
     const pb::io::Tokenizer::Token& current = tokenizer.current();
     Token token{{current.line, current.column}, 0, 0, current.text};
-    // The tokenizer counts a tab as a step to the next multiple of 8; go through the line the same
-    // way.
-    std::size_t offset = starts[static_cast<std::size_t>(current.line)];
-    for (int column = 0; column < current.column && offset < text.size(); ++offset) {
+    if (current.line != line) {
+      line = current.line;
+      column = 0;
+      offset = starts[static_cast<std::size_t>(line)];
+    }
+    // The tokenizer counts a tab as a step to the next multiple of 8; go on from the token before
+    // in the same way.
+    for (; column < current.column && offset < text.size(); ++offset) {
       column += text[offset] == '\t' ? 8 - column % 8 : 1;
     }
     token.begin = offset;
@@ -107,7 +118,8 @@ void ExplainUnknownField(const pb::Descriptor& root, TextError& error) {
   if (!error.message.starts_with(kType) || field == std::string::npos) return;
   const std::string type_name = error.message.substr(kType.size(), field - kType.size());
   std::string name = error.message.substr(field + kField.size());
-  name.resize(std::min(name.find('"'), name.size()));
+  constexpr std::size_t kMaxNameBytes = 64;
+  name.resize(std::min({name.find('"'), name.size(), kMaxNameBytes}));
   const pb::Descriptor* type = root.file()->pool()->FindMessageTypeByName(type_name);
   if (type == nullptr) return;
   error.message = fmt::format("unknown field '{}'.{}", name,
@@ -183,6 +195,7 @@ void Parse(const std::string& text, pb::Message& message, Attempt& attempt) {
   pb::TextFormat::Parser parser;
   parser.RecordErrorsTo(&collector);
   parser.WriteLocationsTo(&attempt.tree);
+  parser.SetRecursionLimit(kMaxNesting);
   parser.AllowPartialMessage(true);  // Missing fields are listed by CollectMissing.
   message.Clear();
   if (!parser.ParseFromString(text, &message) && collector.errors.empty()) {
@@ -192,10 +205,12 @@ void Parse(const std::string& text, pb::Message& message, Attempt& attempt) {
 }
 
 // Protobuf stops at the first error. To list all, each error is repaired in a copy of the text, and
-// the copy is parsed again: the next error must then come later.
+// the copy is parsed again: the next error must then come later. In a large file only the first few
+// are listed.
 std::vector<TextError> CollectErrors(std::string text, const pb::Message& prototype,
                                      std::vector<TextError> errors) {
   std::vector<TextError> all;
+  std::size_t repair_bytes = 0;
   std::unique_ptr<pb::Message> scratch(prototype.New());
   while (!errors.empty() && all.size() < kMaxErrors) {
     const std::vector<Token> tokens = Tokenize(text);
@@ -203,12 +218,13 @@ std::vector<TextError> CollectErrors(std::string text, const pb::Message& protot
     const Location last = errors.back().at;
     const bool about_field_before = IsAboutFieldBefore(errors.back().message);
     const std::optional<std::size_t> token = TokenAt(tokens, last);
-    if (!token) break;
+    if (!token || repair_bytes > kMaxRepairBytes) break;
     if (about_field_before && *token > 0) all.back().at = tokens[*token - 1].at;
     bool repaired = false;
     for (std::string& repair : Repairs(text, tokens, *token, about_field_before)) {
       Attempt attempt;
       Parse(repair, *scratch, attempt);
+      repair_bytes += repair.size();
       if (!attempt.errors.empty() && attempt.errors.front().at <= last) continue;
       text = std::move(repair);
       errors = std::move(attempt.errors);
@@ -322,6 +338,9 @@ Status ParseTextProto(const std::string& text, std::string_view source_name, pb:
     return InvalidArgument(
         fmt::format("{}: {} bytes are too many for a text file of this kind (at most {})",
                     source_name, text.size(), kMaxFileBytes));
+  }
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+    return InvalidArgument(fmt::format("{}: not a text file: byte {} is zero", source_name, zero));
   }
   Attempt attempt;
   Parse(text, message, attempt);

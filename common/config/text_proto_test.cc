@@ -2,7 +2,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <time.h>
 
+#include <algorithm>
 #include <clocale>
 #include <fstream>
 #include <locale>
@@ -141,6 +143,43 @@ TEST(TextProtoTest, F59GarbageAndEveryTruncationAreErrorsNotCrashes) {
   EXPECT_FALSE(ParseTextProto("}{ : ] \x01\xff \"", "rig", rig).ok());
   EXPECT_FALSE(ParseTextProto(std::string(300, '{'), "rig", rig).ok());
   EXPECT_FALSE(ParseTextProto("\tserial:\t5", "rig", rig).ok());
+}
+
+/// Processor time of this thread, which other programs do not touch.
+double ProcessorSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double SecondsToRefuse(const std::string& unit, std::size_t bytes) {
+  std::string text;
+  while (text.size() + unit.size() < bytes) text += unit;
+  const double before = ProcessorSeconds();
+  RigCalibration rig;
+  EXPECT_EQ(ParseTextProto(text, "rig", rig).code(), StatusCode::kInvalidArgument);
+  return ProcessorSeconds() - before;
+}
+
+TEST(TextProtoTest, F65AFileOfOneLineCostsNoMoreThanItsSize) {
+  // A cost that grows with the square of the size would grow 256 times from one to the other.
+  constexpr std::size_t kSmallBytes = 60'000, kLargeBytes = 16 * kSmallBytes;
+  constexpr double kMaxGrowth = 48.0;  // Three times the growth of the size: machines are busy.
+  for (const std::string unit : {"depth_scale: x ", "colour: 1 ", "\x01 ", "} ", "depth { "}) {
+    const double small_s = SecondsToRefuse(unit, kSmallBytes);
+    const double large_s = SecondsToRefuse(unit, kLargeBytes);
+    EXPECT_LT(large_s, kMaxGrowth * std::max(small_s, 0.01)) << unit;
+  }
+}
+
+TEST(TextProtoTest, F65TooLargeAndBinaryFilesAreRefusedInWords) {
+  RigCalibration rig;
+  EXPECT_THAT(ParseTextProto(std::string((1U << 20) + 1, ' '), "rig", rig).message(),
+              HasSubstr("too many for a text file"));
+  EXPECT_THAT(ParseTextProto(std::string("serial: 'a'\0", 12), "rig", rig).message(),
+              HasSubstr("rig: not a text file: byte 11 is zero"));
+  const std::string long_name(100'000, 'x');
+  EXPECT_LT(ParseTextProto(long_name + ": 1", "rig", rig).message().size(), 1000U);
 }
 
 TEST(TextProtoTest, EmptyTextGivesDefaults) {
