@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdlib>
 
+#include "common/base/printable.h"
 #include "common/base/standard_error.h"
 
 namespace isotherm {
@@ -42,7 +43,7 @@ void WriteLog(LogLevel level, std::string_view category, std::string_view messag
         fmt::format("{}Log: nobody read standard error for a while, lines left out={}\n",
                     Prefix(LogLevel::kWarning), left_out));
   }
-  WriteStandardError(fmt::format("{}{}: {}\n", Prefix(level), category, message));
+  WriteStandardError(fmt::format("{}{}: {}\n", Prefix(level), category, PrintableLines(message)));
 }
 
 }  // namespace isotherm

@@ -2,12 +2,14 @@
 
 #include <cstdio>
 
+#include "common/base/printable.h"
+
 namespace isotherm {
 namespace {
 
 void Say(std::string_view message) {
   std::fflush(stdout);
-  std::fprintf(stderr, "isotherm: %.*s\n", static_cast<int>(message.size()), message.data());
+  std::fprintf(stderr, "isotherm: %s\n", PrintableLines(message).c_str());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
 #include "ground/cli/command.h"
 #include "ground/cli/frame_picture.h"
@@ -47,7 +48,8 @@ int Run(const Arguments& arguments) {
     return status.ok() ? 0 : Fail(status);
   }
   const RecordingReport report = MakeReport(**reader, arguments.recording);
-  const std::string text = arguments.json ? ToJson(report).ToText() : ToText(report);
+  const std::string text =
+      arguments.json ? ToJson(report).ToText() : PrintableLines(ToText(report));
   std::fwrite(text.data(), 1, text.size(), stdout);
   return 0;
 }

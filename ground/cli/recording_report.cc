@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <ctime>
 
+#include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
 #include "common/transport/clock_record.h"
 
@@ -118,7 +120,7 @@ std::string ClockState(const RecordingInfo& info) {
 /// How good the clock was that dated the frames, and what to add to their times to get UTC.
 void AppendClock(const RecordingReport& report, std::string& text) {
   if (const std::string state = ClockState(report.info); !state.empty())
-    text += fmt::format("{:<14}{}\n", "clock", state);
+    text += fmt::format("{:<14}{}\n", "clock", Printable(state));
   for (const ClockStep& step : report.summary.clock_steps) {
     text += fmt::format(
         "{:<14}the wall clock was set by {:+.3f} s at {}: from there on UTC = capture time {:+.3f} "
@@ -141,14 +143,14 @@ void AppendCamera(std::string_view name, const std::optional<CameraModel>& camer
 void AppendRig(const RecordingReport& report, std::string& text) {
   text += fmt::format("{:<14}", "calibration");
   if (!report.rig) {
-    text += report.rig_problem + "\n";
+    text += Printable(report.rig_problem) + "\n";
     return;
   }
   const Rig& rig = *report.rig;
   text += fmt::format("{} depth units per metre, thermal delay {} s", rig.depth_scale,
                       rig.thermal_delay_s);
-  if (!rig.serial.empty()) text += ", serial " + rig.serial;
-  if (!rig.date.empty()) text += ", " + rig.date;
+  if (!rig.serial.empty()) text += ", serial " + Printable(rig.serial);
+  if (!rig.date.empty()) text += ", " + Printable(rig.date);
   text += "\n";
   AppendCamera("depth", rig.depth, text);
   AppendCamera("thermal", rig.thermal, text);
@@ -165,26 +167,89 @@ void AppendRig(const RecordingReport& report, std::string& text) {
 
 void AppendLog(const RecordingSummary& summary, std::string& text) {
   for (const RecordedLog& log : summary.log)
-    text += fmt::format("{:<14}{} {}: {}\n", "log", FormatStamp(log.time), log.level, log.text);
+    text += fmt::format("{:<14}{} {}: {}\n", "log", FormatStamp(log.time), log.level,
+                        Printable(log.text));
   if (summary.log_left_out > 0)
     text += fmt::format("{:<14}and {} lines more\n", "log", summary.log_left_out);
 }
 
 void AppendOther(const RecordingReport& report, std::string& text) {
   for (const auto& [stream, count] : report.summary.poses)
-    text += fmt::format("{:<14}{} poses\n", stream, count);
+    text += fmt::format("{:<14}{} poses\n", Printable(stream), count);
   for (const auto& [source, count] : report.summary.outside_poses)
-    text += fmt::format("{:<14}{} poses of \"{}\"\n", "outside", count, source);
+    text += fmt::format("{:<14}{} poses of \"{}\"\n", "outside", count, Printable(source));
   for (const auto& [topic, count] : report.info.messages_by_topic) {
-    text += fmt::format("{:<22}{} messages\n", topic, count);
+    text += fmt::format("{:<22}{} messages\n", Printable(topic), count);
   }
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) {
       const bool long_text = value.find('\n') != std::string::npos;
-      text += fmt::format("{:<22}{}: {}\n", name, key,
-                          long_text ? fmt::format("({} bytes of text)", value.size()) : value);
+      text += fmt::format(
+          "{:<22}{}: {}\n", Printable(name), Printable(key),
+          long_text ? fmt::format("({} bytes of text)", value.size()) : Printable(value));
     }
   }
+}
+
+/// Messages of a topic that the file's index counts and that could not be read.
+std::uint64_t UnreadOf(const RecordingReport& report, const char* topic, std::uint64_t read) {
+  const auto indexed = report.info.messages_by_topic.find(topic);
+  return indexed == report.info.messages_by_topic.end() || indexed->second <= read
+             ? 0
+             : indexed->second - read;
+}
+
+/// Frames that are known to have been in the parts that were left out.
+std::uint64_t LostOf(const RecordingReport& report, const char* topic) {
+  std::uint64_t lost = 0;
+  for (const RecordingGap& gap : report.info.gaps) {
+    const auto found = gap.messages_by_topic.find(topic);
+    if (found != gap.messages_by_topic.end()) lost += found->second;
+  }
+  return lost;
+}
+
+std::uint64_t UnreadDepth(const RecordingReport& report) {
+  return UnreadOf(report, "/depth", report.summary.depth.frames) + LostOf(report, "/depth");
+}
+
+std::uint64_t UnreadThermal(const RecordingReport& report) {
+  return UnreadOf(report, "/thermal", report.summary.thermal.frames) + LostOf(report, "/thermal");
+}
+
+/// Damage ahead of the end; what follows the last good part may just not have been finished.
+bool IsDamaged(const RecordingReport& report) {
+  if (report.summary.unreadable > 0 || UnreadDepth(report) + UnreadThermal(report) > 0) return true;
+  return std::any_of(report.info.gaps.begin(), report.info.gaps.end(),
+                     [&](const auto& gap) { return gap.offset + gap.bytes < report.file_bytes; });
+}
+
+std::string State(const RecordingReport& report) {
+  const char* const state =
+      report.info.complete ? "complete" : "not complete (the recorder was interrupted)";
+  return IsDamaged(report) ? fmt::format("DAMAGED; {}", state) : state;
+}
+
+void AppendDamage(const RecordingReport& report, std::string& text) {
+  if (const std::uint64_t depth = UnreadDepth(report), thermal = UnreadThermal(report);
+      depth + thermal > 0) {
+    text += fmt::format("{:<14}{} depth and {} thermal frames that were recorded cannot be read\n",
+                        "lost", depth, thermal);
+  }
+  if (report.info.bytes_ignored > 0) {
+    text += fmt::format("{:<14}{} bytes are damaged or unfinished and were left out\n", "",
+                        report.info.bytes_ignored);
+  }
+  constexpr std::size_t kMaxListed = 20;
+  for (std::size_t i = 0; i < std::min(kMaxListed, report.info.gaps.size()); ++i) {
+    const RecordingGap& gap = report.info.gaps[i];
+    text += fmt::format("{:<14}{} bytes from byte {}", "", gap.bytes, gap.offset);
+    for (const auto& [topic, count] : gap.messages_by_topic)
+      text += fmt::format(", {} of {}", count, Printable(topic));
+    text += "\n";
+  }
+  if (report.info.gaps.size() > kMaxListed)
+    text += fmt::format("{:<14}and {} places more\n", "", report.info.gaps.size() - kMaxListed);
 }
 
 Json StreamJson(const StreamSummary& stream) {
@@ -252,13 +317,9 @@ RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path&
 }
 
 std::string ToText(const RecordingReport& report) {
-  std::string text =
-      fmt::format("{}: {:.1f} MB, ", report.file, 1e-6 * static_cast<double>(report.file_bytes));
-  text += report.info.complete ? "complete\n" : "not complete (the recorder was interrupted)\n";
-  if (report.info.bytes_ignored > 0) {
-    text += fmt::format("{:<14}{} bytes are damaged or unfinished and were left out\n", "",
-                        report.info.bytes_ignored);
-  }
+  std::string text = fmt::format("{}: {:.1f} MB, {}\n", Printable(report.file),
+                                 1e-6 * static_cast<double>(report.file_bytes), State(report));
+  AppendDamage(report, text);
   if (report.info.start && report.info.end) {
     text += fmt::format("{:<14}{} to {}{}\n", "time", FormatStamp(*report.info.start),
                         FormatStamp(*report.info.end), Utc(*report.info.start));
@@ -280,7 +341,17 @@ Json ToJson(const RecordingReport& report) {
   json["file"] = report.file;
   json["bytes"] = report.file_bytes;
   json["complete"] = report.info.complete;
+  json["damaged"] = IsDamaged(report);
   json["bytes_ignored"] = report.info.bytes_ignored;
+  json["depth_frames_lost"] = UnreadDepth(report);
+  json["thermal_frames_lost"] = UnreadThermal(report);
+  for (const RecordingGap& gap : report.info.gaps) {
+    Json item;
+    item["offset"] = gap.offset;
+    item["bytes"] = gap.bytes;
+    for (const auto& [topic, count] : gap.messages_by_topic) item["messages"][topic] = count;
+    json["gaps"].Append(std::move(item));
+  }
   json["unreadable_messages"] = report.summary.unreadable;
   json["depth"] = StreamJson(report.summary.depth);
   json["thermal"] = StreamJson(report.summary.thermal);

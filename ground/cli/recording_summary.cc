@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
+#include <string_view>
 
 #include "common/base/quantile.h"
 #include "common/codec/codec.h"
@@ -65,21 +67,24 @@ std::string EncodingName(Encoding encoding) {
 void RecordingSummarizer::AddFrame(const FrameHeader& header, const EncodedImage& image,
                                    StreamSummary& stream, Stamps& stamps) {
   ++stream.frames;
-  stream.sessions.insert(header.session);
-  stream.sizes.insert({image.width, image.height});
+  constexpr std::size_t kMaxKinds = RecordingSummary::kMaxKinds;
+  if (stream.sessions.size() < kMaxKinds) stream.sessions.insert(header.session);
+  if (stream.sizes.size() < kMaxKinds) stream.sizes.insert({image.width, image.height});
   ++stream.encodings[EncodingName(image.encoding)];
   stream.raw_bytes +=
       2 * static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
   stream.payload_bytes += image.payload.size();
-  const EncodedImage& last = stamps.last_image;
   // Our codes are deterministic: equal pictures have equal codes.
-  if (stream.frames > 1 && last.encoding == image.encoding && last.payload == image.payload)
-    ++stream.repeats;
+  const std::size_t hash = std::hash<std::string_view>()(
+      {reinterpret_cast<const char*>(image.payload.data()), image.payload.size()});
+  if (stamps.last_encoding == image.encoding && stamps.last_hash == hash) ++stream.repeats;
+  stamps.last_encoding = image.encoding;
+  stamps.last_hash = hash;
+  if (stamps.times.size() == kMaxFrames) return;
   if (!stamps.times.empty() && header.capture_time < stamps.times.back()) ++stream.out_of_order;
   stamps.numbers.emplace_back(header.session, header.frame_number);
   stamps.times.push_back(header.capture_time);
   stamps.sigmas_ns.push_back(header.capture_sigma.count());
-  stamps.last_image = image;
 }
 
 void RecordingSummarizer::AddNuc(const EncodedThermalFrame& frame) {
@@ -88,7 +93,9 @@ void RecordingSummarizer::AddNuc(const EncodedThermalFrame& frame) {
   const bool in_nuc =
       frame.nuc_state == NucState::kInProgress || frame.nuc_state == NucState::kError;
   const CaptureTime now = frame.header.capture_time;
-  if (in_nuc && !in_nuc_) summary_.nuc_runs.push_back({now, now, 0});
+  const bool begins = in_nuc && !in_nuc_;
+  if (begins && summary_.nuc_runs.size() < RecordingSummary::kMaxKinds)
+    summary_.nuc_runs.push_back({now, now, 0});
   if (in_nuc) {
     summary_.nuc_runs.back().end = now;
     ++summary_.nuc_runs.back().frames;
@@ -103,17 +110,20 @@ void RecordingSummarizer::Add(const RecordedItem& item) {
     AddFrame(thermal->frame.header, thermal->frame.image, summary_.thermal, thermal_);
     AddNuc(thermal->frame);
   } else if (const auto* event = std::get_if<NucEvent>(&item)) {
-    summary_.nuc_events.push_back(*event);
+    if (summary_.nuc_events.size() < RecordingSummary::kMaxKinds)
+      summary_.nuc_events.push_back(*event);
   } else if (const auto* step = std::get_if<ClockStep>(&item)) {
     if (summary_.clock_steps.size() < RecordingSummary::kMostLog)
       summary_.clock_steps.push_back(*step);
   } else if (const auto* pose = std::get_if<RecordedPose>(&item)) {
     ++summary_.poses[pose->stream];
   } else if (const auto* outside = std::get_if<OutsidePose>(&item)) {
-    ++summary_.outside_poses[outside->source];
+    if (summary_.outside_poses.size() < RecordingSummary::kMaxKinds)
+      ++summary_.outside_poses[outside->source.substr(0, RecordingSummary::kMaxLogBytes)];
   } else if (const auto* log = std::get_if<RecordedLog>(&item)) {
     if (summary_.log.size() < RecordingSummary::kMostLog) {
       summary_.log.push_back(*log);
+      summary_.log.back().text.resize(std::min(log->text.size(), RecordingSummary::kMaxLogBytes));
     } else {
       ++summary_.log_left_out;
     }

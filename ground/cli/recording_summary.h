@@ -52,12 +52,19 @@ struct RecordingSummary {
   std::vector<RecordedLog> log;                        ///< What happened; the first kMostLog.
   std::uint64_t log_left_out = 0;
   static constexpr std::size_t kMostLog = 200;
+  /// Longer lines are cut; more sources, sizes and sessions are not told apart.
+  static constexpr std::size_t kMaxLogBytes = 4096;
+  static constexpr std::size_t kMaxKinds = 1000;
   std::uint64_t unreadable = 0;  ///< Messages that could not be read.
 };
 
-/// Collects a summary in constant memory per frame (its number and time). Thread-compatible.
+/// Collects a summary in constant memory per frame (its number and time), for the first kMaxFrames
+/// of a stream; later ones are only counted. Thread-compatible.
 class RecordingSummarizer {
  public:
+  /// Nine hours at 30 Hz.
+  static constexpr std::size_t kMaxFrames = 1'000'000;
+
   void Add(const RecordedItem& item);
   void AddUnreadable() { ++summary_.unreadable; }
   RecordingSummary Finish();
@@ -67,7 +74,8 @@ class RecordingSummarizer {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> numbers;  // Session and frame number.
     std::vector<CaptureTime> times;
     std::vector<std::int64_t> sigmas_ns;
-    EncodedImage last_image;
+    std::optional<Encoding> last_encoding;
+    std::size_t last_hash = 0;  ///< Of the payload: an image may be large.
   };
   static void AddFrame(const FrameHeader& header, const EncodedImage& image, StreamSummary& stream,
                        Stamps& stamps);
