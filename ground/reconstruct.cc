@@ -163,8 +163,12 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   if (!reader) return Err(reader.error());
   const RecordingInfo& info = (*reader)->info();
   if (Status status = CheckHasDepth(info, request.recording); !status.ok()) return Err(status);
-  const Result<Rig> rig = (*reader)->ReadRig();
-  if (!rig) return Err(rig.error().WithContext(request.recording.string()));
+  const Result<Rig> rig = request.rig ? Result<Rig>(*request.rig) : (*reader)->ReadRig();
+  if (!rig) {
+    return Err(
+        Status(rig.error().code(), fmt::format("{}: {}; --rig FILE gives one from elsewhere",
+                                               request.recording.string(), rig.error().message())));
+  }
   GroundOptions options = request.options;
   std::unique_ptr<ModelFile> model;
   if (!request.model.empty()) {
@@ -183,7 +187,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
 
   if (info.bytes_ignored > 0) {
     LOG(Reconstruct, Warning) << request.recording.string()
-                              << ": damaged or unfinished end is left out, bytes="
+                              << ": damaged or unfinished parts are left out, bytes="
                               << info.bytes_ignored;
   }
   const auto start = std::chrono::steady_clock::now();

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/base/status.h"
+#include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 #include "ground/ground_options.pb.h"
 
@@ -20,6 +21,8 @@ struct ReconstructRequest {
   std::optional<RigidTransform> initial_pose;  ///< T_world_depth of the first depth frame.
   /// A saved model to go on with; empty: a new one. Its volume replaces that of the options.
   std::filesystem::path model;
+  /// Instead of the calibration in the recording.
+  std::optional<Rig> rig;
   /// Called now and then with the share done (0..1) and what is being done.
   std::function<void(double fraction, std::string_view text)> progress;
 };

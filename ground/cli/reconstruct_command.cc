@@ -34,6 +34,7 @@ Examples:
   isotherm reconstruct next_day.mcap -o out2 --continue out/model.iso)";
 
 struct Arguments {
+  std::string rig;
   std::string recording, output, model, config, volume, volume_min, initial_pose, initial_pose_from;
   std::optional<double> voxel;
   std::optional<int> threads;
@@ -100,6 +101,11 @@ int Run(const Arguments& arguments) {
   const auto pose = InitialPose(arguments);
   if (!pose) return Fail(pose.error());
   request.initial_pose = *pose;
+  if (!arguments.rig.empty()) {
+    Result<Rig> rig = LoadRigCalibration(arguments.rig);
+    if (!rig) return Fail(rig.error());
+    request.rig = std::move(*rig);
+  }
   request.recording = arguments.recording;
   request.output_dir = arguments.output;
   request.model = arguments.model;
@@ -141,6 +147,8 @@ void AddReconstructCommand(CLI::App& app, CommandBody& body) {
                    "Take it from this trajectory, or from the ground truth in a recording (.mcap)")
       ->excludes(pose)
       ->excludes(model);
+  command->add_option("--rig", arguments->rig,
+                      "Rig calibration (rig.textproto) instead of the one in the recording");
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
       ->take_all()
