@@ -8,6 +8,9 @@
 #include <random>
 #include <string>
 
+#include "common/codec/image_codecs.h"
+#include "common/testing/guarded_buffer.h"
+
 namespace isotherm {
 namespace {
 
@@ -147,22 +150,51 @@ TEST_P(CodecTest, AnotherSizeIsAnError) {
   EXPECT_FALSE(Decode(encoded));
 }
 
-TEST_P(CodecTest, DamagedPayloadsNeverCrash) {
+/// Decodes a payload behind which no memory can be read.
+Status DecodeGuarded(Encoding encoding, const std::vector<std::uint8_t>& payload, Pixels& image) {
+  const testing::GuardedBuffer guarded{std::span<const std::uint8_t>(payload)};
+  if (encoding == Encoding::kDepthRans) return codec::DepthCodec().Decode(guarded.bytes(), image);
+  return codec::ThermalCodec().Decode(guarded.bytes(), image);
+}
+
+TEST_P(CodecTest, F65DamagedPayloadsAreRefusedAndNothingIsReadBeyondThem) {
   std::mt19937 random(Seed());
-  const EncodedImage whole = EncodeWith(GetParam(), DepthLike(24, 18));
-  for (int i = 0; i < 20'000; ++i) {
-    EncodedImage damaged = whole;
+  const Pixels original = DepthLike(24, 18);
+  const EncodedImage whole = EncodeWith(GetParam(), original);
+  int refused = 0;
+  constexpr int kTries = 20'000;
+  for (int i = 0; i < kTries; ++i) {
+    std::vector<std::uint8_t> damaged = whole.payload;
     for (auto flips = random() % 4 + 1; flips > 0; --flips) {
-      damaged.payload[random() % damaged.payload.size()] = static_cast<std::uint8_t>(random());
+      damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
     }
-    static_cast<void>(Decode(damaged));  // Either an error or an image of the right size.
+    Pixels image(24, 18);
+    const Status status = DecodeGuarded(GetParam(), damaged, image);
+    ASSERT_TRUE(status.ok() || status.code() == StatusCode::kDataLoss) << status.message();
+    ASSERT_EQ(image.size(), original.size());
+    if (damaged == whole.payload) {
+      ASSERT_TRUE(status.ok() && image == original) << i;
+    }
+    refused += status.ok() ? 0 : 1;
   }
+  // The rest are raw bits, whose every value is an image.
+  EXPECT_GT(refused, kTries / 2);
+}
+
+TEST_P(CodecTest, F65GarbageIsRefused) {
+  std::mt19937 random(Seed());
+  int accepted = 0;
   for (int i = 0; i < 20'000; ++i) {
-    EncodedImage garbage = whole;
-    garbage.payload.resize(random() % 200);
-    for (std::uint8_t& byte : garbage.payload) byte = static_cast<std::uint8_t>(random() >> 9);
-    static_cast<void>(Decode(garbage));
+    std::vector<std::uint8_t> garbage(random() % 200);
+    for (std::uint8_t& byte : garbage) byte = static_cast<std::uint8_t>(random() >> 9);
+    Pixels image(24, 18);
+    const Status status = DecodeGuarded(GetParam(), garbage, image);
+    ASSERT_TRUE(status.ok() || status.code() == StatusCode::kDataLoss) << status.message();
+    ASSERT_EQ(image.size(), 24U * 18U);
+    accepted += status.ok() ? 1 : 0;
   }
+  // A payload must end where its coder started from: 32 bits that chance does not give.
+  EXPECT_EQ(accepted, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, CodecTest,

@@ -41,17 +41,30 @@ struct TokenRange {
   std::uint16_t raw_bits = 0;
 };
 
+/// The inverse of TokenOf: token 4 e + m is that of the values from (4 + m) 2^(e-2), e >= 4.
 constexpr std::array<TokenRange, kResidualTokens> MakeTokenRanges() {
   std::array<TokenRange, kResidualTokens> ranges{};
-  for (int value = 0xFFFF; value >= 0; --value) {
-    const Token token = TokenOf(value);
-    ranges[static_cast<std::size_t>(token.token)] = {
-        .base = static_cast<std::uint16_t>(value),
-        .raw_bits = static_cast<std::uint16_t>(token.raw_bits)};
+  for (int token = 0; token < kResidualTokens; ++token) {
+    const bool direct = token < kDirectTokens;
+    const int raw_bits = direct ? 0 : token / 4 - 2;
+    const int base = direct ? token : (4 + token % 4) << raw_bits;
+    ranges[static_cast<std::size_t>(token)] = {.base = static_cast<std::uint16_t>(base),
+                                               .raw_bits = static_cast<std::uint16_t>(raw_bits)};
   }
   return ranges;
 }
 inline constexpr std::array<TokenRange, kResidualTokens> kTokenRanges = MakeTokenRanges();
+/// The first and the last value of each range have its token.
+constexpr bool RangesAreThoseOfTokens() {
+  for (int token = 0; token < kResidualTokens; ++token) {
+    const TokenRange range = kTokenRanges[static_cast<std::size_t>(token)];
+    for (const int value : {int{range.base}, range.base + (1 << range.raw_bits) - 1}) {
+      if (TokenOf(value).token != token || TokenOf(value).raw_bits != range.raw_bits) return false;
+    }
+  }
+  return true;
+}
+static_assert(RangesAreThoseOfTokens());
 
 /// Number of bits of `value`, which must be below 2^22: for one pixel after the other ...
 constexpr int BitWidth(int value) {
