@@ -45,12 +45,10 @@ The web console is not part of this version.
 TEXT
 fi
 
-# What an inspector would take home, in the words of the two programs.
-measured=$(sed -n 's/^surface .* points, \(.*\) with a temperature, \(.*\) measured well.*/\1 has a temperature and \2 was measured well/p' \
-  out/demo/ground.log | tail -n 1)
-advice=$(sed -n 's/.*Edge: ground: \([^,|]*[^,| ]\).*/\1/p' out/demo/edge.log | tail -n 1)
-if [ -n "$measured" ]; then
+# What an inspector would take home, in the words of the ground service.
+covered=$(sed -n 's/^surface .* points, \(.*\) with a temperature.*/\1/p' out/demo/ground.log | tail -n 1)
+next=$(sed -n 's/^next  *//p' out/demo/ground.log | tail -n 1)
+if [ -n "$covered" ] && [ -n "$next" ]; then
   say "in a sentence"
-  echo "Of the scanned surface $measured (near enough, not too oblique, the camera freshly corrected);"
-  echo "the last advice to whoever guides the rig: ${advice:-none}."
+  echo "Of the scanned surface $covered has a temperature; $next."
 fi
