@@ -84,7 +84,8 @@ class ToolTest : public isotherm::testing::ToolRun {
     // The simulation's emissivity and surroundings give the objects' own temperatures.
     const Outcome objects = Run("export out/model.iso -o objects --emissivity 0.96 --reflected 23");
     ASSERT_EQ(objects.status, 0) << objects.err;
-    EXPECT_THAT(ReadAll(folder_ / "objects/cloud.ply"), HasSubstr("float apparent_temperature"));
+    EXPECT_THAT(ReadAll(folder_ / "objects/cloud.ply"),
+                HasSubstr("float scalar_apparent_temperature"));
     EXPECT_THAT(ReadAll(folder_ / "objects/stats.json"), HasSubstr("\"emissivity\": 0.96"));
     EXPECT_TRUE(fs::exists(folder_ / "objects/renders/thermal.png"));
 

@@ -203,8 +203,14 @@ Status ReadAscii(const Header& header, std::string_view text, PlyVertices& verti
 }  // namespace
 
 const std::vector<float>* PlyVertices::Find(std::string_view name) const {
-  const auto it = std::find(names.begin(), names.end(), name);
-  return it == names.end() ? nullptr : &columns[static_cast<std::size_t>(it - names.begin())];
+  constexpr std::string_view kPrefix = "scalar_";
+  const std::string_view bare = name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : name;
+  for (const std::string& candidate :
+       {std::string(name), std::string(kPrefix).append(bare), std::string(bare)}) {
+    const auto it = std::find(names.begin(), names.end(), candidate);
+    if (it != names.end()) return &columns[static_cast<std::size_t>(it - names.begin())];
+  }
+  return nullptr;
 }
 
 Result<PlyVertices> ParsePly(std::string_view bytes) {

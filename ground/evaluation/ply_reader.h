@@ -16,7 +16,8 @@ struct PlyVertices {
   std::vector<std::string> names;
   std::vector<std::vector<float>> columns;
 
-  /// nullptr if there is no such property.
+  /// The property of that name, or else with or without the prefix `scalar_` that CloudCompare
+  /// gives to scalar fields (our older files have few of them); nullptr if there is none.
   const std::vector<float>* Find(std::string_view name) const;
 };
 

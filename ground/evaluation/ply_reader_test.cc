@@ -51,6 +51,22 @@ TEST(PlyReaderTest, ReadsEveryFormat) {
       "property float scalar_temperature\r\nend_header\r\n1.5 515 20.25\r\n-2 0 nan\r\n"));
 }
 
+TEST(PlyReaderTest, ScalarFieldsAreFoundByTheirOldAndNewNames) {
+  const auto with = [](const std::string& name) {
+    return ParsePly("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty uchar " +
+                    name + "\nend_header\n1 2\n");
+  };
+  for (const char* written : {"angle_class", "scalar_angle_class"}) {
+    const auto vertices = with(written);
+    ASSERT_TRUE(vertices) << vertices.error().message();
+    for (const char* asked : {"angle_class", "scalar_angle_class"}) {
+      ASSERT_NE(vertices->Find(asked), nullptr) << written << " as " << asked;
+      EXPECT_EQ(vertices->Find(asked)->at(0), 2.0F);
+    }
+    EXPECT_EQ(vertices->Find("distance_class"), nullptr);
+  }
+}
+
 TEST(PlyReaderTest, EveryTruncationIsAnError) {
   const std::string whole = Binary(false);
   const std::size_t faces = 13;

@@ -51,9 +51,9 @@ Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path) {
   MeasuredCloud cloud;
   cloud.positions_m = Vectors(*xyz, 0);
   cloud.celsius = Converted<float>(vertices->Find("scalar_temperature"));
-  cloud.distance_class = Converted<std::uint8_t>(vertices->Find("distance_class"));
-  cloud.angle_class = Converted<std::uint8_t>(vertices->Find("angle_class"));
-  cloud.measured_angle_deg = Converted<float>(vertices->Find("measured_angle"));
+  cloud.distance_class = Converted<std::uint8_t>(vertices->Find("scalar_distance_class"));
+  cloud.angle_class = Converted<std::uint8_t>(vertices->Find("scalar_angle_class"));
+  cloud.measured_angle_deg = Converted<float>(vertices->Find("scalar_measured_angle"));
   return cloud;
 }
 

@@ -32,8 +32,8 @@ struct TruePoints {
       primitive;  ///< Shape the point belongs to; all 0 if the file does not say.
 };
 
-/// Properties are found by their names: x y z, scalar_temperature, distance_class, angle_class,
-/// measured_angle.
+/// Properties are found by their names: x y z, scalar_temperature, scalar_distance_class,
+/// scalar_angle_class, scalar_measured_angle.
 Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path);
 /// x y z nx ny nz, scalar_temperature, seen, primitive. Normals must have unit length.
 Result<TruePoints> ReadTruePoints(const std::filesystem::path& path);

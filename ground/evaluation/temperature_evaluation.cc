@@ -81,7 +81,8 @@ Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
   }
   if (cloud.celsius.empty() || cloud.distance_class.empty() || cloud.angle_class.empty()) {
     return FailedPrecondition(
-        "the cloud has no temperatures (scalar_temperature distance_class angle_class)");
+        "the cloud has no temperatures (scalar_temperature scalar_distance_class "
+        "scalar_angle_class)");
   }
   if (options.refractive_index) {
     if (!(*options.refractive_index >= 1.0)) {
@@ -89,7 +90,7 @@ Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
           fmt::format("refractive index must be at least 1, got {}", *options.refractive_index));
     }
     if (cloud.measured_angle_deg.empty())
-      return FailedPrecondition("the cloud has no angles of measurement (measured_angle)");
+      return FailedPrecondition("the cloud has no angles of measurement (scalar_measured_angle)");
   }
   return OkStatus();
 }

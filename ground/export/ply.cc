@@ -46,18 +46,24 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
   text +=
       "comment coordinate frame: world (edges of the scan volume), metres; unit normals towards "
       "the observed side\n"
-      "comment scalar_temperature and quality: ";
+      "comment to see it upright, turn it by 180 degrees about x: y points down and z away from "
+      "the "
+      "camera\n"
+      "comment scalar_temperature: ";
   text += style.interpreted
               ? "temperature of the object in degrees Celsius; nan = never measured, or no "
-                "temperature fits; apparent_temperature: as measured\n"
+                "temperature fits; scalar_apparent_temperature: as measured\n"
               : "apparent temperature in degrees Celsius, emissivity 1 assumed; nan = never "
                 "measured\n";
+  text += fmt::format(
+      "comment quality: the same temperature for programs that take no nan; {} = never measured\n",
+      kNeverMeasuredQuality);
   text +=
-      "comment distance_class angle_class motion_class disagreement_class: 0 bad, 1 good, 2 "
-      "acceptable, 255 never measured or not known\n"
-      "comment nuc_epoch: NUCs before the measurement (modulo 256), nuc_age_s: seconds since the "
-      "last one; measured_distance (metres) and measured_angle (degrees from the normal): of the "
-      "thermal camera; nan = not known\n";
+      "comment scalar_distance_class scalar_angle_class scalar_motion_class "
+      "scalar_disagreement_class: 0 bad, 1 good, 2 acceptable, 255 never measured or not known\n"
+      "comment scalar_nuc_epoch: NUCs before the measurement (modulo 256), scalar_nuc_age_s: "
+      "seconds since the last one; scalar_measured_distance (metres) and scalar_measured_angle "
+      "(degrees from the normal): of the thermal camera; nan = not known\n";
   const std::string never = fmt::format("{} {} {} = never measured", kNeverMeasuredPoint.r,
                                         kNeverMeasuredPoint.g, kNeverMeasuredPoint.b);
   if (style.scale) {
@@ -73,12 +79,13 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
   text +=
       "property uchar red\nproperty uchar green\nproperty uchar blue\n"
       "property float scalar_temperature\n"
-      "property uchar distance_class\nproperty uchar angle_class\n"
+      "property uchar scalar_distance_class\nproperty uchar scalar_angle_class\n"
       "property float quality\n"
-      "property uchar motion_class\nproperty uchar disagreement_class\nproperty uchar nuc_epoch\n"
-      "property float nuc_age_s\nproperty float measured_distance\n"
-      "property float measured_angle\n";
-  if (style.interpreted) text += "property float apparent_temperature\n";
+      "property uchar scalar_motion_class\nproperty uchar scalar_disagreement_class\n"
+      "property uchar scalar_nuc_epoch\n"
+      "property float scalar_nuc_age_s\nproperty float scalar_measured_distance\n"
+      "property float scalar_measured_angle\n";
+  if (style.interpreted) text += "property float scalar_apparent_temperature\n";
   if (faces)
     text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", *faces);
   return text + "end_header\n";
@@ -94,7 +101,7 @@ void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& reco
   records.Add(point.celsius);
   records.Add(point.distance_class);
   records.Add(point.angle_class);
-  records.Add(point.celsius);
+  records.Add(std::isnan(point.celsius) ? kNeverMeasuredQuality : point.celsius);
   records.Add(point.motion_class);
   records.Add(point.disagreement_class);
   records.Add(point.nuc_epoch);

@@ -23,13 +23,18 @@ struct PlyStyle {
 /// Colour of points that were never measured.
 inline constexpr Rgb8 kNeverMeasuredPoint{96, 96, 96};
 
+/// `quality` of points that were never measured, degC: absolute zero, which nothing has. MeshLab
+/// aborts when it colours by a quality that is NaN.
+inline constexpr float kNeverMeasuredQuality = -273.15F;
+
 /// Writes `surface.points` as binary little-endian PLY with the properties x y z nx ny nz (float,
 /// `world`, metres) red green blue (uchar) scalar_temperature (float, degC, NaN = never measured)
-/// distance_class angle_class (uchar) quality (float, the temperature again, under the name that
-/// MeshLab shows) motion_class disagreement_class nuc_epoch (uchar) nuc_age_s measured_distance
-/// measured_angle (float) and, if `style.interpreted`, apparent_temperature (float, degC, as
-/// measured). The order matters: CloudCompare gives each column to the first property whose name
-/// fits.
+/// scalar_distance_class scalar_angle_class (uchar) quality (float, the temperature again, under
+/// the name that MeshLab shows) scalar_motion_class scalar_disagreement_class scalar_nuc_epoch
+/// (uchar) scalar_nuc_age_s scalar_measured_distance scalar_measured_angle (float) and, if
+/// `style.interpreted`, scalar_apparent_temperature (float, degC, as measured). CloudCompare makes
+/// scalar fields of all properties with that prefix. The order matters: it gives each column to the
+/// first property whose name fits.
 Status WriteCloudPly(const Surface& surface, const PlyStyle& style,
                      const std::filesystem::path& path);
 

@@ -117,15 +117,15 @@ TEST_F(PlyTest, PropertiesAreThoseOfTheContractInItsOrder) {
                                              "green",
                                              "blue",
                                              "scalar_temperature",
-                                             "distance_class",
-                                             "angle_class",
+                                             "scalar_distance_class",
+                                             "scalar_angle_class",
                                              "quality",
-                                             "motion_class",
-                                             "disagreement_class",
-                                             "nuc_epoch",
-                                             "nuc_age_s",
-                                             "measured_distance",
-                                             "measured_angle"};
+                                             "scalar_motion_class",
+                                             "scalar_disagreement_class",
+                                             "scalar_nuc_epoch",
+                                             "scalar_nuc_age_s",
+                                             "scalar_measured_distance",
+                                             "scalar_measured_angle"};
   EXPECT_EQ(ReadPly(path_).names, expected);
 }
 
@@ -140,8 +140,8 @@ TEST_F(PlyTest, ValuesReadBack) {
   EXPECT_EQ(ply.vertices[0]["nz"], 1.0);
   EXPECT_EQ(ply.vertices[0]["scalar_temperature"], 60.0);
   EXPECT_EQ(ply.vertices[0]["quality"], 60.0);
-  EXPECT_EQ(ply.vertices[0]["distance_class"], 1.0);
-  EXPECT_EQ(ply.vertices[0]["angle_class"], 2.0);
+  EXPECT_EQ(ply.vertices[0]["scalar_distance_class"], 1.0);
+  EXPECT_EQ(ply.vertices[0]["scalar_angle_class"], 2.0);
   EXPECT_EQ(ply.vertices[0]["red"], 221.0);
   EXPECT_EQ(ply.vertices[1]["blue"], 192.0);
   EXPECT_EQ(ply.vertices[2]["red"], 180.0);
@@ -151,9 +151,30 @@ TEST_F(PlyTest, NeverMeasuredIsNanAnd255AndGrey) {
   ASSERT_TRUE(WriteCloudPly(FourPoints(), Style(), path_).ok());
   auto vertex = ReadPly(path_).vertices[3];
   EXPECT_TRUE(std::isnan(vertex["scalar_temperature"]));
-  EXPECT_EQ(vertex["distance_class"], 255.0);
-  EXPECT_EQ(vertex["angle_class"], 255.0);
+  EXPECT_EQ(vertex["scalar_distance_class"], 255.0);
+  EXPECT_EQ(vertex["scalar_angle_class"], 255.0);
   EXPECT_EQ(vertex["red"], 96.0);
+}
+
+// MeshLab aborts when it colours a mesh by a quality that is NaN.
+TEST_F(PlyTest, QualityIsAlwaysANumberAndNeverMeasuredIsAbsoluteZero) {
+  ASSERT_TRUE(WriteMeshPly(FourPoints(), Style(), path_).ok());
+  for (auto& vertex : ReadPly(path_).vertices) {
+    const bool measured = !std::isnan(vertex["scalar_temperature"]);
+    EXPECT_NEAR(vertex["quality"], measured ? vertex["scalar_temperature"] : -273.15, 1e-4);
+  }
+}
+
+// CloudCompare loads properties with this prefix without being asked.
+TEST_F(PlyTest, EveryScalarFieldHasThePrefixOfCloudCompare) {
+  PlyStyle style = Style();
+  style.interpreted = true;
+  ASSERT_TRUE(WriteCloudPly(FourPoints(), style, path_).ok());
+  const std::vector<std::string> names = ReadPly(path_).names;
+  ASSERT_EQ(names.size(), 20U);
+  for (std::size_t i = 9; i < names.size(); ++i) {
+    EXPECT_TRUE(names[i] == "quality" || names[i].starts_with("scalar_")) << names[i];
+  }
 }
 
 TEST_F(PlyTest, MeshHasOnlyThePointsOfItsTriangles) {
@@ -161,7 +182,7 @@ TEST_F(PlyTest, MeshHasOnlyThePointsOfItsTriangles) {
   PlyFile ply = ReadPly(path_);
   ASSERT_EQ(ply.vertices.size(), 3U);
   EXPECT_EQ(ply.faces, (std::vector<std::vector<int>>{{0, 1, 2}}));
-  EXPECT_TRUE(std::isnan(ply.vertices[2]["quality"]));
+  EXPECT_TRUE(std::isnan(ply.vertices[2]["scalar_temperature"]));
   EXPECT_EQ(ply.bytes_left, 0U);
 }
 
@@ -170,7 +191,8 @@ TEST_F(PlyTest, HeaderSaysWhatTheNumbersMean) {
   std::string comments;
   for (const std::string& comment : ReadPly(path_).comments) comments += comment + "\n";
   for (const char* word : {"Isotherm test", "world", "metres", "degrees Celsius", "emissivity 1",
-                           "coolwarm from 20.000 to 100.000", "255 never measured"}) {
+                           "coolwarm from 20.000 to 100.000", "255 never measured",
+                           "180 degrees about x", "-273.15 = never measured"}) {
     EXPECT_NE(comments.find(word), std::string::npos) << word;
   }
 }

@@ -178,7 +178,8 @@ TEST_F(ResultsTest, InterpretedResultsKeepWhatWasMeasured) {
   EXPECT_GT(summary->temperatures.max_celsius, 110.0);
   EXPECT_NE(ReadAll(folder_.path() / "stats.json").find("\"interpretation\""), std::string::npos);
   const std::string cloud = ReadAll(folder_.path() / "cloud.ply");
-  EXPECT_NE(cloud.find("property float apparent_temperature\nend_header"), std::string::npos);
+  EXPECT_NE(cloud.find("property float scalar_apparent_temperature\nend_header"),
+            std::string::npos);
   constexpr std::size_t kPointBytes = 6 * 4 + 3 + 4 + 2 + 4 + 3 + 3 * 4 + 4;
   EXPECT_EQ(cloud.size() - cloud.find("end_header\n") - 11, summary->points * kPointBytes);
 }
