@@ -220,6 +220,7 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
     volume["size_m"].Append(grid.size_m()[axis]);
   }
   volume["voxel_size_m"] = grid.voxel_size_m;
+  volume["truncation_distance_m"] = pipeline.tsdf().truncation_distance_m();
   volume["blocks"] = pipeline.tsdf().block_count();
   volume["blocks_read_ahead"] = pipeline.spiller().fetched();
   volume["blocks_spilled"] = pipeline.spiller().spilled();

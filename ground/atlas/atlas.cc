@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ground/atlas/map_merger.h"
+#include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
 namespace {
@@ -53,8 +54,8 @@ std::unique_ptr<SubMap> Atlas::MakeMap() const {
   const std::int32_t max_blocks = std::max(1, BlocksLeft());
   const std::string& spill_dir = options_.volume().spill_dir();
   auto map = std::make_unique<SubMap>();
-  map->tsdf = std::make_unique<TsdfVolume>(grid_, options_.tsdf().truncation_distance_m(),
-                                           max_blocks, spill_dir);
+  map->tsdf = std::make_unique<TsdfVolume>(
+      grid_, TruncationDistance(options_.tsdf(), options_.volume()), max_blocks, spill_dir);
   map->thermal =
       std::make_unique<ThermalVolume>(max_blocks, spill_dir, options_.thermal().records());
   map->relocaliser = std::make_unique<Relocaliser>(options_.relocaliser(), depth_camera_);

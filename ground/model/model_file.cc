@@ -300,7 +300,7 @@ Status ModelFile::AdoptVolume(GroundOptions& options) const {
   };
   if (volume.has_voxel_size_m() && differs(volume.voxel_size_m(), header.voxel_size_m()))
     return refuse("volume.voxel_size_m", volume.voxel_size_m(), header.voxel_size_m());
-  if (tsdf.has_truncation_distance_m() &&
+  if (tsdf.truncation_distance_m() != 0.0 &&
       differs(tsdf.truncation_distance_m(), header.truncation_distance_m())) {
     return refuse("tsdf.truncation_distance_m", tsdf.truncation_distance_m(),
                   header.truncation_distance_m());
@@ -338,7 +338,8 @@ Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
     const auto missing =
         static_cast<std::uint32_t>(content.header.block_count() - tsdf.block_count());
     std::uint32_t blocks = 0;
-    if (Status status = content.ReadPart(offset, missing, kBlocksPerChunk * kBlockBytes, blocks, plain);
+    if (Status status =
+            content.ReadPart(offset, missing, kBlocksPerChunk * kBlockBytes, blocks, plain);
         !status.ok())
       return status;
     if (plain.size() != blocks * kBlockBytes) return content.Damaged("a part has a wrong size");
@@ -363,11 +364,12 @@ Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
     }
     if (content.version < 2) continue;
     std::uint32_t with_records = 0;
-    if (Status status =
-            content.ReadPart(offset, blocks, kBlocksPerChunk * kMaxRecordBytes, with_records, plain);
+    if (Status status = content.ReadPart(offset, blocks, kBlocksPerChunk * kMaxRecordBytes,
+                                         with_records, plain);
         !status.ok())
       return status;
-    if (with_records != blocks || !UnpackRecords(plain, first, first + static_cast<std::int32_t>(blocks), thermal))
+    if (with_records != blocks ||
+        !UnpackRecords(plain, first, first + static_cast<std::int32_t>(blocks), thermal))
       return content.Damaged("the records of a part make no sense");
   }
   std::array<std::uint8_t, kEnd.size()> end{};

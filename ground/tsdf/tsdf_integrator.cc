@@ -19,6 +19,9 @@ constexpr int kTile = 16;
 /// are 3.5 mm apart.
 constexpr int kAllocationStride = 2;
 
+constexpr double kTruncationVoxels = 4.0;
+constexpr double kMaxTruncation_m = 1.0;
+
 struct CameraF {
   float fx, fy, cx, cy;
   int width, height;
@@ -33,12 +36,27 @@ struct CameraF {
 
 }  // namespace
 
+double TruncationDistance(const TsdfOptions& o, const VolumeOptions& volume) {
+  if (o.truncation_distance_m() != 0.0) return o.truncation_distance_m();
+  return kTruncationVoxels * volume.voxel_size_m();
+}
+
 Status Validate(const TsdfOptions& o, const VolumeOptions& volume) {
-  if (!(o.truncation_distance_m() >= 2.0 * volume.voxel_size_m() &&
-        o.truncation_distance_m() <= 1.0)) {
-    return InvalidArgument(fmt::format(
-        "tsdf.truncation_distance_m must be at least two voxels ({} m) and at most 1 m, got {} m",
-        2.0 * volume.voxel_size_m(), o.truncation_distance_m()));
+  const double truncation_m = TruncationDistance(o, volume);
+  // Four voxels are enough; that a voxel has a size at all is the volume's affair.
+  if (o.truncation_distance_m() != 0.0 && !(truncation_m >= 2.0 * volume.voxel_size_m())) {
+    return InvalidArgument(
+        fmt::format("tsdf.truncation_distance_m must be 0 (four voxels) or at least two voxels of "
+                    "volume.voxel_size_m ({:g} m), got {:g} m",
+                    2.0 * volume.voxel_size_m(), truncation_m));
+  }
+  if (!(truncation_m <= kMaxTruncation_m)) {
+    return InvalidArgument(
+        o.truncation_distance_m() > 0.0
+            ? fmt::format("tsdf.truncation_distance_m must be at most {:g} m, got {:g} m",
+                          kMaxTruncation_m, truncation_m)
+            : fmt::format("volume.voxel_size_m must be at most {:g} m, got {:g} m",
+                          kMaxTruncation_m / kTruncationVoxels, volume.voxel_size_m()));
   }
   if (!(o.max_weight() >= 1.0 && o.max_weight() <= 1000.0)) {
     return InvalidArgument(

@@ -17,6 +17,9 @@ namespace isotherm {
 
 struct PreparedDepth;
 
+/// The option in metres, or what it stands for where it is 0: four voxels.
+double TruncationDistance(const TsdfOptions& options, const VolumeOptions& volume);
+
 Status Validate(const TsdfOptions& options, const VolumeOptions& volume);
 
 /// Fuses depth images into the volume (algorithm 2). Distances are measured from the voxel to the

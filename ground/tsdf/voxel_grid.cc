@@ -48,6 +48,18 @@ double FittingVoxel(const VolumeOptions& o, double allowed_bytes) {
   return voxel_m * kRounding;
 }
 
+std::string DescribeBytes(double bytes) {
+  constexpr double kStep = 1024.0;
+  std::string_view unit = "KiB";
+  bytes /= kStep;
+  for (const std::string_view larger : {"MiB", "GiB"}) {
+    if (bytes < kStep) break;
+    bytes /= kStep;
+    unit = larger;
+  }
+  return fmt::format("{:.1f} {}", bytes, unit);
+}
+
 std::string DescribeSize(const VolumeOptions& o) {
   return fmt::format("{} x {} x {} m with {} m voxels", o.size_x_m(), o.size_y_m(), o.size_z_m(),
                      o.voxel_size_m());
@@ -82,10 +94,10 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
       std::min(static_cast<double>(o.max_memory_bytes()) * kTableShare, kMostTableBytes);
   if (!(table_bytes <= allowed_bytes)) {
     return Err(ResourceExhausted(fmt::format(
-        "a volume of {} needs {:.1f} GiB for its block table alone, {:.2f} GiB are allowed "
+        "a volume of {} needs {} for its block table alone, {} are allowed "
         "(a quarter of volume.max_memory_bytes, 8 GiB at most): use voxels of {:.4g} m or more, or "
         "a smaller volume",
-        DescribeSize(o), table_bytes / kGibibyte, allowed_bytes / kGibibyte,
+        DescribeSize(o), DescribeBytes(table_bytes), DescribeBytes(allowed_bytes),
         FittingVoxel(o, allowed_bytes))));
   }
   VoxelGrid grid;

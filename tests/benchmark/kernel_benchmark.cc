@@ -32,8 +32,8 @@ class Scene {
   Scene() : preprocessor_(options.preprocessor(), *frames.rig.depth) {
     const Result<VoxelGrid> grid = MakeVoxelGrid(options.volume());
     CHECK(grid.has_value() && frames.rig.thermal && frames.rig.T_thermal_depth);
-    volume =
-        std::make_unique<TsdfVolume>(*grid, options.tsdf().truncation_distance_m(), kMaxBlocks);
+    volume = std::make_unique<TsdfVolume>(
+        *grid, TruncationDistance(options.tsdf(), options.volume()), kMaxBlocks);
     ThreadPool pool(1);
     TsdfIntegrator integrator(options.tsdf());
     for (std::size_t i = 0; i < frames.depth.size(); ++i)

@@ -13,6 +13,7 @@
 #include "ground/cli/truth.h"
 #include "ground/evaluation/trajectory_evaluation.h"
 #include "ground/ground_pipeline.h"
+#include "ground/tsdf/tsdf_integrator.h"
 #include "tests/benchmark/frames.h"
 #include "tests/benchmark/machine.h"
 #include "tests/benchmark/open3d_fusion.h"
@@ -87,7 +88,7 @@ Result<Comparison> Run(const GroundOptions& options, const BenchmarkFrames& fram
       return Err(FailedPrecondition("the first frame has too little depth in the volume"));
     if (!result.open3d) {
       const Open3dFusion::Options theirs{result.ours->tsdf().grid(),
-                                         options.tsdf().truncation_distance_m(),
+                                         TruncationDistance(options.tsdf(), options.volume()),
                                          options.preprocessor().min_depth_m(),
                                          options.preprocessor().max_depth_m(), options.threads()};
       result.open3d =
@@ -140,8 +141,8 @@ void Print(const Comparison& run, const GroundOptions& options, const BenchmarkF
       "{} depth frames, {} x {}, {} threads each, voxels {:g} mm, truncation {:g} mm, "
       "volume {:.2f} x {:.2f} x {:.2f} m\n\n",
       frames.depth.size(), camera.width, camera.height, options.threads(),
-      1e3 * options.volume().voxel_size_m(), 1e3 * options.tsdf().truncation_distance_m(), size.x(),
-      size.y(), size.z());
+      1e3 * options.volume().voxel_size_m(),
+      1e3 * TruncationDistance(options.tsdf(), options.volume()), size.x(), size.y(), size.z());
   PrintTimes(run);
   const PipelineCounts& counts = run.ours->counts();
   fmt::print("\nisotherm: {} of {} frames tracked, {} integrated; Open3D: {} without a solution\n",
