@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace isotherm {
@@ -53,6 +54,20 @@ std::string NearestName(std::string_view name, std::span<const std::string> cand
 std::string DidYouMean(std::string_view name, std::span<const std::string> candidates) {
   const std::string nearest = NearestName(name, candidates);
   return nearest.empty() ? std::string() : fmt::format(" Did you mean '{}'?", nearest);
+}
+
+std::function<std::string(std::string&)> NumberOfName(std::map<std::string, int> names) {
+  return [names = std::move(names)](std::string& text) {
+    std::vector<std::string> known;
+    for (const auto& [name, number] : names) {
+      if (std::ranges::equal(name, text, {}, LowerAscii, LowerAscii)) {
+        text = std::to_string(number);
+        return std::string();
+      }
+      known.push_back(name);
+    }
+    return fmt::format("'{}' is none of {}.{}", text, JoinNames(known), DidYouMean(text, known));
+  };
 }
 
 std::string JoinNames(std::span<const std::string> names) {

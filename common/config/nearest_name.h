@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +14,10 @@ std::string NearestName(std::string_view name, std::span<const std::string> cand
 
 /// " Did you mean 'x'?" or nothing, to be appended to a message.
 std::string DidYouMean(std::string_view name, std::span<const std::string> candidates);
+
+/// For a command line that takes one of several names: replaces the name (case ignored) by its
+/// number and returns nothing, or returns what is wrong and which names there are.
+std::function<std::string(std::string&)> NumberOfName(std::map<std::string, int> names);
 
 /// "a, b, c".
 std::string JoinNames(std::span<const std::string> names);

@@ -1,17 +1,21 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 
 #include "common/base/progress.h"
 #include "common/concurrency/thread_pool.h"
+#include "common/config/edit_field.h"
 #include "common/config/text_proto.h"
+#include "common/dataset/text_lines.h"
+#include "ground/calibration/delay_check.h"
 #include "ground/calibration/find_delay.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/cli/command.h"
 #include "ground/cli/simulation_files.h"
+#include "ground/export/output_file.h"
 #include "ground/ground_options.pb.h"
 #include "ground/validate_options.h"
 
@@ -23,13 +27,17 @@ constexpr const char* kFooter =
 stamps. The depth camera is tracked through the recording; then thermal pictures are projected onto the
 surface at the poses that a delay puts them at, and the delay is sought at which they agree. The recording
 should show a surface with clear thermal contrast for 10 s or more while the rig is moved back and forth.
-Parts of the scan are resampled to say how certain the result is; nothing is written if it is not.
+Parts of the scan are resampled to say how certain the result is; nothing is written if it is not, or
+if the calibration's delay agrees with it (delay_check.max_shift_s).
+
+--rig names the calibration that the scan was made with. Only --apply changes it: that one number, comments
+and all else stay, and the file as it was is kept beside it (FILE.bak).
 
 Calibrate with the estimator (timestamper.estimator) that scans are made with.
 
 Examples:
   isotherm calibrate time scan.mcap
-  isotherm calibrate time scan.mcap --rig rig.textproto
+  isotherm calibrate time scan.mcap --rig rig.textproto --apply
   isotherm calibrate time scan.mcap --rig rig.textproto --output rig_new.textproto)";
 
 constexpr double kReadShare = 0.8;
@@ -37,6 +45,7 @@ constexpr double kReadShare = 0.8;
 struct Arguments {
   std::string recording, rig, output, config;
   std::vector<std::string> overrides;
+  bool apply = false;
   int threads = 0;
   FindDelayOptions find;
 };
@@ -56,15 +65,37 @@ std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
   return problems;
 }
 
-/// The calibration with the new delay, into a file that is complete or not there.
-Status WriteRig(const std::string& path, const Rig& rig) {
-  const std::filesystem::path target(path), partial(path + ".part");
-  std::ofstream file(partial);
-  file << ToText(rig);
-  file.close();
-  std::error_code error;
-  if (file) std::filesystem::rename(partial, target, error);
-  if (!file || error) return IoError(path + ": cannot be written");
+/// The text of the calibration with the new delay: that of the file if there is one, with all its
+/// comments, else the recording's.
+Result<std::string> CalibratedText(const Arguments& arguments, const Rig& recorded,
+                                   double delay_s) {
+  std::string text = ToText(recorded);
+  if (!arguments.rig.empty()) {
+    const Result<std::string> file = ReadTextFile(arguments.rig);
+    if (!file) return Err(file.error());
+    text = *file;
+  }
+  text = WithFieldSet(text, "thermal_delay_s", fmt::format("{:.6g}", delay_s));
+  // Never write what could not be read again.
+  const Result<Rig> rig = ParseRigCalibration(text, arguments.rig);
+  if (!rig) return Err(rig.error());
+  return text;
+}
+
+/// Writes the calibration where it was asked for. A file that is changed in place keeps its old
+/// content beside it.
+Status WriteRig(const Arguments& arguments, const std::string& text) {
+  if (!arguments.output.empty()) {
+    ISOTHERM_RETURN_IF_ERROR(WriteFile(arguments.output, text));
+    fmt::print("{}: written\n", arguments.output);
+    return OkStatus();
+  }
+  const Result<std::string> before = ReadTextFile(arguments.rig);
+  if (!before) return before.error();
+  const std::string backup = arguments.rig + ".bak";
+  ISOTHERM_RETURN_IF_ERROR(WriteFile(backup, *before));
+  ISOTHERM_RETURN_IF_ERROR(WriteFile(arguments.rig, text));
+  fmt::print("{}: thermal_delay_s changed; as it was before: {}\n", arguments.rig, backup);
   return OkStatus();
 }
 
@@ -140,13 +171,24 @@ int Run(const Arguments& arguments) {
   const Result<Change> change = ChangeOf(*scan, rig, estimate->delay_s);
   if (!change) return Fail(change.error().WithContext(arguments.recording));
   Print(*scan, *estimate, *change);
-  const std::string& target = arguments.output.empty() ? arguments.rig : arguments.output;
-  if (target.empty()) return 0;
-  Rig calibrated = rig.value_or(scan->rig);
-  calibrated.thermal_delay_s = std::round(1e6 * change->after_s) / 1e6;
-  if (Status written = WriteRig(target, calibrated); !written.ok()) return Fail(written);
-  fmt::print("{}: written\n", target);
-  return 0;
+  DelayEstimate moved_by = *estimate;
+  moved_by.delay_s = change->after_s - change->before_s;
+  if (Judge(moved_by, options.delay_check().max_shift_s()) != DelayVerdict::kMoved) {
+    fmt::print(
+        "agrees with the calibration (within {:g} ms or its uncertainty): nothing to write\n",
+        1e3 * options.delay_check().max_shift_s());
+    return 0;
+  }
+  if (arguments.output.empty() && !arguments.apply) {
+    if (!arguments.rig.empty())
+      fmt::print("{} is not changed: --apply writes the delay into it\n", arguments.rig);
+    return 0;
+  }
+  const double delay_s = std::round(1e6 * change->after_s) / 1e6;
+  const Result<std::string> text = CalibratedText(arguments, scan->rig, delay_s);
+  if (!text) return Fail(text.error());
+  const Status written = WriteRig(arguments, *text);
+  return written.ok() ? 0 : Fail(written);
 }
 
 }  // namespace
@@ -159,10 +201,12 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
       calibrate->add_subcommand("time", "The constant delay between depth and thermal camera");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
-  command->add_option("--rig", arguments->rig,
-                      "Calibration file to update (text format of isotherm.RigCalibration)");
+  CLI::Option* rig_option = command->add_option(
+      "--rig", arguments->rig, "Calibration of the scan (text format of isotherm.RigCalibration)");
   command->add_option("--output", arguments->output,
                       "Write the calibration here instead; without --rig, the recording's");
+  command->add_flag("--apply", arguments->apply, "Change the delay in the file of --rig")
+      ->needs(rig_option);
   command
       ->add_option("--range", arguments->find.search.range_s,
                    "The delay is looked for up to this far to either side, seconds")

@@ -122,9 +122,23 @@ TEST_F(CalibrateToolTest, TheDelayIsWrittenIntoTheRigFileAndNothingElseIsChanged
   ExpectSameButDelay(Load("rig.textproto"), Load("new.textproto"));
   EXPECT_EQ(ReadAll(folder_ / "rig.textproto"), kRig);
 
-  // Without --output into the file itself; without --rig nothing is written at all.
-  ASSERT_EQ(Calibrate("late.mcap --rig rig.textproto").status, 0);
+  EXPECT_THAT(ReadAll(folder_ / "new.textproto"), testing::StartsWith("# Of a simulated rig.\n"));
+
+  // The file itself is changed only when asked for, in one number, and kept as it was.
+  const Outcome told = Calibrate("late.mcap --rig rig.textproto");
+  ASSERT_EQ(told.status, 0) << told.err;
+  EXPECT_THAT(told.out, HasSubstr("rig.textproto is not changed: --apply"));
+  EXPECT_EQ(ReadAll(folder_ / "rig.textproto"), kRig);
+  ASSERT_EQ(Calibrate("late.mcap --rig rig.textproto --apply").status, 0);
   EXPECT_EQ(ReadAll(folder_ / "rig.textproto"), ReadAll(folder_ / "new.textproto"));
+  EXPECT_EQ(ReadAll(folder_ / "rig.textproto.bak"), kRig);
+
+  // What agrees is not written again.
+  const Outcome agrees = Calibrate("late.mcap --rig rig.textproto --apply");
+  EXPECT_EQ(agrees.status, 0) << agrees.err;
+  EXPECT_THAT(agrees.out, HasSubstr("agrees with the calibration"));
+  EXPECT_EQ(ReadAll(folder_ / "rig.textproto.bak"), kRig);
+  EXPECT_EQ(Calibrate("late.mcap --apply").status, kUsage);
   const Outcome only = Calibrate("late.mcap");
   EXPECT_EQ(only.status, 0) << only.err;
   EXPECT_THAT(only.out, Not(HasSubstr("written")));
