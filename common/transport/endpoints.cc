@@ -11,6 +11,7 @@
 
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
+#include "common/transport/instance_limit.h"
 #include "common/transport/qos.h"
 
 namespace isotherm {
@@ -134,11 +135,29 @@ bool Writer<Message>::WaitForAcknowledgments(Nanoseconds timeout) const {
 
 template <typename Message>
 struct Reader<Message>::Impl {
+  InstanceLimit limit;  // Outlives the reader, whose threads ask it.
+  RefusalCounter* refusals = nullptr;
   DdsHandle topic;
   DdsHandle reader;
   DdsHandle condition;
-  RefusalCounter* refusals = nullptr;
   WireSample<Message> sample;  // Reused, so that its payload buffer is allocated once.
+
+  /// Asked by the middleware before it keeps anything of a sample.
+  static bool Admit(const dds_sample_info_t* info, void* self) {
+    auto* impl = static_cast<Impl*>(self);
+    if (impl->limit.Admit(info->publication_handle, info->instance_handle)) return true;
+    impl->refusals->Add(RefusalCause::kTooManyNames, TopicName(TopicOf<Message>::kId));
+    return false;
+  }
+  Status SetFilter() {
+    dds_topic_filter filter{};
+    filter.mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG;
+    filter.f.sampleinfo_arg = &Impl::Admit;
+    filter.arg = this;
+    const dds_return_t code = dds_set_topic_filter_extended(topic.value(), &filter);
+    return code == DDS_RETCODE_OK ? OkStatus()
+                                  : CreationFailed("filter", TopicOf<Message>::kId, code);
+  }
 
   void Accept(const std::function<void(Received<Message>&&)>& handle, std::uint64_t writer) {
     Received<Message> received;
@@ -168,6 +187,7 @@ Status Reader<Message>::Open(const Participant& participant, RefusalCounter* ref
   auto impl = std::make_unique<Impl>();
   impl->refusals = refusals;
   ISOTHERM_RETURN_IF_ERROR(CreateTopic(participant, kTopic, &impl->topic));
+  ISOTHERM_RETURN_IF_ERROR(impl->SetFilter());  // Before the reader is there.
   const QosPtr qos = MakeReaderQos(kTopic);
   impl->reader =
       DdsHandle(dds_create_reader(participant.handle(), impl->topic.value(), qos.get(), nullptr));
@@ -188,6 +208,9 @@ int Reader<Message>::Take(const std::function<void(Received<Message>&&)>& handle
     dds_sample_info_t info{};
     if (dds_take(impl_->reader.value(), samples, &info, 1, 1) <= 0) break;
     ++taken;
+    if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) {
+      impl_->limit.Forget(info.instance_handle);
+    }
     // Otherwise a writer came or left.
     if (info.valid_data) impl_->Accept(handle, info.publication_handle);
   }

@@ -69,13 +69,13 @@ Status WriteAs(std::string_view topic, CaptureTime time, const Message& message,
 }  // namespace
 
 Status WriteFeedback(const Feedback& feedback, const std::optional<CaptureTime>& arrival,
-                     RecordingWriter& writer) {
-  const CaptureTime time = feedback.capture_time;
+                     RecordingWriter& writer, const std::optional<CaptureTime>& newest) {
+  const CaptureTime time = newest.value_or(feedback.capture_time);
   ISOTHERM_RETURN_IF_ERROR(
       WriteAs(kFeedbackRecordTopic, time, ToRecord(feedback, arrival), writer));
   if (feedback.picture.empty()) return OkStatus();
   foxglove::CompressedImage picture;
-  SetTime(time, *picture.mutable_timestamp());
+  SetTime(feedback.capture_time, *picture.mutable_timestamp());
   picture.set_frame_id("depth");
   picture.set_format("png");
   picture.set_data(feedback.picture.data(), feedback.picture.size());

@@ -42,6 +42,10 @@ std::string_view ToString(RefusalCause cause) {
       return "session was not announced";
     case RefusalCause::kImplausibleTime:
       return "implausible capture time";
+    case RefusalCause::kNotTheGround:
+      return "not from a ground station";
+    case RefusalCause::kTooManyNames:
+      return "too many names from one sender";
     case RefusalCause::kCount:
       break;
   }

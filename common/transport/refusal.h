@@ -28,6 +28,8 @@ enum class RefusalCause : std::uint8_t {
   kOtherWriter,       ///< It calls itself the rig, but another process is.
   kUnannounced,       ///< Of a session that the rig has not announced.
   kImplausibleTime,   ///< Capture time that cannot be next in its session.
+  kNotTheGround,      ///< The sender has not said hello as a ground station of our version.
+  kTooManyNames,      ///< One writer goes by more names than anybody has (InstanceLimit).
   kCount
 };
 

@@ -15,6 +15,8 @@
 #include "common/transport/qos.h"
 #include "common/transport/wait_set.h"
 #include "edge/publisher/flow_window.h"
+#include "edge/publisher/ground_register.h"
+#include "edge/publisher/published_stream.h"
 
 namespace isotherm {
 namespace {
@@ -56,8 +58,8 @@ class DdsPublisher final : public Publisher {
         own_hello_{
             .role = Role::kEdge, .software_version = options.software_version, .host = HostName()},
         policy_(options.policy),
-        depth_{.counts = {}, .window = MakeWindow(options)},
-        thermal_{.counts = {}, .window = MakeWindow(options)} {}
+        depth_{.counts = {}, .window = MakeWindow(options), .published = {}},
+        thermal_{.counts = {}, .window = MakeWindow(options), .published = {}} {}
 
   Status Open(const Participant& participant);
 
@@ -86,6 +88,7 @@ class DdsPublisher final : public Publisher {
   struct Stream {
     StreamPublished counts;
     FlowWindow window;
+    PublishedStream published;
   };
 
   static FlowWindow MakeWindow(const PublisherOptions& options) {
@@ -100,14 +103,25 @@ class DdsPublisher final : public Publisher {
   /// Messages for other rigs share the topics.
   bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
   void TakeReceipts();
-  void OnReceipt(const Receipt& receipt);
+  void OnReceipt(const Received<Receipt>& received);
+  void OnFeedback(const Received<Feedback>& received, const PublisherHandlers& handlers);
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
+  /// Why what the ground says of this session cannot be. With mutex_ held.
+  std::optional<RefusalCause> Judge(const Receipt& receipt) const;
+  std::optional<RefusalCause> Judge(const Feedback& feedback, PeerHandle sender) const;
   std::optional<std::uint64_t> session() const {
     std::scoped_lock lock(mutex_);
     return session_;
   }
   bool IsGroundReady() const;
+  /// Whether the ground that follows this rig, or may, reads what `writer` writes: an onlooker is
+  /// not waited for. With mutex_ held.
+  template <typename Frame>
+  bool IsAwaited(const Writer<Frame>& writer) const {
+    return grounds_.MayHaveFollower([&](PeerHandle peer) { return writer.Reaches(peer); });
+  }
+  bool HasNobodyToWaitFor() const;
   bool IsHandled() const;
 
   const Clock& clock_;
@@ -127,8 +141,8 @@ class DdsPublisher final : public Publisher {
   std::uint64_t flow_waits_ = 0;
   std::uint64_t flow_timeouts_ = 0;
   std::optional<ClockEcho> clock_echo_;  // Not sent yet.
+  GroundRegister grounds_;
   bool ground_present_ = false;
-  bool ground_compatible_ = false;
   std::optional<SteadyTime> stop_deadline_;
 };
 
@@ -159,8 +173,7 @@ void DdsPublisher::Run(std::stop_token stop, const PublisherHandlers& handlers) 
     ends_.peers.Take([&](Received<Hello>&& peer) { OnPeer(peer); });
     TakeReceipts();
     ends_.feedback.Take([&](Received<Feedback>&& feedback) {
-      if (handlers.feedback && IsOurs(feedback.edge_id) && feedback.message.session == session())
-        handlers.feedback(feedback.message, clock_.Now());
+      if (IsOurs(feedback.edge_id)) OnFeedback(feedback, handlers);
     });
     ends_.commands.Take([&](Received<Command>&& command) {
       if (handlers.command && IsOurs(command.edge_id)) handlers.command(command.message);
@@ -171,9 +184,7 @@ void DdsPublisher::Run(std::stop_token stop, const PublisherHandlers& handlers) 
 
 void DdsPublisher::TakeReceipts() {
   std::scoped_lock lock(receipts_mutex_);
-  ends_.receipts.Take([&](Received<Receipt>&& receipt) {
-    if (IsOurs(receipt.edge_id)) OnReceipt(receipt.message);
-  });
+  ends_.receipts.Take([&](Received<Receipt>&& receipt) { OnReceipt(receipt); });
 }
 
 void DdsPublisher::OnPeer(const Received<Hello>& peer) {
@@ -184,35 +195,84 @@ void DdsPublisher::OnPeer(const Received<Hello>& peer) {
     return;
   }
   std::scoped_lock lock(mutex_);
-  ground_compatible_ = true;
+  grounds_.Add(peer.writer, ends_.peers.PeerOf(peer.writer));
+}
+
+void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
+  const Receipt& receipt = received.message;
+  const ClockEcho echo{.ping = receipt.clock_ping, .received = clock_.Now()};
+  const SteadyTime now = clock_.SteadyNow();
+  const PeerHandle sender = ends_.receipts.PeerOf(received.writer);
+  std::unique_lock lock(mutex_);
+  const bool from_ground = grounds_.NoteReceipt(sender, IsOurs(received.edge_id));
+  if (!IsOurs(received.edge_id)) return;
+  std::optional<RefusalCause> cause;
+  if (!from_ground) {
+    cause = RefusalCause::kNotTheGround;
+  } else if (session_ == receipt.session) {
+    cause = Judge(receipt);
+  }
+  if (cause) {
+    lock.unlock();
+    refusals_.Add(
+        *cause, fmt::format("topic={} depth.next={} thermal.next={}", TopicName(TopicId::kReceipt),
+                            receipt.depth.next, receipt.thermal.next));
+    return;
+  }
+  if (echo.ping != 0) clock_echo_ = echo;
+  if (session_ == receipt.session) {
+    receipt_.Set(receipt);
+    depth_.window.OnReceipt(receipt.depth.handled, now);
+    thermal_.window.OnReceipt(receipt.thermal.handled, now);
+  }
   changed_.notify_all();
 }
 
-void DdsPublisher::OnReceipt(const Receipt& receipt) {
-  receipt_.Set(receipt);
-  const ClockEcho echo{.ping = receipt.clock_ping, .received = clock_.Now()};
-  const SteadyTime now = clock_.SteadyNow();
-  std::scoped_lock lock(mutex_);
-  if (echo.ping != 0) clock_echo_ = echo;
-  if (session_ != receipt.session) return;
-  depth_.window.OnReceipt(receipt.depth.handled, now);
-  thermal_.window.OnReceipt(receipt.thermal.handled, now);
-  changed_.notify_all();
+std::optional<RefusalCause> DdsPublisher::Judge(const Receipt& receipt) const {
+  if (const auto cause = depth_.published.Check(receipt.depth)) return cause;
+  return thermal_.published.Check(receipt.thermal);
+}
+
+void DdsPublisher::OnFeedback(const Received<Feedback>& received,
+                              const PublisherHandlers& handlers) {
+  const Feedback& feedback = received.message;
+  const PeerHandle sender = ends_.feedback.PeerOf(received.writer);
+  std::optional<RefusalCause> cause;
+  {
+    std::scoped_lock lock(mutex_);
+    cause = Judge(feedback, sender);
+  }
+  if (cause) {
+    refusals_.Add(*cause,
+                  fmt::format("topic={} session={} frame_number={}", TopicName(TopicId::kFeedback),
+                              feedback.session, feedback.frame_number));
+  } else if (handlers.feedback) {
+    handlers.feedback(feedback, clock_.Now());
+  }
+}
+
+std::optional<RefusalCause> DdsPublisher::Judge(const Feedback& feedback, PeerHandle sender) const {
+  if (!grounds_.Knows(sender)) return RefusalCause::kNotTheGround;
+  if (feedback.session != session_) return RefusalCause::kOtherSession;
+  return depth_.published.Check(feedback);
 }
 
 void DdsPublisher::LookForGround() {
-  const bool present = ends_.receipts.matched_writers() > 0;  // Only a ground station writes them.
   std::scoped_lock lock(mutex_);
+  // The next one may be another version.
+  grounds_.RemoveIf([this](const GroundRegister::Ground& ground) {
+    return ends_.peers.PeerOf(ground.hello_writer) == 0;
+  });
+  const bool present = !grounds_.empty();
   if (present == ground_present_) return;
   ground_present_ = present;
-  if (!present) ground_compatible_ = false;  // The next one may be another version.
   LOG(Publisher, Info) << (present ? "ground station found" : "ground station lost");
 }
 
 bool DdsPublisher::IsGroundReady() const {
   std::scoped_lock lock(mutex_);
-  return ground_compatible_ && ends_.depth.matched_readers() > 0 &&
-         ends_.thermal.matched_readers() > 0;
+  return grounds_.MayHaveFollower(
+      [this](PeerHandle peer) { return ends_.depth.Reaches(peer) && ends_.thermal.Reaches(peer); });
 }
 
 bool DdsPublisher::WaitForGround(Nanoseconds timeout, std::stop_token stop) {
@@ -232,6 +292,7 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
     for (Stream* stream : {&depth_, &thermal_}) {
       stream->counts = {};
       stream->window.BeginSession();
+      stream->published.BeginSession();
     }
     flow_waits_ = 0;
     flow_timeouts_ = 0;
@@ -244,7 +305,7 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
                                const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   bool waited = false;
-  while (!stream->window.HasRoom() && writer.matched_readers() > 0) {
+  while (!stream->window.HasRoom() && IsAwaited(writer)) {
     const SteadyTime now = clock_.SteadyNow();
     if (stop.stop_requested()) {
       if (!stop_deadline_) stop_deadline_ = now + kStopPatience;
@@ -270,6 +331,10 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
         fmt::format("frame of session {} without BeginSession", frame.header.session));
   }
   if (policy_ == PublishPolicy::kLossless) WaitForRoom(*writer, stream, stop);
+  {
+    std::scoped_lock lock(mutex_);
+    stream->published.Note(number, frame.header.capture_time);
+  }
   const Status written = writer->Write(options_.edge_id, frame);
   std::scoped_lock lock(mutex_);
   if (!written.ok()) {
@@ -297,6 +362,11 @@ Status DdsPublisher::Publish(EdgeStatus status) {
   return ends_.status.Write(options_.edge_id, status);
 }
 
+bool DdsPublisher::HasNobodyToWaitFor() const {
+  std::scoped_lock lock(mutex_);
+  return !IsAwaited(ends_.depth) && !IsAwaited(ends_.thermal);
+}
+
 bool DdsPublisher::IsHandled() const {
   std::scoped_lock lock(mutex_);
   const std::optional<Receipt> receipt = receipt_.Get();
@@ -317,7 +387,7 @@ bool DdsPublisher::Drain(Nanoseconds timeout) {
   if (!ends_.status.WaitForAcknowledgments(left())) return false;
   // ... and the ground has taken it.
   for (TakeReceipts(); !IsHandled(); TakeReceipts()) {
-    if (ends_.depth.matched_readers() == 0 && ends_.thermal.matched_readers() == 0) return true;
+    if (HasNobodyToWaitFor()) return true;
     if (left() == Nanoseconds(0)) return false;
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, kPollInterval);

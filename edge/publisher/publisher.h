@@ -49,7 +49,7 @@ struct PublisherStats {
   StreamPublished thermal;
   std::uint64_t flow_waits = 0;     ///< Frames that waited for a receipt.
   std::uint64_t flow_timeouts = 0;  ///< Frames that were published although no receipt came.
-  std::uint64_t refused = 0;        ///< Malformed samples from the ground.
+  std::uint64_t refused = 0;        ///< Samples that cannot be, or not from a ground station.
   bool ground_present = false;
 };
 
@@ -67,8 +67,9 @@ class Publisher {
   /// and for PublishPolicy::kLossless.
   virtual void Run(std::stop_token stop, const PublisherHandlers& handlers) = 0;
 
-  /// Waits until a compatible ground station reads our frames; true if it is there. Returns at once
-  /// with what is known when `timeout` is zero.
+  /// Waits until a ground station follows this rig and reads our frames, in our wire version (an
+  /// onlooker does not count, nor does the ground of another rig); true if it is there. Returns at
+  /// once with what is known when `timeout` is zero.
   virtual bool WaitForGround(Nanoseconds timeout, std::stop_token stop) = 0;
 
   /// Starts the counts of a session and announces its rig. Frames of other sessions must not
@@ -93,7 +94,7 @@ class Publisher {
 
   virtual void SetPolicy(PublishPolicy policy) = 0;
   virtual PublisherStats stats() const = 0;
-  /// Newest receipt from the ground.
+  /// Newest receipt of this session.
   virtual std::optional<Receipt> receipt() const = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <ctime>
 #include <utility>
 
@@ -51,10 +52,13 @@ void Spool::Add(const EncodedFrame& frame) {
 }
 
 void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
-  if (first_error_.ok()) NoteError(WriteFeedback(feedback, arrival, *writer_));
+  if (first_error_.ok()) NoteError(WriteFeedback(feedback, arrival, *writer_, newest_));
 }
 
 Status Spool::WriteFrame(const EncodedFrame& frame) {
+  const CaptureTime time =
+      std::visit([](const auto& content) { return content.header.capture_time; }, frame.content);
+  newest_ = std::max(newest_.value_or(time), time);
   for (const OutsidePoseSample& sample : frame.outside_poses)
     ISOTHERM_RETURN_IF_ERROR(writer_->Write(sample.pose));
   for (const RecordedLog& log : frame.log)

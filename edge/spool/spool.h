@@ -57,6 +57,7 @@ class Spool {
   const std::unique_ptr<RecordingWriter> writer_;
   FrameAccount& account_;
   Status first_error_;
+  std::optional<CaptureTime> newest_;       ///< Capture time of the frames so far.
   std::array<std::uint64_t, 2> offered_{};  ///< By Sensor.
   std::optional<CaptureTime> shutter_closed_at_;
   Nanoseconds wall_minus_time_{0};

@@ -106,6 +106,19 @@ TEST_F(SpoolTest, FeedbackLiesAtTheTimeOfItsDepthFrameWithItsPicture) {
   EXPECT_EQ(recording_.messages[2].first, "/feedback/picture");
 }
 
+TEST_F(SpoolTest, F60FeedbackOnOlderFramesDoesNotGoBackInTheRecording) {
+  Start();
+  const CaptureTime newest{std::chrono::seconds(100)};
+  spool_->Add(Thermal(newest, NucState::kIdle));
+  Feedback feedback;
+  for (const int behind_s : {30, 1, 20}) {
+    feedback.capture_time = newest - std::chrono::seconds(behind_s);
+    spool_->Add(feedback, newest);
+  }
+  ASSERT_EQ(recording_.messages.size(), 3U);
+  for (const auto& message : recording_.messages) EXPECT_EQ(message.second, newest);
+}
+
 TEST(SpoolPathTest, OffMeansNoFile) { EXPECT_EQ(SpoolPath("off", {}), std::nullopt); }
 
 TEST(SpoolPathTest, AFileIsTakenAsGiven) { EXPECT_EQ(SpoolPath("a/b.mcap", {}), "a/b.mcap"); }

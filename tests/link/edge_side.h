@@ -61,14 +61,16 @@ Frame MakeFrame(std::uint64_t session, std::uint64_t number, int width, int heig
 /// An edge without cameras: participant, publisher and its receive thread.
 class EdgeSide {
  public:
-  EdgeSide(const TransportEnvironment& environment, const Clock& clock, const EdgePlan& plan)
+  EdgeSide(const TransportEnvironment& environment, const Clock& clock, const EdgePlan& plan,
+           const PublisherHandlers& handlers = {})
       : plan_(plan) {
     participant_ = std::move(*Participant::Create(environment, plan.domain));
     PublisherOptions options;
     options.edge_id = "test-edge";
     options.policy = plan.policy;
     publisher_ = std::move(*Publisher::Create(*participant_, clock, options));
-    receiver_ = std::jthread([this](const std::stop_token& stop) { publisher_->Run(stop, {}); });
+    receiver_ = std::jthread(
+        [this, handlers](const std::stop_token& stop) { publisher_->Run(stop, handlers); });
   }
 
   Publisher& publisher() { return *publisher_; }

@@ -242,9 +242,12 @@ TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
   EXPECT_EQ(result->number, *number);
   EXPECT_EQ(result->text, "no shutter");
 
+  const auto frame = MakeFrame<EncodedDepthFrame>(rig.session, 12, 8, 6);
+  ASSERT_TRUE(publisher->Publish(frame, {}).ok());
   Feedback feedback;
   feedback.session = rig.session;
-  feedback.frame_number = 12;
+  feedback.frame_number = frame.header.frame_number;
+  feedback.capture_time = frame.header.capture_time;
   ASSERT_TRUE(ground->subscriber().Publish(feedback).ok());
   const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
   while (!newest.Get() && std::chrono::steady_clock::now() < deadline) std::this_thread::yield();

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <unordered_map>
+
+namespace isotherm {
+
+/// Bounds the keys (rigs, ground stations) for which a reader keeps state: the middleware keeps
+/// some for each key that it has met as long as the key's writer lives. A writer of ours writes
+/// one; kPerWriter leaves room for a relay. Thread-safe.
+class InstanceLimit {
+ public:
+  static constexpr std::size_t kPerWriter = 8;
+  static constexpr std::size_t kInAll = 1024;
+
+  /// Whether a sample of `writer` for the key `instance` may be kept.
+  bool Admit(std::uint64_t writer, std::uint64_t instance) {
+    std::scoped_lock lock(mutex_);
+    if (writer_of_.contains(instance)) return true;
+    if (writer_of_.size() >= kInAll) return false;
+    const auto is_of_writer = [writer](const auto& entry) { return entry.second == writer; };
+    const auto count = std::count_if(writer_of_.begin(), writer_of_.end(), is_of_writer);
+    if (static_cast<std::size_t>(count) >= kPerWriter) return false;
+    writer_of_.emplace(instance, writer);
+    return true;
+  }
+  /// The middleware keeps nothing of it any more: all its writers are gone.
+  void Forget(std::uint64_t instance) {
+    std::scoped_lock lock(mutex_);
+    writer_of_.erase(instance);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<std::uint64_t, std::uint64_t> writer_of_;  ///< By instance: who began it.
+};
+
+}  // namespace isotherm

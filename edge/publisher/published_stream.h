@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+#include "common/time/time_types.h"
+#include "common/transport/messages.h"
+#include "common/transport/refusal.h"
+
+namespace isotherm {
+
+/// What was published of one stream in the present session, to judge what the ground says of it.
+/// Pure. Thread-compatible.
+class PublishedStream {
+ public:
+  void BeginSession() { *this = {}; }
+
+  /// Before the frame is written: the ground may have answered before writing returns.
+  void Note(std::uint64_t frame_number, CaptureTime capture_time) {
+    next_ = std::max(next_, frame_number + 1);
+    ++count_;
+    newest_.push_back({frame_number, capture_time});
+    if (newest_.size() > kRemembered) newest_.pop_front();
+  }
+
+  /// More than there was cannot have been received or handled.
+  std::optional<RefusalCause> Check(const StreamReceipt& receipt) const {
+    if (receipt.next <= next_ && receipt.received <= count_) return std::nullopt;
+    return RefusalCause::kImpossibleNumber;
+  }
+  /// It must be about a frame that was published not long ago, and know its capture time.
+  std::optional<RefusalCause> Check(const Feedback& feedback) const {
+    if (feedback.frame_number >= next_) return RefusalCause::kImpossibleNumber;
+    const auto found = std::ranges::lower_bound(newest_, feedback.frame_number, {}, &Frame::number);
+    if (found == newest_.end() || found->number != feedback.frame_number) {
+      return RefusalCause::kImpossibleNumber;
+    }
+    if (found->capture_time != feedback.capture_time) return RefusalCause::kOutOfRange;
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr std::size_t kRemembered = 1024;  ///< Half a minute.
+
+  struct Frame {
+    std::uint64_t number = 0;
+    CaptureTime capture_time{};
+  };
+
+  std::uint64_t next_ = 0;  ///< One above the highest number.
+  std::uint64_t count_ = 0;
+  std::deque<Frame> newest_;  ///< Ascending.
+};
+
+}  // namespace isotherm
