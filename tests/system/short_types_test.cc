@@ -41,17 +41,14 @@ class ShortTypesTest : public ::testing::Test {
   std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
   static std::string Domain() { return std::to_string(TestDomain()); }
   Command Edge() const {
-    return {
-        EdgeDaemon(),
-        {"--recording", Path("source.mcap"), "--domain", Domain(), "--record", Path("edge.mcap"),
-         "--rate", "0", "--wait-for-ground", "--exit-at-end", "--set", "link.edge_id=rig"},
-        {}};
+    return {EdgeDaemon(),
+            {"--recording", Path("source.mcap"), "--domain", Domain(), "--record",
+             Path("edge.mcap"), "--rate", "0", "--wait-for-ground", "--exit-at-end"},
+            {}};
   }
   Command Ground(const std::string& folder) const {
     return {GroundService(),
-            Joined({"--domain", Domain(), "--output", Path(folder), "--once", "--set",
-                    "link.edge_id=rig"},
-                   QuickModel()),
+            Joined({"--domain", Domain(), "--output", Path(folder), "--once"}, QuickModel()),
             {}};
   }
 
@@ -95,7 +92,7 @@ class ShortTypesTest : public ::testing::Test {
 };
 
 TEST_F(ShortTypesTest, F60TheGroundSurvivesThemAndTheNextScanIsWhole) {
-  Process peer({SHORT_PEER, {Domain(), "rig"}, {}});
+  Process peer({SHORT_PEER, {Domain(), "edge"}, {}});
   const std::vector<std::string> topics = {"2/depth", "2/thermal",     "2/outside_pose",
                                            "2/rig",   "2/edge_status", "2/command_result"};
   ExpectToSurviveTwice(Ground("waiting"), peer, topics);
@@ -109,7 +106,7 @@ TEST_F(ShortTypesTest, F60TheGroundSurvivesThemAndTheNextScanIsWhole) {
 }
 
 TEST_F(ShortTypesTest, F60TheEdgeSurvivesThemAndTheNextScanIsWhole) {
-  Process peer({SHORT_PEER, {Domain(), "rig"}, {}});
+  Process peer({SHORT_PEER, {Domain(), "edge"}, {}});
   const std::vector<std::string> topics = {"2/command", "2/receipt", "2/feedback"};
   ExpectToSurviveTwice(Edge(), peer, topics);
   std::filesystem::remove(Path("edge.mcap"));
