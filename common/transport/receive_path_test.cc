@@ -167,7 +167,8 @@ bool IsSound(const CommandResult& result) {
   return IsOneOf(result.outcome, 3) && IsShort(result.text, 256);
 }
 bool IsSound(const Receipt& receipt) {
-  return receipt.depth.handled <= receipt.depth.next && receipt.thermal.holes.size() <= 64;
+  return receipt.depth.handled <= receipt.depth.next && receipt.thermal.holes.size() <= 64 &&
+         IsOneOf(receipt.verdict, 2);
 }
 bool IsSound(const Feedback& feedback) {
   return IsOneOf(feedback.tracking_state, 4) && feedback.advice.size() <= 8 &&

@@ -23,14 +23,21 @@ class GroundRegister {
   };
 
   void Add(std::uint64_t hello_writer, PeerHandle peer) {
-    if (peer == 0 || Find(peer) != nullptr || grounds_.size() == kMost) return;
-    grounds_.push_back({hello_writer, peer, Follows::kNotSaid});
+    if (peer == 0) return;
+    if (Ground* known = Find(peer)) {
+      known->hello_writer = hello_writer;  // It was out of reach and is back.
+    } else if (grounds_.size() < kMost) {
+      grounds_.push_back({hello_writer, peer, Follows::kNotSaid});
+    }
   }
-  /// It has sent a receipt. False if `peer` is not a ground station.
-  bool NoteReceipt(PeerHandle peer, bool for_this_rig) {
+  /// It has sent a receipt; if not `certain`, that counts only as long as nothing is known. False
+  /// if `peer` is not a ground station.
+  bool NoteReceipt(PeerHandle peer, bool for_this_rig, bool certain = true) {
     Ground* ground = Find(peer);
     if (ground == nullptr) return false;
-    ground->follows = for_this_rig ? Follows::kThisRig : Follows::kAnotherRig;
+    if (certain || ground->follows == Follows::kNotSaid) {
+      ground->follows = for_this_rig ? Follows::kThisRig : Follows::kAnotherRig;
+    }
     return true;
   }
   bool Knows(PeerHandle peer) const {

@@ -31,6 +31,8 @@ TEST(GroundRegisterTest, AGroundMayFollowThisRigUntilItSaysWhichOne) {
   EXPECT_TRUE(grounds.NoteReceipt(5, true));
   EXPECT_TRUE(grounds.HasFollower(Reads));
   EXPECT_FALSE(grounds.HasFollower(ReadsNothing));
+  EXPECT_TRUE(grounds.NoteReceipt(5, false, /*certain=*/false));
+  EXPECT_TRUE(grounds.HasFollower(Reads));
 }
 
 TEST(GroundRegisterTest, AGroundThatHasLeftIsForgotten) {
@@ -40,6 +42,14 @@ TEST(GroundRegisterTest, AGroundThatHasLeftIsForgotten) {
   grounds.RemoveIf([](const GroundRegister::Ground& ground) { return ground.hello_writer == 50; });
   EXPECT_FALSE(grounds.Knows(5));
   EXPECT_TRUE(grounds.Knows(7));
+}
+
+TEST(GroundRegisterTest, AGroundThatIsBackIsThereByItsNewWriter) {
+  GroundRegister grounds;
+  grounds.Add(50, 5);
+  grounds.Add(51, 5);
+  grounds.RemoveIf([](const GroundRegister::Ground& ground) { return ground.hello_writer == 50; });
+  EXPECT_TRUE(grounds.Knows(5));
 }
 
 TEST(GroundRegisterTest, F62AFloodOfHellosDoesNotGrowIt) {

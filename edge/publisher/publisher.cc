@@ -24,7 +24,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds kPresenceInterval =
-    100ms;                                    // How often Run looks whether the ground is there.
+    100ms;  // How often Run looks whether the ground is there.
+/// A ground that has just come may read before its hello is here.
+constexpr Nanoseconds kHelloGrace = 500ms;
 constexpr Nanoseconds kPollInterval = 20ms;   // For what the middleware does not signal.
 constexpr Nanoseconds kStopPatience = 500ms;  // Waiting for the ground after stop, in all.
 
@@ -89,6 +91,8 @@ class DdsPublisher final : public Publisher {
     StreamPublished counts;
     FlowWindow window;
     PublishedStream published;
+    int readers = 0;              // When last looked at.
+    SteadyTime reader_came_at{};  // The newest of them.
   };
 
   static FlowWindow MakeWindow(const PublisherOptions& options) {
@@ -120,6 +124,14 @@ class DdsPublisher final : public Publisher {
   template <typename Frame>
   bool IsAwaited(const Writer<Frame>& writer) const {
     return grounds_.MayHaveFollower([&](PeerHandle peer) { return writer.Reaches(peer); });
+  }
+  /// As above, or somebody who has just come. With mutex_ held.
+  template <typename Frame>
+  bool MayBeAwaited(const Writer<Frame>& writer, Stream* stream, SteadyTime now) const {
+    const int readers = writer.matched_readers();
+    if (readers > stream->readers) stream->reader_came_at = now;
+    stream->readers = readers;
+    return IsAwaited(writer) || (readers > 0 && now - stream->reader_came_at < kHelloGrace);
   }
   bool HasNobodyToWaitFor() const;
   bool IsHandled() const;
@@ -204,8 +216,12 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   const SteadyTime now = clock_.SteadyNow();
   const PeerHandle sender = ends_.receipts.PeerOf(received.writer);
   std::unique_lock lock(mutex_);
-  const bool from_ground = grounds_.NoteReceipt(sender, IsOurs(received.edge_id));
-  if (!IsOurs(received.edge_id)) return;
+  const bool ours = IsOurs(received.edge_id);
+  const bool accepted = receipt.verdict == SessionVerdict::kFollowed;
+  // What it says of another session of this name takes nothing back of what it said of ours.
+  const bool certain = !ours || !session_ || receipt.session == 0 || receipt.session == session_;
+  const bool from_ground = grounds_.NoteReceipt(sender, ours && accepted, certain);
+  if (!ours) return;
   std::optional<RefusalCause> cause;
   if (!from_ground) {
     cause = RefusalCause::kNotTheGround;
@@ -220,7 +236,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
     return;
   }
   if (echo.ping != 0) clock_echo_ = echo;
-  if (session_ == receipt.session) {
+  if (session_ == receipt.session && accepted) {
     receipt_.Set(receipt);
     depth_.window.OnReceipt(receipt.depth.handled, now);
     thermal_.window.OnReceipt(receipt.thermal.handled, now);
@@ -261,7 +277,9 @@ void DdsPublisher::LookForGround() {
   std::scoped_lock lock(mutex_);
   // The next one may be another version.
   grounds_.RemoveIf([this](const GroundRegister::Ground& ground) {
-    return ends_.peers.PeerOf(ground.hello_writer) == 0;
+    const bool is_gone = ends_.peers.PeerOf(ground.hello_writer) == 0;
+    if (is_gone) depth_.readers = thermal_.readers = 0;  // Who reads now may be its successor.
+    return is_gone;
   });
   const bool present = !grounds_.empty();
   if (present == ground_present_) return;
@@ -271,7 +289,7 @@ void DdsPublisher::LookForGround() {
 
 bool DdsPublisher::IsGroundReady() const {
   std::scoped_lock lock(mutex_);
-  return grounds_.MayHaveFollower(
+  return grounds_.HasFollower(
       [this](PeerHandle peer) { return ends_.depth.Reaches(peer) && ends_.thermal.Reaches(peer); });
 }
 
@@ -305,7 +323,7 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
                                const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   bool waited = false;
-  while (!stream->window.HasRoom() && IsAwaited(writer)) {
+  while (!stream->window.HasRoom() && MayBeAwaited(writer, stream, clock_.SteadyNow())) {
     const SteadyTime now = clock_.SteadyNow();
     if (stop.stop_requested()) {
       if (!stop_deadline_) stop_deadline_ = now + kStopPatience;
