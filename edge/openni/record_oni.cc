@@ -3,6 +3,7 @@
 #include <OpenNI.h>
 
 #include <chrono>
+#include <cstdint>
 #include <thread>
 
 namespace isotherm {
@@ -28,6 +29,21 @@ Status Open(openni::Device& device) {
   return Check(opened);
 }
 
+/// The recorder's thread writes behind, and leaves out what is left when it is stopped: waits until
+/// the file has not grown for a while.
+void AwaitWritten(const std::filesystem::path& file) {
+  constexpr std::chrono::seconds kQuiet{1};
+  constexpr std::chrono::milliseconds kLook{20};
+  std::uintmax_t size = 0;
+  auto grown_at = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - grown_at < kQuiet) {
+    std::this_thread::sleep_for(kLook);
+    const std::uintmax_t now = std::filesystem::file_size(file);
+    if (now != size) grown_at = std::chrono::steady_clock::now();
+    size = now;
+  }
+}
+
 Status Record(const std::filesystem::path& file, int frames) {
   openni::Device device;
   ISOTHERM_RETURN_IF_ERROR(Open(device));
@@ -48,8 +64,9 @@ Status Record(const std::filesystem::path& file, int frames) {
   for (int i = 0; i < frames + 3; ++i) {
     ISOTHERM_RETURN_IF_ERROR(Check(stream.readFrame(&frame)));
   }
-  recorder.stop();
   stream.stop();
+  AwaitWritten(file);
+  recorder.stop();
   recorder.destroy();
   stream.destroy();
   device.close();
