@@ -239,8 +239,9 @@ GroundSituation GroundService::Situation() const {
 bool GroundService::WaitForEnd(Worker& worker) {
   constexpr Nanoseconds kTick = 100ms;
   constexpr std::chrono::microseconds kExtension = 10s;
-  // Shorter than while scanning: somebody waits for the end.
-  constexpr Nanoseconds kLimit = 10s;
+  // The longest step of writing results is the surface of a large model. Somebody waits for the
+  // end.
+  constexpr Nanoseconds kLimit = 30s;
   while (!worker.WaitForEnd(kTick)) {
     const SteadyTime now = clock_.SteadyNow();
     const Nanoseconds longest =
