@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/dataset/dataset.h"
 #include "common/dataset/text_lines.h"
 
@@ -25,7 +27,14 @@ Result<std::vector<ImageEntry>> ParseImageList(std::string_view text, std::strin
           duplicate ? "is a duplicate of" : "is earlier than", entries.back().line,
           FormatStamp(entries.back().time))));
     }
-    entries.push_back({*time, folder / std::filesystem::path(name), line.number});
+    const std::filesystem::path image(name);
+    if (image.is_absolute() || std::find(image.begin(), image.end(), "..") != image.end()) {
+      return Err(DataLoss(fmt::format(
+          "{}: '{}' leads out of the data set's folder; copy the images into it, or list them in a "
+          "folder of its own",
+          At(source_name, line), name)));
+    }
+    entries.push_back({*time, folder / image, line.number});
   }
   if (entries.empty()) {
     return Err(DataLoss(

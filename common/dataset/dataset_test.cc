@@ -183,6 +183,19 @@ TEST(StampTest, IsExactToTheNanosecondForAnyEpoch) {
   EXPECT_EQ(FormatStamp(CaptureTimeFromNanoseconds(-500'000'000)), "-0.500000000");
 }
 
+TEST_F(DatasetTest, F65ListsThatLeadOutOfTheFolderAreRefusedWithTheirLine) {
+  for (const std::string name : {"/etc/passwd", "../other/0.png", "depth/../../0.png", ".."}) {
+    folder_.Write("depth.txt", "# images\n100.1 depth/0.png\n100.2 " + name + "\n");
+    const auto dataset = OpenDataset({folder_.path(), {}, {}});
+    ASSERT_FALSE(dataset) << name;
+    EXPECT_THAT(dataset.error().message(),
+                AllOf(HasSubstr("depth.txt:3: '" + name + "'"), HasSubstr("leads out of")));
+  }
+  folder_.Write("depth.txt", "100.1 ./depth/0.png\n100.2 depth/..1.png\n");
+  folder_.Rename("depth/1.png", "depth/..1.png");
+  EXPECT_TRUE(OpenDataset({folder_.path(), {}, {}}));
+}
+
 class ImageFileTest : public DatasetTest {
  protected:
   std::string ReadError(const std::string& name) {
