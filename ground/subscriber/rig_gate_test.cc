@@ -125,7 +125,7 @@ TEST_F(RigGateTest, F36ASecondProcessNeitherEndsNorAltersTheSession) {
   EXPECT_EQ(refused(RefusalCause::kOtherWriter), 41U) << "all frames, and the first rig";
 }
 
-TEST_F(RigGateTest, ASilentOwnerThatIsThereKeepsItsSessionForFiveSeconds) {
+TEST_F(RigGateTest, ASilentOwnerThatIsThereKeepsItsSessionForAWhile) {
   Add(kFirst, Rig(1));
   Add(kSecond, Rig(2));
   Wait(RigGate::kSilence - 1ms);

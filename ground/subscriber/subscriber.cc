@@ -320,7 +320,9 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   roster_.Update(is_present);
   TellRivals(now);
   const std::string edge_id = followed();
-  const bool present = is_present(gate_.owner()) || roster_.Has(edge_id);
+  // That writers live is known within their lease of a second; who they are, for ten.
+  const bool present =
+      ends_.status.matched_writers() > 0 && (is_present(gate_.owner()) || roster_.Has(edge_id));
   const std::vector<std::string> others = roster_.Others(edge_id);
   const std::string others_text = present || edge_id.empty() ? "" : OtherRigsText(edge_id, others);
   if (other_rigs_.Update(!others_text.empty(), now)) {
