@@ -1,12 +1,15 @@
 // Preloaded into a program, shows it a wall clock that is wrong: CLOCK_SHIFT_MS milliseconds ahead,
 // from when the file CLOCK_SHIFT_WHEN exists (from the start, if none is named). The monotonic
-// clock stays.
+// clock stays. CLOCK_STATE=synchronised or =free says what the kernel tells of the clock's
+// discipline.
 #include <dlfcn.h>
+#include <sys/timex.h>
 #include <time.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
+#include <string_view>
 
 namespace {
 
@@ -49,4 +52,18 @@ extern "C" int clock_gettime(clockid_t clock, timespec* time) {
     time->tv_nsec += kNsPerS;
   }
   return result;
+}
+
+extern "C" int adjtimex(timex* answer) noexcept {
+  static const char* const state = std::getenv("CLOCK_STATE");
+  if (state == nullptr) {
+    static const auto real = reinterpret_cast<int (*)(timex*)>(dlsym(RTLD_NEXT, "adjtimex"));
+    return real(answer);
+  }
+  *answer = {};
+  answer->esterror = 250;
+  answer->maxerror = 900;
+  if (std::string_view(state) == "synchronised") return TIME_OK;
+  answer->status = STA_UNSYNC;
+  return TIME_ERROR;
 }
