@@ -98,15 +98,13 @@ class ClockStepTest : public testing::Test {
         [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
     ASSERT_TRUE(source.Open().ok());
     EdgePipeline pipeline(
-        options,
-        EdgeParts{.source = source,
-                  .publisher = publisher_,
-                  .account = account_,
-                  .health = health_,
-                  .clock = clock_,
-                  .spool = std::make_unique<Spool>(
-                      "scan.mcap", std::make_unique<FakeRecordingWriter>(recording_), account_),
-                  .session = 1});
+        options, EdgeParts{.source = source,
+                           .publisher = publisher_,
+                           .account = account_,
+                           .health = health_,
+                           .clock = clock_,
+                           .spool = MakeFakeSpool(recording_, options.spool(), clock_, account_),
+                           .session = 1});
     pipeline.StartReceiving();
     pipeline.StartCapture();
     while (!pipeline.finished()) std::this_thread::yield();

@@ -217,9 +217,9 @@ TEST_F(CamerasTest, TheListShowsTheCamera) {
   EXPECT_THAT(list.output, HasSubstr("thermal cameras:"));
 }
 
-TEST_F(CamerasTest, WithoutAnyCameraItSaysSoAndLeaves) {
+TEST_F(CamerasTest, WithoutAnyCameraAScriptIsTold) {
   camera_.Plug(false);
-  const Finished edge = RunToEnd(Edge(), kPatience);
+  const Finished edge = RunToEnd(Edge({"--exit-at-end"}), kPatience);
   EXPECT_EQ(edge.status, 69);
   EXPECT_THAT(edge.output, HasSubstr("no depth camera is connected"));
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <future>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,16 +12,23 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/exit_deadline.h"
 #include "common/base/log.h"
 #include "common/codec/codec.h"
 #include "common/config/text_proto.h"
+#include "common/time/back_off.h"
 #include "common/transport/clock_record.h"
+#include "common/transport/join_domain.h"
 #include "edge/edge_options.pb.h"
 #include "edge/edge_pipeline.h"
 #include "edge/edge_report.h"
+#include "edge/host_status.h"
 #include "edge/housekeeping.h"
 #include "edge/make_source.h"
+#include "edge/publisher/late_publisher.h"
 #include "edge/source/pause.h"
+#include "edge/spool/recording_files.h"
+#include "edge/spool/recording_name.h"
 
 namespace isotherm {
 namespace {
@@ -31,6 +39,15 @@ using std::chrono::milliseconds;
 constexpr Nanoseconds kTick = milliseconds(50);
 // Time to let the ground confirm the last frames when a signal says to leave.
 constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
+// What is told to leave leaves within two seconds. The recording comes first: a disk may take this
+// long to answer, ...
+constexpr Nanoseconds kTimeForDisk = milliseconds(3500);
+// ... the link takes less than this by itself, if nothing in it hangs, ...
+constexpr Nanoseconds kTimeForLink = milliseconds(2500);
+// ... and with its network interface down the middleware never ends by itself.
+constexpr Nanoseconds kTimeForMiddleware = milliseconds(400);
+// How often a service that waits says that it is alive.
+constexpr Nanoseconds kTellInterval = milliseconds(500);
 
 // EX_CANTCREAT of sysexits.h: the recording could not be created or not be finished.
 constexpr int kExitRecording = 73;
@@ -146,12 +163,9 @@ std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescri
   return metadata;
 }
 
-Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const Start& start,
-                                         FrameAccount& account) {
-  const std::optional<std::filesystem::path> path = SpoolPath(options.spool().record(), start.time);
-  if (!path) return nullptr;
+RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options, const Start& start) {
   const TimestamperOptions& timing = options.timestamper();
-  Spool::Metadata metadata = {
+  RecordingDescription::Metadata metadata = {
       {"configuration", {{"edge", ToTextProto(options)}}},
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
       {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
@@ -160,8 +174,26 @@ Result<std::unique_ptr<Spool>> OpenSpool(const EdgeOptions& options, const Start
         {"thermal_delay_s",
          fmt::format("{}", timing.thermal_delay_s() + start.rig_thermal_delay_s)}}}};
   if (!start.cameras.empty()) metadata["cameras"] = CameraMetadata(start.cameras);
-  LOG(Edge, Info) << "recording to " << path->string();
-  return Spool::Create(*path, options.spool(), start.rig, metadata, account);
+  return metadata;
+}
+
+/// Null if nothing is to be recorded. Without a disk it waits for one, unless somebody waits for
+/// the end of the source: then that is an error.
+Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const Start& start,
+                                         const Clock& clock, FrameAccount& account) {
+  const std::optional<std::filesystem::path> path =
+      RecordingPath(options.spool().record(), start.time, start.session());
+  if (!path) return nullptr;
+  const auto files = std::make_shared<RecordingFiles>(
+      RecordingDescription{*path, FromSeconds(options.spool().flush_interval_s()), start.rig,
+                           RecordingMetadata(options, start)});
+  auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
+                                                  [path] { return FreeDiskBytes(*path); },
+                                                  options.spool(), clock, account});
+  if (options.exit_at_end()) {
+    if (Status begun = spool->Begin(); !begun.ok()) return Err(begun);
+  }
+  return spool;
 }
 
 Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
@@ -210,12 +242,86 @@ void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Houseke
   }
 }
 
+/// Opens the source that the options ask for. Cameras that are not there are waited for, as a
+/// service does; who waits for the end of the source wants to know.
+Result<std::unique_ptr<FrameSource>> OpenSource(const EdgeOptions& options,
+                                                const SourceContext& context) {
+  using Opened = Result<std::unique_ptr<FrameSource>>;
+  const auto open = [&]() -> Opened {
+    Opened source = MakeSource(options, context);
+    if (!source) return source;
+    if (const Status opened = (*source)->Open(); !opened.ok()) return Err(opened);
+    return source;
+  };
+  Opened source = open();
+  const bool waits = options.source().kind() == CAMERAS && !options.exit_at_end();
+  const auto is_hopeless = [](const Opened& result) {
+    return !result && result.error().code() != StatusCode::kUnavailable;
+  };
+  if (source || !waits || is_hopeless(source)) return source;
+  LOG(Edge, Warning) << source.error().message() << "; waiting for it, nothing is recorded yet";
+  BackOff back_off(FromSeconds(options.frame_check().retry_min_s()),
+                   FromSeconds(options.frame_check().retry_max_s()));
+  while (!source && !is_hopeless(source) && !context.stop.stop_requested()) {
+    const std::string reason = "waiting for a camera: " + source.error().message();
+    const SteadyTime due = context.clock.SteadyNow() + back_off.Next();
+    while (context.clock.SteadyNow() < due && !context.stop.stop_requested()) {
+      NotifyWaiting(reason);
+      Pause(context.stop, std::min(kTellInterval, Nanoseconds(due - context.clock.SteadyNow())));
+    }
+    // A vendor's library may take its time; the service manager is told meanwhile.
+    std::future<Opened> attempt = std::async(std::launch::async, open);
+    while (attempt.wait_for(kTellInterval) != std::future_status::ready) NotifyWaiting(reason);
+    source = attempt.get();
+  }
+  return source;
+}
+
+/// What the end of a capture needs.
+struct Ending {
+  ExitDeadline& deadline;
+  const FrameAccount& account;
+  const CameraHealth& health;
+  bool recording = false;
+};
+
+void PrintSummary(const Ending& ending, const Publisher& publisher, const EdgePipeline& pipeline) {
+  std::fputs(
+      Summary(ending.account, ending.recording, publisher.receipt(), pipeline.feedback().latency())
+          .c_str(),
+      stdout);
+  std::fputs(
+      CameraSummary(ending.health.Get(Sensor::kDepth), ending.health.Get(Sensor::kThermal)).c_str(),
+      stdout);
+  std::fflush(stdout);
+}
+
+/// Ends the recording, then the link, each in its time. The process's exit status.
+int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeline,
+          Housekeeping& housekeeping, Publisher& publisher, const Clock& clock,
+          const std::stop_token& stop) {
+  const auto say = [&] { PrintSummary(ending, publisher, pipeline); };
+  ending.deadline.Arm(kTimeForDisk, kExitRecording, "the disk or a camera", say);
+  const int status = pipeline.StopRecording().ok() ? 0 : kExitRecording;
+  const Nanoseconds linger =
+      stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().linger_s());
+  ending.deadline.Arm(kTimeForLink + linger, status, "the network", say);
+  static_cast<void>(pipeline.Stop());
+  housekeeping.PublishEnd();
+  if (!Drain(publisher, options.link(), clock, stop)) {
+    LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
+  }
+  ending.deadline.Arm(kTimeForMiddleware, status, "the middleware or standard output");
+  say();
+  return status;
+}
+
 /// Captures until told to leave, then hands on what is under way. The process's exit status.
 int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
             std::unique_ptr<Spool> spool, FrameAccount& account, CameraHealth& health,
-            Publisher& publisher, const Clock& clock, const std::stop_token& stop) {
-  const bool recording = spool != nullptr;
-  const std::filesystem::path disk = recording ? spool->path() : ".";
+            Publisher& publisher, ExitDeadline& deadline, const Clock& clock,
+            const std::stop_token& stop) {
+  const Ending ending{deadline, account, health, spool != nullptr};
   EdgePipeline pipeline(options, {source, publisher, account, health, clock, std::move(spool),
                                   start.session(), start.rig_thermal_delay_s});
   pipeline.StartReceiving();
@@ -225,22 +331,46 @@ int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
   if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
 
   pipeline.StartCapture();
-  Housekeeping housekeeping(clock, pipeline, publisher, account, health, disk,
+  Housekeeping housekeeping(clock, pipeline, publisher, account, health,
                             options.display().picture_file());
   RunUntilStopped(options, pipeline, housekeeping, stop);
-
   NotifyStopping();
-  const Status recorded = pipeline.Stop();
-  housekeeping.PublishEnd();
-  if (!Drain(publisher, options.link(), clock, stop)) {
-    LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
+  return Leave(options, ending, pipeline, housekeeping, publisher, clock, stop);
+}
+
+/// A participant and what publishes through it; the first must outlive the second.
+struct Link {
+  std::unique_ptr<Participant> participant;
+  std::unique_ptr<Publisher> publisher;
+};
+
+/// Without a network it captures and records all the same, unless somebody waits for the end of
+/// the source. `link` must stay where it is.
+Status Connect(const EdgeOptions& options, const TransportEnvironment& environment,
+               const Clock& clock, Link& link) {
+  const int domain = options.link().domain();
+  Result<std::unique_ptr<Participant>> joined = Participant::Create(environment, domain);
+  if (joined) {
+    link.participant = std::move(*joined);
+    Result<std::unique_ptr<Publisher>> made = MakePublisher(options, *link.participant, clock);
+    if (!made) return made.error();
+    link.publisher = std::move(*made);
+    return OkStatus();
   }
-  std::fputs(
-      Summary(account, recording, publisher.receipt(), pipeline.feedback().latency()).c_str(),
-      stdout);
-  std::fputs(CameraSummary(health.Get(Sensor::kDepth), health.Get(Sensor::kThermal)).c_str(),
-             stdout);
-  return recorded.ok() ? 0 : kExitRecording;
+  if (options.exit_at_end() || joined.error().code() != StatusCode::kUnavailable) {
+    return joined.error();
+  }
+  link.publisher = std::make_unique<LatePublisher>(
+      [&options, &environment, &clock, &link, domain](
+          const std::stop_token& stop,
+          const LatePublisher::Waiting& waiting) -> Result<std::unique_ptr<Publisher>> {
+        Result<std::unique_ptr<Participant>> late =
+            JoinDomain(environment, domain, clock, stop, waiting);
+        if (!late) return Err(late.error());
+        link.participant = std::move(*late);
+        return MakePublisher(options, *link.participant, clock);
+      });
+  return OkStatus();
 }
 
 }  // namespace
@@ -248,16 +378,14 @@ int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
 int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment, const Clock& clock,
             const StopSignal& signal) {
   const std::stop_token stop = signal.token();
+  ExitDeadline deadline;  // Outlives what may not end.
   FrameAccount account;
   CameraHealth health;
   const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
   if (!calibration) return Fail(calibration.error());
   const Result<std::unique_ptr<FrameSource>> source =
-      MakeSource(options, {clock, account, health, *calibration, stop});
-  if (!source) return Fail(source.error());
-  if (const Status opened = (*source)->Open(); !opened.ok()) {
-    return stop.stop_requested() ? 0 : Fail(opened);
-  }
+      OpenSource(options, {clock, account, health, *calibration, stop});
+  if (!source) return stop.stop_requested() ? 0 : Fail(source.error());
   const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
   TellAboutRig(rig);
   TellAboutCounts((*source)->cameras());
@@ -265,20 +393,19 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
                     rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
   TellAboutClock(options, start.clock);
 
-  const Result<std::unique_ptr<Participant>> participant =
-      Participant::Create(environment, options.link().domain());
-  if (!participant) return Fail(participant.error());
-  const Result<std::unique_ptr<Publisher>> publisher = MakePublisher(options, **participant, clock);
-  if (!publisher) return Fail(publisher.error());
-  Result<std::unique_ptr<Spool>> spool = OpenSpool(options, start, account);
+  Link link;
+  if (const Status connected = Connect(options, environment, clock, link); !connected.ok()) {
+    return Fail(connected);
+  }
+  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, start, clock, account);
   if (!spool) {
     LOG(Edge, Error) << spool.error().message();
     return kExitRecording;
   }
-  const Status begun = (*publisher)->BeginSession(Describe(options, start));
+  const Status begun = link.publisher->BeginSession(Describe(options, start));
   if (!begun.ok()) return Fail(begun);
-  return Capture(options, start, **source, std::move(*spool), account, health, **publisher, clock,
-                 stop);
+  return Capture(options, start, **source, std::move(*spool), account, health, *link.publisher,
+                 deadline, clock, stop);
 }
 
 }  // namespace isotherm

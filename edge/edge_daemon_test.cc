@@ -12,6 +12,7 @@
 
 #include "common/codec/codec.h"
 #include "common/recording/recording.h"
+#include "edge/small_scan_for_test.h"
 #include "tests/system/process.h"
 
 namespace isotherm {
@@ -32,7 +33,7 @@ constexpr Seconds kPatience{60};
 /// What the daemon promises after SIGTERM, and what a loaded test computer adds.
 constexpr Seconds kTimeToLeave{2.0};
 constexpr Seconds kSlack{3.0};
-constexpr int kFrames = 30;
+constexpr int kFrames = kSmallScanFrames;
 
 struct Counts {
   bool complete = false;
@@ -44,40 +45,9 @@ class EdgeDaemonTest : public testing::Test {
  protected:
   EdgeDaemonTest() {
     std::filesystem::create_directories(folder_);
-    WriteScan(scan_);
+    WriteSmallScan(scan_);
   }
   ~EdgeDaemonTest() override { std::filesystem::remove_all(folder_); }
-
-  /// Something that does not compress to nothing.
-  static Image<std::uint16_t> Noise(int width, int height, std::uint16_t base) {
-    Image<std::uint16_t> image(width, height);
-    std::uint32_t state = 1;
-    for (std::uint16_t& pixel : image.pixels()) {
-      state = state * 1664525U + 1013904223U;
-      pixel = static_cast<std::uint16_t>(base + (state >> 24U));
-    }
-    return image;
-  }
-
-  /// A second of both cameras.
-  static void WriteScan(const std::filesystem::path& path) {
-    const Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, {});
-    ASSERT_TRUE(writer.has_value()) << writer.error().message();
-    for (int i = 0; i < kFrames; ++i) {
-      const CaptureTime time = CaptureTime(seconds(1'600'000'000)) + i * milliseconds(33);
-      EncodedDepthFrame depth;
-      depth.header.frame_number = static_cast<std::uint64_t>(i);
-      depth.header.capture_time = time;
-      depth.image = DepthEncoder().Encode(Noise(64, 48, 700));
-      ASSERT_TRUE((*writer)->Write(depth, std::nullopt).ok());
-      EncodedThermalFrame thermal;
-      thermal.header = depth.header;
-      thermal.header.capture_time = time + milliseconds(7);
-      thermal.image = ThermalEncoder().Encode(Noise(38, 28, 29'815));
-      ASSERT_TRUE((*writer)->Write(thermal, std::nullopt).ok());
-    }
-    ASSERT_TRUE((*writer)->Close().ok());
-  }
 
   static Counts ReadRecording(const std::filesystem::path& path) {
     Counts counts;
@@ -140,6 +110,21 @@ TEST_F(EdgeDaemonTest, F38SigtermLeavesACompleteRecordingInTime) {
   EXPECT_GT(copy.depth, 0);
   EXPECT_THAT(edge.output(), HasSubstr("captured " + std::to_string(copy.depth) + " = recorded " +
                                        std::to_string(copy.depth) + " + rejected 0"));
+}
+
+TEST_F(EdgeDaemonTest, F38ATerminalThatIsGoneLeavesACompleteRecordingToo) {
+  NotifySocket manager(folder_);
+  Command command =
+      Edge({"--recording", scan_, "--record", copy_, "--set", "source.loops=0", "--rate", "1"});
+  command.environment = {manager.environment()};
+  Process edge(command);
+  ASSERT_TRUE(manager.WaitFor("READY=1", kPatience)) << edge.output();
+  while (!std::filesystem::exists(copy_) || std::filesystem::file_size(copy_) < 10'000) {
+    ASSERT_EQ(edge.WaitForExit(Seconds(0.05)), std::nullopt) << edge.output();
+  }
+  edge.Signal(SIGHUP);
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
+  EXPECT_TRUE(ReadRecording(copy_).complete);
 }
 
 TEST_F(EdgeDaemonTest, ADiskThatFillsUpEndsTheRecordingOnly) {
@@ -213,9 +198,10 @@ TEST_F(EdgeDaemonTest, AWrongCommandLineIsAUsageError) {
   EXPECT_EQ(RunToEnd(Edge({"--source", "webcam"}), kPatience).status, 64);
 }
 
-TEST_F(EdgeDaemonTest, ARecordingThatCannotBeCreatedEndsTheStart) {
+TEST_F(EdgeDaemonTest, ARecordingThatCannotBeCreatedEndsTheStartOfAScript) {
   const Finished edge =
-      RunToEnd(Edge({"--recording", scan_, "--record", "/proc/nowhere/scan.mcap"}), kPatience);
+      RunToEnd(Edge({"--recording", scan_, "--record", "/proc/nowhere/scan.mcap", "--exit-at-end"}),
+               kPatience);
   EXPECT_EQ(edge.status, 73) << edge.output;
   EXPECT_THAT(edge.output, HasSubstr("/proc/nowhere"));
 }

@@ -13,6 +13,13 @@ namespace {
 /// Frames that may wait for the codec: a quarter of a second of both cameras, 10 MB.
 constexpr std::size_t kCodecQueueFrames = 16;
 
+/// Without a frame for so long, the recording brings to the disk what it has collected.
+constexpr Nanoseconds kIdle = std::chrono::milliseconds(250);
+/// A disk may stall for some seconds, and the link may wait for the ground for ten
+/// (PublisherOptions::flow_timeout). What takes longer than these hangs.
+constexpr Nanoseconds kStuck = std::chrono::seconds(10);
+constexpr Nanoseconds kLinkStuck = std::chrono::seconds(15);
+
 OverflowPolicy PolicyFor(const EdgeOptions& options) {
   return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
 }
@@ -83,11 +90,29 @@ void EdgePipeline::StartCapture() {
   capture_thread_ = std::jthread([this](const std::stop_token& stop) { Capture(stop); });
 }
 
-Status EdgePipeline::Stop() {
-  if (std::exchange(stopped_, true)) return recording_status_;
+Status EdgePipeline::StopRecording() {
+  if (std::exchange(recording_stopped_, true)) return recording_status_;
   // Along the line, so that each stage can still hand on what it has.
-  for (std::jthread* thread :
-       {&capture_thread_, &codec_thread_, &spool_thread_, &publish_thread_, &receive_thread_}) {
+  for (std::jthread* thread : {&capture_thread_, &codec_thread_}) {
+    thread->request_stop();
+    if (thread->joinable()) thread->join();
+  }
+  publish_thread_.request_stop();  // It need not wait for the disk.
+  spool_thread_.request_stop();
+  if (spool_thread_.joinable()) spool_thread_.join();
+  if (!spool_) return recording_status_;
+  RecordFeedback();
+  if (feedback_to_record_.dropped() > 0) {
+    LOG(Spool, Warning) << "feedback not recorded, messages=" << feedback_to_record_.dropped();
+  }
+  recording_status_ = spool_->Close();
+  return recording_status_;
+}
+
+Status EdgePipeline::Stop() {
+  static_cast<void>(StopRecording());
+  if (std::exchange(stopped_, true)) return recording_status_;
+  for (std::jthread* thread : {&publish_thread_, &receive_thread_}) {
     thread->request_stop();
     if (thread->joinable()) thread->join();
   }
@@ -103,12 +128,6 @@ Status EdgePipeline::Stop() {
                     << " published=" << outside_poses_published_
                     << " not_published=" << outside_poses_captured_ - outside_poses_published_;
   }
-  if (!spool_) return recording_status_;
-  RecordFeedback();
-  if (feedback_to_record_.dropped() > 0) {
-    LOG(Spool, Warning) << "feedback not recorded, messages=" << feedback_to_record_.dropped();
-  }
-  recording_status_ = spool_->Close();
   return recording_status_;
 }
 
@@ -126,10 +145,26 @@ double EdgePipeline::spool_fill_ratio() const {
   return static_cast<double>(spool_queue_.size()) / static_cast<double>(spool_capacity_);
 }
 
+std::optional<SpoolStatus> EdgePipeline::recording() const {
+  return spool_ ? std::optional(spool_->status()) : std::nullopt;
+}
+
+std::optional<std::string> EdgePipeline::StuckIn(SteadyTime now) const {
+  if (recording_.BusyFor(now) > kStuck) return "the disk does not answer";
+  if (reading_.BusyFor(now) > kStuck) return "the source of frames does not answer";
+  if (publishing_.BusyFor(now) > kLinkStuck) return "the network does not answer";
+  return std::nullopt;
+}
+
+Result<SourceItem> EdgePipeline::Read(const std::stop_token& stop) {
+  const StuckWatch::Step step(reading_, clock_.SteadyNow());
+  return source_.Read(stop);
+}
+
 void EdgePipeline::Capture(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     ServeNucCommands();
-    Result<SourceItem> item = source_.Read(stop);
+    Result<SourceItem> item = Read(stop);
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
     WatchClock();
     if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
@@ -249,9 +284,17 @@ void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
 }
 
 void EdgePipeline::Record(const std::stop_token& stop) {
-  while (const std::optional<EncodedFramePtr> frame = spool_queue_.Pop(stop)) {
+  {
+    const StuckWatch::Step step(recording_, clock_.SteadyNow());
+    spool_->Tend(/*idle=*/false);
+  }
+  while (true) {
+    const std::optional<EncodedFramePtr> frame = spool_queue_.PopFor(kIdle, stop);
+    if (!frame && stop.stop_requested()) return;
+    const StuckWatch::Step step(recording_, clock_.SteadyNow());
     RecordFeedback();
-    spool_->Add(**frame);
+    if (frame) spool_->Add(**frame);
+    spool_->Tend(/*idle=*/!frame);
   }
 }
 
@@ -270,6 +313,7 @@ void EdgePipeline::PublishOutsidePoses(const EncodedFrame& frame) {
 
 void EdgePipeline::Publish(const std::stop_token& stop) {
   while (const std::optional<EncodedFramePtr> frame = publish_queue_.Pop(stop)) {
+    const StuckWatch::Step step(publishing_, clock_.SteadyNow());
     // First, so that the ground has them when it tracks the frame.
     PublishOutsidePoses(**frame);
     const Status published =

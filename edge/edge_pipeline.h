@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -23,6 +24,7 @@
 #include "edge/source/blind_detector.h"
 #include "edge/source/frame_source.h"
 #include "edge/spool/spool.h"
+#include "edge/stuck_watch.h"
 #include "edge/timestamper/timestamper.h"
 
 namespace isotherm {
@@ -62,6 +64,8 @@ class EdgePipeline {
   /// Ends capture, empties the queues, closes the recording. Idempotent. The recording's first
   /// error, or ok.
   Status Stop();
+  /// The first half of it, which the recording needs: what follows needs the link.
+  Status StopRecording();
 
   /// Answers what the ground has asked for since the last call.
   void AnswerCommands();
@@ -78,9 +82,14 @@ class EdgePipeline {
   const FeedbackMonitor& feedback() const { return feedback_; }
   /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
   double spool_fill_ratio() const;
+  /// How the recording is doing; nullopt without one. Thread-safe.
+  std::optional<SpoolStatus> recording() const;
+  /// What a thread of the line is stuck in, in words; nullopt if all get on. Thread-safe.
+  std::optional<std::string> StuckIn(SteadyTime now) const;
 
  private:
   void Capture(const std::stop_token& stop);
+  Result<SourceItem> Read(const std::stop_token& stop);
   void Process(RawFrame raw, const std::stop_token& stop);
   /// Absorbs and reports steps of the wall clock.
   void WatchClock();
@@ -130,8 +139,12 @@ class EdgePipeline {
   std::atomic<bool> source_ended_{false};
   LatestValue<NucReport> nuc_report_;
   const TimeBase time_base_;
+  bool recording_stopped_ = false;
   bool stopped_ = false;
   Status recording_status_;
+  StuckWatch reading_;
+  StuckWatch recording_;
+  StuckWatch publishing_;
 
   struct ReceivedFeedback {
     Feedback feedback;

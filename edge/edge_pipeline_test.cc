@@ -32,8 +32,7 @@ class EdgePipelineTest : public testing::Test {
     ASSERT_TRUE(source_->Open().ok());
     std::unique_ptr<Spool> spool;
     if (record) {
-      spool = std::make_unique<Spool>(
-          "scan.mcap", std::make_unique<FakeRecordingWriter>(recording_, disk_room_), account_);
+      spool = MakeFakeSpool(recording_, options_.spool(), clock_, account_, disk_room_);
     }
     pipeline_ = std::make_unique<EdgePipeline>(
         options_, EdgeParts{.source = *source_,

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "common/transport/clock_record.h"
 #include "common/transport/feedback_text.h"
@@ -152,6 +153,31 @@ std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bo
       StateText(status.thermal_camera), NucText(status.nuc), depth.recorded + thermal.recorded,
       depth.published + thermal.published, Dropped(depth) + Dropped(thermal), ToText(status.clock),
       stamps.empty() ? "" : "  stamps ", stamps);
+}
+
+std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameAccount& account,
+                                     bool ground_present, const std::optional<Feedback>& feedback,
+                                     const std::vector<std::string>& problems) {
+  const SensorAccount depth = account.Get(Sensor::kDepth);
+  const SensorAccount thermal = account.Get(Sensor::kThermal);
+  std::vector<std::string> ground = {"ground: absent"};
+  if (ground_present) ground = {"ground: no feedback yet"};
+  if (ground_present && feedback) ground = FeedbackParts(*feedback);
+  std::vector<std::string> parts = {ground.front()};
+  parts.insert(parts.end(), problems.begin(), problems.end());
+  for (const auto& [name, camera] :
+       {std::pair("depth", status.depth_camera), std::pair("thermal", status.thermal_camera)}) {
+    if (const std::string state = StateText(camera); !state.empty()) parts.push_back(name + state);
+  }
+  const std::uint64_t dropped = Dropped(depth) + Dropped(thermal);
+  if (dropped > 0) parts.push_back(fmt::format("dropped {}", dropped));
+  parts.insert(parts.end(), ground.begin() + 1, ground.end());
+  parts.push_back(fmt::format("{:.0f}+{:.0f}/s", status.depth.rate_hz, status.thermal.rate_hz));
+  parts.push_back("NUC " + NucText(status.nuc));
+  parts.push_back(fmt::format("recorded {}", depth.recorded + thermal.recorded));
+  parts.push_back(fmt::format("published {}", depth.published + thermal.published));
+  parts.push_back("clock " + ToText(status.clock));
+  return parts;
 }
 
 std::string Summary(const FrameAccount& account, bool recording,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/transport/messages.h"
 #include "edge/frame_account.h"
@@ -43,9 +44,15 @@ std::optional<std::string> ClockProblem(const KernelClock& clock);
 /// What the recording says of the clock that dates its frames, at the start of a scan.
 std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base);
 
-/// One line for the operator: what the ground says, then rates, drops, NUC and clock.
+/// One line for the operator's journal: what the ground says, then rates, drops, NUC and clock.
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
                        const std::optional<Feedback>& feedback);
+
+/// The same for a terminal that may be narrow (FitLine), the most important first: what the ground
+/// advises, what is wrong (`problems`, each in a few words), frames dropped, then the rest.
+std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameAccount& account,
+                                     bool ground_present, const std::optional<Feedback>& feedback,
+                                     const std::vector<std::string>& problems);
 
 /// What became of every frame, and how soon the ground answered, printed at exit. `recording`:
 /// whether there was one.

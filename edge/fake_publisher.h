@@ -21,7 +21,10 @@ class FakePublisher final : public Publisher {
     changed_.wait(lock, stop, [] { return false; });
   }
   bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
-  Status BeginSession(const RigDescription&) override { return OkStatus(); }
+  Status BeginSession(const RigDescription&) override {
+    ++sessions_;
+    return OkStatus();
+  }
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
     return Take(frame, depth_, stop);
   }
@@ -77,6 +80,7 @@ class FakePublisher final : public Publisher {
     return answers_;
   }
   std::optional<PublishPolicy> policy() const { return policy_; }
+  int sessions() const { return sessions_; }
 
  private:
   template <typename Frame>
@@ -92,6 +96,7 @@ class FakePublisher final : public Publisher {
   std::condition_variable_any changed_;
   bool held_ = false;
   std::atomic<bool> broken_{false};
+  std::atomic<int> sessions_{0};
   std::optional<PublishPolicy> policy_;
   std::vector<EncodedDepthFrame> depth_;
   std::vector<EncodedThermalFrame> thermal_;

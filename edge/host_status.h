@@ -15,6 +15,9 @@ struct HostStatus {
   KernelClock clock;
 };
 
+/// Free on the disk of `path`, a file or folder that need not exist; 0 if that cannot be found out.
+std::uint64_t FreeDiskBytes(std::filesystem::path path);
+
 /// `disk` is a file or folder on the disk in question (its nearest existing parent counts).
 HostStatus ReadHostStatus(const std::filesystem::path& disk);
 

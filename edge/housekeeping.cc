@@ -1,15 +1,10 @@
 #include "edge/housekeeping.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
-#include <cstdio>
 #include <optional>
 #include <utility>
 
 #include "common/base/log.h"
 #include "common/base/service.h"
-#include "common/transport/bounded_text.h"
 #include "edge/picture_file.h"
 
 namespace isotherm {
@@ -17,25 +12,27 @@ namespace {
 
 constexpr Nanoseconds kStatusInterval = std::chrono::seconds(1);
 constexpr Nanoseconds kLogInterval = std::chrono::seconds(10);
+// A camera that works sends something, or its source says that it is lost.
+constexpr Nanoseconds kNoFrames = std::chrono::seconds(10);
 
 }  // namespace
 
 Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
                            const FrameAccount& account, const CameraHealth& health,
-                           std::filesystem::path disk, std::filesystem::path picture_file)
+                           std::filesystem::path picture_file)
     : clock_(clock),
       pipeline_(pipeline),
       publisher_(publisher),
       account_(account),
       health_(health),
-      disk_(std::move(disk)),
       picture_file_(std::move(picture_file)),
-      terminal_(isatty(STDERR_FILENO) == 1),
+      terminal_(line_->is_terminal()),
       synchronised_(ReadKernelClock().synchronised),
       next_status_(clock.SteadyNow()),
       next_log_(next_status_ + kLogInterval),
       watchdog_interval_(WatchdogInterval()),
-      next_feed_(next_status_) {}
+      next_feed_(next_status_),
+      captured_at_(next_status_) {}
 
 void Housekeeping::Tick() {
   pipeline_.AnswerCommands();
@@ -53,7 +50,8 @@ void Housekeeping::Tick() {
   if (!published.ok()) {
     LOG(Edge, Debug) << "status not published: " << published.message();
   }
-  if (terminal_) ShowLine();
+  ShowLine();
+  TellStatus();
   Log();
 }
 
@@ -62,7 +60,7 @@ void Housekeeping::PublishEnd() {
   if (!published.ok()) {
     LOG(Edge, Warning) << "final status not published: " << published.message();
   }
-  if (terminal_) std::fputs("\n", stderr);
+  line_.reset();  // What follows is below it.
 }
 
 EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
@@ -78,7 +76,10 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.spool_fill_ratio = pipeline_.spool_fill_ratio();
   status.depth_camera = health_.Get(Sensor::kDepth);
   status.thermal_camera = health_.Get(Sensor::kThermal);
-  AddHostStatus(ReadHostStatus(disk_), status);
+  AddHostStatus(ReadHostStatus("."), status);
+  if (const std::optional<SpoolStatus> recording = pipeline_.recording()) {
+    status.disk_free_bytes = recording->free_bytes;
+  }
   status.clock.steps = pipeline_.clock_steps();
   status.clock.step_sum_s = ToSeconds(pipeline_.clock_step_total());
   return status;
@@ -125,23 +126,52 @@ void Housekeeping::ShowFeedback() {
     picture_fails_ = !written.ok();
   }
   const std::optional<std::string> news = narrator_.Tell(*feedback);
-  if (terminal_) {
-    ShowLine();
-  } else if (news) {
+  ShowLine();
+  if (!terminal_ && news) {
     LOG(Edge, Info) << "ground: " << *news;
   }
 }
 
 void Housekeeping::ShowLine() {
-  const std::string line = StatusLine(status_, account_, publisher_.stats().ground_present,
-                                      pipeline_.feedback().newest());
-  // A line that wraps cannot be overwritten. The cursor stays at its start, so that a log line
-  // covers it.
-  winsize size{};
-  const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
-  const std::size_t columns = known ? size.ws_col - 1U : line.size();
-  std::fprintf(stderr, "\033[2K%s\r", std::string(CutText(line, columns)).c_str());
-  std::fflush(stderr);
+  if (!terminal_ || !line_) return;
+  std::vector<std::string> problems;
+  if (const auto recording = pipeline_.recording(); recording && !recording->brief.empty())
+    problems.push_back(recording->brief);
+  const PublisherStats link = publisher_.stats();
+  if (!link.problem.empty()) problems.emplace_back("NO NETWORK");
+  if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
+    problems.push_back(*stuck);
+  line_->Show(
+      StatusParts(status_, account_, link.ground_present, pipeline_.feedback().newest(), problems),
+      "  ");
+}
+
+std::vector<std::string> Housekeeping::Problems() const {
+  std::vector<std::string> problems;
+  if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
+    problems.push_back(*stuck);
+  if (const auto recording = pipeline_.recording(); recording && !recording->problem.empty())
+    problems.push_back("not recording: " + recording->problem);
+  if (const std::string network = publisher_.stats().problem; !network.empty())
+    problems.push_back(network);
+  const auto look = [&problems](std::string_view name, const CameraReport& camera) {
+    if (camera.state == CameraState::kLost) {
+      problems.push_back(std::string(name) + " camera is lost: look at its cable and power; " +
+                         "it is opened again as soon as it is there");
+    }
+  };
+  look("the depth", status_.depth_camera);
+  look("the thermal", status_.thermal_camera);
+  return problems;
+}
+
+void Housekeeping::TellStatus() {
+  std::vector<std::string> problems = Problems();
+  if (problems == told_) return;
+  told_ = std::move(problems);
+  std::string text;
+  for (const std::string& problem : told_) text += (text.empty() ? "" : "; ") + problem;
+  NotifyStatus(text.empty() ? "all is well again" : text);
 }
 
 void Housekeeping::Log() {
@@ -152,18 +182,33 @@ void Housekeeping::Log() {
   if (!terminal_) {
     LOG(Edge, Info) << line;
   }
-  NotifyStatus(line);
+  if (told_.empty()) NotifyStatus(line);
+}
+
+bool Housekeeping::GetsOn(SteadyTime now) {
+  const std::uint64_t captured =
+      account_.Get(Sensor::kDepth).captured + account_.Get(Sensor::kThermal).captured;
+  const auto works = [this](Sensor sensor) {
+    const CameraState state = health_.Get(sensor).state;
+    return state == CameraState::kWorking || state == CameraState::kBlind;
+  };
+  const bool is_due = works(Sensor::kDepth) || works(Sensor::kThermal);
+  // Cameras that are lost are looked for: that is progress. So is a source that has ended.
+  if (std::exchange(captured_, captured) != captured || !is_due || pipeline_.finished())
+    captured_at_ = now;
+  std::optional<std::string> stuck = pipeline_.StuckIn(now);
+  if (!stuck && now - captured_at_ > kNoFrames) stuck = "a camera sends nothing and does not fail";
+  if (stuck.has_value() != std::exchange(stuck_, stuck.has_value())) {
+    LOG(Edge, Error) << (stuck ? *stuck + ": the service manager is no longer told that all is well"
+                               : "it goes on");
+  }
+  return !stuck;
 }
 
 void Housekeeping::FeedWatchdog(SteadyTime now) {
-  if (!watchdog_interval_ || now < next_feed_) return;
-  next_feed_ = now + *watchdog_interval_;
-  // Only while frames move. A daemon whose source has ended is idle, not stuck.
-  const std::uint64_t captured =
-      account_.Get(Sensor::kDepth).captured + account_.Get(Sensor::kThermal).captured;
-  if (captured == captured_at_last_feed_ && !pipeline_.finished()) return;
-  captured_at_last_feed_ = captured;
-  NotifyWatchdog();
+  if (now < next_feed_) return;
+  next_feed_ = now + watchdog_interval_.value_or(kStatusInterval);
+  if (GetsOn(now) && watchdog_interval_) NotifyWatchdog();
 }
 
 }  // namespace isotherm

@@ -3,7 +3,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "common/base/terminal_line.h"
 #include "common/time/clock.h"
 #include "common/transport/feedback_text.h"
 #include "edge/camera_health.h"
@@ -18,10 +22,9 @@ namespace isotherm {
 /// a second, tells the operator and the service manager. Thread-bound.
 class Housekeeping {
  public:
-  /// All must outlive it. `disk` is where the recording goes, `picture_file` the confidence picture
-  /// (empty: nowhere).
+  /// All must outlive it. `picture_file`: where the confidence picture goes (empty: nowhere).
   Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-               const FrameAccount& account, const CameraHealth& health, std::filesystem::path disk,
+               const FrameAccount& account, const CameraHealth& health,
                std::filesystem::path picture_file);
 
   /// Does what is due; call it often.
@@ -34,6 +37,12 @@ class Housekeeping {
   /// The newest feedback, if it was not shown yet: picture, status line or journal.
   void ShowFeedback();
   void ShowLine();
+  /// What is wrong, each in a sentence that says what to do.
+  std::vector<std::string> Problems() const;
+  /// To the service manager, at once if something became wrong or right.
+  void TellStatus();
+  /// Whether the program makes progress, with or without cameras.
+  bool GetsOn(SteadyTime now);
   /// What became of the cameras since the last status.
   void TellCameras(const EdgeStatus& before) const;
   /// That synchronisation was lost or found; how it is at the start is told there.
@@ -46,8 +55,8 @@ class Housekeeping {
   Publisher& publisher_;
   const FrameAccount& account_;
   const CameraHealth& health_;
-  const std::filesystem::path disk_;
   const std::filesystem::path picture_file_;
+  std::optional<TerminalLine> line_{std::in_place};  ///< Until the end.
   const bool terminal_;
   bool synchronised_;
   SteadyTime next_status_;
@@ -56,7 +65,10 @@ class Housekeeping {
   SteadyTime next_feed_;
   RateMeter depth_rate_;
   RateMeter thermal_rate_;
-  std::uint64_t captured_at_last_feed_ = 0;
+  std::uint64_t captured_ = 0;     ///< As of `captured_at_`.
+  SteadyTime captured_at_;         ///< The newest frames.
+  std::vector<std::string> told_;  ///< Problems, to the service manager.
+  bool stuck_ = false;
   EdgeStatus status_;  ///< The last one published.
   std::uint64_t feedback_shown_ = 0;
   FeedbackNarrator narrator_;

@@ -143,6 +143,9 @@ void CheckSpool(const SpoolOptions& options, Problems& problems) {
   if (options.record().empty()) problems.Add("record", "is empty; name a file or say \"off\"");
   problems.CheckRange("queue_frames", options.queue_frames(), 1, 100'000);
   problems.CheckRange("flush_interval_s", options.flush_interval_s(), 0.05, 1.0);
+  problems.CheckRange("reserve_s", options.reserve_s(), 0.0, 86'400.0);
+  problems.CheckRange("reserve_mb", options.reserve_mb(), 0, 1'000'000);
+  problems.CheckRange("warn_s", options.warn_s(), 0.0, 86'400.0);
 }
 
 void CheckLink(const LinkOptions& options, Problems& problems) {

@@ -57,6 +57,19 @@ class BoundedQueue {
     return value;
   }
 
+  /// As Pop, but waits no longer than `patience`: nullopt after that, too. For consumers that have
+  /// something to do when nothing comes.
+  template <typename Duration>
+  std::optional<T> PopFor(Duration patience, std::stop_token stop) {
+    std::unique_lock lock(mutex_);
+    if (!changed_.wait_for(lock, stop, patience, [this] { return !values_.empty(); }))
+      return std::nullopt;
+    T value = std::move(values_.front());
+    values_.pop_front();
+    changed_.notify_all();
+    return value;
+  }
+
   std::size_t size() const {
     std::scoped_lock lock(mutex_);
     return values_.size();

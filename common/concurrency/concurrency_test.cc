@@ -11,6 +11,16 @@
 namespace isotherm {
 namespace {
 
+TEST(BoundedQueueTest, PopForGivesUpWhenNothingComesAndStillEmptiesAStoppedQueue) {
+  BoundedQueue<int> queue(2, OverflowPolicy::kBlock);
+  EXPECT_EQ(queue.PopFor(std::chrono::milliseconds(1), {}), std::nullopt);
+  queue.Push(7, {});
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(queue.PopFor(std::chrono::hours(1), stop.get_token()), 7);
+  EXPECT_EQ(queue.PopFor(std::chrono::hours(1), stop.get_token()), std::nullopt);
+}
+
 TEST(BoundedQueueTest, DropOldestKeepsTheNewestAndCounts) {
   BoundedQueue<int> queue(2, OverflowPolicy::kDropOldest);
   const std::stop_source stop;

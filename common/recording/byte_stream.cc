@@ -19,6 +19,9 @@ Status FromErrno(int error, std::string_view action, const std::filesystem::path
   if (error == ENOSPC || error == EDQUOT || error == EFBIG) {
     return ResourceExhausted(message + "; free some space or record to another disk");
   }
+  if (error == EROFS) {
+    message += "; if it was writable before, its disk has failed: see dmesg, record to another";
+  }
   if (error == ENOENT) return NotFound(std::move(message));
   return IoError(std::move(message));
 }
@@ -57,8 +60,9 @@ class FileSink final : public ByteSink {
 
   Status Sync() override {
     if (::fdatasync(fd_.get()) == 0) return OkStatus();
-    // Devices and pipes have nothing to sync.
-    if (errno == EINVAL || errno == EROFS || errno == ENOTSUP) return OkStatus();
+    // Devices and pipes have nothing to sync. EROFS is not among them: it is what a file system
+    // says that has gone read-only because of an error.
+    if (errno == EINVAL || errno == ENOTSUP) return OkStatus();
     return FromErrno(errno, "sync", path_);
   }
 

@@ -112,9 +112,13 @@ Status Writer::WriteMetadata(const Metadata& metadata) {
 Status Writer::Flush() {
   if (!failure_.ok()) return failure_;
   if (chunk_.records.empty()) return OkStatus();
+  Statistics before = statistics_;
   ISOTHERM_RETURN_IF_ERROR(WriteChunk());
   if (!options_.sync) return OkStatus();
   failure_ = sink_->Sync();
+  // What was not synced may or may not be on the disk, and trying again would not tell: the kernel
+  // forgets the error. So it does not count as written.
+  if (!failure_.ok()) statistics_ = std::move(before);
   return failure_;
 }
 

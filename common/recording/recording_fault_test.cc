@@ -69,6 +69,45 @@ TEST(RecordingFaultTest, FullDiskIsReportedAndTheAccountIsExact) {
   EXPECT_GT(failures, 10);
 }
 
+/// A disk in memory whose sync fails from some time on.
+class UnsyncedSink final : public ByteSink {
+ public:
+  explicit UnsyncedSink(const bool& fails) : fails_(fails) {}
+  Status Write(std::span<const std::uint8_t> /*bytes*/) override {
+    if (fails_) ++writes_after_failure;
+    return OkStatus();
+  }
+  Status Sync() override {
+    if (fails_) ++syncs_after_failure;
+    return fails_ ? IoError("input/output error") : OkStatus();
+  }
+  Status Close() override { return OkStatus(); }
+
+  static inline int writes_after_failure = 0;
+  static inline int syncs_after_failure = 0;
+
+ private:
+  const bool& fails_;
+};
+
+TEST(RecordingFaultTest, F43WhatWasNotSyncedIsNotCountedAsRecordedAndSyncIsNotTriedAgain) {
+  bool fails = false;
+  auto writer = MakeRecordingWriter(std::make_unique<UnsyncedSink>(fails), kSmallChunks);
+  ASSERT_TRUE(writer.has_value());
+  ASSERT_TRUE((*writer)->Write(MakeDepth(0, kScanStart), std::nullopt).ok());
+  ASSERT_TRUE((*writer)->Flush().ok());
+  ASSERT_TRUE((*writer)->Write(MakeDepth(1, kScanStart), std::nullopt).ok());
+  fails = true;
+  EXPECT_EQ((*writer)->Flush().code(), StatusCode::kIoError);
+  EXPECT_EQ((*writer)->stats().depth_frames, 1U);
+  EXPECT_EQ((*writer)->stats().failed, 1U);
+  const int writes = UnsyncedSink::writes_after_failure;
+  EXPECT_FALSE((*writer)->Write(MakeDepth(2, kScanStart), std::nullopt).ok());
+  EXPECT_FALSE((*writer)->Close().ok());
+  EXPECT_EQ(UnsyncedSink::syncs_after_failure, 1) << "the kernel has forgotten the error by then";
+  EXPECT_EQ(UnsyncedSink::writes_after_failure, writes);
+}
+
 TEST(RecordingFaultTest, FullDiskFailsEveryFurtherCall) {
   const auto disk = std::make_shared<MemorySink::Disk>();
   auto writer = WriterTo(disk, kSmallChunks);

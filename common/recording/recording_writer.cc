@@ -259,7 +259,13 @@ Result<std::unique_ptr<RecordingWriter>> RecordingWriter::Create(const std::file
   if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
   auto sink = CreateFileSink(path);
   if (!sink) return Err(std::move(sink.error()));
-  return MakeRecordingWriter(std::move(*sink), options);
+  auto writer = MakeRecordingWriter(std::move(*sink), options);
+  // A file without even a beginning is nothing but a name that is taken.
+  std::error_code ignored;
+  if (!writer && std::filesystem::is_regular_file(path, ignored)) {
+    std::filesystem::remove(path, ignored);
+  }
+  return writer;
 }
 
 }  // namespace isotherm

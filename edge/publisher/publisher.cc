@@ -29,6 +29,8 @@ constexpr Nanoseconds kPresenceInterval =
 constexpr Nanoseconds kHelloGrace = 500ms;
 constexpr Nanoseconds kPollInterval = 20ms;   // For what the middleware does not signal.
 constexpr Nanoseconds kStopPatience = 500ms;  // Waiting for the ground after stop, in all.
+// Writing after stop, in all: without its peer, the middleware makes each write wait.
+constexpr Nanoseconds kStopWriting = 700ms;
 
 std::string HostName() {
   std::array<char, 256> name{};
@@ -104,6 +106,8 @@ class DdsPublisher final : public Publisher {
                       const std::stop_token& stop);
   template <typename Frame>
   void WaitForRoom(const Writer<Frame>& writer, Stream* stream, const std::stop_token& stop);
+  /// After stop was requested.
+  bool HasTimeLeft();
   /// Messages for other rigs share the topics.
   bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
   void TakeReceipts();
@@ -155,7 +159,7 @@ class DdsPublisher final : public Publisher {
   std::optional<ClockEcho> clock_echo_;  // Not sent yet.
   GroundRegister grounds_;
   bool ground_present_ = false;
-  std::optional<SteadyTime> stop_deadline_;
+  std::optional<SteadyTime> stopped_at_;  // When it was first seen that stop was requested.
 };
 
 Status DdsPublisher::Open(const Participant& participant) {
@@ -326,8 +330,8 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
   while (!stream->window.HasRoom() && MayBeAwaited(writer, stream, clock_.SteadyNow())) {
     const SteadyTime now = clock_.SteadyNow();
     if (stop.stop_requested()) {
-      if (!stop_deadline_) stop_deadline_ = now + kStopPatience;
-      if (now >= *stop_deadline_) break;
+      if (!stopped_at_) stopped_at_ = now;
+      if (now >= *stopped_at_ + kStopPatience) break;
     }
     if (stream->window.GiveUp(now)) {
       ++flow_timeouts_;
@@ -340,6 +344,13 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
   if (waited) ++flow_waits_;
 }
 
+bool DdsPublisher::HasTimeLeft() {
+  const SteadyTime now = clock_.SteadyNow();
+  std::scoped_lock lock(mutex_);
+  if (!stopped_at_) stopped_at_ = now;
+  return now < *stopped_at_ + kStopWriting;
+}
+
 template <typename Frame>
 Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Stream* stream,
                                   const std::stop_token& stop) {
@@ -349,6 +360,11 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
         fmt::format("frame of session {} without BeginSession", frame.header.session));
   }
   if (policy_ == PublishPolicy::kLossless) WaitForRoom(*writer, stream, stop);
+  if (stop.stop_requested() && !HasTimeLeft()) {
+    std::scoped_lock lock(mutex_);
+    ++stream->counts.failed;
+    return Unavailable("not sent: told to stop, and the link is too slow");
+  }
   {
     std::scoped_lock lock(mutex_);
     stream->published.Note(number, frame.header.capture_time);

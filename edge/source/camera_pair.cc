@@ -33,6 +33,7 @@ CameraPair::~CameraPair() { Close(); }
 Status CameraPair::Open() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     members_[i]->opened = {};
+    members_[i]->goes_on = {};
     members_[i]->ended = false;
     members_[i]->thread = std::jthread([this, i](const std::stop_token& stop) { Run(i, stop); });
   }
@@ -50,7 +51,9 @@ Status CameraPair::Open() {
     if (named.code() == StatusCode::kInvalidArgument) hopeless = named;
     missing += (missing.empty() ? "" : "; ") + named.message();
   }
-  if (working > 0 && !hopeless) {
+  const bool goes_on = working > 0 && !hopeless;
+  for (const std::unique_ptr<Member>& member : members_) member->goes_on.set_value(goes_on);
+  if (goes_on) {
     if (!missing.empty()) {
       LOG(Source, Warning) << "starting without a camera, which is tried again: " << missing;
     }
@@ -128,9 +131,10 @@ void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
   Member& member = *members_[index];
   SupervisedSource& source = *member.camera.source;
   const Status opened = source.Open();
-  if (!opened.ok()) source.KeepTrying(opened);
   member.opened.set_value({opened, opened.ok() ? source.rig() : std::nullopt, source.cameras()});
-  while (!stop.stop_requested()) {
+  const bool goes_on = member.goes_on.get_future().get();
+  if (goes_on && !opened.ok()) source.KeepTrying(opened);
+  while (goes_on && !stop.stop_requested()) {
     PassOrders(member);
     source.SetIdle(!reading_ && !waits_);
     Result<SourceItem> item = source.Read(stop);

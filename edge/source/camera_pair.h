@@ -74,6 +74,7 @@ class CameraPair final : public FrameSource {
     BoundedQueue<CameraControl> orders{kMostOrders, OverflowPolicy::kBlock};
     BoundedQueue<ControlAnswer> answers{kMostOrders, OverflowPolicy::kBlock};
     std::promise<Opened> opened;
+    std::promise<bool> goes_on;      ///< Whether a camera that is missing is tried again.
     std::atomic<bool> ended{false};  ///< Its thread takes no orders any more.
     std::jthread thread;
   };

@@ -159,6 +159,7 @@ SourceItem SupervisedSource::Judge(RawFrame frame) {
   if (verdict.ok()) {
     bad_in_a_row = 0;
     next_wait_ = retry_min_;
+    failure_.clear();
     Tell(true);
     return frame;
   }
@@ -173,8 +174,12 @@ SourceItem SupervisedSource::Judge(RawFrame frame) {
 }
 
 void SupervisedSource::ScheduleReopen(const Status& reason) {
-  LOG(Source, Error) << name() << ": " << reason.message()
-                     << "; opening it again, wait_s=" << ToSeconds(next_wait_);
+  // A camera that is away for an hour says so once.
+  if (std::exchange(failure_, reason.message()) != reason.message()) {
+    LOG(Source, Error) << name() << ": " << reason.message()
+                       << "; opening it again, wait_s=" << ToSeconds(next_wait_)
+                       << ", doubling up to " << ToSeconds(retry_max_);
+  }
   Close();
   Tell(false);
   reopen_at_ = clock_.SteadyNow() + next_wait_;

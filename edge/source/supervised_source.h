@@ -88,6 +88,7 @@ class SupervisedSource final : public FrameSource {
   WorksCallback on_works_;
   LossCallback on_loss_;
   std::optional<bool> works_;  ///< As told last.
+  std::string failure_;        ///< As logged last; empty while it works.
   const int max_bad_in_a_row_;
   const Nanoseconds retry_min_;
   const Nanoseconds retry_max_;

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/recording/recording.h"
+#include "edge/spool/spool.h"
 
 namespace isotherm {
 
@@ -21,6 +23,9 @@ struct FakeRecording {
   std::vector<std::pair<std::string, CaptureTime>> messages;  ///< By topic.
   std::vector<RecordedLog> log;
   int writes_after_failure = 0;
+  int flushes = 0;
+  std::uint64_t bytes = 0;   ///< What the writer says.
+  bool refuse_next = false;  ///< The next frame is not one that can be recorded.
   bool closed = false;
 };
 
@@ -62,17 +67,22 @@ class FakeRecordingWriter final : public RecordingWriter {
     recording_.messages.emplace_back(topic, time);
     return OkStatus();
   }
-  Status Flush() override { return OkStatus(); }
+  Status Flush() override {
+    ++recording_.flushes;
+    return OkStatus();
+  }
   Status Close() override {
     recording_.closed = true;
     return OkStatus();
   }
   RecordingStats stats() const override {
-    return {recording_.depth_frames.size(), recording_.thermal_frames.size(), failed_, 0};
+    return {recording_.depth_frames.size(), recording_.thermal_frames.size(), failed_,
+            recording_.bytes};
   }
 
  private:
   Status Take(std::uint64_t frame_number, std::vector<std::uint64_t>& frames) {
+    if (std::exchange(recording_.refuse_next, false)) return InvalidArgument("no such frame");
     if (room_ == 0) {
       if (failed_++ > 0) ++recording_.writes_after_failure;
       return IoError("no space left on device");
@@ -86,5 +96,16 @@ class FakeRecordingWriter final : public RecordingWriter {
   std::uint64_t room_;
   std::uint64_t failed_ = 0;
 };
+
+/// A spool that records to `recording`, in one file.
+inline std::unique_ptr<Spool> MakeFakeSpool(FakeRecording& recording, const SpoolOptions& options,
+                                            const Clock& clock, FrameAccount& account,
+                                            std::uint64_t room = UINT64_MAX) {
+  return std::make_unique<Spool>(SpoolParts{
+      [&recording, room]() -> Result<RecordingFile> {
+        return RecordingFile{"scan.mcap", std::make_unique<FakeRecordingWriter>(recording, room)};
+      },
+      [] { return std::uint64_t{0}; }, options, clock, account});
+}
 
 }  // namespace isotherm

@@ -1,10 +1,10 @@
 #include "edge/spool/spool.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ctime>
+#include <cmath>
+#include <system_error>
 #include <utility>
 
 #include "common/base/log.h"
@@ -12,64 +12,115 @@
 #include "edge/edge_options.pb.h"
 
 namespace isotherm {
+namespace {
 
-std::optional<std::filesystem::path> SpoolPath(const std::string& record, CaptureTime now) {
-  if (record == "off") return std::nullopt;
-  const std::filesystem::path path = record;
+constexpr Nanoseconds kLookInterval = std::chrono::seconds(1);
+// A disk that takes this much more is well again; one that fails sooner is still the same failure.
+constexpr Nanoseconds kProven = std::chrono::seconds(3);
+constexpr double kBytesPerMb = 1e6;
+
+void RemoveIfEmpty(const std::filesystem::path& path, const RecordingStats& stats) {
+  if (stats.depth_frames + stats.thermal_frames > 0) return;
   std::error_code ignored;
-  if (path.has_filename() && !std::filesystem::is_directory(path, ignored)) return path;
-  const std::time_t seconds =
-      std::chrono::floor<std::chrono::seconds>(now.time_since_epoch()).count();
-  return path / fmt::format("edge-{:%Y%m%d-%H%M%S}.mcap", fmt::gmtime(seconds));
+  if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
 }
 
-Result<std::unique_ptr<Spool>> Spool::Create(const std::filesystem::path& path,
-                                             const SpoolOptions& options,
-                                             const std::optional<Rig>& rig,
-                                             const Metadata& metadata, FrameAccount& account) {
-  RecordingOptions recording;
-  recording.flush_interval = FromSeconds(options.flush_interval_s());
-  Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, recording);
-  if (!writer) return Err(writer.error());
-  if (rig) {
-    if (const Status written = (*writer)->Write(*rig); !written.ok()) return Err(written);
-  }
-  for (const auto& [name, values] : metadata) {
-    const Status written = (*writer)->WriteMetadata(name, values);
-    if (!written.ok()) return Err(written);
-  }
-  return std::make_unique<Spool>(path, std::move(*writer), account);
+}  // namespace
+
+Spool::Spool(SpoolParts parts) : parts_(std::move(parts)), disk_(parts_.options) {}
+
+Status Spool::Begin() {
+  const Status begun = BeginFile();
+  Note(begun);
+  UpdateStatus();
+  return begun;
 }
 
-Spool::Spool(std::filesystem::path path, std::unique_ptr<RecordingWriter> writer,
-             FrameAccount& account)
-    : path_(std::move(path)), writer_(std::move(writer)), account_(account) {}
+Status Spool::BeginFile() {
+  Result<RecordingFile> file = parts_.next_file();
+  if (!file) return file.error();
+  file_ = std::move(*file);
+  path_ = file_->path;
+  begun_at_ = parts_.clock.SteadyNow();
+  wall_minus_time_ = Nanoseconds(0);
+  LOG(Spool, Info) << "recording to " << path_.string();
+  return OkStatus();
+}
+
+void Spool::BeginFileWhenDue() {
+  if (IsRecording() || at_reserve_ || parts_.clock.SteadyNow() < retry_at_) return;
+  Note(BeginFile());
+}
 
 void Spool::Add(const EncodedFrame& frame) {
   ++offered_[static_cast<std::size_t>(frame.sensor())];
-  if (first_error_.ok()) NoteError(WriteFrame(frame));
+  BeginFileWhenDue();
+  if (IsRecording()) Note(WriteFrame(frame));
   UpdateAccount();
 }
 
 void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
-  if (first_error_.ok()) NoteError(WriteFeedback(feedback, arrival, *writer_, newest_));
+  if (IsRecording()) Note(WriteFeedback(feedback, arrival, *file_->writer, newest_));
+}
+
+void Spool::Tend(bool idle) {
+  if (idle && IsRecording()) Note(file_->writer->Flush());
+  if (IsRecording()) NoteWorks();
+  LookAtDisk();
+  BeginFileWhenDue();
+  UpdateAccount();
+  UpdateStatus();
+}
+
+void Spool::LookAtDisk() {
+  const SteadyTime now = parts_.clock.SteadyNow();
+  if (now < next_look_) return;
+  next_look_ = now + kLookInterval;
+  free_bytes_ = parts_.free_bytes();
+  const std::uint64_t open_bytes = IsRecording() ? file_->writer->stats().bytes : 0;
+  const DiskLevel before =
+      std::exchange(level_, disk_.Update(now, free_bytes_, closed_.bytes + open_bytes));
+  if (level_ == DiskLevel::kReserve) return EndAtReserve();
+  if (std::exchange(at_reserve_, false)) {
+    LOG(Spool, Info) << "there is space on the disk again, free_mb="
+                     << std::lround(static_cast<double>(free_bytes_) / kBytesPerMb)
+                     << "; frames not recorded=" << NotRecorded() - not_recorded_before_;
+    problem_ = OkStatus();
+  }
+  if (level_ == DiskLevel::kLow && before == DiskLevel::kEnough) {
+    LOG(Spool, Warning) << "the disk of " << path_.string() << " is full in "
+                        << std::lround(disk_.left_s() / 60.0)
+                        << " min: delete old recordings, or end the scan in time";
+  }
+}
+
+void Spool::EndAtReserve() {
+  if (std::exchange(at_reserve_, true)) return;
+  const Status closed = IsRecording() ? CloseFile() : OkStatus();
+  problem_ = ResourceExhausted(fmt::format(
+      "the disk is full but for its reserve of {:.0f} MB (spool.reserve_mb, reserve_s): {} is "
+      "complete up to here, no frame is recorded from now on; delete old recordings",
+      disk_.reserve_bytes() / kBytesPerMb, path_.string()));
+  if (first_error_.ok()) first_error_ = closed.ok() ? problem_ : closed;
+  LOG(Spool, Error) << problem_.message() << "; publishing goes on";
 }
 
 Status Spool::WriteFrame(const EncodedFrame& frame) {
+  RecordingWriter& writer = *file_->writer;
   const CaptureTime time =
       std::visit([](const auto& content) { return content.header.capture_time; }, frame.content);
   newest_ = std::max(newest_.value_or(time), time);
   for (const OutsidePoseSample& sample : frame.outside_poses)
-    ISOTHERM_RETURN_IF_ERROR(writer_->Write(sample.pose));
+    ISOTHERM_RETURN_IF_ERROR(writer.Write(sample.pose));
   for (const RecordedLog& log : frame.log)
-    ISOTHERM_RETURN_IF_ERROR(writer_->WriteLog(log.time, log.level, log.text));
+    ISOTHERM_RETURN_IF_ERROR(writer.WriteLog(log.time, log.level, log.text));
   ISOTHERM_RETURN_IF_ERROR(WriteClockStep(frame));
   if (const auto* depth = std::get_if<EncodedDepthFrame>(&frame.content)) {
-    return writer_->Write(*depth, frame.arrival);
+    return writer.Write(*depth, frame.arrival);
   }
   const auto& thermal = std::get<EncodedThermalFrame>(frame.content);
   NoteShutter(thermal);
-  return writer_->Write(thermal, frame.arrival);
+  return IsRecording() ? writer.Write(thermal, frame.arrival) : OkStatus();
 }
 
 Status Spool::WriteClockStep(const EncodedFrame& frame) {
@@ -78,7 +129,7 @@ Status Spool::WriteClockStep(const EncodedFrame& frame) {
   wall_minus_time_ = frame.wall_minus_time;
   const CaptureTime time =
       std::visit([](const auto& content) { return content.header.capture_time; }, frame.content);
-  return writer_->Write(ClockStep{time, step, frame.wall_minus_time});
+  return file_->writer->Write(ClockStep{time, step, frame.wall_minus_time});
 }
 
 void Spool::NoteShutter(const EncodedThermalFrame& frame) {
@@ -87,31 +138,85 @@ void Spool::NoteShutter(const EncodedThermalFrame& frame) {
       frame.nuc_state == NucState::kInProgress || frame.nuc_state == NucState::kError;
   if (closed && !shutter_closed_at_) shutter_closed_at_ = time;
   if (closed || !shutter_closed_at_) return;
-  NoteError(writer_->Write(NucEvent{*shutter_closed_at_, time, frame.nuc_source}));
+  Note(file_->writer->Write(NucEvent{*shutter_closed_at_, time, frame.nuc_source}));
   shutter_closed_at_.reset();
 }
 
+Status Spool::CloseFile() {
+  const Status closed = file_->writer->Close();
+  const RecordingStats stats = file_->writer->stats();
+  closed_.depth_frames += stats.depth_frames;
+  closed_.thermal_frames += stats.thermal_frames;
+  closed_.bytes += stats.bytes;
+  file_.reset();
+  RemoveIfEmpty(path_, stats);
+  return closed;
+}
+
 Status Spool::Close() {
-  NoteError(writer_->Close());
+  if (IsRecording()) Note(CloseFile());
   UpdateAccount();
+  UpdateStatus();
   return first_error_;
 }
 
-void Spool::NoteError(const Status& status) {
-  if (status.ok() || !first_error_.ok()) return;
-  first_error_ = status;
-  LOG(Spool, Error) << "recording ended early, publishing goes on: " << status.message();
+void Spool::Note(const Status& status) {
+  if (status.ok()) return;
+  if (first_error_.ok()) first_error_ = status;
+  if (status.code() == StatusCode::kInvalidArgument || status.code() == StatusCode::kDataLoss) {
+    // One message is wrong, not the disk.
+    if (refused_++ == 0) {
+      LOG(Spool, Warning) << "not recorded: " << status.message();
+    }
+    return;
+  }
+  if (IsRecording()) static_cast<void>(CloseFile());
+  retry_at_ = parts_.clock.SteadyNow() + back_off_.Next();
+  if (problem_.ok()) {
+    LOG(Spool, Error) << "recording ended early, publishing goes on: " << status.message()
+                      << "; a new file is begun when the disk takes it";
+  }
+  problem_ = status;
+}
+
+void Spool::NoteWorks() {
+  if (problem_.ok() || parts_.clock.SteadyNow() - begun_at_ < kProven) return;
+  problem_ = OkStatus();
+  back_off_.Reset();
+  LOG(Spool, Warning) << "the disk works again, recording to " << path_.string()
+                      << "; frames not recorded=" << NotRecorded() - not_recorded_before_;
+}
+
+std::uint64_t Spool::NotRecorded() const {
+  std::uint64_t recorded = closed_.depth_frames + closed_.thermal_frames;
+  if (IsRecording()) {
+    const RecordingStats stats = file_->writer->stats();
+    recorded += stats.depth_frames + stats.thermal_frames;
+  }
+  return offered_[0] + offered_[1] - recorded;
 }
 
 void Spool::UpdateAccount() {
-  const RecordingStats written = writer_->stats();
+  if (problem_.ok()) not_recorded_before_ = NotRecorded();
+  const RecordingStats open = IsRecording() ? file_->writer->stats() : RecordingStats();
   const auto set = [this](Sensor sensor, std::uint64_t recorded) {
-    account_.Set(sensor, FrameFate::kRecorded, recorded);
-    account_.Set(sensor, FrameFate::kRecordFailed,
-                 offered_[static_cast<std::size_t>(sensor)] - recorded);
+    parts_.account.Set(sensor, FrameFate::kRecorded, recorded);
+    parts_.account.Set(sensor, FrameFate::kRecordFailed,
+                       offered_[static_cast<std::size_t>(sensor)] - recorded);
   };
-  set(Sensor::kDepth, written.depth_frames);
-  set(Sensor::kThermal, written.thermal_frames);
+  set(Sensor::kDepth, closed_.depth_frames + open.depth_frames);
+  set(Sensor::kThermal, closed_.thermal_frames + open.thermal_frames);
+}
+
+std::string Spool::Brief() const {
+  if (at_reserve_) return "NOT RECORDING: disk full";
+  if (!problem_.ok()) return IsRecording() ? "disk was failing" : "NOT RECORDING: disk fails";
+  if (level_ != DiskLevel::kLow) return "";
+  return fmt::format("disk full in {:.0f} min", disk_.left_s() / 60.0);
+}
+
+void Spool::UpdateStatus() {
+  newest_status_.Set({path_, free_bytes_, disk_.left_s(), problem_.message(), Brief()});
 }
 
 }  // namespace isotherm

@@ -3,64 +3,124 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "common/base/status.h"
+#include "common/concurrency/latest_value.h"
 #include "common/recording/recording.h"
-#include "common/time/time_types.h"
+#include "common/time/back_off.h"
+#include "common/time/clock.h"
 #include "common/transport/messages.h"
 #include "edge/encoded_frame.h"
 #include "edge/frame_account.h"
+#include "edge/spool/disk_watch.h"
 
 namespace isotherm {
 
 class SpoolOptions;
 
-/// The file that `record` means: as given, or named by `now` in the folder that it names; nullopt
-/// for "off".
-std::optional<std::filesystem::path> SpoolPath(const std::string& record, CaptureTime now);
+/// One file of a recording.
+struct RecordingFile {
+  std::filesystem::path path;
+  std::unique_ptr<RecordingWriter> writer;
+};
+
+/// What a spool is put together from. `clock` and `account` must outlive it.
+struct SpoolParts {
+  /// Begins the recording's next file, with all that stands at a file's beginning.
+  std::function<Result<RecordingFile>()> next_file;
+  /// Of the disk that it records to.
+  std::function<std::uint64_t()> free_bytes;
+  const SpoolOptions& options;
+  const Clock& clock;
+  FrameAccount& account;
+};
+
+/// How the recording is doing.
+struct SpoolStatus {
+  std::filesystem::path path;  ///< Of the newest file.
+  std::uint64_t free_bytes = 0;
+  double left_s = std::numeric_limits<double>::quiet_NaN();  ///< Until it ends for lack of space.
+  /// What is wrong and what to do, in a sentence and in a few words; empty if nothing is.
+  std::string problem;
+  std::string brief;
+};
 
 /// The recording on the edge's own disk, with the shutter events that the thermal frames tell of
-/// and the steps of the wall clock. After the first write error (disk full) it says so once, keeps
-/// what is good and only counts. Thread-bound: one thread adds and closes.
+/// and the steps of the wall clock.
+///
+///   recording --(error)----------> waiting --(back-off over, a new file can be begun)--> recording
+///   recording --(reserve left)---> full ----(space was made, a new file)---------------> recording
+///
+/// After an error the file is closed as it is, for what the disk did with it is not known, and
+/// never touched again; frames that no file has are counted. At the reserve it is closed properly.
+/// A file that got no frame is removed. Nothing of this ends the scan. Thread-bound but for
+/// status(): one thread adds, tends and closes.
 class Spool {
  public:
-  using Metadata = std::map<std::string, std::map<std::string, std::string>>;
+  explicit Spool(SpoolParts parts);
 
-  static Result<std::unique_ptr<Spool>> Create(const std::filesystem::path& path,
-                                               const SpoolOptions& options,
-                                               const std::optional<Rig>& rig,
-                                               const Metadata& metadata, FrameAccount& account);
-  /// For a writer of any kind. `account` must outlive the spool.
-  Spool(std::filesystem::path path, std::unique_ptr<RecordingWriter> writer, FrameAccount& account);
-
+  /// Begins the first file at once, for who wants to know whether that is possible: the error, or
+  /// ok. Otherwise Tend() begins it, again and again if need be.
+  Status Begin();
   void Add(const EncodedFrame& frame);
   /// `arrival` on the edge's wall clock.
   void Add(const Feedback& feedback, CaptureTime arrival);
+  /// To be called several times a second. `idle`: no frame came for a moment, so that nothing but
+  /// this brings to the disk what is still collected.
+  void Tend(bool idle);
   /// Writes the summary. The first error of the whole recording, or ok.
   Status Close();
 
-  const std::filesystem::path& path() const { return path_; }
+  /// Thread-safe.
+  SpoolStatus status() const { return newest_status_.Get().value_or(SpoolStatus()); }
 
  private:
+  bool IsRecording() const { return file_.has_value(); }
+  void BeginFileWhenDue();
+  Status BeginFile();
+  void LookAtDisk();
+  void EndAtReserve();
   Status WriteFrame(const EncodedFrame& frame);
   void NoteShutter(const EncodedThermalFrame& frame);
   /// A step that a dropped frame would have told of is told by the next one.
   Status WriteClockStep(const EncodedFrame& frame);
-  void NoteError(const Status& status);
+  /// An error of the disk ends the file.
+  void Note(const Status& status);
+  void NoteWorks();
+  /// The first error of closing it, or ok.
+  Status CloseFile();
   void UpdateAccount();
+  void UpdateStatus();
+  std::string Brief() const;
+  std::uint64_t NotRecorded() const;
 
-  const std::filesystem::path path_;
-  const std::unique_ptr<RecordingWriter> writer_;
-  FrameAccount& account_;
+  const SpoolParts parts_;
+  DiskWatch disk_;
+  std::optional<RecordingFile> file_;
+  std::filesystem::path path_;
+  RecordingStats closed_{};  ///< Of the files before.
   Status first_error_;
+  Status problem_;  ///< Ok while all is well.
+  bool at_reserve_ = false;
+  BackOff back_off_;
+  SteadyTime retry_at_{};
+  SteadyTime begun_at_{};  ///< The newest file.
+  SteadyTime next_look_{};
+  std::uint64_t free_bytes_ = 0;
+  DiskLevel level_ = DiskLevel::kEnough;
   std::optional<CaptureTime> newest_;       ///< Capture time of the frames so far.
   std::array<std::uint64_t, 2> offered_{};  ///< By Sensor.
+  std::uint64_t not_recorded_before_ = 0;   ///< When all was well last.
+  std::uint64_t refused_ = 0;               ///< Messages that cannot be recorded on any disk.
   std::optional<CaptureTime> shutter_closed_at_;
-  Nanoseconds wall_minus_time_{0};
+  Nanoseconds wall_minus_time_{0};  ///< As the newest file says.
+  LatestValue<SpoolStatus> newest_status_;
 };
 
 }  // namespace isotherm

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <deque>
+
+#include "edge/edge_options.pb.h"
 #include "edge/spool/fake_recording_writer.h"
 
 namespace isotherm {
@@ -23,14 +26,40 @@ EncodedFrame Thermal(CaptureTime time, NucState state) {
   return {frame, {}};
 }
 
+constexpr std::uint64_t kMb = 1'000'000;
+constexpr Nanoseconds kLongerThanAnyBackOff = std::chrono::seconds(6);
+
+/// A disk on which each file has the room that the test gives it.
 class SpoolTest : public testing::Test {
  protected:
   void Start(std::uint64_t room = UINT64_MAX) {
-    spool_ = std::make_unique<Spool>(
-        "scan.mcap", std::make_unique<FakeRecordingWriter>(recording_, room), account_);
+    room_ = room;
+    spool_ = std::make_unique<Spool>(SpoolParts{
+        [this] { return NextFile(); }, [this] { return free_bytes_; }, options_, clock_, account_});
+    spool_->Tend(false);
   }
+  Result<RecordingFile> NextFile() {
+    ++tries_;
+    if (!disk_works_) return Err(IoError("the disk is not there"));
+    files_.emplace_back();
+    return RecordingFile{std::filesystem::path(testing::TempDir()) / "not-there.mcap",
+                         std::make_unique<FakeRecordingWriter>(files_.back(), room_)};
+  }
+  /// As the spool's thread does it.
+  void Record(std::uint64_t number) {
+    spool_->Add(Depth(number));
+    spool_->Tend(false);
+  }
+  FakeRecording& recording() { return files_.front(); }
+  SensorAccount depth() const { return account_.Get(Sensor::kDepth); }
 
-  FakeRecording recording_;
+  SpoolOptions options_;
+  FakeClock clock_;
+  std::uint64_t room_ = UINT64_MAX;
+  std::uint64_t free_bytes_ = 1'000'000 * kMb;
+  bool disk_works_ = true;
+  int tries_ = 0;
+  std::deque<FakeRecording> files_;
   FrameAccount account_;
   std::unique_ptr<Spool> spool_;
 };
@@ -41,7 +70,7 @@ TEST_F(SpoolTest, WritesAndCounts) {
   spool_->Add(Depth(1));
   spool_->Add(Thermal({}, NucState::kIdle));
   EXPECT_TRUE(spool_->Close().ok());
-  EXPECT_TRUE(recording_.closed);
+  EXPECT_TRUE(recording().closed);
   EXPECT_EQ(account_.Get(Sensor::kDepth).recorded, 2U);
   EXPECT_EQ(account_.Get(Sensor::kThermal).recorded, 1U);
 }
@@ -51,10 +80,10 @@ TEST_F(SpoolTest, AFullDiskIsCountedExactlyAndReportedAtTheEnd) {
   Start(kRoom);
   for (std::uint64_t i = 0; i < 10; ++i) spool_->Add(Depth(i));
   EXPECT_EQ(spool_->Close().code(), StatusCode::kIoError);
-  EXPECT_TRUE(recording_.closed) << "what is good must stay readable";
+  EXPECT_TRUE(recording().closed) << "what is good must stay readable";
   EXPECT_EQ(account_.Get(Sensor::kDepth).recorded, 3U);
   EXPECT_EQ(account_.Get(Sensor::kDepth).record_failed, 7U);
-  EXPECT_EQ(recording_.writes_after_failure, 0) << "a full disk is not tried again for each frame";
+  EXPECT_EQ(recording().writes_after_failure, 0) << "a full disk is not tried again for each frame";
 }
 
 TEST_F(SpoolTest, F15AStepOfTheClockIsRecordedOnceEvenIfItsFrameWasDropped) {
@@ -69,12 +98,12 @@ TEST_F(SpoolTest, F15AStepOfTheClockIsRecordedOnceEvenIfItsFrameWasDropped) {
   add(20, milliseconds(-3000));
   add(30, milliseconds(-3000));
   add(40, milliseconds(-2500));
-  ASSERT_EQ(recording_.clock_steps.size(), 2U);
-  EXPECT_EQ(recording_.clock_steps[0].time, CaptureTime(milliseconds(20)));
-  EXPECT_EQ(recording_.clock_steps[0].step, milliseconds(-3000));
-  EXPECT_EQ(recording_.clock_steps[0].wall_minus_time, milliseconds(-3000));
-  EXPECT_EQ(recording_.clock_steps[1].step, milliseconds(500));
-  EXPECT_EQ(recording_.clock_steps[1].wall_minus_time, milliseconds(-2500));
+  ASSERT_EQ(recording().clock_steps.size(), 2U);
+  EXPECT_EQ(recording().clock_steps[0].time, CaptureTime(milliseconds(20)));
+  EXPECT_EQ(recording().clock_steps[0].step, milliseconds(-3000));
+  EXPECT_EQ(recording().clock_steps[0].wall_minus_time, milliseconds(-3000));
+  EXPECT_EQ(recording().clock_steps[1].step, milliseconds(500));
+  EXPECT_EQ(recording().clock_steps[1].wall_minus_time, milliseconds(-2500));
 }
 
 TEST_F(SpoolTest, AShutterEventIsRecordedWhenTheShutterOpens) {
@@ -83,13 +112,13 @@ TEST_F(SpoolTest, AShutterEventIsRecordedWhenTheShutterOpens) {
   spool_->Add(Thermal(start, NucState::kIdle));
   spool_->Add(Thermal(start + milliseconds(25), NucState::kInProgress));
   spool_->Add(Thermal(start + milliseconds(50), NucState::kInProgress));
-  EXPECT_TRUE(recording_.nuc_events.empty());
+  EXPECT_TRUE(recording().nuc_events.empty());
   spool_->Add(Thermal(start + milliseconds(75), NucState::kSettling));
   spool_->Add(Thermal(start + milliseconds(100), NucState::kSettling));
-  ASSERT_EQ(recording_.nuc_events.size(), 1U);
-  EXPECT_EQ(recording_.nuc_events[0].start, start + milliseconds(25));
-  EXPECT_EQ(recording_.nuc_events[0].end, start + milliseconds(75));
-  EXPECT_EQ(recording_.nuc_events[0].source, NucSource::kInBand);
+  ASSERT_EQ(recording().nuc_events.size(), 1U);
+  EXPECT_EQ(recording().nuc_events[0].start, start + milliseconds(25));
+  EXPECT_EQ(recording().nuc_events[0].end, start + milliseconds(75));
+  EXPECT_EQ(recording().nuc_events[0].source, NucSource::kInBand);
 }
 
 TEST_F(SpoolTest, FeedbackLiesAtTheTimeOfItsDepthFrameWithItsPicture) {
@@ -99,11 +128,11 @@ TEST_F(SpoolTest, FeedbackLiesAtTheTimeOfItsDepthFrameWithItsPicture) {
   spool_->Add(feedback, feedback.capture_time + milliseconds(70));
   feedback.picture = {1, 2, 3};
   spool_->Add(feedback, feedback.capture_time + milliseconds(170));
-  ASSERT_EQ(recording_.messages.size(), 3U);
-  EXPECT_EQ(recording_.messages[0].first, "/feedback");
-  EXPECT_EQ(recording_.messages[0].second, feedback.capture_time);
-  EXPECT_EQ(recording_.messages[1].first, "/feedback");
-  EXPECT_EQ(recording_.messages[2].first, "/feedback/picture");
+  ASSERT_EQ(recording().messages.size(), 3U);
+  EXPECT_EQ(recording().messages[0].first, "/feedback");
+  EXPECT_EQ(recording().messages[0].second, feedback.capture_time);
+  EXPECT_EQ(recording().messages[1].first, "/feedback");
+  EXPECT_EQ(recording().messages[2].first, "/feedback/picture");
 }
 
 TEST_F(SpoolTest, F60FeedbackOnOlderFramesDoesNotGoBackInTheRecording) {
@@ -115,18 +144,106 @@ TEST_F(SpoolTest, F60FeedbackOnOlderFramesDoesNotGoBackInTheRecording) {
     feedback.capture_time = newest - std::chrono::seconds(behind_s);
     spool_->Add(feedback, newest);
   }
-  ASSERT_EQ(recording_.messages.size(), 3U);
-  for (const auto& message : recording_.messages) EXPECT_EQ(message.second, newest);
+  ASSERT_EQ(recording().messages.size(), 3U);
+  for (const auto& message : recording().messages) EXPECT_EQ(message.second, newest);
 }
 
-TEST(SpoolPathTest, OffMeansNoFile) { EXPECT_EQ(SpoolPath("off", {}), std::nullopt); }
+TEST_F(SpoolTest, F43AfterAnErrorANewFileIsBegunAndTheLossIsCounted) {
+  Start(3);
+  for (std::uint64_t i = 0; i < 5; ++i) Record(i);
+  EXPECT_TRUE(files_[0].closed) << "a file that failed is not written to again";
+  EXPECT_NE(spool_->status().problem, "");
+  room_ = UINT64_MAX;
+  clock_.Advance(std::chrono::seconds(1));
+  for (std::uint64_t i = 5; i < 9; ++i) Record(i);
+  ASSERT_EQ(files_.size(), 2U);
+  EXPECT_EQ(files_[0].depth_frames, (std::vector<std::uint64_t>{0, 1, 2}));
+  EXPECT_EQ(files_[1].depth_frames, (std::vector<std::uint64_t>{5, 6, 7, 8}));
+  EXPECT_EQ(depth().recorded, 7U);
+  EXPECT_EQ(depth().record_failed, 2U);
+  clock_.Advance(std::chrono::seconds(4));
+  Record(9);
+  EXPECT_EQ(spool_->status().problem, "") << "the disk has proven itself";
+  EXPECT_EQ(spool_->Close().code(), StatusCode::kIoError) << "the recording is not complete";
+}
 
-TEST(SpoolPathTest, AFileIsTakenAsGiven) { EXPECT_EQ(SpoolPath("a/b.mcap", {}), "a/b.mcap"); }
+TEST_F(SpoolTest, F31ADiskThatIsNotThereIsWaitedForWithABackOff) {
+  disk_works_ = false;
+  Start();
+  // Half a second, 1, 2, 4, 5, 5, ...
+  for (int i = 0; i < 600; ++i) {
+    Record(static_cast<std::uint64_t>(i));
+    clock_.Advance(milliseconds(100));
+  }
+  EXPECT_GE(tries_, 13);
+  EXPECT_LE(tries_, 16);
+  EXPECT_EQ(depth().record_failed, 600U);
+  EXPECT_EQ(spool_->status().brief, "NOT RECORDING: disk fails");
+  disk_works_ = true;
+  clock_.Advance(kLongerThanAnyBackOff);
+  Record(600);
+  EXPECT_EQ(depth().recorded, 1U);
+}
 
-TEST(SpoolPathTest, AFolderGetsAFileNamedByStartTime) {
-  const CaptureTime now{std::chrono::seconds(1'700'000'000)};
-  EXPECT_EQ(SpoolPath("scans/", now), "scans/edge-20231114-221320.mcap");
-  EXPECT_EQ(SpoolPath("/tmp", now), "/tmp/edge-20231114-221320.mcap");
+TEST_F(SpoolTest, F41AtTheReserveTheFileIsEndedProperlyAndGoesOnWhenThereIsSpace) {
+  Start();
+  const auto record_for = [this](int seconds) {
+    for (int i = 0; i < seconds; ++i) {
+      clock_.Advance(std::chrono::seconds(1));
+      files_.back().bytes += 5 * kMb;
+      Record(0);
+    }
+  };
+  record_for(10);
+  EXPECT_EQ(spool_->status().brief, "");
+  free_bytes_ = 600 * kMb + 5 * 60 * 5 * kMb;  // The reserve is 120 s of 5 MB/s.
+  record_for(1);
+  EXPECT_EQ(spool_->status().brief, "disk full in 5 min");
+  free_bytes_ = 599 * kMb;
+  const std::uint64_t recorded = depth().recorded;
+  record_for(10);
+  EXPECT_TRUE(files_[0].closed);
+  EXPECT_EQ(files_.size(), 1U);
+  EXPECT_EQ(depth().recorded, recorded + 1) << "the frame that came before the look";
+  EXPECT_EQ(depth().record_failed, 9U);
+  EXPECT_EQ(spool_->status().brief, "NOT RECORDING: disk full");
+  free_bytes_ = 5000 * kMb;
+  record_for(2);
+  ASSERT_EQ(files_.size(), 2U);
+  EXPECT_GE(files_[1].depth_frames.size(), 1U);
+}
+
+TEST_F(SpoolTest, AMessageThatCannotBeRecordedIsNotTheDisksFault) {
+  Start();
+  Record(0);
+  files_[0].refuse_next = true;
+  Record(1);
+  Record(2);
+  EXPECT_EQ(files_.size(), 1U);
+  EXPECT_EQ(files_[0].depth_frames, (std::vector<std::uint64_t>{0, 2}));
+  EXPECT_EQ(depth().record_failed, 1U);
+}
+
+TEST_F(SpoolTest, F01WhatIsCollectedGoesToTheDiskWhenFramesStop) {
+  Start();
+  Record(0);
+  EXPECT_EQ(files_[0].flushes, 0);
+  spool_->Tend(/*idle=*/true);
+  EXPECT_EQ(files_[0].flushes, 1);
+}
+
+TEST_F(SpoolTest, EachFileSaysByHowMuchTheWallClockIsOff) {
+  Start(1);
+  EncodedFrame frame = Depth(0);
+  frame.wall_minus_time = milliseconds(500);
+  spool_->Add(frame);
+  spool_->Add(frame);  // Fails.
+  clock_.Advance(kLongerThanAnyBackOff);
+  room_ = UINT64_MAX;
+  spool_->Add(frame);
+  ASSERT_EQ(files_.size(), 2U);
+  ASSERT_EQ(files_[1].clock_steps.size(), 1U);
+  EXPECT_EQ(files_[1].clock_steps[0].wall_minus_time, milliseconds(500));
 }
 
 }  // namespace

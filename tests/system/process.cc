@@ -186,28 +186,60 @@ NotifySocket::NotifySocket(const std::filesystem::path& folder) : path_(folder /
 
 NotifySocket::~NotifySocket() { close(socket_); }
 
-bool NotifySocket::Receive(Seconds timeout) {
-  if (!WaitReadable(socket_, timeout)) return false;
+std::string NotifySocket::Receive(Seconds timeout) {
+  if (!WaitReadable(socket_, timeout)) return "";
   std::array<char, 4096> buffer{};
   const ssize_t count = recv(socket_, buffer.data(), buffer.size(), 0);
-  if (count > 0) received_.append(buffer.data(), static_cast<std::size_t>(count)).append("\n");
-  return true;
+  if (count <= 0) return "";
+  return "\n" + std::string(buffer.data(), static_cast<std::size_t>(count)) + "\n";
 }
 
 bool NotifySocket::WaitFor(std::string_view line, Seconds timeout) {
+  return WaitForText("\n" + std::string(line) + "\n", timeout);
+}
+
+bool NotifySocket::WaitForText(std::string_view text, Seconds timeout) {
   const auto deadline = std::chrono::steady_clock::now() + timeout;
-  const std::string wanted = "\n" + std::string(line) + "\n";
-  while (received_.find(wanted) == std::string::npos) {
+  while (received_.find(text) == std::string::npos) {
     const Seconds left = deadline - std::chrono::steady_clock::now();
-    if (left.count() <= 0 || !Receive(left)) return false;
+    if (left.count() <= 0) return false;
+    received_ += Receive(left);
   }
   return true;
 }
 
 void NotifySocket::Forget() {
-  while (Receive(Seconds(0))) {
+  while (!Receive(Seconds(0)).empty()) {
   }
   received_ = "\n";
+}
+
+Seconds NotifySocket::LongestSilence(std::string_view line, Seconds duration) {
+  const std::string wanted = "\n" + std::string(line) + "\n";
+  const auto start = std::chrono::steady_clock::now();
+  auto last = start;
+  Seconds longest{0};
+  for (auto now = start; now - start < duration; now = std::chrono::steady_clock::now()) {
+    const std::string message = Receive(duration - (now - start));
+    const auto then = std::chrono::steady_clock::now();
+    longest = std::max(longest, Seconds(then - last));
+    if (message.find(wanted) != std::string::npos) last = then;
+    received_ += message;
+  }
+  return longest;
+}
+
+bool NotifySocket::WaitForSilence(std::string_view line, Seconds silence, Seconds timeout) {
+  const std::string wanted = "\n" + std::string(line) + "\n";
+  const auto start = std::chrono::steady_clock::now();
+  auto last = start;
+  for (auto now = start; now - start < timeout; now = std::chrono::steady_clock::now()) {
+    if (now - last >= silence) return true;
+    const std::string message = Receive(silence - (now - last));
+    if (message.find(wanted) != std::string::npos) last = std::chrono::steady_clock::now();
+    received_ += message;
+  }
+  return false;
 }
 
 }  // namespace isotherm::system_test

@@ -95,8 +95,17 @@ class NotifySocket {
   /// What has come since, a line per message and variable.
   const std::string& received() const { return received_; }
 
+  /// The same for a message that contains `text` anywhere.
+  bool WaitForText(std::string_view text, Seconds timeout);
+  /// Listens for `duration`: the longest time in it without the line `line`.
+  Seconds LongestSilence(std::string_view line, Seconds duration);
+  /// True as soon as the line `line` has not come for `silence`, false if it still comes after
+  /// `timeout`.
+  bool WaitForSilence(std::string_view line, Seconds silence, Seconds timeout);
+
  private:
-  bool Receive(Seconds timeout);
+  /// The next message between line ends; empty if none comes within `timeout`.
+  std::string Receive(Seconds timeout);
 
   std::filesystem::path path_;
   int socket_ = -1;

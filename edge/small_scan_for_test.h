@@ -1,0 +1,50 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+
+#include "common/codec/codec.h"
+#include "common/recording/recording.h"
+
+namespace isotherm {
+
+inline constexpr int kSmallScanFrames = 30;
+
+/// Something that does not compress to nothing.
+inline Image<std::uint16_t> SmallNoise(int width, int height, std::uint16_t base) {
+  Image<std::uint16_t> image(width, height);
+  std::uint32_t state = 1;
+  for (std::uint16_t& pixel : image.pixels()) {
+    state = state * 1664525U + 1013904223U;
+    pixel = static_cast<std::uint16_t>(base + (state >> 24U));
+  }
+  return image;
+}
+
+/// Writes a second of both cameras, in small pictures, for an edge to replay.
+inline void WriteSmallScan(const std::filesystem::path& path) {
+  using std::chrono::milliseconds;
+  const Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, {});
+  ASSERT_TRUE(writer.has_value()) << writer.error().message();
+  for (int i = 0; i < kSmallScanFrames; ++i) {
+    const CaptureTime time =
+        CaptureTime(std::chrono::seconds(1'600'000'000)) + i * milliseconds(33);
+    EncodedDepthFrame depth;
+    depth.header.frame_number = static_cast<std::uint64_t>(i);
+    depth.header.capture_time = time;
+    depth.image = DepthEncoder().Encode(SmallNoise(64, 48, 700));
+    ASSERT_TRUE((*writer)->Write(depth, std::nullopt).ok());
+    EncodedThermalFrame thermal;
+    thermal.header = depth.header;
+    thermal.header.capture_time = time + milliseconds(7);
+    thermal.image = ThermalEncoder().Encode(SmallNoise(38, 28, 29'815));
+    ASSERT_TRUE((*writer)->Write(thermal, std::nullopt).ok());
+  }
+  ASSERT_TRUE((*writer)->Close().ok());
+}
+
+}  // namespace isotherm

@@ -1,0 +1,54 @@
+#include "edge/spool/recording_files.h"
+
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/spool/recording_name.h"
+
+namespace isotherm {
+namespace {
+
+/// The number of the first free name after `part`.
+int NextFree(const std::filesystem::path& path, int part) {
+  std::error_code ignored;
+  do {
+    ++part;
+  } while (std::filesystem::exists(PartPath(path, part), ignored));
+  return part;
+}
+
+}  // namespace
+
+Result<RecordingFile> RecordingFiles::Next() {
+  const bool is_device = IsDevice(description_.path);
+  const int part = is_device ? 1 : NextFree(description_.path, part_);
+  const std::filesystem::path path = PartPath(description_.path, part);
+  RecordingOptions options;
+  options.flush_interval = description_.flush_interval;
+  Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, options);
+  if (!writer) return Err(writer.error());
+  if (part_ == 0 && part > 1) {
+    LOG(Spool, Warning) << description_.path.string()
+                        << " exists already and stays as it is; recording beside it";
+  }
+  part_ = is_device ? 0 : part;
+  if (const Status written = WriteBeginning(**writer); !written.ok()) {
+    writer->reset();
+    std::error_code ignored;
+    if (!is_device) std::filesystem::remove(path, ignored);
+    return Err(written);
+  }
+  return RecordingFile{path, std::move(*writer)};
+}
+
+Status RecordingFiles::WriteBeginning(RecordingWriter& writer) const {
+  if (description_.rig) ISOTHERM_RETURN_IF_ERROR(writer.Write(*description_.rig));
+  for (const auto& [name, values] : description_.metadata) {
+    ISOTHERM_RETURN_IF_ERROR(writer.WriteMetadata(name, values));
+  }
+  return OkStatus();
+}
+
+}  // namespace isotherm

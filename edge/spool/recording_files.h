@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/base/status.h"
+#include "common/geometry/camera.h"
+#include "common/time/time_types.h"
+#include "edge/spool/spool.h"
+
+namespace isotherm {
+
+/// What stands at the beginning of each file of a recording, and where they go.
+struct RecordingDescription {
+  using Metadata = std::map<std::string, std::map<std::string, std::string>>;
+
+  std::filesystem::path path;  ///< Of the first file.
+  Nanoseconds flush_interval{};
+  std::optional<Rig> rig;
+  Metadata metadata;
+};
+
+/// Begins one file after the other. A name that is taken is left alone: the next number is. A
+/// device or pipe is opened again. Thread-compatible.
+class RecordingFiles {
+ public:
+  explicit RecordingFiles(RecordingDescription description)
+      : description_(std::move(description)) {}
+
+  Result<RecordingFile> Next();
+
+ private:
+  Status WriteBeginning(RecordingWriter& writer) const;
+
+  const RecordingDescription description_;
+  int part_ = 0;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,89 @@
+#include "edge/spool/recording_files.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "common/testing/temporary_directory.h"
+#include "edge/spool/recording_name.h"
+
+namespace isotherm {
+namespace {
+
+const CaptureTime kNow{std::chrono::seconds(1'700'000'000)};
+
+TEST(RecordingPathTest, OffMeansNoFile) { EXPECT_EQ(RecordingPath("off", kNow, 1), std::nullopt); }
+
+TEST(RecordingPathTest, AFileIsTakenAsGiven) {
+  EXPECT_EQ(RecordingPath("a/b.mcap", kNow, 1), "a/b.mcap");
+}
+
+TEST(RecordingPathTest, F40SessionsOfOneSecondGetFilesOfTheirOwn) {
+  std::set<std::filesystem::path> names;
+  for (std::uint64_t session = 0; session < 1000; ++session)
+    names.insert(*RecordingPath("scans/", kNow, session));
+  EXPECT_EQ(names.size(), 1000U);
+  EXPECT_EQ(names.begin()->string().substr(0, 27), "scans/edge-20231114-221320-");
+  EXPECT_EQ(RecordingPath("/tmp", kNow, 1)->parent_path(), "/tmp");
+}
+
+TEST(PartPathTest, PartsLieBesideTheFirst) {
+  EXPECT_EQ(PartPath("a/scan.mcap", 1), "a/scan.mcap");
+  EXPECT_EQ(PartPath("a/scan.mcap", 3), "a/scan-3.mcap");
+}
+
+class RecordingFilesTest : public ::testing::Test {
+ protected:
+  RecordingDescription Description() const {
+    return {path_, std::chrono::milliseconds(500), std::nullopt, {{"software", {{"name", "x"}}}}};
+  }
+
+  const ::isotherm::testing::TemporaryDirectory folder_;
+  const std::filesystem::path path_ = folder_.path() / "scan.mcap";
+};
+
+TEST_F(RecordingFilesTest, EachFileHasTheWholeBeginning) {
+  RecordingFiles files(Description());
+  for (const char* name : {"scan.mcap", "scan-2.mcap", "scan-3.mcap"}) {
+    Result<RecordingFile> file = files.Next();
+    ASSERT_TRUE(file.has_value());
+    EXPECT_EQ(file->path.filename(), name);
+    ASSERT_TRUE(file->writer->Close().ok());
+    const auto reader = RecordingReader::Open(file->path);
+    ASSERT_TRUE(reader.has_value());
+    EXPECT_EQ((*reader)->info().metadata.at("software").at("name"), "x");
+  }
+}
+
+TEST_F(RecordingFilesTest, F37AFileThatExistsStaysAsItIs) {
+  std::ofstream(path_) << "precious";
+  RecordingFiles files(Description());
+  const Result<RecordingFile> file = files.Next();
+  ASSERT_TRUE(file.has_value());
+  EXPECT_EQ(file->path.filename(), "scan-2.mcap");
+  std::string text;
+  std::ifstream(path_) >> text;
+  EXPECT_EQ(text, "precious");
+}
+
+TEST_F(RecordingFilesTest, ADeviceIsWrittenToAsItIs) {
+  RecordingFiles files({"/dev/null", std::chrono::milliseconds(500), std::nullopt, {}});
+  for (int i = 0; i < 2; ++i) {
+    const Result<RecordingFile> file = files.Next();
+    ASSERT_TRUE(file.has_value());
+    EXPECT_EQ(file->path, "/dev/null");
+  }
+}
+
+TEST_F(RecordingFilesTest, F41OnAFullDiskNoEmptyFileIsLeft) {
+  // /dev/full takes the place of a full disk; it is a device and must itself survive.
+  RecordingFiles files({"/dev/full", std::chrono::milliseconds(500), std::nullopt, {}});
+  const Result<RecordingFile> file = files.Next();
+  ASSERT_FALSE(file.has_value());
+  EXPECT_EQ(file.error().code(), StatusCode::kResourceExhausted);
+  EXPECT_TRUE(std::filesystem::exists("/dev/full"));
+}
+
+}  // namespace
+}  // namespace isotherm

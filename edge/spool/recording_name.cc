@@ -1,0 +1,43 @@
+#include "edge/spool/recording_name.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <system_error>
+
+namespace isotherm {
+namespace {
+
+/// Sessions that lie close together get names that do not (Knuth's multiplicative hash).
+std::uint32_t ShortName(std::uint64_t session) {
+  return static_cast<std::uint32_t>((session * 0x9E3779B97F4A7C15U) >> 32U);
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> RecordingPath(const std::string& record, CaptureTime now,
+                                                   std::uint64_t session) {
+  if (record == "off") return std::nullopt;
+  const std::filesystem::path path = record;
+  std::error_code ignored;
+  if (path.has_filename() && !std::filesystem::is_directory(path, ignored)) return path;
+  const std::time_t seconds =
+      std::chrono::floor<std::chrono::seconds>(now.time_since_epoch()).count();
+  return path /
+         fmt::format("edge-{:%Y%m%d-%H%M%S}-{:08x}.mcap", fmt::gmtime(seconds), ShortName(session));
+}
+
+std::filesystem::path PartPath(const std::filesystem::path& path, int part) {
+  if (part <= 1) return path;
+  return path.parent_path() /
+         fmt::format("{}-{}{}", path.stem().string(), part, path.extension().string());
+}
+
+bool IsDevice(const std::filesystem::path& path) {
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status);
+}
+
+}  // namespace isotherm
