@@ -90,7 +90,7 @@ run_reconstruct() {
       { cat "$out/import.txt" >&2; exit 70; }
   fi
   say "isotherm reconstruct"
-  "$build/bin/isotherm" reconstruct "$recording" -o "$out/scan" \
+  "$build/bin/isotherm" reconstruct "$recording" -o "$out/scan" --force \
     ${volume_min:+--volume-min "$volume_min" --initial-pose-from "$recording"} \
     >"$out/reconstruct.txt" 2>"$out/progress.txt" || { tail -n 1 "$out/progress.txt" >&2; exit 70; }
   cat "$out/reconstruct.txt" >&2

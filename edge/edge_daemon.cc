@@ -16,6 +16,7 @@
 #include "common/base/log.h"
 #include "common/codec/codec.h"
 #include "common/config/text_proto.h"
+#include "common/frame/plausibility.h"
 #include "common/time/back_off.h"
 #include "common/transport/clock_record.h"
 #include "common/transport/join_domain.h"
@@ -71,6 +72,7 @@ void TellAboutRig(const std::optional<Rig>& rig) {
     LOG(Edge, Warning) << "no rig calibration: thermal frames cannot be fused with depth";
     return;
   }
+  for (const std::string& doubt : DoubtsAbout(*rig)) LOG(Edge, Warning) << doubt;
   if (const Status fusion = CheckThermalFusion(*rig); !fusion.ok()) {
     LOG(Edge, Warning) << "thermal frames cannot be fused with depth: " << fusion.message()
                        << "; name a calibration with --rig";

@@ -12,6 +12,7 @@
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/base/status.h"
+#include "common/config/nearest_name.h"
 #include "common/config/protobuf_log.h"
 #include "common/config/text_proto.h"
 #include "common/time/clock.h"
@@ -117,12 +118,12 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_flag("--exit-at-end", line.exit_at_end, "Leave when the source has ended");
   app.add_flag("--wait-for-ground", line.wait_for_ground,
                "Hold back the first frame until a ground station is there");
-  const std::map<std::string, LogLevel> levels = {{"debug", LogLevel::kDebug},
-                                                  {"info", LogLevel::kInfo},
-                                                  {"warning", LogLevel::kWarning},
-                                                  {"error", LogLevel::kError}};
+  const std::map<std::string, int> levels = {{"debug", static_cast<int>(LogLevel::kDebug)},
+                                             {"info", static_cast<int>(LogLevel::kInfo)},
+                                             {"warning", static_cast<int>(LogLevel::kWarning)},
+                                             {"error", static_cast<int>(LogLevel::kError)}};
   app.add_option("--log-level", line.log_level, "debug, info, warning or error")
-      ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case).description(""))
+      ->transform(CLI::Validator(NumberOfName(levels), ""))
       ->type_name("LEVEL");
   app.add_flag("--list-sources", line.list_sources,
                "List sources, scenes and connected cameras, then leave");
@@ -227,7 +228,7 @@ int Main(int argc, char** argv) {
     return FailConfiguration(applied);
   }
   if (const Status valid = Validate(options); !valid.ok()) {
-    return FailConfiguration(valid.WithContext("wrong configuration:\n"));
+    return FailConfiguration(Status(valid.code(), "wrong configuration:\n" + valid.message()));
   }
   LOG(Edge, Debug) << "effective configuration:\n" << ToTextProto(options);
 

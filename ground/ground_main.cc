@@ -11,6 +11,7 @@
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/base/status.h"
+#include "common/config/nearest_name.h"
 #include "common/config/protobuf_log.h"
 #include "common/config/text_proto.h"
 #include "common/time/clock.h"
@@ -80,12 +81,12 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_flag("--once", line.once,
                "Serve one scan, write its results into DIR itself, then leave");
   app.add_flag("--no-record", line.no_record, "Do not record what is received");
-  const std::map<std::string, LogLevel> levels = {{"debug", LogLevel::kDebug},
-                                                  {"info", LogLevel::kInfo},
-                                                  {"warning", LogLevel::kWarning},
-                                                  {"error", LogLevel::kError}};
+  const std::map<std::string, int> levels = {{"debug", static_cast<int>(LogLevel::kDebug)},
+                                             {"info", static_cast<int>(LogLevel::kInfo)},
+                                             {"warning", static_cast<int>(LogLevel::kWarning)},
+                                             {"error", static_cast<int>(LogLevel::kError)}};
   app.add_option("--log-level", line.log_level, "debug, info, warning or error")
-      ->transform(CLI::CheckedTransformer(levels, CLI::ignore_case).description(""))
+      ->transform(CLI::Validator(NumberOfName(levels), ""))
       ->type_name("LEVEL");
 }
 

@@ -85,6 +85,7 @@ Status GroundPipeline::Continue(const ModelFile& model) {
   map.anchors = model.known_poses();
   tracker_.BeginLost();
   gate_.EndBootstrap();
+  is_continued_ = true;
   return OkStatus();
 }
 

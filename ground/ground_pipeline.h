@@ -61,6 +61,7 @@ class GroundPipeline {
   /// (ModelFile::AdoptVolume). The rig is looked for around the poses it knows. After a failure the
   /// pipeline must not be used.
   Status Continue(const ModelFile& model);
+  bool is_continued() const { return is_continued_; }
   /// Everything that Continue needs.
   Status Save(const std::filesystem::path& path) const { return Save(path, 0); }
   /// The same of a sub-map that was never joined, 1 <= index < atlas().size() after Finish.
@@ -143,6 +144,7 @@ class GroundPipeline {
   const Rig rig_;
   const std::optional<RigidTransform> initial_pose_;
   Status thermal_status_;
+  bool is_continued_ = false;
   ThreadPool pool_;
   DepthPreprocessor preprocessor_;
   RigTracker tracker_;

@@ -39,6 +39,7 @@ class InlineDriver {
         reader_(reader),
         thermal_delay_(FromSeconds(rig.thermal_delay_s)),
         pipeline_(pipeline),
+        plausibility_(rig),
         delay_check_(request.options.delay_check(), rig, CalibratedDelay(reader.info(), rig)),
         assembler_(rig.thermal.has_value()) {
     for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
@@ -73,6 +74,8 @@ class InlineDriver {
     });
   }
 
+  Doubts FindDoubts() const { return plausibility_.Find(); }
+
   std::uint64_t bad_messages() const { return bad_messages_; }
   std::uint64_t undecodable() const { return undecodable_; }
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }
@@ -82,22 +85,27 @@ class InlineDriver {
     auto frame = std::make_shared<DepthFrame>();
     frame->header = recorded.frame.header;
     frame->depth_scale = recorded.frame.depth_scale;
-    if (Unpack(Decode(recorded.frame.image), "depth", frame->header, frame->depth_raw))
-      assembler_.Add(std::move(frame));
+    const bool look = plausibility_.AddDepth(frame->header.capture_time);
+    if (!Unpack(Decode(recorded.frame.image), "depth", frame->header, frame->depth_raw)) return;
+    if (look) plausibility_.LookAtDepth(frame->depth_raw, frame->depth_scale);
+    assembler_.Add(std::move(frame));
   }
 
   void Take(RecordedThermal& recorded) {
     auto frame = std::make_shared<ThermalFrame>();
     const EncodedThermalFrame& encoded = recorded.frame;
     frame->header = encoded.header;
+    const bool look = plausibility_.AddThermal(frame->header.capture_time);
     frame->header.capture_time += thermal_delay_;
     frame->nuc_state = encoded.nuc_state;
     frame->nuc_source = encoded.nuc_source;
     frame->seconds_since_nuc = encoded.seconds_since_nuc;
     frame->housekeeping = encoded.housekeeping;
     frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
-    if (Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header, frame->centikelvin))
-      assembler_.Add(std::move(frame));
+    if (!Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header, frame->centikelvin))
+      return;
+    if (look && !frame->centikelvin.empty()) plausibility_.LookAtThermal(frame->centikelvin);
+    assembler_.Add(std::move(frame));
   }
 
   void Take(const ClockStep& /*step*/) {}  // Capture times do not follow the wall clock.
@@ -138,6 +146,7 @@ class InlineDriver {
   RecordingReader& reader_;
   const Nanoseconds thermal_delay_;
   GroundPipeline& pipeline_;
+  PlausibilityCheck plausibility_;
   DelayCheck delay_check_;
   Assembler assembler_;
   std::uint64_t total_ = 0;
@@ -208,12 +217,13 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
     constexpr double kBefore = kFramesShare + kMergeShare + kDelayShare;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * share, what);
   };
-  const Result<std::string> text =
-      WriteScan(**pipeline, options, delay, std::move(stats), request.output_dir, progress);
-  if (!text) return Err(text.error());
+  Result<WrittenScan> written = WriteScan(**pipeline, options, delay, driver.FindDoubts(),
+                                          std::move(stats), request.output_dir, progress);
+  if (!written) return Err(written.error());
   const PipelineCounts& counts = (*pipeline)->counts();
-  return ReconstructSummary{counts.depth_in,   counts.depth_repeated, counts.depth_tracked,
-                            counts.thermal_in, counts.thermal_fused,  *text};
+  return ReconstructSummary{
+      counts.depth_in,      counts.depth_repeated,    counts.depth_tracked,      counts.thermal_in,
+      counts.thermal_fused, std::move(written->text), std::move(written->doubts)};
 }
 
 }  // namespace isotherm

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "common/base/status.h"
+#include "common/frame/plausibility.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 #include "ground/ground_options.pb.h"
@@ -34,6 +35,7 @@ struct ReconstructSummary {
   std::uint64_t thermal_frames = 0;
   std::uint64_t fused_thermal_frames = 0;
   std::string text;  ///< One screen for the user.
+  Doubts doubts;  ///< Why the result is not what was asked for, or the recording cannot be right.
 };
 
 /// The inline driver: one recording in, one folder of results out, the same each time. Everything

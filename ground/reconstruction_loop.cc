@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/frame/plausibility.h"
 #include "ground/status_teller.h"
 
 namespace isotherm {
@@ -47,6 +48,7 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
   scan_ = std::move(*scan);
   LOG(Ground, Info) << "scan started, session=" << start.rig.session
                     << " results=" << start.folder.string();
+  for (const std::string& doubt : DoubtsAbout(start.rig.rig)) LOG(Ground, Warning) << doubt;
   if (const Status& thermal = scan_->pipeline().thermal_status(); !thermal.ok()) {
     LOG(Ground, Warning) << thermal.message();
   }

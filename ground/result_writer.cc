@@ -133,7 +133,11 @@ Result<std::string> ResultWriter::WriteSomewhere(LiveScan& scan, const DelayRepo
   const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
   const auto write = [&](const fs::path& to) -> Result<std::string> {
     if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
-    return WriteScan(scan.pipeline(), options_, delay, stats, to, progress);
+    Result<WrittenScan> written = WriteScan(scan.pipeline(), options_, delay,
+                                            DoubtsAbout(scan.rig()), stats, to, progress);
+    if (!written) return Err(written.error());
+    for (const std::string& doubt : written->doubts) LOG(Ground, Warning) << doubt;
+    return std::move(written->text);
   };
   const Result<std::string> first = write(folder);
   if (first) return first;

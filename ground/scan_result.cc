@@ -6,10 +6,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "common/config/text_proto.h"
 #include "ground/export/results.h"
+#include "ground/outcome_text.h"
+#include "ground/renderer/layers.h"
+#include "ground/scan_doubts.h"
 
 namespace isotherm {
 
@@ -111,11 +115,49 @@ std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t reloca
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
   };
   add(counts.depth_repeated, "repeated");
-  add(counts.depth_degraded, "with directions that the view leaves free");
+  add(counts.depth_degraded,
+      "tracked by their motion before in some direction (a flat or round view does not tell it)");
   add(relocalisations, "times found again after a loss");
-  add(counts.depth_unconfirmed, "not yet believed after it");
+  add(counts.depth_unconfirmed, "not used while that was confirmed");
   add(counts.depth_behind, "not integrated to keep up");
   return text.empty() ? text : fmt::format("         {}\n", text);
+}
+
+/// A line for each reason, with what to do about it.
+std::string DescribeReasons(const std::map<std::string, std::uint64_t>& counts,
+                            std::string_view what, std::string (*explain)(std::string_view)) {
+  std::string text;
+  for (const auto& [reason, count] : counts)
+    text += fmt::format("         {} {}: {}\n", count, what, explain(reason));
+  return text;
+}
+
+std::string ModelName(int map) {
+  return map == 0 ? "model.iso" : fmt::format("model-{}.iso", map + 1);
+}
+
+std::set<std::string> WrittenNames(const ExportOptions& options, bool has_view, int maps) {
+  std::set<std::string> names = {"trajectory.txt", "stats.json"};
+  if (options.cloud()) names.insert("cloud.ply");
+  if (options.mesh()) names.insert("mesh.ply");
+  for (int map = 0; options.model() && map < maps; ++map) names.insert(ModelName(map));
+  if (!options.renders() || !has_view) return names;
+  for (const RenderLayer layer : AllLayers())
+    names.insert(fmt::format("renders/{}.png", LayerName(layer)));
+  return names;
+}
+
+void AddResultDoubts(const GroundPipeline& pipeline, const GroundOptions& options,
+                     const ResultSummary& summary, Doubts& doubts) {
+  const Doubts more = DoubtsAboutResult({.counts = pipeline.counts(),
+                                         .options = options,
+                                         .continued = pipeline.is_continued(),
+                                         .can_fuse = pipeline.thermal_status().ok(),
+                                         .poses = pipeline.trajectory().size(),
+                                         .maps = static_cast<std::size_t>(pipeline.atlas().size()),
+                                         .points = summary.points,
+                                         .measured_points = summary.measured_points});
+  doubts.insert(doubts.end(), more.begin(), more.end());
 }
 
 Json DescribeDelay(const DelayReport& delay) {
@@ -237,9 +279,9 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   return json;
 }
 
-Result<std::string> WriteScan(
-    GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Json stats,
-    const std::filesystem::path& dir,
+Result<WrittenScan> WriteScan(
+    GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
+    Json stats, const std::filesystem::path& dir,
     const std::function<void(std::string_view what, double share)>& progress) {
   stats["delay_check"] = DescribeDelay(delay);
   const bool has_view = pipeline.view().maps.width() > 0;
@@ -256,19 +298,23 @@ Result<std::string> WriteScan(
                             options.thermal(),
                             options.export_(),
                             interpreted ? &*interpretation : nullptr,
-                            std::move(stats)};
+                            std::move(stats),
+                            [&](const ResultSummary& summary) {
+                              AddResultDoubts(pipeline, options, summary, doubts);
+                              return doubts;
+                            }};
   // All others can be made again from the model.
   const Status saved = SaveModels(pipeline, options, dir);
   if (progress) progress("results", 0.0);
   const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
   if (!saved.ok()) return Err(saved);
   if (!summary) return Err(summary.error());
+  RemoveOtherResults(dir, WrittenNames(options.export_(), has_view, pipeline.atlas().size()));
 
   const PipelineCounts& counts = pipeline.counts();
-  std::string text =
-      fmt::format("depth    {} frames: {} tracked, {} integrated{}{}\n", counts.depth_in,
-                  counts.depth_tracked, counts.depth_integrated,
-                  counts.depth_lost.empty() ? "" : ", lost: ", List(counts.depth_lost));
+  std::string text = fmt::format("depth    {} frames: {} tracked, {} integrated\n", counts.depth_in,
+                                 counts.depth_tracked, counts.depth_integrated);
+  text += DescribeReasons(counts.depth_lost, "lost", ExplainLost);
   text += DescribeIncidents(counts, pipeline.tracker().relocalisations());
   if (const auto sigma = Figures(pipeline.trajectory_sigmas())) {
     text += fmt::format(
@@ -279,9 +325,8 @@ Result<std::string> WriteScan(
   }
   text += DescribeSubMaps(pipeline.atlas());
   text += DescribeOutsideInWords(pipeline.tracker().outside());
-  text += fmt::format(
-      "thermal  {} frames: {} fused{}{}\n", counts.thermal_in, counts.thermal_fused,
-      counts.thermal_left_out.empty() ? "" : ", left out: ", List(counts.thermal_left_out));
+  text += fmt::format("thermal  {} frames: {} fused\n", counts.thermal_in, counts.thermal_fused);
+  text += DescribeReasons(counts.thermal_left_out, "not used", ExplainLeftOut);
   if (!pipeline.thermal_status().ok())
     text += fmt::format("         {}\n", pipeline.thermal_status().message());
   if (counts.thermal_in > 0 && delay.verdict != DelayVerdict::kOff)
@@ -319,7 +364,7 @@ Result<std::string> WriteScan(
       "time     {:.1f} ms per depth frame, {:.1f} ms per thermal frame (medians, {} threads)\n",
       median("depth_frame"), median("thermal_frame"), pipeline.threads());
   text += fmt::format("results  {}\n", dir.string());
-  return text;
+  return WrittenScan{std::move(text), std::move(doubts)};
 }
 
 }  // namespace isotherm

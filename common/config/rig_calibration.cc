@@ -123,12 +123,20 @@ Result<Rig> CheckedRig(const RigCalibration& calibration, std::string_view sourc
   return rig;
 }
 
+/// A calibration is data, not an argument: every program that is given a wrong one says so with the
+/// same exit status.
+Status AsData(const Status& status) {
+  return status.code() == StatusCode::kInvalidArgument ? DataLoss(status.message()) : status;
+}
+
 }  // namespace
 
 Result<Rig> LoadRigCalibration(const std::filesystem::path& path) {
   RigCalibration calibration;
-  if (Status status = LoadTextProto(path, calibration); !status.ok()) return Err(std::move(status));
-  return CheckedRig(calibration, path.string());
+  if (Status status = LoadTextProto(path, calibration); !status.ok()) return Err(AsData(status));
+  Result<Rig> rig = CheckedRig(calibration, path.string());
+  if (!rig) return Err(AsData(rig.error()));
+  return rig;
 }
 
 Result<Rig> ParseRigCalibration(const std::string& text, std::string_view source_name) {

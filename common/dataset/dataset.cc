@@ -70,11 +70,7 @@ Result<Rig> ReadRig(const DatasetOptions& options, const std::vector<std::string
         "fy: 570 cx: 319.5 cy: 239.5 }} depth_scale: 1000'; --rig FILE takes one from elsewhere.",
         path.string(), DidYouMean(kRigFile, names))));
   }
-  Result<Rig> rig = LoadRigCalibration(path);
-  if (!rig && rig.error().code() == StatusCode::kInvalidArgument) {
-    return Err(DataLoss(rig.error().message()));  // Here the calibration is data, not an argument.
-  }
-  return rig;
+  return LoadRigCalibration(path);
 }
 
 Status ReadOutsidePoses(const fs::path& path, std::vector<OutsidePose>& poses) {

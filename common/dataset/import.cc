@@ -1,10 +1,10 @@
 #include "common/dataset/import.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 
+#include "common/base/partial_file.h"
 #include "common/codec/codec.h"
 #include "common/dataset/image_file.h"
 
@@ -20,12 +20,20 @@ constexpr std::uint64_t kSession = 1;
 class Importer {
  public:
   Importer(const ImportRequest& request, const Dataset& dataset, RecordingWriter& writer)
-      : request_(request), dataset_(dataset), writer_(writer), nuc_(dataset.nuc) {}
+      : request_(request),
+        dataset_(dataset),
+        writer_(writer),
+        nuc_(dataset.nuc),
+        plausibility_(dataset.rig) {}
 
   Result<ImportSummary> Run() {
     Status status = WriteHeader();
-    while (status.ok() && !Done()) status = WriteNext();
+    while (status.ok() && !Done()) {
+      status =
+          request_.stop.stop_requested() ? Unavailable("the import was interrupted") : WriteNext();
+    }
     if (!status.ok()) return Err(std::move(status));
+    summary_.doubts = plausibility_.Find();
     return summary_;
   }
 
@@ -124,6 +132,8 @@ class Importer {
     auto image = ReadImage(entry, dataset_.depth_list, *dataset_.rig.depth);
     if (!image) return image.error();
     if (!*image) return OkStatus();
+    if (plausibility_.AddDepth(entry.time))
+      plausibility_.LookAtDepth(**image, dataset_.rig.depth_scale);
     EncodedDepthFrame frame;
     frame.header = Header(entry, index);
     frame.depth_scale = dataset_.rig.depth_scale;
@@ -138,6 +148,7 @@ class Importer {
     auto image = ReadImage(entry, dataset_.thermal_list, *dataset_.rig.thermal);
     if (!image) return image.error();
     if (!*image) return OkStatus();
+    if (plausibility_.AddThermal(entry.time)) plausibility_.LookAtThermal(**image);
     ThermalFrame marked;
     marked.header = Header(entry, index);
     marked.centikelvin = std::move(**image);
@@ -162,24 +173,11 @@ class Importer {
   NucMarker nuc_;
   DepthEncoder depth_encoder_;
   ThermalEncoder thermal_encoder_;
+  PlausibilityCheck plausibility_;
   ImportSummary summary_;
   std::size_t depth_ = 0, thermal_ = 0, pose_ = 0, event_ = 0,
               outside_ = 0;  // Next of each stream.
 };
-
-Status CheckTarget(const fs::path& target, bool overwrite) {
-  std::error_code error;
-  const fs::file_status status = fs::status(target, error);
-  if (!fs::exists(status)) return OkStatus();
-  if (!fs::is_regular_file(status)) {
-    return InvalidArgument(
-        fmt::format("{}: is not a regular file; name a new .mcap file", target.string()));
-  }
-  if (!overwrite) {
-    return InvalidArgument(fmt::format("{}: exists already; --force replaces it", target.string()));
-  }
-  return OkStatus();
-}
 
 Result<ImportSummary> WriteRecording(const ImportRequest& request, const Dataset& dataset,
                                      const fs::path& path) {
@@ -198,26 +196,13 @@ Result<ImportSummary> WriteRecording(const ImportRequest& request, const Dataset
 }  // namespace
 
 Result<ImportSummary> ImportDataset(const ImportRequest& request) {
-  if (Status status = CheckTarget(request.recording, request.overwrite); !status.ok())
-    return Err(std::move(status));
+  const Result<PartialFile> target = PartialFile::Create(request.recording, request.overwrite);
+  if (!target) return Err(target.error());
   Result<Dataset> dataset = OpenDataset(request.dataset);
   if (!dataset) return Err(dataset.error());
-  fs::path partial = request.recording;
-  partial.replace_filename(
-      fmt::format(".{}.{}.partial", request.recording.filename().string(), ::getpid()));
-  Result<ImportSummary> summary = WriteRecording(request, *dataset, partial);
-  std::error_code error;
-  if (!summary) {
-    fs::remove(partial, error);
-    return summary;
-  }
-  fs::rename(partial, request.recording, error);
-  if (error) {
-    const std::string reason = error.message();
-    fs::remove(partial, error);
-    return Err(
-        IoError(fmt::format("{}: cannot be created: {}", request.recording.string(), reason)));
-  }
+  Result<ImportSummary> summary = WriteRecording(request, *dataset, target->path());
+  if (!summary) return summary;
+  if (Status status = target->Commit(); !status.ok()) return Err(std::move(status));
   summary->notes.insert(summary->notes.begin(), dataset->notes.begin(), dataset->notes.end());
   return summary;
 }

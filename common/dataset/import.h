@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "common/base/status.h"
 #include "common/dataset/dataset.h"
 #include "common/frame/frame.h"
+#include "common/frame/plausibility.h"
 #include "common/recording/recording.h"
 
 namespace isotherm {
@@ -21,6 +23,7 @@ struct ImportRequest {
   bool skip_bad = false;
   std::string software;  ///< Name and version, for the metadata.
   std::function<void(double fraction)> progress;
+  std::stop_token stop;  ///< Ends it early; nothing is left then.
 };
 
 struct ImportSummary {
@@ -33,6 +36,7 @@ struct ImportSummary {
   std::uint64_t image_bytes = 0;  ///< Raw pixels.
   std::uint64_t recording_bytes = 0;
   std::vector<std::string> notes;
+  Doubts doubts;  ///< What was recorded although it cannot be right.
 };
 
 /// Writes a dataset folder as one recording, in order of time. The recording is built beside its

@@ -19,6 +19,11 @@ int Fail(const Status& status) {
   return ExitCode(status);
 }
 
+int Warn(const std::vector<std::string>& doubts) {
+  for (const std::string& doubt : doubts) Say("warning: " + doubt);
+  return doubts.empty() ? 0 : ExitCode(FailedPrecondition(""));
+}
+
 int FailConfiguration(std::string_view message) {
   Say(message);
   return kExitConfiguration;

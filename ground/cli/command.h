@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/base/status.h"
 
@@ -17,7 +19,11 @@ using CommandBody = std::function<int()>;
 /// Says the failure in one sentence on standard error and returns its exit status.
 int Fail(const Status& status);
 
-/// The same with the exit status for a wrong configuration.
+/// Says each doubt as a warning on standard error. The exit status for data that cannot be right,
+/// or 0 without any.
+int Warn(const std::vector<std::string>& doubts);
+
+/// Says what is wrong with the configuration and returns the exit status for that.
 int FailConfiguration(std::string_view message);
 
 /// Name and version of this program, for files that it writes.
@@ -27,6 +33,7 @@ std::string_view SoftwareName();
 // chosen, `body` is set.
 void AddImportCommand(CLI::App& app, CommandBody& body);
 void AddInspectCommand(CLI::App& app, CommandBody& body);
+void AddOptionsCommand(CLI::App& app, CommandBody& body);
 void AddReconstructCommand(CLI::App& app, CommandBody& body);
 void AddRenderCommand(CLI::App& app, CommandBody& body);
 void AddEvaluateCommand(CLI::App& app, CommandBody& body);

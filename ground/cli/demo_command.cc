@@ -5,6 +5,7 @@
 #include "common/base/service.h"
 #include "ground/cli/command.h"
 #include "ground/cli/demo.h"
+#include "ground/cli/simulation_files.h"
 
 namespace isotherm {
 namespace {
@@ -46,8 +47,7 @@ void AddDemoCommand(CLI::App& app, CommandBody& body) {
   auto arguments = std::make_shared<Arguments>();
   DemoRequest& request = arguments->request;
   arguments->output = request.output.string();
-  command->add_option("--scene", request.scene, "furnace-door or calibrator")
-      ->capture_default_str();
+  command->add_option("--scene", request.scene, SceneNames())->capture_default_str();
   command->add_option("--duration", request.duration_s, "Length of the scan, seconds")
       ->check(CLI::Range(0.5, 3600.0))
       ->capture_default_str();

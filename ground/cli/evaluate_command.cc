@@ -1,7 +1,9 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
+#include "common/base/progress.h"
 #include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/result_evaluation.h"
@@ -54,8 +56,12 @@ int Run(const Arguments& arguments) {
   if (request.emissivity && !request.surface) {
     return Fail(InvalidArgument("--emissivity needs --surface, which holds the true temperatures"));
   }
+  std::optional<ProgressBar> progress;
+  if (request.surface) progress.emplace("comparing", 0, "");  // With poses alone it takes no time.
+  request.progress = [&progress](double share) { progress->Update(share); };
   const Result<EvaluationReport> report = Evaluate(request);
   if (!report) return Fail(report.error());
+  if (progress) progress->Finish();
   const std::string text = arguments.json ? ToJson(*report).ToText() : ToText(*report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return 0;

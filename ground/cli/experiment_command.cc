@@ -64,7 +64,10 @@ int Run(const Arguments& arguments) {
   if (!chosen) return Fail(chosen.error());
   ThreadPool pool(ChosenThreads(arguments.threads));
   bool all_met = true;
+  std::size_t number = 0;
   for (const Experiment* experiment : *chosen) {
+    // Each takes 5 to 30 s, and says nothing meanwhile.
+    fmt::print(stderr, "experiment {} of {}: {} ...\n", ++number, chosen->size(), experiment->name);
     const Result<ExperimentReport> report = experiment->run(pool);
     if (!report) return Fail(report.error().WithContext(experiment->name));
     fmt::print("{}\n", ToText(*experiment, *report));

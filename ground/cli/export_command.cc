@@ -9,6 +9,7 @@
 #include "ground/cli/command.h"
 #include "ground/cli/interpretation_arguments.h"
 #include "ground/cli/model_export.h"
+#include "ground/cli/result_folder.h"
 #include "ground/export/interpretation.h"
 #include "ground/validate_options.h"
 
@@ -85,10 +86,12 @@ int Run(const Arguments& arguments) {
   GroundOptions options;
   const std::string problems = CollectOptions(arguments, options);
   if (!problems.empty()) return FailConfiguration(problems);
+  const auto model = FindModel(arguments.model);
+  if (!model) return Fail(model.error());
   const Interpretation interpretation = Interpretation::Create(options.interpretation()).value();
   ProgressBar progress("exporting", 0, "");
   const Result<ResultSummary> summary =
-      ExportModel(arguments.model, options, interpretation, arguments.output,
+      ExportModel(*model, options, interpretation, arguments.output,
                   [&](std::string_view, double share) { progress.Update(share); });
   if (!summary) return Fail(summary.error());
   progress.Finish();
@@ -106,7 +109,7 @@ void AddExportCommand(CLI::App& app, CommandBody& body) {
       "export", "Writes a saved model's results, with temperatures interpreted anew");
   auto arguments = std::make_shared<Arguments>();
   InterpretationArguments& interpretation = arguments->interpretation;
-  command->add_option("model", arguments->model, "Saved model (model.iso)")->required();
+  command->add_option("model", arguments->model, "Model (model.iso) or result folder")->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
   command->add_option("--emissivity", interpretation.emissivity,
                       "Of the whole model, above 0 and at most 1");

@@ -6,6 +6,8 @@
 #include <memory>
 
 #include "common/base/progress.h"
+#include "common/base/service.h"
+#include "common/config/nearest_name.h"
 #include "common/dataset/import.h"
 #include "ground/cli/command.h"
 
@@ -16,16 +18,18 @@ constexpr const char* kFooter =
     R"(The folder holds rig.textproto, depth.txt with depth/*.png and, optionally, thermal.txt with
 thermal/*.png, nuc.txt and groundtruth.txt. Lists have 'timestamp_s filename' per line; images
 are 16-bit PNG (raw depth, centi-kelvin). Frames inside the intervals of nuc.txt are recorded as
-invalid. The recording appears under its name only when it is complete.
+invalid. The recording appears under its name only when it is complete. Stamps, units and
+temperatures that cannot be right are recorded as they are, with a warning and exit status 65.
 
 Examples:
   isotherm import --from tum ~/scans/door -o door.mcap
-  isotherm import --from tum ~/scans/door --outside-poses vio.txt -o door.mcap)";
+  isotherm import --from tum ~/scans/door --outside-poses vio.txt -o door.mcap
+  isotherm import ~/scans/door -o view.mcap --encoding viewable    for Foxglove and Lichtblick)";
 
 struct Arguments {
   std::string format = "tum";
   std::string folder, output, thermal_list, rig, outside_poses;
-  ImageStorage storage = ImageStorage::kCompact;
+  int storage = static_cast<int>(ImageStorage::kCompact);
   bool force = false;
   bool skip_bad = false;
 };
@@ -50,13 +54,15 @@ void Print(const ImportSummary& summary, const std::string& output) {
 }
 
 int Run(const Arguments& arguments) {
+  const StopSignal signal;  // Before any other thread.
   ImportRequest request;
+  request.stop = signal.token();
   request.dataset.folder = arguments.folder;
   if (!arguments.thermal_list.empty()) request.dataset.thermal_list = arguments.thermal_list;
   if (!arguments.rig.empty()) request.dataset.rig = arguments.rig;
   if (!arguments.outside_poses.empty()) request.dataset.outside_poses = arguments.outside_poses;
   request.recording = arguments.output;
-  request.storage = arguments.storage;
+  request.storage = static_cast<ImageStorage>(arguments.storage);
   request.overwrite = arguments.force;
   request.skip_bad = arguments.skip_bad;
   request.software = SoftwareName();
@@ -70,7 +76,7 @@ int Run(const Arguments& arguments) {
   progress.reset();
   if (!summary) return Fail(summary.error());
   Print(*summary, arguments.output);
-  return 0;
+  return Warn(summary->doubts);
 }
 
 }  // namespace
@@ -94,8 +100,11 @@ void AddImportCommand(CLI::App& app, CommandBody& body) {
   command
       ->add_option("--encoding", arguments->storage,
                    "compact (default, smallest) or viewable (larger; MCAP viewers show the images)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, ImageStorage>{
-          {"compact", ImageStorage::kCompact}, {"viewable", ImageStorage::kViewable}}));
+      ->transform(
+          CLI::Validator(NumberOfName({{"compact", static_cast<int>(ImageStorage::kCompact)},
+                                       {"viewable", static_cast<int>(ImageStorage::kViewable)}}),
+                         ""))
+      ->type_name("KIND");
   command->add_flag("--force", arguments->force, "Replace an existing recording");
   command->add_flag("--skip-bad", arguments->skip_bad,
                     "Leave unreadable images out instead of stopping");

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kFooter =
     R"(Shows what is in a recording: streams with rates, missing frames and gaps, shutter events,
 calibration, size, and whether the file is complete. A torn file is read up to its last good
-part.
+part. Stamps, units and temperatures that cannot be right are said, with exit status 65.
 
 Examples:
   isotherm inspect scan.mcap
@@ -51,7 +51,7 @@ int Run(const Arguments& arguments) {
   const std::string text =
       arguments.json ? ToJson(report).ToText() : PrintableLines(ToText(report));
   std::fwrite(text.data(), 1, text.size(), stdout);
-  return 0;
+  return Warn(report.doubts);
 }
 
 }  // namespace

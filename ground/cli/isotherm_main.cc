@@ -1,9 +1,15 @@
 // isotherm: the tool. Each subcommand is in a file of its own.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
+#include "common/config/nearest_name.h"
 #include "common/config/protobuf_log.h"
 #include "ground/cli/command.h"
 
@@ -29,13 +35,25 @@ Exit status:
    0  done
    1  an experiment's requirement is not met
   64  wrong command line or argument
-  65  data is damaged, inconsistent or lacks something
+  65  data is damaged, inconsistent, lacks something or cannot be right (nothing tracked, no
+      temperature, wrong units, two clocks): what could be written is, and a warning says why
   66  a file or folder does not exist
   69  a program, device or the network is not available
   70  a defect of this program
   73  the output cannot be created, the disk is full, or a limit is reached
   74  reading or writing failed
   78  wrong configuration (all problems are listed))";
+
+/// A first word that is no command is most likely a misspelt one.
+std::string ExplainExtras(const CLI::App& app, int argc, char** argv, const std::string& what) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.starts_with("-") || std::ranges::count(names, word) > 0)
+    return what + " (isotherm --help explains the command line)";
+  return fmt::format("there is no command '{}'.{} There are: {} (isotherm --help explains them)",
+                     word, DidYouMean(word, names), JoinNames(names));
+}
 
 int Main(int argc, char** argv) {
   CLI::App app(kDescription, "isotherm");
@@ -57,8 +75,11 @@ int Main(int argc, char** argv) {
   AddTimingCommand(app, body);
   AddCalibrateCommand(app, body);
   AddNucCommand(app, body);
+  AddOptionsCommand(app, body);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    return Fail(InvalidArgument(ExplainExtras(app, argc, argv, error.what())));
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
     if (asked) return app.exit(error);  // --help, --version

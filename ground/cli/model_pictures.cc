@@ -47,6 +47,13 @@ std::vector<fs::path> PictureFiles(const PictureRequest& request) {
 }
 
 Status PreparePictures(const PictureRequest& request) {
+  constexpr std::string_view kOtherFormats[] = {".jpg",  ".jpeg", ".gif", ".bmp", ".tif",
+                                                ".tiff", ".webp", ".svg", ".pdf"};
+  if (std::ranges::count(kOtherFormats, request.output.extension().string()) > 0) {
+    return InvalidArgument(fmt::format(
+        "-o {}: pictures are written as PNG; name {} or, for several, a folder",
+        request.output.string(), fs::path(request.output).replace_extension(".png").string()));
+  }
   const std::size_t count = request.views.size() * request.layers.size();
   if (IsPng(request.output) && count != 1) {
     return InvalidArgument(fmt::format("-o {}: {} pictures do not fit into one file; name a folder",

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/config/nearest_name.h"
 #include "common/transport/participant.h"
 #include "common/transport/transport_environment.h"
 #include "ground/cli/command.h"
@@ -41,7 +42,7 @@ Try it without cameras: isotherm-edge --scene furnace-door --set source.loops=0)
 struct Arguments {
   bool now = false;
   std::optional<double> hold_s;
-  std::optional<NucPolicy> policy;
+  std::optional<int> policy;  ///< A NucPolicy.
   std::string edge_id;
   int domain = 0;
   double timeout_s = 5.0;
@@ -80,7 +81,7 @@ std::optional<Command> OrderOf(const Arguments& arguments) {
   }
   if (arguments.policy) {
     command.kind = CommandKind::kSetNucPolicy;
-    command.nuc_policy = *arguments.policy;
+    command.nuc_policy = static_cast<NucPolicy>(*arguments.policy);
   }
   if (!arguments.now && !arguments.hold_s && !arguments.policy) return std::nullopt;
   return command;
@@ -119,9 +120,10 @@ void AddNucCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand(
       "nuc", "Corrections of a running rig's thermal camera: state, now, hold, policy");
   auto arguments = std::make_shared<Arguments>();
-  const std::map<std::string, NucPolicy> policies = {{"automatic", NucPolicy::kAutomatic},
-                                                     {"manual", NucPolicy::kManual},
-                                                     {"camera", NucPolicy::kCamera}};
+  const std::map<std::string, int> policies = {
+      {"automatic", static_cast<int>(NucPolicy::kAutomatic)},
+      {"manual", static_cast<int>(NucPolicy::kManual)},
+      {"camera", static_cast<int>(NucPolicy::kCamera)}};
   auto* const orders = command->add_option_group("order", "What to do; nothing: show the state");
   orders->add_flag("--now", arguments->now, "Correct as soon as it is allowed");
   orders
@@ -130,7 +132,7 @@ void AddNucCommand(CLI::App& app, CommandBody& body) {
       ->check(CLI::Range(0.0, 86400.0))
       ->type_name("SECONDS");
   orders->add_option("--policy", arguments->policy, "automatic, manual or camera")
-      ->transform(CLI::CheckedTransformer(policies, CLI::ignore_case).description(""))
+      ->transform(CLI::Validator(NumberOfName(policies), ""))
       ->type_name("POLICY");
   orders->require_option(0, 1);
   command->add_option("--edge-id", arguments->edge_id, "Which rig, if there are several")

@@ -9,7 +9,7 @@
 #include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"
-
+#include "ground/export/results.h"
 #include "ground/reconstruct.h"
 #include "ground/validate_options.h"
 
@@ -22,13 +22,17 @@ T_world_depth of the first depth frame; without one the volume's centre lies on 
 frame's optical axis at the median depth. Options come from the defaults, the configuration
 file, --set and the other options, the later ones winning.
 
+Voxels may be larger for a larger volume: surfaces are then cut off four voxels behind
+(tsdf.truncation_distance_m).
+
 DIR gets trajectory.txt, cloud.ply, mesh.ply, renders/*.png, stats.json and model.iso. With
 --continue the volume and `world` are the model's, and the rig is looked for around the poses of the
-earlier scan.
+earlier scan. If nothing was tracked, no temperature was assigned, or the recording cannot be right
+(units, clocks), a warning and stats.json say why, and the exit status is 65.
 
 Examples:
   isotherm reconstruct scan.mcap -o out
-  isotherm reconstruct room.mcap -o out --volume "4 3 4" --voxel 0.006 --set tsdf.truncation_distance_m=0.03
+  isotherm reconstruct room.mcap -o out --volume "4 3 4" --voxel 0.006
   isotherm reconstruct door.mcap -o out --volume 0.96 --volume-min "-0.48 -0.48 -0.48" \
       --initial-pose-from groundtruth.txt
   isotherm reconstruct next_day.mcap -o out2 --continue out/model.iso)";
@@ -39,6 +43,7 @@ struct Arguments {
   std::optional<double> voxel;
   std::optional<int> threads;
   std::vector<std::string> overrides;
+  bool force = false;
 };
 
 // All that is wrong with the options at once, one problem per line; empty if they are fine.
@@ -98,6 +103,11 @@ int Run(const Arguments& arguments) {
   }
   const std::string problems = CollectOptions(arguments, request.options);
   if (!problems.empty()) return FailConfiguration(problems);
+  if (!arguments.force && HoldsResults(arguments.output)) {
+    return Fail(InvalidArgument(fmt::format(
+        "{}: has results of another scan; --force replaces them, -o names another folder",
+        arguments.output)));
+  }
   const auto pose = InitialPose(arguments);
   if (!pose) return Fail(pose.error());
   request.initial_pose = *pose;
@@ -119,7 +129,7 @@ int Run(const Arguments& arguments) {
   progress.reset();
   if (!summary) return Fail(summary.error());
   std::fwrite(summary->text.data(), 1, summary->text.size(), stdout);
-  return 0;
+  return Warn(summary->doubts);
 }
 
 }  // namespace
@@ -150,6 +160,7 @@ void AddReconstructCommand(CLI::App& app, CommandBody& body) {
   command->add_option("--rig", arguments->rig,
                       "Rig calibration (rig.textproto) instead of the one in the recording");
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
+  command->add_flag("--force", arguments->force, "Replace results that are in the folder");
   command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
       ->take_all()
       ->type_name("STAGE.FIELD=VALUE");

@@ -75,6 +75,29 @@ void AppendStream(std::string_view name, const StreamSummary& stream, std::strin
     text += fmt::format("{}{} sessions\n", kIndent, stream.sessions.size());
 }
 
+/// Whether programs that know only the common schemas show the images.
+bool IsViewable(const RecordingSummary& summary) {
+  const auto is_plain = [](const StreamSummary& stream) {
+    return std::ranges::all_of(stream.encodings, [](const auto& counted) {
+      return counted.first == EncodingName(Encoding::kRaw16) ||
+             counted.first == EncodingName(Encoding::kPng16) ||
+             counted.first == EncodingName(Encoding::kCounts16);
+    });
+  };
+  return is_plain(summary.depth) && is_plain(summary.thermal);
+}
+
+void AppendFormat(const RecordingReport& report, std::string& text) {
+  if (report.summary.depth.frames + report.summary.thermal.frames == 0) return;
+  const bool viewable = IsViewable(report.summary);
+  text += fmt::format(
+      "{:<14}{} (isotherm convert {} -o OUT.mcap --encoding {} makes one that {})\n", "images",
+      viewable ? "viewable: Foxglove and Lichtblick show them"
+               : "compact: lossless, only Isotherm reads them",
+      report.file, viewable ? "compact" : "viewable",
+      viewable ? "is smaller" : "Foxglove and Lichtblick show");
+}
+
 void AppendNuc(const RecordingSummary& summary, std::string& text) {
   if (summary.thermal.frames == 0) return;
   text += fmt::format("{:<14}{} of {} thermal frames valid;", "shutter", summary.valid_thermal,
@@ -312,7 +335,9 @@ RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path&
   } else {
     report.rig_problem = rig.error().message();
   }
-  report.summary = Summarize(reader);
+  PlausibilityCheck plausibility(report.rig.value_or(Rig()));
+  report.summary = Summarize(reader, plausibility);
+  report.doubts = plausibility.Find();
   return report;
 }
 
@@ -324,6 +349,7 @@ std::string ToText(const RecordingReport& report) {
     text += fmt::format("{:<14}{} to {}{}\n", "time", FormatStamp(*report.info.start),
                         FormatStamp(*report.info.end), Utc(*report.info.start));
   }
+  AppendFormat(report, text);
   AppendStream("depth", report.summary.depth, text);
   AppendStream("thermal", report.summary.thermal, text);
   AppendNuc(report.summary, text);
@@ -352,6 +378,7 @@ Json ToJson(const RecordingReport& report) {
     for (const auto& [topic, count] : gap.messages_by_topic) item["messages"][topic] = count;
     json["gaps"].Append(std::move(item));
   }
+  json["viewable"] = IsViewable(report.summary);
   json["unreadable_messages"] = report.summary.unreadable;
   json["depth"] = StreamJson(report.summary.depth);
   json["thermal"] = StreamJson(report.summary.thermal);
@@ -380,6 +407,7 @@ Json ToJson(const RecordingReport& report) {
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) json["metadata"][name][key] = value;
   }
+  for (const std::string& doubt : report.doubts) json["warnings"].Append(doubt);
   json["calibration"]["present"] = report.rig.has_value();
   if (report.rig) {
     json["calibration"]["depth"] = report.rig->depth.has_value();

@@ -143,7 +143,23 @@ RecordingSummary RecordingSummarizer::Finish() {
   return std::move(summary_);
 }
 
-RecordingSummary Summarize(RecordingReader& reader) {
+namespace {
+
+void Show(const RecordedItem& item, PlausibilityCheck& plausibility) {
+  if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
+    if (!plausibility.AddDepth(depth->frame.header.capture_time)) return;
+    if (const auto pixels = Decode(depth->frame.image))
+      plausibility.LookAtDepth(*pixels, depth->frame.depth_scale);
+  } else if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
+    if (!plausibility.AddThermal(thermal->frame.header.capture_time)) return;
+    if (thermal->frame.image.encoding == Encoding::kCounts16) return;  // No temperatures.
+    if (const auto pixels = Decode(thermal->frame.image)) plausibility.LookAtThermal(*pixels);
+  }
+}
+
+}  // namespace
+
+RecordingSummary Summarize(RecordingReader& reader, PlausibilityCheck& plausibility) {
   RecordingSummarizer summarizer;
   for (;;) {
     const Result<std::optional<RecordedItem>> item = reader.Next();
@@ -153,6 +169,7 @@ RecordingSummary Summarize(RecordingReader& reader) {
       return summarizer.Finish();
     } else {
       summarizer.Add(**item);
+      Show(**item, plausibility);
     }
   }
 }

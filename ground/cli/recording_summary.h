@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/frame/plausibility.h"
 #include "common/recording/recording.h"
 
 namespace isotherm {
@@ -87,8 +88,8 @@ class RecordingSummarizer {
   bool in_nuc_ = false;
 };
 
-/// Reads all of a recording that can be read.
-RecordingSummary Summarize(RecordingReader& reader);
+/// Reads all of a recording that can be read, and shows `plausibility` what it judges by.
+RecordingSummary Summarize(RecordingReader& reader, PlausibilityCheck& plausibility);
 
 std::string EncodingName(Encoding encoding);
 std::string NucStateName(NucState state);

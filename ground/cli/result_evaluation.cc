@@ -85,11 +85,17 @@ Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) 
   if (request.volume_box) KeepInside(*request.volume_box, *points);
   if (points->positions_m.empty())
     return InvalidArgument("no true surface lies inside the volume box");
+  const auto report_share = [&request](double share) {
+    if (request.progress) request.progress(share);
+  };
+  report_share(0.1);
   const TrueSurface truth(std::move(*points));
   const std::vector<Eigen::Vector3f> positions =
       Transformed(report.trajectory.T_truth_world, cloud->positions_m);
   report.cloud_points = positions.size();
+  report_share(0.2);
   report.surface = EvaluateSurface(positions, truth, {});
+  report_share(0.7);
   if (!request.emissivity) return OkStatus();
   TemperatureEvaluationOptions options;
   options.emissivity = *request.emissivity;

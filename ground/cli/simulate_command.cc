@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "common/base/progress.h"
+#include "common/base/service.h"
 #include "common/config/text_proto.h"
 #include "common/recording/recording.h"
 #include "common/simulation/options.h"
@@ -43,6 +44,11 @@ Status CollectOptions(const Arguments& arguments, SimulationOptions& options) {
   for (const std::string& assignment : arguments.overrides) {
     ISOTHERM_RETURN_IF_ERROR(ApplyOverride(assignment, options).WithContext("--set"));
   }
+  if (!(options.duration_s() > 0.0)) {
+    return InvalidArgument(
+        fmt::format("--duration must be above 0 s, got {:g}: a scan without frames is none",
+                    options.duration_s()));
+  }
   return Validate(options);
 }
 
@@ -51,16 +57,23 @@ int Run(const Arguments& arguments) {
   if (const Status status = CollectOptions(arguments, options); !status.ok()) {
     return FailConfiguration(status.message());
   }
+  const StopSignal signal;  // Before any other thread.
   ThreadPool pool(ChosenThreads(arguments.threads));
   ProgressBar progress("simulating", 0, "");
-  const Status status = RenderToFile(options, arguments.output, arguments.force, pool,
-                                     [&](double fraction) { progress.Update(fraction); });
+  const Status status = RenderToFile(
+      options, arguments.output, arguments.force, pool,
+      [&](double fraction) { progress.Update(fraction); }, signal.token());
   if (status.ok()) progress.Finish();
   if (!status.ok()) return Fail(status);
   fmt::print("{}: {} s of {}\n", arguments.output, options.duration_s(), SceneName(options));
   if (arguments.surface.empty()) return 0;
-  const Status surface = WriteTrueSurface(options, arguments.surface);
-  return surface.ok() ? 0 : Fail(surface);
+  ProgressBar surface_progress("true surface", 0, "");
+  const Status surface = WriteTrueSurface(
+      options, arguments.surface, [&](double fraction) { surface_progress.Update(fraction); },
+      signal.token());
+  if (!surface.ok()) return Fail(surface);
+  surface_progress.Finish();
+  return 0;
 }
 
 }  // namespace
@@ -69,9 +82,7 @@ void AddSimulateCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("simulate", "Renders a simulated scan, with truth, into a recording");
   auto arguments = std::make_shared<Arguments>();
-  command
-      ->add_option("--scene", arguments->scene, "furnace-door, calibrator, plane or corner-sphere")
-      ->capture_default_str();
+  command->add_option("--scene", arguments->scene, SceneNames())->capture_default_str();
   command->add_option("-o,--output", arguments->output, "Recording to write (.mcap)")->required();
   command->add_option("--surface", arguments->surface, "True surface to write (.ply)");
   command->add_option("--duration", arguments->duration_s, "Length of the scan, seconds");

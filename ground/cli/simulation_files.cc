@@ -1,13 +1,13 @@
 #include "ground/cli/simulation_files.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
 #include <thread>
 #include <vector>
 
+#include "common/base/partial_file.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/config/nearest_name.h"
 #include "common/simulation/options.h"
@@ -24,6 +24,17 @@ constexpr std::size_t kPoseStep = 10;
 
 }  // namespace
 
+std::string SceneNames() {
+  std::vector<std::string> names;
+  SimulationOptions options;
+  for (int value = SimulatedScene_MIN; value <= SimulatedScene_MAX; ++value) {
+    if (!SimulatedScene_IsValid(value)) continue;
+    options.mutable_scene()->set_scene(static_cast<SimulatedScene>(value));
+    names.push_back(SceneName(options));
+  }
+  return JoinNames(names);
+}
+
 Status SetScene(const std::string& name, SimulationOptions& options) {
   std::vector<std::string> names;
   for (int value = SimulatedScene_MIN; value <= SimulatedScene_MAX; ++value) {
@@ -38,31 +49,17 @@ Status SetScene(const std::string& name, SimulationOptions& options) {
 
 Status RenderToFile(const SimulationOptions& options, const std::filesystem::path& path,
                     bool overwrite, ThreadPool& pool,
-                    const std::function<void(double fraction)>& progress) {
-  std::error_code error;
-  const std::filesystem::file_status found = std::filesystem::status(path, error);
-  if (std::filesystem::exists(found) && !std::filesystem::is_regular_file(found)) {
-    return InvalidArgument(
-        fmt::format("{}: is not a regular file; name a new .mcap file", path.string()));
-  }
-  if (std::filesystem::exists(found) && !overwrite) {
-    return InvalidArgument(fmt::format("{}: exists already; --force replaces it", path.string()));
-  }
-  std::filesystem::path partial = path;
-  partial.replace_filename(fmt::format(".{}.{}.partial", path.filename().string(), ::getpid()));
-  const Status status = RenderRecording(options, partial, pool, progress);
-  if (!status.ok()) {
-    std::filesystem::remove(partial, error);
-    return status;
-  }
-  std::filesystem::rename(partial, path, error);
-  if (!error) return OkStatus();
-  const std::string reason = error.message();
-  std::filesystem::remove(partial, error);
-  return IoError(fmt::format("{}: cannot be created: {}", path.string(), reason));
+                    const std::function<void(double fraction)>& progress,
+                    const std::stop_token& stop) {
+  const Result<PartialFile> target = PartialFile::Create(path, overwrite);
+  if (!target) return target.error();
+  ISOTHERM_RETURN_IF_ERROR(RenderRecording(options, target->path(), pool, progress, stop));
+  return target->Commit();
 }
 
-Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem::path& path) {
+Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem::path& path,
+                        const std::function<void(double fraction)>& progress,
+                        const std::stop_token& stop) {
   const Result<std::unique_ptr<SimulatedScan>> scan = SimulatedScan::Create(options);
   if (!scan) return scan.error();
   std::vector<SurfaceSample> samples = SampleSurface((*scan)->scene(), kSampleSpacing_m);
@@ -70,6 +67,8 @@ Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem:
   const double max_depth_m = options.depth().max_depth_m();
   const auto& times = (*scan)->depth_times();
   for (std::size_t i = 0; i < times.size(); i += kPoseStep) {
+    if (stop.stop_requested()) return Unavailable("writing the true surface was interrupted");
+    if (progress) progress(static_cast<double>(i) / static_cast<double>(times.size()));
     const CaptureTime time = times[i].exposure;
     CountSeen((*scan)->scene(), *rig.depth, (*scan)->PoseAt(time), max_depth_m, SeenBy::kDepth,
               samples);

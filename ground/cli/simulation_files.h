@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <stop_token>
 #include <string>
 
 #include "common/base/status.h"
@@ -11,17 +12,23 @@ namespace isotherm {
 class SimulationOptions;
 class ThreadPool;
 
+/// Of all scenes: "a, b, c".
+std::string SceneNames();
+
 /// Chooses the scene by its name, e.g. "furnace-door".
 Status SetScene(const std::string& name, SimulationOptions& options);
 
 /// Renders into a file that gets its name when it is complete.
 Status RenderToFile(const SimulationOptions& options, const std::filesystem::path& path,
                     bool overwrite, ThreadPool& pool,
-                    const std::function<void(double fraction)>& progress);
+                    const std::function<void(double fraction)>& progress,
+                    const std::stop_token& stop = {});
 
 /// The true surface in `world`, 2 mm between samples, with how many poses of the scan (one in ten)
 /// see each.
-Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem::path& path);
+Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem::path& path,
+                        const std::function<void(double fraction)>& progress = {},
+                        const std::stop_token& stop = {});
 
 /// `threads`, or one per core for 0.
 int ChosenThreads(int threads);

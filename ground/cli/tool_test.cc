@@ -70,6 +70,7 @@ class ToolTest : public isotherm::testing::ToolRun {
     refused("nowhere -o x.png", kNoInput, "no such model or result folder");
     refused(". -o x.png", kNoInput, "has no model.iso");
     refused("scan.mcap -o x.png", kUsage, "not an Isotherm model");
+    refused("out -o x.jpg", kUsage, "written as PNG; name x.png");
     refused("out -o x.png --layer all", kUsage, "pictures do not fit into one file");
     refused("out -o x.png --layer heat", kUsage, "there is no layer 'heat'");
     refused("out -o x.png --size 3x4", kUsage, "--size");
@@ -97,6 +98,7 @@ class ToolTest : public isotherm::testing::ToolRun {
     EXPECT_THAT(mirror.err, AllOf(HasSubstr("mirror: "), HasSubstr("more would be reflected")));
     EXPECT_THAT(mirror.out, HasSubstr("overlap"));
     EXPECT_TRUE(fs::exists(folder_ / "mirror/mesh.ply"));
+    EXPECT_EQ(Run("export out -o again --set export.mesh=false").status, 0) << "a result folder";
 
     const Outcome wrong =
         Run("export out/model.iso -o wrong --emissivity 1.2 --box '0 0 0 1 1: emissivity=1'");
@@ -134,6 +136,35 @@ TEST_F(ToolTest, WrongCommandLinesAreOneSentenceAndStatus64) {
     EXPECT_THAT(outcome.err, HasSubstr("isotherm: ")) << arguments;
     EXPECT_EQ(outcome.out, "") << arguments;
   }
+}
+
+TEST_F(ToolTest, AMisspeltCommandOrNameIsSuggested) {
+  const Outcome command = Run("reconstuct scan.mcap -o out");
+  EXPECT_EQ(command.status, kUsage);
+  EXPECT_THAT(command.err, AllOf(HasSubstr("there is no command 'reconstuct'"),
+                                 HasSubstr("Did you mean 'reconstruct'?")));
+  const Outcome policy = Run("nuc --policy manaul");
+  EXPECT_EQ(policy.status, kUsage);
+  EXPECT_THAT(policy.err, HasSubstr("'manaul' is none of automatic, camera, manual. Did you mean"));
+  EXPECT_THAT(Run("import x -o y --encoding png").err,
+              HasSubstr("'png' is none of compact, viewable"));
+  EXPECT_THAT(Run("import . -o ''").err, HasSubstr("-o '': names no file"));
+}
+
+TEST_F(ToolTest, EveryOptionIsListedWithDefaultAndMeaning) {
+  const Outcome ground = Run("options");
+  EXPECT_EQ(ground.status, 0) << ground.err;
+  EXPECT_THAT(ground.out,
+              AllOf(HasSubstr("\n  tsdf.truncation_distance_m = 0\n      Signed distances"),
+                    HasSubstr("  tracker.outside.max_gap_s = 0.2\n"),
+                    HasSubstr("  thermal.policy = BEST_CONDITIONS\n"), HasSubstr("LOWEST_GOOD")));
+  const Outcome stage = Run("options ground volume");
+  EXPECT_THAT(stage.out, AllOf(HasSubstr("volume.voxel_size_m = 0.002"), Not(HasSubstr("tsdf."))));
+  EXPECT_THAT(Run("options edge").out, HasSubstr("\n  source.kind = "));
+  EXPECT_THAT(Run("options simulate").out, HasSubstr("\n  duration_s = "));
+  const Outcome unknown = Run("options ground tsfd");
+  EXPECT_EQ(unknown.status, kUsage);
+  EXPECT_THAT(unknown.err, HasSubstr("Did you mean 'tsdf'?"));
 }
 
 TEST_F(ToolTest, MissingInputsAreSaidWithStatus66) {
@@ -192,8 +223,7 @@ TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
   EXPECT_EQ(Run("inspect scan.mcap --render 0").status, kUsage);
 
   const Outcome reconstruct =
-      Run("reconstruct scan.mcap -o out --voxel 0.004 --initial-pose-from scan.mcap "
-          "--set tsdf.truncation_distance_m=0.016");
+      Run("reconstruct scan.mcap -o out --voxel 0.004 --initial-pose-from scan.mcap");
   ASSERT_EQ(reconstruct.status, 0) << reconstruct.err;
   const Outcome evaluate =
       Run("evaluate out --groundtruth scan.mcap --surface scan.ply --emissivity 0.96 --ambient 23 "
@@ -247,6 +277,9 @@ TEST_F(ToolTest, SimulateRefusesToOverwriteUnlessForced) {
   EXPECT_EQ(ReadAll(folder_ / "scan.mcap"), "precious");
   EXPECT_THAT(Run("simulate --scene furnace-dor -o x.mcap").err,
               HasSubstr("Did you mean 'furnace-door'?"));
+  const Outcome empty = Run("simulate --duration 0 -o x.mcap");
+  EXPECT_EQ(empty.status, kConfiguration);
+  EXPECT_THAT(empty.err, HasSubstr("--duration must be above 0 s"));
 }
 
 TEST_F(ToolTest, FullStandardOutputIsAnError) {

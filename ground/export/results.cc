@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <system_error>
 #include <vector>
 
@@ -77,6 +79,8 @@ Json SurfaceStats(const ResultSummary& summary) {
 
 void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureScale>& scale,
                   const fs::path& folder, ThreadPool& threads, FirstFailure& failure) {
+  std::error_code ignored;  // A folder that is not there shows when files cannot be written.
+  fs::create_directories(folder, ignored);
   ViewMaps view;
   SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
   SampleNucAge(*inputs.view, inputs.tsdf, inputs.thermal, threads, view);
@@ -104,7 +108,31 @@ Json CompleteStats(const ResultInputs& inputs, const ResultSummary& summary) {
   stats["surface"] = SurfaceStats(summary);
   if (inputs.interpretation != nullptr)
     stats["interpretation"] = inputs.interpretation->Describe(summary.interpretation);
+  if (inputs.warnings) {
+    for (const std::string& warning : inputs.warnings(summary)) stats["warnings"].Append(warning);
+  }
   return stats;
+}
+
+/// trajectory.txt, stats.json, cloud.ply, mesh.ply, model.iso, model-2.iso and so on.
+bool IsResultName(const std::string& name) {
+  if (name.starts_with("model-") && name.ends_with(".iso")) return true;
+  constexpr std::string_view kNames[] = {"trajectory.txt", "stats.json", "cloud.ply", "mesh.ply",
+                                         "model.iso"};
+  return std::ranges::count(kNames, name) > 0;
+}
+
+/// Calls `use` for each file of a result, and of its pictures those that the results draw.
+void ForEachResult(const fs::path& dir, const std::function<void(const fs::path&)>& use) {
+  std::error_code error;
+  for (fs::directory_iterator entry(dir, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (IsResultName(entry->path().filename().string())) use(entry->path());
+  }
+  for (const RenderLayer layer : AllLayers()) {
+    const fs::path picture = dir / "renders" / fmt::format("{}.png", LayerName(layer));
+    if (fs::exists(picture, error)) use(picture);
+  }
 }
 
 }  // namespace
@@ -120,19 +148,34 @@ Status Validate(const ExportOptions& options) {
 
 Status PrepareOutputDir(const fs::path& dir) {
   std::error_code error;
-  fs::create_directories(dir / "renders", error);
+  fs::create_directories(dir, error);
   if (error) {
     return IoError("creating the output folder " + dir.string() + ": " + error.message() +
                    "; choose a folder that can be written with -o");
   }
-  for (const fs::path& folder : {dir, dir / "renders"}) {
-    const fs::path probe = folder / ".isotherm-write-test";
-    if (Status status = WriteFile(probe, "x"); !status.ok()) {
-      return status.WithContext("the output folder cannot be written");
-    }
-    fs::remove(probe, error);
+  const fs::path probe = dir / ".isotherm-write-test";
+  if (Status status = WriteFile(probe, "x"); !status.ok()) {
+    return status.WithContext("the output folder cannot be written");
   }
+  fs::remove(probe, error);
   return OkStatus();
+}
+
+bool HoldsResults(const fs::path& dir) {
+  bool found = false;
+  ForEachResult(dir, [&](const fs::path& /*file*/) { found = true; });
+  return found;
+}
+
+void RemoveOtherResults(const fs::path& dir, const std::set<std::string>& written) {
+  std::vector<fs::path> others;
+  ForEachResult(dir, [&](const fs::path& file) {
+    if (!written.contains(file.lexically_relative(dir).string())) others.push_back(file);
+  });
+  for (const fs::path& file : others) {
+    std::error_code ignored;
+    fs::remove(file, ignored);
+  }
 }
 
 Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& dir,

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -26,10 +27,19 @@ class ThreadPool;
 
 Status Validate(const ExportOptions& options);
 
-/// Creates the folder and `renders` in it and proves, by writing and removing a small file, that
+/// Creates the folder and proves, by writing and removing a small file, that
 /// results can be written there. To be called before a scan, so that no scan is lost for want of a
 /// place.
 Status PrepareOutputDir(const std::filesystem::path& dir);
+
+/// Whether results of a scan are in the folder.
+bool HoldsResults(const std::filesystem::path& dir);
+
+/// Removes files that bear names of results and are not among `written` (relative to `dir`): what
+/// an earlier scan left must not pass for part of this one's.
+void RemoveOtherResults(const std::filesystem::path& dir, const std::set<std::string>& written);
+
+struct ResultSummary;
 
 /// All that a finished scan leaves behind.
 struct ResultInputs {
@@ -44,6 +54,8 @@ struct ResultInputs {
   const ExportOptions& export_options;
   const Interpretation* interpretation = nullptr;  ///< nullptr: temperatures stay apparent.
   Json stats;  ///< Becomes stats.json, with `software`, `surface`, `interpretation` added.
+  /// What to warn of, knowing the surface; goes into stats.json as `warnings`. May be empty.
+  std::function<std::vector<std::string>(const ResultSummary&)> warnings{};
 };
 
 /// What was written, for a summary on the screen.

@@ -135,8 +135,41 @@ TEST_F(ResultsTest, OptionsLeaveFilesOut) {
   ASSERT_TRUE(Write(folder_.path()));
   EXPECT_FALSE(fs::exists(folder_.path() / "mesh.ply"));
   EXPECT_FALSE(fs::exists(folder_.path() / "cloud.ply"));
-  EXPECT_TRUE(fs::is_empty(folder_.path() / "renders"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "renders"));
   EXPECT_TRUE(fs::exists(folder_.path() / "trajectory.txt"));
+}
+
+TEST_F(ResultsTest, WhatAnEarlierScanLeftIsFoundAndRemovedAndNothingElse) {
+  const fs::path dir = folder_.path() / "out";
+  EXPECT_FALSE(HoldsResults(dir));
+  ASSERT_TRUE(PrepareOutputDir(dir).ok());
+  EXPECT_FALSE(HoldsResults(dir));
+  const auto put = [&](const char* name) { std::ofstream(dir / name) << "x"; };
+  put("scan.mcap");
+  put("my_model.iso");
+  EXPECT_FALSE(HoldsResults(dir)) << "not ours";
+  fs::create_directory(dir / "renders");
+  put("renders/own.png");
+  for (const char* name : {"model.iso", "model-2.iso", "mesh.ply", "renders/age.png"}) put(name);
+  EXPECT_TRUE(HoldsResults(dir));
+  RemoveOtherResults(dir, {"model.iso", "renders/age.png"});
+  for (const char* name :
+       {"scan.mcap", "my_model.iso", "renders/own.png", "model.iso", "renders/age.png"})
+    EXPECT_TRUE(fs::exists(dir / name)) << name;
+  EXPECT_FALSE(fs::exists(dir / "model-2.iso"));
+  EXPECT_FALSE(fs::exists(dir / "mesh.ply"));
+}
+
+TEST_F(ResultsTest, WarningsKnowTheSurfaceAndAreInTheStatistics) {
+  ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
+  ResultInputs inputs = Inputs();
+  inputs.warnings = [](const ResultSummary& summary) {
+    return std::vector<std::string>{std::to_string(summary.points) + " points of nothing"};
+  };
+  ThreadPool pool(2);
+  ASSERT_TRUE(WriteResults(inputs, folder_.path(), pool));
+  EXPECT_NE(ReadAll(folder_.path() / "stats.json").find("\"1024 points of nothing\""),
+            std::string::npos);
 }
 
 TEST_F(ResultsTest, OneFileThatFailsDoesNotStopTheOthers) {

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -126,6 +127,98 @@ INSTANTIATE_TEST_SUITE_P(
                       kBadData, "depth.txt"}),
     [](const auto& suite) { return suite.param.name; });
 
+struct DoubtfulDataset {
+  const char* name;
+  std::function<void(const DatasetFolder&)> damage;
+  const char* cause;  ///< What is said, with the likely cause.
+};
+
+class DoubtfulDatasetTest : public BadInputTest,
+                            public ::testing::WithParamInterface<DoubtfulDataset> {};
+
+// What was imported is there: it may be all that there is.
+TEST_P(DoubtfulDatasetTest, IsImportedWithAWarningAndStatus65) {
+  GetParam().damage(dataset_);
+  const Finished import = Import();
+  EXPECT_EQ(import.status, kBadData) << import.output;
+  EXPECT_THAT(import.output, HasSubstr("isotherm: warning: "));
+  EXPECT_THAT(import.output, HasSubstr(GetParam().cause));
+  const Finished inspect = RunTool({"inspect", Recording()});
+  EXPECT_EQ(inspect.status, kBadData) << inspect.output;
+  EXPECT_THAT(inspect.output, HasSubstr(GetParam().cause));
+  EXPECT_THAT(inspect.output, HasSubstr("4 frames of 32 x 24 pixels"));
+}
+
+/// Stamps of depth and thermal frames, from 100 s on, times `factor`.
+void WriteStamps(const DatasetFolder& dataset, double factor, double thermal_later_s) {
+  std::ostringstream depth, thermal;
+  depth << std::fixed;
+  thermal << std::fixed;
+  for (int i = 0; i < DatasetFolder::kDepthFrames; ++i)
+    depth << factor * (100.1 + 0.033 * i) << " depth/" << i << ".png\n";
+  for (int i = 0; i < DatasetFolder::kThermalFrames; ++i)
+    thermal << factor * (100.1 + thermal_later_s + 0.025 * i) << " thermal/" << i << ".png\n";
+  dataset.Write("depth.txt", depth.str());
+  dataset.Write("thermal.txt", thermal.str());
+  dataset.Remove("nuc.txt");
+  dataset.Remove("groundtruth.txt");
+}
+
+void WriteRig(const DatasetFolder& dataset, const std::string& depth_scale, const std::string& tx) {
+  dataset.Write("rig.textproto",
+                "depth { width: 32 height: 24 fx: 30 fy: 30 cx: 15.5 cy: 11.5 }\ndepth_scale: " +
+                    depth_scale +
+                    "\nthermal { width: 20 height: 15 fx: 20 fy: 20 cx: 9.5 cy: 7 }\n"
+                    "T_thermal_depth { tx: " +
+                    tx + " ty: 0 tz: 0 qx: 0 qy: 0 qz: 0 qw: 1 }\n");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , DoubtfulDatasetTest,
+    ::testing::Values(
+        DoubtfulDataset{"StampsInMicroseconds",
+                        [](const DatasetFolder& d) { WriteStamps(d, 1e6, 0.0); },
+                        "these look like microseconds (30.3 Hz): divide them by 1000000"},
+        DoubtfulDataset{"ThermalStampsOfAnotherClock",
+                        [](const DatasetFolder& d) { WriteStamps(d, 1.0, 1000.0); },
+                        "they seem to be dated by two clocks"},
+        DoubtfulDataset{"ExtrinsicsInMillimetres",
+                        [](const DatasetFolder& d) { WriteRig(d, "1000", "50"); },
+                        "as millimetres they would be 0.05 m"},
+        DoubtfulDataset{"DepthInMetres", [](const DatasetFolder& d) { WriteRig(d, "1", "0.05"); },
+                        "depth_scale 1000 would make it 0.5"},
+        DoubtfulDataset{"DepthScaleTooLarge",
+                        [](const DatasetFolder& d) { WriteRig(d, "5000", "0.05"); },
+                        "depth_scale 1000 would make it 0.5"},
+        DoubtfulDataset{"CentiDegrees",
+                        [](const DatasetFolder& d) {
+                          for (int i = 0; i < DatasetFolder::kThermalFrames; ++i)
+                            d.WriteImage("thermal/" + std::to_string(i) + ".png",
+                                         cv::Mat(15, 20, CV_16U, 2300.0 + i));
+                        },
+                        "as centi-degrees Celsius they would be 23.0 °C"},
+        DoubtfulDataset{"NoTemperatures",
+                        [](const DatasetFolder& d) {
+                          for (int i = 0; i < DatasetFolder::kThermalFrames; ++i)
+                            d.WriteImage("thermal/" + std::to_string(i) + ".png",
+                                         cv::Mat(15, 20, CV_16U, 0.0));
+                        },
+                        "all are 0"}),
+    [](const auto& suite) { return suite.param.name; });
+
+// A calibration that cannot be right is said when a daemon starts with it.
+TEST_F(BadInputTest, F57TheEdgeWarnsOfACalibrationThatCannotBeRight) {
+  ImportGood();
+  WriteRig(dataset_, "1000", "50");
+  const Finished edge = RunToEnd(
+      {EdgeDaemon(),
+       {"--domain", std::to_string(TestDomain()), "--recording", Recording(), "--rate", "0",
+        "--set", "source.loops=1", "--exit-at-end", "--rig", dataset_.path() / "rig.textproto"},
+       {}},
+      kPatience);
+  EXPECT_THAT(edge.output, HasSubstr("as millimetres they would be 0.05 m"));
+}
+
 TEST_F(BadInputTest, ThermalWithoutDepthIsImportedAndInspectedButNotReconstructed) {
   dataset_.Remove("depth.txt");
   dataset_.Remove("depth");
@@ -135,6 +228,19 @@ TEST_F(BadInputTest, ThermalWithoutDepthIsImportedAndInspectedButNotReconstructe
   EXPECT_EQ(inspect.status, 0) << inspect.output;
   EXPECT_THAT(inspect.output, HasSubstr("thermal"));
   ExpectOneSentence(RunTool({"reconstruct", Recording(), "-o", Results()}), kBadData, "depth");
+}
+
+TEST_F(BadInputTest, AnInterruptedSimulationLeavesNothingBehind) {
+  Process simulate(
+      {Tool(),
+       {"simulate", "--scene", "corner-sphere", "--duration", "3000", "-o", Recording()},
+       {}});
+  ASSERT_TRUE(simulate.WaitForOutput("simulating", kPatience)) << simulate.output();
+  simulate.Signal(SIGTERM);
+  ASSERT_TRUE(simulate.WaitForExit(kPatience).has_value());
+  EXPECT_THAT(simulate.output(), HasSubstr("interrupted"));
+  for (const auto& entry : std::filesystem::directory_iterator(dataset_.root()))
+    EXPECT_TRUE(entry.is_directory()) << entry.path();
 }
 
 TEST_F(BadInputTest, MissingRecordingIsNamed) {
@@ -212,6 +318,9 @@ TEST_F(BadInputTest, WrongCommandLinesAreUsageErrors) {
   }
   for (const std::filesystem::path& daemon : {EdgeDaemon(), GroundService()}) {
     EXPECT_EQ(RunToEnd({daemon, {"--no-such-option"}, {}}, kPatience).status, kUsage) << daemon;
+    const Finished level = RunToEnd({daemon, {"--log-level", "foo"}, {}}, kPatience);
+    EXPECT_EQ(level.status, kUsage) << level.output;
+    EXPECT_THAT(level.output, HasSubstr("'foo' is none of debug, error, info, warning"));
   }
 }
 
@@ -279,6 +388,21 @@ TEST_F(BadInputTest, AFullDiskEndsAReconstructionAndNamesTheFile) {
   if (!finished) GTEST_SKIP() << "mounting a small file system is not allowed here";
   EXPECT_EQ(finished->status, kCannotCreate) << finished->output;
   EXPECT_THAT(finished->output, HasSubstr("results"));
+}
+
+TEST_F(BadInputTest, ABadCalibrationHasOneExitStatusEverywhere) {
+  ImportGood();
+  dataset_.Write("rig.textproto", "depth { width: 32 height: 24 fx: 0 fy: 30 cx: 15 cy: 11 }\n");
+  const std::string rig = dataset_.path() / "rig.textproto";
+  const Finished import =
+      RunTool({"import", dataset_.path(), "-o", dataset_.root() / "other.mcap"});
+  EXPECT_EQ(import.status, kBadData) << import.output;
+  const Finished edge = RunToEnd(
+      {EdgeDaemon(),
+       {"--domain", std::to_string(TestDomain()), "--recording", Recording(), "--rig", rig},
+       {}},
+      kPatience);
+  EXPECT_EQ(edge.status, kBadData) << edge.output;
 }
 
 /// The decimal comma and other alphabets of a locale do not reach what is written. (A locale that

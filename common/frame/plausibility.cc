@@ -1,0 +1,257 @@
+#include "common/frame/plausibility.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "common/base/quantile.h"
+#include "common/frame/frame.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kMaxCameraDistance_m = 1.0;
+constexpr double kMaxDelay_s = 1.0;
+constexpr double kMinDepthScale = 10.0;
+constexpr double kMinRate_hz = 1.0;
+constexpr double kMaxRate_hz = 1000.0;
+/// Of the shorter stream.
+constexpr double kMinOverlap = 0.5;
+constexpr double kMinDepth_m = 0.2, kMaxDepth_m = 20.0;
+constexpr double kMinMean_celsius = -40.0;
+constexpr double kMaxSaturated = 0.99;
+/// What a reading of numbers in another unit must give to be named as the cause.
+constexpr double kLikelyMin_celsius = -20.0, kLikelyMax_celsius = 500.0;
+constexpr double kLikelyMin_m = 0.3, kLikelyMax_m = 5.0;
+constexpr int kPixelStep = 5;
+
+struct Unit {
+  const char* name;
+  double per_si;
+};
+
+/// " They look like microseconds: ..."; a general question where no unit fits.
+std::string CauseOfPeriod(double period_s) {
+  constexpr std::array<Unit, 3> kUnits = {
+      {{"milliseconds", 1e3}, {"microseconds", 1e6}, {"nanoseconds", 1e9}}};
+  for (const Unit& unit : kUnits) {
+    const double rate_hz = unit.per_si / period_s;
+    // Cameras of a few hertz to a few hundred.
+    if (rate_hz < 2.0 || rate_hz > 500.0) continue;
+    return fmt::format("stamps are seconds; these look like {} ({:.1f} Hz): divide them by {:.0f}",
+                       unit.name, rate_hz, unit.per_si);
+  }
+  return "stamps are seconds: are these in another unit?";
+}
+
+void CheckRate(std::string_view name, const StreamTimes& times, Doubts& doubts) {
+  if (times.period_s <= 0.0) return;
+  const double rate_hz = 1.0 / times.period_s;
+  if (rate_hz < kMinRate_hz) {
+    doubts.push_back(fmt::format("{}: one frame every {:.6g} s, {:.6g} s in all: {}", name,
+                                 times.period_s, ToSeconds(times.last - times.first),
+                                 CauseOfPeriod(times.period_s)));
+  } else if (rate_hz > kMaxRate_hz) {
+    doubts.push_back(fmt::format(
+        "{}: {:.0f} frames a second, which no camera of this kind has: stamps are seconds, are "
+        "these in a larger unit?",
+        name, rate_hz));
+  }
+}
+
+void CheckOverlap(const StreamTimes& depth, const StreamTimes& thermal, Doubts& doubts) {
+  if (depth.frames < 2 || thermal.frames < 2) return;
+  const double common_s =
+      ToSeconds(std::min(depth.last, thermal.last) - std::max(depth.first, thermal.first));
+  const double shorter_s =
+      std::min(ToSeconds(depth.last - depth.first), ToSeconds(thermal.last - thermal.first));
+  if (common_s >= kMinOverlap * shorter_s) return;
+  doubts.push_back(fmt::format(
+      "thermal frames begin {:+.3f} s after the depth frames, and the two overlap for {:.3f} s "
+      "only: "
+      "they seem to be dated by two clocks; give both streams stamps of one clock, or the "
+      "difference as thermal_delay_s of the calibration",
+      ToSeconds(thermal.first - depth.first), std::max(0.0, common_s)));
+}
+
+double ToCelsius(double kelvin) { return kelvin - kCelsiusZeroKelvin; }
+
+bool IsLikely(double celsius) {
+  return celsius >= kLikelyMin_celsius && celsius <= kLikelyMax_celsius;
+}
+
+/// What pixels with this mean would be in the units that are confused with centi-kelvin.
+std::string CauseOfMean(double mean) {
+  std::string readings;
+  const auto add = [&readings](const char* unit, double celsius) {
+    if (!IsLikely(celsius)) return;
+    readings +=
+        fmt::format("{}as {} they would be {:.1f} °C", readings.empty() ? "" : ", ", unit, celsius);
+  };
+  add("centi-degrees Celsius", mean / 100.0);
+  add("deci-kelvin", ToCelsius(mean / 10.0));
+  add("kelvin / 64", ToCelsius(mean / 64.0));
+  return readings.empty() ? "are they raw counts?" : readings + ", or they may be raw counts";
+}
+
+}  // namespace
+
+Doubts DoubtsAbout(const Rig& rig) {
+  Doubts doubts;
+  if (rig.T_thermal_depth) {
+    const double distance_m = rig.T_thermal_depth->translation().norm();
+    if (distance_m > kMaxCameraDistance_m) {
+      const bool are_millimetres = distance_m / 1e3 <= kMaxCameraDistance_m;
+      doubts.push_back(fmt::format(
+          "T_thermal_depth puts the cameras {:.4g} m apart: tx ty tz are metres{}", distance_m,
+          are_millimetres ? fmt::format("; as millimetres they would be {:.4g} m: divide them by "
+                                        "1000",
+                                        distance_m / 1e3)
+                          : ""));
+    }
+  }
+  if (std::abs(rig.thermal_delay_s) > kMaxDelay_s) {
+    doubts.push_back(
+        fmt::format("thermal_delay_s is {:.6g} s: cameras are late by milliseconds; is it in "
+                    "milliseconds, or are the streams dated by two clocks?",
+                    rig.thermal_delay_s));
+  }
+  if (rig.depth && rig.depth_scale < kMinDepthScale) {
+    doubts.push_back(fmt::format(
+        "depth_scale is {:.6g} units per metre: images of whole metres show no surface; "
+        "millimetres are depth_scale: 1000",
+        rig.depth_scale));
+  }
+  return doubts;
+}
+
+StreamTimes MeasureTimes(std::vector<CaptureTime>& times) {
+  StreamTimes result;
+  result.frames = times.size();
+  if (times.empty()) return result;
+  std::sort(times.begin(), times.end());
+  result.first = times.front();
+  result.last = times.back();
+  std::vector<double> periods_s;
+  for (std::size_t i = 1; i < times.size(); ++i)
+    periods_s.push_back(ToSeconds(times[i] - times[i - 1]));
+  if (!periods_s.empty()) result.period_s = TakeMedian(periods_s);
+  return result;
+}
+
+Doubts DoubtsAboutTimes(const StreamTimes& depth, const StreamTimes& thermal) {
+  Doubts doubts;
+  CheckRate("depth", depth, doubts);
+  CheckRate("thermal", thermal, doubts);
+  // Where stamps are in a wrong unit, the overlap says nothing.
+  if (doubts.empty()) CheckOverlap(depth, thermal, doubts);
+  return doubts;
+}
+
+Doubts DoubtsAboutDepths(double median_raw, double depth_scale) {
+  if (!(depth_scale > 0.0)) return {};
+  const double median_m = median_raw / depth_scale;
+  if (median_raw > 0.0 && median_m >= kMinDepth_m && median_m <= kMaxDepth_m) return {};
+  if (median_raw <= 0.0) {
+    return {
+        "no depth pixel that was looked at has a value: is the camera covered, or does something "
+        "else than 16-bit depth stand in the images?"};
+  }
+  std::string text = fmt::format(
+      "the depth images say {:.4g} m (median) with depth_scale {:.6g}, which such cameras do not "
+      "measure",
+      median_m, depth_scale);
+  for (const double scale : {1000.0, 5000.0, 10000.0, 100.0}) {
+    const double other_m = median_raw / scale;
+    if (other_m < kLikelyMin_m || other_m > kLikelyMax_m) continue;
+    text += fmt::format(": depth_scale {:.0f} would make it {:.3g} m", scale, other_m);
+    break;
+  }
+  return {text + "; correct depth_scale in the calibration (raw units per metre)"};
+}
+
+Doubts DoubtsAboutTemperatures(const ThermalPixels& pixels) {
+  if (pixels.none_ratio >= 1.0)
+    return {
+        "no thermal pixel that was looked at has a value (all are 0): centi-kelvin is expected"};
+  if (pixels.saturated_ratio >= kMaxSaturated) {
+    return {
+        "nearly all thermal pixels have the largest value there is (65535, 382 °C): the images "
+        "must "
+        "be centi-kelvin (kelvin x 100) of what is colder than that"};
+  }
+  const double celsius = ToCelsius(pixels.mean_centikelvin / kCentikelvinPerKelvin);
+  if (celsius >= kMinMean_celsius) return {};
+  return {
+      fmt::format("the mean of the thermal images is {:.1f} °C: pixels must be centi-kelvin "
+                  "(kelvin x 100); {}: "
+                  "convert them",
+                  celsius, CauseOfMean(pixels.mean_centikelvin))};
+}
+
+bool PlausibilityCheck::AddDepth(CaptureTime time) {
+  depth_times_.push_back(time);
+  return std::has_single_bit(depth_times_.size());
+}
+
+bool PlausibilityCheck::AddThermal(CaptureTime time) {
+  thermal_times_.push_back(time);
+  return std::has_single_bit(thermal_times_.size());
+}
+
+void PlausibilityCheck::LookAtDepth(const Image<std::uint16_t>& depth_raw, double depth_scale) {
+  depth_scale_ = depth_scale;
+  for (int y = 0; y < depth_raw.height(); y += kPixelStep) {
+    for (int x = 0; x < depth_raw.width(); x += kPixelStep) {
+      ++depth_pixels_;
+      const std::uint16_t raw = depth_raw.At(x, y);
+      if (raw != kNoDepth && raw != kNoDepthSaturated) depths_raw_.push_back(raw);
+    }
+  }
+}
+
+void PlausibilityCheck::LookAtThermal(const Image<std::uint16_t>& centikelvin) {
+  for (int y = 0; y < centikelvin.height(); y += kPixelStep) {
+    for (int x = 0; x < centikelvin.width(); x += kPixelStep) {
+      const std::uint16_t value = centikelvin.At(x, y);
+      ++thermal_pixels_;
+      thermal_none_ += value == 0 ? 1 : 0;
+      thermal_saturated_ += value == std::numeric_limits<std::uint16_t>::max() ? 1 : 0;
+      thermal_sum_ += value;
+    }
+  }
+}
+
+double PlausibilityCheck::MedianDepthRaw() const {
+  if (depths_raw_.empty()) return 0.0;
+  std::vector<std::uint16_t> depths = depths_raw_;
+  return TakeMedian(depths);
+}
+
+Doubts PlausibilityCheck::Find() const {
+  Doubts doubts = DoubtsAbout(rig_);
+  const auto add = [&doubts](const Doubts& more) {
+    doubts.insert(doubts.end(), more.begin(), more.end());
+  };
+  std::vector<CaptureTime> depth = depth_times_, thermal = thermal_times_;
+  StreamTimes thermal_times = MeasureTimes(thermal);
+  const Nanoseconds delay = FromSeconds(rig_.thermal_delay_s);
+  thermal_times.first += delay;
+  thermal_times.last += delay;
+  add(DoubtsAboutTimes(MeasureTimes(depth), thermal_times));
+  if (depth_pixels_ > 0) add(DoubtsAboutDepths(MedianDepthRaw(), depth_scale_));
+  if (thermal_pixels_ > 0) {
+    const auto pixels = static_cast<double>(thermal_pixels_);
+    const std::uint64_t with_value = thermal_pixels_ - thermal_none_;
+    add(DoubtsAboutTemperatures(
+        {.mean_centikelvin = with_value == 0 ? 0.0 : thermal_sum_ / static_cast<double>(with_value),
+         .none_ratio = static_cast<double>(thermal_none_) / pixels,
+         .saturated_ratio = static_cast<double>(thermal_saturated_) / pixels}));
+  }
+  return doubts;
+}
+
+}  // namespace isotherm

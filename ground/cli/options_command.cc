@@ -1,0 +1,45 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "ground/cli/command.h"
+#include "ground/cli/option_list.h"
+
+namespace isotherm {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Names are those that --set takes. In a configuration file (--config, protobuf text format) dots are braces:
+tsdf.max_weight=100 is  tsdf { max_weight: 100 }.
+
+Examples:
+  isotherm options ground            of isotherm-ground, reconstruct, render, export and calibrate
+  isotherm options ground tsdf       one stage
+  isotherm options edge | less       of isotherm-edge
+  isotherm options simulate          of isotherm simulate)";
+
+struct Arguments {
+  std::string program = "ground", stage;
+};
+
+int Run(const Arguments& arguments) {
+  const Result<std::string> text = ListOptions(arguments.program, arguments.stage);
+  if (!text) return Fail(text.error());
+  std::fwrite(text->data(), 1, text->size(), stdout);
+  return 0;
+}
+
+}  // namespace
+
+void AddOptionsCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* command =
+      app.add_subcommand("options", "Lists all options of --set and --config, with their defaults");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("program", arguments->program, "ground, edge or simulate")
+      ->capture_default_str();
+  command->add_option("stage", arguments->stage, "One group of them, e.g. tsdf");
+  command->footer(kFooter);
+  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace isotherm
