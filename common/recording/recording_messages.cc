@@ -253,14 +253,28 @@ foxglove::PoseInFrame ToMessage(const OutsidePose& pose) {
   return message;
 }
 
-foxglove::FrameTransform ToMessage(const StampedPose& pose) {
+namespace {
+
+foxglove::FrameTransform MakeTransformMessage(CaptureTime time, std::string_view parent,
+                                              std::string_view child,
+                                              const RigidTransform& T_parent_child) {
   foxglove::FrameTransform message;
-  SetTime(pose.time, *message.mutable_timestamp());
-  message.set_parent_frame_id(std::string(kWorldFrame));
-  message.set_child_frame_id(std::string(kDepthFrame));
-  SetVector(pose.T_world_depth.translation(), *message.mutable_translation());
-  SetQuaternion(Eigen::Quaterniond(pose.T_world_depth.linear()), *message.mutable_rotation());
+  SetTime(time, *message.mutable_timestamp());
+  message.set_parent_frame_id(std::string(parent));
+  message.set_child_frame_id(std::string(child));
+  SetVector(T_parent_child.translation(), *message.mutable_translation());
+  SetQuaternion(Eigen::Quaterniond(T_parent_child.linear()), *message.mutable_rotation());
   return message;
+}
+
+}  // namespace
+
+foxglove::FrameTransform ToMessage(const StampedPose& pose) {
+  return MakeTransformMessage(pose.time, kWorldFrame, kDepthFrame, pose.T_world_depth);
+}
+
+foxglove::FrameTransform ThermalTransform(CaptureTime time, const RigidTransform& T_thermal_depth) {
+  return MakeTransformMessage(time, kDepthFrame, kThermalFrame, T_thermal_depth.inverse());
 }
 
 NucRecord ToMessage(const NucEvent& event) {

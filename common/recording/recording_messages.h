@@ -17,6 +17,7 @@ inline constexpr std::string_view kThermalTopic = "/thermal";
 inline constexpr std::string_view kRigTopic = "/rig";
 inline constexpr std::string_view kDepthInfoTopic = "/depth/camera_info";
 inline constexpr std::string_view kThermalInfoTopic = "/thermal/camera_info";
+inline constexpr std::string_view kThermalPoseTopic = "/thermal/transform";
 inline constexpr std::string_view kNucTopic = "/nuc";
 inline constexpr std::string_view kClockTopic = "/clock";
 inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
@@ -36,6 +37,8 @@ void SetImageData(EncodedImage&& image, foxglove::RawImage& message);
 foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_id,
                                       const CameraModel& camera);
 foxglove::FrameTransform ToMessage(const StampedPose& pose);
+/// Where the thermal camera is on the rig, for viewers: depth -> thermal.
+foxglove::FrameTransform ThermalTransform(CaptureTime time, const RigidTransform& T_thermal_depth);
 foxglove::PoseInFrame ToMessage(const OutsidePose& pose);
 NucRecord ToMessage(const NucEvent& event);
 ClockStepRecord ToMessage(const ClockStep& step);

@@ -153,6 +153,11 @@ class McapRecordingWriter final : public RecordingWriter {
       ISOTHERM_RETURN_IF_ERROR(
           Append(rec::kDepthInfoTopic, time, time, rec::ToMessage(time, "depth", *rig.depth)));
     }
+    // What is recorded for viewers has the rig's geometry in their terms.
+    if (rig.T_thermal_depth && storage_ == ImageStorage::kViewable) {
+      ISOTHERM_RETURN_IF_ERROR(Append(rec::kThermalPoseTopic, time, time,
+                                      rec::ThermalTransform(time, *rig.T_thermal_depth)));
+    }
     if (!rig.thermal) return OkStatus();
     return Append(rec::kThermalInfoTopic, time, time,
                   rec::ToMessage(time, "thermal", *rig.thermal));

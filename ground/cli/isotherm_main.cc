@@ -25,6 +25,7 @@ constexpr const char* kFooter =
   isotherm demo                                     a simulated scan over DDS on this computer
   isotherm import --from tum FOLDER -o scan.mcap    your own images and time stamps
   isotherm inspect scan.mcap                        what is in it
+  isotherm convert scan.mcap -o view.mcap           the same for Foxglove and Lichtblick
   isotherm reconstruct scan.mcap -o out             the 3D thermogram: out/cloud.ply, out/mesh.ply, ...
   isotherm render out -o door.png                   pictures of it, from anywhere
   isotherm evaluate out --groundtruth poses.txt     how far it is from the truth
@@ -65,6 +66,7 @@ int Main(int argc, char** argv) {
   AddDevicesCommand(app, body);
   AddImportCommand(app, body);
   AddInspectCommand(app, body);
+  AddConvertCommand(app, body);
   AddReconstructCommand(app, body);
   AddRenderCommand(app, body);
   AddEvaluateCommand(app, body);

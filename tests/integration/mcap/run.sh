@@ -1,10 +1,11 @@
 #!/bin/sh
-# Usage: run.sh MCAP_FIXTURE WORK_FOLDER
+# Usage: run.sh MCAP_FIXTURE ISOTHERM WORK_FOLDER
 # Installs the packages of package-lock.json into WORK_FOLDER (once), then lets either side read what the other wrote.
 # Exit status 77: skipped, because node, npm or the packages are not available.
 set -eu
 fixture=$1
-work=$2
+isotherm=$2
+work=$3
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 skip() { echo "SKIPPED: $1"; exit 77; }
 
@@ -23,6 +24,10 @@ rm -rf ours theirs
 mkdir ours theirs
 "$fixture" write ours
 node check_ours.mjs ours
+# What `isotherm convert` makes for viewers, by the schemas of Foxglove.
+printf '1700000000.1 1 2 0.5 0 0 0 1\n1700000000.3 1 2 0.75 0 0 0 1\n' > poses.txt
+"$isotherm" convert ours/compact.mcap -o ours/converted.mcap --encoding viewable --trajectory poses.txt
+node check_viewable.mjs ours/converted.mcap
 node write_theirs.mjs ours/viewable.mcap theirs
 for file in theirs/*.mcap; do
   "$fixture" read "$file"

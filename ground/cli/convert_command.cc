@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <memory>
+
+#include "common/base/partial_file.h"
+#include "common/base/progress.h"
+#include "common/base/service.h"
+#include "common/config/nearest_name.h"
+#include "common/dataset/trajectory.h"
+#include "ground/cli/command.h"
+#include "ground/cli/convert_recording.h"
+
+namespace isotherm {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kFooter =
+    R"(A recording is compact (Isotherm's own lossless codes: small, and only Isotherm reads them) or viewable
+(plain 16-bit images and transforms: two to three times as large, and Foxglove and Lichtblick show them).
+Nothing is lost either way; every command reads both. `isotherm inspect` says which of them a file is.
+
+A viewable recording has the topics /depth and /thermal (foxglove.RawImage, 16UC1), their camera_info
+(foxglove.CameraCalibration), and transforms (foxglove.FrameTransform) between world, depth and
+thermal. Poses of the rig are those of --trajectory (a result folder of `isotherm reconstruct`, or a
+file in TUM format), or else those that the recording has from the ground's feedback. In an image panel set
+the value range: thermal pixels are centi-kelvin (29300 is 19.85 °C).
+
+Examples:
+  isotherm convert scan.mcap -o view.mcap --encoding viewable --trajectory out/scan
+  isotherm convert view.mcap -o small.mcap --encoding compact)";
+
+struct Arguments {
+  std::string recording, output, trajectory;
+  int storage = static_cast<int>(ImageStorage::kViewable);
+  bool force = false;
+};
+
+Result<std::vector<StampedPose>> PosesOf(const std::string& place) {
+  if (place.empty()) return std::vector<StampedPose>();
+  std::error_code error;
+  const fs::path path =
+      fs::is_directory(place, error) ? fs::path(place) / "trajectory.txt" : fs::path(place);
+  Result<std::vector<StampedPose>> poses = ReadTrajectory(path);
+  if (poses && poses->empty()) return Err(DataLoss(path.string() + ": has no poses"));
+  return poses;
+}
+
+void Print(const ConvertSummary& summary, const Arguments& arguments) {
+  std::error_code error;
+  const auto before = static_cast<double>(fs::file_size(arguments.recording, error));
+  const auto after = static_cast<double>(fs::file_size(arguments.output, error));
+  fmt::print("{}: {} depth and {} thermal frames; {:.1f} MB ({:.1f} MB before)\n", arguments.output,
+             summary.depth_frames, summary.thermal_frames, 1e-6 * after, 1e-6 * before);
+  if (summary.poses > 0) {
+    fmt::print("poses    {} of the rig, from {}\n", summary.poses, summary.poses_from);
+  } else {
+    fmt::print(
+        "poses    none: images show, but a 3D panel has nothing to move (--trajectory names "
+        "a result of isotherm reconstruct)\n");
+  }
+  if (!summary.has_thermal_pose)
+    fmt::print(
+        "note: the calibration has no T_thermal_depth: no transform of the thermal camera\n");
+  if (summary.left_out > 0)
+    fmt::print("note: {} damaged messages were left out\n", summary.left_out);
+}
+
+int Run(const Arguments& arguments) {
+  const StopSignal signal;  // Before any other thread.
+  const auto poses = PosesOf(arguments.trajectory);
+  if (!poses) return Fail(poses.error());
+  const Result<PartialFile> target = PartialFile::Create(arguments.output, arguments.force);
+  if (!target) return Fail(target.error());
+  ConvertRequest request;
+  request.recording = arguments.recording;
+  request.output = target->path();
+  request.storage = static_cast<ImageStorage>(arguments.storage);
+  request.poses = *poses;
+  request.stop = signal.token();
+  std::optional<ProgressBar> progress;
+  request.progress = [&](double fraction) {
+    if (!progress) progress.emplace("converting", 0, "");
+    progress->Update(fraction);
+  };
+  const Result<ConvertSummary> summary = ConvertRecording(request);
+  if (!summary) return Fail(summary.error());
+  if (const Status named = target->Commit(); !named.ok()) return Fail(named);
+  if (progress) progress->Finish();
+  progress.reset();
+  Print(*summary, arguments);
+  return 0;
+}
+
+}  // namespace
+
+void AddConvertCommand(CLI::App& app, CommandBody& body) {
+  CLI::App* command = app.add_subcommand(
+      "convert", "Writes a recording anew: for Foxglove and Lichtblick, or as small as it can be");
+  auto arguments = std::make_shared<Arguments>();
+  command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
+  command->add_option("-o,--output", arguments->output, "Recording to write (.mcap)")->required();
+  command
+      ->add_option("--encoding", arguments->storage,
+                   "viewable (default; Foxglove and Lichtblick show it) or compact")
+      ->transform(
+          CLI::Validator(NumberOfName({{"viewable", static_cast<int>(ImageStorage::kViewable)},
+                                       {"compact", static_cast<int>(ImageStorage::kCompact)}}),
+                         ""))
+      ->type_name("KIND");
+  command->add_option("--trajectory", arguments->trajectory,
+                      "Poses of the rig: result folder, or trajectory.txt");
+  command->add_flag("--force", arguments->force, "Replace an existing recording");
+  command->footer(kFooter);
+  command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace isotherm

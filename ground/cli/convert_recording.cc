@@ -1,0 +1,285 @@
+#include "ground/cli/convert_recording.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+#include "common/recording/feedback.pb.h"
+#include "common/recording/mcap_message_stream.h"
+#include "common/recording/recording_messages.h"
+#include "common/recording/recording_streams.h"
+#include "common/recording/schema.h"
+#include "common/transport/feedback_record.h"
+
+namespace isotherm {
+namespace {
+
+namespace rec = recording;
+
+constexpr std::array<std::string_view, 12> kOwnTopics = {
+    rec::kDepthTopic,       rec::kThermalTopic, rec::kRigTopic,         rec::kDepthInfoTopic,
+    rec::kThermalInfoTopic, rec::kNucTopic,     rec::kClockTopic,       rec::kGroundtruthTopic,
+    rec::kTrajectoryTopic,  rec::kLogTopic,     rec::kOutsidePoseTopic, rec::kThermalPoseTopic};
+
+/// A message that the reader of recordings does not know (feedback, status), as it is in the file.
+struct OtherMessage {
+  std::string topic;
+  const mcap::Schema* schema = nullptr;
+  CaptureTime time{};
+  std::string data;
+};
+
+/// Those messages in order of time.
+class OtherMessages {
+ public:
+  OtherMessages(std::unique_ptr<ByteSource> source, mcap::FileIndex index)
+      : source_(std::move(source)), index_(std::move(index)), stream_(*source_, index_) {}
+
+  /// nullopt at the end. What is damaged is left to the reader to count.
+  std::optional<OtherMessage> Next() {
+    while (true) {
+      const auto message = stream_.Next();
+      if (!message) continue;
+      if (!message->has_value()) return std::nullopt;
+      const auto channel = index_.definitions.channels.find((*message)->channel_id);
+      if (channel == index_.definitions.channels.end()) continue;
+      const auto schema = index_.definitions.schemas.find(channel->second.schema_id);
+      const bool is_own = std::ranges::count(kOwnTopics, channel->second.topic) > 0;
+      if (is_own || schema == index_.definitions.schemas.end()) continue;
+      const std::span<const std::uint8_t> data = (*message)->data;
+      return OtherMessage{
+          channel->second.topic, &schema->second,
+          CaptureTimeFromNanoseconds(static_cast<std::int64_t>((*message)->log_time)),
+          std::string(data.begin(), data.end())};
+    }
+  }
+
+ private:
+  const std::unique_ptr<ByteSource> source_;
+  const mcap::FileIndex index_;
+  mcap::MessageStream stream_;
+};
+
+CaptureTime TimeOf(const RecordedItem& item) {
+  struct Visitor {
+    CaptureTime operator()(const RecordedDepth& depth) const {
+      return depth.frame.header.capture_time;
+    }
+    CaptureTime operator()(const RecordedThermal& thermal) const {
+      return thermal.frame.header.capture_time;
+    }
+    CaptureTime operator()(const NucEvent& event) const { return event.start; }
+    CaptureTime operator()(const RecordedPose& pose) const { return pose.pose.time; }
+    CaptureTime operator()(const OutsidePose& pose) const { return pose.time; }
+    CaptureTime operator()(const RecordedLog& log) const { return log.time; }
+    CaptureTime operator()(const ClockStep& step) const { return step.time; }
+  };
+  return std::visit(Visitor(), item);
+}
+
+/// The tracked pose that a feedback message carries; nullopt while the rig was lost.
+std::optional<StampedPose> PoseOf(const OtherMessage& message) {
+  if (message.topic != kFeedbackRecordTopic) return std::nullopt;
+  rec::FeedbackRecord record;
+  if (!record.ParseFromString(message.data) || !record.has_world_from_depth()) return std::nullopt;
+  if (record.tracking() != "tracked" && record.tracking() != "degraded") return std::nullopt;
+  foxglove::FrameTransform transform;
+  *transform.mutable_timestamp() = record.timestamp();
+  *transform.mutable_translation() = record.world_from_depth().translation();
+  *transform.mutable_rotation() = record.world_from_depth().rotation();
+  const Result<StampedPose> pose = rec::FromMessage(transform);
+  return pose ? std::optional(*pose) : std::nullopt;
+}
+
+class Converter {
+ public:
+  Converter(const ConvertRequest& request, RecordingReader& reader, OtherMessages& others,
+            RecordingWriter& writer)
+      : request_(request), reader_(reader), others_(others), writer_(writer) {
+    for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
+    ChoosePoses();
+  }
+
+  Status Run() {
+    if (const Result<Rig> rig = reader_.ReadRig()) {
+      ISOTHERM_RETURN_IF_ERROR(writer_.Write(*rig));
+      summary_.has_thermal_pose = rig->T_thermal_depth.has_value();
+    }
+    for (const auto& [name, values] : reader_.info().metadata) {
+      if (name != kRecordingMetadataName)
+        ISOTHERM_RETURN_IF_ERROR(writer_.WriteMetadata(name, values));
+    }
+    item_ = NextItem();
+    other_ = others_.Next();
+    while (item_ || other_ || pose_ < request_.poses.size()) {
+      if (request_.stop.stop_requested()) return Unavailable("the conversion was interrupted");
+      ISOTHERM_RETURN_IF_ERROR(WriteEarliest());
+      if (request_.progress && total_ > 0)
+        request_.progress(static_cast<double>(written_) / static_cast<double>(total_));
+    }
+    return OkStatus();
+  }
+
+  const ConvertSummary& summary() const { return summary_; }
+
+ private:
+  enum class PosesFrom : std::uint8_t { kNowhere, kRequest, kTrajectory, kFeedback, kGroundtruth };
+
+  void ChoosePoses() {
+    const auto has = [this](std::string_view topic) {
+      const auto found = reader_.info().messages_by_topic.find(std::string(topic));
+      return found != reader_.info().messages_by_topic.end() && found->second > 0;
+    };
+    if (!request_.poses.empty()) {
+      from_ = PosesFrom::kRequest;
+      summary_.poses_from = "the trajectory";
+    } else if (has(rec::kTrajectoryTopic)) {
+      from_ = PosesFrom::kTrajectory;
+      summary_.poses_from = "the recording's trajectory";
+    } else if (has(kFeedbackRecordTopic) && request_.storage == ImageStorage::kViewable) {
+      from_ = PosesFrom::kFeedback;
+      summary_.poses_from = "the ground's feedback";
+    } else if (has(rec::kGroundtruthTopic)) {
+      from_ = PosesFrom::kGroundtruth;
+      summary_.poses_from = "the ground truth";
+    }
+  }
+
+  /// nullopt at the end.
+  std::optional<RecordedItem> NextItem() {
+    while (true) {
+      Result<std::optional<RecordedItem>> item = reader_.Next();
+      ++written_;
+      if (item) return std::move(*item);
+      LeaveOut(item.error());
+    }
+  }
+
+  void LeaveOut(const Status& why) {
+    constexpr std::uint64_t kMaxTold = 10;
+    if (++summary_.left_out > kMaxTold) return;
+    LOG(Convert, Warning) << "left out: " << why.message();
+  }
+
+  Status WriteEarliest() {
+    constexpr CaptureTime kNever = CaptureTime::max();
+    const CaptureTime item = item_ ? TimeOf(*item_) : kNever;
+    const CaptureTime other = other_ ? other_->time : kNever;
+    const CaptureTime pose = pose_ < request_.poses.size() ? request_.poses[pose_].time : kNever;
+    // Poses first: a frame is shown where the rig was when it was taken.
+    if (pose <= item && pose <= other && pose != kNever)
+      return WriteTracked(request_.poses[pose_++]);
+    if (other < item || !item_) {
+      const OtherMessage message = std::exchange(other_, others_.Next()).value();
+      ++written_;
+      return WriteOther(message);
+    }
+    const RecordedItem current = std::exchange(item_, NextItem()).value();
+    return std::visit([this](const auto& recorded) { return WriteItem(recorded); }, current);
+  }
+
+  Status WriteOther(const OtherMessage& message) {
+    if (from_ == PosesFrom::kFeedback) {
+      if (const std::optional<StampedPose> pose = PoseOf(message))
+        ISOTHERM_RETURN_IF_ERROR(WriteTracked(*pose));
+    }
+    return writer_.WriteMessage(message.topic, message.schema->name, message.schema->data,
+                                message.time, message.data);
+  }
+
+  Status WriteTracked(const StampedPose& pose) {
+    ++summary_.poses;
+    return writer_.WritePose("trajectory", pose);
+  }
+
+  Status WriteItem(const RecordedDepth& depth) {
+    EncodedDepthFrame frame = depth.frame;
+    if (!Store(frame.image, depth_encoder_)) return OkStatus();
+    ++summary_.depth_frames;
+    return writer_.Write(frame, depth.arrival);
+  }
+  Status WriteItem(const RecordedThermal& thermal) {
+    EncodedThermalFrame frame = thermal.frame;
+    if (!Store(frame.image, thermal_encoder_)) return OkStatus();
+    ++summary_.thermal_frames;
+    return writer_.Write(frame, thermal.arrival);
+  }
+  Status WriteItem(const RecordedPose& recorded) {
+    if (recorded.stream == "trajectory") {
+      return from_ == PosesFrom::kTrajectory ? WriteTracked(recorded.pose) : OkStatus();
+    }
+    if (from_ == PosesFrom::kGroundtruth) ++summary_.poses;
+    const bool is_beside = from_ != PosesFrom::kGroundtruth;
+    if (!is_beside || request_.storage != ImageStorage::kViewable)
+      return writer_.WritePose(recorded.stream, recorded.pose);
+    // A viewer knows one pose of each coordinate frame: that of the tracker is the rig's.
+    foxglove::FrameTransform transform = rec::ToMessage(recorded.pose);
+    transform.set_child_frame_id("groundtruth");
+    const google::protobuf::Descriptor& type = *foxglove::FrameTransform::descriptor();
+    return writer_.WriteMessage(rec::kGroundtruthTopic, type.full_name(),
+                                rec::SerializedSchema(type), recorded.pose.time,
+                                transform.SerializeAsString());
+  }
+  Status WriteItem(const NucEvent& event) { return writer_.Write(event); }
+  Status WriteItem(const ClockStep& step) { return writer_.Write(step); }
+  Status WriteItem(const OutsidePose& pose) { return writer_.Write(pose); }
+  Status WriteItem(const RecordedLog& log) {
+    return writer_.WriteLog(log.time, log.level, log.text);
+  }
+
+  /// Codes the image anew if it has to be; false if it is damaged.
+  template <typename Encoder>
+  bool Store(EncodedImage& image, Encoder& encoder) {
+    // What the writer unpacks for viewers, it checks; so do we, to go on without a damaged one.
+    Result<Image<std::uint16_t>> pixels = Decode(image);
+    if (!pixels) {
+      LeaveOut(pixels.error());
+      return false;
+    }
+    const bool is_plain = image.encoding == Encoding::kRaw16 || image.encoding == Encoding::kPng16;
+    if (request_.storage == ImageStorage::kCompact && is_plain) image = encoder.Encode(*pixels);
+    return true;
+  }
+
+  const ConvertRequest& request_;
+  RecordingReader& reader_;
+  OtherMessages& others_;
+  RecordingWriter& writer_;
+  PosesFrom from_ = PosesFrom::kNowhere;
+  DepthEncoder depth_encoder_;
+  ThermalEncoder thermal_encoder_;
+  std::optional<RecordedItem> item_;
+  std::optional<OtherMessage> other_;
+  std::size_t pose_ = 0;
+  std::uint64_t total_ = 0, written_ = 0;
+  ConvertSummary summary_;
+};
+
+}  // namespace
+
+Result<ConvertSummary> ConvertRecording(const ConvertRequest& request) {
+  auto reader = RecordingReader::Open(request.recording);
+  if (!reader) return Err(reader.error());
+  auto source = OpenFileSource(request.recording);
+  if (!source) return Err(source.error());
+  auto index = mcap::ReadFileIndex(**source);
+  if (!index) return Err(index.error().WithContext(request.recording.string()));
+  OtherMessages others(std::move(*source), std::move(*index));
+  RecordingOptions options;
+  options.image_storage = request.storage;
+  options.sync = false;  // Converting again costs nothing.
+  auto writer = RecordingWriter::Create(request.output, options);
+  if (!writer) return Err(writer.error());
+  Converter converter(request, **reader, others, **writer);
+  if (Status status = converter.Run(); !status.ok()) return Err(std::move(status));
+  if (Status status = (*writer)->Close(); !status.ok()) return Err(std::move(status));
+  return converter.summary();
+}
+
+}  // namespace isotherm

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "common/base/status.h"
+#include "common/geometry/stamped_pose.h"
+#include "common/recording/recording.h"
+
+namespace isotherm {
+
+struct ConvertRequest {
+  std::filesystem::path recording;
+  std::filesystem::path output;  ///< Must not exist.
+  ImageStorage storage = ImageStorage::kViewable;
+  /// T_world_depth, in order of time. Empty: viewable recordings get those that the recording
+  /// itself has, of a reconstruction or of the ground's feedback.
+  std::vector<StampedPose> poses;
+  std::function<void(double fraction)> progress;
+  std::stop_token stop;
+};
+
+struct ConvertSummary {
+  std::uint64_t depth_frames = 0;
+  std::uint64_t thermal_frames = 0;
+  std::uint64_t poses = 0;        ///< Of the rig, written as transforms.
+  std::string poses_from;         ///< Where they come from, in words.
+  std::uint64_t left_out = 0;     ///< Damaged messages.
+  bool has_thermal_pose = false;  ///< T_thermal_depth is there as a transform.
+};
+
+/// Writes the recording anew with its images stored otherwise; frames, times and everything else
+/// that was recorded stay what they are.
+Result<ConvertSummary> ConvertRecording(const ConvertRequest& request);
+
+}  // namespace isotherm
