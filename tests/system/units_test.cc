@@ -268,5 +268,44 @@ TEST_F(UnitsTest, TheSandboxAllowsWhatIsNeededAndNoMore) {
   }
 }
 
+/// Whether `unit` runs, has not been started again, and says `reason` in its status.
+bool RunsAndSays(const Container& container, const std::string& unit, const std::string& reason) {
+  const std::string shown =
+      container.Output("systemctl show --property SubState,NRestarts,StatusText " + unit);
+  return shown.find("SubState=running") != std::string::npos &&
+         shown.find("NRestarts=0") != std::string::npos && shown.find(reason) != std::string::npos;
+}
+
+TEST_F(UnitsTest, F01TheEdgeAsShippedWaitsForItsCamera) {
+  ASSERT_EQ(Run({"systemctl", "start", kEdge}).status, 0);
+  EXPECT_TRUE(Until(kPatience, [&] {
+    return RunsAndSays(*container_, kEdge, "waiting for a camera");
+  })) << container_->Output("systemctl status " + kEdge);
+}
+
+TEST_F(UnitsScanTest, F31BothWaitForAnInterfaceThatIsMissing) {
+  Prepare(1, Plays::kForEver);
+  Configure("network.env",
+            "CYCLONEDDS_URI=<General><Interfaces><NetworkInterface name=\"wlan9\"/></Interfaces>"
+            "</General>\n");
+  for (const std::string& unit : {kEdge, kGround}) {
+    ASSERT_EQ(Run({"systemctl", "start", unit}).status, 0) << unit;
+    EXPECT_TRUE(Until(kPatience, [&] { return RunsAndSays(*container_, unit, "cannot join"); }))
+        << container_->Output("systemctl status " + unit);
+  }
+}
+
+TEST_F(UnitsScanTest, F41ADiskThatIsFullAtTheStartDoesNotEndTheEdge) {
+  Prepare(1, Plays::kForEver);
+  container_->Output(
+      "mkdir -p /var/lib/isotherm/edge; mount -t tmpfs -o size=16k full /var/lib/isotherm/edge; "
+      "head -c 100000 /dev/zero >/var/lib/isotherm/edge/full");
+  ASSERT_EQ(Run({"systemctl", "start", kEdge}).status, 0);
+  EXPECT_TRUE(Until(kPatience, [&] { return RunsAndSays(*container_, kEdge, "not recording"); }))
+      << container_->Output("systemctl status " + kEdge);
+  Run({"systemctl", "stop", kEdge});
+  container_->Output("umount /var/lib/isotherm/edge");
+}
+
 }  // namespace
 }  // namespace isotherm::system_test
