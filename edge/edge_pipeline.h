@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -153,9 +154,14 @@ class EdgePipeline {
   FeedbackMonitor feedback_;
   /// Of several seconds, for the spool thread to take along with the frames.
   BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
-  BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest};
-  BoundedQueue<Command> nuc_commands_{16, OverflowPolicy::kDropOldest};
-  BoundedQueue<CommandResult> nuc_answers_{32, OverflowPolicy::kDropOldest};
+  BoundedQueue<CommandResult> nuc_answers_{64, OverflowPolicy::kDropOldest};
+  // Commands that come faster than they can be obeyed are refused, the oldest first.
+  const std::function<void(const Command&)> refuse_ = [this](const Command& command) {
+    nuc_answers_.Push(
+        {command.number, CommandOutcome::kRefused, "too many commands at once; send it again"}, {});
+  };
+  BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest, refuse_};
+  BoundedQueue<Command> nuc_commands_{16, OverflowPolicy::kDropOldest, refuse_};
   BoundedQueue<UncodedFrame> codec_queue_;
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;

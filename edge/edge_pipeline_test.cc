@@ -295,6 +295,21 @@ TEST_F(EdgePipelineTest, EveryCommandIsAnswered) {
   EXPECT_EQ(Find(answers, 3).outcome, CommandOutcome::kRefused);
 }
 
+TEST_F(EdgePipelineTest, CommandsThatAreTooManyAreAnsweredToo) {
+  constexpr std::uint64_t kCommands = 50;
+  for (std::uint64_t i = 1; i <= kCommands; ++i)
+    publisher_.commands.push_back({.number = i, .kind = CommandKind::kSetPublishPolicy});
+  Start("1000000*t", false);
+  const auto answers = AwaitAnswers(kCommands);
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  for (std::uint64_t i = 1; i <= kCommands; ++i) {
+    const CommandResult answer = Find(answers, i);
+    EXPECT_TRUE(answer.outcome == CommandOutcome::kDone ||
+                answer.text == "too many commands at once; send it again")
+        << answer.text;
+  }
+}
+
 TEST_F(EdgePipelineTest, ANucThatIsAskedForReachesTheCamera) {
   control_answer_ = OkStatus();
   publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc}};

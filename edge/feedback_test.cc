@@ -142,6 +142,20 @@ TEST(PictureFileTest, TheNewestReplacesTheOneBefore) {
   EXPECT_FALSE(std::filesystem::exists(path.string() + ".partial"));
 }
 
+TEST(PictureFileTest, F65ALinkInItsPlaceIsNotFollowed) {
+  const testing::TemporaryDirectory folder;
+  const auto path = folder.path() / "confidence.png", victim = folder.path() / "victim";
+  std::ofstream(victim) << "precious";
+  std::filesystem::create_symlink(victim, path.string() + ".partial");
+  EXPECT_FALSE(ReplaceFile(path, Bytes("picture")).ok());
+  EXPECT_EQ(ReadAll(victim), "precious");
+  std::filesystem::remove(path.string() + ".partial");
+  std::filesystem::create_symlink(victim, path);
+  EXPECT_TRUE(ReplaceFile(path, Bytes("picture")).ok()) << "the link itself is replaced";
+  EXPECT_EQ(ReadAll(victim), "precious");
+  EXPECT_EQ(ReadAll(path), "picture");
+}
+
 TEST(PictureFileTest, WhatCannotBeWrittenLeavesTheOldOneAndIsSaid) {
   const testing::TemporaryDirectory folder;
   const auto path = folder.path() / "confidence.png";

@@ -40,6 +40,14 @@ Status Validate(const CameraModel& c, std::string_view name) {
         "{}: fx and fy (focal lengths in pixels) must be given and positive, got {} and {}", name,
         c.fx, c.fy));
   }
+  // Fields of view of less than a thousandth of a degree or within as much of 180 degrees.
+  constexpr double kMinFocal = 1e-4, kMaxFocal = 1e5;
+  for (const double sides : {c.fx / c.width, c.fy / c.height}) {
+    if (sides >= kMinFocal && sides <= kMaxFocal) continue;
+    return InvalidArgument(fmt::format(
+        "{}: fx and fy are focal lengths in pixels; {} and {} make no sense for {} x {} pixels",
+        name, c.fx, c.fy, c.width, c.height));
+  }
   if (!(c.cx > -c.width && c.cx < 2 * c.width && c.cy > -c.height && c.cy < 2 * c.height)) {
     return InvalidArgument(
         fmt::format("{}: principal point cx cy must be given and lie near the image of {} x {} "
@@ -47,8 +55,11 @@ Status Validate(const CameraModel& c, std::string_view name) {
                     name, c.width, c.height, c.cx, c.cy));
   }
   for (const double k : {c.k1, c.k2, c.p1, c.p2, c.k3}) {
-    if (!std::isfinite(k)) {
-      return InvalidArgument(fmt::format("{}: distortion k1 k2 p1 p2 k3 must be finite", name));
+    constexpr double kMaxDistortion = 1e4;
+    if (!(std::abs(k) <= kMaxDistortion)) {
+      return InvalidArgument(
+          fmt::format("{}: distortion k1 k2 p1 p2 k3 must be finite and at most {}, got {}", name,
+                      kMaxDistortion, k));
     }
   }
   return OkStatus();

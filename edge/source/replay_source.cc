@@ -87,6 +87,12 @@ Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
     }
     if (!item) return Err(item.error());
     if (!*item) return std::nullopt;
+    if (!IsInTime(**item)) {
+      if (unreadable_++ == 0) {
+        LOG(Source, Warning) << name_ << ": skipped: a time is more than a month from the first";
+      }
+      continue;
+    }
     if (auto* depth = std::get_if<RecordedDepth>(&**item))
       return Item(ToRawFrame(std::move(*depth)));
     auto* thermal = std::get_if<RecordedThermal>(&**item);
@@ -102,6 +108,20 @@ Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
     if (auto* pose = std::get_if<OutsidePose>(&**item)) return Item(std::move(*pose));
     if (const auto* nuc = std::get_if<NucEvent>(&**item)) last_nuc_event_ = *nuc;
   }
+}
+
+bool ReplaySource::IsInTime(const RecordedItem& item) const {
+  constexpr Nanoseconds kLongestScan = std::chrono::hours(24 * 31);
+  std::optional<CaptureTime> time;
+  if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
+    time = depth->arrival.value_or(depth->frame.header.capture_time);
+  } else if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
+    time = thermal->arrival.value_or(thermal->frame.header.capture_time);
+  } else if (const auto* pose = std::get_if<OutsidePose>(&item)) {
+    time = pose->time;
+  }
+  return !time || !first_arrival_ ||
+         (*time - *first_arrival_ <= kLongestScan && *first_arrival_ - *time <= kLongestScan);
 }
 
 RawFrame ReplaySource::ToRawFrame(RecordedDepth recorded) {

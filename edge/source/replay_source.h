@@ -44,6 +44,8 @@ class ReplaySource final : public FrameSource {
   using Item = std::variant<RawFrame, OutsidePose>;
 
   Result<std::optional<Item>> NextItem();
+  /// Whether the item belongs to the same scan as the first one, by its time.
+  bool IsInTime(const RecordedItem& item) const;
   RawFrame ToRawFrame(RecordedDepth recorded);
   RawFrame ToRawFrame(RecordedThermal recorded);
   RawFrame Prepare(Sensor sensor, const FrameHeader& header, const EncodedImage& image,

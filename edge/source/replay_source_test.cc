@@ -97,6 +97,15 @@ class ReplaySourceTest : public testing::Test {
   std::unique_ptr<ReplaySource> source_;
 };
 
+TEST_F(ReplaySourceTest, F65TimesThatNoScanHasAreLeftOut) {
+  WriteDepth(milliseconds(0), /*stamped_by_edge=*/false);
+  WriteDepth(std::chrono::hours(24 * 365 * 60), /*stamped_by_edge=*/false);
+  WriteDepth(milliseconds(33), /*stamped_by_edge=*/false);
+  options_.set_loops(3);
+  Open();
+  EXPECT_EQ(ReadAll().size(), 6U) << "two of three frames, three times";
+}
+
 TEST_F(ReplaySourceTest, PosesFromOutsideComeBetweenFramesOnTheirTimeLine) {
   options_.set_rate(1);
   const auto write = [&](Nanoseconds time) {

@@ -29,6 +29,9 @@ std::string Advice(int error) {
     case ENOENT:
     case ENOTDIR:
       return "; choose a folder that can be written with -o";
+    case EEXIST:
+    case ELOOP:
+      return "; something else has the name with .partial at its end, remove it";
     default:
       return "";
   }
@@ -47,7 +50,14 @@ void SyncFolder(const std::filesystem::path& folder) {
 
 OutputFile::OutputFile(std::filesystem::path path)
     : path_(std::move(path)), partial_(PartialName(path_)) {
-  file_ = std::fopen(partial_.c_str(), "wbe");
+  // What an interrupted run left behind. Anything else of that name, a link above all, would lead
+  // the content to where somebody else wants it.
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(std::filesystem::symlink_status(partial_, ignored)))
+    std::filesystem::remove(partial_, ignored);
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  const int descriptor = open(partial_.c_str(), kFlags, 0666);
+  if (descriptor >= 0) file_ = fdopen(descriptor, "wb");
   if (file_ == nullptr) Fail("creating", errno);
 }
 

@@ -240,6 +240,19 @@ TEST_F(PlyTest, F41DiskFullNamesTheFileAndKeepsTheOlderOne) {
   EXPECT_FALSE(std::filesystem::exists(path_.string() + ".partial"));
 }
 
+TEST_F(PlyTest, F65ALinkInThePlaceOfThePartialFileIsNotFollowed) {
+  const std::filesystem::path victim = folder_.path() / "victim";
+  std::ofstream(victim) << "precious";
+  const std::filesystem::path partial = path_.string() + ".partial";
+  std::filesystem::create_symlink(victim, partial);
+  const Status status = WriteCloudPly(FourPoints(), Style(), path_);
+  EXPECT_NE(status.message().find("remove"), std::string::npos) << status.message();
+  EXPECT_EQ(std::filesystem::file_size(victim), 8U);
+  std::filesystem::remove(partial);
+  std::ofstream(partial) << "of a run that was interrupted";
+  EXPECT_TRUE(WriteCloudPly(FourPoints(), Style(), path_).ok());
+}
+
 TEST_F(PlyTest, MissingFolderIsOneClearSentence) {
   const auto path = folder_.path() / "missing" / "out.ply";
   const Status status = WriteCloudPly(FourPoints(), Style(), path);

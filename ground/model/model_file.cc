@@ -16,6 +16,7 @@
 #include "ground/export/output_file.h"
 #include "ground/model/model.pb.h"
 #include "ground/model/record_part.h"
+#include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
 namespace {
@@ -64,6 +65,8 @@ void AddPose(const RigidTransform& pose, google::protobuf::RepeatedField<double>
 }
 
 constexpr int kPoseNumbers = 7;
+/// Places further from the origin than this lose millimetres in the arithmetic of kernels.
+constexpr double kMaxCoordinate_m = 1e4;
 
 /// Numbers of a pose starting at `first`; nullopt if they are none.
 std::optional<RigidTransform> PoseAt(const google::protobuf::RepeatedField<double>& numbers,
@@ -72,7 +75,9 @@ std::optional<RigidTransform> PoseAt(const google::protobuf::RepeatedField<doubl
   const Eigen::Quaterniond q(at(6), at(3), at(4), at(5));
   const Eigen::Vector3d t(at(0), at(1), at(2));
   constexpr double kUnitTolerance = 1e-3;
-  if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < kUnitTolerance)) return std::nullopt;
+  if (!t.allFinite() || !(t.cwiseAbs().maxCoeff() <= kMaxCoordinate_m) ||
+      !(std::abs(q.norm() - 1.0) < kUnitTolerance))
+    return std::nullopt;
   return MakeTransform(t, q);
 }
 
@@ -204,6 +209,7 @@ struct ModelFile::Content {
                   std::uint32_t& blocks, std::vector<std::uint8_t>& plain) const;
   Status ReadHead();
   Status CheckHead();
+  Status CheckVolume() const;
 };
 
 Status ModelFile::Content::ReadPart(std::uint64_t& offset, std::uint32_t max_blocks,
@@ -249,15 +255,45 @@ Status ModelFile::Content::ReadHead() {
   return CheckHead();
 }
 
-Status ModelFile::Content::CheckHead() {
-  if (header.block_count() < 0 || header.blocks_x() < 1 || header.blocks_y() < 1 ||
-      header.blocks_z() < 1 || header.known_poses_size() % kPoseNumbers != 0) {
-    return Damaged("its head makes no sense");
+/// As the options of a volume are checked, which these numbers become.
+Status ModelFile::Content::CheckVolume() const {
+  constexpr std::int64_t kMaxBlocksAlongAxis = 1 << 20;
+  std::int64_t blocks = 1;
+  for (const std::int32_t along : {header.blocks_x(), header.blocks_y(), header.blocks_z()}) {
+    if (along < 1 || along > kMaxBlocksAlongAxis)
+      return Damaged(fmt::format("it has {} blocks along an axis", along));
+    blocks *= along;
   }
+  if (header.block_count() < 0 || header.block_count() > blocks)
+    return Damaged(fmt::format("it has {} blocks in a volume of {}", header.block_count(), blocks));
+  VolumeOptions volume;
+  volume.set_voxel_size_m(header.voxel_size_m());
+  volume.set_size_x_m(
+      header.voxel_size_m());  // Whether all of it fits into memory is not asked here.
+  volume.set_size_y_m(header.voxel_size_m());
+  volume.set_size_z_m(header.voxel_size_m());
+  TsdfOptions tsdf;
+  tsdf.set_truncation_distance_m(header.truncation_distance_m());
+  for (const Status& status : {Validate(volume), Validate(tsdf, volume)}) {
+    if (!status.ok()) return Damaged("its volume makes no sense: " + status.message());
+  }
+  for (const double corner : {header.min_x_m(), header.min_y_m(), header.min_z_m()}) {
+    if (!(std::abs(corner) <= kMaxCoordinate_m))
+      return Damaged(fmt::format("a corner of its volume lies at {} m", corner));
+  }
+  return OkStatus();
+}
+
+Status ModelFile::Content::CheckHead() {
+  if (Status status = CheckVolume(); !status.ok()) return status;
+  if (header.known_poses_size() % kPoseNumbers != 0) return Damaged("its head makes no sense");
   rig.depth = FromSaved(header.depth());
   rig.thermal = FromSaved(header.thermal());
-  if (header.t_thermal_depth_size() == kPoseNumbers)
-    rig.T_thermal_depth = PoseAt(header.t_thermal_depth(), 0);
+  if (header.t_thermal_depth_size() > 0) {
+    if (header.t_thermal_depth_size() == kPoseNumbers)
+      rig.T_thermal_depth = PoseAt(header.t_thermal_depth(), 0);
+    if (!rig.T_thermal_depth) return Damaged("its T_thermal_depth is no pose");
+  }
   if (Status status = Validate(rig); !status.ok())
     return Damaged("its calibration makes no sense: " + status.message());
   for (int i = 0; i < header.known_poses_size(); i += kPoseNumbers) {

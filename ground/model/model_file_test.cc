@@ -1,14 +1,19 @@
 #include "ground/model/model_file.h"
 
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cmath>
+#include <cstring>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <random>
 #include <string>
 
 #include "common/testing/temporary_directory.h"
 #include "common/testing/volume_shapes.h"
+#include "ground/model/model.pb.h"
 #include "ground/tsdf/voxel_grid.h"
 
 namespace isotherm {
@@ -139,6 +144,68 @@ TEST_F(ModelFileTest, DamageAnywhereIsRefused) {
     Write(damaged);
     const Status status = Read();
     EXPECT_FALSE(status.ok()) << "byte " << place;
+    EXPECT_NE(status.message().find("model.iso"), std::string::npos) << status.message();
+  }
+}
+
+/// The saved file with another head, whose checksum is right.
+class ModelHeadTest : public ModelFileTest {
+ protected:
+  Status ReadWith(const std::function<void(ModelHeader&)>& change) {
+    Save();
+    const std::string whole = Bytes();
+    constexpr std::size_t kHead = 8 + 3 * sizeof(std::uint32_t);
+    std::uint32_t bytes = 0;
+    std::memcpy(&bytes, whole.data() + 12, sizeof(bytes));
+    ModelHeader header;
+    EXPECT_TRUE(header.ParseFromString(whole.substr(kHead, bytes)));
+    change(header);
+    const std::string head = header.SerializeAsString();
+    const auto size = static_cast<std::uint32_t>(head.size());
+    const auto crc = static_cast<std::uint32_t>(
+        crc32(0, reinterpret_cast<const Bytef*>(head.data()), static_cast<uInt>(size)));
+    std::string file = whole.substr(0, 12);
+    file.append(reinterpret_cast<const char*>(&size), sizeof(size));
+    file.append(reinterpret_cast<const char*>(&crc), sizeof(crc));
+    Write(file + head + whole.substr(kHead + bytes));
+    return Read();
+  }
+};
+
+TEST_F(ModelHeadTest, F65NumbersThatNoVolumeCanHaveAreRefused) {
+  ASSERT_TRUE(ReadWith([](ModelHeader&) {}).ok());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Change = std::function<void(ModelHeader&)>;
+  std::vector<Change> changes;
+  for (const double value : {0.0, -0.016, nan, 1e30, 1e-9, 0.004}) {
+    changes.push_back([value](ModelHeader& h) { h.set_truncation_distance_m(value); });
+  }
+  for (const double value : {0.0, -0.004, nan, 1e30, 1e-9}) {
+    changes.push_back([value](ModelHeader& h) { h.set_voxel_size_m(value); });
+  }
+  for (const double value : {nan, 1e30, -1e30}) {
+    changes.push_back([value](ModelHeader& h) { h.set_min_x_m(value); });
+    changes.push_back([value](ModelHeader& h) { h.set_min_z_m(value); });
+  }
+  for (const double value : {0.0, -500.0, nan, 1e-300, 1e300}) {
+    changes.push_back([value](ModelHeader& h) { h.mutable_depth()->set_fx(value); });
+    changes.push_back([value](ModelHeader& h) { h.mutable_thermal()->set_fy(value); });
+  }
+  for (const double value : {nan, 1e9}) {
+    changes.push_back([value](ModelHeader& h) { h.mutable_depth()->set_cx(value); });
+    changes.push_back([value](ModelHeader& h) { h.mutable_thermal()->set_distortion(0, value); });
+    changes.push_back([value](ModelHeader& h) { h.set_t_thermal_depth(0, value); });
+    changes.push_back([value](ModelHeader& h) { h.set_known_poses(1, value); });
+  }
+  changes.push_back([](ModelHeader& h) { h.set_blocks_x(0); });
+  changes.push_back([](ModelHeader& h) { h.set_blocks_y(-1); });
+  changes.push_back([](ModelHeader& h) { h.set_blocks_z(1 << 30); });
+  changes.push_back([](ModelHeader& h) { h.set_block_count(-1); });
+  changes.push_back([](ModelHeader& h) { h.set_block_count(1 << 30); });
+  changes.push_back([](ModelHeader& h) { h.mutable_t_thermal_depth()->RemoveLast(); });
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const Status status = ReadWith(changes[i]);
+    EXPECT_EQ(status.code(), StatusCode::kDataLoss) << "change " << i << ": " << status.message();
     EXPECT_NE(status.message().find("model.iso"), std::string::npos) << status.message();
   }
 }
