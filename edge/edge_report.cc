@@ -139,16 +139,17 @@ std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeB
 }
 
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
-                       const std::optional<Feedback>& feedback) {
+                       const std::optional<Feedback>& feedback, const std::string& ground_problem) {
   const SensorAccount depth = account.Get(Sensor::kDepth);
   const SensorAccount thermal = account.Get(Sensor::kThermal);
   const std::string stamps = StampText(status.depth_camera, status.thermal_camera);
   return fmt::format(
       "ground: {} | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  "
       "dropped {}  clock {}{}{}",
-      !ground_present ? "absent"
-      : feedback      ? FeedbackText(*feedback)
-                      : "no feedback yet",
+      !ground_present           ? "absent"
+      : !ground_problem.empty() ? ground_problem
+      : feedback                ? FeedbackText(*feedback)
+                                : "no feedback yet",
       status.depth.rate_hz, StateText(status.depth_camera), status.thermal.rate_hz,
       StateText(status.thermal_camera), NucText(status.nuc), depth.recorded + thermal.recorded,
       depth.published + thermal.published, Dropped(depth) + Dropped(thermal), ToText(status.clock),

@@ -44,9 +44,11 @@ std::optional<std::string> ClockProblem(const KernelClock& clock);
 /// What the recording says of the clock that dates its frames, at the start of a scan.
 std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base);
 
-/// One line for the operator's journal: what the ground says, then rates, drops, NUC and clock.
+/// One line for the operator's journal: what the ground says, or what is wrong with it, then rates,
+/// drops, NUC and clock.
 std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
-                       const std::optional<Feedback>& feedback);
+                       const std::optional<Feedback>& feedback,
+                       const std::string& ground_problem = {});
 
 /// The same for a terminal that may be narrow (FitLine), the most important first: what the ground
 /// advises, what is wrong (`problems`, each in a few words), frames dropped, then the rest.

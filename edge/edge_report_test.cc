@@ -121,6 +121,8 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   EXPECT_THAT(StatusLine({}, account_, true, feedback),
               HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
   EXPECT_THAT(StatusLine({}, account_, false, feedback), HasSubstr("ground: absent"));
+  EXPECT_THAT(StatusLine({}, account_, true, feedback, "refuses this scan"),
+              HasSubstr("ground: refuses this scan |"));
   EXPECT_THAT(StatusLine({}, account_, true, std::nullopt), HasSubstr("no feedback yet"));
 }
 

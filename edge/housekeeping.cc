@@ -132,6 +132,12 @@ void Housekeeping::ShowFeedback() {
   }
 }
 
+std::string Housekeeping::Line() const {
+  const PublisherStats link = publisher_.stats();
+  return StatusLine(status_, account_, link.ground_present, pipeline_.feedback().newest(),
+                    link.ground_problem);
+}
+
 void Housekeeping::ShowLine() {
   if (!terminal_ || !line_) return;
   std::vector<std::string> problems;
@@ -139,6 +145,7 @@ void Housekeeping::ShowLine() {
     problems.push_back(recording->brief);
   const PublisherStats link = publisher_.stats();
   if (!link.problem.empty()) problems.emplace_back("NO NETWORK");
+  if (!link.ground_problem.empty()) problems.push_back("GROUND " + link.ground_problem);
   if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
     problems.push_back(*stuck);
   line_->Show(
@@ -152,8 +159,10 @@ std::vector<std::string> Housekeeping::Problems() const {
     problems.push_back(*stuck);
   if (const auto recording = pipeline_.recording(); recording && !recording->problem.empty())
     problems.push_back("not recording: " + recording->problem);
-  if (const std::string network = publisher_.stats().problem; !network.empty())
-    problems.push_back(network);
+  const PublisherStats link = publisher_.stats();
+  if (!link.problem.empty()) problems.push_back(link.problem);
+  if (!link.ground_problem.empty())
+    problems.push_back("the ground station " + link.ground_problem);
   const auto look = [&problems](std::string_view name, const CameraReport& camera) {
     if (camera.state == CameraState::kLost) {
       problems.push_back(std::string(name) + " camera is lost: look at its cable and power; " +
@@ -177,8 +186,7 @@ void Housekeeping::TellStatus() {
 void Housekeeping::Log() {
   if (clock_.SteadyNow() < next_log_) return;
   next_log_ += kLogInterval;
-  const std::string line = StatusLine(status_, account_, publisher_.stats().ground_present,
-                                      pipeline_.feedback().newest());
+  const std::string line = Line();
   if (!terminal_) {
     LOG(Edge, Info) << line;
   }

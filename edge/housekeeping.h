@@ -36,6 +36,7 @@ class Housekeeping {
   EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
   /// The newest feedback, if it was not shown yet: picture, status line or journal.
   void ShowFeedback();
+  std::string Line() const;
   void ShowLine();
   /// What is wrong, each in a sentence that says what to do.
   std::vector<std::string> Problems() const;

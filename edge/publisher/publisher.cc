@@ -16,6 +16,7 @@
 #include "common/transport/wait_set.h"
 #include "edge/publisher/flow_window.h"
 #include "edge/publisher/ground_register.h"
+#include "edge/publisher/ground_relation.h"
 #include "edge/publisher/published_stream.h"
 
 namespace isotherm {
@@ -63,7 +64,8 @@ class DdsPublisher final : public Publisher {
             .role = Role::kEdge, .software_version = options.software_version, .host = HostName()},
         policy_(options.policy),
         depth_{.counts = {}, .window = MakeWindow(options), .published = {}},
-        thermal_{.counts = {}, .window = MakeWindow(options), .published = {}} {}
+        thermal_{.counts = {}, .window = MakeWindow(options), .published = {}},
+        relation_(options.edge_id) {}
 
   Status Open(const Participant& participant);
 
@@ -115,6 +117,8 @@ class DdsPublisher final : public Publisher {
   void OnFeedback(const Received<Feedback>& received, const PublisherHandlers& handlers);
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
+  /// Says once what the ground makes of this rig. With mutex_ held.
+  void TellRelation();
   /// Why what the ground says of this session cannot be. With mutex_ held.
   std::optional<RefusalCause> Judge(const Receipt& receipt) const;
   std::optional<RefusalCause> Judge(const Feedback& feedback, PeerHandle sender) const;
@@ -127,11 +131,13 @@ class DdsPublisher final : public Publisher {
   /// not waited for. With mutex_ held.
   template <typename Frame>
   bool IsAwaited(const Writer<Frame>& writer) const {
+    if (relation_.IsRefused(clock_.SteadyNow())) return false;  // It will never confirm.
     return grounds_.MayHaveFollower([&](PeerHandle peer) { return writer.Reaches(peer); });
   }
   /// As above, or somebody who has just come. With mutex_ held.
   template <typename Frame>
   bool MayBeAwaited(const Writer<Frame>& writer, Stream* stream, SteadyTime now) const {
+    if (relation_.IsRefused(now)) return false;
     const int readers = writer.matched_readers();
     if (readers > stream->readers) stream->reader_came_at = now;
     stream->readers = readers;
@@ -158,6 +164,7 @@ class DdsPublisher final : public Publisher {
   std::uint64_t flow_timeouts_ = 0;
   std::optional<ClockEcho> clock_echo_;  // Not sent yet.
   GroundRegister grounds_;
+  GroundRelation relation_;
   bool ground_present_ = false;
   std::optional<SteadyTime> stopped_at_;  // When it was first seen that stop was requested.
 };
@@ -225,6 +232,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   // What it says of another session of this name takes nothing back of what it said of ours.
   const bool certain = !ours || !session_ || receipt.session == 0 || receipt.session == session_;
   const bool from_ground = grounds_.NoteReceipt(sender, ours && accepted, certain);
+  if (from_ground) relation_.OnReceipt(received.edge_id, receipt, session_.value_or(0), now);
   if (!ours) return;
   std::optional<RefusalCause> cause;
   if (!from_ground) {
@@ -285,10 +293,24 @@ void DdsPublisher::LookForGround() {
     if (is_gone) depth_.readers = thermal_.readers = 0;  // Who reads now may be its successor.
     return is_gone;
   });
+  TellRelation();
   const bool present = !grounds_.empty();
   if (present == ground_present_) return;
   ground_present_ = present;
   LOG(Publisher, Info) << (present ? "ground station found" : "ground station lost");
+}
+
+void DdsPublisher::TellRelation() {
+  const SteadyTime now = clock_.SteadyNow();
+  const std::optional<std::string> news = relation_.News(now);
+  if (!news) return;
+  if (news->empty()) {
+    LOG(Publisher, Info) << "the ground station follows this rig now, or has left";
+  } else if (relation_.IsRefused(now)) {
+    LOG(Publisher, Error) << "the ground station " << *news;
+  } else {
+    LOG(Publisher, Warning) << "a ground station " << *news;
+  }
 }
 
 bool DdsPublisher::IsGroundReady() const {
@@ -436,7 +458,8 @@ PublisherStats DdsPublisher::stats() const {
           .flow_waits = flow_waits_,
           .flow_timeouts = flow_timeouts_,
           .refused = refusals_.total(),
-          .ground_present = ground_present_};
+          .ground_present = ground_present_,
+          .ground_problem = relation_.Problem(clock_.SteadyNow())};
 }
 
 }  // namespace

@@ -52,6 +52,7 @@ struct PublisherStats {
   std::uint64_t refused = 0;        ///< Samples that cannot be, or not from a ground station.
   bool ground_present = false;
   std::string problem{};  ///< Why there is no network at all; empty if there is one.
+  std::string ground_problem{};  ///< GroundRelation::Problem.
 };
 
 /// The edge's end of the link. Publish() and Drain() belong to the publish thread, Run() to the
