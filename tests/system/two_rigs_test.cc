@@ -81,15 +81,15 @@ std::unique_ptr<TemporaryDirectory> TwoRigsTest::shared_;
 TEST_F(TwoRigsTest, F36TheFirstOfOneNameKeepsItsScanAndTheSecondIsRefusedAndTold) {
   Process ground(Ground({"--once"}));
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
-  Process first(Edge("first", 4, {"--wait-for-ground"}));
+  Process first(Edge("first", 6, {"--wait-for-ground"}));
   ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output();
   Process second(Edge("second", 100));
   EXPECT_TRUE(second.WaitForOutput("refuses this scan", kPatience)) << second.output();
+  second.Signal(SIGTERM);
+  EXPECT_EQ(second.WaitForExit(kPatience), 0) << second.output();
   EXPECT_FALSE(first.WaitForExit(Seconds(0))) << "it was told while the scan went on";
   EXPECT_EQ(first.WaitForExit(kPatience), 0) << first.output();
   EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
-  second.Signal(SIGTERM);
-  EXPECT_EQ(second.WaitForExit(kPatience), 0) << second.output();
 
   ExpectTheScanOf(Path("first.mcap"), Path("ground"));
   EXPECT_THAT(first.output(), HasSubstr("ground received"));
