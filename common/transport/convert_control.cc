@@ -1,6 +1,7 @@
 #include <isotherm_control.h>
 
 #include <algorithm>
+#include <span>
 
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
@@ -62,15 +63,18 @@ std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Fe
   return std::nullopt;
 }
 
+/// Of the upper triangle of 6 x 6.
+constexpr std::size_t kCovarianceNumbers = 21;
+
 /// The upper triangle, row by row.
-void ToWireCovariance(const PoseCovariance& from, double (&to)[21]) {
+void ToWireCovariance(const PoseCovariance& from, std::span<double> to) {
   std::size_t k = 0;
   for (int i = 0; i < 6; ++i) {
     for (int j = i; j < 6; ++j) to[k++] = from(i, j);
   }
 }
 
-PoseCovariance FromWireCovariance(const double (&from)[21]) {
+PoseCovariance FromWireCovariance(std::span<const double> from) {
   PoseCovariance to;
   std::size_t k = 0;
   for (int i = 0; i < 6; ++i) {
@@ -176,8 +180,10 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to) {
     latencies[i].p50_s = from.latencies[i].p50_s;
     latencies[i].p99_s = from.latencies[i].p99_s;
   }
-  to->has_pose_covariance = from.pose_covariance.has_value();
-  if (from.pose_covariance) ToWireCovariance(*from.pose_covariance, to->pose_covariance);
+  if (from.pose_covariance) {
+    ToWireCovariance(*from.pose_covariance,
+                     Allocate(&to->pose_covariance, kCovarianceNumbers, kCovarianceNumbers));
+  }
   CopyText(from.advice_reason, to->advice_reason);
   to->done = from.done;
   to->has_next_in_depth = from.T_depth_next.has_value();
@@ -196,7 +202,10 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->covered_area_m2 = from.covered_area_m2;
   to->model = FromWireShares(from.model);
   to->view = FromWireShares(from.view);
-  if (from.has_pose_covariance) to->pose_covariance = FromWireCovariance(from.pose_covariance);
+  const std::span<const double> covariance = Elements(from.pose_covariance);
+  if (!covariance.empty() && covariance.size() != kCovarianceNumbers)
+    return RefusalCause::kOutOfRange;
+  if (!covariance.empty()) to->pose_covariance = FromWireCovariance(covariance);
   to->advice_reason = ReadText(from.advice_reason);
   to->done = from.done;
   to->next_gain_m2 = from.next_gain_m2;
