@@ -122,7 +122,7 @@ TEST_F(CalibrateToolTest, TheDelayIsWrittenIntoTheRigFileAndNothingElseIsChanged
   ExpectSameButDelay(Load("rig.textproto"), Load("new.textproto"));
   EXPECT_EQ(ReadAll(folder_ / "rig.textproto"), kRig);
 
-  EXPECT_THAT(ReadAll(folder_ / "new.textproto"), testing::StartsWith("# Of a simulated rig.\n"));
+  EXPECT_THAT(ReadAll(folder_ / "new.textproto"), ::testing::StartsWith("# Of a simulated rig.\n"));
 
   // The file itself is changed only when asked for, in one number, and kept as it was.
   const Outcome told = Calibrate("late.mcap --rig rig.textproto");

@@ -194,14 +194,13 @@ INSTANTIATE_TEST_SUITE_P(
                         [](const DatasetFolder& d) {
                           for (int i = 0; i < DatasetFolder::kThermalFrames; ++i)
                             d.WriteImage("thermal/" + std::to_string(i) + ".png",
-                                         cv::Mat(15, 20, CV_16U, 2300.0 + i));
+                                         {20, 15, static_cast<std::uint16_t>(2300 + i)});
                         },
                         "as centi-degrees Celsius they would be 23.0 °C"},
         DoubtfulDataset{"NoTemperatures",
                         [](const DatasetFolder& d) {
                           for (int i = 0; i < DatasetFolder::kThermalFrames; ++i)
-                            d.WriteImage("thermal/" + std::to_string(i) + ".png",
-                                         cv::Mat(15, 20, CV_16U, 0.0));
+                            d.WriteImage("thermal/" + std::to_string(i) + ".png", {20, 15, 0});
                         },
                         "all are 0"}),
     [](const auto& suite) { return suite.param.name; });

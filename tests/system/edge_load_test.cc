@@ -23,11 +23,13 @@
 #include "edge/count_losses.h"
 #include "edge/edge_options.pb.h"
 #include "edge/edge_pipeline.h"
+#include "edge/host_status.h"
 #include "edge/openni/fake_depth_camera.h"
 #include "edge/openni/shared_counter.h"
 #include "edge/source/camera_pair.h"
 #include "edge/source/camera_process.h"
 #include "edge/source/pause.h"
+#include "edge/spool/recording_files.h"
 #include "tests/system/machine_load.h"
 #include "tests/system/programs.h"
 
@@ -203,10 +205,14 @@ class EdgeLoadTest : public ::testing::Test {
 
   /// Captures, records and publishes for as long as the test lasts.
   void Run(CameraPair& cameras, Usage& usage) {
-    auto spool = Spool::Create(file_, options_.spool(), cameras.rig(), {}, account_);
-    ASSERT_TRUE(spool.has_value());
+    const auto files = std::make_shared<RecordingFiles>(RecordingDescription{
+        file_, FromSeconds(options_.spool().flush_interval_s()), cameras.rig(), {}});
+    auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
+                                                    [this] { return FreeDiskBytes(file_); },
+                                                    options_.spool(), clock_, account_});
+    ASSERT_TRUE(spool->Begin().ok());
     EdgePipeline pipeline(
-        options_, {cameras, *publisher_, account_, health_, clock_, std::move(*spool), kSession});
+        options_, {cameras, *publisher_, account_, health_, clock_, std::move(spool), kSession});
     pipeline.StartReceiving();
     ASSERT_TRUE(publisher_->WaitForGround(std::chrono::seconds(20), {}));
     const double cpu_before_s = CpuSeconds(RUSAGE_SELF);
