@@ -32,7 +32,8 @@ Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher
       next_log_(next_status_ + kLogInterval),
       watchdog_interval_(WatchdogInterval()),
       next_feed_(next_status_),
-      captured_at_(next_status_) {}
+      newest_depth_{.at = next_status_},
+      newest_thermal_{.at = next_status_} {}
 
 void Housekeeping::Tick() {
   pipeline_.AnswerCommands();
@@ -161,8 +162,7 @@ std::vector<std::string> Housekeeping::Problems() const {
     problems.push_back("not recording: " + recording->problem);
   const PublisherStats link = publisher_.stats();
   if (!link.problem.empty()) problems.push_back(link.problem);
-  if (!link.ground_problem.empty())
-    problems.push_back("the ground station " + link.ground_problem);
+  if (!link.ground_problem.empty()) problems.push_back("the ground station " + link.ground_problem);
   const auto look = [&problems](std::string_view name, const CameraReport& camera) {
     if (camera.state == CameraState::kLost) {
       problems.push_back(std::string(name) + " camera is lost: look at its cable and power; " +
@@ -194,18 +194,20 @@ void Housekeeping::Log() {
 }
 
 bool Housekeeping::GetsOn(SteadyTime now) {
-  const std::uint64_t captured =
-      account_.Get(Sensor::kDepth).captured + account_.Get(Sensor::kThermal).captured;
-  const auto works = [this](Sensor sensor) {
+  const auto sends = [&](Sensor sensor, Newest* newest) {
     const CameraState state = health_.Get(sensor).state;
-    return state == CameraState::kWorking || state == CameraState::kBlind;
+    const bool is_due = state == CameraState::kWorking || state == CameraState::kBlind;
+    const std::uint64_t captured = account_.Get(sensor).captured;
+    // A camera that is lost is looked for: that is progress. So is a source that has ended.
+    if (std::exchange(newest->captured, captured) != captured || !is_due || pipeline_.finished())
+      newest->at = now;
+    return now - newest->at <= kNoFrames;
   };
-  const bool is_due = works(Sensor::kDepth) || works(Sensor::kThermal);
-  // Cameras that are lost are looked for: that is progress. So is a source that has ended.
-  if (std::exchange(captured_, captured) != captured || !is_due || pipeline_.finished())
-    captured_at_ = now;
+  const bool depth_sends = sends(Sensor::kDepth, &newest_depth_);
+  const bool thermal_sends = sends(Sensor::kThermal, &newest_thermal_);
   std::optional<std::string> stuck = pipeline_.StuckIn(now);
-  if (!stuck && now - captured_at_ > kNoFrames) stuck = "a camera sends nothing and does not fail";
+  if (!stuck && !depth_sends) stuck = "the depth camera sends nothing and does not fail";
+  if (!stuck && !thermal_sends) stuck = "the thermal camera sends nothing and does not fail";
   if (stuck.has_value() != std::exchange(stuck_, stuck.has_value())) {
     LOG(Edge, Error) << (stuck ? *stuck + ": the service manager is no longer told that all is well"
                                : "it goes on");

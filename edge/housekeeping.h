@@ -66,8 +66,12 @@ class Housekeeping {
   SteadyTime next_feed_;
   RateMeter depth_rate_;
   RateMeter thermal_rate_;
-  std::uint64_t captured_ = 0;     ///< As of `captured_at_`.
-  SteadyTime captured_at_;         ///< The newest frames.
+  /// The newest frames of one camera.
+  struct Newest {
+    std::uint64_t captured = 0;
+    SteadyTime at{};
+  };
+  Newest newest_depth_, newest_thermal_;
   std::vector<std::string> told_;  ///< Problems, to the service manager.
   bool stuck_ = false;
   EdgeStatus status_;  ///< The last one published.

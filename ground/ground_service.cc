@@ -256,9 +256,12 @@ bool GroundService::WaitForEnd(Worker& worker) {
 
 bool GroundService::WaitForRecording(Worker& worker) {
   constexpr Nanoseconds kTick = 50ms;
+  constexpr std::chrono::microseconds kExtension = 10s;
   constexpr Nanoseconds kLimit = 1500ms;
   while (!worker.WaitForEnd(kTick)) {
     if (health_.recording.AtItFor(clock_.SteadyNow()) > kLimit) return false;
+    NotifyExtendTimeout(kExtension);
+    FeedWatchdog();
   }
   return true;
 }
@@ -266,10 +269,8 @@ bool GroundService::WaitForRecording(Worker& worker) {
 void GroundService::LeaveBehind(const std::string& what) {
   const int exit_code = ExitCode(IoError(""));
   LOG(Ground, Error) << what << "; leaving without it";
-  // Tells the rig that nobody is here any more.
-  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "the middleware");
-  subscriber_.reset();
-  participant_.reset();
+  // The link is not torn down: the stuck thread may still use it. The rig notices within the lease.
+  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "standard output");
   std::fflush(nullptr);
   _exit(exit_code);
 }

@@ -84,7 +84,8 @@ class InlineDriver {
   void Take(RecordedDepth& recorded) {
     auto frame = std::make_shared<DepthFrame>();
     frame->header = recorded.frame.header;
-    frame->depth_scale = recorded.frame.depth_scale;
+    // A calibration from elsewhere may be given because the recorded scale is wrong.
+    frame->depth_scale = request_.rig ? request_.rig->depth_scale : recorded.frame.depth_scale;
     const bool look = plausibility_.AddDepth(frame->header.capture_time);
     if (!Unpack(Decode(recorded.frame.image), "depth", frame->header, frame->depth_raw)) return;
     if (look) plausibility_.LookAtDepth(frame->depth_raw, frame->depth_scale);
@@ -165,6 +166,15 @@ Status CheckHasDepth(const RecordingInfo& info, const std::filesystem::path& pat
                   path.string()));
 }
 
+/// A calibration from elsewhere holds the whole delay of the thermal camera; the recording's stamps
+/// may contain it already.
+Rig WithoutAppliedDelay(Rig rig, const RecordingInfo& info) {
+  const std::optional<double> applied_s = AppliedDelay(info);
+  // Not known: recorded by the ground, from stamps that contain it.
+  rig.thermal_delay_s = applied_s ? rig.thermal_delay_s - *applied_s : 0.0;
+  return rig;
+}
+
 }  // namespace
 
 Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
@@ -178,6 +188,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
         Status(rig.error().code(), fmt::format("{}: {}; --rig FILE gives one from elsewhere",
                                                request.recording.string(), rig.error().message())));
   }
+  const Rig used = request.rig ? WithoutAppliedDelay(*rig, info) : *rig;
   GroundOptions options = request.options;
   std::unique_ptr<ModelFile> model;
   if (!request.model.empty()) {
@@ -187,7 +198,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
     if (Status status = model->AdoptVolume(options); !status.ok()) return Err(status);
   }
   Result<std::unique_ptr<GroundPipeline>> pipeline =
-      GroundPipeline::Create(options, *rig, request.initial_pose);
+      GroundPipeline::Create(options, used, request.initial_pose);
   if (!pipeline) return Err(pipeline.error());
   if (model) {
     if (Status status = (*pipeline)->Continue(*model); !status.ok()) return Err(status);
@@ -200,12 +211,12 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
                               << info.bytes_ignored;
   }
   const auto start = std::chrono::steady_clock::now();
-  InlineDriver driver(request, **reader, *rig, **pipeline);
+  InlineDriver driver(request, **reader, used, **pipeline);
   if (Status status = driver.Run(); !status.ok()) return Err(status);
   const DelayReport delay = driver.CheckDelay();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
-  Json stats = DescribeScan(**pipeline, options, *rig);
+  Json stats = DescribeScan(**pipeline, options, used);
   stats["source"]["recording"] = request.recording.filename().string();
   stats["source"]["complete"] = info.complete;
   stats["source"]["bytes_ignored"] = info.bytes_ignored;

@@ -137,8 +137,7 @@ bool RecordingLoop::HasRoom() {
 void RecordingLoop::StopForReserve() {
   static_cast<void>(recorder_->Close());
   Enter();
-  recorder_.reset();
-  start_.recording->Update([](auto& account) { account.closed = true; });
+  recorder_.reset();  // What still waits is counted as left out until End().
 }
 
 void RecordingLoop::Fail(const Status& status) {
@@ -150,7 +149,10 @@ void RecordingLoop::Fail(const Status& status) {
 
 void RecordingLoop::Enter() {
   const RecordingStats stats = recorder_->stats();
-  start_.recording->Update([&](auto& account) { account.stats = stats; });
+  start_.recording->Update([&](auto& account) {
+    account.stats = stats;
+    if (account.status.ok()) account.status = recorder_->status();
+  });
 }
 
 void RecordingLoop::End() {

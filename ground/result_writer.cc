@@ -101,7 +101,8 @@ void ResultWriter::Run(const std::stop_token& stop) {
     progress_.Busy(clock_.SteadyNow());
     Write(std::move(*ended));
     progress_.Idle();
-    --board_.scans_being_written;
+    // The reserve on the disk was for these results; a scan under way says again what it needs.
+    if (--board_.scans_being_written == 0) board_.result_bytes = 0;
     written_();
   }
 }
@@ -133,8 +134,8 @@ Result<std::string> ResultWriter::WriteSomewhere(LiveScan& scan, const DelayRepo
   const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
   const auto write = [&](const fs::path& to) -> Result<std::string> {
     if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
-    Result<WrittenScan> written = WriteScan(scan.pipeline(), options_, delay,
-                                            DoubtsAbout(scan.rig()), stats, to, progress);
+    Result<WrittenScan> written =
+        WriteScan(scan.pipeline(), options_, delay, DoubtsAbout(scan.rig()), stats, to, progress);
     if (!written) return Err(written.error());
     for (const std::string& doubt : written->doubts) LOG(Ground, Warning) << doubt;
     return std::move(written->text);

@@ -36,6 +36,8 @@ class ScanRecorder {
   Status Close();
 
   RecordingStats stats() const { return writer_->stats(); }
+  /// The first error so far, or ok.
+  const Status& status() const { return first_error_; }
 
  private:
   explicit ScanRecorder(std::unique_ptr<RecordingWriter> writer) : writer_(std::move(writer)) {}

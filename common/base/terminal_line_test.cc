@@ -13,8 +13,8 @@ TEST(FitLineTest, PartsThatDoNotFitAreLeftOutAsAWhole) {
   EXPECT_EQ(FitLine(kParts, " | ", 100), "closer | tracked | view 55 % good");
   EXPECT_EQ(FitLine(kParts, " | ", 33), "closer | tracked | view 55 % good");
   EXPECT_EQ(FitLine(kParts, " | ", 32), "closer | tracked");
-  EXPECT_EQ(FitLine(kParts, " | ", 15), "closer | tracked");
-  EXPECT_EQ(FitLine(kParts, " | ", 14), "closer");
+  EXPECT_EQ(FitLine(kParts, " | ", 16), "closer | tracked");
+  EXPECT_EQ(FitLine(kParts, " | ", 15), "closer");
   EXPECT_EQ(FitLine(std::vector<std::string>{"a", "too long", "b"}, " ", 4), "a b");
 }
 

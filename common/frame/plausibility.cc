@@ -18,6 +18,8 @@ constexpr double kMaxDelay_s = 1.0;
 constexpr double kMinDepthScale = 10.0;
 constexpr double kMinRate_hz = 1.0;
 constexpr double kMaxRate_hz = 1000.0;
+/// Of what may be meant: a time lapse.
+constexpr double kMaxPeriod_s = 600.0;
 /// Of the shorter stream.
 constexpr double kMinOverlap = 0.5;
 constexpr double kMinDepth_m = 0.2, kMaxDepth_m = 20.0;
@@ -33,24 +35,35 @@ struct Unit {
   double per_si;
 };
 
-/// " They look like microseconds: ..."; a general question where no unit fits.
-std::string CauseOfPeriod(double period_s) {
-  constexpr std::array<Unit, 3> kUnits = {
+/// The unit in which the period would be that of a camera of a few hertz to a few hundred.
+const Unit* LikelyUnit(double period_s) {
+  static constexpr std::array<Unit, 3> kUnits = {
       {{"milliseconds", 1e3}, {"microseconds", 1e6}, {"nanoseconds", 1e9}}};
-  for (const Unit& unit : kUnits) {
-    const double rate_hz = unit.per_si / period_s;
-    // Cameras of a few hertz to a few hundred.
-    if (rate_hz < 2.0 || rate_hz > 500.0) continue;
-    return fmt::format("stamps are seconds; these look like {} ({:.1f} Hz): divide them by {:.0f}",
-                       unit.name, rate_hz, unit.per_si);
-  }
-  return "stamps are seconds: are these in another unit?";
+  const auto unit = std::ranges::find_if(kUnits, [period_s](const Unit& candidate) {
+    const double rate_hz = candidate.per_si / period_s;
+    return rate_hz >= 2.0 && rate_hz <= 200.0;
+  });
+  return unit == kUnits.end() ? nullptr : &*unit;
+}
+
+/// "stamps are seconds; these look like ..."; a general question where no unit fits.
+std::string CauseOfPeriod(double period_s) {
+  const Unit* unit = LikelyUnit(period_s);
+  if (unit == nullptr) return "stamps are seconds: are these in another unit?";
+  return fmt::format("stamps are seconds; these look like {} ({:.1f} Hz): divide them by {:.0f}",
+                     unit->name, unit->per_si / period_s, unit->per_si);
 }
 
 void CheckRate(std::string_view name, const StreamTimes& times, Doubts& doubts) {
-  if (times.period_s <= 0.0) return;
+  if (times.period_s <= 0.0) {
+    if (times.frames > 2)
+      doubts.push_back(fmt::format("{}: most frames have the time stamp of another one", name));
+    return;
+  }
   const double rate_hz = 1.0 / times.period_s;
-  if (rate_hz < kMinRate_hz) {
+  // A picture every few seconds may be meant so.
+  if (rate_hz < kMinRate_hz &&
+      (LikelyUnit(times.period_s) != nullptr || times.period_s > kMaxPeriod_s)) {
     doubts.push_back(fmt::format("{}: one frame every {:.6g} s, {:.6g} s in all: {}", name,
                                  times.period_s, ToSeconds(times.last - times.first),
                                  CauseOfPeriod(times.period_s)));
@@ -68,7 +81,8 @@ void CheckOverlap(const StreamTimes& depth, const StreamTimes& thermal, Doubts& 
       ToSeconds(std::min(depth.last, thermal.last) - std::max(depth.first, thermal.first));
   const double shorter_s =
       std::min(ToSeconds(depth.last - depth.first), ToSeconds(thermal.last - thermal.first));
-  if (common_s >= kMinOverlap * shorter_s) return;
+  const double uncertainty_s = 2.0 * std::max(depth.period_s, thermal.period_s);
+  if (common_s >= kMinOverlap * shorter_s - uncertainty_s) return;
   doubts.push_back(fmt::format(
       "thermal frames begin {:+.3f} s after the depth frames, and the two overlap for {:.3f} s "
       "only: "

@@ -117,14 +117,17 @@ std::optional<RecordPosition> SoundRecordAt(const ByteSource& source, std::uint6
 }
 
 std::optional<RecordPosition> FindRecord(const ByteSource& source, std::uint64_t from) {
-  constexpr std::size_t kBlockBytes = 1U << 20;
+  // Small at first: what looks like a record every few bytes must not cost a large read each.
+  constexpr std::size_t kLargestBlockBytes = 1U << 20;
+  std::size_t block_bytes = 4096;
   Bytes block;
-  for (std::uint64_t at = from; at < source.size(); at += kBlockBytes) {
+  for (std::uint64_t at = from; at < source.size();
+       at += block_bytes, block_bytes = std::min(2 * block_bytes, kLargestBlockBytes)) {
     // The heads that begin in this block may end in the next.
     block.resize(static_cast<std::size_t>(
-        std::min<std::uint64_t>(kBlockBytes + kHeadBytes, source.size() - at)));
+        std::min<std::uint64_t>(block_bytes + kHeadBytes, source.size() - at)));
     if (!source.Read(at, block).ok()) return std::nullopt;
-    for (std::size_t i = 0; i < std::min(kBlockBytes, block.size()); ++i) {
+    for (std::size_t i = 0; i < std::min(block_bytes, block.size()); ++i) {
       const auto opcode = static_cast<Opcode>(block[i]);
       if (opcode != Opcode::kChunk && opcode != Opcode::kMessageIndex &&
           opcode != Opcode::kDataEnd) {

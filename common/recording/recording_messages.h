@@ -5,25 +5,10 @@
 #include "common/recording/foxglove.pb.h"
 #include "common/recording/recording.h"
 #include "common/recording/recording.pb.h"
+#include "common/recording/recording_topics.h"
 
 /// Between the types of a scan and the messages in its recording.
 namespace isotherm::recording {
-
-/// Start of the year 2100: later times are damage.
-inline constexpr std::int64_t kMaxRecordedNanoseconds = 4'102'444'800'000'000'000;
-
-inline constexpr std::string_view kDepthTopic = "/depth";
-inline constexpr std::string_view kThermalTopic = "/thermal";
-inline constexpr std::string_view kRigTopic = "/rig";
-inline constexpr std::string_view kDepthInfoTopic = "/depth/camera_info";
-inline constexpr std::string_view kThermalInfoTopic = "/thermal/camera_info";
-inline constexpr std::string_view kThermalPoseTopic = "/thermal/transform";
-inline constexpr std::string_view kNucTopic = "/nuc";
-inline constexpr std::string_view kClockTopic = "/clock";
-inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
-inline constexpr std::string_view kTrajectoryTopic = "/trajectory";
-inline constexpr std::string_view kOutsidePoseTopic = "/outside_pose";
-inline constexpr std::string_view kLogTopic = "/log";
 
 /// Raw is a foxglove::RawImage or foxglove::CompressedImage without image data.
 template <typename Image>

@@ -19,6 +19,8 @@ void LatePublisher::Run(std::stop_token stop, const PublisherHandlers& handlers)
   if (!connected) {
     if (!stop.stop_requested()) {
       LOG(Publisher, Error) << "nothing will be published: " << connected.error().message();
+      std::scoped_lock lock(mutex_);
+      problem_ = "nothing is published: " + connected.error().message();
     }
     return;
   }

@@ -31,7 +31,7 @@ Spool::Spool(SpoolParts parts) : parts_(std::move(parts)), disk_(parts_.options)
 
 Status Spool::Begin() {
   const Status begun = BeginFile();
-  Note(begun);
+  if (!begun.ok()) Fail(begun);
   UpdateStatus();
   return begun;
 }
@@ -49,7 +49,7 @@ Status Spool::BeginFile() {
 
 void Spool::BeginFileWhenDue() {
   if (IsRecording() || at_reserve_ || parts_.clock.SteadyNow() < retry_at_) return;
-  Note(BeginFile());
+  if (const Status begun = BeginFile(); !begun.ok()) Fail(begun);
 }
 
 void Spool::Add(const EncodedFrame& frame) {
@@ -162,14 +162,19 @@ Status Spool::Close() {
 
 void Spool::Note(const Status& status) {
   if (status.ok()) return;
-  if (first_error_.ok()) first_error_ = status;
   if (status.code() == StatusCode::kInvalidArgument || status.code() == StatusCode::kDataLoss) {
     // One message is wrong, not the disk.
+    if (first_error_.ok()) first_error_ = status;
     if (refused_++ == 0) {
       LOG(Spool, Warning) << "not recorded: " << status.message();
     }
     return;
   }
+  Fail(status);
+}
+
+void Spool::Fail(const Status& status) {
+  if (first_error_.ok()) first_error_ = status;
   if (IsRecording()) static_cast<void>(CloseFile());
   retry_at_ = parts_.clock.SteadyNow() + back_off_.Next();
   if (problem_.ok()) {

@@ -92,6 +92,8 @@ class Spool {
   Status WriteClockStep(const EncodedFrame& frame);
   /// An error of the disk ends the file.
   void Note(const Status& status);
+  /// The file cannot go on, or could not be begun: a new one later.
+  void Fail(const Status& status);
   void NoteWorks();
   /// The first error of closing it, or ok.
   Status CloseFile();

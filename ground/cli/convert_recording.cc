@@ -10,10 +10,9 @@
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
-#include "common/recording/feedback.pb.h"
 #include "common/recording/mcap_message_stream.h"
-#include "common/recording/recording_messages.h"
 #include "common/recording/recording_streams.h"
+#include "common/recording/recording_topics.h"
 #include "common/recording/schema.h"
 #include "common/transport/feedback_record.h"
 
@@ -55,7 +54,8 @@ class OtherMessages {
       const std::span<const std::uint8_t> data = (*message)->data;
       return OtherMessage{
           channel->second.topic, &schema->second,
-          CaptureTimeFromNanoseconds(static_cast<std::int64_t>((*message)->log_time)),
+          CaptureTimeFromNanoseconds(static_cast<std::int64_t>(
+              std::min<std::uint64_t>((*message)->log_time, rec::kMaxRecordedNanoseconds))),
           std::string(data.begin(), data.end())};
     }
   }
@@ -86,15 +86,7 @@ CaptureTime TimeOf(const RecordedItem& item) {
 /// The tracked pose that a feedback message carries; nullopt while the rig was lost.
 std::optional<StampedPose> PoseOf(const OtherMessage& message) {
   if (message.topic != kFeedbackRecordTopic) return std::nullopt;
-  rec::FeedbackRecord record;
-  if (!record.ParseFromString(message.data) || !record.has_world_from_depth()) return std::nullopt;
-  if (record.tracking() != "tracked" && record.tracking() != "degraded") return std::nullopt;
-  foxglove::FrameTransform transform;
-  *transform.mutable_timestamp() = record.timestamp();
-  *transform.mutable_translation() = record.world_from_depth().translation();
-  *transform.mutable_rotation() = record.world_from_depth().rotation();
-  const Result<StampedPose> pose = rec::FromMessage(transform);
-  return pose ? std::optional(*pose) : std::nullopt;
+  return rec::TrackedPoseIn(message.data);
 }
 
 class Converter {
@@ -219,12 +211,7 @@ class Converter {
     if (!is_beside || request_.storage != ImageStorage::kViewable)
       return writer_.WritePose(recorded.stream, recorded.pose);
     // A viewer knows one pose of each coordinate frame: that of the tracker is the rig's.
-    foxglove::FrameTransform transform = rec::ToMessage(recorded.pose);
-    transform.set_child_frame_id("groundtruth");
-    const google::protobuf::Descriptor& type = *foxglove::FrameTransform::descriptor();
-    return writer_.WriteMessage(rec::kGroundtruthTopic, type.full_name(),
-                                rec::SerializedSchema(type), recorded.pose.time,
-                                transform.SerializeAsString());
+    return rec::WriteGroundtruth("groundtruth", recorded.pose, writer_);
   }
   Status WriteItem(const NucEvent& event) { return writer_.Write(event); }
   Status WriteItem(const ClockStep& step) { return writer_.Write(step); }

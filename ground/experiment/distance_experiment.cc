@@ -95,6 +95,9 @@ RgbImage Picture(const SimulatedScan& scan, const GroundPipeline& pipeline, Thre
 GroundOptions FineModel(bool validation) {
   GroundOptions options;
   options.mutable_volume()->set_voxel_size_m(0.0013);  // As in the thesis.
+  // Four voxels are less than the noise of the depth camera from far away: bars of 2 mm keep 94.5 %
+  // of their contrast with them, 99.2 % with this.
+  options.mutable_tsdf()->set_truncation_distance_m(0.008);
   ThermalOptions& thermal = *options.mutable_thermal();
   thermal.set_distance_min_m(0.30);
   thermal.set_distance_good_m(0.45);

@@ -274,6 +274,7 @@ Status ModelFile::Content::CheckVolume() const {
   volume.set_size_z_m(header.voxel_size_m());
   TsdfOptions tsdf;
   tsdf.set_truncation_distance_m(header.truncation_distance_m());
+  if (header.truncation_distance_m() == 0.0) return Damaged("its truncation distance is 0 m");
   for (const Status& status : {Validate(volume), Validate(tsdf, volume)}) {
     if (!status.ok()) return Damaged("its volume makes no sense: " + status.message());
   }

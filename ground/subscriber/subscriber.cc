@@ -128,6 +128,7 @@ class DdsSubscriber final : public Subscriber {
   SteadyTime look_due_{};
   SteadyTime rivals_due_{};
   SessionBook book_;
+  std::uint64_t described_session_ = 0;  ///< Of the newest description of the rig.
   ClockComparison clock_comparison_;
   ClockWatch clock_watch_;
   SteadyTime receipt_due_{};
@@ -229,6 +230,11 @@ int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
 }
 
 void DdsSubscriber::On(const RigDescription& rig, CaptureTime /*arrival*/) {
+  // What still waits for its turn belongs to the session before.
+  if (std::exchange(described_session_, rig.session) != rig.session) {
+    depth_.DeliverAll();
+    thermal_.DeliverAll();
+  }
   if (handlers_.rig) handlers_.rig(rig);
 }
 
