@@ -337,7 +337,8 @@ TEST_F(BadInputTest, OutputThatCannotBeCreatedIsNamed) {
       cannot_create, "file");
   const Finished edge =
       RunToEnd({EdgeDaemon(),
-                {"--domain", domain, "--recording", Recording(), "--record", below + ".mcap"},
+                {"--domain", domain, "--recording", Recording(), "--record", below + ".mcap",
+                 "--exit-at-end"},  // As a service it waits for the disk.
                 {}},
                kPatience);
   EXPECT_THAT(edge.status, cannot_create) << edge.output;

@@ -111,7 +111,7 @@ TEST_F(NetworkDownTest, F38WithTheirOwnInterfaceDownBothLeaveInTime) {
   Process ground(Ground());
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   Process edge(Edge());
-  ASSERT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output() << edge.output();
+  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output() << edge.output();
   Down(edge_);
   Down(ground_);
   ExpectToLeaveInTime(edge);
@@ -125,7 +125,7 @@ TEST_F(NetworkDownTest, F38WithThePeerGoneBothLeaveInTime) {
   Process ground(Ground());
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   Process edge(Edge());
-  ASSERT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output() << edge.output();
+  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output() << edge.output();
   // The cable is there, but nothing that one sends reaches the other.
   for (const Host& host : {edge_, ground_}) {
     ASSERT_TRUE(Ip({"-n", host.name, "neigh", "replace",
@@ -147,7 +147,7 @@ TEST_F(NetworkDownTest, F31BothWaitForTheirInterfaceAndFindEachOther) {
   Connect();
   ASSERT_TRUE(edge.WaitForOutput("joined DDS domain", kPatience)) << edge.output();
   ASSERT_TRUE(ground.WaitForOutput("joined DDS domain", kPatience)) << ground.output();
-  EXPECT_TRUE(ground.WaitForOutput("scan started", kPatience)) << ground.output() << edge.output();
+  EXPECT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output() << edge.output();
   ExpectToLeaveInTime(edge);
   ExpectToLeaveInTime(ground);
 }
