@@ -56,8 +56,11 @@ class EdgeFailureTest : public ::testing::Test {
             {}};
   }
   Command OnCameras(std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {"--source", "cameras", "--set",
-                                          "source.thermal_camera.enabled=false"};
+    // The fake camera's script lies in the test's folder, which its confined process may read.
+    std::vector<std::string> arguments = {
+        "--source", "cameras",
+        "--set",    "source.thermal_camera.enabled=false",
+        "--set",    "source.camera_sandbox.read=\"" + folder_.path().string() + "\""};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Edge(std::move(arguments));
   }

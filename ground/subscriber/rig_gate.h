@@ -41,7 +41,7 @@ struct RigSample {
 class RigGate {
  public:
   static constexpr Nanoseconds kTrial = std::chrono::seconds(1);
-  static constexpr Nanoseconds kSilence = std::chrono::seconds(3);
+  static constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   static constexpr Nanoseconds kPatience = std::chrono::seconds(5);
   static constexpr std::size_t kMaxHeldBytes = 64U << 20U;  ///< Of one process; of two at most.
   static constexpr std::size_t kMaxHeldSamples = 512;
