@@ -98,9 +98,8 @@ class BothCamerasTest : public ::testing::Test {
              std::to_string(TestDomain()), "--set", "source.thermal_camera.driver=OPTRIS_SDK",
              "--set", "source.thermal_camera.optris_library=\"" FAKE_OPTRIS "\"", "--set",
              "source.thermal_camera.optris_config=\"" + config_.string() + "\"", "--set",
-             "source.camera_sandbox.write=\"" + folder_.path().string() + "\"", "--set",
-             // The emulated bus is behind one.
-             "source.camera_sandbox.local_sockets=true", "--set", "nuc.before_scan=false"},
+             // The emulated bus answers for /dev itself, also to those who only want to name it.
+             "source.camera_sandbox.enabled=false", "--set", "nuc.before_scan=false"},
             {"LD_LIBRARY_PATH=" FAKE_OPENNI},
             {}};
   }

@@ -84,10 +84,11 @@ class EdgeFailureTest : public ::testing::Test {
     std::sort(files.begin(), files.end());
     return files;
   }
-  static bool WaitForSize(Process& edge, const std::filesystem::path& file, std::uintmax_t bytes) {
+  bool WaitForSize(Process& edge, const std::filesystem::path& file, std::uintmax_t bytes) {
     const auto deadline = std::chrono::steady_clock::now() + kPatience;
     std::error_code missing;
     while (!std::filesystem::exists(file) || std::filesystem::file_size(file, missing) < bytes) {
+      manager_.Drain();
       if (edge.WaitForExit(Seconds(0.05))) return false;
       if (std::chrono::steady_clock::now() > deadline) return false;
     }
@@ -286,9 +287,11 @@ TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
   const std::filesystem::path ballast = disk_ / "ballast";
   {
     std::ofstream other(ballast);
-    other << std::string(3'500'000, 'x');
+    other << std::string(4'100'000, 'x');
   }
-  Process edge(Replay({"--record", file_}));
+  // Without a reserve the disk itself says no.
+  Process edge(
+      Replay({"--record", file_, "--set", "spool.reserve_mb=0", "--set", "spool.reserve_s=0"}));
   ASSERT_TRUE(edge.WaitForOutput("recording ended early", kPatience)) << edge.output();
   EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: cannot write", kPatience))
       << edge.output();

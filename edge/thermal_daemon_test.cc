@@ -42,8 +42,10 @@ class ThermalDaemonTest : public ::testing::Test {
     std::vector<std::string> arguments = {
         "--source", "cameras", "--set", "source.depth_camera.enabled=false",
         // Where a fake depth camera reads what it shall do.
-        "--set", "source.camera_sandbox.read=\"" + folder_.path().string() + "\"", "--record",
-        file_.string(), "--domain", std::to_string(TestDomain())};
+        "--set", "source.camera_sandbox.read=\"" + folder_.path().string() + "\"", "--set",
+        // The emulated bus answers for /dev itself, also to those who only want to name it.
+        "source.camera_sandbox.enabled=false", "--record", file_.string(), "--domain",
+        std::to_string(TestDomain())};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), std::move(arguments), {}, {}};
   }

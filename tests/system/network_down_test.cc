@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "common/testing/temporary_directory.h"
-#include "edge/small_scan_for_test.h"
 #include "tests/system/programs.h"
 
 namespace isotherm::system_test {
@@ -37,7 +36,7 @@ class NetworkDownTest : public ::testing::Test {
     const bool may = geteuid() == 0 && std::filesystem::exists(kIp) &&
                      Ip({"netns", "add", edge_.name}) && Ip({"netns", "add", ground_.name});
     if (!may) GTEST_SKIP() << "no network of its own: network namespaces take root and iproute2";
-    WriteSmallScan(scan_);
+    SimulateScan(scan_, 3.0);
   }
   ~NetworkDownTest() override {
     for (const Host& host : {edge_, ground_}) Ip({"netns", "del", host.name});
@@ -111,7 +110,8 @@ TEST_F(NetworkDownTest, F38WithTheirOwnInterfaceDownBothLeaveInTime) {
   Process ground(Ground());
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   Process edge(Edge());
-  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output() << edge.output();
+  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience))
+      << ground.output() << edge.output();
   Down(edge_);
   Down(ground_);
   ExpectToLeaveInTime(edge);
@@ -125,7 +125,8 @@ TEST_F(NetworkDownTest, F38WithThePeerGoneBothLeaveInTime) {
   Process ground(Ground());
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   Process edge(Edge());
-  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output() << edge.output();
+  ASSERT_TRUE(ground.WaitForOutput("first depth frame", kPatience))
+      << ground.output() << edge.output();
   // The cable is there, but nothing that one sends reaches the other.
   for (const Host& host : {edge_, ground_}) {
     ASSERT_TRUE(Ip({"-n", host.name, "neigh", "replace",
@@ -147,7 +148,8 @@ TEST_F(NetworkDownTest, F31BothWaitForTheirInterfaceAndFindEachOther) {
   Connect();
   ASSERT_TRUE(edge.WaitForOutput("joined DDS domain", kPatience)) << edge.output();
   ASSERT_TRUE(ground.WaitForOutput("joined DDS domain", kPatience)) << ground.output();
-  EXPECT_TRUE(ground.WaitForOutput("first depth frame", kPatience)) << ground.output() << edge.output();
+  EXPECT_TRUE(ground.WaitForOutput("first depth frame", kPatience))
+      << ground.output() << edge.output();
   ExpectToLeaveInTime(edge);
   ExpectToLeaveInTime(ground);
 }

@@ -208,6 +208,11 @@ bool NotifySocket::WaitForText(std::string_view text, Seconds timeout) {
   return true;
 }
 
+void NotifySocket::Drain() {
+  for (std::string message = Receive(Seconds(0)); !message.empty(); message = Receive(Seconds(0)))
+    received_ += message;
+}
+
 void NotifySocket::Forget() {
   while (!Receive(Seconds(0)).empty()) {
   }

@@ -92,6 +92,8 @@ class NotifySocket {
   bool WaitFor(std::string_view line, Seconds timeout);
   /// What came until now is not waited for any more.
   void Forget();
+  /// Takes what has come, so that the sender is not held up: the socket keeps ten messages.
+  void Drain();
   /// What has come since, a line per message and variable.
   const std::string& received() const { return received_; }
 
