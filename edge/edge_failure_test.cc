@@ -287,7 +287,7 @@ TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
   const std::filesystem::path ballast = disk_ / "ballast";
   {
     std::ofstream other(ballast);
-    other << std::string(4'100'000, 'x');
+    other << std::string(4'180'000, 'x');
   }
   // Without a reserve the disk itself says no.
   Process edge(
