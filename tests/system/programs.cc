@@ -134,16 +134,4 @@ long LostInCamera(const std::string& output, Sensor sensor) {
   return 0;
 }
 
-std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path) {
-  std::vector<std::vector<double>> rows;
-  std::ifstream stream(path);
-  for (std::string line; std::getline(stream, line);) {
-    if (line.empty() || line.front() == '#') continue;
-    std::istringstream words(line);
-    std::vector<double>& row = rows.emplace_back();
-    for (double number = 0; words >> number;) row.push_back(number);
-  }
-  return rows;
-}
-
 }  // namespace isotherm::system_test

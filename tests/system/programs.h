@@ -70,7 +70,4 @@ FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::
 /// "depth    lost in the camera or its library 3"; 0 if there is no such line.
 long LostInCamera(const std::string& output, Sensor sensor);
 
-/// Lines that are neither empty nor comments, each split into numbers.
-std::vector<std::vector<double>> ReadNumbers(const std::filesystem::path& path);
-
 }  // namespace isotherm::system_test
