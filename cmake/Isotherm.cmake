@@ -62,6 +62,9 @@ function(isotherm_library)
   endif()
 endfunction()
 
+# A program loads the shared libraries that it uses, not those that a static library on its way names.
+add_link_options(-Wl,--as-needed)
+
 # Tests of what has several threads: the thread sanitizer watches these.
 set(isotherm_threaded_tests base_test block_spiller_test camera_process_test clock_link_test concurrency_test
   edge_pipeline_test edge_source_test endpoints_test ground_pipeline_test hostile_test link_test live_scan_test

@@ -49,7 +49,7 @@ constexpr double kMostCpuShare = 0.35;
 /// From a frame's arrival to its stamp, seconds, in the middle.
 constexpr double kSoonestStamp_s = 0.005;
 /// What the edge may hold in memory, with its camera's process.
-constexpr double kMostMemory_mb = 150.0;
+constexpr double kMostMemory_mb = 60.0;
 constexpr unsigned kSeed = 20;
 constexpr std::uint64_t kSession = 1;
 
