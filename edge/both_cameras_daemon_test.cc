@@ -86,7 +86,7 @@ class BothCamerasTest : public ::testing::Test {
     Script("");
   }
 
-  /// What the library does from its next opening on.
+  /// Sets what the library does from its next opening on.
   void Script(const std::string& words) const {
     const std::filesystem::path next = config_.string() + ".next";
     std::ofstream(next) << words << "\n";

@@ -9,8 +9,8 @@ namespace isotherm {
 
 class SourceOptions;
 
-/// What the library of this camera needs: the system's libraries, its camera or its file, and what
-/// the options add. Nullopt if the options want no sandbox.
+/// Returns what the library of this camera needs: the system's libraries, its camera or its file,
+/// and what the options add. Nullopt if the options want no sandbox.
 std::optional<CameraSandbox> AccessFor(Sensor sensor, const SourceOptions& options);
 
 }  // namespace isotherm

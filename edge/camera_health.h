@@ -24,7 +24,7 @@ class CameraHealth {
   void SetBlind(Sensor sensor, bool blind) { At(sensor).blind = blind; }
   /// How long a frame took from its arrival to its capture time.
   void AddStamping(Sensor sensor, Nanoseconds latency);
-  /// What a frame was stamped with.
+  /// Takes note of a frame's stamp.
   void NoteStamp(Sensor sensor, const Stamp& stamp);
 
   CameraReport Get(Sensor sensor) const;

@@ -109,7 +109,7 @@ std::optional<Rig> WithoutThermalDelay(std::optional<Rig> rig) {
   return rig;
 }
 
-/// What was found out before anything starts.
+/// Holds what was found out before anything starts.
 struct Start {
   CaptureTime time;
   std::vector<CameraDescription> cameras;
@@ -151,7 +151,7 @@ RigDescription Describe(const EdgeOptions& options, const Start& start) {
   return description;
 }
 
-/// What the recording says of the cameras.
+/// Returns what the recording says of the cameras.
 std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
   std::map<std::string, std::string> metadata;
   for (const CameraDescription& camera : cameras) {
@@ -279,7 +279,7 @@ Result<std::unique_ptr<FrameSource>> OpenSource(const EdgeOptions& options,
   return source;
 }
 
-/// What the end of a capture needs.
+/// Holds what the end of a capture needs.
 struct Ending {
   ExitDeadline& deadline;
   const FrameAccount& account;

@@ -24,7 +24,7 @@ OverflowPolicy PolicyFor(const EdgeOptions& options) {
   return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
 }
 
-/// What was wrong with a camera's clock, if anything.
+/// Logs what was wrong with a camera's clock, if anything.
 void ReportStamping(std::string_view stream, const StampingCounts& counts) {
   if (counts.resets + counts.moved + counts.unsynchronised == 0) return;
   LOG(Edge, Warning) << stream << " camera's clock: resets=" << counts.resets

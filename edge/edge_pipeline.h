@@ -32,7 +32,7 @@ namespace isotherm {
 
 class EdgeOptions;
 
-/// What the pipeline is put together from. All but the spool must outlive it.
+/// Holds what the pipeline is put together from. All but the spool must outlive it.
 struct EdgeParts {
   FrameSource& source;  ///< Opened; bad frames are already out (SupervisedSource).
   Publisher& publisher;
@@ -79,13 +79,13 @@ class EdgePipeline {
   /// wall clock is ahead of them by so much. Thread-safe.
   std::uint64_t clock_steps() const { return clock_steps_; }
   Nanoseconds clock_step_total() const { return Nanoseconds(clock_step_total_ns_.load()); }
-  /// What the ground says. Thread-safe.
+  /// Returns what the ground says. Thread-safe.
   const FeedbackMonitor& feedback() const { return feedback_; }
   /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
   double spool_fill_ratio() const;
   /// How the recording is doing; nullopt without one. Thread-safe.
   std::optional<SpoolStatus> recording() const;
-  /// What a thread of the line is stuck in, in words; nullopt if all get on. Thread-safe.
+  /// Returns what a thread of the line is stuck in, in words; nullopt if all get on. Thread-safe.
   std::optional<std::string> StuckIn(SteadyTime now) const;
 
  private:
@@ -121,9 +121,9 @@ class EdgePipeline {
   const Clock& clock_;
   const std::unique_ptr<Spool> spool_;
   const std::uint64_t session_;
-  const bool thermal_is_counts_;  ///< Of a camera that measures no temperatures.
+  const bool thermal_is_counts_;  ///< The camera measures no temperatures.
 
-  StepWatch step_watch_;  ///< Of the capture thread.
+  StepWatch step_watch_;  ///< Used by the capture thread only.
   std::atomic<std::uint64_t> clock_steps_{0};
   std::atomic<std::int64_t> clock_step_total_ns_{0};
   Timestamper depth_timestamper_;
@@ -152,7 +152,7 @@ class EdgePipeline {
     CaptureTime arrival;
   };
   FeedbackMonitor feedback_;
-  /// Of several seconds, for the spool thread to take along with the frames.
+  /// Feedback of several seconds, for the spool thread to take along with the frames.
   BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
   BoundedQueue<CommandResult> nuc_answers_{64, OverflowPolicy::kDropOldest};
   // Commands that come faster than they can be obeyed are refused, the oldest first.

@@ -38,10 +38,10 @@ std::string_view CameraText(CameraState state);
 /// there are none.
 std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal);
 
-/// What is wrong with the wall clock and what to do about it; nullopt if nothing is.
+/// Returns what is wrong with the wall clock and what to do about it; nullopt if nothing is.
 std::optional<std::string> ClockProblem(const KernelClock& clock);
 
-/// What the recording says of the clock that dates its frames, at the start of a scan.
+/// Returns what the recording says of the clock that dates its frames, at the start of a scan.
 std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base);
 
 /// One line for the operator's journal: what the ground says, or what is wrong with it, then rates,
@@ -56,8 +56,8 @@ std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameAccoun
                                      bool ground_present, const std::optional<Feedback>& feedback,
                                      const std::vector<std::string>& problems);
 
-/// What became of every frame, and how soon the ground answered, printed at exit. `recording`:
-/// whether there was one.
+/// Returns what became of every frame, and how soon the ground answered, printed at exit.
+/// `recording`: whether there was one.
 std::string Summary(const FrameAccount& account, bool recording,
                     const std::optional<Receipt>& receipt, const FeedbackLatency& feedback);
 

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Of the percentiles in StageStats.
+/// The percentiles in StageStats are as exact as this.
 constexpr double kRelativeTolerance = 0.01;
 
 TEST(FeedbackMonitorTest, AgeIsFromCaptureToArrival) {

@@ -8,8 +8,8 @@
 
 namespace isotherm {
 
-/// What becomes of a captured frame. Each frame has one fate on the way to the disk and one on the
-/// way to the ground; a frame that was rejected or left out goes neither way.
+/// Says what becomes of a captured frame. Each frame has one fate on the way to the disk and one on
+/// the way to the ground; a frame that was rejected or left out goes neither way.
 enum class FrameFate : std::uint8_t {
   kCaptured,
   kRejected,      ///< Garbage, short, wrong size.

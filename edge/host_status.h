@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// What the edge computer says about itself; NaN or 0 = it does not say.
+/// Holds what the edge computer says about itself; NaN or 0 = it does not say.
 struct HostStatus {
   std::uint64_t disk_free_bytes = 0;
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();

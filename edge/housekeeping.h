@@ -18,8 +18,8 @@
 
 namespace isotherm {
 
-/// What the daemon's main thread does beside the line: answers commands, publishes the status once
-/// a second, tells the operator and the service manager. Thread-bound.
+/// Does what is left to the daemon's main thread beside the line: answers commands, publishes the
+/// status once a second, tells the operator and the service manager. Thread-bound.
 class Housekeeping {
  public:
   /// All must outlive it. `picture_file`: where the confidence picture goes (empty: nowhere).
@@ -38,13 +38,13 @@ class Housekeeping {
   void ShowFeedback();
   std::string Line() const;
   void ShowLine();
-  /// What is wrong, each in a sentence that says what to do.
+  /// Returns what is wrong, each in a sentence that says what to do.
   std::vector<std::string> Problems() const;
   /// To the service manager, at once if something became wrong or right.
   void TellStatus();
   /// Whether the program makes progress, with or without cameras.
   bool GetsOn(SteadyTime now);
-  /// What became of the cameras since the last status.
+  /// Logs what became of the cameras since the last status.
   void TellCameras(const EdgeStatus& before) const;
   /// That synchronisation was lost or found; how it is at the start is told there.
   void TellClock();

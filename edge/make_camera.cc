@@ -56,7 +56,7 @@ std::string ToText(const DeviceDescription& device) {
   return text;
 }
 
-/// What one could connect.
+/// Returns what one could connect.
 std::string SupportedText() {
   std::string text = "  none; there are drivers for\n";
   for (const DeviceDescription& camera : SupportedThermalCameras()) {

@@ -23,12 +23,12 @@ bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options);
 /// ends an opening early.
 std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOptions& options,
                                                const Clock& clock, std::stop_token stop);
-/// What the program does when it was started so; the exit status. `sensor_name`: "depth" or
+/// Runs the program when it was started so; returns the exit status. `sensor_name`: "depth" or
 /// "thermal"; `source_options`: text format.
 int RunCameraProcess(const std::string& sensor_name, const std::string& source_options,
                      const Clock& clock);
 
-/// What is connected, for people: a line per camera with driver, serial number and modes.
+/// Returns what is connected, for people: a line per camera with driver, serial number and modes.
 std::string ListCameras();
 
 }  // namespace isotherm

@@ -15,7 +15,7 @@ namespace isotherm {
 
 class EdgeOptions;
 
-/// What a source is put together with. All must outlive it.
+/// Holds what a source is put together with. All must outlive it.
 struct SourceContext {
   const Clock& clock;
   FrameAccount& account;

@@ -11,7 +11,7 @@
 namespace isotherm {
 namespace {
 
-/// What the options leave open follows from the source.
+/// Fills in, from the source, what the options leave open.
 NucOptions Resolved(const EdgeOptions& options) {
   NucOptions nuc = options.nuc();
   if (!nuc.has_before_scan()) nuc.set_before_scan(options.source().kind() == CAMERAS);

@@ -89,7 +89,7 @@ class ThermalDaemonTest : public ::testing::Test {
     return RunToEnd({Tool(), {"nuc", "--now", "--domain", std::to_string(TestDomain())}, {}, {}},
                     kPatience);
   }
-  /// Of pictures that repeat the one before, more than three in a row, none may be valid.
+  /// No image may be valid that repeats the one before more than three times in a row.
   void ExpectFrozenFramesAreInvalid() const {
     const auto recording = RecordingReader::Open(file_);
     ASSERT_TRUE(recording.has_value());

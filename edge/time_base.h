@@ -13,7 +13,7 @@ enum class TimeBase : std::uint8_t {
   kOther,      ///< They pass at another pace.
 };
 
-/// Of the frames that such a source gives.
+/// The time base of the frames that such a source gives.
 TimeBase TimeBaseOf(const SourceOptions& options);
 
 }  // namespace isotherm

@@ -61,7 +61,7 @@ class Distributor {
   ThreadProgress& progress_;
   std::stop_token stop_;
   std::optional<std::uint64_t> session_;
-  SessionStart start_;  ///< Of that session.
+  SessionStart start_;  ///< That session's.
   bool over_ = false;   ///< The single scan has ended.
   bool recording_behind_ = false;
   std::deque<Item> early_;

@@ -12,9 +12,9 @@
 
 namespace isotherm {
 
-/// What a message of feedback is about.
+/// Holds what a message of feedback is about.
 struct FeedbackMoment {
-  FrameHeader header;  ///< Of the newest depth frame.
+  FrameHeader header;  ///< The newest depth frame's.
   DepthReport report;  ///< What became of it.
   bool nuc_running = false;
   /// How the rig moved since the message before, and the time between two frames.
@@ -46,7 +46,7 @@ class FeedbackMaker {
   /// `T_map_depth` is where the rig is in the active sub-map, if it is tracked.
   void AddNextPose(const GroundPipeline& pipeline, const RigidTransform* T_map_depth,
                    Feedback& feedback) const;
-  /// Of the active sub-map, in whose coordinates the planner works too.
+  /// The coverage of the active sub-map, in whose coordinates the planner works too.
   ModelCoverage& ActiveCoverage(const GroundPipeline& pipeline);
   ViewPlanner* Planner(const GroundPipeline& pipeline);
 

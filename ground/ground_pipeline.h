@@ -79,7 +79,7 @@ class GroundPipeline {
   /// those that were never joined. `progress` gets a share 0..1.
   void Finish(const std::function<void(double)>& progress = {});
 
-  /// Of the active sub-map, in its coordinates; the whole model in `world` after Finish.
+  /// The volume of the active sub-map, in its coordinates; the whole model in `world` after Finish.
   const TsdfVolume& tsdf() const { return *atlas_.active().tsdf; }
   const ThermalVolume& thermal() const { return *atlas_.active().thermal; }
   const Atlas& atlas() const { return atlas_; }
@@ -89,7 +89,7 @@ class GroundPipeline {
   const ModelView& view() const { return tracker_.view(); }
   /// The same at the depth camera's full resolution, cast now.
   SurfaceMaps CastFullView();
-  /// Of the last tracked pose.
+  /// How uncertain the last tracked pose is.
   const PoseUncertainty& uncertainty() const { return tracker_.uncertainty(); }
   const RigTracker& tracker() const { return tracker_; }
   /// In `world`, as far as the sub-maps are joined, and as it is known by now: closing a loop moves
@@ -152,13 +152,13 @@ class GroundPipeline {
   IntegrationGate gate_;
   Atlas atlas_;
   LoopCloser loop_closer_;
-  const PreparedDepth* last_depth_ = nullptr;  ///< Of the last depth frame; the preprocessor's.
+  const PreparedDepth* last_depth_ = nullptr;  ///< The last depth frame; owned by the preprocessor.
   BlockSpiller spiller_;
   VisibleBlocks near_view_;
   std::uint64_t wrong_size_ = 0;  ///< Depth frames of another size, without a right one between.
   bool has_room_ = true;          ///< For temperatures; false once the disk to spill to is full.
   std::vector<MapPose> tracked_;
-  std::vector<StampedPose> trajectory_;  ///< Of tracked_ what is joined, in world.
+  std::vector<StampedPose> trajectory_;  ///< The poses of tracked_ that are joined, in world.
   std::vector<PoseSigma> trajectory_sigmas_;
   std::optional<CaptureTime> lost_since_;
   int searched_ = 0;                      ///< The sub-map a lost rig is looked for in.
@@ -168,7 +168,7 @@ class GroundPipeline {
   bool integrate_next_ = true;  ///< With kEverySecond.
   PipelineCounts counts_;
   std::map<std::string, StageStats> stage_stats_;
-  std::optional<ThermalStage> thermal_stage_;  ///< Of a rig that thermal frames can be fused of.
+  std::optional<ThermalStage> thermal_stage_;  ///< Only if the rig's thermal frames can be fused.
 };
 
 }  // namespace isotherm

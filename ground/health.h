@@ -21,8 +21,8 @@ class Health {
   ThreadProgress recording;
   ThreadProgress results;
 
-  /// What is stuck, in words; nullopt if everything goes on. The service manager's watchdog is fed
-  /// only then.
+  /// Returns what is stuck, in words; nullopt if everything goes on. The service manager's watchdog
+  /// is fed only then.
   std::optional<std::string> Problem(SteadyTime now) const;
 
  private:

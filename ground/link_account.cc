@@ -36,7 +36,7 @@ Json DescribeStream(const StreamAccount& account, std::uint64_t recorded,
   return json;
 }
 
-/// What the recording lacks and why, or nothing.
+/// Returns what the recording lacks and why, or nothing.
 std::string RecordingText(const RecordingAccount& recording) {
   const auto sum = [&](NotRecorded reason) {
     const auto i = static_cast<std::size_t>(reason);

@@ -8,8 +8,8 @@
 
 namespace isotherm {
 
-/// What became of a session's frames, how soon feedback reached the edge and how good the rig's
-/// clock was, as it goes into stats.json.
+/// Describes what became of a session's frames, how soon feedback reached the edge and how good the
+/// rig's clock was, as it goes into stats.json.
 void DescribeAccount(const SessionAccount& account, const RecordingAccount& recording, Json& link);
 
 /// The same for the user: a line per stream, one about feedback if its age is known, one about the

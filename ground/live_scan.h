@@ -59,7 +59,7 @@ class LiveScan {
   std::uint64_t session() const { return session_; }
   /// The model's surface by how well it was measured.
   SurfaceAreas areas() const { return feedback_.areas(); }
-  /// What was left out to keep up.
+  /// Returns what was left out to keep up.
   BehindCounts behind() const;
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }
   std::uint64_t outside_poses_received() const { return outside_poses_received_; }
@@ -77,7 +77,7 @@ class LiveScan {
   void NoteTurn(const void* frame);
   /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
   void KeepUp(Nanoseconds queued);
-  /// What the rig did since the last feedback.
+  /// Sums up what the rig did since the last feedback.
   void NoteMotion(const DepthReport& report, CaptureTime time);
   void TellWhenDone();
 
@@ -90,10 +90,11 @@ class LiveScan {
   Assembler assembler_;
   DelayCheck delay_check_;
   FeedbackMaker feedback_;
-  FeedbackMoment moment_;  ///< Of the newest depth frame.
+  FeedbackMoment moment_;  ///< The newest depth frame's.
   bool feedback_waiting_ = false;
   std::optional<CaptureTime> next_feedback_;
-  std::optional<CaptureTime> motion_since_;  ///< Of the last frame before those summed up here.
+  std::optional<CaptureTime>
+      motion_since_;  ///< Time of the last frame before those summed up here.
   double path_m_ = 0.0;
   double turned_rad_ = 0.0;
   int frames_ = 0;
@@ -101,7 +102,7 @@ class LiveScan {
   bool told_done_ = false;
   std::uint64_t outside_poses_received_ = 0;
   std::uint64_t next_outside_pose_ = 0;
-  std::map<const void*, CaptureTime> arrivals_;  ///< Of frames in the assembler.
+  std::map<const void*, CaptureTime> arrivals_;  ///< When the frames in the assembler arrived.
   StageStats waiting_;
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
   bool told_behind_ = false;

@@ -18,7 +18,7 @@ class LoopCloser {
   /// All must outlive the closer.
   LoopCloser(const GroundOptions& options, Atlas& atlas, RigTracker& tracker);
 
-  /// What happened to the sub-maps.
+  /// Holds what happened to the sub-maps.
   struct Change {
     bool linked = false;  ///< Sub-maps were joined or moved.
     /// Another one is active now. The tracker has its coordinates already.

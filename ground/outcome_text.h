@@ -7,8 +7,8 @@
 
 namespace isotherm {
 
-/// What the short names of reasons in stats.json mean, for people: a sentence with what to do, to
-/// be read behind "N lost: ". An unknown name explains itself.
+/// Returns what the short names of reasons in stats.json mean, for people: a sentence with what to
+/// do, to be read behind "N lost: ". An unknown name explains itself.
 std::string ExplainLost(std::string_view reason);
 
 /// The same for thermal frames, behind "N not used: ".

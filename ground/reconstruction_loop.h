@@ -60,11 +60,11 @@ class ReconstructionLoop {
   ThreadProgress& progress_;
   std::stop_token stop_;
   bool started_ = false;  ///< A session; without a scan if that could not be begun.
-  SessionStart start_;    ///< Of that session.
+  SessionStart start_;    ///< That session's.
   std::unique_ptr<LiveScan> scan_;
-  std::uint64_t unprocessed_ = 0;  ///< Of this session.
+  std::uint64_t unprocessed_ = 0;  ///< Frames of this session.
   std::uint64_t result_bytes_ = 0;
-  std::uint64_t ended_result_bytes_ = 0;  ///< Of scans that are still being written.
+  std::uint64_t ended_result_bytes_ = 0;  ///< Results of scans that are still being written.
   Status status_;
 };
 

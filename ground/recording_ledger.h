@@ -26,7 +26,7 @@ std::string_view ToString(NotRecorded reason);
 /// Frames of one stream that the recording does not have, by reason.
 using NotRecordedCounts = std::array<std::uint64_t, kNotRecordedReasons>;
 
-/// What became of a session's recording, or what has so far.
+/// Holds what became of a session's recording, or what has so far.
 struct RecordingAccount {
   std::filesystem::path path{};  ///< Empty: there is none.
   RecordingStats stats{};
@@ -34,7 +34,7 @@ struct RecordingAccount {
   NotRecordedCounts thermal_left_out{};
   bool closed = false;  ///< Nothing more will be written: index and footer are on the disk.
   Status status{};      ///< The first failure.
-  /// Of the disk as of the newest look at it; 0 bytes per second = not known yet.
+  /// Room on the disk as of the newest look at it; 0 bytes per second = not known yet.
   std::uint64_t free_bytes = 0;
   std::uint64_t reserve_bytes = 0;  ///< The recording stops when no more than this is free.
   double bytes_per_s = 0.0;

@@ -44,7 +44,7 @@ class RecordingLoop {
   std::uint64_t ReserveBytes(std::uint64_t capacity) const;
   void StopForReserve();
   void Fail(const Status& status);
-  /// What was written so far, into the account.
+  /// Enters what was written so far into the account.
   void Enter();
   void End();
 

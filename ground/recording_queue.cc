@@ -6,7 +6,7 @@
 namespace isotherm {
 namespace {
 
-/// What an item keeps in memory, but for what all have.
+/// Returns what an item keeps in memory, but for what all have.
 std::size_t Bytes(const Item& item) {
   if (const auto* depth = std::get_if<ReceivedDepth>(&item))
     return depth->encoded->image.payload.size();

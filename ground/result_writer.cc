@@ -50,7 +50,7 @@ fs::path SecondFolder(const fs::path& folder) {
          ("isotherm-" + (name.has_filename() ? name : name.parent_path()).filename().string());
 }
 
-/// What to do next, for whoever holds the rig.
+/// Returns what to do next, for whoever holds the rig.
 std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
                            const RecordingAccount& recording) {
   std::string text;

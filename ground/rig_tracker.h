@@ -36,8 +36,8 @@ class RigTracker {
   /// A valid thermal frame of the camera's size, before the first depth frame after it.
   void AddThermal(ThermalFramePtr frame);
 
-  /// What a source outside says about the rig's motion, in order of capture time, ideally before
-  /// the first depth frame that is not older.
+  /// Takes what a source outside says about the rig's motion, in order of capture time, ideally
+  /// before the first depth frame that is not older.
   void AddOutsidePose(const OutsidePose& pose) { outside_.Add(pose); }
 
   /// The first frame of a sub-map: its pose is given, and nothing is tracked against yet.
@@ -76,7 +76,7 @@ class RigTracker {
   const OutsidePrior& outside() const { return outside_; }
 
  private:
-  /// What frames usually look like: a frame that differs is not on the right surface.
+  /// How frames usually look: a frame that differs is not on the right surface.
   struct Usual {
     double residual_per_m = 0.0;  ///< Over the square of the depth.
     double agreement = 0.0;
@@ -88,7 +88,7 @@ class RigTracker {
   /// or else, and if that does not fit, from constant velocity.
   TrackingResult Follow(const PreparedDepth& depth, CaptureTime time, const TsdfVolume& volume,
                         ThreadPool& pool);
-  /// Of constant velocity since the last trusted frame.
+  /// The error of constant velocity since the last trusted frame.
   PriorError InertialError(CaptureTime time, double mean_depth_m) const;
   /// Unlike the frames before, although within all limits.
   LostReason FindAnomaly(const TrackingResult& result) const;

@@ -17,7 +17,7 @@ struct BehindCounts {
   std::uint64_t depth_frames = 0;  ///< Tracked, but not integrated.
 };
 
-/// What the service's threads know of the running scan, for the operator and for each other.
+/// Holds what the service's threads know of the running scan, for the operator and for each other.
 /// Thread-safe.
 struct ScanBoard {
   LatestValue<Feedback> feedback;

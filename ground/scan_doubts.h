@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// What became of a scan, as far as it may prove that something was wrong from the start.
+/// Holds what became of a scan, as far as it may prove that something was wrong from the start.
 struct ScanOutcome {
   const PipelineCounts& counts;
   const GroundOptions& options;
@@ -16,7 +16,7 @@ struct ScanOutcome {
   bool can_fuse = false;            ///< The calibration and the camera allow temperatures.
   std::size_t poses = 0;            ///< In `world`.
   std::size_t maps = 1;             ///< Sub-maps that were never joined, with the first.
-  std::size_t points = 0;           ///< Of the surface.
+  std::size_t points = 0;           ///< Points of the surface.
   std::size_t measured_points = 0;  ///< ... with a temperature.
 };
 

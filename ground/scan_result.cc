@@ -74,7 +74,7 @@ std::optional<SigmaFigures> Figures(const std::vector<PoseSigma>& sigmas) {
   return SigmaFigures{Figures(std::move(translations_mm)), Figures(std::move(rotations_deg))};
 }
 
-/// What poses from outside were and did.
+/// Returns what poses from outside were and did.
 Json DescribeOutside(const OutsidePrior& outside) {
   Json json;
   const OutsideStreamCounts& samples = outside.stream().counts();
@@ -108,7 +108,7 @@ std::string DescribeOutsideInWords(const OutsidePrior& outside) {
   return text + "\n";
 }
 
-/// What was out of the ordinary with depth frames; a line, or nothing.
+/// Returns what was out of the ordinary with depth frames; a line, or nothing.
 std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t relocalisations) {
   std::string text;
   const auto add = [&text](std::uint64_t count, const char* what) {

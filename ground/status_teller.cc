@@ -32,7 +32,7 @@ std::uint64_t Dropped(const StreamStatus& stream) {
   return sum;
 }
 
-/// What the operator should do something about.
+/// Adds what the operator should do something about.
 void AddTroubles(const GroundSituation& situation, std::vector<std::string>& parts) {
   constexpr Nanoseconds kSlow = std::chrono::seconds(2);
   if (situation.behind.thermal_frames > 0)
@@ -49,7 +49,7 @@ void AddTroubles(const GroundSituation& situation, std::vector<std::string>& par
   }
 }
 
-/// What has arrived of the scan, and where it stays.
+/// Adds what has arrived of the scan, and where it stays.
 void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) {
   const SessionAccount& account = situation.link.account;
   parts.push_back(fmt::format("received {}, {}", ArrivedText("depth", account.depth),

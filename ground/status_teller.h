@@ -12,7 +12,7 @@
 
 namespace isotherm {
 
-/// What the operator's line is made of.
+/// Holds what the operator's line is made of.
 struct GroundSituation {
   SubscriberStats link;
   std::optional<Feedback> feedback;  ///< The newest of this scan.

@@ -10,8 +10,8 @@
 
 namespace isotherm {
 
-/// What a daemon says to the service manager. Without one (NOTIFY_SOCKET unset) each call does
-/// nothing. Thread-safe.
+/// Tells the service manager the state of a daemon. Without one (NOTIFY_SOCKET unset) each call
+/// does nothing. Thread-safe.
 void NotifyReady(std::string_view status);
 void NotifyStatus(std::string_view status);
 /// The daemon runs, is alive, and waits for `reason` to pass: ready, with that as its status. To be

@@ -41,7 +41,7 @@ class UnblockedOutput {
   const int descriptor_;
   mutable std::mutex mutex_;  // Guards what follows.
   Kind kind_ = Kind::kDirect;
-  int own_ = -1;  ///< Of kReopened: the same file, but never waiting.
+  int own_ = -1;  ///< With kReopened, the same file opened so that it never waits.
   std::uint64_t device_ = 0;
   std::uint64_t inode_ = 0;
   std::string kept_;

@@ -26,7 +26,7 @@ std::string_view FirstColumns(std::string_view text, std::size_t columns) {
   return text.substr(0, end);
 }
 
-/// Of standard error; a line that wraps cannot be overwritten.
+/// The width of standard error's terminal; a line that wraps cannot be overwritten.
 std::size_t TerminalColumns() {
   winsize size{};
   const bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;

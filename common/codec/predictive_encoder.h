@@ -151,9 +151,10 @@ class PredictiveEncoder {
   PaddedImage image_;
   PaddedImage filled_;                    ///< The same without holes.
   std::vector<std::uint16_t> symbols_;    ///< Context and token of each pixel.
-  std::vector<std::uint16_t> residuals_;  ///< Of a row's pixels.
-  std::vector<std::uint16_t> raw_bits_;   ///< Of a row's pixels.
-  /// Of even and of odd pixels: to count the same twice in a row would wait for memory.
+  std::vector<std::uint16_t> residuals_;  ///< One per pixel of a row.
+  std::vector<std::uint16_t> raw_bits_;   ///< One per pixel of a row.
+  /// Counts of even and of odd pixels apart: to count the same twice in a row would wait for
+  /// memory.
   std::array<std::array<std::uint32_t, kTableSize>, 2> counts_{};
   std::array<EncodeSymbol, kTableSize> table_{};
   std::array<BitWriter, kStrips> bits_;

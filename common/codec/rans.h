@@ -26,7 +26,7 @@ void PutFrequencies(std::span<const std::uint16_t> frequencies, std::vector<std:
 /// False unless they add up to kScale or are all zero.
 bool GetFrequencies(PayloadReader& in, std::span<std::uint16_t> frequencies);
 
-/// What the encoder needs to know about a symbol.
+/// Holds what the encoder needs to know about a symbol.
 struct EncodeSymbol {
   /// ceil(2^kReciprocalBits / frequency): for a state x < 2^(32 - kScaleBits) * frequency, x *
   /// reciprocal stays below 2^64 and (x * reciprocal) >> kReciprocalBits is exactly x / frequency.
@@ -67,9 +67,9 @@ class RansEncoder {
   std::uint16_t* next_;
 };
 
-/// What the decoder needs to know about the contexts' symbols: first the symbol of a slot, then its
-/// place. Two small tables stay in the first-level cache where one large one would not. Symbols are
-/// below kMaxSymbols.
+/// Holds what the decoder needs to know about the contexts' symbols: first the symbol of a slot,
+/// then its place. Two small tables stay in the first-level cache where one large one would not.
+/// Symbols are below kMaxSymbols.
 template <std::size_t kContexts>
 class DecodeTables {
  public:

@@ -14,7 +14,7 @@
 
 namespace isotherm {
 
-/// What Push does when the queue is full.
+/// Says what Push does when the queue is full.
 enum class OverflowPolicy {
   kDropOldest,  ///< Live data: the newest counts. Drops are counted.
   kBlock,       ///< Recordings: nothing may be lost; the producer waits.

@@ -43,7 +43,7 @@ struct ThermalHousekeeping {
   float shutter_celsius = kUnknownCelsius;
 };
 
-/// What identifies and dates a frame, from the edge to the end.
+/// Holds what identifies and dates a frame, from the edge to the end.
 struct FrameHeader {
   std::uint64_t session = 0;  ///< One per start of a scan on the edge.
   std::uint64_t frame_number =
@@ -85,15 +85,15 @@ struct ThermalFrame {
   bool valid = false;  ///< Temperatures may reach the model.
 };
 
-/// What a thermal camera itself says of its correction.
+/// Holds what a thermal camera itself says of its correction.
 struct CameraNuc {
   NucState state = NucState::kUnknown;
   NucSource source = NucSource::kUnknown;  ///< How the driver knows.
   std::optional<double> seconds_since;     ///< Since the last correction, by the camera's count.
 };
 
-/// What a FrameSource delivers: pixels and times as the device and the host gave them, not yet
-/// stamped.
+/// Holds what a FrameSource delivers: pixels and times as the device and the host gave them, not
+/// yet stamped.
 struct RawFrame {
   Sensor sensor = Sensor::kDepth;
   std::uint64_t frame_number =

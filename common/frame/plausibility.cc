@@ -18,14 +18,14 @@ constexpr double kMaxDelay_s = 1.0;
 constexpr double kMinDepthScale = 10.0;
 constexpr double kMinRate_hz = 1.0;
 constexpr double kMaxRate_hz = 1000.0;
-/// Of what may be meant: a time lapse.
+/// The slowest that may be meant: a time lapse.
 constexpr double kMaxPeriod_s = 600.0;
-/// Of the shorter stream.
+/// The least overlap, as a share of the shorter stream.
 constexpr double kMinOverlap = 0.5;
 constexpr double kMinDepth_m = 0.2, kMaxDepth_m = 20.0;
 constexpr double kMinMean_celsius = -40.0;
 constexpr double kMaxSaturated = 0.99;
-/// What a reading of numbers in another unit must give to be named as the cause.
+/// A reading of numbers in another unit must lie in here to be named as the cause.
 constexpr double kLikelyMin_celsius = -20.0, kLikelyMax_celsius = 500.0;
 constexpr double kLikelyMin_m = 0.3, kLikelyMax_m = 5.0;
 constexpr int kPixelStep = 5;
@@ -97,7 +97,7 @@ bool IsLikely(double celsius) {
   return celsius >= kLikelyMin_celsius && celsius <= kLikelyMax_celsius;
 }
 
-/// What pixels with this mean would be in the units that are confused with centi-kelvin.
+/// Returns what pixels with this mean would be in the units that are confused with centi-kelvin.
 std::string CauseOfMean(double mean) {
   std::string readings;
   const auto add = [&readings](const char* unit, double celsius) {

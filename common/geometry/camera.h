@@ -45,7 +45,7 @@ std::optional<Eigen::Vector2d> Project(const CameraModel& camera, const Eigen::V
 /// iteration.
 Eigen::Vector2d Unproject(const CameraModel& camera, const Eigen::Vector2d& pixel);
 
-/// What was calibrated about one rig. Data, not configuration.
+/// Holds what was calibrated about one rig. Data, not configuration.
 struct Rig {
   std::optional<CameraModel> depth;
   std::optional<CameraModel> thermal;
@@ -54,7 +54,7 @@ struct Rig {
   std::optional<RigidTransform> T_thermal_depth;
   double thermal_delay_s = 0.0;  ///< Added to thermal timestamps.
   std::string serial, date, method;
-  std::string depth_serial, thermal_serial;  ///< Of the cameras that were calibrated; empty = any.
+  std::string depth_serial, thermal_serial;  ///< The cameras that were calibrated; empty = any.
   std::optional<double> reprojection_error_px;
 };
 

@@ -4,9 +4,9 @@
 
 namespace isotherm {
 
-/// Of a pose T_a_b that is off by a small twist in `a`: translation of b's origin x, y, z (metres),
-/// then rotation about it (radians, axis-angle), in this order. Row and column i belong to
-/// component i.
+/// The covariance of a pose T_a_b that is off by a small twist in `a`: translation of b's origin x,
+/// y, z (metres), then rotation about it (radians, axis-angle), in this order. Row and column i
+/// belong to component i.
 using PoseCovariance = Eigen::Matrix<double, 6, 6>;
 
 /// One standard deviation along the least certain direction.

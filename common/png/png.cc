@@ -20,7 +20,7 @@ constexpr std::array<std::uint8_t, 16> kStart = {0x89, 'P', 'N', 'G', '\r', '\n'
                                                  0,    0,   0,   13,  'I',  'H',  'D',  'R'};
 /// Signature, chunk length and name, then width, height, bits and colour type.
 constexpr std::size_t kHeadBytes = kStart.size() + 4 + 4 + 2;
-/// Of zlib, 0..9: half the size that run lengths only give shaded surfaces.
+/// The level of zlib, 0..9: half the size that run lengths only give shaded surfaces.
 constexpr int kCompression = 6;
 /// Deflate packs at most 1032 bytes into one.
 constexpr std::uint64_t kMaxRatio = 1032;
@@ -44,9 +44,9 @@ int ChannelsOf(std::uint8_t colour_type) {
   }
 }
 
-/// What libpng reads from or writes to, and what it says if it fails.
+/// Holds what libpng reads from or writes to, and what it says if it fails.
 struct Stream {
-  Bytes rest;                                ///< Of the file that is read.
+  Bytes rest;                                ///< What is left of the file that is read.
   std::vector<std::uint8_t>* out = nullptr;  ///< The file that is written.
   std::array<char, 128> error{};
 };

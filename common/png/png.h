@@ -9,7 +9,7 @@
 
 namespace isotherm {
 
-/// What the head of a PNG file says.
+/// Holds what the head of a PNG file says.
 struct PngHead {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

@@ -5,11 +5,11 @@
 
 namespace isotherm {
 
-/// What is looked at, and what it mirrors.
+/// Holds what is looked at, and what it mirrors.
 struct EmissionConditions {
   double object_celsius = 100.0;
-  double reflected_celsius = 23.0;  ///< Of the surroundings, uniform.
-  double operator_celsius = 35.0;   ///< Of the operator and the rig, mirrored at small angles.
+  double reflected_celsius = 23.0;  ///< The surroundings, all of one temperature.
+  double operator_celsius = 35.0;   ///< Operator and rig, mirrored at small angles.
   double operator_half_width_m = 0.3;
   double distance_m = 0.5;  ///< Between camera and surface.
 };

@@ -62,9 +62,9 @@ double FresnelReflectivity(double angle_rad, double n, double kappa);
 /// reflectivity, scaled so that it is `normal_emissivity` along the normal. Never above 1.
 double DirectionalEmissivity(double angle_rad, double normal_emissivity, double n, double kappa);
 
-/// What a camera that assumes a black body shows for a surface of `true_celsius` and `emissivity`
-/// (0..1) that reflects surroundings of `reflected_celsius` (thesis eq. 3.1, integrated over the
-/// band). NaN if a temperature is out of range.
+/// Returns what a camera that assumes a black body shows for a surface of `true_celsius` and
+/// `emissivity` (0..1) that reflects surroundings of `reflected_celsius` (thesis eq. 3.1,
+/// integrated over the band). NaN if a temperature is out of range.
 double ApparentCelsius(const BandRadiance& band, double true_celsius, double emissivity,
                        double reflected_celsius);
 

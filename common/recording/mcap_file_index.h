@@ -15,7 +15,7 @@ struct Gap {
   std::map<ChannelId, std::uint64_t> message_counts;  ///< From the message indexes that survived.
 };
 
-/// What a file contains and where, without its messages.
+/// Holds what a file contains and where, without its messages.
 struct FileIndex {
   Header header;
   bool complete = false;            ///< Ends with a summary that is whole.
@@ -24,7 +24,7 @@ struct FileIndex {
   static constexpr std::size_t kMaxGaps = 1000;
   Definitions definitions;
   std::vector<Segment> segments;       ///< In file order.
-  std::set<std::string> compressions;  ///< Of the chunks.
+  std::set<std::string> compressions;  ///< All that its chunks use.
   std::vector<Metadata> metadata;
   std::map<ChannelId, std::uint64_t> message_counts;
 };

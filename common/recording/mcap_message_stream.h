@@ -57,7 +57,7 @@ class MessageStream {
   std::vector<std::size_t> order_;  ///< Segments by start time.
   std::size_t next_in_order_ = 0;
   UnpackBudget budget_;
-  std::size_t open_messages_ = 0;                  ///< Of all cursors.
+  std::size_t open_messages_ = 0;                  ///< All cursors together.
   std::uint64_t begin_ = 0;                        ///< Earlier messages are skipped.
   std::vector<Cursor> cursors_;                    ///< Heap.
   std::list<Cached> cache_;                        ///< Most recently used first.

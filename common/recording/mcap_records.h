@@ -97,7 +97,7 @@ struct MessageIndex {
 struct ChunkIndex {
   std::uint64_t start = 0;
   std::uint64_t end = 0;
-  std::uint64_t chunk_offset = 0;  ///< Of the chunk record in the file.
+  std::uint64_t chunk_offset = 0;  ///< Place of the chunk record in the file.
   std::uint64_t chunk_length = 0;  ///< With opcode and length.
   std::map<ChannelId, std::uint64_t> message_index_offsets;
   std::uint64_t message_index_length = 0;
@@ -180,7 +180,7 @@ class RecordWalker {
 
   struct Record {
     Opcode opcode{};
-    std::size_t offset = 0;  ///< Of the opcode.
+    std::size_t offset = 0;  ///< Place of the opcode.
     std::span<const std::uint8_t> content;
   };
   /// nullopt at the end and where no whole record follows; see AtEnd().

@@ -55,7 +55,7 @@ class Scanner {
     std::map<ChannelId, std::uint64_t> counts;
     bool checked = false;  ///< Its content was read and is good.
   };
-  /// What the next message indexes are about.
+  /// Says what the next message indexes are about.
   enum class Indexed { kNothing, kChunk, kGap };
 
   /// Notes the gap from `bad` to where the file goes on, and returns that place.

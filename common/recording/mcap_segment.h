@@ -35,7 +35,7 @@ class UnpackBudget {
   bool exhausted_ = false;
 };
 
-/// Of a chunk: none and zstd.
+/// Whether a chunk of this compression can be read: none and zstd.
 bool IsSupportedCompression(std::string_view compression);
 
 /// A stretch of the file that holds messages: a chunk record, or records that lie in no chunk.
@@ -63,14 +63,14 @@ class Definitions {
   void AddNew(Channel channel);
   bool Fits(std::size_t size);
 
-  std::size_t bytes_ = 0;  ///< Of all of them.
+  std::size_t bytes_ = 0;  ///< Sum of their sizes.
 };
 
 /// The uncompressed records of a segment and where its messages are in them.
 struct SegmentContent {
   struct Entry {
     std::uint64_t log_time = 0;
-    std::size_t offset = 0;  ///< Of the message record.
+    std::size_t offset = 0;  ///< Place of the message record.
     ChannelId channel_id = 0;
   };
   Bytes records;

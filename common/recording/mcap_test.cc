@@ -17,7 +17,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// What a message is recognised by.
+/// Holds what a message is recognised by.
 struct Note {
   std::uint64_t log_time = 0;
   std::uint32_t number = 0;
@@ -30,7 +30,7 @@ Bytes ToBytes(std::uint32_t number) {
   return bytes;
 }
 
-/// Of the times 10, 50, 200, 210, 400, 401, 402, 600: how many lie before each chunk.
+/// How many of the times 10, 50, 200, 210, 400, 401, 402, 600 lie before each chunk.
 constexpr std::array<std::size_t, 5> kNotesBefore = {0, 2, 4, 7, 8};
 
 class McapTest : public ::testing::Test {

@@ -70,7 +70,8 @@ class Writer {
 
   MessageIndex& IndexFor(ChannelId channel);
   Status WriteChunk();
-  /// Of the chunk that was just written; completes `index` and empties the chunk.
+  /// Writes the indexes of the chunk that was just written; completes `index` and empties the
+  /// chunk.
   Status WriteMessageIndexes(ChunkIndex& index);
   void AppendSummary(Bytes& out) const;
   void AppendSummaryGroup(Opcode group, Bytes& out, std::vector<SummaryOffset>& offsets) const;
@@ -89,7 +90,7 @@ class Writer {
   Bytes compressed_;
   Bytes out_;
 
-  Statistics statistics_;  ///< Of what is in the file.
+  Statistics statistics_;  ///< They count what is in the file.
   std::vector<ChunkIndex> chunk_indexes_;
   std::vector<MetadataIndex> metadata_indexes_;
   std::uint64_t offset_ = 0;

@@ -27,7 +27,7 @@ struct NucEvent {
 
 /// The wall clock was set during the scan, which capture times do not follow.
 struct ClockStep {
-  CaptureTime time{};              ///< Of the first frame after it.
+  CaptureTime time{};              ///< Capture time of the first frame after it.
   Nanoseconds step{0};             ///< Positive = ahead.
   Nanoseconds wall_minus_time{0};  ///< What to add to capture times from here on to get UTC.
 };
@@ -121,8 +121,8 @@ struct RecordingGap {
   std::map<std::string, std::uint64_t> messages_by_topic;
 };
 
-/// What is known about a recording without reading its frames (from the summary, or rebuilt by one
-/// pass over the chunk headers if the file has none).
+/// Holds what is known about a recording without reading its frames (from the summary, or rebuilt
+/// by one pass over the chunk headers if the file has none).
 struct RecordingInfo {
   bool complete = false;            ///< Has footer and summary.
   std::uint64_t bytes_ignored = 0;  ///< Damaged or unfinished parts that are not read.

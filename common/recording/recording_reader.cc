@@ -14,7 +14,7 @@ namespace {
 
 namespace rec = recording;
 
-/// What a channel carries for us.
+/// Says what a channel carries for us.
 enum class Content {
   kOther,
   kRawDepth,

@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// What each pixel of a camera sees.
+/// Holds what each pixel of a camera sees.
 struct HitImage {
   Image<float>
       z_m;  ///< height x width, row-major, metres along the optical axis; infinity = nothing.
@@ -59,10 +59,10 @@ class CameraView {
   CameraView(const Scene& scene, const RigidTransform& T_world_camera);
 
   struct Surface {
-    float cosine;   ///< Of the angle between normal and line of sight, 0..1.
+    float cosine;   ///< Cosine of the angle between normal and line of sight, 0..1.
     float celsius;  ///< True temperature.
   };
-  /// Of the point at depth `z_m` on the line of sight (x, y, 1).
+  /// The surface at the point at depth `z_m` on the line of sight (x, y, 1).
   Surface At(int primitive, const Eigen::Vector2f& ray, float z_m) const;
   float CosineAt(int primitive, const Eigen::Vector2f& ray, float z_m) const;
 

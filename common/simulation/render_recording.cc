@@ -111,8 +111,8 @@ Status WriteItem(const SimulatedScan& scan, const std::vector<OutsidePose>& odom
   return writer.Write(worker.thermal, scan.thermal_times()[item.number].arrival);
 }
 
-/// What a calibration of the camera's constant delay would find: added to filtered arrivals, it
-/// gives the exposure. The edge stamps by the frames that were held up least.
+/// Returns what a calibration of the camera's constant delay would find: added to filtered
+/// arrivals, it gives the exposure. The edge stamps by the frames that were held up least.
 std::string KnownDelay(const ClockOptions& clock) {
   return fmt::format("{:.6f}", -clock.delay_s());
 }

@@ -57,9 +57,9 @@ class Scene {
   std::vector<double> bounding_radius_m_;
 };
 
-/// What a thermal camera without noise and blur shows for a surface point seen from `viewer_world`:
-/// directional emissivity and reflected surroundings (thesis eq. 3.1, B.2). Mirrors reflect the
-/// scene (one bounce).
+/// Returns what a thermal camera without noise and blur shows for a surface point seen from
+/// `viewer_world`: directional emissivity and reflected surroundings (thesis eq. 3.1, B.2). Mirrors
+/// reflect the scene (one bounce).
 double TrueApparentCelsius(const Scene& scene, const BandRadiance& band, const SurfacePoint& point,
                            const Eigen::Vector3d& viewer_world);
 

@@ -10,9 +10,9 @@ namespace isotherm {
 class OdometryOptions;
 class SimulatedScan;
 
-/// What odometry beside the cameras says about the whole of a simulated scan: noisy, of another
-/// scale, in a reference frame of its own. In order of time; empty if its rate is 0. Everything
-/// random follows from `seed`.
+/// Returns what odometry beside the cameras says about the whole of a simulated scan: noisy, of
+/// another scale, in a reference frame of its own. In order of time; empty if its rate is 0.
+/// Everything random follows from `seed`.
 std::vector<OutsidePose> SimulateOdometry(const OdometryOptions& options, const SimulatedScan& scan,
                                           std::uint64_t seed);
 

@@ -12,7 +12,7 @@
 namespace isotherm {
 namespace {
 
-/// What a stream of random numbers is for.
+/// Says what a stream of random numbers is for.
 enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels, kDepthClock, kThermalClock };
 
 }  // namespace

@@ -57,7 +57,7 @@ class ThermalSensor {
   double MirrorRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
                         const Eigen::Vector2f& ray, double emissivity) const;
   void Blur(Scratch& scratch) const;
-  /// What the optics throw on the detector, into scratch.radiance.
+  /// Computes what the optics throw on the detector, into scratch.radiance.
   void Expose(const Scene& scene, const RigidTransform& T_world_thermal, Scratch& scratch) const;
   /// Adds one exposure's part, which depends on the row, to scratch.smeared.
   void AddSmear(const std::vector<double>& exposure_times_s, std::size_t exposure,

@@ -15,7 +15,7 @@ namespace isotherm {
 struct EnvelopeOptions {
   int median_window = 15;           ///< Frames; with less, the median is used.
   double window_s = 30.0;           ///< The estimate rests on one to two times this.
-  double max_skew_ppm = 200.0;      ///< Of the camera's clock.
+  double max_skew_ppm = 200.0;      ///< The most that the camera's clock drifts.
   double max_slew_ppm = 200.0;      ///< By which the estimate may change beyond that.
   double early_limit_s = 0.005;     ///< A frame earlier than this is from another counter.
   double residual_limit_s = 0.010;  ///< Frames all later than this are not synchronised.
@@ -50,7 +50,7 @@ class EnvelopeClock {
   bool warm() const { return line_.ready(); }
   /// The estimate has caught up with a line of many frames.
   bool settled() const { return caught_up_; }
-  /// Of the camera's clock against the computer's, positive = the camera's is slow.
+  /// Drift of the camera's clock against the computer's, positive = the camera's is slow.
   double skew_ppm() const { return 1e6 * line_.slope(); }
 
  private:
@@ -77,10 +77,10 @@ class EnvelopeClock {
   DeviceTicks first_ticks_{};
   CaptureTime first_arrival_{};
   std::optional<DeviceTicks> last_ticks_;
-  std::deque<Sample> recent_;  ///< Of residual_window_s, and one before.
+  std::deque<Sample> recent_;  ///< Samples of residual_window_s, and one before.
   EnvelopeLine line_;
   SlidingMedian median_;
-  double median_excess_s_ = 0.0;  ///< Of the median above the line.
+  double median_excess_s_ = 0.0;  ///< How far the median lies above the line.
   double estimate_s_ = 0.0;       ///< At estimated_at_s_.
   double estimated_at_s_ = 0.0;
   bool caught_up_ = false;

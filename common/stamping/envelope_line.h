@@ -54,14 +54,14 @@ class EnvelopeLine {
   std::size_t group_;
   double window_s_, max_slope_;
   LowerHull hull_, next_hull_;
-  Point lowest_{};             ///< Of the group that is not full yet.
-  double sum_ = 0.0;           ///< Of its differences.
+  Point lowest_{};             ///< Least delayed point of the group that is not full yet.
+  double sum_ = 0.0;           ///< Sum of that group's differences.
   std::size_t in_group_ = 0;   ///< Its frames.
   double group_spread_ = 0.0;  ///< Mean less lowest of the last group.
   std::deque<Point> groups_;   ///< The lowest of each.
-  Point mean_{};               ///< Of the groups that the line rests on.
+  Point mean_{};               ///< Mean of the groups that the line rests on.
   double slope_ = 0.0;
-  double variance_ = 0.0;  ///< Of one group about the line.
+  double variance_ = 0.0;  ///< Variance of one group about the line.
   double moment_ = 0.0;    ///< Sum of squares of x about the mean.
   std::size_t used_ = 0;   ///< Groups that the line rests on.
 };

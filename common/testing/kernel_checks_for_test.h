@@ -31,7 +31,7 @@ void ForEachInstructionSet(const Check& check) {
 /// Most lanes of any instruction set: widths up to several times this meet every tail.
 inline constexpr int kMostLanes = 16;
 
-/// What a kernel must leave alone behind its output.
+/// A kernel must leave it alone behind its output.
 inline constexpr std::int32_t kCanary = -123456789;
 
 /// Random numbers, the same in every run unless ISOTHERM_TEST_SEED says otherwise.

@@ -6,7 +6,8 @@ struct timex;
 
 namespace isotherm {
 
-/// What the kernel knows about the wall clock; time synchronisation (chrony) keeps it current.
+/// Holds what the kernel knows about the wall clock; time synchronisation (chrony) keeps it
+/// current.
 struct KernelClock {
   bool synchronised = false;
   double offset_s = std::numeric_limits<double>::quiet_NaN();  ///< Still being corrected.
@@ -18,7 +19,7 @@ struct KernelClock {
 /// Asks the kernel (adjtimex, read only).
 KernelClock ReadKernelClock();
 
-/// What its answer means; `state` is what the call returned.
+/// Returns what its answer means; `state` is what the call returned.
 KernelClock Interpret(const timex& answer, int state);
 
 }  // namespace isotherm

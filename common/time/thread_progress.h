@@ -7,8 +7,8 @@
 
 namespace isotherm {
 
-/// What a watchdog needs to know of a thread: for how long it has been at the same piece of work. A
-/// thread that waits for another one is idle, the other's own progress tells. Thread-safe.
+/// Holds what a watchdog needs to know of a thread: for how long it has been at the same piece of
+/// work. A thread that waits for another one is idle, the other's own progress tells. Thread-safe.
 class ThreadProgress {
  public:
   /// The thread begins a piece of work, or goes on with it.

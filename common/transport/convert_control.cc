@@ -63,7 +63,7 @@ std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Fe
   return std::nullopt;
 }
 
-/// Of the upper triangle of 6 x 6.
+/// The upper triangle of 6 x 6 has so many.
 constexpr std::size_t kCovarianceNumbers = 21;
 
 /// The upper triangle, row by row.

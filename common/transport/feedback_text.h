@@ -13,12 +13,12 @@ namespace isotherm {
 /// m up, turn 25 deg right". Small parts are left out; "here" if all are.
 std::string MoveText(const RigidTransform& T_depth_next);
 
-/// What to do now and why: "closer (40 % of the surface is farther than 0.60 m)"; "go on" if
-/// nothing is to be changed.
+/// Returns what to do now and why: "closer (40 % of the surface is farther than 0.60 m)"; "go on"
+/// if nothing is to be changed.
 std::string AdviceText(const Feedback& feedback);
 
-/// What the ground says, a part per fact, the most important first: advice, tracking, coverage of
-/// view and model, where to go next. For FitLine(): what does not fit is left out.
+/// Returns what the ground says, a part per fact, the most important first: advice, tracking,
+/// coverage of view and model, where to go next. For FitLine(): what does not fit is left out.
 std::vector<std::string> FeedbackParts(const Feedback& feedback);
 
 /// The same in one line.

@@ -55,7 +55,7 @@ class RawWriter {
   dds_entity_t writer_ = 0;
 };
 
-/// What an edge says before it sends frames of a session.
+/// Sends what an edge says before it sends frames of a session.
 void Announce(const RawWriter& writer, std::uint64_t session) {
   isotherm_wire_Rig rig{};
   std::strcpy(rig.edge_id, "test-edge");

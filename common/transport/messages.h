@@ -30,8 +30,8 @@ inline constexpr std::uint8_t kWireMark = 0xA5;
 
 inline constexpr std::size_t kMaxIdBytes = 32;     ///< edge_id, serial numbers, names of stages.
 inline constexpr std::size_t kMaxTextBytes = 256;  ///< Sentences.
-inline constexpr std::size_t kMaxPayloadBytes = 8U << 20;  ///< Of one encoded frame.
-inline constexpr std::size_t kMaxFramePixels = 1U << 22;   ///< Of one frame: 2048 x 2048.
+inline constexpr std::size_t kMaxPayloadBytes = 8U << 20;  ///< One encoded frame.
+inline constexpr std::size_t kMaxFramePixels = 1U << 22;   ///< One frame: 2048 x 2048.
 inline constexpr std::size_t kMaxHoles = 64;               ///< Ranges in one receipt.
 inline constexpr std::size_t kMaxDropReasons = 16;
 inline constexpr std::size_t kMaxAdvice = 8;
@@ -53,13 +53,13 @@ struct Hello {
 /// One sentence that says which side is old, or ok.
 Status CheckCompatible(const Hello& own, const Hello& peer);
 
-/// What one camera of the rig delivers.
+/// Holds what one camera of the rig delivers.
 struct StreamMode {
   int width = 0;  ///< Pixels; 0 = the rig has no such camera.
   int height = 0;
   double rate_hz = 0.0;  ///< Nominal.
   Encoding encoding = Encoding::kRaw16;
-  std::string serial{};  ///< Of the camera; empty = unknown.
+  std::string serial{};  ///< Serial number of the camera; empty = unknown.
   std::string model{};   ///< Driver and model, for people; empty = not a camera, or unknown.
 };
 
@@ -89,7 +89,7 @@ enum class ScanState : std::uint8_t {
   kEnded = 2,     ///< The counts in the status are final: the ground can close its account.
 };
 
-/// What happens when the link or the ground is slower than the cameras.
+/// Says what happens when the link or the ground is slower than the cameras.
 enum class PublishPolicy : std::uint8_t {
   kLive = 0,      ///< Never wait: latency is bounded and what is left behind is counted.
   kLossless = 1,  ///< Wait for receipts, so that every frame arrives.
@@ -112,12 +112,12 @@ struct NucReport {
   NucPolicy policy = NucPolicy::kAutomatic;
   double seconds_since = std::numeric_limits<double>::quiet_NaN();  ///< Since the shutter opened.
   std::uint32_t closings_per_minute = 0;
-  double closed_share = std::numeric_limits<double>::quiet_NaN();  ///< Of the last minute, 0..1.
+  double closed_share = std::numeric_limits<double>::quiet_NaN();  ///< In the last minute, 0..1.
   bool storm = false;       ///< More closings per minute than allowed.
   bool warming_up = false;  ///< Temperatures may still be off.
   double fpa_celsius = std::numeric_limits<double>::quiet_NaN();
   double housing_celsius = std::numeric_limits<double>::quiet_NaN();
-  std::string reason{};  ///< Of the state; empty = nothing to say.
+  std::string reason{};  ///< Why the state is as it is; empty = nothing to say.
 };
 
 struct DropCount {
@@ -208,7 +208,7 @@ struct EdgeStatus {
   std::optional<ClockEcho> clock_echo;
   std::uint64_t disk_free_bytes = 0;
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
-  FeedbackLatency feedback;  ///< Of this session.
+  FeedbackLatency feedback;  ///< Feedback in this session.
   CameraReport depth_camera;
   CameraReport thermal_camera;
 };
@@ -247,8 +247,8 @@ struct FrameRange {
   friend bool operator==(const FrameRange&, const FrameRange&) = default;
 };
 
-/// What the ground has of one stream. received + missing = next (with `missing` the sum of all
-/// holes).
+/// Holds what the ground has of one stream. received + missing = next (with `missing` the sum of
+/// all holes).
 struct StreamReceipt {
   std::uint64_t next = 0;  ///< One above the highest number received.
   std::uint64_t handled =
@@ -257,7 +257,7 @@ struct StreamReceipt {
   std::vector<FrameRange> holes{};  ///< Newest kMaxHoles ranges that are missing, ascending.
 };
 
-/// What a ground station makes of a session.
+/// Says what a ground station makes of a session.
 enum class SessionVerdict : std::uint8_t {
   kFollowed = 0,
   kOtherRig = 1,  ///< Refused: another process has this name, and it came first.
@@ -302,7 +302,8 @@ struct StageLatency {
   float p99_s = 0.0F;
 };
 
-/// What the ground thinks of the scan, for the operator or the vehicle. Only the newest counts.
+/// Holds what the ground thinks of the scan, for the operator or the vehicle. Only the newest
+/// counts.
 struct Feedback {
   std::uint64_t session = 0;
   std::uint64_t frame_number = 0;  ///< Depth frame this is about, ...
@@ -310,15 +311,15 @@ struct Feedback {
   TrackingState tracking_state = TrackingState::kWaiting;
   std::optional<RigidTransform> T_world_depth;  ///< Absent while lost.
   double covered_area_m2 = 0.0;                 ///< Surface in the model.
-  CoverageShares model;                         ///< Of the whole surface.
-  CoverageShares view;                          ///< Of the surface in view.
+  CoverageShares model;                         ///< The whole surface.
+  CoverageShares view;                          ///< The surface in view.
   std::vector<Advice> advice{};                 ///< Most urgent first; at most kMaxAdvice.
   /// Where to go next; while lost, where tracking last worked.
   std::optional<RigidTransform> T_world_depth_next;
   std::vector<std::uint8_t>
       picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
   std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
-  /// Of T_world_depth, relative to the model; absent while lost.
+  /// How uncertain T_world_depth is relative to the model; absent while lost.
   std::optional<PoseCovariance> pose_covariance;
   std::string advice_reason{};  ///< Why, or what to do, with numbers; at most kMaxTextBytes.
   bool done = false;            ///< Enough of the whole surface is measured well.

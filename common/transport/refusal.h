@@ -22,11 +22,11 @@ enum class RefusalCause : std::uint8_t {
   kOutOfRange,    ///< A number that cannot be (below absolute zero, a depth scale of 0, ...).
   kNegativeTime,
   kImpossibleNumber,  ///< Frame number that cannot be next in its session.
-  kOtherSession,      ///< Of a session that is over.
+  kOtherSession,      ///< The sample is of a session that is over.
   kUndecodable,       ///< The payload does not decode.
   kOtherVersion,      ///< The peer speaks another major version.
   kOtherWriter,       ///< It calls itself the rig, but another process is.
-  kUnannounced,       ///< Of a session that the rig has not announced.
+  kUnannounced,       ///< The rig has not announced its session.
   kImplausibleTime,   ///< Capture time that cannot be next in its session.
   kNotTheGround,      ///< The sender has not said hello as a ground station of our version.
   kTooManyNames,      ///< One writer goes by more names than anybody has (InstanceLimit).

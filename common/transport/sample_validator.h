@@ -28,7 +28,7 @@ struct FrameFields {
   std::size_t payload_bytes = 0;
 };
 
-/// What a thermal frame carries besides.
+/// Holds what a thermal frame carries besides.
 struct ThermalFields {
   std::uint8_t nuc_state = 0;
   std::uint8_t nuc_source = 0;

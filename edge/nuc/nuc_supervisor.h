@@ -18,7 +18,7 @@ namespace isotherm {
 
 class NucOptions;
 
-/// What one thermal frame tells about the correction.
+/// Holds what one thermal frame tells about the correction.
 struct NucObservation {
   CaptureTime time{};
   bool shutter_closed = false;        ///< The camera says so in the frame.
@@ -27,10 +27,10 @@ struct NucObservation {
   PictureEvidence picture{};
 };
 
-/// What the camera is to do.
+/// Says what the camera is to do.
 enum class NucOrder : std::uint8_t { kTrigger, kAutomaticOn, kAutomaticOff, kRestartCamera };
 
-/// What is known about the thermal camera's correction at one frame, and what follows.
+/// Holds what is known about the thermal camera's correction at one frame, and what follows.
 struct NucStatus {
   NucState state = NucState::kUnknown;
   NucSource source = NucSource::kUnknown;
@@ -83,8 +83,8 @@ class NucSupervisor {
 
   /// Advances to a frame. At most one order comes of it.
   NucStatus Update(const NucObservation& seen);
-  /// What the camera says to an order, at once or some frames later. kFailedPrecondition: it takes
-  /// no such order and is not asked again; anything else but ok counts as an attempt.
+  /// Takes what the camera says to an order, at once or some frames later. kFailedPrecondition: it
+  /// takes no such order and is not asked again; anything else but ok counts as an attempt.
   void OnAnswer(NucOrder order, const Status& answer);
 
   /// A NUC as soon as it is allowed. Empty if the camera's answer to the order of the next frame,
@@ -98,7 +98,7 @@ class NucSupervisor {
   Status SetPolicy(NucPolicy policy);
 
   NucPolicy policy() const { return policy_; }
-  /// Of the last minute, for the status.
+  /// The closings of the last minute, for the status.
   const ShutterLog& shutter() const { return shutter_; }
   bool is_storm() const { return storm_; }
   bool is_warming_up() const { return warm_up_state_ == WarmUpWatch::State::kCold; }
@@ -139,7 +139,7 @@ class NucSupervisor {
   const Role role_;
   NucPolicy policy_;
 
-  CaptureTime frame_time_{};  ///< Of the newest frame, as it came.
+  CaptureTime frame_time_{};  ///< Time of the newest frame, as it came.
   CaptureTime now_{};         ///< The same, but never earlier than the frame before.
   std::optional<CaptureTime> first_frame_;
   ShutterLog shutter_;

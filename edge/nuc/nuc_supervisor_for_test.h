@@ -16,7 +16,7 @@ namespace isotherm {
 
 inline constexpr std::chrono::milliseconds kPeriod(25);  // 40 Hz.
 
-/// What a camera shows for a while.
+/// Says what a camera shows for a while.
 enum class Shows {
   kScene,     ///< The shutter is open, and the camera says nothing.
   kShutFlag,  ///< The frame says that the shutter is closed.

@@ -11,7 +11,7 @@ namespace isotherm {
 
 class NucOptions;
 
-/// What thermal pictures alone say about the shutter.
+/// Holds what thermal pictures alone say about the shutter.
 struct PictureEvidence {
   bool is_frozen = false;        ///< The same picture again and again: no camera is free of noise.
   bool is_like_shutter = false;  ///< Uniform from one frame to the next, where there was a scene.
@@ -41,7 +41,7 @@ class PictureWatch {
   const Nanoseconds longest_;
   std::optional<std::uint64_t> last_hash_;
   int repeats_ = 0;
-  std::deque<double> scene_spreads_k_;  ///< Of the last frames with a scene.
+  std::deque<double> scene_spreads_k_;  ///< Spreads of the last frames with a scene.
   std::optional<CaptureTime> uniform_since_;
 };
 

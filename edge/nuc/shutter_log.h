@@ -18,7 +18,7 @@ class ShutterLog {
   bool is_closed() const { return closed_at_.has_value(); }
   bool just_closed() const { return just_closed_; }
   bool just_opened() const { return just_opened_; }
-  /// Of the newest closing; kUnknown before the first.
+  /// Who noticed or ordered the newest closing; kUnknown before the first.
   NucSource source() const { return source_; }
   /// So far, or, when it is open, of the last time.
   Nanoseconds closed_for() const { return closed_for_; }

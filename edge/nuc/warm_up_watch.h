@@ -29,7 +29,7 @@ class WarmUpWatch {
 
   /// Change of the temperature, kelvin per minute; nullopt = not known (yet).
   std::optional<double> rate_k_per_min() const { return rate_k_per_min_; }
-  /// What a camera without temperatures still needs.
+  /// Returns what a camera without temperatures still needs.
   Nanoseconds left() const { return left_; }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace isotherm {
 
-/// What goes wrong at a frame of the fake depth camera.
+/// Says what goes wrong at a frame of the fake depth camera.
 enum class FakeDepthFault {
   kNone,
   kShort,      ///< Half of the bytes.
@@ -22,9 +22,9 @@ enum class FakeDepthFault {
   kHang,       ///< The library never returns: the process is stopped.
 };
 
-/// What the fake depth camera is and does. Travels as a text file that the driver reads when the
-/// camera is opened (and, for `connected`, all the time); its path is in the environment variable
-/// ISOTHERM_FAKE_DEPTH. Without the variable no camera is connected.
+/// Holds what the fake depth camera is and does. Travels as a text file that the driver reads when
+/// the camera is opened (and, for `connected`, all the time); its path is in the environment
+/// variable ISOTHERM_FAKE_DEPTH. Without the variable no camera is connected.
 struct FakeDepthScript {
   struct Fault {
     FakeDepthFault fault = FakeDepthFault::kNone;
@@ -62,7 +62,7 @@ std::optional<FakeDepthScript> ReadFakeDepthScript();
 std::vector<std::uint16_t> PrepareFakeDepth(const FakeDepthScript& script, int width, int height,
                                             bool tenth_mm);
 
-/// What the plane measures at a pixel, millimetres; 0 = no return.
+/// Returns what the plane measures at a pixel, millimetres; 0 = no return.
 std::uint16_t FakePlane_mm(int u, int v);
 
 /// One frame to send.

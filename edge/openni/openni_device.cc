@@ -39,7 +39,7 @@ class UnplugListener final : public openni::OpenNI::DeviceDisconnectedListener {
   std::atomic<bool> unplugged_{false};
 };
 
-/// What the library gave us.
+/// Holds what the library gave us.
 struct Handles {
   const OpenniLibrary library;
   openni::Device device;

@@ -30,7 +30,7 @@ class OpenniLibrary {
   Status status_;
 };
 
-/// What the library says about its last failure, in one line.
+/// Returns what the library says about its last failure, in one line.
 std::string OpenniError();
 
 /// Empty: the camera does not say.
@@ -39,7 +39,7 @@ std::string SerialOf(const openni::Device& device);
 /// The depth modes in units that we understand: "640x480@30 1 mm".
 std::vector<std::string> DepthModes(const openni::VideoStream& stream);
 
-/// What a stream was found to do after it was set up.
+/// Holds what a stream was found to do after it was set up.
 struct ActiveSettings {
   int width = 0;
   int height = 0;

@@ -9,12 +9,12 @@
 
 namespace isotherm {
 
-/// What the ground stations that are there make of this rig, by their receipts: they follow it, or
-/// another one, or they refuse it because another process has its name. Each says so several times
-/// in a second (a refusal once). Pure: time enters through arguments. Thread-compatible.
+/// Holds what the ground stations that are there make of this rig, by their receipts: they follow
+/// it, or another one, or they refuse it because another process has its name. Each says so several
+/// times in a second (a refusal once). Pure: time enters through arguments. Thread-compatible.
 class GroundRelation {
  public:
-  /// What was said so long ago is over.
+  /// Whatever was said longer ago is over.
   static constexpr Nanoseconds kMemory = std::chrono::seconds(3);
 
   explicit GroundRelation(std::string edge_id) : edge_id_(std::move(edge_id)) {}
@@ -36,7 +36,7 @@ class GroundRelation {
   /// Our session is refused: nothing of it is received, and no receipt will come.
   bool IsRefused(SteadyTime now) const { return IsRecent(refused_at_, now); }
 
-  /// What is wrong and what to do, to follow "the ground station"; empty = nothing.
+  /// Returns what is wrong and what to do, to follow "the ground station"; empty = nothing.
   std::string Problem(SteadyTime now) const {
     if (IsRefused(now)) {
       return "refuses this scan: another rig has the name \"" + edge_id_ +

@@ -11,8 +11,8 @@
 
 namespace isotherm {
 
-/// What was published of one stream in the present session, to judge what the ground says of it.
-/// Pure. Thread-compatible.
+/// Holds what was published of one stream in the present session, to judge what the ground says of
+/// it. Pure. Thread-compatible.
 class PublishedStream {
  public:
   void BeginSession() { *this = {}; }

@@ -57,7 +57,7 @@ class CameraPair final : public FrameSource {
   /// while kMostOrders have no answer.
   std::optional<Status> Control(const CameraControl& control) override;
   std::vector<ControlAnswer> TakeControlAnswers() override;
-  /// What the cameras said of themselves when they were opened at the start.
+  /// Returns what the cameras said of themselves when they were opened at the start.
   std::optional<Rig> rig() const override { return rig_; }
   std::vector<CameraDescription> cameras() const override { return descriptions_; }
 

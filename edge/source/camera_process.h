@@ -61,7 +61,7 @@ class CameraProcess final : public FrameSource {
   std::optional<Rig> rig() const override { return rig_; }
   std::vector<CameraDescription> cameras() const override { return cameras_; }
 
-  /// Of the process now; -1: none.
+  /// The process that runs now; -1: none.
   pid_t pid() const { return pid_; }
 
  private:
@@ -89,10 +89,10 @@ class CameraProcess final : public FrameSource {
   std::vector<CameraDescription> cameras_;
   std::deque<CameraControl> open_orders_;  ///< Given and not answered, oldest first.
   std::vector<ControlAnswer> answers_;
-  std::array<std::uint64_t, 2> left_out_counted_{};  ///< Of this process.
+  std::array<std::uint64_t, 2> left_out_counted_{};  ///< Counts of the process that runs now.
   std::array<std::uint64_t, 2> left_out_{};          ///< And not taken yet.
   SteadyTime last_heard_{};
-  std::uint64_t first_number_ = 0;  ///< Of this process's frames.
+  std::uint64_t first_number_ = 0;  ///< Number of this process's first frame.
   std::uint64_t next_number_ = 0;
 };
 

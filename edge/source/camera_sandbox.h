@@ -7,7 +7,7 @@
 
 namespace isotherm {
 
-/// What the process of a camera needs, so that it can be refused everything else: a vendor's
+/// Holds what the process of a camera needs, so that it can be refused everything else: a vendor's
 /// library parses what a device or a file of unknown origin sends.
 struct CameraSandbox {
   /// Files, and folders with all that is below them. Paths that do not exist are left out.

@@ -78,7 +78,7 @@ class FakeSource final : public FrameSource {
   std::size_t reads_ = 0;
   struct OpenOrder {
     CameraControl control;
-    std::size_t answered_at;  ///< Of `reads_`.
+    std::size_t answered_at;  ///< Index in `reads_`.
   };
   std::deque<OpenOrder> open_orders_;
   bool open_ = false;

@@ -31,8 +31,8 @@ struct SetAutomaticNuc {
 struct RestartCamera {};
 using CameraControl = std::variant<TriggerNuc, SetAutomaticNuc, RestartCamera>;
 
-/// What the camera says to an order: ok, or why not. kFailedPrecondition: it takes no such order,
-/// now or later; anything else: it did not this time.
+/// Holds what the camera says to an order: ok, or why not. kFailedPrecondition: it takes no such
+/// order, now or later; anything else: it did not this time.
 struct ControlAnswer {
   CameraControl control;
   Status status;

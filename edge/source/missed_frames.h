@@ -22,7 +22,7 @@ class MissedFrames {
   /// `step`: how much the counter grows from frame to frame, nominally; at least 1.
   explicit MissedFrames(std::uint64_t step) : step_(step) {}
 
-  /// What is missing before the frame with this counter.
+  /// Returns what is missing before the frame with this counter.
   std::uint64_t Process(std::uint64_t counter) {
     const std::optional<std::uint64_t> since_trusted = FramesSince(trusted_, counter);
     if (!trusted_ || since_trusted) {
@@ -61,7 +61,7 @@ class MissedFrames {
 
   const std::uint64_t step_;
   std::optional<std::uint64_t> trusted_;
-  std::optional<std::uint64_t> in_doubt_;  ///< Of the frame before, if it did not go on.
+  std::optional<std::uint64_t> in_doubt_;  ///< Counter of the frame before, if it did not go on.
 };
 
 }  // namespace isotherm

@@ -6,8 +6,8 @@
 
 namespace isotherm {
 
-/// What a process of a camera tries when its library is hostile, for tests. The order is that of
-/// ProbeSandbox's results.
+/// Says what a process of a camera tries when its library is hostile, for tests. The order is that
+/// of ProbeSandbox's results.
 enum class SandboxAttempt {
   kInternetSocket,
   kInternetDatagrams,

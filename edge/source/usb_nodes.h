@@ -19,7 +19,7 @@ struct UsbNode {
   bool has_foreign_interface() const;
 };
 
-/// What is connected. `devices`: the kernel's folder of USB devices.
+/// Returns what is connected. `devices`: the kernel's folder of USB devices.
 std::vector<UsbNode> ListUsbNodes(const std::filesystem::path& devices = "/sys/bus/usb/devices");
 
 }  // namespace isotherm

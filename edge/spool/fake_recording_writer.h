@@ -13,7 +13,7 @@
 
 namespace isotherm {
 
-/// What a FakeRecordingWriter was given; outlives the writer.
+/// Holds what a FakeRecordingWriter was given; outlives the writer.
 struct FakeRecording {
   std::vector<std::uint64_t> depth_frames;
   std::vector<std::uint64_t> thermal_frames;

@@ -12,11 +12,11 @@
 
 namespace isotherm {
 
-/// What stands at the beginning of each file of a recording, and where they go.
+/// Holds what stands at the beginning of each file of a recording, and where they go.
 struct RecordingDescription {
   using Metadata = std::map<std::string, std::map<std::string, std::string>>;
 
-  std::filesystem::path path;  ///< Of the first file.
+  std::filesystem::path path;  ///< The first file's.
   Nanoseconds flush_interval{};
   std::optional<Rig> rig;
   Metadata metadata;

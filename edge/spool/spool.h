@@ -30,11 +30,11 @@ struct RecordingFile {
   std::unique_ptr<RecordingWriter> writer;
 };
 
-/// What a spool is put together from. `clock` and `account` must outlive it.
+/// Holds what a spool is put together from. `clock` and `account` must outlive it.
 struct SpoolParts {
   /// Begins the recording's next file, with all that stands at a file's beginning.
   std::function<Result<RecordingFile>()> next_file;
-  /// Of the disk that it records to.
+  /// Says how much is free on the disk that it records to.
   std::function<std::uint64_t()> free_bytes;
   const SpoolOptions& options;
   const Clock& clock;
@@ -43,7 +43,7 @@ struct SpoolParts {
 
 /// How the recording is doing.
 struct SpoolStatus {
-  std::filesystem::path path;  ///< Of the newest file.
+  std::filesystem::path path;  ///< The newest file's.
   std::uint64_t free_bytes = 0;
   double left_s = std::numeric_limits<double>::quiet_NaN();  ///< Until it ends for lack of space.
   /// What is wrong and what to do, in a sentence and in a few words; empty if nothing is.
@@ -106,7 +106,7 @@ class Spool {
   DiskWatch disk_;
   std::optional<RecordingFile> file_;
   std::filesystem::path path_;
-  RecordingStats closed_{};  ///< Of the files before.
+  RecordingStats closed_{};  ///< Sum over the files before.
   Status first_error_;
   Status problem_;  ///< Ok while all is well.
   bool at_reserve_ = false;

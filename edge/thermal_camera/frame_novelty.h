@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// What a frame is in relation to those before it.
+/// Holds what a frame is in relation to those before it.
 struct Novelty {
   enum class Kind {
     kNew,

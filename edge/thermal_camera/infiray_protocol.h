@@ -55,8 +55,8 @@ inline constexpr std::uint16_t kP2ProEmissivity = 3;    ///< Parameter, in 1/127
 inline constexpr std::uint16_t kP2ProTransmission = 4;  ///< Parameter, in 1/127.
 inline constexpr std::uint16_t kP2ProGain = 5;          ///< Parameter: 1 high, 0 low.
 
-/// What is known about a shutter that is asked now and then instead of telling with each frame.
-/// Thread-compatible.
+/// Holds what is known about a shutter that is asked now and then instead of telling with each
+/// frame. Thread-compatible.
 class PolledShutter {
  public:
   /// A correction was ordered.

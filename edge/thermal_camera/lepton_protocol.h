@@ -15,7 +15,7 @@ namespace isotherm {
 struct LeptonTelemetry {
   std::uint32_t uptime_ms = 0;
   std::uint32_t uptime_at_ffc_ms = 0;  ///< 0 = none since power-up.
-  std::uint32_t frame_counter = 0;     ///< Of the 26 Hz inside; 3 per picture that is sent.
+  std::uint32_t frame_counter = 0;     ///< Counts at the 26 Hz inside; 3 per sent image.
   std::uint16_t fpa_centikelvin = 0;
   std::uint16_t housing_centikelvin = 0;
   bool ffc_desired = false;

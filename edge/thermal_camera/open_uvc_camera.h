@@ -13,7 +13,8 @@ namespace isotherm {
 /// says of itself. `clock` must outlive the camera.
 Result<std::unique_ptr<UvcCamera>> OpenUvcCamera(const Clock& clock, ThermalCameraInfo& info);
 
-/// What is known of any frame before its bytes are read: when it came and whether it is whole.
+/// Returns what is known of any frame before its bytes are read: when it came and whether it is
+/// whole.
 RawThermalFrame BeginFrame(const UvcFrame& frame);
 
 }  // namespace isotherm

@@ -11,7 +11,7 @@
 namespace isotherm {
 namespace {
 
-/// What the library tells about a frame (its EvoIRFrameMetadata, natural alignment).
+/// Holds what the library tells about a frame (its EvoIRFrameMetadata, natural alignment).
 struct Metadata {
   std::uint32_t counter;
   std::uint32_t counter_hw;

@@ -40,7 +40,7 @@ class P2ProCamera final : public ThermalCamera {
   Status Send(std::uint16_t index, const std::vector<std::uint8_t>& bytes);
   Result<std::vector<std::uint8_t>> Receive(std::uint16_t index, std::size_t size);
   Status WaitUntilReady();
-  /// What cannot be set before the camera answers: called between frames until it is done.
+  /// Sets what cannot be set before the camera answers; called between frames until it is done.
   void ConfigureWhenDue(SteadyTime now);
   void AskShutterWhenDue(SteadyTime now);
 

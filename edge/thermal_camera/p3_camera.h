@@ -47,7 +47,7 @@ class P3Camera final : public ThermalCamera {
   std::optional<P3Assembler> assembler_;
   Unwrapper stamp_{32};
   Unwrapper counter_{16};
-  int step_ = 0;  ///< Of the start; see StartStep.
+  int step_ = 0;  ///< How far the start has come; see StartStep.
   SteadyTime next_step_at_{};
 };
 

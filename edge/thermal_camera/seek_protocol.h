@@ -22,9 +22,9 @@ struct SeekModel {
   int top = 0;
   int width = 0;
   int height = 0;
-  std::size_t read_bytes = 0;    ///< Of a bulk read; frames are whole multiples.
-  std::size_t id_word = 0;       ///< Of a frame: what it shows.
-  std::size_t counter_word = 0;  ///< Of a frame: its number, which counts all kinds.
+  std::size_t read_bytes = 0;    ///< Size of a bulk read; frames are whole multiples.
+  std::size_t id_word = 0;       ///< Word of a frame that says what it shows.
+  std::size_t counter_word = 0;  ///< Word of a frame with its number, which counts all kinds.
 
   constexpr std::size_t words() const {
     return static_cast<std::size_t>(raw_width) * static_cast<std::size_t>(raw_height);
@@ -49,7 +49,7 @@ struct SeekRequest {
 SeekRequest SeekWakeRequest();
 /// Puts it to sleep; the vendor's program sends it three times.
 SeekRequest SeekSleepRequest();
-/// What follows SeekWakeRequest until frames can be asked for.
+/// Returns what follows SeekWakeRequest until frames can be asked for.
 std::vector<SeekRequest> SeekStartRequests(const SeekModel& model);
 SeekRequest SeekFrameRequest(const SeekModel& model);
 /// Its answer tells cameras apart.
@@ -59,7 +59,7 @@ enum class SeekFrameKind : std::uint8_t {
   kFirst,    ///< After the start; detectors that do not work are dark in it.
   kShutter,  ///< The closed shutter: what a picture is measured against.
   kPicture,
-  kOther,  ///< Of the camera's own business, or bytes out of step.
+  kOther,  ///< The camera's own business, or bytes out of step.
 };
 
 struct SeekRawFrame {
@@ -79,7 +79,7 @@ class SeekAssembler {
   /// A frame was asked for: forgets what came before.
   void Begin();
   void Add(Bytes bytes, const HostStamp& stamp);
-  /// What the next read may bring; 0 = the frame is complete.
+  /// Returns what the next read may bring; 0 = the frame is complete.
   std::size_t wanted_bytes() const;
   bool is_empty() const { return bytes_.empty(); }
   Bytes bytes() const { return bytes_; }

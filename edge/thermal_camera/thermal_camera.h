@@ -12,8 +12,9 @@
 
 namespace isotherm {
 
-/// What a count means: kelvin = kelvin_per_count x count + offset_kelvin, apparent temperature.
-/// Emissivity, reflection and transmission are applied by the ground, never by a driver.
+/// Holds what a count means: kelvin = kelvin_per_count x count + offset_kelvin, apparent
+/// temperature. Emissivity, reflection and transmission are applied by the ground, never by a
+/// driver.
 struct PixelEncoding {
   bool radiometric = false;  ///< False: counts without a known relation to temperature.
   double kelvin_per_count = 0.0;

@@ -21,7 +21,7 @@ class ThermalCameraOptions;
 std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions& options,
                                                      const Clock& clock);
 
-/// What became of the camera's frames since the start. All that came are in one of them.
+/// Holds what became of the camera's frames since the start. All that came are in one of them.
 struct ThermalCameraCounts {
   std::uint64_t delivered = 0;   ///< Including `frozen`.
   std::uint64_t frozen = 0;      ///< Delivered as taken behind a closed shutter.
@@ -75,7 +75,7 @@ class ThermalCameraSource final : public FrameSource {
   const Clock& clock_;
   const Cameras cameras_;
   std::string name_ = "thermal camera";
-  std::string serial_;  ///< Of the camera that was opened first.
+  std::string serial_;  ///< Serial number of the camera that was opened first.
   std::unique_ptr<ThermalCamera> camera_;
   std::optional<FrameNovelty> novelty_;
   PixelEncoding encoding_;

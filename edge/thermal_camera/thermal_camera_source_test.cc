@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 constexpr Nanoseconds kPeriod = milliseconds(100);
 
-/// What a test makes a camera send; shared with the cameras that the source makes.
+/// Holds what a test makes a camera send; shared with the cameras that the source makes.
 struct Script {
   ThermalCameraInfo info;
   std::deque<std::function<Result<std::optional<RawThermalFrame>>()>> reads;

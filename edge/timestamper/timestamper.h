@@ -31,8 +31,8 @@ class Timestamper {
   /// configured delay of the sensor.
   Timestamper(const TimestamperOptions& options, Sensor sensor, Nanoseconds rig_delay);
 
-  /// What the source said about a frame, of which nothing but the times is used. `arrival` is the
-  /// frame's, freed from steps of the wall clock.
+  /// Stamps a frame by what the source said about it, of which nothing but the times is used.
+  /// `arrival` is the frame's, freed from steps of the wall clock.
   Stamp Process(const RawFrame& frame, CaptureTime arrival);
 
   StampingCounts counts() const;

@@ -130,7 +130,7 @@ void ExpectFromInput(const UvcFunction& function, const Data& data) {
   EXPECT_LE(7 * function.alternates.size(), data.size());
 }
 
-/// What came of some inputs.
+/// Holds what came of some inputs.
 struct Outcomes {
   int valid = 0;
   int no_video = 0;

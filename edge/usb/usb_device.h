@@ -39,7 +39,7 @@ struct UsbControl {
   std::uint16_t index = 0;
 };
 
-/// What one endpoint delivered in one bus interval (isochronous) or transfer (bulk).
+/// Holds what one endpoint delivered in one bus interval (isochronous) or transfer (bulk).
 struct UsbPacket {
   Bytes data;
   HostStamp stamp;    ///< When it was on the bus, as well as the computer can tell.
@@ -73,7 +73,7 @@ class UsbDevice {
   const UsbDeviceInfo& info() const;
   const UsbConfiguration& configuration() const;
   const Clock& clock() const;
-  /// Of the bus: 125 us at high speed and above, 1 ms below.
+  /// The interval of the bus: 125 us at high speed and above, 1 ms below.
   Nanoseconds bus_interval() const;
 
   /// Takes an interface from the kernel's driver; it gets it back at the end.

@@ -15,7 +15,7 @@ namespace isotherm {
 
 /// Which of a camera's pictures to stream.
 struct UvcMode {
-  std::string_view four_characters;  ///< Of the format's GUID, e.g. "Y16 ".
+  std::string_view four_characters;  ///< Beginning of the format's GUID, e.g. "Y16 ".
   int width = 0;
   int height = 0;
 };

@@ -46,7 +46,7 @@ struct UvcAlternate {
 struct UvcFunction {
   int control_interface = 0;
   int version = 0x0100;        ///< Binary coded decimal.
-  std::uint32_t clock_hz = 0;  ///< Of presentation time stamps.
+  std::uint32_t clock_hz = 0;  ///< Rate of presentation time stamps.
   std::vector<UvcUnit> units;
   int streaming_interface = 0;
   std::vector<UvcFormat> formats;

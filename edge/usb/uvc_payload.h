@@ -63,7 +63,7 @@ class UvcBulkJoiner {
   const std::size_t most_payload_bytes_;
   std::vector<std::uint8_t> payload_;
   HostStamp first_stamp_;
-  std::size_t received_ = 0;  ///< Of the payload under way.
+  std::size_t received_ = 0;  ///< Bytes of the payload under way.
   bool skipping_ = false;     ///< Its beginning was lost.
 };
 

@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// What host and camera agree on before a stream starts (UVC 1.5, table 4-75), as far as
+/// Holds what host and camera agree on before a stream starts (UVC 1.5, table 4-75), as far as
 /// uncompressed video needs it.
 struct UvcProbe {
   std::uint8_t format = 0;

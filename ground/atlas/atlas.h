@@ -18,7 +18,7 @@ namespace isotherm {
 
 Status Validate(const SubMapOptions& options);
 
-/// What the sub-maps told about drift so far.
+/// Holds what the sub-maps told about drift so far.
 struct DriftReport {
   std::uint64_t closures = 0;  ///< Times that geometry was met again that another sub-map has.
   double last_gap_m = 0.0;     ///< By how much the newest closure was missed before it was
@@ -78,7 +78,7 @@ class Atlas {
   const GroundOptions options_;
   const CameraModel depth_camera_;
   const VoxelGrid grid_;
-  const std::int32_t max_blocks_;  ///< Of all sub-maps together.
+  const std::int32_t max_blocks_;  ///< All sub-maps together.
   std::vector<std::unique_ptr<SubMap>> maps_;
   std::vector<MapLink> links_;
   int active_ = 0;

@@ -37,7 +37,7 @@ struct DelayEstimate {
   double delay_s = 0.0;
   double sigma_s = 0.0;   ///< Spread over resampled parts of the scan.
   double contrast = 0.0;  ///< Disagreement at the ends of the fine steps over the least.
-  int parts = 0;          ///< Of the scan, that were resampled.
+  int parts = 0;          ///< Parts of the scan that were resampled.
 };
 
 /// The delay at which thermal pictures disagree least: on a grid, then on a fine grid around its

@@ -12,7 +12,7 @@ namespace isotherm {
 
 struct FindDelayOptions {
   DelaySearchOptions search;
-  std::size_t coarse_points = 6000;  ///< Of the surface, for the grid; more: slower.
+  std::size_t coarse_points = 6000;  ///< Points on the surface for the grid; more: slower.
   std::size_t fine_points = 30'000;  ///< For the result and its uncertainty.
 };
 

@@ -22,7 +22,7 @@ constexpr double kFocal_px = 150.0;
 // The poses here do not lag; what is left is their noise and the pixels'.
 constexpr double kTolerance_s = 0.0003;
 
-/// What is simulated beside the delay.
+/// Holds what is simulated beside the delay.
 struct Disturbances {
   std::uint64_t seed = 1;
   double pixel_noise_k = 0.05;

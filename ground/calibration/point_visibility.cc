@@ -27,7 +27,7 @@ constexpr std::size_t kPointViews = 60;
 // Poses closer in time than this show the same.
 constexpr double kPoseSpacing_s = 0.045;
 
-/// What one pose shows.
+/// Holds what one pose shows.
 struct PoseView {
   CaptureTime time;
   std::vector<std::uint8_t> shows;  ///< By point, 0 or 1.

@@ -30,7 +30,7 @@ struct StampedThermal {
   std::vector<std::uint32_t> visible;
 };
 
-/// What a scan offers for finding the delay of its thermal camera.
+/// Holds what a scan offers for finding the delay of its thermal camera.
 struct ScanViews {
   CameraModel thermal_camera;
   RigidTransform T_thermal_depth = RigidTransform::Identity();
@@ -55,7 +55,7 @@ class TextureConsistency {
   /// Weighs points by what they show at this delay; by delay 0 to begin with.
   void WeighAt(double delay_s);
 
-  /// Of the scan, with samples in them.
+  /// The number of parts of the scan with samples in them.
   int parts() const { return static_cast<int>(parts_.size()); }
 
   /// Mean weighted variance by resampling, with the first `points` of the points.

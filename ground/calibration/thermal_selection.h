@@ -27,7 +27,7 @@ class ThermalSelection {
     double speed = 0.0;
   };
 
-  /// Of each two neighbours the faster one stays.
+  /// Keeps the faster one of each two neighbours.
   void Halve();
 
   const std::size_t most_;

@@ -99,7 +99,7 @@ Status WriteRig(const Arguments& arguments, const std::string& text) {
   return OkStatus();
 }
 
-/// What a calibration says before and after.
+/// Holds what a calibration says before and after.
 struct Change {
   double before_s = 0.0;
   double after_s = 0.0;

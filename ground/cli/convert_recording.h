@@ -27,7 +27,7 @@ struct ConvertRequest {
 struct ConvertSummary {
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;
-  std::uint64_t poses = 0;        ///< Of the rig, written as transforms.
+  std::uint64_t poses = 0;        ///< Poses of the rig, written as transforms.
   std::string poses_from;         ///< Where they come from, in words.
   std::uint64_t left_out = 0;     ///< Damaged messages.
   bool has_thermal_pose = false;  ///< T_thermal_depth is there as a transform.

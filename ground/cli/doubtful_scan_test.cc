@@ -25,7 +25,7 @@ using ::testing::Not;
 
 constexpr int kUsage = 64, kData = 65;
 
-/// What a copy of a scan gets wrong.
+/// Holds what a copy of a scan gets wrong.
 struct Mistake {
   std::function<void(Rig&)> rig = [](Rig&) {};
   std::function<void(EncodedDepthFrame&)> depth = [](EncodedDepthFrame&) {};

@@ -130,7 +130,7 @@ Result<AngleRequest> ReadAngleRequest(const Arguments& arguments, const Spectral
   return request;
 }
 
-/// What is known of the optics; absent lengths were not given.
+/// Holds what is known of the optics; absent lengths were not given.
 struct Optics {
   std::optional<double> ifov_rad, focal_length_m, pitch_m, focus_m, detail_m, near_m, far_m;
 };

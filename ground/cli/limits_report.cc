@@ -24,7 +24,7 @@ double RoundUp(double value, double step) {
 }
 double RoundDown(double value, double step) { return std::floor(value / step + 1e-9) * step; }
 
-/// What would be shown as -0.00 is 0.
+/// Returns 0 for what would be shown as -0.00.
 double WithoutNegativeZero(double value) { return std::abs(value) < 0.005 ? 0.0 : value; }
 
 }  // namespace

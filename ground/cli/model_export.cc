@@ -12,7 +12,7 @@
 namespace isotherm {
 namespace {
 
-/// What the model's depth camera saw last; nullopt if the model knows no pose.
+/// Returns what the model's depth camera saw last; nullopt if the model knows no pose.
 std::optional<SurfaceMaps> CastLastView(const LoadedModel& model, const GroundOptions& options,
                                         ThreadPool& pool) {
   if (!model.rig.depth || model.known_poses.empty()) return std::nullopt;

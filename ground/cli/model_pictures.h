@@ -14,7 +14,7 @@
 
 namespace isotherm {
 
-/// What a saved model shows, whatever the view: the points that cloud.ply would have.
+/// Holds what a saved model shows, whatever the view: the points that cloud.ply would have.
 struct ModelSurface {
   std::vector<Eigen::Vector3f> points_m;  ///< In `world`.
   std::vector<float> celsius;             ///< As many; NaN = never measured.

@@ -116,7 +116,7 @@ void AppendNuc(const RecordingSummary& summary, std::string& text) {
   }
 }
 
-/// Of the clock that dated the frames; empty if the recording does not say.
+/// The state of the clock that dated the frames; empty if the recording does not say.
 std::string ClockState(const RecordingInfo& info) {
   const auto found = info.metadata.find(std::string(kClockMetadata));
   if (found == info.metadata.end()) return "";

@@ -17,7 +17,7 @@ struct StreamSummary {
   std::set<std::uint64_t> sessions;
   std::set<std::pair<int, int>> sizes;             ///< Width and height, pixels.
   std::map<std::string, std::uint64_t> encodings;  ///< Frames by encoding.
-  std::uint64_t raw_bytes = 0;                     ///< Of the pixels before encoding.
+  std::uint64_t raw_bytes = 0;                     ///< Size of the pixels before encoding.
   std::uint64_t payload_bytes = 0;
   CaptureTime first{}, last{};
   double period_s = 0.0;           ///< Median time between frames; 0 for fewer than two.
@@ -36,7 +36,7 @@ struct StreamSummary {
 
 /// The NUC state that a run of thermal frames carries.
 struct NucRun {
-  CaptureTime start, end;  ///< Of the first and the last frame in progress.
+  CaptureTime start, end;  ///< First and last frame in progress.
   std::uint64_t frames = 0;
 };
 
@@ -76,7 +76,7 @@ class RecordingSummarizer {
     std::vector<CaptureTime> times;
     std::vector<std::int64_t> sigmas_ns;
     std::optional<Encoding> last_encoding;
-    std::size_t last_hash = 0;  ///< Of the payload: an image may be large.
+    std::size_t last_hash = 0;  ///< Hash of the payload: an image may be large.
   };
   static void AddFrame(const FrameHeader& header, const EncodedImage& image, StreamSummary& stream,
                        Stamps& stamps);

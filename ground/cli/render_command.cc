@@ -104,7 +104,8 @@ void SetLook(const Arguments& arguments, RendererOptions& options, Problems& pro
   if (arguments.no_shading) options.set_shading(false);
 }
 
-/// Of the result folder, then of the configuration file, then of the command line.
+/// Takes the options of the result folder, then of the configuration file, then of the command
+/// line.
 GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
   GroundOptions options;
   if (const auto made_with = ConfigurationOf(arguments.model)) {

@@ -13,7 +13,7 @@
 
 namespace isotherm {
 
-/// What `isotherm evaluate` compares.
+/// Holds what `isotherm evaluate` compares.
 struct EvaluationRequest {
   std::filesystem::path result_dir;   ///< With trajectory.txt and cloud.ply.
   std::filesystem::path groundtruth;  ///< Trajectory file, or recording with ground truth.

@@ -12,7 +12,7 @@ namespace isotherm {
 class SimulationOptions;
 class ThreadPool;
 
-/// Of all scenes: "a, b, c".
+/// The names of all scenes: "a, b, c".
 std::string SceneNames();
 
 /// Chooses the scene by its name, e.g. "furnace-door".

@@ -5,7 +5,7 @@
 
 namespace isotherm {
 
-/// What is said about a set of errors, in their unit. All NaN if there are none.
+/// Holds what is said about a set of errors, in their unit. All NaN if there are none.
 struct ErrorStatistics {
   std::size_t count = 0;
   double rms = 0.0;

@@ -66,7 +66,7 @@ class PointIndex {
 
   std::vector<Point>
       points_;  ///< The node of a range is its middle; children are what is left and right.
-  std::vector<std::uint8_t> axes_;  ///< Of the node at the same place.
+  std::vector<std::uint8_t> axes_;  ///< Splitting axis of the node at the same place.
 };
 
 /// Median distance from a point to its nearest neighbour at another place, from a sample; 0 for

@@ -34,7 +34,7 @@ struct StampingScenario {
 /// The scenarios of the table in docs/timing.md.
 std::vector<StampingScenario> StampingScenarios();
 
-/// What makes the stamps.
+/// Says what makes the stamps.
 enum class StampingMethod : std::uint8_t {
   kArrival,   ///< The time of arrival.
   kMedian,    ///< MedianClock.
@@ -47,7 +47,7 @@ std::string_view ToString(StampingMethod method);
 
 struct StampingTrialOptions {
   double rate_hz = 30.0;
-  double duration_s = 120.0;  ///< Of each run.
+  double duration_s = 120.0;  ///< Length of each run.
   double skip_s = 10.0;       ///< At its start, which does not count.
   int runs = 10;
   double max_drift_ppm = 100.0;  ///< Each run's camera clock is off by up to this, ...
@@ -59,7 +59,7 @@ struct StampingTrialOptions {
 /// residual in the scenario without bursts, which is what a calibration would find.
 struct StampingResidual {
   double rms_s = 0.0;
-  double p99_s = 0.0;  ///< Of the absolute value.
+  double p99_s = 0.0;  ///< 99th percentile of the absolute value.
   double worst_s = 0.0;
   double within_sigma = 0.0;    ///< Share of stamps whose residual is within their sigma, ...
   double within_3_sigma = 0.0;  ///< ... and within three.

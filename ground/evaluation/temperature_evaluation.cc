@@ -54,7 +54,7 @@ ClassErrors Describe(const Errors& errors, double gross_kelvin) {
   return {Describe(errors.all, gross_kelvin), Describe(errors.away_from_edges, gross_kelvin)};
 }
 
-/// Of point `i` at the angle it was measured at.
+/// The emissivity of point `i` at the angle it was measured at.
 double EmissivityOf(const MeasuredCloud& cloud, std::size_t i,
                     const TemperatureEvaluationOptions& options) {
   if (!options.refractive_index || !std::isfinite(cloud.measured_angle_deg[i]))

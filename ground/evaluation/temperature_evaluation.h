@@ -10,10 +10,10 @@ namespace isotherm {
 
 struct TemperatureEvaluationOptions {
   double emissivity = 1.0;  ///< At normal incidence, (0, 1].
-  /// Of a smooth surface: the emissivity falls with the angle of each measurement (Fresnel; thesis
-  /// B.2). nullopt: it is that along the normal, whatever the angle.
+  /// Index of a smooth surface, whose emissivity falls with the angle of each measurement (Fresnel;
+  /// thesis B.2). nullopt: it is that along the normal, whatever the angle.
   std::optional<double> refractive_index;
-  double ambient_celsius = 23.0;  ///< Of the surroundings that the surface reflects.
+  double ambient_celsius = 23.0;  ///< The surroundings that the surface reflects.
   /// Points are near a temperature edge if true temperatures differ by more than `edge_kelvin`
   /// within this radius.
   float edge_radius_m = 0.005F;

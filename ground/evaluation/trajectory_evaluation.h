@@ -22,7 +22,7 @@ struct TrajectoryEvaluationOptions {
 struct TrajectoryErrors {
   std::size_t truth_poses = 0;  ///< In question: the first N without those left out.
   std::size_t left_out = 0;
-  std::size_t matched = 0;  ///< Of the truth poses in question.
+  std::size_t matched = 0;  ///< How many of the truth poses in question were matched.
   std::size_t without_truth =
       0;  ///< Estimated poses that have no truth (beyond the first N not counted).
   ErrorStatistics aligned_m;  ///< Position, after the rigid alignment that fits all positions best.
@@ -30,7 +30,7 @@ struct TrajectoryErrors {
   ErrorStatistics
       aligned_rad;  ///< Orientation, after the same alignment (loose for short or straight paths).
   ErrorStatistics from_first_rad;  ///< Orientation, with the first matched poses made equal.
-  double length_m = 0.0;           ///< Of the matched true path.
+  double length_m = 0.0;           ///< Length of the matched true path.
   RigidTransform T_truth_world = RigidTransform::Identity();  ///< From the first matched pose.
 };
 

@@ -72,7 +72,8 @@ struct DiscErrors {
   int points = 0;
 };
 
-/// Of the disc's temperature, found from the apparent one with the emissivity at right angles.
+/// Errors of the disc's temperature, found from the apparent one with the emissivity at right
+/// angles.
 DiscErrors MeasureDisc(const PlayedScan& played, const GroundPipeline& pipeline, ThreadPool& pool) {
   // Nearer to its border, a thermal pixel and its blur receive radiation from the rim as well.
   constexpr double kBorderM = 0.004;

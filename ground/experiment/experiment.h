@@ -41,7 +41,7 @@ struct ExperimentPicture {
   RgbImage picture;
 };
 
-/// What an experiment showed.
+/// Holds what an experiment showed.
 struct ExperimentReport {
   ExperimentTable table;
   std::vector<Requirement> requirements;
@@ -54,7 +54,7 @@ struct ExperimentReport {
 /// simulated cameras. The same each time.
 struct Experiment {
   std::string_view name;    ///< On the command line and in file names.
-  std::string_view figure;  ///< Of the thesis, what it repeats.
+  std::string_view figure;  ///< The figure of the thesis that it repeats.
   std::string_view claim;   ///< What it shows, one sentence.
   /// Fails only if something is wrong with the experiment itself, for example tracking was lost.
   Result<ExperimentReport> (*run)(ThreadPool& pool);

@@ -22,7 +22,7 @@ struct CheckedPoint {
   double expected_celsius;  ///< Apparent, at right angles, of the true temperature.
 
   bool measured() const { return point.celsius == point.celsius; }
-  /// Of a measured point: measured minus expected.
+  /// How far a measured point is off: measured minus expected.
   double ErrorKelvin() const { return static_cast<double>(point.celsius) - expected_celsius; }
 };
 
@@ -36,7 +36,7 @@ std::vector<CheckedPoint> CheckModel(const Scene& scene, const BandRadiance& ban
 struct AssignmentCheck {
   std::size_t points = 0;
   std::size_t assigned = 0;
-  std::size_t too_warm = 0;  ///< Of the assigned ones, by more than kWrongKelvin.
+  std::size_t too_warm = 0;  ///< How many of those are too warm by more than kWrongKelvin.
   std::size_t too_cold = 0;
 
   static constexpr double kWrongKelvin = 5.0;
@@ -57,12 +57,12 @@ struct ErrorSummary {
 };
 ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points);
 
-/// What the model shows from `T_world_camera`.
+/// Returns what the model shows from `T_world_camera`.
 ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                      const CameraModel& camera, const RigidTransform& T_world_camera,
                      ThreadPool& pool);
 
-/// What the model shows the scan's depth camera from where it truly was at `time`.
+/// Returns what the model shows the scan's depth camera from where it truly was at `time`.
 ViewMaps LookAtModel(const GroundPipeline& pipeline, const SimulatedScan& scan, CaptureTime time,
                      ThreadPool& pool);
 

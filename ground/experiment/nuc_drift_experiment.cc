@@ -17,7 +17,7 @@ constexpr double kWarmUpK = 5.0;
 constexpr double kErrorPerKelvin = 4.0;
 constexpr double kTimeConstantS = 3.0;
 constexpr double kShutterClosedS = 0.06;
-/// What the housing may drift: 0.8 K of error.
+/// The housing may drift by so much: 0.8 K of error.
 constexpr double kAllowedDriftK = 0.2;
 
 StagedScene WarmCorner() {
@@ -44,7 +44,7 @@ SimulationOptions CameraWith(Camera camera) {
 struct Outcome {
   ErrorSummary good;
   double corrections = 0.0;
-  double left_out_percent = 0.0;  ///< Of the thermal frames.
+  double left_out_percent = 0.0;  ///< Part of the thermal frames.
 };
 
 Outcome Measure(const PlayedScan& played, ThreadPool& pool) {

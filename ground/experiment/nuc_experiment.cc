@@ -63,7 +63,7 @@ ExperimentTable::Row DescribeModel(const char* label, const GroundPipeline& pipe
 struct WhileClosed {
   double thermal_frames = 0.0;
   double depth_frames = 0.0;
-  double tracked = 0.0;  ///< Of the depth frames.
+  double tracked = 0.0;  ///< Part of the depth frames.
 };
 
 /// The table and what is required of it.

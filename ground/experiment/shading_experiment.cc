@@ -23,7 +23,7 @@ RendererOptions ScaleFor(double hot_celsius, bool shading) {
 /// Brightness of a colour, 0..255 (weights of ITU-R BT.709).
 double Luma(Rgb8 colour) { return 0.2126 * colour.r + 0.7152 * colour.g + 0.0722 * colour.b; }
 
-/// What a pixel truly shows.
+/// Holds what a pixel truly shows.
 struct TruePixel {
   double celsius;
   double cosine;  ///< Between the surface's normal and the line of sight.

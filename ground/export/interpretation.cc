@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kWholeModel = "whole model";
 
-/// What is wrong with a part's numbers; `prefix` names it. Empty if nothing is.
+/// Returns what is wrong with a part's numbers; `prefix` names it. Empty if nothing is.
 std::string FindProblem(const InterpretedPart& part, const std::string& prefix) {
   if (!(part.emissivity > 0.0 && part.emissivity <= 1.0)) {
     return fmt::format("{}emissivity must be above 0 and at most 1, got {}", prefix,

@@ -31,8 +31,8 @@ struct InterpretedPart {
 struct PartReport {
   std::size_t points = 0;
   std::size_t measured = 0;           ///< Points with an apparent temperature.
-  std::size_t reflects_too_much = 0;  ///< Of those: more would be reflected than was measured.
-  std::size_t too_hot = 0;            ///< Of those: beyond the range of temperatures.
+  std::size_t reflects_too_much = 0;  ///< How many of those would reflect more than was measured.
+  std::size_t too_hot = 0;            ///< How many of those are beyond the range of temperatures.
   /// Apparent temperatures of the points without a solution.
   float coldest_celsius = 0.0F, hottest_celsius = 0.0F;
 

@@ -17,7 +17,7 @@ std::filesystem::path PartialName(std::filesystem::path path) {
   return path;
 }
 
-/// What the user can do about a failure, as the end of its sentence.
+/// Returns what the user can do about a failure, as the end of its sentence.
 std::string Advice(int error) {
   switch (error) {
     case ENOSPC:

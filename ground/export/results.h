@@ -58,15 +58,15 @@ struct ResultInputs {
   std::function<std::vector<std::string>(const ResultSummary&)> warnings{};
 };
 
-/// What was written, for a summary on the screen.
+/// Holds what was written, for a summary on the screen.
 struct ResultSummary {
   std::size_t points = 0;
   std::size_t measured_points = 0;  ///< Points with a temperature.
   std::size_t good_points = 0;      ///< ... of class good in distance and angle.
   std::size_t triangles = 0;
-  std::optional<TemperatureScale> scale;  ///< Of pictures and colours alike.
+  std::optional<TemperatureScale> scale;  ///< The scale of renderings and colours alike.
   TemperatureStatistics temperatures;
-  std::vector<PartReport> interpretation;  ///< Of each of its parts; empty without one.
+  std::vector<PartReport> interpretation;  ///< One per part; may be empty.
 };
 
 /// Called before each step with what is about to be written and the share done, 0..1.

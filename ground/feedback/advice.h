@@ -25,11 +25,11 @@ enum class AdviceKind {
   kNone,         ///< Carry on.
 };
 
-/// What advice depends on besides the coverage of the view.
+/// Holds what advice depends on besides the coverage of the view.
 struct ScanSituation {
   bool tracking_lost = false;
   bool nuc_running = false;  ///< Shutter about to close, closed or settling.
-  double speed_m_s = 0.0;    ///< Of the depth camera.
+  double speed_m_s = 0.0;    ///< Speed of the depth camera.
   double turn_rate_deg_s = 0.0;
   double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.
   double max_turn_rate_deg_s = 0.0;
@@ -66,7 +66,7 @@ class OperatorAdviser {
   /// Due from `on`, until below `off`.
   void Trigger(AdviceKind kind, double value, double on, double off);
   void UpdateTriggers(const CoverageSummary& view, const ScanSituation& situation);
-  /// What would be said without regard to time.
+  /// Returns what would be said without regard to time.
   AdviceKind MostUrgent(const CoverageSummary& view) const;
   std::string Reason(AdviceKind kind, const CoverageSummary& view,
                      const ScanSituation& situation) const;

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/// Of messages at 10 Hz.
+/// Between messages at 10 Hz.
 constexpr Nanoseconds kPeriod = 100ms;
 
 class AdviceTest : public ::testing::Test {
@@ -31,7 +31,7 @@ class AdviceTest : public ::testing::Test {
     now_ += kPeriod;
     return adviser_.Update(now_, view_, situation_);
   }
-  /// What is said when nothing changes for two seconds.
+  /// Returns what is said when nothing changes for two seconds.
   OperatorAdvice Settled() {
     OperatorAdvice advice;
     for (int i = 0; i < 20; ++i) advice = Next();

@@ -58,7 +58,7 @@ class ViewPlanner {
   const double angle_min_rad_, angle_good_rad_;
   const float min_weight_;
   const CameraModel depth_camera_;
-  const CameraModel thermal_camera_;  ///< Of the coarse cast.
+  const CameraModel thermal_camera_;  ///< The camera of the coarse cast.
   const RigidTransform T_thermal_depth_;
   Raycaster raycaster_{RaycastPrecision::kVisibility};
   SurfaceMaps maps_;

@@ -40,7 +40,7 @@ constexpr std::size_t kBlockBytes = kCoordinateBytes + 2 * kVoxelBytes;
 struct ChunkHead {
   std::uint32_t blocks;
   std::uint32_t bytes;  ///< Compressed.
-  std::uint32_t crc;    ///< Of the compressed bytes.
+  std::uint32_t crc;    ///< Checksum of the compressed bytes.
 };
 
 std::uint32_t Crc(std::span<const std::uint8_t> bytes) {

@@ -14,7 +14,7 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// One step of refinement: the model is cast anew, and correspondences get stricter as the pose
 /// gets better.
 struct RefinementStage {
-  int halvings;  ///< Of the depth image's size.
+  int halvings;  ///< How often the depth image's size is halved.
   float max_distance_m;
   double max_angle_deg;
   int iterations;
@@ -62,7 +62,7 @@ class Relocaliser::Refinement {
     double agreement = 0.0;
     double overlap = 0.0;
 
-    /// Of poses that agree equally well, the one that explains more.
+    /// Prefers, among poses that agree equally well, the one that explains more.
     double score() const { return agreement * (1.0 + overlap); }
   };
 

@@ -48,7 +48,7 @@ class ViewLibrary {
   void Add(const RigidTransform& T_world_depth);
   const std::vector<RigidTransform>& poses() const { return poses_; }
 
-  /// What is looked at from now on.
+  /// Sets what is looked at from now on.
   void SetCloud(const std::vector<Eigen::Vector3f>& cloud);
 
   /// The best guesses, best first, none close to another. Looks from around some of the known poses
@@ -58,10 +58,10 @@ class ViewLibrary {
  private:
   /// Moves a guess step by step to where it disagrees least.
   PoseGuess Improve(const Thumbnail& picture, PoseGuess guess) const;
-  /// What the cloud looks like from a pose.
+  /// Returns what the cloud looks like from a pose.
   Thumbnail Look(const RigidTransform& T_world_depth) const;
 
-  const CameraModel camera_;  ///< Of a thumbnail.
+  const CameraModel camera_;  ///< The camera of a thumbnail.
   const std::size_t max_views_;
   std::vector<RigidTransform> poses_;
   Eigen::ArrayX3f cloud_;  ///< A point per row.

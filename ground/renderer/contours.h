@@ -10,8 +10,8 @@ namespace isotherm {
 
 class ThreadPool;
 
-/// What isotherms are drawn from: temperatures that vary continuously along the surface. For lines
-/// only; numbers and colours come from the voxels themselves.
+/// Holds what isotherms are drawn from: temperatures that vary continuously along the surface. For
+/// lines only; numbers and colours come from the voxels themselves.
 struct ContourField {
   static constexpr std::uint8_t kRight = 1;
   static constexpr std::uint8_t kBelow = 2;

@@ -28,7 +28,7 @@ struct ScaleMark {
   Rgb8 colour;
 };
 
-/// What the panel beside a picture of values says.
+/// Holds what the panel beside a picture of values says.
 struct ScaleLegend {
   std::string title;                      ///< E.g. "apparent temperature"; spaces break lines.
   std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured, no bar is drawn.

@@ -46,7 +46,7 @@ class PictureTest : public ::testing::Test {
     return renderer.Thermal(view);
   }
 
-  /// Of the pixel's centre, in `world`, not of unit length.
+  /// The line of sight of the pixel's centre, in `world`, not of unit length.
   Eigen::Vector3d Ray(const RigidTransform& T_world_camera, int x, int y) const {
     return T_world_camera.linear() *
            Eigen::Vector3d((x - camera_.cx) / camera_.fx, (y - camera_.cy) / camera_.fy, 1.0);

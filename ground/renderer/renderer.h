@@ -51,7 +51,7 @@ class Renderer {
   RgbImage Angle(const ViewMaps& view) const;
   RgbImage Motion(const ViewMaps& view) const;
   RgbImage Disagreement(const ViewMaps& view) const;
-  /// Of a view with SampleNucAge.
+  /// Draws a view that was made with SampleNucAge.
   RgbImage NucAge(const ViewMaps& view) const;
   RgbImage Coverage(const ViewMaps& view) const;
   RgbImage Geometry(const ViewMaps& view) const;

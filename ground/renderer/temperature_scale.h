@@ -18,7 +18,7 @@ struct TemperatureStatistics {
   double min_celsius = 0.0;
   double max_celsius = 0.0;
   double mean_celsius = 0.0;
-  double sigma_kelvin = 0.0;  ///< Of the population: divided by count.
+  double sigma_kelvin = 0.0;  ///< Standard deviation of the population: divided by count.
 };
 TemperatureStatistics Summarize(std::span<const float> celsius);
 

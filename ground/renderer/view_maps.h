@@ -11,8 +11,8 @@ namespace isotherm {
 
 class ThreadPool;
 
-/// What the model knows about the surface in one view, as numbers, height x width, row-major. The
-/// pictures, the coverage summary and the console start from here.
+/// Holds what the model knows about the surface in one view, as numbers, height x width, row-major.
+/// The pictures, the coverage summary and the console start from here.
 struct ViewMaps {
   Image<float> celsius;  ///< Apparent temperature; NaN = never measured or no surface.
   Image<std::uint8_t>
@@ -40,8 +40,8 @@ struct ViewMaps {
 /// is left to do.
 enum class MeasurementQuality : std::uint8_t { kGood, kAcceptable, kBad, kNever };
 
-/// Of a pixel with a surface: good if distance, angle and, as far as it was checked, motion are;
-/// bad if one of them is.
+/// The quality of a pixel with a surface: good if distance, angle and, as far as it was checked,
+/// motion are; bad if one of them is.
 MeasurementQuality QualityAt(const ViewMaps& view, int x, int y);
 
 /// Looks up the surface in the thermal volume (algorithms 7-9, lines 4-7 and 9-10). `maps` in

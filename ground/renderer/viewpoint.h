@@ -21,7 +21,7 @@ std::optional<RigidTransform> LookAt(const Eigen::Vector3d& from_world,
 
 /// Where a model lies, and from where it was looked at when it was scanned.
 struct ModelAspect {
-  Eigen::Vector3d centre_world;     ///< Of the box around its points, metres.
+  Eigen::Vector3d centre_world;     ///< Centre of the box around its points, metres.
   Eigen::Vector3d to_viewer_world;  ///< Unit: from the centre to where it was seen from.
   Eigen::Vector3d up_world;         ///< Unit: upwards in most of the scan's pictures.
   bool one_sided = true;            ///< Whether it was looked at from one side only.

@@ -108,7 +108,7 @@ TEST(AspectTest, WithoutPosesTheFirstCameraIsAssumed) {
   EXPECT_EQ(aspect.to_viewer_world, Eigen::Vector3d(0, 0, -1));
 }
 
-/// Of a box from the origin, from 20 degrees above.
+/// Expects the orbit around a box from the origin, from 20 degrees above.
 void ExpectOrbit(const Eigen::Vector3f& size_m, double arc_deg) {
   SCOPED_TRACE(arc_deg);
   const auto points = BoxCorners(Eigen::Vector3f::Zero(), size_m);

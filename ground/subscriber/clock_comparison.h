@@ -39,7 +39,7 @@ class ClockComparison {
   /// should be a number that the other does not come near.
   explicit ClockComparison(std::uint64_t first_ping) : next_ping_(first_ping) {}
 
-  /// What to put into a receipt that is sent now.
+  /// Returns what to put into a receipt that is sent now.
   std::uint64_t Ping(SteadyTime now);
   /// An echo has come. Echoes of pings that are not ours, or long ago, are ignored.
   void Add(const ClockEcho& echo, SteadyTime now);
@@ -47,7 +47,7 @@ class ClockComparison {
   std::optional<ClockOffset> Offset(const ClockReading& now) const;
 
   static constexpr Nanoseconds kWindow = std::chrono::seconds(8);
-  /// Of two free-running quartz clocks, 100 ppm each.
+  /// Two free-running quartz clocks drift by 100 ppm each.
   static constexpr double kMaxDrift = 200e-6;
 
  private:
@@ -63,7 +63,7 @@ class ClockComparison {
   static double Uncertainty(const Sample& sample, SteadyTime now);
   static bool Contradict(const Sample& older, const Sample& newer);
 
-  static constexpr std::size_t kMostPings = 512;  ///< Of ten seconds at forty receipts a second.
+  static constexpr std::size_t kMostPings = 512;  ///< Ten seconds at forty receipts a second.
   std::uint64_t next_ping_;
   std::deque<SteadyTime> pinged_;  ///< The newest last.
   std::deque<Sample> samples_;

@@ -23,7 +23,7 @@ class ClockWatch {
   /// A status of the rig has come; `own` is this computer's clock, for the message only.
   void Update(const EdgeStatus& status, const std::optional<ClockOffset>& offset,
               const KernelClock& own, SteadyTime now);
-  /// Of the session of the newest status.
+  /// The clock in the session of the newest status.
   const ClockAccount& account() const { return account_; }
 
   static constexpr Nanoseconds kRepeat = std::chrono::minutes(1);

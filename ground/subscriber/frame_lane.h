@@ -60,7 +60,7 @@ class FrameLane {
   const Consumer deliver_;
   const Consumer deliver_late_;
   Stream stream_;
-  std::optional<FrameMark> newest_;  ///< Of the frames that were taken.
+  std::optional<FrameMark> newest_;  ///< The newest of the frames that were taken.
   struct Aside {
     Item item;
     FrameMark mark;

@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// What a frame says of its place in the stream, and when it came.
+/// Holds what a frame says of its place in the stream, and when it came.
 struct FrameMark {
   std::uint64_t number = 0;
   CaptureTime time{};

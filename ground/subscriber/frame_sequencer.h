@@ -29,7 +29,7 @@ class FrameSequencer {
 
   explicit FrameSequencer(Nanoseconds window) : window_(window) {}
 
-  /// What would become of `number`.
+  /// Returns what would become of `number`.
   Verdict Check(std::uint64_t number) const {
     if (!ledger_.IsNew(number)) return Verdict::kDuplicate;
     if (number < handled_) return Verdict::kLate;

@@ -12,7 +12,7 @@
 
 namespace isotherm {
 
-/// What one stream has received of one session.
+/// Holds what one stream has received of one session.
 struct StreamTally {
   std::uint64_t session = 0;
   std::uint64_t next = 0;  ///< One above the highest number.
@@ -51,7 +51,7 @@ class FrameStream {
     sequencer_.emplace(window_);
   }
 
-  /// What would become of a frame of the current session.
+  /// Returns what would become of a frame of the current session.
   Verdict Check(std::uint64_t number) const { return sequencer_->Check(number); }
 
   /// Takes a frame of the current session as FrameSequencer::Add does, and counts it.
@@ -67,14 +67,14 @@ class FrameStream {
   void Resync(std::uint64_t number) { sequencer_->Resync(number); }
   std::optional<SteadyTime> deadline() const { return sequencer_->deadline(); }
 
-  /// Of the current session.
+  /// The tally of the current session.
   StreamTally tally() const {
     StreamTally tally = tally_;
     tally.next = sequencer_->ledger().next();
     tally.received = sequencer_->ledger().received();
     return tally;
   }
-  /// Of `session`, as far as it is remembered (the current one and the one before).
+  /// The tally of `session`, as far as it is remembered (the current one and the one before).
   StreamTally tally(std::uint64_t session) const {
     if (started_ && session == tally_.session) return tally();
     if (previous_ && session == previous_->session) return *previous_;

@@ -33,7 +33,7 @@ class RigCommander {
   const std::string& edge_id() const { return edge_id_; }
 
  private:
-  /// What a rig has told of itself.
+  /// Holds what a rig has told of itself.
   struct KnownRig {
     EdgeStatus status;
     PeerHandle peer = 0;

@@ -77,7 +77,7 @@ class RigCommanderTest : public ::testing::Test {
   std::unique_ptr<RigCommander> Commander(const std::string& edge_id) const {
     return *RigCommander::Create(*ground_, clock_, edge_id);
   }
-  /// What becomes of an order to `edge_id`.
+  /// Returns what becomes of an order to `edge_id`.
   Result<CommandResult> Order(const std::string& edge_id) const {
     const std::unique_ptr<RigCommander> commander = Commander(edge_id);
     const Result<EdgeStatus> status = commander->AwaitStatus(kPatience);

@@ -43,7 +43,8 @@ class RigGate {
   static constexpr Nanoseconds kTrial = std::chrono::seconds(1);
   static constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   static constexpr Nanoseconds kPatience = std::chrono::seconds(5);
-  static constexpr std::size_t kMaxHeldBytes = 64U << 20U;  ///< Of one process; of two at most.
+  static constexpr std::size_t kMaxHeldBytes = 64U
+                                               << 20U;  ///< For one process; two at most are held.
   static constexpr std::size_t kMaxHeldSamples = 512;
   static constexpr std::size_t kMaxProcesses = 16;
 
@@ -113,7 +114,7 @@ class RigGate {
   std::deque<std::uint64_t> over_;
 };
 
-/// Of a sample of a session; 0 = of none.
+/// The session of a sample; 0 = of none.
 std::uint64_t SessionOf(const RigSample& sample);
 
 }  // namespace isotherm

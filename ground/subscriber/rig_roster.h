@@ -34,8 +34,8 @@ class RigRoster {
   std::map<PeerHandle, Rig> rigs_;
 };
 
-/// What to do when the followed rig is not there but others are: one sentence. Empty if there are
-/// none.
+/// Returns what to do when the followed rig is not there but others are: one sentence. Empty if
+/// there are none.
 std::string OtherRigsText(const std::string& followed, const std::vector<std::string>& others);
 
 /// Decides when that is said: once each time it becomes so, and not while the rigs are still

@@ -17,7 +17,7 @@ struct StreamAccount {
       0;  ///< As the edge says; while it has not said it yet, what can be inferred.
   std::uint64_t received = 0;
   std::uint64_t missing = 0;
-  std::uint64_t late = 0;        ///< Of those received: behind the reorder window.
+  std::uint64_t late = 0;        ///< Received behind the reorder window.
   std::uint64_t duplicates = 0;  ///< Further copies, dropped.
   /// Samples that were not used; the numbers that only they had stay missing.
   std::uint64_t refused = 0;
@@ -28,7 +28,7 @@ struct StreamAccount {
 struct ClockAccount {
   std::uint64_t session = 0;
   ClockReport rig;              ///< As of the newest status.
-  CaptureTime time{};           ///< Of that status, by the rig's clock.
+  CaptureTime time{};           ///< Time of that status, by the rig's clock.
   bool unsynchronised = false;  ///< At some time in the session.
   CameraReport depth_camera;    ///< As of the newest status: stamps and their uncertainty.
   CameraReport thermal_camera;
@@ -45,7 +45,7 @@ struct SessionAccount {
   bool closed = false;  ///< ... and everything has arrived or was given up.
   StreamAccount depth;
   StreamAccount thermal;
-  std::uint64_t refused_samples = 0;  ///< Of all topics, since this process runs.
+  std::uint64_t refused_samples = 0;  ///< Samples of all topics, since this process runs.
   FeedbackLatency feedback;           ///< As the edge measured it.
   std::optional<ClockAccount> clock;  ///< nullopt before the first status.
 };

@@ -23,7 +23,8 @@ class SessionBook {
   explicit SessionBook(Nanoseconds grace) : grace_(grace) {}
 
   void OnStatus(const EdgeStatus& status, SteadyTime now);
-  /// What is known of the rig's clock; goes into the account of its session, if that was seen.
+  /// Takes what is known of the rig's clock; it goes into the account of its session, if that was
+  /// seen.
   void SetClock(const ClockAccount& clock);
   /// A good frame of `session` has arrived.
   void OnFrame(std::uint64_t session, SteadyTime now);

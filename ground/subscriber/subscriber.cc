@@ -76,7 +76,7 @@ class DdsSubscriber final : public Subscriber {
   /// Hands what has arrived at `reader` to the gate; samples of other rigs are only counted.
   template <typename Message>
   int TakeSamples(Reader<Message>* reader, int max_samples);
-  /// What is due: deliveries, receipts, closed sessions, statistics.
+  /// Does what is due: deliveries, receipts, closed sessions, statistics.
   void Housekeep();
   void CloseSessions(SteadyTime now);
   /// Keeps the accounts of the newest session and of the one before, as they are now.
@@ -128,7 +128,7 @@ class DdsSubscriber final : public Subscriber {
   SteadyTime look_due_{};
   SteadyTime rivals_due_{};
   SessionBook book_;
-  std::uint64_t described_session_ = 0;  ///< Of the newest description of the rig.
+  std::uint64_t described_session_ = 0;  ///< Session of the newest description of the rig.
   ClockComparison clock_comparison_;
   ClockWatch clock_watch_;
   SteadyTime receipt_due_{};

@@ -57,9 +57,9 @@ struct SubscriberHandlers {
 };
 
 struct SubscriberStats {
-  SessionAccount account;        ///< Of the newest session.
+  SessionAccount account;        ///< The newest session's.
   std::uint64_t refused = 0;     ///< All causes.
-  RefusalCounts refusals{};      ///< Of all topics since the start, by cause.
+  RefusalCounts refusals{};      ///< Samples of all topics since the start, by cause.
   std::uint64_t other_edge = 0;  ///< Samples of rigs that are not followed.
   bool edge_present = false;
   /// What is wrong with the rigs that are there, for the operator: another one than the one that is

@@ -19,11 +19,11 @@ using testing::Both;
 using testing::Random;
 using testing::Verdict;
 
-/// What FuseBlock must do with one voxel.
+/// Holds what FuseBlock must do with one voxel.
 struct ScalarFusion {
   Verdict considered = Verdict::kNo;
   Verdict assigned = Verdict::kNo;
-  double code = 0.0;  ///< Of the temperature, before rounding.
+  double code = 0.0;  ///< Code of the temperature, before rounding.
   double slack = 0.0;
   std::int32_t classes = 0;
 };

@@ -46,7 +46,7 @@ class NearHoles {
   /// hole_px x hole_px pixels of the depth image.
   struct Square {
     Kind kind = Kind::kNeither;
-    float depth_m = 0.0F;  ///< Of a surface; 0 for others.
+    float depth_m = 0.0F;  ///< Depth of a surface; 0 for others.
     bool is_empty() const { return kind == Kind::kEmpty || kind == Kind::kHole; }
   };
   Square Look(int column, int row, const Image<float>& depth_m, const SurfaceMaps& model) const;
@@ -64,8 +64,8 @@ class NearHoles {
   const CameraModel thermal_camera_;
   RigidTransform T_depth_thermal_ = RigidTransform::Identity();
   CameraModel model_camera_;
-  int hole_side_ = 0;             ///< Of a square, pixels of the model's view.
-  Image<Square> squares_;         ///< Of the model's view.
+  int hole_side_ = 0;             ///< Side of a square, pixels of the model's view.
+  Image<Square> squares_;         ///< The squares of the model's view.
   Image<std::uint8_t> left_out_;  ///< Per tile of the thermal picture.
   bool has_holes_ = false;
   bool any_ = false;  ///< Whether any thermal pixel is left out.

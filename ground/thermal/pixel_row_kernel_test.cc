@@ -22,14 +22,14 @@ using testing::Verdict;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFar = std::numeric_limits<float>::max();
-constexpr double kSinglePrecision = 2e-6;  ///< Of a sum of a few products.
+constexpr double kSinglePrecision = 2e-6;  ///< Relative error of a sum of a few products.
 
 /// For `width` pixels, and memory behind them for a whole vector.
 std::vector<float> Row(int width, float value) {
   return std::vector<float>(static_cast<std::size_t>(width + testing::kMostLanes), value);
 }
 
-/// What MakePixelRow must make of a pixel.
+/// Holds what MakePixelRow must make of a pixel.
 struct ScalarPixel {
   double depth_m = 0.0;
   double slope_u = 0.0, slope_v = 0.0;  ///< Codes.

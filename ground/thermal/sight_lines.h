@@ -11,9 +11,9 @@
 
 namespace isotherm {
 
-/// What hides a surface from the thermal camera need not be in the model: a face that the depth
-/// camera sees only edge-on, or a part of a thing that is outside its picture. So a thermal pixel
-/// is assigned only if no part of its line of sight, from the near range to the surface, lies
+/// What hides a surface from the thermal camera need not be in the model: a face that the
+/// depth camera sees only edge-on, or a part of a thing that is outside its picture. So a thermal
+/// pixel is assigned only if no part of its line of sight, from the near range to the surface, lies
 /// behind what the depth camera sees of the model (as in space carving, Kutulakos and Seitz 2000).
 /// What reaches its picture's border is taken to go on beyond. Thread-compatible.
 class SightLines {
@@ -45,7 +45,7 @@ class SightLines {
   Eigen::Matrix3f R_depth_thermal_ = Eigen::Matrix3f::Identity();
   Eigen::Vector3f t_depth_thermal_ = Eigen::Vector3f::Zero();
   CameraModel model_camera_;
-  Image<float> depth_m_;  ///< Of the model along the depth camera's z; NaN = none.
+  Image<float> depth_m_;  ///< Depth of the model along the depth camera's z; NaN = none.
 };
 
 }  // namespace isotherm

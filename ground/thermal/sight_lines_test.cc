@@ -37,7 +37,7 @@ class SightLinesTest : public ::testing::Test {
       }
     }
   }
-  /// Of a thermal picture that shows surface at `depth_m` everywhere.
+  /// How much is left out of a thermal image that shows surface at `depth_m` everywhere.
   std::int64_t LeaveOut(double depth_m) {
     ThermalPixel pixel{};
     pixel.depth_m = static_cast<float>(depth_m);

@@ -42,7 +42,7 @@ std::optional<Eigen::Vector3f> NormalAt(const TsdfVolume& tsdf, const GridIndex&
   return gradient / norm;
 }
 
-/// Of the difference of two angles in 0..180 degrees that have these cosines.
+/// The cosine of the difference of two angles in 0..180 degrees that have these cosines.
 float CosineOfDifference(float a, float b) {
   const auto squared_sine = [](float cosine) { return std::max(0.0F, 1.0F - cosine * cosine); };
   return a * b + std::sqrt(squared_sine(a) * squared_sine(b));

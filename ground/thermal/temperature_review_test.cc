@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kVoxelM = 0.004;
 constexpr double kFrontM = 0.30;  ///< z of the box's face towards the camera, which looks along +z.
-constexpr double kHalfSideM = 0.10;  ///< Of the box around (0.32, 0.32).
+constexpr double kHalfSideM = 0.10;  ///< Half the side of the box around (0.32, 0.32).
 
 double Box(const Eigen::Vector3d& p) {
   const Eigen::Vector3d outside(std::abs(p.x() - 0.32) - kHalfSideM,

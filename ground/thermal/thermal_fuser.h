@@ -24,7 +24,7 @@
 
 namespace isotherm {
 
-/// What one thermal frame did to the model.
+/// Holds what one thermal frame did to the model.
 struct FusionReport {
   std::int64_t considered = 0;  ///< Voxels on the surface that both cameras see.
   // Thermal pixels that were not assigned.
@@ -38,9 +38,9 @@ struct FusionReport {
   FusionReport& operator+=(const FusionReport& other);
 };
 
-/// What is known about a thermal frame beside its picture and pose.
+/// Holds what is known about a thermal frame beside its picture and pose.
 struct CaptureConditions {
-  CameraMotion motion;                ///< Of the thermal camera.
+  CameraMotion motion;                ///< Motion of the thermal camera.
   double registration_px = 0.0;       ///< Standard deviation of the pose in its picture.
   const NearHoles* holes = nullptr;   ///< Where something unseen may be in the way.
   const SightLines* sight = nullptr;  ///< What the depth camera looks through.
@@ -72,7 +72,7 @@ class ThermalFuser {
   const CameraModel& ideal_camera() const { return rectifier_.ideal_camera(); }
 
  private:
-  /// What the thermal camera sees of the model, into surface_ and distances_m_.
+  /// Casts what the thermal camera sees of the model, into surface_ and distances_m_.
   void CastSurface(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
   PixelRowArgs RowArgs(const RigidTransform& T_world_thermal, const CameraModel& depth_camera,
                        const RigidTransform& T_world_depth, const CaptureConditions& capture) const;
@@ -88,11 +88,11 @@ class ThermalFuser {
   const int apron_;  ///< Pixels around distances_m_ and celsius_.
   ThermalRectifier rectifier_;
   Raycaster raycaster_{RaycastPrecision::kVisibility};
-  SurfaceMaps coarse_;                   ///< Every second pixel each way.
-  SurfaceMaps surface_;                  ///< The model as the thermal camera sees it, in world.
-  Image<float> distances_m_;             ///< Of its vertices from the camera, with an apron.
-  Image<float> celsius_;                 ///< With an apron.
-  std::vector<ThermalPixel> pixels_;     ///< And one more that shows nothing.
+  SurfaceMaps coarse_;                ///< Every second pixel each way.
+  SurfaceMaps surface_;               ///< The model as the thermal camera sees it, in world.
+  Image<float> distances_m_;          ///< Distances of its vertices from the camera, with an apron.
+  Image<float> celsius_;              ///< With an apron.
+  std::vector<ThermalPixel> pixels_;  ///< And one more that shows nothing.
   Image<float> nearest_m_, farthest_m_;  ///< Depth of the surface per tile; farthest 0 = none.
   VisibleBlocks visible_;
   std::vector<std::int32_t> blocks_;

@@ -4,7 +4,8 @@
 
 namespace isotherm {
 
-/// What one pixel of the ideal thermal camera says about the surface that it shows, in 16 bytes.
+/// Holds what one pixel of the ideal thermal camera says about the surface that it shows, in 16
+/// bytes.
 struct ThermalPixel {
   static constexpr float kSlopeScale = 64.0F;
   static constexpr std::int32_t kSeen = 1 << 8;        ///< Both cameras see the surface here.
@@ -12,7 +13,7 @@ struct ThermalPixel {
 
   static constexpr int kCosineShift = 16;
 
-  float depth_m;        ///< Of the model's surface along the thermal camera's z; 0 = none.
+  float depth_m;        ///< Depth of the model's surface along the thermal camera's z; 0 = none.
   float celsius;        ///< At the pixel's centre.
   std::int32_t slopes;  ///< d celsius / dv << 16 | d celsius / du, signed, in 1 / kSlopeScale K/px.
   std::int32_t flags;   ///< kSeen, kAssignable, classes where ThermalVoxel has them, and from
@@ -44,12 +45,12 @@ struct PixelRowArgs {
   const float* nx;
   const float* ny;
   const float* nz;
-  const float* distance_m;  ///< Of this row; can be read `margin` rows and columns around.
-  const float* celsius;     ///< Of this row; can be read one row and column around.
+  const float* distance_m;  ///< This row's; can be read `margin` rows and columns around.
+  const float* celsius;     ///< This row's; can be read one row and column around.
   std::int32_t distance_stride, celsius_stride;
   std::int32_t margin;
   std::int32_t width;
-  float position[3];  ///< Of the thermal camera in world.
+  float position[3];  ///< Position of the thermal camera in world.
   float z_axis[4];    ///< Depth along the thermal camera's z = z_axis . (p, 1).
   float R_depth[9];   ///< Depth camera from world.
   float t_depth[3];
@@ -58,9 +59,10 @@ struct PixelRowArgs {
   float occlusion_tolerance_m;  ///< Surfaces farther behind the nearest around are hidden.
   float distance_min_m, distance_good_m, distance_max_m;
   float cosine_min_angle, cosine_good_angle, cosine_max_angle;
-  float max_footprint_m;  ///< Of a pixel on the surface; larger is a bad distance.
+  float max_footprint_m;  ///< Largest spot of a pixel on the surface; beyond is a bad distance.
   float max_error_k;      ///< Most that the temperature may change within the uncertainty.
-  float uncertainty_px;   ///< Of where a pixel is on the surface; the smear if that is more.
+  float uncertainty_px;   ///< How uncertain a pixel's place on the surface is; the smear if that is
+                          ///< more.
   // Motion (CameraMotion) of the ideal camera, and how long it smears this row.
   float fx, fy, cx;
   float y;  ///< Normalised image coordinate of the row.
@@ -86,14 +88,14 @@ struct FusionKernelArgs {
   std::int32_t max_tsdf_code;  ///< Voxels farther from the surface are passed over.
   bool validate;               ///< Worse conditions do not replace better ones (algorithm 6).
   bool keep_bad;               ///< Bad conditions give a temperature, not only their classes.
-  bool keep_lowest;            ///< Of temperatures under good conditions.
+  bool keep_lowest;            ///< Keep the lowest of temperatures under good conditions.
 };
 struct FusionKernelCounts {
   std::int64_t considered = 0;
   std::int64_t assigned = 0;
 };
-/// What was measured of the voxels of one block: those that took a new temperature, and those that
-/// were measured under good conditions, whether they took it or not.
+/// Holds what was measured of the voxels of one block: those that took a new temperature, and those
+/// that were measured under good conditions, whether they took it or not.
 struct BlockMeasurements {
   static constexpr std::int32_t kAssigned = 1 << 9;  ///< Beside the voxel's index.
   static constexpr int kRoom = 512 + 64;             ///< Vectors are written whole.
@@ -101,7 +103,7 @@ struct BlockMeasurements {
   int count = 0;
   std::int32_t voxels[kRoom];  ///< Index and kAssigned.
   std::int32_t words[kRoom];   ///< As ThermalVoxel has them, without disagreement.
-  std::int32_t flags[kRoom];   ///< Of the pixel.
+  std::int32_t flags[kRoom];   ///< Flags of the pixel.
 };
 /// Algorithms 5 and 6 for the 512 voxels of a block whose first voxel's centre is at `first`
 /// (thermal camera coordinates, metres). `measured` may be nullptr.

@@ -18,7 +18,7 @@ using testing::Random;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFar = std::numeric_limits<float>::max();
-constexpr double kSinglePrecision = 2e-6;  ///< Of a sum of a few products.
+constexpr double kSinglePrecision = 2e-6;  ///< Relative error of a sum of a few products.
 
 /// For `width` pixels, and memory behind them for a whole vector.
 std::vector<float> Row(int width, float value) {

@@ -13,9 +13,9 @@ struct ConditionRecord {
   static constexpr std::uint32_t kNoAge = (1U << 12) - 1;
   static constexpr std::uint32_t kMaxGoodCount = (1U << 6) - 1;
 
-  std::uint16_t direction = 0;      ///< From the surface to the camera (EncodeDirection).
-  std::uint8_t epoch = 0;           ///< NUCs so far in the session, modulo 256.
-  std::uint8_t cosine = 0;          ///< Of the angle to the surface that was seen then, in 1/255.
+  std::uint16_t direction = 0;  ///< From the surface to the camera (EncodeDirection).
+  std::uint8_t epoch = 0;       ///< NUCs so far in the session, modulo 256.
+  std::uint8_t cosine = 0;  ///< Cosine of the angle to the surface that was seen then, in 1/255.
   std::uint32_t distance : 14 = 0;  ///< Steps of 0.5 mm; 0 = no record.
   std::uint32_t age : 12 = 0;  ///< Since the NUC, steps of 0.25 s; kNoAge = not known or longer.
   /// Measurements in the voxel's DisagreementRecord; stops at kMaxGoodCount.
@@ -29,8 +29,8 @@ struct ConditionRecord {
 };
 static_assert(sizeof(ConditionRecord) == 8);
 
-/// What measurements of a voxel under good conditions had in common, in 8 bytes; how many they were
-/// stands in the ConditionRecord. Temperatures as ThermalVoxel's codes.
+/// Holds what measurements of a voxel under good conditions had in common, in 8 bytes; how many
+/// they were stands in the ConditionRecord. Temperatures as ThermalVoxel's codes.
 struct DisagreementRecord {
   std::uint16_t lowest = 0, highest = 0;
   std::uint16_t mean = 0;     ///< For the spread only.

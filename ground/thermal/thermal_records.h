@@ -59,7 +59,7 @@ class ThermalRecords {
 
   GrowingArena index_;  ///< Per block and row: 0 = none, else page * kRowsPerPage + row + 1.
   GrowingArena pages_;
-  std::mutex mutex_;  ///< Of what follows; taken once per new row.
+  std::mutex mutex_;  ///< Guards what follows; taken once per new row.
   std::vector<Part> parts_;
   std::uint32_t page_count_ = 0;
 };

@@ -117,7 +117,7 @@ class ThermalVolume {
   std::unique_ptr<ThermalRecords> records_;
 };
 
-/// What is known about the temperature of a surface point.
+/// Holds what is known about the temperature of a surface point.
 struct PointMeasurement {
   ThermalVoxel voxel;
   ConditionRecord conditions;  ///< Empty: not kept.

@@ -45,7 +45,7 @@ HWY_INLINE MF OnOneSurface(const Vertices& a, const Vertices& b, VF max_plane_di
                  hn::Le(hn::Abs(from_b), max_plane_distance));
 }
 
-/// Of a vertex, huge where there is none.
+/// The squared distance of a vertex, huge where there is none.
 HWY_INLINE VF SquaredDistance(const VF* p, const float* position) {
   VF sum = hn::Zero(d);
   for (int i = 0; i < 3; ++i) {

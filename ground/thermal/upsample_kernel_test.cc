@@ -44,7 +44,7 @@ Verdict OnOneSurface(const Vertex& a, const Vertex& b, double max_distance) {
   return Both(within(a.n), within(b.n));
 }
 
-/// What UpsampleRow must make of a fine pixel.
+/// Holds what UpsampleRow must make of a fine pixel.
 struct ScalarUpsample {
   Verdict has_vertex = Verdict::kYes;
   Vertex vertex;

@@ -37,7 +37,7 @@ Sample At(const SurfaceMaps& maps, int x, int y) {
           Eigen::Vector3d(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y))};
 }
 
-/// What AccumulateIcpRows must add for one pixel.
+/// Holds what AccumulateIcpRows must add for one pixel.
 struct ScalarPair {
   Verdict candidate = Verdict::kNo;
   Verdict inlier = Verdict::kNo;

@@ -27,10 +27,10 @@ enum class LostReason {
 };
 std::string_view ToString(LostReason reason);
 
-/// What the model looks like from a pose: the tracker's reference. Maps in `world`.
+/// Holds what the model looks like from a pose: the tracker's reference. Maps in `world`.
 struct ModelView {
   SurfaceMaps maps;
-  CameraModel camera;  ///< Of the maps; may be smaller than the depth image.
+  CameraModel camera;  ///< The camera of the maps; may be smaller than the depth image.
   RigidTransform T_world_depth;
   bool is_young = false;  ///< Little more than one frame's noise: its normals are rough.
 };
@@ -59,8 +59,9 @@ struct TrackingResult {
   double step_rad = 0.0;
   int iterations = 0;
   MotionSpace motion;  ///< What of the motion was measured.
-  /// Of T_world_depth: twist (translation, rotation about the camera's position) in `world`, m and
-  /// rad; what this frame measured, so nothing along axes that are not observed (PoseUncertainty).
+  /// How uncertain T_world_depth is, as a twist (translation, rotation about the camera's position)
+  /// in `world`, m and rad; what this frame measured, so nothing along axes that are not observed
+  /// (PoseUncertainty).
   Matrix6 covariance = Matrix6::Zero();
 
   bool tracked() const { return lost == LostReason::kNone; }

@@ -9,10 +9,10 @@
 namespace isotherm {
 namespace {
 
-constexpr int kStride = 2;  ///< Of the pixels that are looked at.
+constexpr int kStride = 2;  ///< Step between the pixels that are looked at.
 
 struct MotionSums {
-  Matrix6 H = Matrix6::Zero();  ///< Of J of the model's normals times J of the current ones.
+  Matrix6 H = Matrix6::Zero();  ///< Sum of J of the model's normals times J of the current ones.
   double weight = 0.0;
   double depth = 0.0;
   int count = 0;

@@ -47,7 +47,7 @@ class MeasureMotionSpaceTest : public ::testing::Test {
     return std::hypot(p.x() - 0.30, p.z() - 0.52) - 0.12;
   }
 
-  /// What the scene looks like in the model, and in a frame from the same pose.
+  /// Shows the scene to the model, and to a frame from the same pose.
   void Look(const testing::SignedDistance& scene) {
     VolumeOptions options;
     options.set_size_x_m(0.64);
@@ -345,7 +345,7 @@ TEST_F(PoseUncertaintyTest, NoiseOfASourceDoesNotAddUpWhileItGoesOnAndItsDriftDo
               kRounding);
 }
 
-/// Of three free axes along x, y and the turn about z, only the turn is uncertain if only the
+/// With three free axes along x, y and the turn about z, only the turn is uncertain if only the
 /// rotation is.
 TEST_F(PoseUncertaintyTest, RotationAndTranslationErrorsCountWhereTheyBelong) {
   TrackingResult result;

@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-/// What the poses from outside did for depth frames.
+/// Holds what the poses from outside did for depth frames.
 struct OutsidePriorCounts {
   std::uint64_t used = 0;          ///< Frames that started from them.
   std::uint64_t missing = 0;       ///< No pose for the frame's time, but some before it.
@@ -67,12 +67,12 @@ class OutsidePrior {
   const OutsidePoseOptions options_;
   OutsideStream stream_;
   OutsidePriorCounts counts_;
-  std::optional<Used> used_;       ///< Of the newest frame that started from the source.
-  std::optional<Used> predicted_;  ///< Of the newest prediction.
+  std::optional<Used> used_;       ///< The newest frame that started from the source.
+  std::optional<Used> predicted_;  ///< The newest prediction.
   /// Frames tracked since the set of observed directions changed, oldest first: what the newest is
   /// compared with, so that slow contradictions add up.
   std::deque<StampedPose> anchors_;
-  int free_axes_ = 0;  ///< Of the anchors.
+  int free_axes_ = 0;  ///< Those of the anchors.
   bool trusted_ = true;
   int agreeing_ = 0;
   int missing_in_a_row_ = 0;

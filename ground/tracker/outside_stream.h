@@ -15,7 +15,7 @@ namespace isotherm {
 
 Status Validate(const OutsidePoseOptions& options);
 
-/// What became of the samples: in = accepted + all refused.
+/// Holds what became of the samples: in = accepted + all refused.
 struct OutsideStreamCounts {
   std::uint64_t in = 0;
   std::uint64_t accepted = 0;

@@ -18,8 +18,8 @@ class PoseUncertainty {
   /// To coordinates whose axes are turned: `R` maps from the old ones.
   void Rotate(const Eigen::Matrix3d& R);
 
-  /// Of T_world_depth: twist (translation, rotation about the camera's position) in `world`, m and
-  /// rad.
+  /// How uncertain T_world_depth is, as a twist (translation, rotation about the camera's position)
+  /// in `world`, m and rad.
   const Matrix6& covariance() const { return covariance_; }
   /// One standard deviation of the least certain motion, as the shift of the surface in view,
   /// metres.
@@ -29,7 +29,8 @@ class PoseUncertainty {
 
  private:
   Matrix6 covariance_ = Matrix6::Zero();
-  Matrix6 without_noise_ = Matrix6::Zero();  ///< Of the newest pose alone, along free axes.
+  Matrix6 without_noise_ =
+      Matrix6::Zero();  ///< The part of the newest pose alone, along free axes.
   double surface_sigma_m_ = 0.0;
   double mean_depth_m_ = 1.0;
 };

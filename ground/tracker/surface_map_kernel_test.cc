@@ -24,7 +24,7 @@ std::array<Image<float>*, 6> Planes(SurfaceMaps& maps) {
   return {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz};
 }
 
-/// What SurfaceMapRow must make of a pixel.
+/// Holds what SurfaceMapRow must make of a pixel.
 struct ScalarPixel {
   Verdict has_normal = Verdict::kNo;
   Eigen::Vector3d p, n;

@@ -30,8 +30,9 @@ constexpr double kMaxShiftM = 0.1;
 /// something else than noise, and than the picture's shift.
 constexpr double kOutlier = 3.0;
 constexpr double kSigmaOfMedian = 1.4826;
-constexpr double kLeastSpreadK = 0.02;  ///< Of centi-kelvins, however little noise there is.
-/// Of the reference's variance: a fit that explains less than the rest is none.
+constexpr double kLeastSpreadK =
+    0.02;  ///< Steps of a centi-kelvin spread so far, however little noise there is.
+/// A fit that leaves more than this part of the reference's variance unexplained is none.
 constexpr double kMaxUnexplained = 0.25;
 /// Neighbouring cells share pixels by interpolation: about one of this many samples counts.
 constexpr double kSamplesPerValue = 4.0;
@@ -44,10 +45,10 @@ constexpr double kMaxAgeAtStartS = 0.05;
 /// About the mean over the samples, so that the level does not count.
 struct ThermalCue::Sums {
   int in_view = 0;
-  int count = 0;                ///< Of those, the ones that are summed.
-  double median_k = 0.0;        ///< Of the residuals in view, ...
+  int count = 0;                ///< How many of those are summed.
+  double median_k = 0.0;        ///< Median of the residuals in view.
   double spread_k = 0.0;        ///< ... and their standard deviation, if they are normal.
-  double mean_square_k2 = 0.0;  ///< Of those summed, about their mean.
+  double mean_square_k2 = 0.0;  ///< Mean square of those summed, about their mean.
   /// Mean of the reference's derivatives times the picture's, K^2/m^2: noise, which is independent
   /// in both, averages out and does not look like structure.
   Matrix6 H = Matrix6::Zero();

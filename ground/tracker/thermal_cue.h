@@ -11,9 +11,9 @@
 
 namespace isotherm {
 
-/// What temperatures add to the motion along directions that the geometry leaves free.
+/// Holds what temperatures add to the motion along directions that the geometry leaves free.
 struct ThermalFit {
-  /// Of the free axes to new ones, orthonormal columns, the observed ones last.
+  /// Maps the free axes to new ones, orthonormal columns, the observed ones last.
   Eigen::MatrixXd turn;
   int observed = 0;             ///< The last columns, which temperatures observe.
   Eigen::VectorXd variance_m2;  ///< Along each of those.
@@ -54,11 +54,12 @@ class ThermalCue {
   struct Sample {
     Eigen::Vector3d p_world;
     double celsius;
-    Eigen::Vector3d gradient;  ///< Of the temperature with the point's motion, K/m, in `world`.
+    Eigen::Vector3d
+        gradient;  ///< Change of the temperature with the point's motion, K/m, in `world`.
   };
   struct Sums;
 
-  /// What a picture shows at a point; nullopt outside of it.
+  /// Returns what a picture shows at a point; nullopt outside of it.
   std::optional<Sample> Look(const Image<float>& celsius, const RigidTransform& T_world_thermal,
                              const Eigen::Vector3d& p_world) const;
   /// The quarter picture without lens distortion, °C; NaN = no value.
@@ -74,7 +75,7 @@ class ThermalCue {
   /// is left out.
   Sums Accumulate(const RigidTransform& T_world_depth, const MotionSpace& motion, const Sums& last);
 
-  CameraModel camera_;                ///< Of the quarter picture.
+  CameraModel camera_;                ///< The camera of the quarter image.
   std::vector<std::int32_t> source_;  ///< Its cells' pixels in the camera's picture, 16 each.
   const RigidTransform T_depth_thermal_;
   const double min_gradient_k_m_;
@@ -87,7 +88,7 @@ class ThermalCue {
 
   std::vector<Sample> reference_;
   double reference_sigma_m_ = 0.0;
-  double reference_variance_k2_ = 0.0;  ///< Of its temperatures.
+  double reference_variance_k2_ = 0.0;  ///< Variance of the reference's temperatures.
   bool reference_leaves_view_ = false;
 
   static constexpr int kNoGap = 2;

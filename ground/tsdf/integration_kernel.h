@@ -4,7 +4,7 @@
 
 namespace isotherm {
 
-/// What one depth pixel says about the surface, in 16 bytes: the plane n . p = offset (camera
+/// Holds what one depth pixel says about the surface, in 16 bytes: the plane n . p = offset (camera
 /// coordinates, metres, n towards the camera), the depth along z, and the weight of the observation
 /// (0 = nothing was seen).
 struct DepthSample {
@@ -37,8 +37,8 @@ struct SampleRowArgs {
 /// angle.
 void MakeSampleRow(const SampleRowArgs& args, DepthSample* samples);
 
-/// What finding blocks near the surface needs; positions in blocks with the table's border block
-/// included.
+/// Holds what finding blocks near the surface needs; positions in blocks with the table's border
+/// block included.
 struct BandRowArgs {
   const float* depth_m;
   std::int32_t width;
@@ -60,7 +60,7 @@ inline std::int32_t BandRowCapacity(const BandRowArgs& args) {
   return (args.width + 64) * (2 * args.half_steps + 1);
 }
 
-/// What the update of a block needs, as plain numbers, so that the kernel can be compiled for
+/// Holds what the update of a block needs, as plain numbers, so that the kernel can be compiled for
 /// several instruction sets.
 struct IntegrationKernelArgs {
   const DepthSample* samples;  ///< Per pixel, row-major, and one more with weight 0.
@@ -70,7 +70,7 @@ struct IntegrationKernelArgs {
                   ///< row-major.
   float truncation_m;
   float max_weight;
-  float noise_at_1m;  ///< Of the depth, metres; grows with the square of the depth.
+  float noise_at_1m;  ///< Noise of the depth, metres; grows with the square of the depth.
 };
 
 /// Updates the 512 voxel words of a block whose first voxel's centre is at `first` (camera

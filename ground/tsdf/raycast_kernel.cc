@@ -138,7 +138,7 @@ HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Point& p) 
 struct Rays {
   Point direction;
   Point inverse;
-  VF length;  ///< Of direction.
+  VF length;  ///< Length of direction.
   const float* origin;
 
   HWY_INLINE Point At(VF depth) const {
@@ -171,7 +171,7 @@ HWY_INLINE VF AxisExit(VI b, float origin, VF direction, VF inverse) {
 }
 
 struct Crossing {
-  VF depth;  ///< Of the zero crossing, between the nearest voxels' distances.
+  VF depth;  ///< Depth of the zero crossing, between the nearest voxels' distances.
   MF found;
 };
 
@@ -243,7 +243,7 @@ class March {
   const VF voxel_step_;
   const VF safe_step_;  ///< Where the distance is 1.
   VF depth_;
-  VF previous_depth_;  ///< Of the last observed voxel,
+  VF previous_depth_;  ///< Depth and value of the last observed voxel,
   VF previous_;        ///< and its distance. Not positive: no crossing can start there.
   VF crossing_;
   MF found_;

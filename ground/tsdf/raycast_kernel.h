@@ -12,7 +12,7 @@ namespace isotherm {
 struct RaycastKernelArgs {
   const std::int32_t* table;   ///< Block indices with border, x fastest, -1 = none.
   const std::int32_t* voxels;  ///< TsdfVoxel words of block 0; block -1 exists and is unobserved.
-  std::int32_t stride_y, stride_z;  ///< Of the table.
+  std::int32_t stride_y, stride_z;  ///< Strides of the table.
   std::int32_t last[3];             ///< The table's last voxel along each axis.
   float low, high[3];               ///< Rays stay inside, half way into the border.
   std::int32_t min_weight_code;     ///< In TsdfVoxel weight units, at least 1.

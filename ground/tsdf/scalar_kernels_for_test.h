@@ -17,7 +17,7 @@
 // What the kernels of this folder must do, one element at a time and in double precision.
 namespace isotherm::testing {
 
-/// Of a sum of a few products, as a share of their magnitudes.
+/// Relative error of a sum of a few products.
 inline constexpr double kSinglePrecision = 1e-6;
 
 /// Whether CullBlocks keeps a block. `precision` 0: all sums are exact.
@@ -37,7 +37,7 @@ inline Verdict ScalarCull(const float (&planes)[kFrustumPlanes][4], const std::i
   return inside;
 }
 
-/// What MakeSampleRow must make of a pixel, before it is rounded to a DepthSample.
+/// Holds what MakeSampleRow must make of a pixel, before it is rounded to a DepthSample.
 struct ScalarSample {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
@@ -95,8 +95,8 @@ struct ScalarUpdate {
   bool certain = true;  ///< Not so near a pixel's or the band's border that rounding decides.
 };
 
-/// What IntegrateBlock must make of a voxel at `p` (camera coordinates, metres) if it gets the
-/// distance wrong by `error_m`.
+/// Returns what IntegrateBlock must make of a voxel at `p` (camera coordinates, metres) if it gets
+/// the distance wrong by `error_m`.
 inline ScalarUpdate UpdateScalarVoxel(const IntegrationKernelArgs& a, const Eigen::Vector3d& p,
                                       TsdfVoxel voxel, double error_m) {
   constexpr double kNearPixelBorder = 2e-3;  // Pixels.

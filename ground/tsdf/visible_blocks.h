@@ -31,7 +31,7 @@ struct BlockToCamera {
       : A((T_camera_world.linear() * grid.block_size_m()).cast<float>()),
         t((T_camera_world * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m())))
               .cast<float>()) {}
-  /// Of the box around a block, along the camera's axes.
+  /// Half the size of the box around a block, along the camera's axes.
   Eigen::Vector3f HalfExtent() const { return 0.5F * A.cwiseAbs().rowwise().sum(); }
   Eigen::Vector3f Centre(const GridIndex& block) const { return A * block.cast<float>() + t; }
 };

@@ -52,7 +52,7 @@ class Scene {
   const GroundOptions options;
   std::unique_ptr<TsdfVolume> volume;
   const PreparedDepth* last = nullptr;
-  RigidTransform T_world_depth;  ///< Of the last frame.
+  RigidTransform T_world_depth;  ///< Pose of the last frame.
   ModelView view;                ///< From the pose before.
 
  private:

@@ -4,7 +4,7 @@
 
 namespace isotherm {
 
-/// What a measurement depends on, in one line: cores, load averages of the last 1, 5 and 15
+/// Returns what a measurement depends on, in one line: cores, load averages of the last 1, 5 and 15
 /// minutes, and the SIMD instruction set that the kernels take.
 std::string DescribeMachine();
 

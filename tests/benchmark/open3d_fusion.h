@@ -71,7 +71,7 @@ class Open3dFusion {
   const float truncation_vox_;
   std::array<open3d::core::Tensor, kLevels> intrinsics_;  ///< Coarse to fine.
   open3d::t::geometry::VoxelBlockGrid model_;
-  open3d::core::Tensor blocks_;  ///< Of the last frame's surface.
+  open3d::core::Tensor blocks_;  ///< Blocks of the last frame's surface.
   TensorImage model_depth_;      ///< Ray cast from the last pose.
   RigidTransform T_world_depth_;
   std::vector<StampedPose> trajectory_;

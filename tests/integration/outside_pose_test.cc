@@ -85,7 +85,7 @@ class OutsidePoseTest : public ::testing::Test {
     double largest_error_m = 0.0;
     double end_error_m = 0.0;
     double end_turn_rad = 0.0;
-    double across_m = 0.0;      ///< Of the end, along z.
+    double across_m = 0.0;      ///< Error of the end, along z.
     double end_sigma_m = 0.0;   ///< What the tracker thinks of it.
     double off_source_m = 0.0;  ///< Largest distance from where the source says.
     int lost = 0;

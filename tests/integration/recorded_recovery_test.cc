@@ -34,7 +34,7 @@ constexpr double kSurfaceMargin = 1.1;
 /// One frame that the pipeline is shown.
 struct Shot {
   enum class Cover { kNothing, kHand, kTooNear };
-  int frame;                ///< Of the recording.
+  int frame;                ///< Number in the recording.
   double seconds = kFrame;  ///< Since the shot before.
   Cover cover = Cover::kNothing;
 };
@@ -54,10 +54,10 @@ struct Outcome {
   int until_lost = -1;     ///< Frames of the disturbance before the first that was not tracked.
   int until_found = -1;    ///< Frames from the return until fusion may go on.
   int believed_wrong = 0;  ///< Frames tracked at a wrong pose.
-  int fused_wrong = 0;     ///< Of those, fused.
+  int fused_wrong = 0;     ///< How many of those were fused.
   int fused_covered = 0;   ///< Frames fused that show something before the camera.
   int lost = 0;
-  double largest_error_m = 0.0;  ///< Of the poses that were believed.
+  double largest_error_m = 0.0;  ///< Largest error of the poses that were believed.
   SurfaceErrors surface;
 };
 

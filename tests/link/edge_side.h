@@ -12,8 +12,8 @@
 
 namespace isotherm {
 
-/// What a test edge sends: raw images of the sizes of a real rig, filled with noise that depends on
-/// the number.
+/// Holds what a test edge sends: raw images of the sizes of a real rig, filled with noise that
+/// depends on the number.
 struct EdgePlan {
   int domain = 0;
   std::uint64_t session = 1;

@@ -130,7 +130,7 @@ class Impostor {
            status_.WaitForAcknowledgments(kLinkPatience) &&
            pose_.WaitForAcknowledgments(kLinkPatience);
   }
-  std::uint64_t frames() const { return frames_; }  ///< Of each stream.
+  std::uint64_t frames() const { return frames_; }  ///< Frames of each stream.
 
  private:
   static constexpr const char* kName = "test-edge";

@@ -12,8 +12,8 @@ namespace {
 
 using Folders = std::vector<std::string_view>;
 
-/// What each folder may include besides itself: folders, or single headers. `ground` and `edge`
-/// stand for the pipelines, mains and options.
+/// Returns what each folder may include besides itself: folders, or single headers. `ground` and
+/// `edge` stand for the pipelines, mains and options.
 const std::map<std::string_view, Folders>& AllowedFolders() {
   static const Folders kFrameParts = {"common/base", "common/time", "common/concurrency",
                                       "common/geometry", "common/frame"};

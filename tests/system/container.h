@@ -40,7 +40,8 @@ class Container {
   std::optional<std::string> WaitForBoot();
 
   std::filesystem::path folder_;
-  std::filesystem::path cgroup_;  ///< Of its own, so that containers of other tests are not met.
+  std::filesystem::path
+      cgroup_;  ///< A control group of its own, so that containers of other tests are not met.
   std::optional<std::string> obstacle_;
   std::unique_ptr<Process> nspawn_;
   pid_t init_ = -1;

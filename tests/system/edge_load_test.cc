@@ -62,7 +62,8 @@ double CpuSeconds(int who) {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-/// What a process has in memory, MB; pages that processes share count for each with its share.
+/// Returns what a process has in memory, MB; pages that processes share count for each with its
+/// share.
 double Memory_mb(const std::string& process) {
   std::ifstream pages("/proc/" + process + "/smaps_rollup");
   for (std::string line; std::getline(pages, line);) {
@@ -182,11 +183,11 @@ class EdgeLoadTest : public ::testing::Test {
     return supervised;
   }
 
-  /// What the edge needs, without the making of thermal frames.
+  /// Holds what the edge needs, without the making of thermal frames.
   struct Usage {
-    double cpu_share = 0.0;  ///< Of a core.
+    double cpu_share = 0.0;  ///< Part of a core.
     double memory_mb = 0.0;
-    double child_memory_mb = 0.0;  ///< Of the depth camera's process.
+    double child_memory_mb = 0.0;  ///< Memory of the depth camera's process.
   };
 
   void StartPublishing() {

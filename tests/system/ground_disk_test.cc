@@ -39,7 +39,7 @@ bool WaitForFile(const std::filesystem::path& path, Seconds patience) {
   return true;
 }
 
-/// What the ground's log says of the scans that it began.
+/// Holds what the ground's log says of the scans that it began.
 struct Scan {
   std::uint64_t session = 0;
   std::filesystem::path folder;

@@ -30,7 +30,7 @@ class MachineLoad {
  private:
   /// In ticks of the kernel's clock.
   struct Account {
-    std::uint64_t all = 0;   ///< Of all processors, idle or not.
+    std::uint64_t all = 0;   ///< Ticks of all processors, idle or not.
     std::uint64_t busy = 0;  ///< Including what the host took.
     std::uint64_t own = 0;
   };

@@ -25,7 +25,7 @@ constexpr Seconds kSlack{5.0};
 
 /// A computer: a network namespace that is connected to the other one by one interface.
 struct Host {
-  std::string name;       ///< Of the namespace.
+  std::string name;       ///< Name of the namespace.
   std::string interface;  ///< Its end of the cable.
   std::string address;
 };

@@ -42,7 +42,7 @@ class NucTest : public ::testing::Test {
                      {"--domain", std::to_string(TestDomain()), "--timeout", "60"});
     return RunToEnd({Tool(), std::move(arguments), {}}, kPatience);
   }
-  /// What the thermal frames of the edge's recording say, and its log.
+  /// Returns what the thermal frames of the edge's recording say, and its log.
   std::string Inspect() const {
     return RunToEnd({Tool(), {"inspect", folder_.path() / "edge.mcap"}, {}}, kPatience).output;
   }

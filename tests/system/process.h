@@ -15,7 +15,7 @@ namespace isotherm::system_test {
 
 using Seconds = std::chrono::duration<double>;
 
-/// What a child process is started with.
+/// Holds what a child process is started with.
 struct Command {
   std::filesystem::path program;
   std::vector<std::string> arguments;
@@ -75,7 +75,7 @@ struct Finished {
 /// killed.
 Finished RunToEnd(const Command& command, Seconds timeout);
 
-/// What the service manager would see of a daemon: the messages of its notify socket.
+/// Holds what the service manager would see of a daemon: the messages of its notify socket.
 /// Thread-compatible.
 class NotifySocket {
  public:
@@ -90,11 +90,11 @@ class NotifySocket {
   /// True as soon as a message with the line `line` (e.g. "READY=1") has come, false after
   /// `timeout`.
   bool WaitFor(std::string_view line, Seconds timeout);
-  /// What came until now is not waited for any more.
+  /// Forgets what came until now: it is not waited for any more.
   void Forget();
   /// Takes what has come, so that the sender is not held up: the socket keeps ten messages.
   void Drain();
-  /// What has come since, a line per message and variable.
+  /// Returns what has come since, a line per message and variable.
   const std::string& received() const { return received_; }
 
   /// The same for a message that contains `text` anywhere.

@@ -36,7 +36,7 @@ google::protobuf::Struct ReadStats(const std::filesystem::path& folder);
 /// there is none.
 double NumberAt(const google::protobuf::Struct& json, const std::vector<std::string>& path);
 
-/// What a recorded frame is, however it is stored.
+/// Holds what a recorded frame is, however it is stored.
 struct StoredFrame {
   Sensor sensor = Sensor::kDepth;
   std::uint64_t frame_number = 0;

@@ -16,7 +16,7 @@ class EmulatedP2Pro final : public EmulatedUvcCamera {
   /// One that streams over bulk transfers, in payloads of at most so many bytes.
   EmulatedP2Pro(std::string_view script, std::uint32_t bulk_payload_bytes);
 
-  /// Of pixel (0, 0) without noise, kelvin x 64; columns follow in steps of 1.
+  /// The value of pixel (0, 0) without noise, kelvin x 64; columns follow in steps of 1.
   static constexpr std::uint16_t kFirstCount = 18'560;  // 290 K.
   static constexpr int kNoise = 8;
 

@@ -57,7 +57,7 @@ class EmulatedP3 : public EmulatedDevice {
   std::vector<std::uint8_t> answer_;
   std::optional<Nanoseconds> next_frame_at_;
   std::deque<std::vector<std::uint8_t>> payloads_;  ///< Each ends with a short packet.
-  std::size_t sent_ = 0;                            ///< Of the first payload.
+  std::size_t sent_ = 0;                            ///< Bytes of the first payload that are sent.
   std::vector<std::uint8_t> data_;
   std::uint16_t counter_ = 0;
   std::uint32_t stamp_ = 0;

@@ -70,7 +70,7 @@ class EmulatedSeek final : public EmulatedDevice {
   bool stalled_ = false;
   std::optional<Nanoseconds> next_frame_at_;
   std::deque<Piece> pieces_;
-  std::size_t sent_ = 0;  ///< Of the first piece.
+  std::size_t sent_ = 0;  ///< Bytes of the first piece that are sent.
   std::optional<Unplugged> unplug_after_;
   std::optional<Unplugged> unplugged_;
   std::vector<std::uint8_t> last_;

@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-/// What identifies an emulated device.
+/// Holds what identifies an emulated device.
 struct EmulatedIdentity {
   std::uint16_t vendor_id = 0;
   std::uint16_t product_id = 0;
@@ -39,7 +39,7 @@ class EmulatedDevice {
                                                            std::size_t read_bytes) = 0;
   virtual void SetAlternate(int interface, int alternate) = 0;
   virtual void ClearHalt(std::uint8_t /*endpoint*/) {}
-  /// What it sends in the bus interval at `time` (from an arbitrary zero).
+  /// Returns what it sends in the bus interval at `time` (from an arbitrary zero).
   virtual EmulatedPacket Isochronous(std::uint8_t endpoint, Nanoseconds time, std::size_t most) = 0;
   /// One bulk transfer; nullopt = nothing to send yet.
   virtual std::optional<std::vector<std::uint8_t>> Bulk(std::uint8_t endpoint, Nanoseconds time,

@@ -58,11 +58,11 @@ class EmulatedRequests {
   EmulatedDevice& device_;
   const ClientMemory memory_;
   const EmulatedIdentity identity_;
-  const Nanoseconds interval_;  ///< Of the bus.
+  const Nanoseconds interval_;  ///< The bus's.
   std::deque<Request> in_flight_;
   std::deque<Request> finished_;
   std::deque<Request> withheld_;                         ///< Cancelled and not given back.
-  std::map<std::uint8_t, Nanoseconds> isochronous_end_;  ///< Of the last request, by endpoint.
+  std::map<std::uint8_t, Nanoseconds> isochronous_end_;  ///< Last request's end, by endpoint.
 };
 
 }  // namespace isotherm

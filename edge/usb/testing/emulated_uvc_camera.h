@@ -35,7 +35,8 @@ class EmulatedUvcCamera : public EmulatedDevice {
   /// Frames begun so far, and the alternate setting that is active. Thread-safe.
   int frames_sent() const { return frames_sent_; }
   int alternate() const { return alternate_; }
-  /// Of one with bulk transfers: between agreement on a mode and ClearHalt. Thread-safe.
+  /// Whether a camera with bulk transfers streams: between agreement on a mode and ClearHalt.
+  /// Thread-safe.
   bool bulk_streaming() const { return bulk_streaming_; }
 
  protected:

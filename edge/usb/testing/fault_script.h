@@ -13,7 +13,7 @@ struct FaultStep {
   std::string fault;  ///< What follows the colon.
 };
 
-/// What an emulated camera does, frame by frame. Steps are separated by blanks:
+/// Holds what an emulated camera does, frame by frame. Steps are separated by blanks:
 /// `[count*]what[:fault]`. The last step is repeated for ever.
 ///
 ///   f          a frame

@@ -9,7 +9,7 @@
 
 namespace isotherm {
 
-/// What the descriptors of an emulated UVC camera say.
+/// Holds what the descriptors of an emulated UVC camera say.
 struct UvcCameraLayout {
   std::uint16_t version = 0x0100;
   std::vector<UvcUnit> units;
