@@ -6,6 +6,7 @@
 #   deploy/install-deps.sh --build    only what the build and the demo need (Node.js is for tests only)
 #   deploy/install-deps.sh --arm64    also a cross compiler, an emulator and, unpacked into build/arm64-sysroot (0.8 GB),
 #                                     the arm64 libraries for the preset arm64; this system's libraries stay as they are
+#   deploy/install-deps.sh --images   also what deploy/make-readme-images.sh needs
 #   deploy/install-deps.sh --list     print the packages, install nothing
 # Package lists are words on purpose:
 # shellcheck disable=SC2086
@@ -62,8 +63,9 @@ case "${1-}" in
   "") add_test_packages ;;
   --build) ;;
   --arm64) arm64=1; add_test_packages; packages="$packages g++-aarch64-linux-gnu qemu-user mmdebstrap" ;;
+  --images) packages="$packages python3 python3-pil zstd fonts-dejavu-core" ;;
   --list) add_test_packages; for package in $packages; do echo "$package"; done; exit 0 ;;
-  *) echo "usage: deploy/install-deps.sh [--build | --arm64 | --list]" >&2; exit 64 ;;
+  *) echo "usage: deploy/install-deps.sh [--build | --arm64 | --images | --list]" >&2; exit 64 ;;
 esac
 
 if ! command -v apt-get >/dev/null 2>&1; then
