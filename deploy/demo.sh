@@ -40,7 +40,6 @@ if [ "$headless" = 0 ]; then
   stats.json  what was measured and how long it took
   scan.mcap   the scan itself, to reconstruct again
 Further pictures:   build/release/bin/isotherm render out/demo -o PICTURE.png --size 800x600
-The tool anywhere:  export PATH="$PWD/build/release/bin:\$PATH"
 The web console is not part of this version.
 TEXT
 fi
@@ -52,3 +51,8 @@ if [ -n "$covered" ] && [ -n "$next" ]; then
   say "in a sentence"
   echo "Of the scanned surface $covered has a temperature; $next."
 fi
+
+# The tool is not on the PATH, and nobody should have to look for it.
+say "the tool"
+echo "$PWD/build/release/bin/isotherm --help"
+echo "export PATH=\"$PWD/build/release/bin:\$PATH\"     # then: isotherm --help"
