@@ -138,6 +138,7 @@ void RigGate::Hold(Process& process, RigSample&& sample, SteadyTime now) {
   process.held_bytes += BytesOf(sample);
   process.held.push_back({std::move(sample), now});
   while (process.held_bytes > kMaxHeldBytes || process.held.size() > kMaxHeldSamples) {
+    ++overflowed_;
     process.held_bytes -= BytesOf(process.held.front().sample);
     refuse_(process.held.front().sample,
             process.peer == owner_ ? RefusalCause::kUnannounced : RefusalCause::kOtherWriter);

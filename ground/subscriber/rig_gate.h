@@ -71,6 +71,8 @@ class RigGate {
     friend bool operator==(const Rival&, const Rival&) = default;
   };
   std::vector<Rival> rivals() const;
+  /// Samples of all that were refused because too many waited already.
+  std::uint64_t overflowed() const { return overflowed_; }
 
  private:
   struct Held {
@@ -112,6 +114,7 @@ class RigGate {
   std::uint64_t session_ = 0;  ///< Newest that an owner announced.
   bool closed_ = false;        ///< session_ is.
   std::deque<std::uint64_t> over_;
+  std::uint64_t overflowed_ = 0;
 };
 
 /// The session of a sample; 0 = of none.

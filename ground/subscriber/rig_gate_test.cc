@@ -92,7 +92,9 @@ TEST_F(RigGateTest, F60FramesOfASessionThatNobodyAnnouncedAreRefusedAfterAWhile)
   for (std::uint64_t i = 0; i < 1000; ++i) Add(kFirst, Frame(77, i));
   Add(kFirst, Frame(1, 0));
   EXPECT_EQ(refused(RefusalCause::kUnannounced), 1000 - RigGate::kMaxHeldSamples);
+  EXPECT_EQ(gate_.overflowed(), 1000 - RigGate::kMaxHeldSamples);
   Wait(RigGate::kPatience);
+  EXPECT_EQ(gate_.overflowed(), 1000 - RigGate::kMaxHeldSamples) << "the others had their time";
   EXPECT_EQ(refused(RefusalCause::kUnannounced), 1000U);
   EXPECT_THAT(passed_, ElementsAre("rig 1", "frame 1/0"));
 }
@@ -100,6 +102,7 @@ TEST_F(RigGateTest, F60FramesOfASessionThatNobodyAnnouncedAreRefusedAfterAWhile)
 TEST_F(RigGateTest, WhatIsKeptIsBoundedInBytes) {
   for (std::uint64_t i = 0; i < 10; ++i) Add(kFirst, Frame(1, i, RigGate::kMaxHeldBytes / 4));
   EXPECT_EQ(refused(RefusalCause::kUnannounced), 7U);
+  EXPECT_EQ(gate_.overflowed(), 7U);
 }
 
 TEST_F(RigGateTest, F36ASecondProcessNeitherEndsNorAltersTheSession) {

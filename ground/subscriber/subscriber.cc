@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/time/line_limiter.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/wait_set.h"
 #include "ground/subscriber/clock_comparison.h"
@@ -102,6 +103,7 @@ class DdsSubscriber final : public Subscriber {
   /// Who is there, who is the rig, and who only says so.
   void LookAround(SteadyTime now);
   void TellRivals(SteadyTime now);
+  void TellOverflow(SteadyTime now);
   std::string followed() const;  ///< Empty before there is one.
   /// True for the rig that is followed; without a choice that is the first one seen.
   bool IsFollowed(const std::string& edge_id);
@@ -127,6 +129,8 @@ class DdsSubscriber final : public Subscriber {
   std::vector<RigGate::Rival> rivals_;
   SteadyTime look_due_{};
   SteadyTime rivals_due_{};
+  std::uint64_t told_overflow_ = 0;
+  LineLimiter overflow_limiter_;
   SessionBook book_;
   std::uint64_t described_session_ = 0;  ///< Session of the newest description of the rig.
   ClockComparison clock_comparison_;
@@ -325,6 +329,7 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   gate_.Update(now, is_present);
   roster_.Update(is_present);
   TellRivals(now);
+  TellOverflow(now);
   const std::string edge_id = followed();
   // That writers live is known within their lease of a second; who they are, for ten.
   const bool present =
@@ -375,6 +380,16 @@ void DdsSubscriber::TellRivals(SteadyTime now) {
     refusal.verdict = SessionVerdict::kOtherRig;
     static_cast<void>(ends_.receipt.Write(followed(), refusal));  // Repeated every second.
   }
+}
+
+void DdsSubscriber::TellOverflow(SteadyTime now) {
+  const std::uint64_t overflowed = gate_.overflowed();
+  if (overflowed == told_overflow_ || !overflow_limiter_.Admit(now)) return;
+  LOG(Subscriber, Warning) << fmt::format(
+      "{} samples were refused: a rig \"{}\" that is not followed yet, or has not described "
+      "itself, sent more than {} samples or {} MB",
+      overflowed - std::exchange(told_overflow_, overflowed), followed(), RigGate::kMaxHeldSamples,
+      RigGate::kMaxHeldBytes >> 20U);
 }
 
 std::string DdsSubscriber::followed() const {
