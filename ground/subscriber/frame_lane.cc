@@ -117,26 +117,55 @@ void FrameLane<Item>::Accept(Item&& item, const FrameMark& mark) {
 
 template <typename Item>
 bool FrameLane<Item>::Suspect(Item&& item, const FrameMark& mark, RefusalCause cause) {
-  if (!aside_.empty()) {
+  if (FollowsGap() && MayFollowGap(aside_.back().mark, mark, item.arrival)) {
+    BelieveAside();
+    if (!CheckFollows(*newest_, mark)) {
+      Accept(std::move(item), mark);
+      return true;
+    }
+  } else if (!aside_.empty()) {
     const FrameMark& last = aside_.back().mark;
     if (mark.number <= last.number || CheckFollows(last, mark)) RefuseAside();
   }
   aside_.push_back({std::move(item), mark, cause});
   if (aside_.size() < kConfirm) return false;
+  BelieveAside();
+  return true;
+}
+
+template <typename Item>
+bool FrameLane<Item>::FollowsGap() const {
+  return replay_ && newest_ && !aside_.empty() &&
+         MayFollowGap(*newest_, aside_.front().mark, aside_.front().item.arrival);
+}
+
+template <typename Item>
+void FrameLane<Item>::BelieveAside() {
+  const bool gap = FollowsGap();
   std::vector<Aside> believed = std::exchange(aside_, {});
   const FrameMark& first = believed.front().mark;
-  LOG(Subscriber, Warning) << "the " << name_
-                           << " stream has jumped, from frame_number=" << newest_->number << " to "
-                           << first.number << ", capture time by "
-                           << ToSeconds(first.time - newest_->time)
-                           << " s; it goes on there: look at the clocks of rig and camera";
+  const double advance_s = ToSeconds(first.time - newest_->time);
+  if (gap) {
+    LOG(Subscriber, Info) << "the recording that is played has a gap in its " << name_
+                          << " stream, frame_number=" << first.number << " gap_s=" << advance_s;
+  } else {
+    LOG(Subscriber, Warning) << "the " << name_
+                             << " stream has jumped, from frame_number=" << newest_->number
+                             << " to " << first.number << ", capture time by " << advance_s
+                             << " s; it goes on there: look at the clocks of rig and camera";
+  }
   while (std::optional<Item> waiting = stream_.Flush()) {
     if (deliver_) deliver_(std::move(*waiting));
   }
   stream_.Resync(first.number);
   newest_.reset();
   for (Aside& next : believed) Accept(std::move(next.item), next.mark);
-  return true;
+}
+
+template <typename Item>
+void FrameLane<Item>::SettleAside() {
+  if (FollowsGap()) return BelieveAside();
+  RefuseAside();
 }
 
 template <typename Item>
@@ -158,7 +187,7 @@ StreamTally FrameLane<Item>::tally(std::uint64_t session) const {
 
 template <typename Item>
 void FrameLane<Item>::DeliverDue(SteadyTime now) {
-  if (!aside_.empty() && now >= aside_.front().mark.arrival + kMaxAside) RefuseAside();
+  if (!aside_.empty() && now >= aside_.front().mark.arrival + kMaxAside) SettleAside();
   while (std::optional<Item> item = stream_.Next(now)) {
     if (deliver_) deliver_(std::move(*item));
   }
@@ -166,7 +195,7 @@ void FrameLane<Item>::DeliverDue(SteadyTime now) {
 
 template <typename Item>
 void FrameLane<Item>::DeliverAll() {
-  RefuseAside();
+  SettleAside();
   while (std::optional<Item> item = stream_.Flush()) {
     if (deliver_) deliver_(std::move(*item));
   }

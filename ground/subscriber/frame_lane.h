@@ -17,7 +17,9 @@ namespace isotherm {
 /// the payload is unpacked, the order is restored. A frame whose number or capture time cannot
 /// follow those before is kept aside: when kConfirm in a row agree with each other, the stream has
 /// really jumped and goes on with them; otherwise they are refused, and one wild frame stops none
-/// behind it. Item is ReceivedDepth or ReceivedThermal. No DDS, no clock. Thread-compatible.
+/// behind it. A replay as fast as the ground takes it passes over the gaps of its recording: one
+/// more frame confirms those, and none contradicts the last. Item is ReceivedDepth or
+/// ReceivedThermal. No DDS, no clock. Thread-compatible.
 template <typename Item>
 class FrameLane {
  public:
@@ -32,6 +34,8 @@ class FrameLane {
   FrameLane(std::string_view name, Nanoseconds reorder_window, RefusalCounter* refusals,
             Consumer deliver, Consumer deliver_late);
 
+  /// Whether the frames of this session come as fast as the ground takes them.
+  void SetReplay(bool replay) { replay_ = replay; }
   /// Takes a frame that has passed the transport's checks; true if it was good and new.
   bool Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now);
   /// Delivers what is in order or has waited long enough.
@@ -52,7 +56,12 @@ class FrameLane {
   void Accept(Item&& item, const FrameMark& mark);
   /// Keeps a frame aside that `cause` speaks against; true if it is believed now.
   bool Suspect(Item&& item, const FrameMark& mark, RefusalCause cause);
+  /// The frames kept aside are where the stream goes on.
+  void BelieveAside();
   void RefuseAside();
+  /// No other frame will say whether those kept aside are right.
+  void SettleAside();
+  bool FollowsGap() const;  ///< What is aside.
   void Refuse(RefusalCause cause, const FrameHeader& header);
 
   const std::string_view name_;
@@ -66,6 +75,7 @@ class FrameLane {
     FrameMark mark;
     RefusalCause cause;
   };
+  bool replay_ = false;
   std::vector<Aside> aside_;        ///< Each follows the one before it.
   RefusalCounts refused_before_{};  ///< When the session began.
   std::optional<StreamTally> previous_;

@@ -196,5 +196,55 @@ TEST_F(FrameLaneTest, ANewSessionFirstDeliversWhatWaitedInTheOldOne) {
   EXPECT_EQ(delivered_.back().frame->header.session, 2U);
 }
 
+/// A recording of yesterday, as fast as the ground takes it.
+class ReplayLaneTest : public FrameLaneTest {
+ protected:
+  ReplayLaneTest() { lane_.SetReplay(true); }
+  bool Add(std::uint64_t number, Nanoseconds time) {
+    now_ += 1ms;
+    const bool good = lane_.Add(At(1, number, time), kToday, now_);
+    lane_.DeliverDue(now_);
+    return good;
+  }
+  static constexpr CaptureTime kToday = CaptureTimeFromNanoseconds(Nanoseconds(24h).count());
+};
+
+TEST_F(ReplayLaneTest, AGapOfTheRecordingCostsNoFrame) {
+  Add(0, 1s);
+  Add(1, 1033ms);
+  Add(2, 1h);
+  Add(3, 1h + 33ms);
+  Add(4, 2h);  // The last of the recording, after another gap.
+  lane_.DeliverAll();
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_EQ(refusals_.total(), 0U);
+}
+
+TEST_F(ReplayLaneTest, ARecordingOfFewFramesIsAllGaps) {
+  for (std::uint64_t i = 0; i < 5; ++i) Add(i, 1s + 2s * static_cast<int>(i));
+  lane_.DeliverAll();
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_EQ(refusals_.total(), 0U);
+}
+
+TEST_F(ReplayLaneTest, TheLastFrameOfAScanIsNotWaitedForLong) {
+  Add(0, 1s);
+  Add(1, 1h);
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0));
+  now_ += FrameLane<ReceivedThermal>::kMaxAside;
+  lane_.DeliverDue(now_);
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 1));
+}
+
+TEST_F(ReplayLaneTest, AWildFrameIsRefusedAndStopsNoneBehindIt) {
+  Add(0, 1s);
+  Add(1, 1h);
+  Add(2, 1066ms);
+  Add(3, 25h);  // In the future of whoever plays it.
+  lane_.DeliverAll();
+  EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 2));
+  EXPECT_EQ(refusals_.count(RefusalCause::kImplausibleTime), 2U);
+}
+
 }  // namespace
 }  // namespace isotherm

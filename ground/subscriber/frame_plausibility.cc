@@ -25,4 +25,11 @@ std::optional<RefusalCause> CheckFollows(const FrameMark& before, const FrameMar
   return std::nullopt;
 }
 
+bool MayFollowGap(const FrameMark& before, const FrameMark& frame, CaptureTime now) {
+  if (frame.number <= before.number || frame.time <= before.time || frame.time > now) return false;
+  FrameMark waited_for = frame;
+  waited_for.arrival = before.arrival + (frame.time - before.time);
+  return !CheckFollows(before, waited_for);
+}
+
 }  // namespace isotherm

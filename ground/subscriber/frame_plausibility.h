@@ -30,4 +30,9 @@ inline constexpr Nanoseconds kMaxJitter = std::chrono::milliseconds(250);
 /// cameras do. The wall clocks of both sides need not agree.
 std::optional<RefusalCause> CheckFollows(const FrameMark& before, const FrameMark& frame);
 
+/// Whether `frame` can follow a gap in a recording that is played as fast as the ground takes it:
+/// the ground's clock did not see the gap. What was recorded was so before it is played, so that
+/// `now`, the ground's wall clock, is not before it.
+bool MayFollowGap(const FrameMark& before, const FrameMark& frame, CaptureTime now);
+
 }  // namespace isotherm

@@ -40,6 +40,21 @@ TEST_F(FramePlausibilityTest, TimesThatAreNotInTheSessionAreNot) {
   EXPECT_EQ(Check(1'000'000, 500'000s, 33ms), RefusalCause::kImplausibleTime);
 }
 
+TEST_F(FramePlausibilityTest, AGapInARecordingIsForwardsAndInThePast) {
+  const auto may_follow = [&](std::int64_t numbers, Nanoseconds time) {
+    FrameMark frame = before_;
+    frame.number += static_cast<std::uint64_t>(numbers);
+    frame.time += time;
+    return MayFollowGap(before_, frame, before_.time + 24h);
+  };
+  EXPECT_TRUE(may_follow(1, 1h));
+  EXPECT_TRUE(may_follow(100'000, 1h)) << "numbers went on";
+  EXPECT_FALSE(may_follow(1, 25h)) << "nobody recorded it yet";
+  EXPECT_FALSE(may_follow(1, -1h));
+  EXPECT_FALSE(may_follow(-1, 1h));
+  EXPECT_FALSE(may_follow(5'600'000, 1h)) << "more than any camera";
+}
+
 TEST_F(FramePlausibilityTest, NumbersThatNoCameraReachesAreNot) {
   EXPECT_EQ(Check(5'600'000, 33ms, 33ms), RefusalCause::kImpossibleNumber) << "one flipped bit";
   EXPECT_EQ(Check(100, 33ms, 33ms), RefusalCause::kImpossibleNumber);

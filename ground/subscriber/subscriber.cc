@@ -239,6 +239,8 @@ void DdsSubscriber::On(const RigDescription& rig, CaptureTime /*arrival*/) {
     depth_.DeliverAll();
     thermal_.DeliverAll();
   }
+  depth_.SetReplay(rig.waits_for_ground);
+  thermal_.SetReplay(rig.waits_for_ground);
   if (handlers_.rig) handlers_.rig(rig);
 }
 
