@@ -118,7 +118,7 @@ class ThermalDaemonTest : public ::testing::Test {
 
 TEST_F(ThermalDaemonTest, F04UnpluggedInMidFrameTheScanGoesOnWhenItIsBack) {
   // Longer away than a service manager waits for a sign of life.
-  bus_->Plug(std::make_shared<EmulatedLepton>("8*f unplug:11000 f"));
+  bus_->Plug(std::make_shared<EmulatedLepton>("20*f unplug:11000 f"));
   Process edge(Edge());
   bus_->SetChild(edge.pid());
   ASSERT_TRUE(edge.WaitForOutput("serial=\"LEPTON-1\"", kPatience)) << edge.output();
@@ -127,7 +127,9 @@ TEST_F(ThermalDaemonTest, F04UnpluggedInMidFrameTheScanGoesOnWhenItIsBack) {
   ASSERT_TRUE(edge.WaitForOutput("thermal camera: working", kPatience, 2)) << edge.output();
   EXPECT_FALSE(edge.WaitForExit(Seconds(1.5)).has_value());
   const FrameAccountText account = End(edge);
-  EXPECT_GE(account.done, 8 + 4) << edge.output();
+  EXPECT_GE(account.done, 20 + 4) << edge.output();
+  // The camera's counter stood still meanwhile: its frames must not be dated as if it had gone on.
+  EXPECT_THAT(edge.output(), Not(HasSubstr("UNSYNCHRONISED")));
 }
 
 TEST_F(ThermalDaemonTest, F11DamagedFramesAreRefusedAndCounted) {
@@ -250,7 +252,11 @@ TEST_F(ThermalDaemonTest, F03ACameraThatTheCalibrationIsNotOfIsNotUsed) {
   EXPECT_TRUE(
       edge.WaitForOutput("\"LEPTON-2\" is not used: the calibration is of \"LEPTON-1\"", kPatience))
       << edge.output();
-  EXPECT_EQ(edge.WaitForExit(kPatience), kRefused) << "there is no other camera";
+  // Somebody may plug in the right one.
+  EXPECT_FALSE(edge.WaitForExit(Seconds(1.5)).has_value());
+  EXPECT_THAT(edge.output(), Not(HasSubstr("thermal camera: working")));
+  edge.Signal(SIGTERM);
+  EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
 }
 
 TEST_F(ThermalDaemonTest, TheRecordingSaysWhatTheCameraIs) {

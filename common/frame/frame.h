@@ -100,7 +100,10 @@ struct RawFrame {
       0;  ///< Counted by the source; a hole is a frame that was lost before us.
   DeviceTicks device_ticks{};    ///< Unwrapped by the driver; backwards = the counter was reset.
   bool has_device_clock = true;  ///< False: the camera has no counter, and ticks mean nothing.
-  CaptureTime arrival_wall{};    ///< Edge wall clock when the first byte reached us.
+  /// The first one after its camera was opened again: its counter is another one, although its
+  /// value may look as if the old one had gone on.
+  bool reopened = false;
+  CaptureTime arrival_wall{};  ///< Edge wall clock when the first byte reached us.
   /// This computer's monotonic clock at the same moment; 0 = the source does not say.
   SteadyTime arrival_steady{};
   Image<std::uint16_t> pixels;  ///< As DepthFrame::depth_raw or ThermalFrame::centikelvin.

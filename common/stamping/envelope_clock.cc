@@ -49,6 +49,12 @@ bool EnvelopeClock::IsFromAnotherCounter(DeviceTicks ticks, CaptureTime arrival)
   return sample.y < line_.At(sample.x) - options_.early_limit_s;
 }
 
+void EnvelopeClock::BeginCounter() {
+  if (!last_ticks_) return;
+  ++resets_;
+  Restart();
+}
+
 EnvelopeClock::Sample EnvelopeClock::Relative(DeviceTicks ticks, CaptureTime arrival) const {
   const Nanoseconds device = ticks - first_ticks_;
   return {.x = ToSeconds(device), .y = ToSeconds(arrival - first_arrival_ - device)};

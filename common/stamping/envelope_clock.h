@@ -43,6 +43,9 @@ class EnvelopeClock {
 
   Stamp Process(DeviceTicks ticks, CaptureTime arrival);
 
+  /// The camera was opened again: the next frame's ticks are of another counter.
+  void BeginCounter();
+
   /// Times that the estimate started again: counter reset or jump, and given up.
   std::uint64_t resets() const { return resets_; }
   std::uint64_t relearned() const { return relearned_; }

@@ -57,11 +57,15 @@ MedianClock::MedianClock(int window) : differences_(static_cast<std::size_t>(win
   CHECK(window >= 1);
 }
 
+void MedianClock::BeginCounter() {
+  if (!last_ticks_) return;
+  last_ticks_.reset();
+  differences_.Clear();
+  ++resets_;
+}
+
 Stamp MedianClock::Process(DeviceTicks ticks, CaptureTime arrival) {
-  if (last_ticks_ && ticks < *last_ticks_) {
-    differences_.Clear();
-    ++resets_;
-  }
+  if (last_ticks_ && ticks < *last_ticks_) BeginCounter();
   last_ticks_ = ticks;
 
   const Nanoseconds device_time = ticks.time_since_epoch();

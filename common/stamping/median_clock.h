@@ -48,6 +48,9 @@ class MedianClock {
 
   Stamp Process(DeviceTicks ticks, CaptureTime arrival);
 
+  /// The camera was opened again: the next frame's ticks are of another counter.
+  void BeginCounter();
+
   /// Counter resets seen.
   std::uint64_t resets() const { return resets_; }
 

@@ -161,6 +161,7 @@ SourceItem SupervisedSource::Judge(RawFrame frame) {
     next_wait_ = retry_min_;
     failure_.clear();
     Tell(true);
+    frame.reopened = std::exchange(is_first_[static_cast<std::size_t>(frame.sensor)], false);
     return frame;
   }
   on_rejected_(frame.sensor);
@@ -195,7 +196,11 @@ SourceItem SupervisedSource::ReopenWhenDue(const std::stop_token& stop) {
   }
   reopen_at_.reset();
   ++reopened_;
-  if (const Status opened = OpenSame(); !opened.ok()) ScheduleReopen(opened);
+  if (const Status opened = OpenSame(); !opened.ok()) {
+    ScheduleReopen(opened);
+  } else {
+    is_first_ = {true, true};
+  }
   return NothingYet{};
 }
 

@@ -105,6 +105,7 @@ class SupervisedSource final : public FrameSource {
   /// temperatures.
   std::optional<bool> counts_only_;
   std::array<int, 2> bad_in_a_row_{};  ///< By Sensor: one camera may fail while the other works.
+  std::array<bool, 2> is_first_{};  ///< By Sensor: no frame yet since the camera was opened again.
   std::uint64_t reopened_ = 0;
   Nanoseconds next_wait_;
   std::optional<SteadyTime> reopen_at_;  ///< Set while waiting.

@@ -86,6 +86,22 @@ TEST_F(SupervisedSourceTest, F11TenBadFramesInARowReopenTheSource) {
   EXPECT_EQ(source_->reopened(), 1U);
 }
 
+TEST_F(SupervisedSourceTest, F04OnlyTheFirstFrameAfterOpeningAgainSaysSo) {
+  Start("2*d 10*d:size 3*d");
+  const auto next_frame = [this] {
+    const Result<SourceItem> item = source_->Read({});
+    const auto* frame = item ? std::get_if<RawFrame>(&*item) : nullptr;
+    return frame == nullptr ? std::optional<bool>() : frame->reopened;
+  };
+  EXPECT_EQ(next_frame(), false) << "opened for the first time";
+  EXPECT_EQ(next_frame(), false);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(next_frame(), std::nullopt);
+  clock_.Advance(milliseconds(500));
+  EXPECT_EQ(next_frame(), std::nullopt) << "opened";
+  EXPECT_EQ(next_frame(), true);
+  EXPECT_EQ(next_frame(), false);
+}
+
 TEST_F(SupervisedSourceTest, F11NineBadFramesAndAGoodOneStartTheCountAgain) {
   Start("d 9*d:size d 9*d:size d");
   EXPECT_EQ(Read(21), 3);

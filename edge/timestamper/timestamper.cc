@@ -32,6 +32,11 @@ Timestamper::Timestamper(const TimestamperOptions& options, Sensor sensor, Nanos
       period_(ToEnvelopeOptions(options, sensor)) {}
 
 Stamp Timestamper::Process(const RawFrame& frame, CaptureTime arrival) {
+  // Frames without ticks are counted by their source, which goes on counting.
+  if (frame.reopened) {
+    median_.BeginCounter();
+    envelope_.BeginCounter();
+  }
   Stamp stamp = !frame.has_device_clock ? period_.Process(frame.frame_number, arrival)
                 : use_envelope_         ? envelope_.Process(frame.device_ticks, arrival)
                                         : median_.Process(frame.device_ticks, arrival);

@@ -49,6 +49,23 @@ TEST_P(TimestamperTest, F09StampsStayStrictlyIncreasingWhenTheResetFrameWasEarly
   EXPECT_EQ(timestamper.counts().resets, 1U);
 }
 
+TEST_P(TimestamperTest, F04ACounterThatStoodStillWhileTheCameraWasAwayIsAnotherOne) {
+  Timestamper timestamper = Make();
+  for (int i = 0; i < 400; ++i)
+    Process(timestamper, i * milliseconds(111), kEpoch + i * milliseconds(111));
+  // Away for eleven seconds, and the ticks go on as if nothing had been.
+  for (int i = 400; i < 430; ++i) {
+    const CaptureTime arrival = kEpoch + seconds(11) + i * milliseconds(111);
+    RawFrame frame = Frame(i * milliseconds(111), arrival);
+    frame.reopened = i == 400;
+    const Stamp stamp = timestamper.Process(frame, arrival);
+    EXPECT_EQ(stamp.time, arrival) << i;
+    EXPECT_TRUE(stamp.synchronised) << i;
+    EXPECT_LT(stamp.sigma, milliseconds(1)) << i;
+  }
+  EXPECT_EQ(timestamper.counts().resets, 1U);
+}
+
 TEST_P(TimestamperTest, RepeatedTicksGetDistinctStamps) {
   Timestamper timestamper = Make();
   const CaptureTime first = Process(timestamper, seconds(1), kEpoch).time;
