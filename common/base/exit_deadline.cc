@@ -3,28 +3,53 @@
 #include <unistd.h>
 
 #include <condition_variable>
-#include <mutex>
+#include <future>
 #include <stop_token>
 #include <utility>
 
 #include "common/base/log.h"
 
 namespace isotherm {
+namespace {
+
+// Enough for some lines to anybody who reads them.
+constexpr std::chrono::milliseconds kTimeForLastWords{300};
+
+[[noreturn]] void Leave(ExitDeadline::Duration limit, int status, const std::string& what,
+                        const std::function<void()>& last_words) {
+  std::future<void> said;  // Its destructor would wait, but never runs.
+  if (last_words) {
+    said = std::async(std::launch::async, last_words);
+    said.wait_for(kTimeForLastWords);
+  }
+  LOG(Service, Warning) << what << " did not end within "
+                        << std::chrono::duration<double>(limit).count() << " s; leaving without it";
+  _exit(status);
+}
+
+}  // namespace
 
 void ExitDeadline::Arm(Duration limit, int status, std::string what,
                        std::function<void()> last_words) {
+  const std::scoped_lock lock(mutex_);
+  Start(limit, status, std::move(what), std::move(last_words));
+}
+
+void ExitDeadline::ArmFirst(Duration limit, int status, std::string what,
+                            std::function<void()> last_words) {
+  const std::scoped_lock lock(mutex_);
+  if (!thread_.joinable()) Start(limit, status, std::move(what), std::move(last_words));
+}
+
+void ExitDeadline::Start(Duration limit, int status, std::string what,
+                         std::function<void()> last_words) {
   thread_ = std::jthread([limit, status, what = std::move(what),
                           last_words = std::move(last_words)](const std::stop_token& disarmed) {
     std::mutex mutex;
     std::condition_variable_any never;
     std::unique_lock lock(mutex);
     never.wait_for(lock, disarmed, limit, [] { return false; });
-    if (disarmed.stop_requested()) return;
-    if (last_words) last_words();
-    LOG(Service, Warning) << what << " did not end within "
-                          << std::chrono::duration<double>(limit).count()
-                          << " s; leaving without it";
-    _exit(status);
+    if (!disarmed.stop_requested()) Leave(limit, status, what, last_words);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -9,7 +10,7 @@ namespace isotherm {
 
 /// Ends the process when leaving takes too long, for instance because a library cannot be torn down
 /// (the middleware, while its network interface is down) or a disk does not answer. Nothing happens
-/// before Arm() and after its own end. Thread-compatible.
+/// before it is armed and after its own end. Thread-safe.
 class ExitDeadline {
  public:
   using Duration = std::chrono::nanoseconds;
@@ -20,10 +21,17 @@ class ExitDeadline {
 
   /// The process has `limit` left from now on, instead of what it had before. After that
   /// `last_words` is called if there is one, `what` is named in the log, and the process ends with
-  /// `status` as it is, without destructors.
+  /// `status` as it is, without destructors. Last words that do not end, because nobody reads them
+  /// or what they tell of is stuck itself, are cut short.
   void Arm(Duration limit, int status, std::string what, std::function<void()> last_words = {});
+  /// The same, but what is armed already stays as it is: for a signal that may come at any time.
+  void ArmFirst(Duration limit, int status, std::string what,
+                std::function<void()> last_words = {});
 
  private:
+  void Start(Duration limit, int status, std::string what, std::function<void()> last_words);
+
+  std::mutex mutex_;  // Guards what follows.
   std::jthread thread_;
 };
 

@@ -42,6 +42,29 @@ TEST(ExitDeadlineTest, TheNewestDeadlineCounts) {
       testing::ExitedWithCode(kStatus), "the network did not end");
 }
 
+TEST(ExitDeadlineTest, LastWordsThatNobodyTakesDoNotHoldIt) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        ExitDeadline deadline;
+        deadline.Arm(milliseconds(20), kStatus, "the network", [] { Hang(); });
+        Hang();
+      },
+      testing::ExitedWithCode(kStatus), "the network did not end within 0.02 s");
+}
+
+TEST(ExitDeadlineTest, AFirstDeadlineLeavesOneThatIsThereAlone) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        ExitDeadline deadline;
+        deadline.ArmFirst(milliseconds(20), kStatus, "the disk");
+        deadline.ArmFirst(hours(1), 1, "the network");
+        Hang();
+      },
+      testing::ExitedWithCode(kStatus), "the disk did not end");
+}
+
 TEST(ExitDeadlineTest, NothingHappensToAProcessThatLeavesInTime) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(
