@@ -19,6 +19,7 @@ constexpr Nanoseconds kIdle = std::chrono::milliseconds(250);
 /// (PublisherOptions::flow_timeout). What takes longer than these hangs.
 constexpr Nanoseconds kStuck = std::chrono::seconds(10);
 constexpr Nanoseconds kLinkStuck = std::chrono::seconds(15);
+constexpr Nanoseconds kNoLimit = std::chrono::hours(24 * 365);
 
 OverflowPolicy PolicyFor(const EdgeOptions& options) {
   return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
@@ -87,16 +88,32 @@ void EdgePipeline::StartCapture() {
   if (spool_) spool_thread_ = std::jthread([this](const std::stop_token& stop) { Record(stop); });
   publish_thread_ = std::jthread([this](const std::stop_token& stop) { Publish(stop); });
   codec_thread_ = std::jthread([this](const std::stop_token& stop) { Encode(stop); });
-  capture_thread_ = std::jthread([this](const std::stop_token& stop) { Capture(stop); });
+  std::promise<void> ended;
+  capture_ended_ = ended.get_future();
+  capture_thread_ = std::jthread(
+      [this](const std::stop_token& stop, std::promise<void> at_end) {
+        Capture(stop);
+        at_end.set_value();
+      },
+      std::move(ended));
+}
+
+bool EdgePipeline::StopCapture(Nanoseconds limit) {
+  if (std::exchange(capture_stopped_, true)) return !capture_left_behind_;
+  // Along the line, so that each stage can still hand on what it has.
+  capture_thread_.request_stop();
+  if (capture_thread_.joinable()) {
+    capture_left_behind_ = capture_ended_.wait_for(limit) != std::future_status::ready;
+    if (!capture_left_behind_) capture_thread_.join();
+  }
+  codec_thread_.request_stop();
+  if (codec_thread_.joinable()) codec_thread_.join();
+  return !capture_left_behind_;
 }
 
 Status EdgePipeline::StopRecording() {
   if (std::exchange(recording_stopped_, true)) return recording_status_;
-  // Along the line, so that each stage can still hand on what it has.
-  for (std::jthread* thread : {&capture_thread_, &codec_thread_}) {
-    thread->request_stop();
-    if (thread->joinable()) thread->join();
-  }
+  static_cast<void>(StopCapture(kNoLimit));
   publish_thread_.request_stop();  // It need not wait for the disk.
   spool_thread_.request_stop();
   if (spool_thread_.joinable()) spool_thread_.join();
@@ -121,6 +138,7 @@ Status EdgePipeline::Stop() {
                        << "; wall clock minus capture times at the end, s="
                        << ToSeconds(clock_step_total());
   }
+  if (capture_left_behind_) return recording_status_;  // It may still use what follows.
   ReportStamping("depth", depth_timestamper_.counts());
   ReportStamping("thermal", thermal_timestamper_.counts());
   if (outside_poses_captured_ > 0) {
@@ -150,14 +168,14 @@ std::optional<SpoolStatus> EdgePipeline::recording() const {
 }
 
 std::optional<std::string> EdgePipeline::StuckIn(SteadyTime now) const {
-  if (recording_.BusyFor(now) > kStuck) return "the disk does not answer";
-  if (reading_.BusyFor(now) > kStuck) return "the source of frames does not answer";
-  if (publishing_.BusyFor(now) > kLinkStuck) return "the network does not answer";
+  if (recording_.AtItFor(now) > kStuck) return "the disk does not answer";
+  if (reading_.AtItFor(now) > kStuck) return "the source of frames does not answer";
+  if (publishing_.AtItFor(now) > kLinkStuck) return "the network does not answer";
   return std::nullopt;
 }
 
 Result<SourceItem> EdgePipeline::Read(const std::stop_token& stop) {
-  const StuckWatch::Step step(reading_, clock_.SteadyNow());
+  const ThreadProgress::Work step(reading_, clock_.SteadyNow());
   return source_.Read(stop);
 }
 
@@ -285,13 +303,13 @@ void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
 
 void EdgePipeline::Record(const std::stop_token& stop) {
   {
-    const StuckWatch::Step step(recording_, clock_.SteadyNow());
+    const ThreadProgress::Work step(recording_, clock_.SteadyNow());
     spool_->Tend(/*idle=*/false);
   }
   while (true) {
     const std::optional<EncodedFramePtr> frame = spool_queue_.PopFor(kIdle, stop);
     if (!frame && stop.stop_requested()) return;
-    const StuckWatch::Step step(recording_, clock_.SteadyNow());
+    const ThreadProgress::Work step(recording_, clock_.SteadyNow());
     RecordFeedback();
     if (frame) spool_->Add(**frame);
     spool_->Tend(/*idle=*/!frame);
@@ -305,17 +323,17 @@ void EdgePipeline::RecordFeedback() {
   }
 }
 
-void EdgePipeline::PublishOutsidePoses(const EncodedFrame& frame) {
+void EdgePipeline::PublishOutsidePoses(const EncodedFrame& frame, const std::stop_token& stop) {
   for (const OutsidePoseSample& sample : frame.outside_poses) {
-    if (publisher_.Publish(sample).ok()) ++outside_poses_published_;
+    if (publisher_.Publish(sample, stop).ok()) ++outside_poses_published_;
   }
 }
 
 void EdgePipeline::Publish(const std::stop_token& stop) {
   while (const std::optional<EncodedFramePtr> frame = publish_queue_.Pop(stop)) {
-    const StuckWatch::Step step(publishing_, clock_.SteadyNow());
+    const ThreadProgress::Work step(publishing_, clock_.SteadyNow());
     // First, so that the ground has them when it tracks the frame.
-    PublishOutsidePoses(**frame);
+    PublishOutsidePoses(**frame, stop);
     const Status published =
         std::visit([this, &stop](const auto& content) { return publisher_.Publish(content, stop); },
                    (*frame)->content);

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -15,6 +16,7 @@
 #include "common/concurrency/latest_value.h"
 #include "common/time/clock.h"
 #include "common/time/step_watch.h"
+#include "common/time/thread_progress.h"
 #include "common/transport/messages.h"
 #include "edge/camera_health.h"
 #include "edge/encoded_frame.h"
@@ -25,7 +27,6 @@
 #include "edge/source/blind_detector.h"
 #include "edge/source/frame_source.h"
 #include "edge/spool/spool.h"
-#include "edge/stuck_watch.h"
 #include "edge/timestamper/timestamper.h"
 
 namespace isotherm {
@@ -65,7 +66,10 @@ class EdgePipeline {
   /// Ends capture, empties the queues, closes the recording. Idempotent. The recording's first
   /// error, or ok.
   Status Stop();
-  /// The first half of it, which the recording needs: what follows needs the link.
+  /// The first part of it. False: the source did not end within `limit`. It is left behind, the
+  /// rest can be stopped all the same; the pipeline cannot be destroyed before the source ends.
+  bool StopCapture(Nanoseconds limit);
+  /// The second part, which the recording needs: what follows needs the link.
   Status StopRecording();
 
   /// Answers what the ground has asked for since the last call.
@@ -97,7 +101,7 @@ class EdgePipeline {
   CaptureTime TimeLineNow() const { return step_watch_.At(clock_.SteadyNow()); }
   /// Keeps the pose for the next frame to take along.
   void Keep(OutsidePose pose);
-  void PublishOutsidePoses(const EncodedFrame& frame);
+  void PublishOutsidePoses(const EncodedFrame& frame, const std::stop_token& stop);
   void ProcessDepth(RawFrame raw, const std::stop_token& stop);
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
   void HandOn(UncodedFrame uncoded, const std::stop_token& stop);
@@ -140,12 +144,14 @@ class EdgePipeline {
   std::atomic<bool> source_ended_{false};
   LatestValue<NucReport> nuc_report_;
   const TimeBase time_base_;
+  bool capture_stopped_ = false;
+  bool capture_left_behind_ = false;
   bool recording_stopped_ = false;
   bool stopped_ = false;
   Status recording_status_;
-  StuckWatch reading_;
-  StuckWatch recording_;
-  StuckWatch publishing_;
+  ThreadProgress reading_;
+  ThreadProgress recording_;
+  ThreadProgress publishing_;
 
   struct ReceivedFeedback {
     Feedback feedback;
@@ -170,6 +176,7 @@ class EdgePipeline {
   std::jthread spool_thread_;
   std::jthread publish_thread_;
   std::jthread codec_thread_;
+  std::future<void> capture_ended_;
   std::jthread capture_thread_;
 };
 

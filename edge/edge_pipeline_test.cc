@@ -14,6 +14,8 @@
 namespace isotherm {
 namespace {
 
+using std::chrono::milliseconds;
+
 constexpr std::uint64_t kSession = 77;
 
 class EdgePipelineTest : public testing::Test {
@@ -109,6 +111,20 @@ TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
     EXPECT_EQ(depth[i].header.frame_number, i);
     EXPECT_EQ(depth[i].header.session, kSession);
   }
+}
+
+TEST_F(EdgePipelineTest, F39ACameraThatIsStuckCostsTheRecordingNothing) {
+  Start("3*d 2*t %");
+  while (!camera_->hangs()) std::this_thread::yield();
+  EXPECT_FALSE(pipeline_->StopCapture(milliseconds(1)));
+  EXPECT_TRUE(pipeline_->StopRecording().ok());
+  EXPECT_TRUE(recording_.closed);
+  EXPECT_EQ(recording_.depth_frames.size(), 3U);
+  EXPECT_EQ(recording_.thermal_frames.size(), 2U);
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  EXPECT_EQ(publisher_.depth().size(), 3U);
+  ExpectClosedAccount();
+  camera_->Release();
 }
 
 TEST_F(EdgePipelineTest, PosesFromOutsideAreRecordedAndPublishedWithTheNextFrame) {

@@ -31,7 +31,7 @@ class FakePublisher final : public Publisher {
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return Take(frame, thermal_, stop);
   }
-  Status Publish(const OutsidePoseSample& sample) override {
+  Status Publish(const OutsidePoseSample& sample, std::stop_token) override {
     std::scoped_lock lock(mutex_);
     if (broken_) return Unavailable("no link");
     outside_poses_.push_back(sample);

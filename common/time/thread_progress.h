@@ -11,6 +11,19 @@ namespace isotherm {
 /// work. A thread that waits for another one is idle, the other's own progress tells. Thread-safe.
 class ThreadProgress {
  public:
+  /// One piece of work, for instance a call of a device, a disk or the network that may never
+  /// return.
+  class Work {
+   public:
+    Work(ThreadProgress& progress, SteadyTime now) : progress_(progress) { progress_.Busy(now); }
+    ~Work() { progress_.Idle(); }
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+
+   private:
+    ThreadProgress& progress_;
+  };
+
   /// The thread begins a piece of work, or goes on with it.
   void Busy(SteadyTime now) { since_.store(now, std::memory_order_relaxed); }
   /// The thread waits for work, or has ended.

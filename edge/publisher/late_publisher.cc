@@ -62,8 +62,8 @@ Status LatePublisher::Publish(const EncodedThermalFrame& frame, std::stop_token 
   return link() != nullptr ? link()->Publish(frame, std::move(stop)) : NoLink();
 }
 
-Status LatePublisher::Publish(const OutsidePoseSample& sample) {
-  return link() != nullptr ? link()->Publish(sample) : NoLink();
+Status LatePublisher::Publish(const OutsidePoseSample& sample, std::stop_token stop) {
+  return link() != nullptr ? link()->Publish(sample, std::move(stop)) : NoLink();
 }
 
 Status LatePublisher::Publish(EdgeStatus status) {

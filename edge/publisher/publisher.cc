@@ -39,6 +39,8 @@ std::string HostName() {
   return name.data();
 }
 
+Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link is too slow"); }
+
 /// The ends of all topics of an edge.
 struct EdgeEndpoints {
   Writer<EncodedDepthFrame> depth;
@@ -78,7 +80,8 @@ class DdsPublisher final : public Publisher {
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return PublishFrame(frame, &ends_.thermal, &thermal_, stop);
   }
-  Status Publish(const OutsidePoseSample& sample) override {
+  Status Publish(const OutsidePoseSample& sample, std::stop_token stop) override {
+    if (stop.stop_requested() && !HasTimeLeft()) return NoTimeLeft();
     return ends_.outside_pose.Write(options_.edge_id, sample);
   }
   Status Publish(EdgeStatus status) override;
@@ -385,7 +388,7 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
   if (stop.stop_requested() && !HasTimeLeft()) {
     std::scoped_lock lock(mutex_);
     ++stream->counts.failed;
-    return Unavailable("not sent: told to stop, and the link is too slow");
+    return NoTimeLeft();
   }
   {
     std::scoped_lock lock(mutex_);

@@ -51,7 +51,7 @@ struct PublisherStats {
   std::uint64_t flow_timeouts = 0;  ///< Frames that were published although no receipt came.
   std::uint64_t refused = 0;        ///< Samples that cannot be, or not from a ground station.
   bool ground_present = false;
-  std::string problem{};  ///< Why there is no network at all; empty if there is one.
+  std::string problem{};         ///< Why there is no network at all; empty if there is one.
   std::string ground_problem{};  ///< GroundRelation::Problem.
 };
 
@@ -82,8 +82,9 @@ class Publisher {
   /// frame was not sent and is counted.
   virtual Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) = 0;
   virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
-  /// Never waits for the ground: a pose that comes late is worth little.
-  virtual Status Publish(const OutsidePoseSample& sample) = 0;
+  /// Never waits for the ground: a pose that comes late is worth little. Once stop is requested, it
+  /// has its part of the time that frames have.
+  virtual Status Publish(const OutsidePoseSample& sample, std::stop_token stop) = 0;
   /// Writes the status; session, policy, the counts that the publisher knows and the echo of the
   /// ground's clock ping are filled in here.
   virtual Status Publish(EdgeStatus status) = 0;

@@ -46,6 +46,11 @@ Result<SourceItem> FakeSource::Read(std::stop_token) {
   const Step& step = steps_[next_++];
   if (step.what == '-') return NothingYet{};
   if (step.what == 'p') return MakePose();
+  if (step.what == '%') {
+    hangs_ = true;
+    released_.wait(false);
+    return NothingYet{};
+  }
   if (step.what == '!') return Err(Unavailable("the cable came off"));
   return MakeFrame(step);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -20,6 +21,7 @@ namespace isotherm {
 ///   device time)
 ///   p         a pose from outside, true when the next depth frame arrives
 ///   -         nothing yet
+///   %         Read does not come back until Release()
 ///   !         Read fails (the cable came off)
 ///   d:empty   the frame has no pixels             d:size    ... the wrong size
 ///   d:reset   the camera's counter starts again   t:shut    the shutter is closed
@@ -65,6 +67,13 @@ class FakeSource final : public FrameSource {
   void FailToOpen(int times) { failures_to_open_ = times; }
   int opened() const { return opened_; }
 
+  /// Thread-safe: whether it is at a '%', and its end.
+  bool hangs() const { return hangs_; }
+  void Release() {
+    released_ = true;
+    released_.notify_all();
+  }
+
  private:
   struct Step {
     char what = '-';
@@ -82,6 +91,8 @@ class FakeSource final : public FrameSource {
   };
   std::deque<OpenOrder> open_orders_;
   bool open_ = false;
+  std::atomic<bool> hangs_{false};
+  std::atomic<bool> released_{false};
   int opened_ = 0;
   int failures_to_open_ = 0;
   std::uint64_t frames_[2] = {};

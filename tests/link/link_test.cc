@@ -206,9 +206,25 @@ TEST_F(LinkTest, PosesFromOutsideArriveInOrder) {
     OutsidePoseSample sample{.session = 1, .number = i, .pose = {}};
     sample.pose.source = "vio";
     sample.pose.time = CaptureTimeFromNanoseconds(static_cast<std::int64_t>(i));
-    ASSERT_TRUE(edge.publisher().Publish(sample).ok());
+    ASSERT_TRUE(edge.publisher().Publish(sample, {}).ok());
   }
   EXPECT_EQ(ground->AwaitOutsidePoses(kPoses), Range(0, kPoses));
+}
+
+TEST_F(LinkTest, F38PosesFromOutsideDoNotHoldUpAStop) {
+  EdgeSide edge(environment_, clock_, Plan(1, 1));
+  edge.Begin();
+  std::stop_source stop;
+  stop.request_stop();
+  OutsidePoseSample sample{.session = 1, .number = 0, .pose = {}};
+  sample.pose.source = "vio";
+  sample.pose.time = CaptureTimeFromNanoseconds(1);
+  EXPECT_TRUE(edge.publisher().Publish(sample, stop.get_token()).ok()) << "there is some time left";
+  // However many there are, and however long each takes. The test's own time limit is the bound.
+  Status published = OkStatus();
+  while (published.ok()) published = edge.publisher().Publish(sample, stop.get_token());
+  EXPECT_EQ(published.code(), StatusCode::kUnavailable);
+  EXPECT_TRUE(edge.publisher().Publish(sample, {}).ok()) << "only a stop has an end";
 }
 
 TEST_F(LinkTest, ACommandIsAnsweredAndFeedbackArrives) {
