@@ -82,8 +82,12 @@ StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz) {
   return status;
 }
 
+std::uint64_t ToReport(std::optional<std::uint64_t> disk_free_bytes) {
+  return disk_free_bytes ? std::max<std::uint64_t>(*disk_free_bytes, 1) : 0;
+}
+
 void AddHostStatus(const HostStatus& host, EdgeStatus& status) {
-  status.disk_free_bytes = host.disk_free_bytes;
+  status.disk_free_bytes = ToReport(host.disk_free_bytes);
   status.cpu_temperature_celsius = host.cpu_temperature_celsius;
   status.clock = ToReport(host.clock);
 }

@@ -28,6 +28,9 @@ class RateMeter {
 /// the ground.
 StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz);
 
+/// Free space as EdgeStatus has it.
+std::uint64_t ToReport(std::optional<std::uint64_t> disk_free_bytes);
+
 /// The host's part.
 void AddHostStatus(const HostStatus& host, EdgeStatus& status);
 

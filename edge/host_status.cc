@@ -1,5 +1,7 @@
 #include "edge/host_status.h"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <system_error>
 
@@ -15,18 +17,22 @@ double CpuTemperature() {
 
 }  // namespace
 
-std::uint64_t FreeDiskBytes(std::filesystem::path path) {
+Result<std::uint64_t> FreeDiskBytes(std::filesystem::path path) {
   std::error_code error;
   path = std::filesystem::absolute(path, error);
   while (!std::filesystem::exists(path, error) && path.has_relative_path())
     path = path.parent_path();
   const std::filesystem::space_info space = std::filesystem::space(path, error);
-  return error ? 0 : space.available;
+  if (error) {
+    return Err(IoError(fmt::format("the free space of the disk of {} is not known: {}",
+                                   path.string(), error.message())));
+  }
+  return space.available;
 }
 
 HostStatus ReadHostStatus(const std::filesystem::path& disk) {
   HostStatus status;
-  status.disk_free_bytes = FreeDiskBytes(disk);
+  if (const Result<std::uint64_t> free = FreeDiskBytes(disk)) status.disk_free_bytes = *free;
   status.cpu_temperature_celsius = CpuTemperature();
   status.clock = ReadKernelClock();
   return status;

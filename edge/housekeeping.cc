@@ -79,7 +79,7 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.thermal_camera = health_.Get(Sensor::kThermal);
   AddHostStatus(ReadHostStatus("."), status);
   if (const std::optional<SpoolStatus> recording = pipeline_.recording()) {
-    status.disk_free_bytes = recording->free_bytes;
+    status.disk_free_bytes = ToReport(recording->free_bytes);
   }
   status.clock.steps = pipeline_.clock_steps();
   status.clock.step_sum_s = ToSeconds(pipeline_.clock_step_total());

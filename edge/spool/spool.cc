@@ -76,14 +76,15 @@ void Spool::LookAtDisk() {
   const SteadyTime now = parts_.clock.SteadyNow();
   if (now < next_look_) return;
   next_look_ = now + kLookInterval;
-  free_bytes_ = parts_.free_bytes();
+  AskForFreeBytes();
+  if (!free_bytes_) return;
   const std::uint64_t open_bytes = IsRecording() ? file_->writer->stats().bytes : 0;
   const DiskLevel before =
-      std::exchange(level_, disk_.Update(now, free_bytes_, closed_.bytes + open_bytes));
+      std::exchange(level_, disk_.Update(now, *free_bytes_, closed_.bytes + open_bytes));
   if (level_ == DiskLevel::kReserve) return EndAtReserve();
   if (std::exchange(at_reserve_, false)) {
     LOG(Spool, Info) << "there is space on the disk again, free_mb="
-                     << std::lround(static_cast<double>(free_bytes_) / kBytesPerMb)
+                     << std::lround(static_cast<double>(*free_bytes_) / kBytesPerMb)
                      << "; frames not recorded=" << NotRecorded() - not_recorded_before_;
     problem_ = OkStatus();
   }
@@ -91,6 +92,18 @@ void Spool::LookAtDisk() {
     LOG(Spool, Warning) << "the disk of " << path_.string() << " is full in "
                         << std::lround(disk_.left_s() / 60.0)
                         << " min: delete old recordings, or end the scan in time";
+  }
+}
+
+void Spool::AskForFreeBytes() {
+  const Result<std::uint64_t> free = parts_.free_bytes();
+  free_bytes_ = free ? std::optional(*free) : std::nullopt;
+  if (std::exchange(free_bytes_unknown_, !free) == !free) return;
+  if (free) {
+    LOG(Spool, Info) << "the free space of the disk of " << path_.string() << " is known again";
+  } else {
+    LOG(Spool, Warning) << free.error().message()
+                        << "; nobody will be told before it is full, recording goes on";
   }
 }
 
@@ -216,6 +229,7 @@ void Spool::UpdateAccount() {
 std::string Spool::Brief() const {
   if (at_reserve_) return "NOT RECORDING: disk full";
   if (!problem_.ok()) return IsRecording() ? "disk was failing" : "NOT RECORDING: disk fails";
+  if (free_bytes_unknown_) return "free space of the disk not known";
   if (level_ != DiskLevel::kLow) return "";
   return fmt::format("disk full in {:.0f} min", disk_.left_s() / 60.0);
 }

@@ -35,7 +35,7 @@ struct SpoolParts {
   /// Begins the recording's next file, with all that stands at a file's beginning.
   std::function<Result<RecordingFile>()> next_file;
   /// Says how much is free on the disk that it records to.
-  std::function<std::uint64_t()> free_bytes;
+  std::function<Result<std::uint64_t>()> free_bytes;
   const SpoolOptions& options;
   const Clock& clock;
   FrameAccount& account;
@@ -43,8 +43,8 @@ struct SpoolParts {
 
 /// How the recording is doing.
 struct SpoolStatus {
-  std::filesystem::path path;  ///< The newest file's.
-  std::uint64_t free_bytes = 0;
+  std::filesystem::path path;                                ///< The newest file's.
+  std::optional<std::uint64_t> free_bytes;                   ///< Absent: not known.
   double left_s = std::numeric_limits<double>::quiet_NaN();  ///< Until it ends for lack of space.
   /// What is wrong and what to do, in a sentence and in a few words; empty if nothing is.
   std::string problem;
@@ -85,6 +85,7 @@ class Spool {
   void BeginFileWhenDue();
   Status BeginFile();
   void LookAtDisk();
+  void AskForFreeBytes();
   void EndAtReserve();
   Status WriteFrame(const EncodedFrame& frame);
   void NoteShutter(const EncodedThermalFrame& frame);
@@ -114,7 +115,8 @@ class Spool {
   SteadyTime retry_at_{};
   SteadyTime begun_at_{};  ///< The newest file.
   SteadyTime next_look_{};
-  std::uint64_t free_bytes_ = 0;
+  std::optional<std::uint64_t> free_bytes_;
+  bool free_bytes_unknown_ = false;  ///< Asked for, and there was no answer.
   DiskLevel level_ = DiskLevel::kEnough;
   std::optional<CaptureTime> newest_;       ///< Capture time of the frames so far.
   std::array<std::uint64_t, 2> offered_{};  ///< By Sensor.

@@ -56,7 +56,7 @@ class SpoolTest : public testing::Test {
   SpoolOptions options_;
   FakeClock clock_;
   std::uint64_t room_ = UINT64_MAX;
-  std::uint64_t free_bytes_ = 1'000'000 * kMb;
+  Result<std::uint64_t> free_bytes_ = 1'000'000 * kMb;
   bool disk_works_ = true;
   int tries_ = 0;
   std::deque<FakeRecording> files_;
@@ -211,6 +211,24 @@ TEST_F(SpoolTest, F41AtTheReserveTheFileIsEndedProperlyAndGoesOnWhenThereIsSpace
   record_for(2);
   ASSERT_EQ(files_.size(), 2U);
   EXPECT_GE(files_[1].depth_frames.size(), 1U);
+}
+
+TEST_F(SpoolTest, F41AFreeSpaceThatIsNotKnownIsNoFullDisk) {
+  free_bytes_ = Err(IoError("the free space is not known"));
+  Start();
+  for (std::uint64_t i = 0; i < 20; ++i) {
+    clock_.Advance(std::chrono::seconds(1));
+    files_.back().bytes += 5 * kMb;
+    Record(i);
+  }
+  EXPECT_EQ(depth().recorded, 20U);
+  EXPECT_EQ(spool_->status().brief, "free space of the disk not known");
+  EXPECT_EQ(spool_->status().free_bytes, std::nullopt);
+  free_bytes_ = 1'000'000 * kMb;
+  clock_.Advance(std::chrono::seconds(1));
+  Record(20);
+  EXPECT_EQ(spool_->status().brief, "");
+  EXPECT_EQ(spool_->status().free_bytes, 1'000'000 * kMb);
 }
 
 TEST_F(SpoolTest, AMessageThatCannotBeRecordedIsNotTheDisksFault) {
