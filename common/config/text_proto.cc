@@ -359,6 +359,11 @@ Status LoadTextProto(const std::filesystem::path& path, pb::Message& message) {
   if (std::filesystem::is_directory(path, error)) {
     return InvalidArgument(fmt::format("{}: is a folder, not a file", path.string()));
   }
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    return InvalidArgument(
+        fmt::format("{}: is a pipe or a device; a configuration is a regular file", path.string()));
+  }
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (!error && size > kMaxFileBytes) {
     return InvalidArgument(

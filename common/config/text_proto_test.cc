@@ -202,6 +202,8 @@ TEST(TextProtoTest, MissingFileAndFolderAreSaidInWords) {
   RigCalibration rig;
   EXPECT_EQ(LoadTextProto("/nonexistent/rig.textproto", rig).code(), StatusCode::kNotFound);
   EXPECT_THAT(LoadTextProto(testing::TempDir(), rig).message(), HasSubstr("is a folder"));
+  EXPECT_THAT(LoadTextProto("/dev/zero", rig).message(),
+              HasSubstr("/dev/zero: is a pipe or a device"));
 }
 
 TEST(OverrideTest, SetsNestedNumbersAndStrings) {

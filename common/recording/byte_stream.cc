@@ -131,12 +131,14 @@ Result<std::unique_ptr<ByteSink>> CreateFileSink(const std::filesystem::path& pa
 }
 
 Result<std::unique_ptr<ByteSource>> OpenFileSource(const std::filesystem::path& path) {
-  FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  // A pipe would be waited for until somebody writes to it.
+  FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) return Err(FromErrno(errno, "open", path));
   struct stat info {};
   if (::fstat(fd.get(), &info) != 0) return Err(FromErrno(errno, "open", path));
   if (!S_ISREG(info.st_mode)) {
-    return Err(InvalidArgument(fmt::format("{} is not a file", path.string())));
+    return Err(InvalidArgument(fmt::format(
+        "{} is a folder, a pipe or a device; a recording is a regular file", path.string())));
   }
   return std::make_unique<FileSource>(std::move(fd), path,
                                       static_cast<std::uint64_t>(info.st_size));

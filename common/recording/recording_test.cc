@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -227,6 +228,15 @@ TEST_F(RecordingFileTest, MissingFilesAndFoldersAreNamed) {
   EXPECT_EQ(missing.error().code(), StatusCode::kNotFound);
   EXPECT_THAT(missing.error().message(), HasSubstr("none.mcap"));
   EXPECT_FALSE(RecordingReader::Open(folder_));
+}
+
+TEST_F(RecordingFileTest, APipeIsRefusedAtOnceAndNamed) {
+  const auto pipe = folder_ / "pipe.mcap";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const auto reader = RecordingReader::Open(pipe);  // Nobody will ever write to it.
+  ASSERT_FALSE(reader);
+  EXPECT_EQ(reader.error().code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(reader.error().message(), HasSubstr("pipe.mcap is a folder, a pipe or a device"));
 }
 
 TEST_F(RecordingFileTest, FullDiskIsReportedAtOnceOnTheFirstWrite) {
