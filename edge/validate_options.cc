@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -83,6 +84,22 @@ void CheckThermalCamera(const ThermalCameraOptions& options, Problems& problems)
                  fmt::format("is {}, must be above optris_min_celsius, which is {}",
                              options.optris_max_celsius(), options.optris_min_celsius()));
   }
+}
+
+/// Paths separated by ':'. A relative one would be looked for in the folder that the daemon happens
+/// to be started in.
+void CheckPaths(std::string_view field, const std::string& separated, Problems& problems) {
+  std::istringstream words(separated);
+  for (std::string path; std::getline(words, path, ':');) {
+    if (path.empty() || path.front() == '/') continue;
+    problems.Add(field, fmt::format("names \"{}\", must name paths from / on", path));
+  }
+}
+
+void CheckSandbox(const CameraSandboxOptions& options, Problems& problems) {
+  problems.Stage("source.camera_sandbox");
+  CheckPaths("read", options.read(), problems);
+  CheckPaths("write", options.write(), problems);
 }
 
 void CheckFrames(const FrameCheckOptions& options, Problems& problems) {
@@ -166,6 +183,7 @@ Status Validate(const EdgeOptions& options) {
   Problems problems;
   CheckSource(options.source(), problems);
   CheckThermalCamera(options.source().thermal_camera(), problems);
+  CheckSandbox(options.source().camera_sandbox(), problems);
   CheckFrames(options.frame_check(), problems);
   problems.Stage("");
   problems.CheckRange("capture_queue_frames", options.capture_queue_frames(), 1, 1000);

@@ -69,6 +69,18 @@ TEST(ValidateEdgeOptionsTest, MeasuringRangeHasTwoEndsInOrder) {
   EXPECT_TRUE(Validate(options).ok());
 }
 
+TEST(ValidateEdgeOptionsTest, PathsOfTheSandboxAreAbsolute) {
+  EdgeOptions options;
+  CameraSandboxOptions& sandbox = *options.mutable_source()->mutable_camera_sandbox();
+  sandbox.set_read("/usr/share/vendor::/opt/vendor");
+  EXPECT_TRUE(Validate(options).ok());
+  sandbox.set_read("/usr/share/vendor:calibrations");
+  EXPECT_THAT(Validate(options).message(),
+              HasSubstr("source.camera_sandbox.read: names \"calibrations\""));
+  sandbox.set_write("./log");
+  EXPECT_THAT(Validate(options).message(), HasSubstr("source.camera_sandbox.write"));
+}
+
 TEST(ValidateEdgeOptionsTest, TemperatureLimitsMustBeInOrder) {
   EdgeOptions options;
   options.mutable_frame_check()->set_min_celsius(100);
