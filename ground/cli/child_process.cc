@@ -3,53 +3,51 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <deque>
 #include <fstream>
 #include <thread>
-
-extern char** environ;
+#include <utility>
 
 namespace isotherm {
 namespace {
 
-/// posix_spawn's two objects, released at the end of the scope.
-struct SpawnSettings {
-  SpawnSettings() {
-    posix_spawn_file_actions_init(&actions);
-    posix_spawnattr_init(&attributes);
-  }
-  ~SpawnSettings() {
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-  }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
+/// As shells say that a program cannot be started.
+constexpr int kCannotStart = 127;
 
-  posix_spawn_file_actions_t actions;
-  posix_spawnattr_t attributes;
-};
-
-void UseLog(const std::string& log, SpawnSettings& settings) {
+/// Points standard input, output and error away from this program's own.
+bool UseLog(const char* log) {
   constexpr mode_t kMode = 0644;
-  posix_spawn_file_actions_addopen(&settings.actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&settings.actions, STDOUT_FILENO, log.c_str(),
-                                   O_WRONLY | O_CREAT | O_TRUNC, kMode);
-  posix_spawn_file_actions_adddup2(&settings.actions, STDOUT_FILENO, STDERR_FILENO);
+  const int in = ::open("/dev/null", O_RDONLY);
+  const int out = ::open(log, O_WRONLY | O_CREAT | O_TRUNC, kMode);
+  return in >= 0 && out >= 0 && ::dup2(in, STDIN_FILENO) >= 0 && ::dup2(out, STDOUT_FILENO) >= 0 &&
+         ::dup2(out, STDERR_FILENO) >= 0;
 }
 
-void UnblockSignals(SpawnSettings& settings) {
-  sigset_t none, all;
+void ResetSignals() {
+  sigset_t none;
   sigemptyset(&none);
-  sigfillset(&all);
-  posix_spawnattr_setsigmask(&settings.attributes, &none);
-  posix_spawnattr_setsigdefault(&settings.attributes, &all);
-  posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  for (int signal = 1; signal < NSIG; ++signal) ::signal(signal, SIG_DFL);
+  ::sigprocmask(SIG_SETMASK, &none, nullptr);
+}
+
+/// In the child, between fork and exec: nothing here may allocate or lock. Writes errno to
+/// `failure` if the program cannot be started.
+[[noreturn]] void Become(char* const* words, const char* log, pid_t parent, int failure) {
+  ResetSignals();
+  // Whoever kills the parent does not leave the child behind; it may flush its files.
+  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (::getppid() != parent) ::_exit(kCannotStart);  // Gone before that.
+  if (UseLog(log)) ::execv(words[0], words);
+  const int error = errno;
+  static_cast<void>(!::write(failure, &error, sizeof(error)));
+  ::_exit(kCannotStart);
 }
 
 }  // namespace
@@ -62,18 +60,23 @@ Result<ChildProcess> ChildProcess::Start(const std::filesystem::path& program,
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  SpawnSettings settings;
-  const std::string log_name = log.string();
-  UseLog(log_name, settings);
-  UnblockSignals(settings);
-  pid_t pid = -1;
-  const int error = ::posix_spawn(&pid, words.front().c_str(), &settings.actions,
-                                  &settings.attributes, pointers.data(), environ);
-  if (error != 0) {
+  const auto fail = [&program](int error) {
     return Err(Unavailable(
         fmt::format("{}: cannot be started: {}", program.string(), std::strerror(error))));
-  }
-  return ChildProcess(pid, log);
+  };
+  int failure[2];
+  if (::pipe2(failure, O_CLOEXEC) != 0) return fail(errno);
+  const pid_t parent = ::getpid();
+  const pid_t pid = ::fork();
+  if (pid == 0) Become(pointers.data(), log.c_str(), parent, failure[1]);
+  int error = pid < 0 ? errno : 0;
+  ::close(failure[1]);
+  // Ends when the program has begun.
+  static_cast<void>(!::read(failure[0], &error, sizeof(error)));
+  ::close(failure[0]);
+  if (error == 0) return ChildProcess(pid, log);
+  if (pid > 0) ::waitpid(pid, nullptr, 0);
+  return fail(error);
 }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept

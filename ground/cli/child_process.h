@@ -12,7 +12,8 @@
 namespace isotherm {
 
 /// A program that runs beside this one, its output in a log file. Ends with this object: SIGTERM,
-/// after five seconds SIGKILL. Thread-compatible.
+/// after five seconds SIGKILL. Gets SIGTERM also when the thread that started it ends, for instance
+/// because this program is killed. Thread-compatible.
 class ChildProcess {
  public:
   /// `program` is a path; signals that this process blocks are not blocked in the child.
