@@ -1,0 +1,115 @@
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "common/geometry/camera.h"
+#include "common/testing/opencv_camera_for_test.h"
+
+namespace isotherm {
+namespace {
+
+/// Both compute the same polynomial in double precision, in another order.
+constexpr double kRoundingPx = 1e-9;
+/// Both stop their iterations far below this, in normalised image coordinates.
+constexpr double kIterations = 1e-9;
+
+struct Lens {
+  std::string name;
+  CameraModel camera;
+};
+
+CameraModel Camera(int width, int height, double focal_px) {
+  CameraModel camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = focal_px;
+  camera.fy = 1.003 * focal_px;
+  camera.cx = 0.53 * width;
+  camera.cy = 0.48 * height;
+  return camera;
+}
+
+/// Lenses of the kind that calibrations of the rig's cameras give, and each coefficient alone, so
+/// that none can stand in for another.
+std::vector<Lens> Lenses() {
+  std::vector<Lens> lenses = {{"None", Camera(640, 480, 570.0)}};
+  CameraModel thermal = Camera(382, 288, 371.4);
+  thermal.k1 = -0.439;
+  thermal.k2 = 0.29;
+  thermal.p1 = 0.000454;
+  thermal.p2 = -0.000257;
+  thermal.k3 = -0.114;
+  lenses.push_back({"Thermal", thermal});
+  CameraModel depth = Camera(320, 240, 285.0);
+  depth.k1 = 0.08;
+  depth.k2 = -0.21;
+  depth.p1 = -0.0013;
+  depth.p2 = 0.0021;
+  depth.k3 = 0.11;
+  lenses.push_back({"Depth", depth});
+  const auto alone = [&](const char* name, double CameraModel::*coefficient, double value) {
+    CameraModel camera = Camera(382, 288, 371.4);
+    camera.*coefficient = value;
+    lenses.push_back({name, camera});
+  };
+  alone("OnlyK1", &CameraModel::k1, -0.2);
+  alone("OnlyK2", &CameraModel::k2, 0.3);
+  alone("OnlyP1", &CameraModel::p1, 0.01);
+  alone("OnlyP2", &CameraModel::p2, -0.01);
+  alone("OnlyK3", &CameraModel::k3, 0.2);
+  return lenses;
+}
+
+class CameraAgainstOpencvTest : public ::testing::TestWithParam<Lens> {
+ protected:
+  const CameraModel& camera_ = GetParam().camera;
+};
+
+TEST_P(CameraAgainstOpencvTest, PointsOfARigProjectWhereProjectPointsPutsThem) {
+  const Eigen::AngleAxisd rotation(0.21, Eigen::Vector3d(0.3, -0.8, 0.4).normalized());
+  const Eigen::Vector3d translation(0.052, -0.011, 0.007);
+  const RigidTransform T_camera_rig = MakeTransform(translation, Eigen::Quaterniond(rotation));
+  std::vector<cv::Point3d> points;
+  for (double z : {0.3, 0.8, 2.5}) {
+    for (double y = -0.5; y <= 0.5; y += 0.1) {
+      for (double x = -0.6; x <= 0.6; x += 0.1) points.emplace_back(x * z, y * z, z);
+    }
+  }
+  const Eigen::Vector3d axis_angle = rotation.angle() * rotation.axis();
+  std::vector<cv::Point2d> truth;
+  cv::projectPoints(points, cv::Vec3d(axis_angle.x(), axis_angle.y(), axis_angle.z()),
+                    cv::Vec3d(translation.x(), translation.y(), translation.z()),
+                    testing::OpencvMatrix(camera_), testing::OpencvDistortion(camera_), truth);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d p_rig(points[i].x, points[i].y, points[i].z);
+    const auto pixel = Project(camera_, T_camera_rig * p_rig);
+    ASSERT_TRUE(pixel.has_value()) << p_rig.transpose();
+    EXPECT_NEAR(pixel->x(), truth[i].x, kRoundingPx) << p_rig.transpose();
+    EXPECT_NEAR(pixel->y(), truth[i].y, kRoundingPx) << p_rig.transpose();
+  }
+}
+
+TEST_P(CameraAgainstOpencvTest, PixelsLookWhereUndistortPointsSays) {
+  std::vector<cv::Point2d> pixels;
+  for (int v = 0; v < camera_.height; v += 7) {
+    for (int u = 0; u < camera_.width; u += 7) pixels.emplace_back(u + 0.3, v - 0.2);
+  }
+  std::vector<cv::Point2d> truth;
+  const cv::TermCriteria to_the_end(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 500, 1e-12);
+  cv::undistortPoints(pixels, truth, testing::OpencvMatrix(camera_),
+                      testing::OpencvDistortion(camera_), cv::noArray(), cv::noArray(), to_the_end);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const Eigen::Vector2d ray = Unproject(camera_, {pixels[i].x, pixels[i].y});
+    EXPECT_NEAR(ray.x(), truth[i].x, kIterations) << pixels[i];
+    EXPECT_NEAR(ray.y(), truth[i].y, kIterations) << pixels[i];
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, CameraAgainstOpencvTest, ::testing::ValuesIn(Lenses()),
+                         [](const auto& parameter) { return parameter.param.name; });
+
+}  // namespace
+}  // namespace isotherm
