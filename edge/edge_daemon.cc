@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
-#include <future>
 #include <map>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,7 +18,6 @@
 #include "common/codec/codec.h"
 #include "common/config/text_proto.h"
 #include "common/frame/plausibility.h"
-#include "common/time/back_off.h"
 #include "common/transport/clock_record.h"
 #include "common/transport/join_domain.h"
 #include "edge/edge_options.pb.h"
@@ -25,7 +25,7 @@
 #include "edge/edge_report.h"
 #include "edge/host_status.h"
 #include "edge/housekeeping.h"
-#include "edge/make_source.h"
+#include "edge/open_source.h"
 #include "edge/publisher/late_publisher.h"
 #include "edge/source/pause.h"
 #include "edge/spool/recording_files.h"
@@ -40,15 +40,15 @@ using std::chrono::milliseconds;
 constexpr Nanoseconds kTick = milliseconds(50);
 // Time to let the ground confirm the last frames when a signal says to leave.
 constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
-// What is told to leave leaves within two seconds. The recording comes first: a disk may take this
-// long to answer, ...
+// What is told to leave leaves within two seconds. The cameras end first, a vendor's process within
+// one second, ...
+constexpr Nanoseconds kTimeForCameras = milliseconds(1750);
+// ... then the recording: a disk may take this long to answer, ...
 constexpr Nanoseconds kTimeForDisk = milliseconds(3500);
 // ... the link takes less than this by itself, if nothing in it hangs, ...
 constexpr Nanoseconds kTimeForLink = milliseconds(2500);
 // ... and with its network interface down the middleware never ends by itself.
 constexpr Nanoseconds kTimeForMiddleware = milliseconds(400);
-// How often a service that waits says that it is alive.
-constexpr Nanoseconds kTellInterval = milliseconds(500);
 
 // EX_CANTCREAT of sysexits.h: the recording could not be created or not be finished.
 constexpr int kExitRecording = 73;
@@ -244,40 +244,11 @@ void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Houseke
   }
 }
 
-/// Opens the source that the options ask for. Cameras that are not there are waited for, as a
-/// service does; who waits for the end of the source wants to know.
-Result<std::unique_ptr<FrameSource>> OpenSource(const EdgeOptions& options,
-                                                const SourceContext& context) {
-  using Opened = Result<std::unique_ptr<FrameSource>>;
-  const auto open = [&]() -> Opened {
-    Opened source = MakeSource(options, context);
-    if (!source) return source;
-    if (const Status opened = (*source)->Open(); !opened.ok()) return Err(opened);
-    return source;
-  };
-  Opened source = open();
-  const bool waits = options.source().kind() == CAMERAS && !options.exit_at_end();
-  const auto is_hopeless = [](const Opened& result) {
-    return !result && result.error().code() != StatusCode::kUnavailable;
-  };
-  if (source || !waits || is_hopeless(source)) return source;
-  LOG(Edge, Warning) << source.error().message() << "; waiting for it, nothing is recorded yet";
-  BackOff back_off(FromSeconds(options.frame_check().retry_min_s()),
-                   FromSeconds(options.frame_check().retry_max_s()));
-  while (!source && !is_hopeless(source) && !context.stop.stop_requested()) {
-    const std::string reason = "waiting for a camera: " + source.error().message();
-    const SteadyTime due = context.clock.SteadyNow() + back_off.Next();
-    while (context.clock.SteadyNow() < due && !context.stop.stop_requested()) {
-      NotifyWaiting(reason);
-      Pause(context.stop, std::min(kTellInterval, Nanoseconds(due - context.clock.SteadyNow())));
-    }
-    // A vendor's library may take its time; the service manager is told meanwhile.
-    std::future<Opened> attempt = std::async(std::launch::async, open);
-    while (attempt.wait_for(kTellInterval) != std::future_status::ready) NotifyWaiting(reason);
-    source = attempt.get();
-  }
-  return source;
-}
+/// Ends the process in time once it was told to leave, whatever it is at then.
+struct Leaving {
+  ExitDeadline deadline;
+  std::atomic<int> status_if_stuck{0};
+};
 
 /// Holds what the end of a capture needs.
 struct Ending {
@@ -303,7 +274,14 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
           Housekeeping& housekeeping, Publisher& publisher, const Clock& clock,
           const std::stop_token& stop) {
   const auto say = [&] { PrintSummary(ending, publisher, pipeline); };
-  ending.deadline.Arm(kTimeForDisk, kExitRecording, "the disk or a camera", say);
+  // With a signal the time already runs.
+  ending.deadline.ArmFirst(kTimeForCameras + kTimeForDisk, kExitRecording, "a camera", say);
+  const bool cameras_ended = pipeline.StopCapture(kTimeForCameras);
+  if (!cameras_ended) {
+    LOG(Edge, Error) << "a camera did not end within " << ToSeconds(kTimeForCameras)
+                     << " s; leaving without it";
+  }
+  ending.deadline.Arm(kTimeForDisk, kExitRecording, "the disk", say);
   const int status = pipeline.StopRecording().ok() ? 0 : kExitRecording;
   const Nanoseconds linger =
       stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().linger_s());
@@ -313,7 +291,8 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
   if (!Drain(publisher, options.link(), clock, stop)) {
     LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
   }
-  ending.deadline.Arm(kTimeForMiddleware, status, "the middleware or standard output");
+  ending.deadline.Arm(kTimeForMiddleware, status,
+                      cameras_ended ? "the middleware or standard output" : "a camera");
   say();
   return status;
 }
@@ -321,9 +300,10 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
 /// Captures until told to leave, then hands on what is under way. The process's exit status.
 int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
             std::unique_ptr<Spool> spool, FrameAccount& account, CameraHealth& health,
-            Publisher& publisher, ExitDeadline& deadline, const Clock& clock,
+            Publisher& publisher, Leaving& leaving, const Clock& clock,
             const std::stop_token& stop) {
-  const Ending ending{deadline, account, health, spool != nullptr};
+  if (spool != nullptr) leaving.status_if_stuck = kExitRecording;
+  const Ending ending{leaving.deadline, account, health, spool != nullptr};
   EdgePipeline pipeline(options, {source, publisher, account, health, clock, std::move(spool),
                                   start.session(), start.rig_thermal_delay_s});
   pipeline.StartReceiving();
@@ -380,7 +360,10 @@ Status Connect(const EdgeOptions& options, const TransportEnvironment& environme
 int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment, const Clock& clock,
             const StopSignal& signal) {
   const std::stop_token stop = signal.token();
-  ExitDeadline deadline;  // Outlives what may not end.
+  Leaving leaving;  // Outlives what may not end.
+  const std::stop_callback on_signal(stop, [&leaving] {
+    leaving.deadline.ArmFirst(kTimeForDisk, leaving.status_if_stuck, "what was under way");
+  });
   FrameAccount account;
   CameraHealth health;
   const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
@@ -407,7 +390,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const Status begun = link.publisher->BeginSession(Describe(options, start));
   if (!begun.ok()) return Fail(begun);
   return Capture(options, start, **source, std::move(*spool), account, health, *link.publisher,
-                 deadline, clock, stop);
+                 leaving, clock, stop);
 }
 
 }  // namespace isotherm

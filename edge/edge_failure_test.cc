@@ -173,6 +173,18 @@ TEST_F(EdgeFailureTest, F38AStopWhileItWaitsForACameraIsServed) {
   EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
 }
 
+TEST_F(EdgeFailureTest, F38F39AnOpeningThatDoesNotComeBackIsNoSignOfLifeAndAStopIsServed) {
+  camera_.Plug(false);
+  Process edge(OnCameras({"--set", "source.depth_camera.own_process=false"}));
+  ASSERT_TRUE(manager_.WaitForText("STATUS=waiting for a camera", kPatience)) << edge.output();
+  camera_.script.open_hangs = true;
+  camera_.Plug(true);
+  EXPECT_TRUE(manager_.WaitForSilence(kFed, kWatchdogSec, 2 * kPatience)) << edge.output();
+  EXPECT_THAT(edge.output(), HasSubstr("has not come back from opening it"));
+  EXPECT_LT(Leave(edge, 0), Seconds(3.5) + kSlack);
+  EXPECT_THAT(edge.output(), HasSubstr("leaving without it"));
+}
+
 TEST_F(EdgeFailureTest, F31WithoutItsNetworkItRecordsAndSaysWhatIsMissing) {
   const std::filesystem::path profile = folder_.path() / "profile.xml";
   std::ofstream(profile) << "<CycloneDDS><Domain><General><Interfaces><NetworkInterface "
@@ -326,15 +338,15 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   EXPECT_GT(published.done, static_cast<long>(content.depth.size()));
 }
 
-/// Standard error as a pipe of which the test has both ends.
-class StandardErrorTest : public EdgeFailureTest {
+/// What the daemon writes to, as a pipe of which the test has both ends.
+class OutputPipeTest : public EdgeFailureTest {
  protected:
-  StandardErrorTest() {
+  OutputPipeTest() {
     if (mkfifo(pipe_.c_str(), 0600) != 0) return;
     reader_ = open(pipe_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     writer_ = open(pipe_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
   }
-  ~StandardErrorTest() override {
+  ~OutputPipeTest() override {
     CloseReader();
     close(writer_);
   }
@@ -347,9 +359,9 @@ class StandardErrorTest : public EdgeFailureTest {
     while (write(writer_, page.data(), page.size()) > 0) {
     }
   }
-  Command WithIts(Command command) const {
-    command.arguments.insert(command.arguments.begin(),
-                             {"-c", "exec \"$0\" \"$@\" 2>" + pipe_.string(), command.program});
+  Command WithIts(Command command, const std::string& descriptor = "2") const {
+    const std::string script = "exec \"$0\" \"$@\" " + descriptor + ">" + pipe_.string();
+    command.arguments.insert(command.arguments.begin(), {"-c", script, command.program});
     command.program = "/bin/sh";
     return command;
   }
@@ -363,12 +375,12 @@ class StandardErrorTest : public EdgeFailureTest {
     EXPECT_TRUE(AccountOf(edge.output(), Sensor::kDepth, "recorded").Closes());
   }
 
-  const std::filesystem::path pipe_ = folder_.path() / "stderr";
+  const std::filesystem::path pipe_ = folder_.path() / "output";
   int reader_ = -1;
   int writer_ = -1;
 };
 
-TEST_F(StandardErrorTest, F38AReaderThatIsGoneDoesNotEndTheScan) {
+TEST_F(OutputPipeTest, F38AReaderThatIsGoneDoesNotEndTheScan) {
   Process edge(WithIts(Replay({"--record", file_, "--log-level", "debug"})));
   ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience));
   close(std::exchange(writer_, -1));
@@ -376,10 +388,24 @@ TEST_F(StandardErrorTest, F38AReaderThatIsGoneDoesNotEndTheScan) {
   ExpectAllIsWell(edge);
 }
 
-TEST_F(StandardErrorTest, F39AFullPipeThatNobodyReadsHoldsUpNothing) {
+TEST_F(OutputPipeTest, F39AFullPipeThatNobodyReadsHoldsUpNothing) {
   Fill();
   Process edge(WithIts(Replay({"--record", file_, "--log-level", "debug"})));
   ExpectAllIsWell(edge);
+}
+
+TEST_F(OutputPipeTest, F39AForcedExitDoesNotWaitForWhoReadsTheSummary) {
+  Fill();
+  const std::filesystem::path disk = folder_.path() / "pipe";
+  ASSERT_EQ(mkfifo(disk.c_str(), 0600), 0);
+  const int stuck = open(disk.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(stuck, 0);
+  Process edge(WithIts(Replay({"--record", disk}), "1"));
+  ASSERT_TRUE(manager_.WaitFor(kFed, kPatience));
+  EXPECT_TRUE(edge.WaitForOutput("the disk does not answer", kPatience)) << edge.output();
+  EXPECT_LT(Leave(edge, 73), Seconds(3.5) + kSlack);
+  EXPECT_THAT(edge.output(), HasSubstr("the disk did not end"));
+  close(stuck);
 }
 
 }  // namespace

@@ -28,8 +28,13 @@ std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source,
   return supervised;
 }
 
+void Tell(Sensor sensor, const std::string& problem, ToldProblems& told) {
+  if (std::exchange(told[sensor], problem) == problem) return;
+  LOG(Edge, Warning) << problem;
+}
+
 Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
-                                                 const SourceContext& context) {
+                                                 const SourceContext& context, ToldProblems& told) {
   const SourceOptions& source = options.source();
   std::vector<CameraPair::Camera> cameras;
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
@@ -41,7 +46,7 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
             ? MakeCameraProcess(sensor, source, context.clock, context.stop)
             : MakeCamera(sensor, source, context.clock);
     if (!camera) {
-      LOG(Edge, Warning) << camera.error().message();
+      Tell(sensor, camera.error().message(), told);
       continue;
     }
     auto supervised = Supervise(std::move(*camera), options, context);
@@ -64,14 +69,14 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
 }  // namespace
 
 Result<std::unique_ptr<FrameSource>> MakeSource(const EdgeOptions& options,
-                                                const SourceContext& context) {
+                                                const SourceContext& context, ToldProblems& told) {
   const SourceOptions& source = options.source();
   switch (source.kind()) {
     case REPLAY:
       return Supervise(std::make_unique<ReplaySource>(source, source.recording(), context.clock),
                        options, context);
     case CAMERAS:
-      return MakeCameras(options, context);
+      return MakeCameras(options, context, told);
     case SYNTHETIC:
       break;
   }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
+#include <string>
 
 #include "common/base/status.h"
 #include "common/geometry/camera.h"
@@ -25,9 +27,13 @@ struct SourceContext {
   std::stop_token stop;  ///< Ends the rendering of a simulated scan, or the opening of a camera.
 };
 
+/// Why a camera cannot be used at all, as last logged.
+using ToldProblems = std::map<Sensor, std::string>;
+
 /// The source that the options ask for, supervised: a recording, a simulated scan, or the cameras,
-/// each on a thread of its own. Not opened yet.
+/// each on a thread of its own. Not opened yet. `told` keeps it from saying the same again when it
+/// is called once more.
 Result<std::unique_ptr<FrameSource>> MakeSource(const EdgeOptions& options,
-                                                const SourceContext& context);
+                                                const SourceContext& context, ToldProblems& told);
 
 }  // namespace isotherm

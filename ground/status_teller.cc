@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "common/base/log.h"
@@ -32,6 +33,18 @@ std::uint64_t Dropped(const StreamStatus& stream) {
   return sum;
 }
 
+constexpr double kBytesPerGb = 1e9;
+/// What the rig keeps in reserve at most: there its recording ends (spool.reserve_mb).
+constexpr double kRigDiskEnds_gb = 1.0;
+/// Of a recording of ten minutes, and the reserve.
+constexpr double kRigDiskLow_gb = 4.0;
+
+/// Returns what is free on the rig's disk; nullopt if the rig does not say.
+std::optional<double> RigDisk_gb(const GroundSituation& situation) {
+  if (!situation.edge || situation.edge->disk_free_bytes == 0) return std::nullopt;
+  return static_cast<double>(situation.edge->disk_free_bytes) / kBytesPerGb;
+}
+
 /// Adds what the operator should do something about.
 void AddTroubles(const GroundSituation& situation, std::vector<std::string>& parts) {
   constexpr Nanoseconds kSlow = std::chrono::seconds(2);
@@ -40,6 +53,8 @@ void AddTroubles(const GroundSituation& situation, std::vector<std::string>& par
   if (situation.recording_at_it > kSlow) {
     parts.push_back(fmt::format("DISK STUCK for {:.0f} s", ToSeconds(situation.recording_at_it)));
   }
+  if (const auto gb = RigDisk_gb(situation); gb && *gb < kRigDiskEnds_gb)
+    parts.push_back(fmt::format("RIG'S DISK FULL, {:.1f} GB left", *gb));
   if (situation.link.account.clock && situation.link.account.clock->alarm)
     parts.emplace_back("CLOCK ALARM");
   if (!situation.recording.status.ok()) {
@@ -60,6 +75,8 @@ void AddScan(const GroundSituation& situation, std::vector<std::string>& parts) 
   }
   if (std::string disk = DiskText(situation.recording); !disk.empty())
     parts.push_back(std::move(disk));
+  if (const auto gb = RigDisk_gb(situation); gb && *gb >= kRigDiskEnds_gb && *gb < kRigDiskLow_gb)
+    parts.push_back(fmt::format("rig's disk low, {:.1f} GB left", *gb));
   if (situation.behind.thermal_frames > 0) {
     parts.push_back(fmt::format("reconstruct scan.mcap again: {} thermal frames were left out",
                                 situation.behind.thermal_frames));

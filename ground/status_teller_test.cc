@@ -67,6 +67,18 @@ TEST(StatusTellerTest, F48WorkThatWasLeftOutIsSaidWithWhatToDo) {
               HasSubstr("reconstruct scan.mcap again: 764 thermal frames were left out"));
 }
 
+TEST(StatusTellerTest, F41TheRigsDiskIsSaidWhenItIsLowOrFull) {
+  GroundSituation situation = Scanning();
+  situation.edge = EdgeStatus();
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("disk"))) << "it does not say";
+  situation.edge->disk_free_bytes = 4'100'000'000;
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("disk")));
+  situation.edge->disk_free_bytes = 3'240'000'000;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | rig's disk low, 3.2 GB left"));
+  situation.edge->disk_free_bytes = 1;  // None.
+  EXPECT_THAT(Narrow(situation), HasSubstr(" | RIG'S DISK FULL, 0.0 GB left"));
+}
+
 TEST(StatusTellerTest, F42AStuckDiskAndWhatTheRecordingLacksAreSaid) {
   GroundSituation situation = Scanning();
   situation.recording_at_it = seconds(12);

@@ -206,7 +206,7 @@ struct EdgeStatus {
   std::uint64_t spool_frames = 0;  ///< Recorded but not yet published.
   ClockReport clock;
   std::optional<ClockEcho> clock_echo;
-  std::uint64_t disk_free_bytes = 0;
+  std::uint64_t disk_free_bytes = 0;  ///< Of the rig's disk; 0 = not known, 1 = none.
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
   FeedbackLatency feedback;  ///< Feedback in this session.
   CameraReport depth_camera;

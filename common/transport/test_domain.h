@@ -1,9 +1,11 @@
 #pragma once
 
-#include <fcntl.h>
-#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <cstddef>
+#include <cstring>
 #include <string>
 
 #include "common/base/check.h"
@@ -19,10 +21,7 @@ class TestDomain {
     constexpr int kCount = 200;
     for (int i = 0; i < kCount; ++i) {
       number_ = kFirst + (static_cast<int>(getpid()) + i) % kCount;
-      const std::string path = "/tmp/isotherm-test-domain-" + std::to_string(number_);
-      lock_ = open(path.c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0666);
-      if (lock_ >= 0 && flock(lock_, LOCK_EX | LOCK_NB) == 0) return;
-      if (lock_ >= 0) close(lock_);
+      if (Take("isotherm-test-domain-" + std::to_string(number_))) return;
     }
     CHECK(false && "no free DDS domain");
   }
@@ -33,6 +32,19 @@ class TestDomain {
   int number() const { return number_; }
 
  private:
+  /// A name of a socket that is no file: gone with the process that has it, however that ends.
+  bool Take(const std::string& name) {
+    lock_ = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    CHECK(lock_ >= 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::memcpy(address.sun_path + 1, name.data(), name.size());
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    if (bind(lock_, reinterpret_cast<const sockaddr*>(&address), size) == 0) return true;
+    close(lock_);
+    return false;
+  }
+
   int number_ = 0;
   int lock_ = -1;
 };

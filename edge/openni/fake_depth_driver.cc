@@ -3,6 +3,7 @@
 // fake_depth_camera.h writes it.
 
 #include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -292,9 +293,10 @@ class FakeDriver final : public oni::driver::DriverBase {
   }
 
   oni::driver::DeviceBase* deviceOpen(const char* uri, const char* /*mode*/) override {
-    std::scoped_lock lock(mutex_);
     const std::optional<FakeDepthScript> script = ReadFakeDepthScript();
     if (!script || !script->connected || std::strcmp(uri, kUri) != 0) return nullptr;
+    while (script->open_hangs) pause();
+    std::scoped_lock lock(mutex_);
     device_ = new FakeDevice(*script);
     return device_;
   }

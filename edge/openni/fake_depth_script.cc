@@ -38,11 +38,12 @@ void ReadFault(std::istringstream& line, FakeDepthScript& script) {
 std::string FakeDepthScript::ToText() const {
   std::ostringstream text;
   text.precision(17);
-  text << "connected " << connected << "\nserial " << serial << "\nfield_of_view "
-       << has_field_of_view << ' ' << horizontal_fov_rad << ' ' << vertical_fov_rad
-       << "\nzero_plane " << has_zero_plane << "\nclose_range " << has_close_range
-       << "\nregistration " << has_registration << "\nmirroring_stays_on " << mirroring_stays_on
-       << "\ntimestamps " << first_timestamp_us << ' ' << wraps_at_32_bits << '\n';
+  text << "connected " << connected << "\nopen_hangs " << open_hangs << "\nserial " << serial
+       << "\nfield_of_view " << has_field_of_view << ' ' << horizontal_fov_rad << ' '
+       << vertical_fov_rad << "\nzero_plane " << has_zero_plane << "\nclose_range "
+       << has_close_range << "\nregistration " << has_registration << "\nmirroring_stays_on "
+       << mirroring_stays_on << "\ntimestamps " << first_timestamp_us << ' ' << wraps_at_32_bits
+       << '\n';
   if (!pixels.empty()) text << "pixels " << pixels.string() << '\n';
   if (!counter.empty()) text << "counter " << counter.string() << '\n';
   for (const auto& [frame, fault] : faults) {
@@ -66,6 +67,7 @@ std::optional<FakeDepthScript> ReadFakeDepthScript() {
     std::string key;
     line >> key;
     if (key == "connected") line >> script.connected;
+    if (key == "open_hangs") line >> script.open_hangs;
     if (key == "serial") line >> script.serial;
     if (key == "field_of_view") {
       line >> script.has_field_of_view >> script.horizontal_fov_rad >> script.vertical_fov_rad;

@@ -33,6 +33,7 @@ struct FakeDepthScript {
   };
 
   bool connected = true;
+  bool open_hangs = false;  ///< The library never comes back from opening it.
   std::string serial = "FAKE-1";
   bool has_field_of_view = true;
   bool has_zero_plane = true;
