@@ -225,6 +225,7 @@ GroundSituation GroundService::Situation() const {
                             .recording = {},
                             .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
                             .scans_being_written = board_.scans_being_written,
+                            .scans_given_up = board_.scans_given_up,
                             .problem = told_problem_};
   if (const auto ledger = board_.recording.Get()) situation.recording = (*ledger)->Get();
   return situation;

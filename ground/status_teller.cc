@@ -40,6 +40,8 @@ void AddTroubles(const GroundSituation& situation, std::vector<std::string>& par
   if (situation.recording_at_it > kSlow) {
     parts.push_back(fmt::format("DISK STUCK for {:.0f} s", ToSeconds(situation.recording_at_it)));
   }
+  if (situation.scans_given_up > 0)
+    parts.push_back(fmt::format("RESULTS OF {} SCANS LOST", situation.scans_given_up));
   if (situation.link.account.clock && situation.link.account.clock->alarm)
     parts.emplace_back("CLOCK ALARM");
   if (!situation.recording.status.ok()) {
