@@ -89,9 +89,11 @@ Status GroundPipeline::Continue(const ModelFile& model) {
   return OkStatus();
 }
 
-Status GroundPipeline::Save(const std::filesystem::path& path, int index) const {
+Status GroundPipeline::Save(const std::filesystem::path& path, int index,
+                            const std::function<void(double share)>& progress) const {
   const SubMap& map = atlas_.map(index);
-  return SaveModel(path, *map.tsdf, *map.thermal, rig_, map.relocaliser->library().poses());
+  return SaveModel(path, *map.tsdf, *map.thermal, rig_, map.relocaliser->library().poses(),
+                   progress);
 }
 
 std::optional<RigidTransform> GroundPipeline::ToWorld(const RigidTransform& T_map_depth) const {

@@ -65,7 +65,8 @@ class GroundPipeline {
   /// Everything that Continue needs.
   Status Save(const std::filesystem::path& path) const { return Save(path, 0); }
   /// The same of a sub-map that was never joined, 1 <= index < atlas().size() after Finish.
-  Status Save(const std::filesystem::path& path, int index) const;
+  Status Save(const std::filesystem::path& path, int index,
+              const std::function<void(double share)>& progress = {}) const;
 
   DepthReport ProcessDepth(const DepthFrame& frame);
   /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).

@@ -86,11 +86,11 @@ class GroundService {
   void GuardUntilStopped();
   void FeedWatchdog();
   GroundSituation Situation() const;
-  /// Waits for a thread's end as long as all goes on. False: given up, something is stuck.
-  bool WaitForEnd(Worker& worker);
-  bool WaitForRecording(Worker& worker);
+  /// Waits for a thread's end as long as what it needs goes on, and leaves without it otherwise.
+  void WaitForEnd(Worker& worker, GroundThread thread);
   /// Ends the process although a thread is stuck in it.
-  [[noreturn]] void LeaveBehind(const std::string& what);
+  [[noreturn]] void LeaveBehind(GroundThread stuck);
+  std::string StuckText(GroundThread stuck) const;
 
   const GroundOptions& options_;
   const ServiceMode mode_;
@@ -173,19 +173,13 @@ int GroundService::Run() {
     NotifyStopping();
     // Reception first; then each consumer empties its queue and closes its files.
     receive_thread.RequestStop();
-    if (!WaitForEnd(receive_thread)) LeaveBehind("reception is stuck");
+    WaitForEnd(receive_thread, GroundThread::kReception);
     recording_thread.RequestStop();
     reconstruction_thread.RequestStop();
-    if (!WaitForEnd(reconstruction_thread)) LeaveBehind("the reconstruction is stuck");
+    WaitForEnd(reconstruction_thread, GroundThread::kReconstruction);
     result_thread.RequestStop();
-    if (!WaitForEnd(result_thread))
-      LeaveBehind("the disk is stuck: results are not complete, output_dir=" +
-                  options_.live().output_dir());
-    if (!WaitForRecording(recording_thread)) {
-      const auto ledger = board_.recording.Get();
-      LeaveBehind("the disk is stuck: the recording is not complete, file=" +
-                  (ledger ? (*ledger)->Get().path.string() : "?"));
-    }
+    WaitForEnd(result_thread, GroundThread::kResults);
+    WaitForEnd(recording_thread, GroundThread::kRecording);
   }
   int exit_code = 0;
   for (const Status& status : {recording.status(), results.status(), reconstruction.status()}) {
@@ -231,44 +225,42 @@ GroundSituation GroundService::Situation() const {
                             .recording = {},
                             .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
                             .scans_being_written = board_.scans_being_written,
+                            .scans_given_up = board_.scans_given_up,
                             .problem = told_problem_};
   if (const auto ledger = board_.recording.Get()) situation.recording = (*ledger)->Get();
   return situation;
 }
 
-bool GroundService::WaitForEnd(Worker& worker) {
-  constexpr Nanoseconds kTick = 100ms;
-  constexpr std::chrono::microseconds kExtension = 10s;
-  // The longest step of writing results is the surface of a large model. Somebody waits for the
-  // end.
-  constexpr Nanoseconds kLimit = 30s;
-  while (!worker.WaitForEnd(kTick)) {
-    const SteadyTime now = clock_.SteadyNow();
-    const Nanoseconds longest =
-        std::max({health_.receive.AtItFor(now), health_.reconstruction.AtItFor(now),
-                  health_.results.AtItFor(now)});
-    if (longest > kLimit) return false;
-    NotifyExtendTimeout(kExtension);
-    FeedWatchdog();
-  }
-  return true;
-}
-
-bool GroundService::WaitForRecording(Worker& worker) {
+void GroundService::WaitForEnd(Worker& worker, GroundThread thread) {
   constexpr Nanoseconds kTick = 50ms;
   constexpr std::chrono::microseconds kExtension = 10s;
-  constexpr Nanoseconds kLimit = 1500ms;
   while (!worker.WaitForEnd(kTick)) {
-    if (health_.recording.AtItFor(clock_.SteadyNow()) > kLimit) return false;
+    if (const auto stuck = health_.StuckBeforeEnd(thread, clock_.SteadyNow())) LeaveBehind(*stuck);
     NotifyExtendTimeout(kExtension);
     FeedWatchdog();
   }
-  return true;
 }
 
-void GroundService::LeaveBehind(const std::string& what) {
+std::string GroundService::StuckText(GroundThread stuck) const {
+  switch (stuck) {
+    case GroundThread::kReception:
+      return "reception is stuck";
+    case GroundThread::kReconstruction:
+      return "the reconstruction is stuck";
+    case GroundThread::kResults:
+      return "the disk is stuck: results are not complete, output_dir=" +
+             options_.live().output_dir();
+    case GroundThread::kRecording:
+      break;
+  }
+  const auto ledger = board_.recording.Get();
+  return "the disk is stuck: the recording is not complete, file=" +
+         (ledger ? (*ledger)->Get().path.string() : "?");
+}
+
+void GroundService::LeaveBehind(GroundThread stuck) {
   const int exit_code = ExitCode(IoError(""));
-  LOG(Ground, Error) << what << "; leaving without it";
+  LOG(Ground, Error) << StuckText(stuck) << "; leaving without it";
   // The link is not torn down: the stuck thread may still use it. The rig notices within the lease.
   leaving_.Arm(kTimeToLeaveNetwork, exit_code, "standard output");
   std::fflush(nullptr);

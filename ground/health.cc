@@ -22,4 +22,33 @@ std::optional<std::string> Health::Problem(SteadyTime now) const {
   return std::nullopt;
 }
 
+std::optional<GroundThread> Health::StuckBeforeEnd(GroundThread awaited, SteadyTime now) const {
+  // The longest step of writing results is the surface of a large model. Somebody waits for the
+  // end.
+  constexpr Nanoseconds kLimit = std::chrono::seconds(30);
+  constexpr Nanoseconds kRecordingLimit = std::chrono::milliseconds(1500);
+  const auto is_stuck = [&](const ThreadProgress& thread, Nanoseconds limit) {
+    return thread.AtItFor(now) > limit;
+  };
+  bool stuck = false;
+  switch (awaited) {
+    case GroundThread::kReception:
+      stuck = is_stuck(receive, kLimit);
+      break;
+    case GroundThread::kReconstruction:
+      // Idle: it waits until there is room for its last scan.
+      if (reconstruction.AtItFor(now) == Nanoseconds(0) && is_stuck(results, kLimit))
+        return GroundThread::kResults;
+      stuck = is_stuck(reconstruction, kLimit);
+      break;
+    case GroundThread::kResults:
+      stuck = is_stuck(results, kLimit);
+      break;
+    case GroundThread::kRecording:
+      stuck = is_stuck(recording, kRecordingLimit);
+      break;
+  }
+  return stuck ? std::optional(awaited) : std::nullopt;
+}
+
 }  // namespace isotherm

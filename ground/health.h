@@ -1,11 +1,15 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "common/time/thread_progress.h"
 
 namespace isotherm {
+
+/// A thread of the service whose end is waited for.
+enum class GroundThread : std::uint8_t { kReception, kReconstruction, kResults, kRecording };
 
 /// Where the service's threads are with their work. Thread-safe.
 class Health {
@@ -24,6 +28,9 @@ class Health {
   /// Returns what is stuck, in words; nullopt if everything goes on. The service manager's watchdog
   /// is fed only then.
   std::optional<std::string> Problem(SteadyTime now) const;
+  /// The thread that keeps `awaited` from its end and is stuck; nullopt while all that it needs
+  /// goes on. What others are stuck at does not count.
+  std::optional<GroundThread> StuckBeforeEnd(GroundThread awaited, SteadyTime now) const;
 
  private:
   const Nanoseconds disk_limit_;

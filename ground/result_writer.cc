@@ -76,16 +76,41 @@ std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
 
 }  // namespace
 
-void ResultWriter::Hand(EndedScan ended) {
+void ResultWriter::Hand(EndedScan ended, const std::stop_token& stop) {
   ++board_.scans_being_written;
+  const Nanoseconds patience = ended.start.rig.waits_for_ground ? kReplayPatience : Nanoseconds(0);
   std::unique_lock lock(mutex_);
-  if (waiting_) {
-    LOG(Ground, Warning) << "two scans wait for their results: the next is not reconstructed "
-                            "before one is written";
+  if (!WaitForRoom(lock, patience, stop)) {
+    --board_.scans_being_written;
+    lock.unlock();
+    return GiveUp(ended);
   }
-  changed_.wait(lock, [this] { return !waiting_; });
   waiting_ = std::move(ended);
   changed_.notify_all();
+}
+
+bool ResultWriter::WaitForRoom(std::unique_lock<std::mutex>& lock, Nanoseconds patience,
+                               const std::stop_token& stop) {
+  const auto has_room = [this] { return !waiting_; };
+  if (changed_.wait_for(lock, stop, patience, has_room)) return true;
+  if (!stop.stop_requested()) return false;
+  changed_.wait(lock, has_room);
+  return true;
+}
+
+void ResultWriter::GiveUp(const EndedScan& ended) {
+  if (!ended.scan) return;  // It had none.
+  const fs::path recording = ended.start.recording->Get().path;
+  given_up_ = ResourceExhausted(fmt::format(
+      "the results of a scan are lost, session={}: those of two scans before it are still being "
+      "written, the disk is slow or stuck, output_dir={}; {}",
+      ended.start.rig.session, options_.live().output_dir(),
+      recording.empty() ? "its frames were not recorded"
+                        : fmt::format("its frames are in the recording: isotherm reconstruct {} -o "
+                                      "{}",
+                                      recording.string(), ended.start.folder.string())));
+  ++board_.scans_given_up;
+  LOG(Ground, Error) << given_up_.message();
 }
 
 std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {

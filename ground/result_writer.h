@@ -27,7 +27,9 @@ struct EndedScan {
 
 /// Writes the results of one scan after the other, so that the next scan can be received and
 /// reconstructed meanwhile. At most one more waits: there are never more than three models in
-/// memory. Hand() is for the reconstruction thread; the rest is bound to the thread of results.
+/// memory. Who brings another one to a disk that is stuck loses its results, and never waits for
+/// long: the recording has its frames. Hand() is for the reconstruction thread; the rest is bound
+/// to the thread of results.
 class ResultWriter {
  public:
   /// What is known of a session's frames by now.
@@ -42,14 +44,22 @@ class ResultWriter {
         progress_(progress),
         written_(std::move(written)) {}
 
-  /// Waits while another scan waits already.
-  void Hand(EndedScan ended);
+  /// Takes a scan, or gives its results up, counted and said, if there is no room for it. A live
+  /// rig does not wait for us; a replay does for kReplayPatience, and who was asked to stop
+  /// receives nothing meanwhile.
+  void Hand(EndedScan ended, const std::stop_token& stop);
   /// Until stop is requested and no scan waits.
   void Run(const std::stop_token& stop);
   /// The last failure. Not while it runs.
-  const Status& status() const { return status_; }
+  const Status& status() const { return status_.ok() ? given_up_ : status_; }
 
  private:
+  static constexpr Nanoseconds kReplayPatience = std::chrono::seconds(10);
+
+  /// False if there is still no room after `patience`.
+  bool WaitForRoom(std::unique_lock<std::mutex>& lock, Nanoseconds patience,
+                   const std::stop_token& stop);
+  void GiveUp(const EndedScan& ended);
   std::optional<EndedScan> Take(const std::stop_token& stop);
   void Write(EndedScan ended);
   /// Into the scan's folder or, if that fails, into another. The summary.
@@ -66,6 +76,7 @@ class ResultWriter {
   std::condition_variable_any changed_;
   std::optional<EndedScan> waiting_;
   Status status_;
+  Status given_up_;  ///< Of the reconstruction thread.
 };
 
 }  // namespace isotherm

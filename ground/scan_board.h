@@ -27,6 +27,7 @@ struct ScanBoard {
   /// What the results of the model so far would take.
   std::atomic<std::uint64_t> result_bytes{0};
   std::atomic<int> scans_being_written{0};  ///< Ended ones whose results are not there yet.
+  std::atomic<int> scans_given_up{0};       ///< Ended ones whose results found no place to wait.
 };
 
 }  // namespace isotherm

@@ -197,12 +197,15 @@ std::string DescribeSubMaps(const Atlas& atlas) {
 
 /// model.iso, and one more for each sub-map that was never joined.
 Status SaveModels(const GroundPipeline& pipeline, const GroundOptions& options,
-                  const std::filesystem::path& dir) {
+                  const std::filesystem::path& dir,
+                  const std::function<void(std::string_view what, double share)>& progress) {
   if (!options.export_().model()) return OkStatus();
   Status first;
   for (int i = 0; i < pipeline.atlas().size(); ++i) {
     const std::string name = i == 0 ? "model.iso" : fmt::format("model-{}.iso", i + 1);
-    const Status saved = pipeline.Save(dir / name, i);
+    const Status saved = pipeline.Save(dir / name, i, [&](double) {
+      if (progress) progress("model", 0.0);  // A small part of all.
+    });
     if (first.ok()) first = saved;
   }
   return first;
@@ -304,7 +307,7 @@ Result<WrittenScan> WriteScan(
                               return doubts;
                             }};
   // All others can be made again from the model.
-  const Status saved = SaveModels(pipeline, options, dir);
+  const Status saved = SaveModels(pipeline, options, dir, progress);
   if (progress) progress("results", 0.0);
   const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
   if (!saved.ok()) return Err(saved);

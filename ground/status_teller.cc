@@ -55,6 +55,8 @@ void AddTroubles(const GroundSituation& situation, std::vector<std::string>& par
   }
   if (const auto gb = RigDisk_gb(situation); gb && *gb < kRigDiskEnds_gb)
     parts.push_back(fmt::format("RIG'S DISK FULL, {:.1f} GB left", *gb));
+  if (situation.scans_given_up > 0)
+    parts.push_back(fmt::format("RESULTS OF {} SCANS LOST", situation.scans_given_up));
   if (situation.link.account.clock && situation.link.account.clock->alarm)
     parts.emplace_back("CLOCK ALARM");
   if (!situation.recording.status.ok()) {

@@ -91,6 +91,13 @@ TEST(StatusTellerTest, F42AStuckDiskAndWhatTheRecordingLacksAreSaid) {
               StartsWith("STUCK: the recording has not gone on for 61 s | "));
 }
 
+TEST(StatusTellerTest, F42ResultsThatAreLostAreSaid) {
+  GroundSituation situation = Scanning();
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("RESULTS")));
+  situation.scans_given_up = 2;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | RESULTS OF 2 SCANS LOST"));
+}
+
 TEST(StatusTellerTest, F41TheDiskLastsSoLong) {
   GroundSituation situation = Scanning();
   RecordingAccount& recording = situation.recording;

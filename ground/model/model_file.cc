@@ -130,7 +130,8 @@ void PackBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, std::int32_
 
 Status SaveModel(const std::filesystem::path& path, const TsdfVolume& tsdf,
                  const ThermalVolume& thermal, const Rig& rig,
-                 std::span<const RigidTransform> known_poses) {
+                 std::span<const RigidTransform> known_poses,
+                 const std::function<void(double share)>& progress) {
   const VoxelGrid& grid = tsdf.grid();
   ModelHeader header;
   header.set_software("Isotherm");
@@ -175,6 +176,7 @@ Status SaveModel(const std::filesystem::path& path, const TsdfVolume& tsdf,
                                    static_cast<std::uint32_t>(bytes), Crc(packed)}));
       file.Write(AsText(packed));
     }
+    if (progress) progress(static_cast<double>(end) / tsdf.block_count());
   }
   file.Write(kEnd);
   return file.Commit();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -82,6 +83,19 @@ class ModelFileTest : public ::testing::Test {
   std::unique_ptr<ThermalVolume> thermal_, read_thermal_;
   std::vector<RigidTransform> poses_;
 };
+
+TEST_F(ModelFileTest, WhoSavesHearsAfterEachPartThatItGoesOn) {
+  std::vector<double> shares;
+  ASSERT_TRUE(SaveModel(Path(), *tsdf_, *thermal_, rig_, poses_, [&](double share) {
+                shares.push_back(share);
+              }).ok());
+  constexpr int kBlocksPerPart = 256;
+  const int parts = (tsdf_->block_count() + kBlocksPerPart - 1) / kBlocksPerPart;
+  ASSERT_GT(parts, 1);
+  ASSERT_EQ(shares.size(), static_cast<std::size_t>(parts));
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_EQ(shares.back(), 1.0);
+}
 
 TEST_F(ModelFileTest, GivesBackEveryVoxelAndPose) {
   Save();
