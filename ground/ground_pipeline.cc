@@ -94,11 +94,6 @@ Status GroundPipeline::Save(const std::filesystem::path& path, int index) const 
   return SaveModel(path, *map.tsdf, *map.thermal, rig_, map.relocaliser->library().poses());
 }
 
-std::optional<RigidTransform> GroundPipeline::ToWorld(const RigidTransform& T_map_depth) const {
-  if (!atlas_.active().joined) return std::nullopt;
-  return atlas_.active().T_world_map * T_map_depth;
-}
-
 RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
   if (initial_pose_ && atlas_.size() == 1) return *initial_pose_;
   return PoseFacingCentre(tsdf().grid(), depth.depth_m);
@@ -274,9 +269,11 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   if (report.integrated && report.tracking.verdict() == Verdict::kTracked) {
     atlas_.active().relocaliser->Remember(T_world_depth);
     KeepSubMaps(*depth, T_world_depth);
-    report.tracking.T_world_depth = tracker_.motion().last()->T_world_depth;
   }
-  UpdateView(report.tracking.T_world_depth);
+  // The tracker has followed if another sub-map is active now.
+  report.pose = {atlas_.active_index(), tracker_.motion().last()->T_world_depth,
+                 uncertainty().covariance()};
+  UpdateView(report.pose.T_map_depth);
   return report;
 }
 
@@ -316,12 +313,14 @@ void GroundPipeline::FuseThermal() {
 
 void GroundPipeline::AddToTrajectory(const StampedPose& pose) {
   tracked_.push_back({pose, LargestSigma(uncertainty().covariance()), atlas_.active_index()});
-  if (atlas_.active().joined) AppendToTrajectory(tracked_.back());
+  AppendToTrajectory(tracked_.back());
 }
 
-void GroundPipeline::AppendToTrajectory(const MapPose& tracked) {
-  const RigidTransform& T_world_map = atlas_.map(tracked.map).T_world_map;
-  trajectory_.push_back({tracked.pose.time, T_world_map * tracked.pose.T_world_depth});
+void GroundPipeline::AppendToTrajectory(const TrackedPose& tracked) {
+  const std::optional<WorldPose> world =
+      atlas_.ToWorld({.map = tracked.map, .T_map_depth = tracked.pose.T_world_depth});
+  if (!world) return;
+  trajectory_.push_back({tracked.pose.time, world->T_world_depth});
   trajectory_sigmas_.push_back(tracked.sigma);
 }
 
@@ -333,9 +332,7 @@ void GroundPipeline::KeepSubMaps(const PreparedDepth& depth, const RigidTransfor
   if (!change.linked) return;
   trajectory_.clear();
   trajectory_sigmas_.clear();
-  for (const MapPose& tracked : tracked_) {
-    if (atlas_.map(tracked.map).joined) AppendToTrajectory(tracked);
-  }
+  for (const TrackedPose& tracked : tracked_) AppendToTrajectory(tracked);
 }
 
 void GroundPipeline::Finish(const std::function<void(double)>& progress) {

@@ -15,8 +15,8 @@ class PoseUncertainty {
   /// After each tracked frame, with the error of the prior that held its free directions.
   void Update(const TrackingResult& result, const PriorError& prior);
 
-  /// To coordinates whose axes are turned: `R` maps from the old ones.
-  void Rotate(const Eigen::Matrix3d& R);
+  /// Goes on in coordinates whose axes are rotated.
+  void Rotate(const Eigen::Matrix3d& R_new_old);
 
   /// How uncertain T_world_depth is, as a twist (translation, rotation about the camera's position)
   /// in `world`, m and rad.
