@@ -136,7 +136,7 @@ CoverageSummary FeedbackMaker::LookAtView(GroundPipeline& pipeline) {
   const int columns = std::max(kLeastColumns, options_.feedback().picture_width_px());
   Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
   // Distances and angles are limits of the thermal camera.
-  SampleView(maps_, (model.T_world_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
+  SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
              pipeline.thermal(), pipeline.pool(), view_);
   return SummarizeCoverage(view_, options_.thermal());
 }
@@ -168,9 +168,9 @@ void FeedbackMaker::AddNextPose(const DepthReport& report, const GroundPipeline&
   if (feedback.done || !planner_ || planned_map_ != report.pose.map) return;
   const std::optional<NextView>& best = planner_->best();
   if (!best) return;
-  feedback.T_world_depth_next = InWorld(pipeline.atlas(), planned_map_, best->T_world_depth);
+  feedback.T_world_depth_next = InWorld(pipeline.atlas(), planned_map_, best->T_map_depth);
   feedback.next_gain_m2 = best->gain_m2;
-  feedback.T_depth_next = report.pose.T_map_depth.inverse() * best->T_world_depth;
+  feedback.T_depth_next = report.pose.T_map_depth.inverse() * best->T_map_depth;
 }
 
 Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipeline) {
@@ -207,7 +207,7 @@ void FeedbackMaker::ThinkAhead(GroundPipeline& pipeline) {
   // are in memory.
   const bool has_spilled = pipeline.spiller().spilled() > 0;
   const VoxelGrid& grid = pipeline.tsdf().grid();
-  const Eigen::Vector3d rig_vox = grid.ToVoxel(pipeline.view().T_world_depth.translation());
+  const Eigen::Vector3d rig_vox = grid.ToVoxel(pipeline.view().T_map_depth.translation());
   const double reach_vox = kResidentReach_m / grid.voxel_size_m;
   coverage.Update(
       pipeline.tsdf(), pipeline.thermal(),
@@ -218,7 +218,7 @@ void FeedbackMaker::ThinkAhead(GroundPipeline& pipeline) {
       options_.feedback().blocks_per_message(), pipeline.pool());
   ViewPlanner* planner = Planner(pipeline);
   if (planner == nullptr || pipeline.view().maps.width() == 0 || adviser_.done()) return;
-  planner->Step(pipeline.tsdf(), pipeline.thermal(), coverage, pipeline.view().T_world_depth,
+  planner->Step(pipeline.tsdf(), pipeline.thermal(), coverage, pipeline.view().T_map_depth,
                 pipeline.pool());
 }
 

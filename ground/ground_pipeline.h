@@ -111,8 +111,8 @@ class GroundPipeline {
  private:
   /// What the trajectory is made of whenever sub-maps move.
   struct TrackedPose {
-    StampedPose pose;  ///< In the coordinates of sub-map `map`.
-    PoseSigma sigma;   ///< Of any axes, since it is along the least certain direction.
+    StampedMapPose pose;  ///< In the coordinates of sub-map `map`.
+    PoseSigma sigma;      ///< Of any axes, since it is along the least certain direction.
     int map = 0;
   };
 
@@ -127,17 +127,17 @@ class GroundPipeline {
   bool BeginElsewhere(const PreparedDepth& depth, CaptureTime time);
   /// Goes on in another sub-map.
   void Activate(int index);
-  void AddToTrajectory(const StampedPose& pose);
+  void AddToTrajectory(const StampedMapPose& pose);
   /// If the sub-map is joined.
   void AppendToTrajectory(const TrackedPose& tracked);
   /// Closes loops and begins sub-maps; may change the active one, and the tracker's coordinates.
   void KeepSubMaps(const PreparedDepth& depth, const RigidTransform& T_map_depth);
   bool IsRepeated(const DepthFrame& frame);
   /// False if the model is still empty: nothing of the surface lies in the volume.
-  bool Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth);
-  void UpdateView(const RigidTransform& T_world_depth);
+  bool Integrate(const PreparedDepth& depth, const RigidTransform& T_map_depth);
+  void UpdateView(const RigidTransform& T_map_depth);
   /// Has what was spilled and comes into view read in the background.
-  void FetchNearView(const RigidTransform& T_world_depth);
+  void FetchNearView(const RigidTransform& T_map_depth);
   void FuseThermal();
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);
@@ -163,9 +163,9 @@ class GroundPipeline {
   std::vector<StampedPose> trajectory_;  ///< The poses of tracked_ that are joined, in world.
   std::vector<PoseSigma> trajectory_sigmas_;
   std::optional<CaptureTime> lost_since_;
-  int searched_ = 0;                      ///< The sub-map a lost rig is looked for in.
-  std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
-  Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.
+  int searched_ = 0;                         ///< The sub-map a lost rig is looked for in.
+  std::vector<StampedMapPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
+  Image<std::uint16_t> last_raw_;            ///< Picture of the last depth frame.
   Effort effort_ = Effort::kAll;
   bool integrate_next_ = true;  ///< With kEverySecond.
   PipelineCounts counts_;

@@ -2,6 +2,7 @@
 
 #include "common/geometry/pose_covariance.h"
 #include "common/geometry/rigid_transform.h"
+#include "common/time/time_types.h"
 
 namespace isotherm {
 
@@ -22,5 +23,12 @@ struct WorldPose {
 /// Takes a pose to `world` together with its covariance: neither means anything in the axes of the
 /// other. `T_world_map` is where the pose's sub-map is.
 WorldPose ToWorld(const MapPose& pose, const RigidTransform& T_world_map);
+
+/// A pose of the depth camera on the time line, in the coordinates of the sub-map that it was
+/// tracked against.
+struct StampedMapPose {
+  CaptureTime time;
+  RigidTransform T_map_depth;
+};
 
 }  // namespace isotherm

@@ -18,8 +18,8 @@ class PoseUncertainty {
   /// Goes on in coordinates whose axes are rotated.
   void Rotate(const Eigen::Matrix3d& R_new_old);
 
-  /// How uncertain T_world_depth is, as a twist (translation, rotation about the camera's position)
-  /// in `world`, m and rad.
+  /// How uncertain T_map_depth is, as a twist (translation, rotation about the camera's position)
+  /// in `map`, m and rad.
   const Matrix6& covariance() const { return covariance_; }
   /// One standard deviation of the least certain motion, as the shift of the surface in view,
   /// metres.
