@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <numbers>
 
@@ -13,11 +14,13 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// A ball before two walls. What is seen of it holds the rig less along y than along x or z, since
-/// no wall faces it there.
-double BallBetweenTwoWalls(const Eigen::Vector3d& p) {
-  const double ball = (p - Eigen::Vector3d(0.26, 0.24, 0.42)).norm() - 0.09;
-  return std::min({ball, 0.62 - p.z(), 0.48 - p.x()});
+/// Two upright columns and a small ball before a wall. Only the ball holds the rig along y, so that
+/// is the least certain direction.
+double ColumnsAndBall(const Eigen::Vector3d& p) {
+  const double columns = std::min(std::hypot(p.x() - 0.18, p.z() - 0.46) - 0.06,
+                                  std::hypot(p.x() - 0.41, p.z() - 0.48) - 0.05);
+  const double ball = (p - Eigen::Vector3d(0.30, 0.26, 0.46)).norm() - 0.04;
+  return std::min({columns, ball, 0.62 - p.z(), 0.48 - p.x()});
 }
 
 /// Frames that a test makes one by one, and the feedback on each.
@@ -33,6 +36,8 @@ class FeedbackMakerTest : public ::testing::Test {
     volume.set_voxel_size_m(0.004);
     options_.mutable_tsdf()->set_truncation_distance_m(0.016);
     options_.mutable_tsdf()->set_max_step_deg(10.0);
+    options_.mutable_tsdf()->set_min_step_m(0.0);  // Each frame counts for the loop closer.
+    options_.mutable_tsdf()->set_min_step_deg(0.0);
     options_.mutable_submaps()->set_start_after_lost_s(0.1);
     options_.mutable_submaps()->set_max_turn_deg(0.0);
     options_.mutable_feedback()->set_picture_width_px(0);
@@ -63,7 +68,7 @@ class FeedbackMakerTest : public ::testing::Test {
   }
   Feedback Show(double roll_deg = 0.0) {
     last_true_ = TruePose(roll_deg);
-    return Process(testing::RenderDepth(BallBetweenTwoWalls, *rig_.rig.depth, last_true_));
+    return Process(testing::RenderDepth(ColumnsAndBall, *rig_.rig.depth, last_true_));
   }
   Feedback ShowNothing() {
     DepthFrame frame;
