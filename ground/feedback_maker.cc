@@ -79,13 +79,21 @@ void Thin(const SurfaceMaps& maps, int stride, SurfaceMaps& thin) {
   copy(maps.nz, thin.nz);
 }
 
+/// A pose that was chosen, not measured, in `world`; nullopt while its sub-map is not joined.
+std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
+                                      const RigidTransform& T_map_depth) {
+  const std::optional<WorldPose> pose = atlas.ToWorld({.map = map, .T_map_depth = T_map_depth});
+  if (!pose) return std::nullopt;
+  return pose->T_world_depth;
+}
+
 /// Where tracking last worked, in `world`; nullopt if that is not known.
 std::optional<RigidTransform> LastKnownPose(const GroundPipeline& pipeline) {
   if (!pipeline.trajectory().empty()) return pipeline.trajectory().back().T_world_depth;
-  const std::vector<RigidTransform>& known =
-      pipeline.atlas().active().relocaliser->library().poses();
+  const Atlas& atlas = pipeline.atlas();
+  const std::vector<RigidTransform>& known = atlas.active().relocaliser->library().poses();
   if (known.empty()) return std::nullopt;
-  return pipeline.ToWorld(known.back());
+  return InWorld(atlas, atlas.active_index(), known.back());
 }
 
 }  // namespace
@@ -128,7 +136,7 @@ CoverageSummary FeedbackMaker::LookAtView(GroundPipeline& pipeline) {
   const int columns = std::max(kLeastColumns, options_.feedback().picture_width_px());
   Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
   // Distances and angles are limits of the thermal camera.
-  SampleView(maps_, (model.T_world_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
+  SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
              pipeline.thermal(), pipeline.pool(), view_);
   return SummarizeCoverage(view_, options_.thermal());
 }
@@ -151,18 +159,18 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   return situation;
 }
 
-void FeedbackMaker::AddNextPose(const GroundPipeline& pipeline, const RigidTransform* T_map_depth,
+void FeedbackMaker::AddNextPose(const DepthReport& report, const GroundPipeline& pipeline,
                                 Feedback& feedback) const {
-  if (T_map_depth == nullptr) {
+  if (!report.tracked) {
     feedback.T_world_depth_next = LastKnownPose(pipeline);
     return;
   }
-  if (feedback.done || !planner_ || planned_map_ != pipeline.atlas().active_index()) return;
+  if (feedback.done || !planner_ || planned_map_ != report.pose.map) return;
   const std::optional<NextView>& best = planner_->best();
   if (!best) return;
-  feedback.T_world_depth_next = pipeline.ToWorld(best->T_world_depth);
+  feedback.T_world_depth_next = InWorld(pipeline.atlas(), planned_map_, best->T_map_depth);
   feedback.next_gain_m2 = best->gain_m2;
-  feedback.T_depth_next = T_map_depth->inverse() * best->T_world_depth;
+  feedback.T_depth_next = report.pose.T_map_depth.inverse() * best->T_map_depth;
 }
 
 Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipeline) {
@@ -172,9 +180,10 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipel
   feedback.frame_number = moment.header.frame_number;
   feedback.capture_time = moment.header.capture_time;
   feedback.tracking_state = StateOf(moment.report);
-  if (moment.report.tracked) {
-    feedback.T_world_depth = pipeline.ToWorld(moment.report.tracking.T_world_depth);
-    feedback.pose_covariance = pipeline.uncertainty().covariance();
+  if (const auto pose =
+          moment.report.tracked ? pipeline.atlas().ToWorld(moment.report.pose) : std::nullopt) {
+    feedback.T_world_depth = pose->T_world_depth;
+    feedback.pose_covariance = pose->covariance;
   }
   const CoverageSummary view = LookAtView(pipeline);
   feedback.view = ToShares(view);
@@ -184,8 +193,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipel
   feedback.advice = ToWire(advice.kind);
   feedback.advice_reason = std::move(advice.reason);
   feedback.done = adviser_.done();
-  AddNextPose(pipeline, moment.report.tracked ? &moment.report.tracking.T_world_depth : nullptr,
-              feedback);
+  AddNextPose(moment.report, pipeline, feedback);
   if (options_.feedback().picture_width_px() > 0 && view_.width() > 0) {
     feedback.picture = EncodeWithin(
         DrawConfidence(view_, feedback.tracking_state == TrackingState::kLost), kMaxPictureBytes);
@@ -199,7 +207,7 @@ void FeedbackMaker::ThinkAhead(GroundPipeline& pipeline) {
   // are in memory.
   const bool has_spilled = pipeline.spiller().spilled() > 0;
   const VoxelGrid& grid = pipeline.tsdf().grid();
-  const Eigen::Vector3d rig_vox = grid.ToVoxel(pipeline.view().T_world_depth.translation());
+  const Eigen::Vector3d rig_vox = grid.ToVoxel(pipeline.view().T_map_depth.translation());
   const double reach_vox = kResidentReach_m / grid.voxel_size_m;
   coverage.Update(
       pipeline.tsdf(), pipeline.thermal(),
@@ -210,7 +218,7 @@ void FeedbackMaker::ThinkAhead(GroundPipeline& pipeline) {
       options_.feedback().blocks_per_message(), pipeline.pool());
   ViewPlanner* planner = Planner(pipeline);
   if (planner == nullptr || pipeline.view().maps.width() == 0 || adviser_.done()) return;
-  planner->Step(pipeline.tsdf(), pipeline.thermal(), coverage, pipeline.view().T_world_depth,
+  planner->Step(pipeline.tsdf(), pipeline.thermal(), coverage, pipeline.view().T_map_depth,
                 pipeline.pool());
 }
 

@@ -43,8 +43,7 @@ class FeedbackMaker {
   /// The model as the depth camera saw it last, with what the thermal camera makes of it.
   CoverageSummary LookAtView(GroundPipeline& pipeline);
   ScanSituation Situation(const FeedbackMoment& moment) const;
-  /// `T_map_depth` is where the rig is in the active sub-map, if it is tracked.
-  void AddNextPose(const GroundPipeline& pipeline, const RigidTransform* T_map_depth,
+  void AddNextPose(const DepthReport& report, const GroundPipeline& pipeline,
                    Feedback& feedback) const;
   /// The coverage of the active sub-map, in whose coordinates the planner works too.
   ModelCoverage& ActiveCoverage(const GroundPipeline& pipeline);

@@ -96,11 +96,6 @@ Status GroundPipeline::Save(const std::filesystem::path& path, int index,
                    progress);
 }
 
-std::optional<RigidTransform> GroundPipeline::ToWorld(const RigidTransform& T_map_depth) const {
-  if (!atlas_.active().joined) return std::nullopt;
-  return atlas_.active().T_world_map * T_map_depth;
-}
-
 RigidTransform GroundPipeline::InitialPose(const PreparedDepth& depth) const {
   if (initial_pose_ && atlas_.size() == 1) return *initial_pose_;
   return PoseFacingCentre(tsdf().grid(), depth.depth_m);
@@ -157,14 +152,14 @@ void GroundPipeline::Activate(int index) {
   spiller_.Restart();
 }
 
-void GroundPipeline::UpdateView(const RigidTransform& T_world_depth) {
+void GroundPipeline::UpdateView(const RigidTransform& T_map_depth) {
   const StageTimer timer(stage_stats_["raycast"]);
-  tracker_.LookFrom(T_world_depth, tsdf(), gate_.bootstrapping(), pool_);
+  tracker_.LookFrom(T_map_depth, tsdf(), gate_.bootstrapping(), pool_);
 }
 
 SurfaceMaps GroundPipeline::CastFullView() {
   SurfaceMaps maps;
-  Raycaster().Cast(tsdf(), rig_.depth->WithoutDistortion(), view().T_world_depth,
+  Raycaster().Cast(tsdf(), rig_.depth->WithoutDistortion(), view().T_map_depth,
                    static_cast<float>(options_.raycast().min_weight()), pool_, maps);
   return maps;
 }
@@ -175,13 +170,13 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   return report;
 }
 
-bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth) {
+bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform& T_map_depth) {
   const StageTimer timer(stage_stats_["integrate"]);
   SubMap& map = atlas_.active();
-  integrator_.Integrate(depth, T_world_depth, pool_, *map.tsdf);
+  integrator_.Integrate(depth, T_map_depth, pool_, *map.tsdf);
   has_room_ = map.thermal->Back(map.tsdf->block_count());
   ++map.integrated;
-  if (map.anchors.empty()) map.anchors.push_back(T_world_depth);
+  if (map.anchors.empty()) map.anchors.push_back(T_map_depth);
   spiller_.Touch(integrator_.updated_blocks());
   const std::uint64_t before = spiller_.spilled();
   spiller_.Trim(*map.tsdf, *map.thermal);
@@ -191,11 +186,11 @@ bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform&
            "goes to "
         << options_.volume().spill_dir();
   }
-  if (spiller_.spilled() > 0) FetchNearView(T_world_depth);
+  if (spiller_.spilled() > 0) FetchNearView(T_map_depth);
   return map.tsdf->block_count() > 0;
 }
 
-void GroundPipeline::FetchNearView(const RigidTransform& T_world_depth) {
+void GroundPipeline::FetchNearView(const RigidTransform& T_map_depth) {
   constexpr std::uint64_t kEvery = 5;
   if (counts_.depth_in % kEvery != 0) return;
   // As if the camera saw half as much again on each side: some ten frames ahead at the speed at
@@ -204,7 +199,7 @@ void GroundPipeline::FetchNearView(const RigidTransform& T_world_depth) {
   CameraModel camera = view().camera;
   camera.fx *= kZoom;
   camera.fy *= kZoom;
-  spiller_.Expect(near_view_.Find(tsdf(), camera, T_world_depth), tsdf(), thermal());
+  spiller_.Expect(near_view_.Find(tsdf(), camera, T_map_depth), tsdf(), thermal());
 }
 
 DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
@@ -242,18 +237,18 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
     unconfirmed_.clear();
     return report;
   }
-  const RigidTransform& T_world_depth = report.tracking.T_world_depth;
+  const RigidTransform& T_map_depth = report.tracking.T_map_depth;
   if (tracker_.state() == RigTracker::State::kConfirming) {
     ++counts_.depth_unconfirmed;
-    unconfirmed_.push_back({time, T_world_depth});
-    UpdateView(T_world_depth);
+    unconfirmed_.push_back({time, T_map_depth});
+    UpdateView(T_map_depth);
     report.tracked = false;
     report.unconfirmed = true;
     return report;
   }
   // The first surface decides whether there is anything to track against.
   const bool is_first = tsdf().block_count() == 0;
-  if (is_first && !Integrate(*depth, T_world_depth)) {
+  if (is_first && !Integrate(*depth, T_map_depth)) {
     ++counts_.depth_lost["outside_volume"];
     tracker_.Forget();
     report.tracked = false;
@@ -261,24 +256,26 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   }
   ++counts_.depth_tracked;
   if (report.tracking.verdict() == Verdict::kDegraded) ++counts_.depth_degraded;
-  const std::optional<StampedPose> before = tracker_.motion().before_last();
+  const std::optional<StampedMapPose> before = tracker_.motion().before_last();
   const bool skips =
       effort_ == Effort::kEverySecond && !std::exchange(integrate_next_, !integrate_next_);
   if (skips) ++counts_.depth_behind;
   report.integrated =
       !skips &&
-      gate_.Accepts(before ? std::optional(before->T_world_depth) : std::nullopt, T_world_depth);
-  if (report.integrated && !is_first) Integrate(*depth, T_world_depth);
+      gate_.Accepts(before ? std::optional(before->T_map_depth) : std::nullopt, T_map_depth);
+  if (report.integrated && !is_first) Integrate(*depth, T_map_depth);
   counts_.depth_integrated += report.integrated ? 1 : 0;
-  for (const StampedPose& pose : unconfirmed_) AddToTrajectory(pose);
+  for (const StampedMapPose& pose : unconfirmed_) AddToTrajectory(pose);
   unconfirmed_.clear();
-  AddToTrajectory({time, T_world_depth});
+  AddToTrajectory({time, T_map_depth});
   if (report.integrated && report.tracking.verdict() == Verdict::kTracked) {
-    atlas_.active().relocaliser->Remember(T_world_depth);
-    KeepSubMaps(*depth, T_world_depth);
-    report.tracking.T_world_depth = tracker_.motion().last()->T_world_depth;
+    atlas_.active().relocaliser->Remember(T_map_depth);
+    KeepSubMaps(*depth, T_map_depth);
   }
-  UpdateView(report.tracking.T_world_depth);
+  // The tracker has followed if another sub-map is active now.
+  report.pose = {atlas_.active_index(), tracker_.motion().last()->T_map_depth,
+                 uncertainty().covariance()};
+  UpdateView(report.pose.T_map_depth);
   return report;
 }
 
@@ -316,14 +313,16 @@ void GroundPipeline::FuseThermal() {
   thermal_stage_->FuseUpTo(depth, *atlas_.active().thermal, pool_);
 }
 
-void GroundPipeline::AddToTrajectory(const StampedPose& pose) {
+void GroundPipeline::AddToTrajectory(const StampedMapPose& pose) {
   tracked_.push_back({pose, LargestSigma(uncertainty().covariance()), atlas_.active_index()});
-  if (atlas_.active().joined) AppendToTrajectory(tracked_.back());
+  AppendToTrajectory(tracked_.back());
 }
 
-void GroundPipeline::AppendToTrajectory(const MapPose& tracked) {
-  const RigidTransform& T_world_map = atlas_.map(tracked.map).T_world_map;
-  trajectory_.push_back({tracked.pose.time, T_world_map * tracked.pose.T_world_depth});
+void GroundPipeline::AppendToTrajectory(const TrackedPose& tracked) {
+  const std::optional<WorldPose> world =
+      atlas_.ToWorld({.map = tracked.map, .T_map_depth = tracked.pose.T_map_depth});
+  if (!world) return;
+  trajectory_.push_back({tracked.pose.time, world->T_world_depth});
   trajectory_sigmas_.push_back(tracked.sigma);
 }
 
@@ -335,9 +334,7 @@ void GroundPipeline::KeepSubMaps(const PreparedDepth& depth, const RigidTransfor
   if (!change.linked) return;
   trajectory_.clear();
   trajectory_sigmas_.clear();
-  for (const MapPose& tracked : tracked_) {
-    if (atlas_.map(tracked.map).joined) AppendToTrajectory(tracked);
-  }
+  for (const TrackedPose& tracked : tracked_) AppendToTrajectory(tracked);
 }
 
 void GroundPipeline::Finish(const std::function<void(double)>& progress) {
@@ -354,7 +351,7 @@ void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
   }
   if (joined) {
     tracker_.Rebase(T_world_map);
-    UpdateView(view().T_world_depth);
+    UpdateView(view().T_map_depth);
   } else if (!trajectory_.empty()) {
     UpdateView(trajectory_.back().T_world_depth);
   }

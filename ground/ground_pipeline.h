@@ -12,6 +12,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/map_pose.h"
 #include "common/geometry/pose_covariance.h"
 #include "common/geometry/stamped_pose.h"
 #include "ground/atlas/atlas.h"
@@ -41,7 +42,9 @@ struct DepthReport {
   bool repeated =
       false;  ///< The same picture as before: it says nothing new, and nothing was done.
   bool integrated = false;
-  TrackingResult tracking;  ///< In the coordinates of the active sub-map.
+  TrackingResult
+      tracking;  ///< In the coordinates of the sub-map that the frame was tracked against.
+  MapPose pose;  ///< If tracked: in the sub-map that is active after the frame.
 };
 
 /// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame
@@ -84,8 +87,6 @@ class GroundPipeline {
   const TsdfVolume& tsdf() const { return *atlas_.active().tsdf; }
   const ThermalVolume& thermal() const { return *atlas_.active().thermal; }
   const Atlas& atlas() const { return atlas_; }
-  /// A pose in the active sub-map's coordinates in `world`; nullopt while it is not joined.
-  std::optional<RigidTransform> ToWorld(const RigidTransform& T_map_depth) const;
   /// The model as seen from the last tracked pose; empty maps before the first frame.
   const ModelView& view() const { return tracker_.view(); }
   /// The same at the depth camera's full resolution, cast now.
@@ -109,10 +110,10 @@ class GroundPipeline {
   ThreadPool& pool() { return pool_; }
 
  private:
-  /// A pose in the coordinates of a sub-map.
-  struct MapPose {
-    StampedPose pose;
-    PoseSigma sigma;
+  /// What the trajectory is made of whenever sub-maps move.
+  struct TrackedPose {
+    StampedMapPose pose;  ///< In the coordinates of sub-map `map`.
+    PoseSigma sigma;      ///< Of any axes, since it is along the least certain direction.
     int map = 0;
   };
 
@@ -127,16 +128,17 @@ class GroundPipeline {
   bool BeginElsewhere(const PreparedDepth& depth, CaptureTime time);
   /// Goes on in another sub-map.
   void Activate(int index);
-  void AddToTrajectory(const StampedPose& pose);
-  void AppendToTrajectory(const MapPose& tracked);
+  void AddToTrajectory(const StampedMapPose& pose);
+  /// If the sub-map is joined.
+  void AppendToTrajectory(const TrackedPose& tracked);
   /// Closes loops and begins sub-maps; may change the active one, and the tracker's coordinates.
   void KeepSubMaps(const PreparedDepth& depth, const RigidTransform& T_map_depth);
   bool IsRepeated(const DepthFrame& frame);
   /// False if the model is still empty: nothing of the surface lies in the volume.
-  bool Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth);
-  void UpdateView(const RigidTransform& T_world_depth);
+  bool Integrate(const PreparedDepth& depth, const RigidTransform& T_map_depth);
+  void UpdateView(const RigidTransform& T_map_depth);
   /// Has what was spilled and comes into view read in the background.
-  void FetchNearView(const RigidTransform& T_world_depth);
+  void FetchNearView(const RigidTransform& T_map_depth);
   void FuseThermal();
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);
@@ -158,13 +160,13 @@ class GroundPipeline {
   VisibleBlocks near_view_;
   std::uint64_t wrong_size_ = 0;  ///< Depth frames of another size, without a right one between.
   bool has_room_ = true;          ///< For temperatures; false once the disk to spill to is full.
-  std::vector<MapPose> tracked_;
+  std::vector<TrackedPose> tracked_;
   std::vector<StampedPose> trajectory_;  ///< The poses of tracked_ that are joined, in world.
   std::vector<PoseSigma> trajectory_sigmas_;
   std::optional<CaptureTime> lost_since_;
-  int searched_ = 0;                      ///< The sub-map a lost rig is looked for in.
-  std::vector<StampedPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
-  Image<std::uint16_t> last_raw_;         ///< Picture of the last depth frame.
+  int searched_ = 0;                         ///< The sub-map a lost rig is looked for in.
+  std::vector<StampedMapPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
+  Image<std::uint16_t> last_raw_;            ///< Picture of the last depth frame.
   Effort effort_ = Effort::kAll;
   bool integrate_next_ = true;  ///< With kEverySecond.
   PipelineCounts counts_;

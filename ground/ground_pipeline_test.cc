@@ -384,7 +384,7 @@ TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
     const DepthReport report = Depth(i);
     ASSERT_TRUE(report.tracked) << i;
     EXPECT_EQ(report.integrated, i % 2 == 1) << i;
-    EXPECT_LT(TranslationDistance(report.tracking.T_world_depth, TruePose(i)), kMaxError) << i;
+    EXPECT_LT(TranslationDistance(report.pose.T_map_depth, TruePose(i)), kMaxError) << i;
   }
   const PipelineCounts& counts = pipeline_->counts();
   EXPECT_EQ(counts.depth_tracked, 1U + kFrames);

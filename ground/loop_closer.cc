@@ -32,7 +32,7 @@ std::optional<RigidTransform> LoopCloser::RecogniseIn(int other, const PreparedD
   const SubMap& map = atlas_.map(other);
   if (const auto guess = atlas_.PoseIn(other, T_map_depth)) {
     const TrackingResult result = tracker_.Recognise(depth, *guess, map, pool);
-    if (result.tracked()) return result.T_world_depth;
+    if (result.tracked()) return result.T_map_depth;
   }
   // Its place is not known, or the rig has drifted further than the tracker can pull it back.
   if (!options_.relocaliser().enabled()) return std::nullopt;
@@ -41,7 +41,7 @@ std::optional<RigidTransform> LoopCloser::RecogniseIn(int other, const PreparedD
   if (!guess) return std::nullopt;
   const TrackingResult result = tracker_.Recognise(depth, *guess, map, pool);
   if (!result.tracked()) return std::nullopt;
-  return result.T_world_depth;
+  return result.T_map_depth;
 }
 
 bool LoopCloser::LookForKnownGround(const PreparedDepth& depth, const RigidTransform& T_map_depth,
@@ -90,7 +90,7 @@ bool LoopCloser::GoBack(const PreparedDepth& depth, const RigidTransform& T_map_
     if (!guess || atlas_.IsFar(other, *guess) || !atlas_.IsNearView(other, *guess)) continue;
     const TrackingResult result = tracker_.Recognise(depth, *guess, atlas_.map(other), pool);
     if (!result.tracked() || result.overlap_ratio < kShowsView) continue;
-    tracker_.Rebase(result.T_world_depth * T_map_depth.inverse());
+    tracker_.Rebase(result.T_map_depth * T_map_depth.inverse());
     atlas_.Activate(other);
     return true;
   }

@@ -52,7 +52,7 @@ TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
                                  const RigidTransform& pose) {
   TrackingResult first;
   if (depth.valid_pixels < kMinTrackedPixels) first.lost = LostReason::kTooFewPixels;
-  first.T_world_depth = pose;
+  first.T_map_depth = pose;
   Forget();
   state_ = State::kFollowing;
   if (first.tracked()) {
@@ -64,7 +64,7 @@ TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
 }
 
 IcpTracker::Start RigTracker::Predict(CaptureTime time) const {
-  const RigidTransform& last = view_.T_world_depth;
+  const RigidTransform& last = view_.T_map_depth;
   if (!options_.predict_motion()) return {last, last};
   return {motion_.Predict(time).value_or(last), motion_.PredictSmoothly(time).value_or(last)};
 }
@@ -93,7 +93,7 @@ TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
     outside = outside_.Predict(*last, time, inertial.guess,
                                InertialError(time, uncertainty_.mean_depth_m()));
   if (outside) {
-    const TrackingResult result = track({outside->T_world_depth, outside->T_world_depth});
+    const TrackingResult result = track({outside->T_map_depth, outside->T_map_depth});
     // If the camera sees nothing, another start would not help.
     if (result.lost == LostReason::kTooFewPixels) return result;
     if (result.tracked() && !outside_.Contradicts(result, time, known)) {
@@ -149,7 +149,7 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const SubMap& 
   const bool looks_back = lost_frames_++ % kTurns == 0 || !relocaliser_options_.enabled();
   if (looks_back && view_.maps.width() > 0) {
     // Where it was lost: a hand before the camera, or a rig that swings back.
-    const RigidTransform& last = view_.T_world_depth;
+    const RigidTransform& last = view_.T_map_depth;
     result = tracker_.Track(depth, view_, here.tsdf->grid(), {last, last}, pool);
     if (result.tracked() && !IsConvincing(result)) result.lost = LostReason::kNotFound;
     return result;
@@ -195,7 +195,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
     if (cue_) cue_->Forget();
     return result;
   }
-  motion_.Add({time, result.T_world_depth});
+  motion_.Add({time, result.T_map_depth});
   if (state_ == State::kConfirming && to_confirm_ <= 0) {
     state_ = State::kFollowing;
     ++relocalisations_;
@@ -207,7 +207,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
 void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
   uncertainty_.Update(result,
                       outside_error_.value_or(InertialError(time, result.motion.mean_depth_m)));
-  trusted_pose_ = result.T_world_depth;
+  trusted_pose_ = result.T_map_depth;
   trusted_time_ = time;
   has_trusted_pose_ = true;
   if (cue_) cue_->End(motion_.before_last(), *motion_.last(), uncertainty_.surface_sigma_m());
@@ -235,20 +235,20 @@ void RigTracker::Rebase(const RigidTransform& T_new_old) {
   outside_.Transform(T_new_old);
   if (cue_) cue_->Forget();
   trusted_pose_ = T_new_old * trusted_pose_;
-  view_.T_world_depth = T_new_old * view_.T_world_depth;
+  view_.T_map_depth = T_new_old * view_.T_map_depth;
   uncertainty_.Rotate(T_new_old.linear());
 }
 
-void RigTracker::CastView(const RigidTransform& T_world_depth, const TsdfVolume& volume,
+void RigTracker::CastView(const RigidTransform& T_map_depth, const TsdfVolume& volume,
                           ThreadPool& pool, ModelView& view) {
-  view.T_world_depth = T_world_depth;
+  view.T_map_depth = T_map_depth;
   view.is_young = false;
-  raycaster_.Cast(volume, view.camera, T_world_depth, min_weight_, pool, view.maps);
+  raycaster_.Cast(volume, view.camera, T_map_depth, min_weight_, pool, view.maps);
 }
 
-void RigTracker::LookFrom(const RigidTransform& T_world_depth, const TsdfVolume& volume,
+void RigTracker::LookFrom(const RigidTransform& T_map_depth, const TsdfVolume& volume,
                           bool is_young, ThreadPool& pool) {
-  CastView(T_world_depth, volume, pool, view_);
+  CastView(T_map_depth, volume, pool, view_);
   view_.is_young = is_young;
 }
 

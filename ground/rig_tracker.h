@@ -62,7 +62,7 @@ class RigTracker {
 
   /// After each tracked frame, with what it changed: the model from its pose, to track against.
   /// `is_young`: the model is little more than one frame's noise.
-  void LookFrom(const RigidTransform& T_world_depth, const TsdfVolume& volume, bool is_young,
+  void LookFrom(const RigidTransform& T_map_depth, const TsdfVolume& volume, bool is_young,
                 ThreadPool& pool);
   /// The first frame's pose was of no use: as before it.
   void Forget();
@@ -100,7 +100,7 @@ class RigTracker {
   double ResidualLimit(const TrackingResult& result, double times_usual) const;
   /// The frame is where it seems to be: learns from it.
   void Trust(const TrackingResult& result, CaptureTime time);
-  void CastView(const RigidTransform& T_world_depth, const TsdfVolume& volume, ThreadPool& pool,
+  void CastView(const RigidTransform& T_map_depth, const TsdfVolume& volume, ThreadPool& pool,
                 ModelView& view);
 
   const TrackerOptions options_;

@@ -296,7 +296,7 @@ Result<WrittenScan> WriteScan(
                             pipeline.thermal(),
                             pipeline.trajectory(),
                             has_view ? &view : nullptr,
-                            pipeline.view().T_world_depth.translation(),
+                            pipeline.view().T_map_depth.translation(),
                             options.renderer(),
                             options.thermal(),
                             options.export_(),

@@ -66,7 +66,7 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
     const StageTimer timer(timing_);
     if (!std::exchange(is_prepared, true)) {
       near_holes_.Update(depth.depth_m, depth.view.maps, depth.view.camera);
-      sight_lines_.Update(depth.view.maps, depth.view.camera, depth.view.T_world_depth);
+      sight_lines_.Update(depth.view.maps, depth.view.camera, depth.view.T_map_depth);
     }
     Fuse(waiting, depth, thermal, pool);
   }
@@ -74,26 +74,26 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
 
 void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, ThermalVolume& thermal,
                         ThreadPool& pool) {
-  const StampedPose& before = *depth.before;
-  const StampedPose& now = depth.now;
+  const StampedMapPose& before = *depth.before;
+  const StampedMapPose& now = depth.now;
   const CaptureTime time = waiting.frame->header.capture_time;
   const double interval_s = ToSeconds(now.time - before.time);
   const double alpha = interval_s > 0.0 ? ToSeconds(time - before.time) / interval_s : 1.0;
-  const RigidTransform T_world_depth_at_capture =
-      Interpolate(before.T_world_depth, now.T_world_depth, alpha);
-  const RigidTransform T_world_thermal = T_world_depth_at_capture * T_depth_thermal_;
-  const RigidTransform T_view_thermal = depth.view.T_world_depth.inverse() * T_world_thermal;
+  const RigidTransform T_map_depth_at_capture =
+      Interpolate(before.T_map_depth, now.T_map_depth, alpha);
+  const RigidTransform T_map_thermal = T_map_depth_at_capture * T_depth_thermal_;
+  const RigidTransform T_view_thermal = depth.view.T_map_depth.inverse() * T_map_thermal;
   near_holes_.Aim(T_view_thermal);
   sight_lines_.Aim(T_view_thermal);
   const CaptureConditions capture{
-      .motion = MotionBetween(before.T_world_depth * T_depth_thermal_,
-                              now.T_world_depth * T_depth_thermal_, interval_s),
+      .motion = MotionBetween(before.T_map_depth * T_depth_thermal_,
+                              now.T_map_depth * T_depth_thermal_, interval_s),
       .registration_px = RegistrationSigmaPx(depth),
       .holes = &near_holes_,
       .sight = &sight_lines_,
       .nuc = waiting.nuc};
-  counts_.fusion += fuser_.Fuse(*waiting.frame, T_world_thermal, depth.view.camera,
-                                T_world_depth_at_capture, depth.tsdf, pool, thermal, capture);
+  counts_.fusion += fuser_.Fuse(*waiting.frame, T_map_thermal, depth.view.camera,
+                                T_map_depth_at_capture, depth.tsdf, pool, thermal, capture);
   ++counts_.thermal_fused;
 }
 

@@ -7,7 +7,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
-#include "common/geometry/stamped_pose.h"
+#include "common/geometry/map_pose.h"
 #include "ground/pipeline_counts.h"
 #include "ground/thermal/near_holes.h"
 #include "ground/thermal/nuc_epochs.h"
@@ -19,10 +19,10 @@ namespace isotherm {
 
 /// The rig at a tracked depth frame, in the coordinates of `tsdf`.
 struct TrackedDepth {
-  const Image<float>& depth_m;        ///< The frame itself; 0 = no return.
-  const ModelView& view;              ///< The model from its pose.
-  std::optional<StampedPose> before;  ///< The frame before it; nullopt = not known.
-  StampedPose now;
+  const Image<float>& depth_m;           ///< The frame itself; 0 = no return.
+  const ModelView& view;                 ///< The model from its pose.
+  std::optional<StampedMapPose> before;  ///< The frame before it; nullopt = not known.
+  StampedMapPose now;
   double surface_sigma_rad = 0.0;  ///< One standard deviation of the pose, as a shift of surface
                                    ///< over its mean depth.
   const TsdfVolume& tsdf;

@@ -21,6 +21,13 @@ PoseSigma LargestSigma(const PoseCovariance& covariance) {
           .rotation_rad = LargestDeviation(covariance.bottomRightCorner<3, 3>())};
 }
 
+PoseCovariance Rotated(const PoseCovariance& covariance, const Eigen::Matrix3d& R_c_a) {
+  PoseCovariance adjoint = PoseCovariance::Zero();
+  adjoint.topLeftCorner<3, 3>() = R_c_a;
+  adjoint.bottomRightCorner<3, 3>() = R_c_a;
+  return adjoint * covariance * adjoint.transpose();
+}
+
 bool IsCovariance(const PoseCovariance& covariance) {
   if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0.0) return false;
   for (int i = 0; i < 6; ++i) {

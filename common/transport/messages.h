@@ -309,17 +309,19 @@ struct Feedback {
   std::uint64_t frame_number = 0;  ///< Depth frame this is about, ...
   CaptureTime capture_time{};  ///< ... and its capture time: the age of the feedback on the edge.
   TrackingState tracking_state = TrackingState::kWaiting;
-  std::optional<RigidTransform> T_world_depth;  ///< Absent while lost.
-  double covered_area_m2 = 0.0;                 ///< Surface in the model.
-  CoverageShares model;                         ///< The whole surface.
-  CoverageShares view;                          ///< The surface in view.
-  std::vector<Advice> advice{};                 ///< Most urgent first; at most kMaxAdvice.
+  std::optional<RigidTransform>
+      T_world_depth;             ///< Absent while lost, and in a sub-map that is not joined.
+  double covered_area_m2 = 0.0;  ///< Surface in the model.
+  CoverageShares model;          ///< The whole surface.
+  CoverageShares view;           ///< The surface in view.
+  std::vector<Advice> advice{};  ///< Most urgent first; at most kMaxAdvice.
   /// Where to go next; while lost, where tracking last worked.
   std::optional<RigidTransform> T_world_depth_next;
   std::vector<std::uint8_t>
       picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
   std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
-  /// How uncertain T_world_depth is relative to the model; absent while lost.
+  /// How uncertain T_world_depth is relative to the model, along the axes of `world`; present if
+  /// the pose is.
   std::optional<PoseCovariance> pose_covariance;
   std::string advice_reason{};  ///< Why, or what to do, with numbers; at most kMaxTextBytes.
   bool done = false;            ///< Enough of the whole surface is measured well.

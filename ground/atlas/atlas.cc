@@ -123,6 +123,12 @@ std::optional<RigidTransform> Atlas::PoseIn(int index, const RigidTransform& T_a
   return map(index).T_world_map.inverse() * active().T_world_map * T_active_depth;
 }
 
+std::optional<WorldPose> Atlas::ToWorld(const MapPose& pose) const {
+  CHECK(pose.map >= 0 && pose.map < size());
+  if (!map(pose.map).joined) return std::nullopt;
+  return isotherm::ToWorld(pose, map(pose.map).T_world_map);
+}
+
 bool Atlas::IsLinked(int a, int b) const {
   return std::ranges::any_of(links_, [&](const MapLink& link) {
     return (link.a == a && link.b == b) || (link.a == b && link.b == a);

@@ -9,7 +9,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
-#include "common/geometry/stamped_pose.h"
+#include "common/geometry/map_pose.h"
 #include "ground/atlas/pose_graph.h"
 #include "ground/atlas/sub_map.h"
 #include "ground/ground_options.pb.h"
@@ -61,6 +61,9 @@ class Atlas {
   bool IsNearView(int index, const RigidTransform& T_map_depth) const;
   /// The pose of a view of the active sub-map in another one, if both are joined.
   std::optional<RigidTransform> PoseIn(int index, const RigidTransform& T_active_depth) const;
+
+  /// A pose and its covariance in `world`; nullopt while their sub-map is not joined.
+  std::optional<WorldPose> ToWorld(const MapPose& pose) const;
 
   /// The same view was recognised in the active sub-map and in another one: closes the loop.
   void Link(int other, const RigidTransform& T_active_depth, const RigidTransform& T_other_depth);

@@ -25,11 +25,11 @@ constexpr int kResamplings = 100;
 
 /// How fast the picture moves, pixels per second, by the last two poses.
 double SpeedNow(const GroundPipeline& pipeline, const CameraModel& camera) {
-  const std::optional<StampedPose> before = pipeline.tracker().motion().before_last();
-  const std::optional<StampedPose> now = pipeline.tracker().motion().last();
+  const std::optional<StampedMapPose> before = pipeline.tracker().motion().before_last();
+  const std::optional<StampedMapPose> now = pipeline.tracker().motion().last();
   if (!before || !now || now->time <= before->time) return 0.0;
-  const double shift_rad = RotationAngle(before->T_world_depth, now->T_world_depth) +
-                           TranslationDistance(before->T_world_depth, now->T_world_depth) /
+  const double shift_rad = RotationAngle(before->T_map_depth, now->T_map_depth) +
+                           TranslationDistance(before->T_map_depth, now->T_map_depth) /
                                pipeline.uncertainty().mean_depth_m();
   return camera.fx * shift_rad / ToSeconds(now->time - before->time);
 }

@@ -31,7 +31,7 @@ struct SurfaceAreas {
 /// weight, to know where it is and which way it faces.
 struct BlockSurface {
   SurfaceAreas areas;
-  Eigen::Vector3d lacking_position = Eigen::Vector3d::Zero();  ///< m2 times `world`.
+  Eigen::Vector3d lacking_position = Eigen::Vector3d::Zero();  ///< m2 times `map`.
   Eigen::Vector3d lacking_normal = Eigen::Vector3d::Zero();    ///< m2 times the outward normal.
 
   double lacking_m2() const { return areas.total_m2() - areas.good_m2; }
@@ -45,8 +45,8 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
 
 /// Surface that is not yet measured well and faces the same way, about a hand in size.
 struct LackingSurface {
-  Eigen::Vector3d position_world;
-  Eigen::Vector3d normal_world;  ///< Unit, towards the free side.
+  Eigen::Vector3d position_map;
+  Eigen::Vector3d normal_map;  ///< Unit, towards the free side.
   double area_m2 = 0.0;
 };
 

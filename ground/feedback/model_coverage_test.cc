@@ -126,8 +126,8 @@ TEST_F(ModelCoverageTest, WhatIsLackingIsFoundWithTheSideItFaces) {
   ASSERT_FALSE(lacking.empty());
   double area_m2 = 0.0;
   for (const LackingSurface& surface : lacking) {
-    EXPECT_GT(surface.normal_world.x(), 0.85);
-    EXPECT_GT((surface.position_world - centre_).normalized().x(), 0.85);
+    EXPECT_GT(surface.normal_map.x(), 0.85);
+    EXPECT_GT((surface.position_map - centre_).normalized().x(), 0.85);
     area_m2 += surface.area_m2;
   }
   constexpr double kCap_m2 = 2.0 * std::numbers::pi * kRadius_m * kRadius_m * 0.1;

@@ -49,8 +49,8 @@ bool IsNear(const RigidTransform& a, const RigidTransform& b) {
 }
 
 /// Whether a point lies behind an observed surface.
-bool IsInside(const TsdfVolume& tsdf, const Eigen::Vector3d& p_world) {
-  const Eigen::Vector3d p = tsdf.grid().ToVoxel(p_world).array().round();
+bool IsInside(const TsdfVolume& tsdf, const Eigen::Vector3d& p_map) {
+  const Eigen::Vector3d p = tsdf.grid().ToVoxel(p_map).array().round();
   if ((p.array() < 0.0).any()) return false;
   const TsdfVoxel voxel = tsdf.VoxelAt(p.cast<int>());
   return voxel.observed() && voxel.tsdf() < 0.0F;
@@ -73,24 +73,23 @@ ViewPlanner::ViewPlanner(const FeedbackOptions& options, const ThermalOptions& l
 
 RigidTransform ViewPlanner::LookAt(const Eigen::Vector3d& target,
                                    const Eigen::Vector3d& towards_camera,
-                                   const RigidTransform& T_world_depth) const {
+                                   const RigidTransform& T_map_depth) const {
   const double distance_m = 0.5 * (limits_.distance_min_m + limits_.distance_good_m);
   const Eigen::Vector3d z = -towards_camera;
   // As the rig is held now: x stays as level as it is.
-  Eigen::Vector3d x = T_world_depth.linear().col(1).cross(z);
-  if (x.norm() < 0.1) x = T_world_depth.linear().col(0) - z.dot(T_world_depth.linear().col(0)) * z;
+  Eigen::Vector3d x = T_map_depth.linear().col(1).cross(z);
+  if (x.norm() < 0.1) x = T_map_depth.linear().col(0) - z.dot(T_map_depth.linear().col(0)) * z;
   if (x.norm() < 0.1) x = z.unitOrthogonal();
   x.normalize();
-  RigidTransform T_world_thermal = RigidTransform::Identity();
-  T_world_thermal.linear().col(0) = x;
-  T_world_thermal.linear().col(1) = z.cross(x);
-  T_world_thermal.linear().col(2) = z;
-  T_world_thermal.translation() = target + distance_m * towards_camera;
-  return T_world_thermal * T_thermal_depth_;
+  RigidTransform T_map_thermal = RigidTransform::Identity();
+  T_map_thermal.linear().col(0) = x;
+  T_map_thermal.linear().col(1) = z.cross(x);
+  T_map_thermal.linear().col(2) = z;
+  T_map_thermal.translation() = target + distance_m * towards_camera;
+  return T_map_thermal * T_thermal_depth_;
 }
 
-void ViewPlanner::MakeCandidates(const ModelCoverage& coverage,
-                                 const RigidTransform& T_world_depth) {
+void ViewPlanner::MakeCandidates(const ModelCoverage& coverage, const RigidTransform& T_map_depth) {
   // Straight on, the operator may be reflected.
   const double straight_rad = angle_min_rad_ > 0.0 ? 0.5 * (angle_min_rad_ + angle_good_rad_) : 0.0;
   const double askew_rad = straight_rad > 0.0 ? straight_rad : kAskew_rad;
@@ -98,19 +97,18 @@ void ViewPlanner::MakeCandidates(const ModelCoverage& coverage,
   // All straight views first: they are the most likely, and cells see parts of each other.
   if (straight_rad == 0.0) {
     for (const LackingSurface& target : targets) {
-      candidates_.push_back(LookAt(target.position_world, target.normal_world, T_world_depth));
+      candidates_.push_back(LookAt(target.position_map, target.normal_map, T_map_depth));
     }
   }
   for (int side = 0; side < 4; ++side) {
     for (const LackingSurface& target : targets) {
-      const Eigen::Vector3d u = target.normal_world.unitOrthogonal();
+      const Eigen::Vector3d u = target.normal_map.unitOrthogonal();
       const double azimuth = 0.5 * std::numbers::pi * side;
       const Eigen::Vector3d tangent =
-          std::cos(azimuth) * u + std::sin(azimuth) * target.normal_world.cross(u);
-      candidates_.push_back(
-          LookAt(target.position_world,
-                 std::cos(askew_rad) * target.normal_world + std::sin(askew_rad) * tangent,
-                 T_world_depth));
+          std::cos(azimuth) * u + std::sin(azimuth) * target.normal_map.cross(u);
+      candidates_.push_back(LookAt(
+          target.position_map,
+          std::cos(askew_rad) * target.normal_map + std::sin(askew_rad) * tangent, T_map_depth));
     }
   }
 }
@@ -122,30 +120,30 @@ bool ViewPlanner::IsDepthInView(const Eigen::Vector3d& p_depth) const {
   return u >= -0.5 && v >= -0.5 && u < depth_camera_.width - 0.5 && v < depth_camera_.height - 0.5;
 }
 
-double ViewPlanner::Gain(const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
+double ViewPlanner::Gain(const RigidTransform& T_map_depth, const TsdfVolume& tsdf,
                          const ThermalVolume& thermal, ThreadPool& pool) {
-  const RigidTransform T_world_thermal = T_world_depth * T_thermal_depth_.inverse();
-  const Eigen::Vector3d viewer = T_world_thermal.translation();
-  if (IsInside(tsdf, viewer) || IsInside(tsdf, T_world_depth.translation())) return 0.0;
-  raycaster_.Cast(tsdf, thermal_camera_, T_world_thermal, min_weight_, pool, maps_);
-  const RigidTransform T_depth_world = T_world_depth.inverse();
-  const Eigen::Vector3d forward = T_world_thermal.linear().col(2);
+  const RigidTransform T_map_thermal = T_map_depth * T_thermal_depth_.inverse();
+  const Eigen::Vector3d viewer = T_map_thermal.translation();
+  if (IsInside(tsdf, viewer) || IsInside(tsdf, T_map_depth.translation())) return 0.0;
+  raycaster_.Cast(tsdf, thermal_camera_, T_map_thermal, min_weight_, pool, maps_);
+  const RigidTransform T_depth_map = T_map_depth.inverse();
+  const Eigen::Vector3d forward = T_map_thermal.linear().col(2);
   double gain_m2 = 0.0;
   for (int y = 0; y < maps_.height(); ++y) {
     for (int x = 0; x < maps_.width(); ++x) {
-      const Eigen::Vector3d p_world(maps_.vx.At(x, y), maps_.vy.At(x, y), maps_.vz.At(x, y));
-      const Eigen::Vector3d to_viewer = viewer - p_world;
+      const Eigen::Vector3d p_map(maps_.vx.At(x, y), maps_.vy.At(x, y), maps_.vz.At(x, y));
+      const Eigen::Vector3d to_viewer = viewer - p_map;
       const double distance_m = to_viewer.norm();
       if (!std::isfinite(distance_m)) continue;
       if (distance_m <= 0.0 || distance_m < kClearance * limits_.distance_min_m) return 0.0;
-      const Eigen::Vector3d n_world(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
-      const double cosine = std::min(to_viewer.dot(n_world) / distance_m, 1.0);
+      const Eigen::Vector3d n_map(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
+      const double cosine = std::min(to_viewer.dot(n_map) / distance_m, 1.0);
       const bool would_be_good =
           cosine > 0.0 &&
           limits_.ClassifyDistance(static_cast<float>(distance_m)) == ConditionClass::kGood &&
           limits_.ClassifyAngle(static_cast<float>(cosine)) == ConditionClass::kGood;
-      if (!would_be_good || !IsDepthInView(T_depth_world * p_world)) continue;
-      if (QualityOf(ThermalVoxelAt(tsdf, thermal, p_world)) == MeasurementQuality::kGood) continue;
+      if (!would_be_good || !IsDepthInView(T_depth_map * p_map)) continue;
+      if (QualityOf(ThermalVoxelAt(tsdf, thermal, p_map)) == MeasurementQuality::kGood) continue;
       // Solid angle of the pixel times the squared distance over the cosine.
       const double depth_m = -to_viewer.dot(forward);
       gain_m2 += depth_m * depth_m * depth_m /
@@ -155,36 +153,36 @@ double ViewPlanner::Gain(const RigidTransform& T_world_depth, const TsdfVolume& 
   return gain_m2;
 }
 
-void ViewPlanner::NotePose(const RigidTransform& T_world_depth) {
-  if (!best_ || !IsNear(best_->T_world_depth, T_world_depth)) {
+void ViewPlanner::NotePose(const RigidTransform& T_map_depth) {
+  if (!best_ || !IsNear(best_->T_map_depth, T_map_depth)) {
     steps_at_best_ = 0;
     return;
   }
   if (++steps_at_best_ < kStepsAtView) return;
   // What was not measured well from there by now will not be.
-  exhausted_.push_back(best_->T_world_depth);
+  exhausted_.push_back(best_->T_map_depth);
   if (exhausted_.size() > kMaxExhausted) exhausted_.pop_front();
   best_.reset();
   steps_at_best_ = 0;
 }
 
-bool ViewPlanner::IsExhausted(const RigidTransform& T_world_depth) const {
-  return std::ranges::any_of(
-      exhausted_, [&](const RigidTransform& view) { return IsNear(view, T_world_depth); });
+bool ViewPlanner::IsExhausted(const RigidTransform& T_map_depth) const {
+  return std::ranges::any_of(exhausted_,
+                             [&](const RigidTransform& view) { return IsNear(view, T_map_depth); });
 }
 
 void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                       const ModelCoverage& coverage, const RigidTransform& T_world_depth,
+                       const ModelCoverage& coverage, const RigidTransform& T_map_depth,
                        ThreadPool& pool) {
   if (options_.views_per_message() == 0) return;
-  NotePose(T_world_depth);
+  NotePose(T_map_depth);
   int left = options_.views_per_message();
   if (best_) {
-    best_->gain_m2 = Gain(best_->T_world_depth, tsdf, thermal, pool);
+    best_->gain_m2 = Gain(best_->T_map_depth, tsdf, thermal, pool);
     if (best_->gain_m2 < options_.min_gain_m2()) best_.reset();
     --left;
   }
-  if (candidates_.empty()) MakeCandidates(coverage, T_world_depth);
+  if (candidates_.empty()) MakeCandidates(coverage, T_map_depth);
   for (; left > 0 && !candidates_.empty(); candidates_.pop_front()) {
     const RigidTransform& candidate = candidates_.front();
     if (IsExhausted(candidate)) continue;

@@ -16,7 +16,7 @@ namespace isotherm {
 
 /// A view worth taking.
 struct NextView {
-  RigidTransform T_world_depth;
+  RigidTransform T_map_depth;
   double gain_m2 = 0.0;  ///< Surface that it would measure well and that is not yet.
 };
 
@@ -32,26 +32,26 @@ class ViewPlanner {
   ViewPlanner(const FeedbackOptions& options, const ThermalOptions& limits, const Rig& rig,
               float min_weight);
 
-  /// `T_world_depth` is where the rig is: views are turned as it is held, and one that it has
+  /// `T_map_depth` is where the rig is: views are turned as it is held, and one that it has
   /// reached without any gain is not proposed again.
   void Step(const TsdfVolume& tsdf, const ThermalVolume& thermal, const ModelCoverage& coverage,
-            const RigidTransform& T_world_depth, ThreadPool& pool);
+            const RigidTransform& T_map_depth, ThreadPool& pool);
 
   const std::optional<NextView>& best() const { return best_; }
 
   /// Surface that a view would measure well and that is not yet, square metres; 0 where the camera
   /// would be inside or too close to something.
-  double Gain(const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
+  double Gain(const RigidTransform& T_map_depth, const TsdfVolume& tsdf,
               const ThermalVolume& thermal, ThreadPool& pool);
 
  private:
-  void MakeCandidates(const ModelCoverage& coverage, const RigidTransform& T_world_depth);
+  void MakeCandidates(const ModelCoverage& coverage, const RigidTransform& T_map_depth);
   /// Looks at `target` from the direction `towards_camera` (unit).
   RigidTransform LookAt(const Eigen::Vector3d& target, const Eigen::Vector3d& towards_camera,
-                        const RigidTransform& T_world_depth) const;
+                        const RigidTransform& T_map_depth) const;
   bool IsDepthInView(const Eigen::Vector3d& p_depth) const;
-  void NotePose(const RigidTransform& T_world_depth);
-  bool IsExhausted(const RigidTransform& T_world_depth) const;
+  void NotePose(const RigidTransform& T_map_depth);
+  bool IsExhausted(const RigidTransform& T_map_depth) const;
 
   const FeedbackOptions options_;
   const ConditionLimits limits_;
@@ -62,7 +62,7 @@ class ViewPlanner {
   const RigidTransform T_thermal_depth_;
   Raycaster raycaster_{RaycastPrecision::kVisibility};
   SurfaceMaps maps_;
-  std::deque<RigidTransform> candidates_;  ///< T_world_depth.
+  std::deque<RigidTransform> candidates_;  ///< T_map_depth.
   std::optional<NextView> best_;
   int steps_at_best_ = 0;                 ///< That the rig has been there.
   std::deque<RigidTransform> exhausted_;  ///< Views that were taken and gave nothing.

@@ -51,7 +51,7 @@ class ViewPlannerTest : public ::testing::Test {
   }
   ViewPlanner Planner() { return {options_, limits_, rig_, 1.0F}; }
   RigidTransform Thermal(const NextView& view) const {
-    return view.T_world_depth * rig_.T_thermal_depth->inverse();
+    return view.T_map_depth * rig_.T_thermal_depth->inverse();
   }
   static double AngleDeg(const Vector3d& a, const Vector3d& b) {
     return std::acos(std::clamp(a.normalized().dot(b.normalized()), -1.0, 1.0)) * 180.0 /
@@ -76,11 +76,11 @@ TEST_F(ViewPlannerTest, TheBestViewLooksAtTheSideThatIsMissing) {
     ViewPlanner planner = Planner();
     const std::optional<NextView> view = Plan(planner);
     ASSERT_TRUE(view.has_value()) << side.transpose();
-    const RigidTransform T_world_thermal = Thermal(*view);
+    const RigidTransform T_map_thermal = Thermal(*view);
     // From the missing side, towards it, at a good distance.
-    EXPECT_LT(AngleDeg(T_world_thermal.translation() - centre_, side), 30.0) << side.transpose();
-    EXPECT_LT(AngleDeg(-T_world_thermal.linear().col(2), side), 30.0) << side.transpose();
-    const double distance_m = (T_world_thermal.translation() - (centre_ + 0.2 * side)).norm();
+    EXPECT_LT(AngleDeg(T_map_thermal.translation() - centre_, side), 30.0) << side.transpose();
+    EXPECT_LT(AngleDeg(-T_map_thermal.linear().col(2), side), 30.0) << side.transpose();
+    const double distance_m = (T_map_thermal.translation() - (centre_ + 0.2 * side)).norm();
     EXPECT_GT(distance_m, limits_.distance_min_m());
     EXPECT_LT(distance_m, limits_.distance_good_m());
   }
@@ -137,12 +137,12 @@ TEST_F(ViewPlannerTest, AViewThatWasTakenInVainIsNotProposedAgain) {
   const std::optional<NextView> first = Plan(planner);
   ASSERT_TRUE(first.has_value());
   for (int i = 0; i < 25; ++i) {  // The rig is there, and nothing gets better.
-    planner.Step(tsdf_, thermal_, coverage_, first->T_world_depth, pool_);
+    planner.Step(tsdf_, thermal_, coverage_, first->T_map_depth, pool_);
   }
   const std::optional<NextView> second = planner.best();
   if (!second) return;
   const bool same =
-      (second->T_world_depth.translation() - first->T_world_depth.translation()).norm() < 0.05;
+      (second->T_map_depth.translation() - first->T_map_depth.translation()).norm() < 0.05;
   EXPECT_FALSE(same);
 }
 

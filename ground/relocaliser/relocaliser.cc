@@ -70,7 +70,7 @@ class Relocaliser::Refinement {
   Fit Run(const RefinementStage& stage, RigidTransform pose) {
     ModelView& view = relocaliser_.view_;
     view.camera = relocaliser_.camera_.Downscaled(stage.halvings);
-    view.T_world_depth = pose;
+    view.T_map_depth = pose;
     relocaliser_.raycaster_.Cast(volume_, view.camera, pose, min_weight_, pool_, view.maps);
     const IcpLimits limits{stage.max_distance_m,
                            static_cast<float>(std::cos(stage.max_angle_deg * kRadPerDeg))};
@@ -113,7 +113,7 @@ std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
   Refinement::Fit best;
   for (const PoseGuess& guess :
        library_.Guess(MakeThumbnail(depth.depth_m), options_.guesses_per_frame(), pool)) {
-    const Refinement::Fit fit = refinement.Run(kFirstStage, guess.T_world_depth);
+    const Refinement::Fit fit = refinement.Run(kFirstStage, guess.T_map_depth);
     if (fit.score() > best.score()) best = fit;
   }
   for (const RefinementStage& stage : {kSecondStage, kLastStage}) {

@@ -21,8 +21,8 @@ class Relocaliser {
   Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera);
 
   /// A pose that was tracked well, and fused: the model has changed since it was looked through.
-  void Remember(const RigidTransform& T_world_depth) {
-    library_.Add(T_world_depth);
+  void Remember(const RigidTransform& T_map_depth) {
+    library_.Add(T_map_depth);
     knows_model_ = false;
   }
 

@@ -190,8 +190,8 @@ TEST_F(ViewLibraryTest, FindsTheKnownPoseAPictureWasTakenFrom) {
     const Thumbnail picture = MakeThumbnail(Picture(truth).depth_m);
     const auto guesses = library_.Guess(picture, 3, pool_);
     ASSERT_FALSE(guesses.empty());
-    EXPECT_LT(TranslationDistance(guesses[0].T_world_depth, truth), kMaxError);
-    EXPECT_LT(RotationAngle(guesses[0].T_world_depth, truth), kMaxAngle);
+    EXPECT_LT(TranslationDistance(guesses[0].T_map_depth, truth), kMaxError);
+    EXPECT_LT(RotationAngle(guesses[0].T_map_depth, truth), kMaxAngle);
     EXPECT_LT(guesses[0].disagreement, 0.3F);  // Nearest points of cells against their means.
   }
 }
@@ -207,8 +207,8 @@ TEST_F(ViewLibraryTest, GuessesAreFewBestFirstAndApart) {
   for (std::size_t i = 1; i < guesses.size(); ++i) {
     EXPECT_GE(guesses[i].disagreement, guesses[i - 1].disagreement);
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_TRUE(TranslationDistance(guesses[i].T_world_depth, guesses[j].T_world_depth) >= 0.04 ||
-                  RotationAngle(guesses[i].T_world_depth, guesses[j].T_world_depth) >=
+      EXPECT_TRUE(TranslationDistance(guesses[i].T_map_depth, guesses[j].T_map_depth) >= 0.04 ||
+                  RotationAngle(guesses[i].T_map_depth, guesses[j].T_map_depth) >=
                       6.0 * kRadPerDeg);
     }
   }

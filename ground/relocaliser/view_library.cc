@@ -93,7 +93,7 @@ std::vector<PoseGuess> ChooseDistinct(std::vector<PoseGuess> guesses, std::size_
     constexpr float kHopeless = 0.7F;
     if (guess.disagreement > kHopeless || best.size() == count) break;
     const bool known = std::any_of(best.begin(), best.end(), [&](const PoseGuess& other) {
-      return IsNear(other.T_world_depth, guess.T_world_depth, kSameGuessM, kSameGuessRad);
+      return IsNear(other.T_map_depth, guess.T_map_depth, kSameGuessM, kSameGuessRad);
     });
     if (!known) best.push_back(guess);
   }
@@ -230,13 +230,13 @@ std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::siz
 ViewLibrary::ViewLibrary(const CameraModel& depth_camera, int max_views)
     : camera_(ThumbnailCamera(depth_camera)), max_views_(static_cast<std::size_t>(max_views)) {}
 
-void ViewLibrary::Add(const RigidTransform& T_world_depth) {
+void ViewLibrary::Add(const RigidTransform& T_map_depth) {
   if (poses_.size() >= max_views_) return;
   // The newest are the likeliest to be near.
   const bool known = std::any_of(poses_.rbegin(), poses_.rend(), [&](const RigidTransform& pose) {
-    return IsNear(pose, T_world_depth, kNewViewM, kNewViewRad);
+    return IsNear(pose, T_map_depth, kNewViewM, kNewViewRad);
   });
-  if (!known) poses_.push_back(T_world_depth);
+  if (!known) poses_.push_back(T_map_depth);
 }
 
 void ViewLibrary::SetCloud(const std::vector<Eigen::Vector3f>& cloud) {
@@ -245,9 +245,9 @@ void ViewLibrary::SetCloud(const std::vector<Eigen::Vector3f>& cloud) {
     cloud_.row(i) = cloud[static_cast<std::size_t>(i)].transpose();
 }
 
-Thumbnail ViewLibrary::Look(const RigidTransform& T_world_depth) const {
+Thumbnail ViewLibrary::Look(const RigidTransform& T_map_depth) const {
   Thumbnail picture;
-  const Eigen::Matrix<float, 3, 4> T = T_world_depth.inverse().matrix().topRows<3>().cast<float>();
+  const Eigen::Matrix<float, 3, 4> T = T_map_depth.inverse().matrix().topRows<3>().cast<float>();
   const auto fx = static_cast<float>(camera_.fx);
   const auto fy = static_cast<float>(camera_.fy);
   const auto cx = static_cast<float>(camera_.cx) + 0.5F;
@@ -292,7 +292,7 @@ PoseGuess ViewLibrary::Improve(const Thumbnail& picture, PoseGuess guess) const 
             axis < 3 ? MakeTransform(step_m * unit, Eigen::Quaterniond::Identity())
                      : MakeTransform(Eigen::Vector3d::Zero(),
                                      Eigen::Quaterniond(Eigen::AngleAxisd(step_rad, unit)));
-        const RigidTransform pose = guess.T_world_depth * offset;
+        const RigidTransform pose = guess.T_map_depth * offset;
         const float disagreement = Disagreement(picture, Look(pose));
         if (disagreement >= guess.disagreement) continue;
         guess = {pose, disagreement};

@@ -28,11 +28,11 @@ float Disagreement(const Thumbnail& picture, const Thumbnail& expected);
 
 /// A pose from which the model may look like a picture.
 struct PoseGuess {
-  RigidTransform T_world_depth;
+  RigidTransform T_map_depth;
   float disagreement = 1.0F;
 };
 
-/// Points on the model's surface in `world`, metres, evenly spread and at most `max_points`; the
+/// Points on the model's surface in `map`, metres, evenly spread and at most `max_points`; the
 /// spacing is about half a block or more.
 std::vector<Eigen::Vector3f> MakeSurfaceCloud(const TsdfVolume& volume, std::size_t max_points,
                                               ThreadPool& pool);
@@ -45,7 +45,7 @@ class ViewLibrary {
   ViewLibrary(const CameraModel& depth_camera, int max_views);
 
   /// Keeps a tracked pose if no known one is near.
-  void Add(const RigidTransform& T_world_depth);
+  void Add(const RigidTransform& T_map_depth);
   const std::vector<RigidTransform>& poses() const { return poses_; }
 
   /// Sets what is looked at from now on.
@@ -59,7 +59,7 @@ class ViewLibrary {
   /// Moves a guess step by step to where it disagrees least.
   PoseGuess Improve(const Thumbnail& picture, PoseGuess guess) const;
   /// Returns what the cloud looks like from a pose.
-  Thumbnail Look(const RigidTransform& T_world_depth) const;
+  Thumbnail Look(const RigidTransform& T_map_depth) const;
 
   const CameraModel camera_;  ///< The camera of a thumbnail.
   const std::size_t max_views_;

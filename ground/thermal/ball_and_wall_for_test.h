@@ -47,15 +47,15 @@ class BallAndWallTest : public ::testing::Test {
   }
   static double Scene(const Eigen::Vector3d& p) { return std::min(Ball(p), 0.60 - p.z()); }
 
-  ThermalFrame Picture(const RigidTransform& T_world_thermal) const {
+  ThermalFrame Picture(const RigidTransform& T_map_thermal) const {
     ThermalFrame frame;
     frame.valid = true;
     frame.centikelvin = Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height);
     for (int v = 0; v < thermal_camera_.height; ++v) {
       for (int u = 0; u < thermal_camera_.width; ++u) {
-        const double z = TraceDepth(Scene, thermal_camera_, T_world_thermal, u, v);
+        const double z = TraceDepth(Scene, thermal_camera_, T_map_thermal, u, v);
         const Eigen::Vector2d xy = Unproject(thermal_camera_, {u, v});
-        const Eigen::Vector3d p = T_world_thermal * Eigen::Vector3d(xy.x() * z, xy.y() * z, z);
+        const Eigen::Vector3d p = T_map_thermal * Eigen::Vector3d(xy.x() * z, xy.y() * z, z);
         const float celsius = Ball(p) < 1e-4 ? kHot : kCold;
         frame.centikelvin.At(u, v) =
             static_cast<std::uint16_t>(std::lround((celsius + 273.15) * 100.0));
@@ -84,11 +84,11 @@ class BallAndWallTest : public ::testing::Test {
   FusionReport FuseFrame(const ThermalOptions& options, const ThermalFrame& frame,
                          const CaptureConditions& capture = {}) {
     ThermalFuser fuser(options, thermal_camera_, 0.0F);
-    return fuser.Fuse(frame, T_world_thermal_, depth_camera_, T_world_depth_, *tsdf_, pool_,
-                      *thermal_, capture);
+    return fuser.Fuse(frame, T_map_thermal_, depth_camera_, T_map_depth_, *tsdf_, pool_, *thermal_,
+                      capture);
   }
   Outcome Fuse(const ThermalOptions& options) {
-    FuseFrame(options, Picture(T_world_thermal_));
+    FuseFrame(options, Picture(T_map_thermal_));
     Outcome outcome;
     for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
       ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
@@ -105,9 +105,8 @@ class BallAndWallTest : public ::testing::Test {
 
   CameraModel depth_camera_ = SmallDepthCamera();
   CameraModel thermal_camera_ = ThermalCameraModel();
-  RigidTransform T_world_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
-  RigidTransform T_world_thermal_ =
-      MakeTransform({0.40, 0.36, 0.0}, Eigen::Quaterniond::Identity());
+  RigidTransform T_map_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
+  RigidTransform T_map_thermal_ = MakeTransform({0.40, 0.36, 0.0}, Eigen::Quaterniond::Identity());
   ThreadPool pool_{2};
   std::unique_ptr<TsdfVolume> tsdf_;
   std::unique_ptr<ThermalVolume> thermal_;

@@ -4,11 +4,11 @@
 
 namespace isotherm {
 
-CameraMotion MotionBetween(const RigidTransform& T_world_before,
-                           const RigidTransform& T_world_after, double interval_s) {
+CameraMotion MotionBetween(const RigidTransform& T_map_before, const RigidTransform& T_map_after,
+                           double interval_s) {
   CameraMotion motion;
   if (!(interval_s > 0.0)) return motion;
-  const RigidTransform T_before_after = T_world_before.inverse() * T_world_after;
+  const RigidTransform T_before_after = T_map_before.inverse() * T_map_after;
   const Eigen::AngleAxisd turn(T_before_after.linear());
   motion.rate_rad_s = turn.angle() / interval_s * turn.axis();
   // The axes turn by the way: those in the middle are the fairest for the whole interval.

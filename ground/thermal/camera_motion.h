@@ -13,8 +13,8 @@ struct CameraMotion {
 };
 
 /// The motion, taken as even, between two poses `interval_s` apart; none for an interval of 0.
-CameraMotion MotionBetween(const RigidTransform& T_world_before,
-                           const RigidTransform& T_world_after, double interval_s);
+CameraMotion MotionBetween(const RigidTransform& T_map_before, const RigidTransform& T_map_after,
+                           double interval_s);
 
 /// The same motion of another camera on the rig: T_other_camera maps into its coordinates.
 CameraMotion MotionOf(const CameraMotion& motion, const RigidTransform& T_other_camera);

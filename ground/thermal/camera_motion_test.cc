@@ -39,11 +39,11 @@ TEST(CameraMotionTest, APointGoesThroughThePictureAsItsProjectionsDo) {
   for (const double z : {0.3, 0.5, 2.0}) {
     for (const Eigen::Vector2d& xy :
          {Eigen::Vector2d(0, 0), Eigen::Vector2d(0.4, -0.3), Eigen::Vector2d(-0.5, 0.2)}) {
-      const Eigen::Vector3d p_world = kStart * (z * Eigen::Vector3d(xy.x(), xy.y(), 1.0));
+      const Eigen::Vector3d p_map = kStart * (z * Eigen::Vector3d(xy.x(), xy.y(), 1.0));
       const auto project = [&](double t_s) -> Eigen::Vector2d {
         CameraMotion motion = kMotion;
         if (t_s < 0.0) motion = {-kMotion.velocity_m_s, -kMotion.rate_rad_s};
-        const Eigen::Vector3d p = Moved(kStart, motion, std::abs(t_s)).inverse() * p_world;
+        const Eigen::Vector3d p = Moved(kStart, motion, std::abs(t_s)).inverse() * p_map;
         return p.head<2>() / p.z();
       };
       constexpr double kStep_s = 1e-4;

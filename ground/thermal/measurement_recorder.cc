@@ -27,10 +27,10 @@ ConditionClass ClassifyDisagreement(const ThermalOptions& options, float range_k
 }
 
 MeasurementRecorder::MeasurementRecorder(const ThermalOptions& options,
-                                         const RigidTransform& T_world_thermal, const float* axes,
+                                         const RigidTransform& T_map_thermal, const float* axes,
                                          const NucAge& nuc)
     : options_(options),
-      R_world_thermal_(T_world_thermal.linear().cast<float>()),
+      R_map_thermal_(T_map_thermal.linear().cast<float>()),
       axes_(Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(axes)) {
   frame_.epoch = nuc.epoch;
   frame_.age = ConditionRecord::kNoAge;
@@ -44,7 +44,7 @@ void MeasurementRecorder::Record(const BlockMeasurements& measured, const Eigen:
                                  std::int32_t block, ThermalVolume& thermal) const {
   const Eigen::Vector3f middle = first + axes_ * Eigen::Vector3f::Constant(0.5F * (kBlockSide - 1));
   // The directions within a block differ by a degree or two.
-  const std::uint16_t direction = EncodeDirection((R_world_thermal_ * -middle).normalized());
+  const std::uint16_t direction = EncodeDirection((R_map_thermal_ * -middle).normalized());
   const auto voxels = thermal.voxels(block);
   // Rows lie anywhere in memory: all are asked for before the first one is needed.
   std::array<RecordRow*, ThermalRecords::kRowsPerBlock> rows{};

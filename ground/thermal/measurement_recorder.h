@@ -19,7 +19,7 @@ ConditionClass ClassifyDisagreement(const ThermalOptions& options, float range_k
 class MeasurementRecorder {
  public:
   /// `axes`: of FusionKernelArgs. `nuc`: when the frame was captured.
-  MeasurementRecorder(const ThermalOptions& options, const RigidTransform& T_world_thermal,
+  MeasurementRecorder(const ThermalOptions& options, const RigidTransform& T_map_thermal,
                       const float* axes, const NucAge& nuc);
 
   /// `first`: centre of the block's first voxel, thermal camera coordinates. `thermal` must keep
@@ -29,7 +29,7 @@ class MeasurementRecorder {
 
  private:
   const ThermalOptions& options_;
-  const Eigen::Matrix3f R_world_thermal_;
+  const Eigen::Matrix3f R_map_thermal_;
   const Eigen::Matrix3f axes_;
   ConditionRecord frame_;  ///< What all measurements of the frame have in common.
 };

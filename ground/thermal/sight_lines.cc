@@ -25,16 +25,16 @@ void SightLines::Aim(const RigidTransform& T_depth_thermal) {
 }
 
 void SightLines::Update(const SurfaceMaps& model, const CameraModel& model_camera,
-                        const RigidTransform& T_world_depth) {
+                        const RigidTransform& T_map_depth) {
   model_camera_ = model_camera;
   depth_m_.Resize(model.width(), model.height());
-  const Eigen::Vector4f z = T_world_depth.inverse().matrix().row(2).cast<float>();
-  const auto x_world = model.vx.pixels();
-  const auto y_world = model.vy.pixels();
-  const auto z_world = model.vz.pixels();
+  const Eigen::Vector4f z = T_map_depth.inverse().matrix().row(2).cast<float>();
+  const auto x_map = model.vx.pixels();
+  const auto y_map = model.vy.pixels();
+  const auto z_map = model.vz.pixels();
   const auto depth_m = depth_m_.pixels();
   for (std::size_t i = 0; i < depth_m.size(); ++i)
-    depth_m[i] = z[0] * x_world[i] + z[1] * y_world[i] + z[2] * z_world[i] + z[3];
+    depth_m[i] = z[0] * x_map[i] + z[1] * y_map[i] + z[2] * z_map[i] + z[3];
 }
 
 float SightLines::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const {

@@ -21,10 +21,10 @@ class SightLines {
   /// `thermal_camera` without distortion.
   SightLines(const ThermalOptions& options, const CameraModel& thermal_camera);
 
-  /// `model`: the model's surface in world as seen by the depth camera (`model_camera`, perhaps
-  /// halved) from `T_world_depth`.
+  /// `model`: the model's surface in `map` as seen by the depth camera (`model_camera`, perhaps
+  /// halved) from `T_map_depth`.
   void Update(const SurfaceMaps& model, const CameraModel& model_camera,
-              const RigidTransform& T_world_depth);
+              const RigidTransform& T_map_depth);
 
   /// Where the thermal camera was when the frame to be judged was captured, seen from the depth
   /// camera of the last Update. Both move while they wait for each other.

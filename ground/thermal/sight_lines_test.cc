@@ -30,7 +30,7 @@ class SightLinesTest : public ::testing::Test {
         const double x = (u - depth_camera_.cx) / depth_camera_.fx;
         const auto z = static_cast<float>(z_of(x));
         const Eigen::Vector3d p_depth(x * z, (v - depth_camera_.cy) / depth_camera_.fy * z, z);
-        const Eigen::Vector3f p = (T_world_depth_ * p_depth).cast<float>();
+        const Eigen::Vector3f p = (T_map_depth_ * p_depth).cast<float>();
         model_.vx.At(u, v) = p.x();
         model_.vy.At(u, v) = p.y();
         model_.vz.At(u, v) = p.z();
@@ -44,7 +44,7 @@ class SightLinesTest : public ::testing::Test {
     pixel.flags = ThermalPixel::kSeen | ThermalPixel::kAssignable;
     picture_.assign(160 * 120, pixel);
     SightLines lines(options_, thermal_camera_);
-    lines.Update(model_, depth_camera_, T_world_depth_);
+    lines.Update(model_, depth_camera_, T_map_depth_);
     lines.Aim(T_depth_thermal_);
     std::int64_t count = 0;
     for (int y = 0; y < 120; y += 8)
@@ -63,7 +63,7 @@ class SightLinesTest : public ::testing::Test {
   CameraModel depth_camera_, thermal_camera_;
   RigidTransform T_depth_thermal_ =
       MakeTransform({-kBesideM, 0.0, 0.0}, Eigen::Quaterniond::Identity());
-  RigidTransform T_world_depth_ = MakeTransform(
+  RigidTransform T_map_depth_ = MakeTransform(
       {0.3, -0.2, 0.1},
       Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized())));
   SurfaceMaps model_;

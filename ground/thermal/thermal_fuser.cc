@@ -77,21 +77,21 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
   farthest_m_.Resize(tiles_x, tiles_y);
 }
 
-void ThermalFuser::CastSurface(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf,
+void ThermalFuser::CastSurface(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf,
                                ThreadPool& pool) {
   const CameraModel& camera = rectifier_.ideal_camera();
   const bool halved = options_.visibility_halvings() == 1;
   if (halved) {
-    raycaster_.Cast(tsdf, EverySecondPixel(camera), T_world_thermal, min_weight_, pool, coarse_);
+    raycaster_.Cast(tsdf, EverySecondPixel(camera), T_map_thermal, min_weight_, pool, coarse_);
     surface_.Resize(camera.width, camera.height);
   } else {
-    raycaster_.Cast(tsdf, camera, T_world_thermal, min_weight_, pool, surface_);
+    raycaster_.Cast(tsdf, camera, T_map_thermal, min_weight_, pool, surface_);
   }
   UpsampleRowArgs args{};
   args.coarse = &coarse_;
   // Half of what counts as an occluder: a corner is bridged, an edge is not.
   args.max_plane_distance_m = static_cast<float>(0.5 * options_.parallax_tolerance_m());
-  const Eigen::Vector3f position = T_world_thermal.translation().cast<float>();
+  const Eigen::Vector3f position = T_map_thermal.translation().cast<float>();
   std::copy_n(position.data(), 3, args.position);
   ForRows(camera.height, pool, [&](int y) {
     float* distance_m = distances_m_.Row(y + apron_).data() + apron_;
@@ -104,9 +104,9 @@ void ThermalFuser::CastSurface(const RigidTransform& T_world_thermal, const Tsdf
   });
 }
 
-PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_world_thermal,
+PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
                                    const CameraModel& depth_camera,
-                                   const RigidTransform& T_world_depth,
+                                   const RigidTransform& T_map_depth,
                                    const CaptureConditions& capture) const {
   const CameraModel& camera = rectifier_.ideal_camera();
   PixelRowArgs args{};
@@ -114,13 +114,13 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_world_thermal,
   args.celsius_stride = celsius_.width();
   args.margin = options_.edge_margin_px();
   args.width = camera.width;
-  CopyVector(T_world_thermal.translation(), args.position);
-  const Eigen::Vector4f z_axis = T_world_thermal.inverse().matrix().row(2).cast<float>();
+  CopyVector(T_map_thermal.translation(), args.position);
+  const Eigen::Vector4f z_axis = T_map_thermal.inverse().matrix().row(2).cast<float>();
   std::copy_n(z_axis.data(), 4, args.z_axis);
-  const RigidTransform T_depth_world = T_world_depth.inverse();
-  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_world.linear().cast<float>();
+  const RigidTransform T_depth_map = T_map_depth.inverse();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_map.linear().cast<float>();
   std::copy_n(R.data(), 9, args.R_depth);
-  CopyVector(T_depth_world.translation(), args.t_depth);
+  CopyVector(T_depth_map.translation(), args.t_depth);
   args.depth_fx = static_cast<float>(depth_camera.fx);
   args.depth_fy = static_cast<float>(depth_camera.fy);
   args.depth_cx = static_cast<float>(depth_camera.cx);
@@ -204,9 +204,9 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
   report.maybe_hidden = maybe_hidden;
 }
 
-void ThermalFuser::SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf) {
+void ThermalFuser::SelectBlocks(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf) {
   const CameraModel& camera = rectifier_.ideal_camera();
-  const BlockToCamera to_camera(tsdf.grid(), T_world_thermal.inverse());
+  const BlockToCamera to_camera(tsdf.grid(), T_map_thermal.inverse());
   const float radius = BlockRadius(tsdf.grid());
   const float reach =
       radius + static_cast<float>(options_.vertex_distance_vox() * tsdf.grid().voxel_size_m);
@@ -218,7 +218,7 @@ void ThermalFuser::SelectBlocks(const RigidTransform& T_world_thermal, const Tsd
     return std::clamp(static_cast<int>(pixel) / kTile, 0, tiles - 1);
   };
   blocks_.clear();
-  for (const std::int32_t block : visible_.Find(tsdf, camera, T_world_thermal)) {
+  for (const std::int32_t block : visible_.Find(tsdf, camera, T_map_thermal)) {
     const Eigen::Vector3f p = to_camera.Centre(tsdf.block_coordinates(block));
     if (p.z() < 2.0F * radius) continue;
     // Keep blocks through which the visible surface passes.
@@ -237,7 +237,7 @@ void ThermalFuser::SelectBlocks(const RigidTransform& T_world_thermal, const Tsd
   }
 }
 
-FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_world,
+FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_map,
                                          const TsdfVolume& tsdf) const {
   const CameraModel& camera = rectifier_.ideal_camera();
   FusionKernelArgs args{};
@@ -250,7 +250,7 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_world,
   args.cy = static_cast<float>(camera.cy);
   const double voxel_m = tsdf.grid().voxel_size_m;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> axes =
-      (T_thermal_world.linear() * voxel_m).cast<float>();
+      (T_thermal_map.linear() * voxel_m).cast<float>();
   std::copy_n(axes.data(), 9, args.axes);
   const double max_distance_m = options_.vertex_distance_vox() * voxel_m;
   args.max_distance_m = static_cast<float>(max_distance_m);
@@ -265,24 +265,23 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_world,
   return args;
 }
 
-FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
-                                const CameraModel& depth_camera,
-                                const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
-                                ThreadPool& pool, ThermalVolume& thermal,
+FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_map_thermal,
+                                const CameraModel& depth_camera, const RigidTransform& T_map_depth,
+                                const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal,
                                 const CaptureConditions& capture) {
   const CameraModel& camera = rectifier_.ideal_camera();
   CHECK(frame.valid);
-  CHECK(IsRigid(T_world_thermal) && IsRigid(T_world_depth));
+  CHECK(IsRigid(T_map_thermal) && IsRigid(T_map_depth));
   CHECK(frame.centikelvin.width() == camera.width && frame.centikelvin.height() == camera.height);
   rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
-  CastSurface(T_world_thermal, tsdf, pool);
+  CastSurface(T_map_thermal, tsdf, pool);
   FusionReport report;
-  MakePixels(RowArgs(T_world_thermal, depth_camera, T_world_depth, capture), capture, pool, report);
-  SelectBlocks(T_world_thermal, tsdf);
+  MakePixels(RowArgs(T_map_thermal, depth_camera, T_map_depth, capture), capture, pool, report);
+  SelectBlocks(T_map_thermal, tsdf);
 
-  const RigidTransform T_thermal_world = T_world_thermal.inverse();
-  const FusionKernelArgs args = BlockArgs(T_thermal_world, tsdf);
-  const MeasurementRecorder recorder(options_, T_world_thermal, args.axes, capture.nuc);
+  const RigidTransform T_thermal_map = T_map_thermal.inverse();
+  const FusionKernelArgs args = BlockArgs(T_thermal_map, tsdf);
+  const MeasurementRecorder recorder(options_, T_map_thermal, args.axes, capture.nuc);
   ++frames_;
   std::atomic<std::int64_t> considered{0}, assigned{0}, dropped{0};
   constexpr int kBlocksPerTask = 32;
@@ -295,7 +294,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
     for (int i = task * kBlocksPerTask; i < end; ++i) {
       const std::int32_t block = blocks_[i];
       const Eigen::Vector3f first =
-          (T_thermal_world * tsdf.grid().VoxelCentre(tsdf.block_coordinates(block) * kBlockSide))
+          (T_thermal_map * tsdf.grid().VoxelCentre(tsdf.block_coordinates(block) * kBlockSide))
               .cast<float>();
       measured.count = 0;
       FuseBlock(args, first.data(), &tsdf.voxels(block).front().bits,

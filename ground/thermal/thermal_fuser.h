@@ -56,11 +56,11 @@ class ThermalFuser {
   /// Voxels lighter than `min_weight` do not count as observed.
   ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera, float min_weight);
 
-  /// `T_world_thermal` is the thermal camera's pose when `frame` was captured, `T_world_depth` that
+  /// `T_map_thermal` is the thermal camera's pose when `frame` was captured, `T_map_depth` that
   /// of the depth camera at about the same time. `frame` must be valid and have the camera's size
   /// (CHECK).
-  FusionReport Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
-                    const CameraModel& depth_camera, const RigidTransform& T_world_depth,
+  FusionReport Fuse(const ThermalFrame& frame, const RigidTransform& T_map_thermal,
+                    const CameraModel& depth_camera, const RigidTransform& T_map_depth,
                     const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal,
                     const CaptureConditions& capture = {});
 
@@ -73,13 +73,13 @@ class ThermalFuser {
 
  private:
   /// Casts what the thermal camera sees of the model, into surface_ and distances_m_.
-  void CastSurface(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
-  PixelRowArgs RowArgs(const RigidTransform& T_world_thermal, const CameraModel& depth_camera,
-                       const RigidTransform& T_world_depth, const CaptureConditions& capture) const;
+  void CastSurface(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
+  PixelRowArgs RowArgs(const RigidTransform& T_map_thermal, const CameraModel& depth_camera,
+                       const RigidTransform& T_map_depth, const CaptureConditions& capture) const;
   void MakePixels(const PixelRowArgs& args, const CaptureConditions& capture, ThreadPool& pool,
                   FusionReport& report);
-  FusionKernelArgs BlockArgs(const RigidTransform& T_thermal_world, const TsdfVolume& tsdf) const;
-  void SelectBlocks(const RigidTransform& T_world_thermal, const TsdfVolume& tsdf);
+  FusionKernelArgs BlockArgs(const RigidTransform& T_thermal_map, const TsdfVolume& tsdf) const;
+  void SelectBlocks(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf);
 
   const ThermalOptions options_;
   const ConditionLimits limits_;
@@ -89,7 +89,7 @@ class ThermalFuser {
   ThermalRectifier rectifier_;
   Raycaster raycaster_{RaycastPrecision::kVisibility};
   SurfaceMaps coarse_;                ///< Every second pixel each way.
-  SurfaceMaps surface_;               ///< The model as the thermal camera sees it, in world.
+  SurfaceMaps surface_;               ///< The model as the thermal camera sees it, in `map`.
   Image<float> distances_m_;          ///< Distances of its vertices from the camera, with an apron.
   Image<float> celsius_;              ///< With an apron.
   std::vector<ThermalPixel> pixels_;  ///< And one more that shows nothing.

@@ -32,13 +32,13 @@ struct ResampleRowArgs {
 };
 void ResampleRow(const ResampleRowArgs& args, float* out);
 
-/// Distances of a row of vertices (world, metres) from `position`; a huge one for NaN.
+/// Distances of a row of vertices (`map`, metres) from `position`; a huge one for NaN.
 void DistanceRow(const float* vx, const float* vy, const float* vz, const float* position,
                  std::int32_t width, float* distance_m);
 
 /// One row of the thermal picture beside the model as the thermal camera sees it.
 struct PixelRowArgs {
-  // The model's vertices and normals in world, NaN = no surface.
+  // The model's vertices and normals in `map`, NaN = no surface.
   const float* vx;
   const float* vy;
   const float* vz;
@@ -50,9 +50,9 @@ struct PixelRowArgs {
   std::int32_t distance_stride, celsius_stride;
   std::int32_t margin;
   std::int32_t width;
-  float position[3];  ///< Position of the thermal camera in world.
+  float position[3];  ///< Position of the thermal camera in `map`.
   float z_axis[4];    ///< Depth along the thermal camera's z = z_axis . (p, 1).
-  float R_depth[9];   ///< Depth camera from world.
+  float R_depth[9];   ///< Depth camera from `map`.
   float t_depth[3];
   float depth_fx, depth_fy, depth_cx, depth_cy;
   float depth_width, depth_height;

@@ -61,7 +61,7 @@ TEST_F(ThermalRulesTest, RowsReadOneAfterTheOtherAreShiftedTheMoreTheFartherFrom
   ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
     if (!OnWall(p)) return;
     const double row =
-        std::abs(thermal_camera_.fy * (p.y() - T_world_thermal_.translation().y()) / 0.6);
+        std::abs(thermal_camera_.fy * (p.y() - T_map_thermal_.translation().y()) / 0.6);
     if (row < 12.0) near_middle += voxel.motion_class() == kGood ? 1 : 0;
     if (row > 68.0) ++far;
   });
@@ -123,7 +123,7 @@ TEST_F(ThermalRulesTest, EachTemperatureKnowsItsDistanceAngleAndNuc) {
       const PointMeasurement at = MeasurementAt(*tsdf_, *thermal_, p);
       if (!at.voxel.measured() || at.conditions.empty()) continue;
       ++checked;
-      const Eigen::Vector3d to_camera = T_world_thermal_.translation() - p;
+      const Eigen::Vector3d to_camera = T_map_thermal_.translation() - p;
       constexpr double kVoxelSide_m = 0.004;
       EXPECT_NEAR(at.conditions.distance_m(), to_camera.norm(), 2.0 * kVoxelSide_m);
       constexpr double kBlockAngle = 0.06;  // Half a block's diagonal at 0.6 m, and the coding.
@@ -160,7 +160,7 @@ TEST_F(ThermalRulesTest, AReflectionThatMovesDisagreesAndTheLowestCanBeKept) {
     int elsewhere = 0;
     ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
       if (!OnWall(p) || voxel.angle_class() != kGood || !voxel.measured()) return;
-      const Eigen::Vector3d p_thermal = T_world_thermal_.inverse() * p;
+      const Eigen::Vector3d p_thermal = T_map_thermal_.inverse() * p;
       const double u = thermal_camera_.fx * p_thermal.x() / p_thermal.z() + thermal_camera_.cx;
       if (std::abs(u - 40.0) < 4.0) return;
       if (u < 40.0) {

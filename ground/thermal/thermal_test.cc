@@ -157,10 +157,10 @@ TEST_F(ThermalFuserTest, ParallaxFilterKeepsTheBallsTemperatureOffTheWall) {
 TEST_F(ThermalFuserTest, Figures73And74AForegroundThatLeftTheDepthCamerasViewStillHides) {
   // Turned away, the depth camera sees the wall beside the ball only.
   constexpr double kTurn = 0.42;
-  T_world_depth_ = MakeTransform(
+  T_map_depth_ = MakeTransform(
       {0.32, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-kTurn, Eigen::Vector3d::UnitY())));
   // From the right, the thermal camera sees the ball before that part of the wall.
-  T_world_thermal_ = MakeTransform(
+  T_map_thermal_ = MakeTransform(
       {0.52, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.45, Eigen::Vector3d::UnitY())));
   const Outcome outcome = Fuse(ThermalOptions());
   EXPECT_GT(outcome.assigned, 3'000);
@@ -184,7 +184,7 @@ TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
                           [&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
                             if (!voxel.measured() || p.z() < 0.58) return;
                             const Eigen::Vector3d on_wall(p.x(), p.y(), 0.60);
-                            const Eigen::Vector3d ray = on_wall - T_world_thermal_.translation();
+                            const Eigen::Vector3d ray = on_wall - T_map_thermal_.translation();
                             const auto distance = static_cast<float>(ray.norm());
                             const auto cosine = static_cast<float>(ray.z() / ray.norm());
                             constexpr float kNearLimit =
@@ -199,26 +199,26 @@ TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
 }
 
 TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
-  ThermalFrame frame = Picture(T_world_thermal_);
+  ThermalFrame frame = Picture(T_map_thermal_);
   frame.centikelvin.Fill(0);
   const FusionReport report =
       ThermalFuser(ThermalOptions(), thermal_camera_, 0.0F)
-          .Fuse(frame, T_world_thermal_, depth_camera_, T_world_depth_, *tsdf_, pool_, *thermal_);
+          .Fuse(frame, T_map_thermal_, depth_camera_, T_map_depth_, *tsdf_, pool_, *thermal_);
   EXPECT_EQ(report.assigned, 0);
   EXPECT_GT(report.considered, 0);
 }
 
 TEST_F(ThermalFuserTest, APoseThatIsNoneIsTheCallersFault) {
-  const ThermalFrame frame = Picture(T_world_thermal_);
+  const ThermalFrame frame = Picture(T_map_thermal_);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300}) {
     for (const bool of_thermal : {false, true}) {
-      RigidTransform T_world_thermal = T_world_thermal_;
-      RigidTransform T_world_depth = T_world_depth_;
-      (of_thermal ? T_world_thermal : T_world_depth).matrix()(2, 2) = bad;
+      RigidTransform T_map_thermal = T_map_thermal_;
+      RigidTransform T_map_depth = T_map_depth_;
+      (of_thermal ? T_map_thermal : T_map_depth).matrix()(2, 2) = bad;
       ThermalFuser fuser(ThermalOptions(), thermal_camera_, 0.0F);
-      EXPECT_DEATH(fuser.Fuse(frame, T_world_thermal, depth_camera_, T_world_depth, *tsdf_, pool_,
-                              *thermal_),
-                   "IsRigid");
+      EXPECT_DEATH(
+          fuser.Fuse(frame, T_map_thermal, depth_camera_, T_map_depth, *tsdf_, pool_, *thermal_),
+          "IsRigid");
     }
   }
 }

@@ -51,8 +51,8 @@ ThermalVoxel VoxelAt(const ThermalVolume& thermal, const VoxelPlace& place) {
 
 /// The voxel that speaks for a point.
 VoxelPlace PlaceFor(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                    const Eigen::Vector3d& p_world) {
-  const Eigen::Vector3d p_voxel = tsdf.grid().ToVoxel(p_world);
+                    const Eigen::Vector3d& p_map) {
+  const Eigen::Vector3d p_voxel = tsdf.grid().ToVoxel(p_map);
   const GridIndex centre = p_voxel.array().round().cast<int>();
   const VoxelPlace own = PlaceOf(tsdf, centre);
   if (VoxelAt(thermal, own).judged()) return own;
@@ -91,8 +91,8 @@ void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int sou
 }
 
 PointMeasurement MeasurementAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                               const Eigen::Vector3d& p_world) {
-  const VoxelPlace place = PlaceFor(tsdf, thermal, p_world);
+                               const Eigen::Vector3d& p_map) {
+  const VoxelPlace place = PlaceFor(tsdf, thermal, p_map);
   PointMeasurement measurement{VoxelAt(thermal, place), {}};
   if (!measurement.voxel.measured() || thermal.records() == nullptr) return measurement;
   const RecordRow* row = thermal.records()->Find(place.block, place.index / RecordRow::kVoxels);
@@ -101,8 +101,8 @@ PointMeasurement MeasurementAt(const TsdfVolume& tsdf, const ThermalVolume& ther
 }
 
 ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                            const Eigen::Vector3d& p_world) {
-  return VoxelAt(thermal, PlaceFor(tsdf, thermal, p_world));
+                            const Eigen::Vector3d& p_map) {
+  return VoxelAt(thermal, PlaceFor(tsdf, thermal, p_map));
 }
 
 }  // namespace isotherm

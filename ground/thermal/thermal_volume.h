@@ -132,8 +132,8 @@ void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int sou
 /// The measurement that belongs to a surface point: of the voxel the point lies in, or, if nothing
 /// was ever tried there, of the nearest measured one among the 26 around it. Unmeasured if none.
 PointMeasurement MeasurementAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                               const Eigen::Vector3d& p_world);
+                               const Eigen::Vector3d& p_map);
 ThermalVoxel ThermalVoxelAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                            const Eigen::Vector3d& p_world);
+                            const Eigen::Vector3d& p_map);
 
 }  // namespace isotherm

@@ -8,7 +8,7 @@ struct UpsampleRowArgs {
   const SurfaceMaps* coarse;   ///< Pixel (i, j) is pixel (2 i, 2 j) of the fine maps: at least
                                ///< width / 2 + 1 wide and height / 2 + 1 high.
   float max_plane_distance_m;  ///< Between vertices of one surface and each other's tangent planes.
-  float position[3];           ///< Position of the camera in world.
+  float position[3];           ///< Position of the camera in `map`.
 };
 /// Fills row `y` of `fine` from a cast at half size: between pixels on one surface it is
 /// interpolated, between others (edges of occluders, of the model) there is none. `distance_m` gets

@@ -73,8 +73,8 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
       };
       const Vector3 p_depth{load(current.vx), load(current.vy), load(current.vz)};
       const Vector3 arm =
-          Rotate(a.R_world_depth, p_depth);  // From the camera's position to the point, in world.
-      const Vector3 p = Add(arm, a.t_world_depth);
+          Rotate(a.R_map_depth, p_depth);  // From the camera's position to the point, in `map`.
+      const Vector3 p = Add(arm, a.t_map_depth);
       const MF seen = hn::And(in_row, hn::Gt(p_depth.z, zero));
       const MF candidate = hn::And(seen, Inside(a, p));
       if (hn::AllFalse(d, candidate)) continue;
@@ -108,7 +108,7 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
       Vector3 n{hn::GatherIndex(d, model.nx.data(), j), hn::GatherIndex(d, model.ny.data(), j),
                 hn::GatherIndex(d, model.nz.data(), j)};
       const Vector3 n_current =
-          Rotate(a.R_world_depth, {load(current.nx), load(current.ny), load(current.nz)});
+          Rotate(a.R_map_depth, {load(current.nx), load(current.ny), load(current.nz)});
       good = hn::And(good, hn::Gt(Dot(n, n_current), hn::Set(d, a.min_normal_cosine)));
       out.inliers += static_cast<std::int64_t>(hn::CountTrue(d, good));
 

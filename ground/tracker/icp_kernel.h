@@ -9,11 +9,11 @@ namespace isotherm {
 
 /// Holds what one pass of ICP needs, as plain numbers, so that the kernel can be compiled for
 /// several instruction sets. Matrices are row-major. Current maps are in camera coordinates, model
-/// maps in `world`, metres.
+/// maps in `map`, metres.
 struct IcpKernelArgs {
   const SurfaceMaps* current;
   const SurfaceMaps* model;
-  float R_world_depth[9], t_world_depth[3];
+  float R_map_depth[9], t_map_depth[3];
   float R_model_depth[9],
       t_model_depth[3];  ///< From the current camera to the model view's camera.
   float fx, fy, cx, cy;  ///< Intrinsics of the model view.

@@ -54,8 +54,8 @@ ScalarPair MakeScalarPair(const IcpKernelArgs& a, int x, int y) {
   constexpr double kNearPixelBorder = 1e-3;
   ScalarPair result;
   const Sample current = At(*a.current, x, y);
-  const Eigen::Vector3d arm = matrix(a.R_world_depth) * current.p;
-  const Eigen::Vector3d p = arm + vector(a.t_world_depth);
+  const Eigen::Vector3d arm = matrix(a.R_map_depth) * current.p;
+  const Eigen::Vector3d p = arm + vector(a.t_map_depth);
   result.candidate = current.p.z() > 0.0 ? Verdict::kYes : Verdict::kNo;
   const Eigen::Vector3d above = p - vector(a.volume_min);
   const Eigen::Vector3d below = vector(a.volume_max) - p;
@@ -82,7 +82,7 @@ ScalarPair MakeScalarPair(const IcpKernelArgs& a, int x, int y) {
   result.inlier = Both(
       result.inlier,
       AtLeastZero(double{a.max_squared_distance_m2} - difference.squaredNorm(), kSinglePrecision));
-  result.inlier = Both(result.inlier, AtLeastZero(model.n.dot(matrix(a.R_world_depth) * current.n) -
+  result.inlier = Both(result.inlier, AtLeastZero(model.n.dot(matrix(a.R_map_depth) * current.n) -
                                                       double{a.min_normal_cosine},
                                                   kSinglePrecision));
   const double residual = model.n.dot(difference);
@@ -106,14 +106,14 @@ class AccumulateIcpRowsTest : public ::testing::Test {
     const int model_height = random_.Integer(1, 40);
     args_ = {};
     const RowMajor R = Turn(0.02F);
-    const RowMajor R_world = Turn(1.0F);
-    const Eigen::Vector3f t_world(Uniform(), Uniform(), Uniform());
+    const RowMajor R_map = Turn(1.0F);
+    const Eigen::Vector3f t_map(Uniform(), Uniform(), Uniform());
     const Eigen::Vector3f t = 0.005F * Eigen::Vector3f(Uniform(), Uniform(), Uniform());
     // The model's camera is the world's turned and moved by what leads from the current one.
-    const RowMajor R_model = R_world * R.transpose();
-    const Eigen::Vector3f t_model = t_world - R_model * t;
-    std::copy_n(R_world.data(), 9, args_.R_world_depth);
-    std::copy_n(t_world.data(), 3, args_.t_world_depth);
+    const RowMajor R_model = R_map * R.transpose();
+    const Eigen::Vector3f t_model = t_map - R_model * t;
+    std::copy_n(R_map.data(), 9, args_.R_map_depth);
+    std::copy_n(t_map.data(), 3, args_.t_map_depth);
     std::copy_n(R.data(), 9, args_.R_model_depth);
     std::copy_n(t.data(), 3, args_.t_model_depth);
     args_.fx = args_.fy = random_.Uniform(30.0F, 100.0F);
@@ -123,7 +123,7 @@ class AccumulateIcpRowsTest : public ::testing::Test {
     FillWall(model_width, model_height, R_model, t_model, model_);
     args_.current = &current_;
     args_.model = &model_;
-    const Eigen::Vector3f middle = t_world + R_world * Eigen::Vector3f(0.0F, 0.0F, 0.7F);
+    const Eigen::Vector3f middle = t_map + R_map * Eigen::Vector3f(0.0F, 0.0F, 0.7F);
     for (int axis = 0; axis < 3; ++axis) {
       args_.volume_min[axis] = middle[axis] - 0.3F;
       args_.volume_max[axis] = middle[axis] + 0.3F;
@@ -227,7 +227,7 @@ TEST_F(AccumulateIcpRowsTest, APoseThatIsNoneHasNoInliers) {
   testing::ForEachInstructionSet([&] {
     for (const float bad : {kNan, kInfinity, -kInfinity, 1e30F}) {
       for (float* const place :
-           {args_.R_world_depth, args_.t_world_depth, args_.R_model_depth, args_.t_model_depth}) {
+           {args_.R_map_depth, args_.t_map_depth, args_.R_model_depth, args_.t_model_depth}) {
         Rearrange(70, 9);
         for (int i = 0; i < 3; ++i) place[i] = bad;
         IcpKernelSums sums;

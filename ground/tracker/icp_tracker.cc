@@ -79,10 +79,10 @@ Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to) {
   return twist;
 }
 
-void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth) {
+void ApplyTwist(const Vector6& twist, RigidTransform& T_map_depth) {
   const RigidTransform update = TransformFromTwist(twist);
-  T_world_depth.linear() = update.linear() * T_world_depth.linear();
-  T_world_depth.translation() += update.translation();
+  T_map_depth.linear() = update.linear() * T_map_depth.linear();
+  T_map_depth.translation() += update.translation();
 }
 
 std::string_view ToString(LostReason reason) {
@@ -148,15 +148,14 @@ IcpSums& IcpSums::operator+=(const IcpSums& other) {
   return *this;
 }
 
-IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth,
+IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_map_depth,
                       const ModelView& model, const VoxelGrid& grid, const IcpLimits& limits,
                       ThreadPool& pool) {
   IcpKernelArgs args{};
   args.current = &current;
   args.model = &model.maps;
-  CopyTransform(T_world_depth, args.R_world_depth, args.t_world_depth);
-  CopyTransform(model.T_world_depth.inverse() * T_world_depth, args.R_model_depth,
-                args.t_model_depth);
+  CopyTransform(T_map_depth, args.R_map_depth, args.t_map_depth);
+  CopyTransform(model.T_map_depth.inverse() * T_map_depth, args.R_model_depth, args.t_model_depth);
   args.fx = static_cast<float>(model.camera.fx);
   args.fy = static_cast<float>(model.camera.fy);
   args.cx = static_cast<float>(model.camera.cx);
@@ -185,7 +184,7 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
                                  const VoxelGrid& grid, const Start& start,
                                  ThreadPool& pool) const {
   TrackingResult result;
-  result.T_world_depth = start.guess;
+  result.T_map_depth = start.guess;
   if (depth.valid_pixels < kMinTrackedPixels) {
     result.lost = LostReason::kTooFewPixels;
     return result;
@@ -197,9 +196,8 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   result.motion = MeasureMotionSpace(depth.maps[kPyramidLevels - 1], start.guess, model, limits,
                                      (model.is_young ? 2.0 : 1.0) * options_.min_observed());
   if (!result.motion.fully_observed()) {
-    ApplyTwist(result.motion.FreePart(TwistBetween(start.guess, start.prior)),
-               result.T_world_depth);
-    if (start.cue != nullptr) start.cue->Align(result.motion, model.maps, result.T_world_depth);
+    ApplyTwist(result.motion.FreePart(TwistBetween(start.guess, start.prior)), result.T_map_depth);
+    if (start.cue != nullptr) start.cue->Align(result.motion, model.maps, result.T_map_depth);
   }
   IcpSums last;
   const std::array<int, kPyramidLevels> iterations = {
@@ -207,7 +205,7 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
     for (int iteration = 0; iteration < iterations[level]; ++iteration) {
       const IcpSums sums =
-          AccumulateIcp(depth.maps[level], result.T_world_depth, model, grid, limits, pool);
+          AccumulateIcp(depth.maps[level], result.T_map_depth, model, grid, limits, pool);
       ++result.iterations;
       result.inlier_ratio = sums.inlier_ratio();
       result.overlap_ratio = sums.overlap_ratio();
@@ -221,30 +219,30 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
         return result;
       }
       last = sums;
-      ApplyTwist(*twist, result.T_world_depth);
+      ApplyTwist(*twist, result.T_map_depth);
       if (twist->head<3>().norm() < options_.min_update_m() &&
           twist->tail<3>().norm() < options_.min_update_deg() * kRadPerDeg) {
         break;
       }
     }
   }
-  result.T_world_depth.linear() =
-      Eigen::Quaterniond(result.T_world_depth.linear()).normalized().toRotationMatrix();
+  result.T_map_depth.linear() =
+      Eigen::Quaterniond(result.T_map_depth.linear()).normalized().toRotationMatrix();
   result.covariance = ObservedCovariance(last, result);
   if (start.cue != nullptr && !result.motion.fully_observed()) {
     // Once more, where the geometry has put it.
-    const auto fit = start.cue->Align(result.motion, model.maps, result.T_world_depth);
+    const auto fit = start.cue->Align(result.motion, model.maps, result.T_map_depth);
     if (fit) Adopt(*fit, result);
   }
-  result.step_m = TranslationDistance(model.T_world_depth, result.T_world_depth);
-  result.step_rad = RotationAngle(model.T_world_depth, result.T_world_depth);
+  result.step_m = TranslationDistance(model.T_map_depth, result.T_map_depth);
+  result.step_rad = RotationAngle(model.T_map_depth, result.T_map_depth);
   // The normals of a young model are too rough to reject correspondences fairly.
   constexpr double kYoungShare = 1.0 / 3.0;
   return Judge(result, options_.min_inlier_ratio() * (model.is_young ? kYoungShare : 1.0));
 }
 
 TrackingResult IcpTracker::Judge(TrackingResult result, double min_inlier_ratio) const {
-  if (!result.T_world_depth.matrix().allFinite()) {
+  if (!result.T_map_depth.matrix().allFinite()) {
     result.lost = LostReason::kSingular;
   } else if (result.inlier_ratio < min_inlier_ratio) {
     result.lost = LostReason::kTooFewInliers;

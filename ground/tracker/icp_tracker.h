@@ -27,11 +27,11 @@ enum class LostReason {
 };
 std::string_view ToString(LostReason reason);
 
-/// Holds what the model looks like from a pose: the tracker's reference. Maps in `world`.
+/// Holds what the model looks like from a pose: the tracker's reference. Maps in `map`.
 struct ModelView {
   SurfaceMaps maps;
   CameraModel camera;  ///< The camera of the maps; may be smaller than the depth image.
-  RigidTransform T_world_depth;
+  RigidTransform T_map_depth;
   bool is_young = false;  ///< Little more than one frame's noise: its normals are rough.
 };
 
@@ -50,7 +50,7 @@ inline constexpr int kMinTrackedPixels = 1000;
 
 struct TrackingResult {
   LostReason lost = LostReason::kNone;
-  RigidTransform T_world_depth;  ///< The best estimate, meaningful only if not lost.
+  RigidTransform T_map_depth;  ///< The best estimate, meaningful only if not lost.
   double inlier_ratio = 0.0;   ///< Correspondences / valid pixels inside the volume, finest level.
   double overlap_ratio = 0.0;  ///< Pixels where the model has a surface / the same pixels.
   double agreement = 0.0;      ///< Correspondences / pixels where the model has a surface.
@@ -59,8 +59,8 @@ struct TrackingResult {
   double step_rad = 0.0;
   int iterations = 0;
   MotionSpace motion;  ///< What of the motion was measured.
-  /// How uncertain T_world_depth is, as a twist (translation, rotation about the camera's position)
-  /// in `world`, m and rad; what this frame measured, so nothing along axes that are not observed
+  /// How uncertain T_map_depth is, as a twist (translation, rotation about the camera's position)
+  /// in `map`, m and rad; what this frame measured, so nothing along axes that are not observed
   /// (PoseUncertainty).
   Matrix6 covariance = Matrix6::Zero();
 
@@ -86,7 +86,7 @@ class IcpTracker {
     ThermalCue* cue = nullptr;  ///< Goes before the prior where it observes something.
   };
 
-  /// Finds T_world_depth of `depth` near the guess. Residuals are weighted by the sensor's depth
+  /// Finds T_map_depth of `depth` near the guess. Residuals are weighted by the sensor's depth
   /// noise (variance grows with the fourth power of the depth). In directions along which the view
   /// slides on itself (a plane, a cylinder), the pose is the cue's or else the prior's.
   TrackingResult Track(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
@@ -99,7 +99,7 @@ class IcpTracker {
 };
 
 /// Sums of one ICP iteration. H x = -g in the twist (translation, rotation) applied from the left
-/// in `world`, about the camera's position.
+/// in `map`, about the camera's position.
 struct IcpSums {
   Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
@@ -119,11 +119,11 @@ struct IcpSums {
   }
 };
 
-/// The twist that takes `from` to `to`, both T_world_depth.
+/// The twist that takes `from` to `to`, both T_map_depth.
 Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to);
 
-/// Moves a pose by a twist in `world`: rotates about the camera's position, then translates.
-void ApplyTwist(const Vector6& twist, RigidTransform& T_world_depth);
+/// Moves a pose by a twist in `map`: rotates about the camera's position, then translates.
+void ApplyTwist(const Vector6& twist, RigidTransform& T_map_depth);
 
 struct IcpLimits {
   float max_distance_m;
@@ -131,7 +131,7 @@ struct IcpLimits {
 };
 
 /// One pass over the current maps (camera coordinates): associates, rejects, accumulates.
-IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_world_depth,
+IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_map_depth,
                       const ModelView& model, const VoxelGrid& grid, const IcpLimits& limits,
                       ThreadPool& pool);
 

@@ -12,16 +12,16 @@ constexpr double kMaxFramesAhead = 2.0;
 
 }  // namespace
 
-void MotionHistory::Add(const StampedPose& pose) {
+void MotionHistory::Add(const StampedMapPose& pose) {
   poses_.push_back(pose);
   if (poses_.size() > kPoses) poses_.pop_front();
 }
 
-std::optional<StampedPose> MotionHistory::last() const {
+std::optional<StampedMapPose> MotionHistory::last() const {
   return poses_.empty() ? std::nullopt : std::optional(poses_.back());
 }
 
-std::optional<StampedPose> MotionHistory::before_last() const {
+std::optional<StampedMapPose> MotionHistory::before_last() const {
   return poses_.size() < 2 ? std::nullopt : std::optional(poses_[poses_.size() - 2]);
 }
 
@@ -33,9 +33,9 @@ std::optional<RigidTransform> MotionHistory::PredictSmoothly(CaptureTime time) c
   return poses_.size() < 2 ? std::nullopt : Extrapolate(poses_.front(), time);
 }
 
-std::optional<RigidTransform> MotionHistory::Extrapolate(const StampedPose& from,
+std::optional<RigidTransform> MotionHistory::Extrapolate(const StampedMapPose& from,
                                                          CaptureTime time) const {
-  const StampedPose& to = poses_.back();
+  const StampedMapPose& to = poses_.back();
   const double span_s = ToSeconds(to.time - from.time);
   const double ahead_s = ToSeconds(time - to.time);
   const double frame_s = ToSeconds(to.time - before_last()->time);
@@ -43,8 +43,8 @@ std::optional<RigidTransform> MotionHistory::Extrapolate(const StampedPose& from
     return std::nullopt;
   // The motion over the span, in the rig's own coordinates, goes on from the newest pose.
   const double share = ahead_s / span_s;
-  const RigidTransform motion = from.T_world_depth.inverse() * to.T_world_depth;
-  return to.T_world_depth * Interpolate(RigidTransform::Identity(), motion, share);
+  const RigidTransform motion = from.T_map_depth.inverse() * to.T_map_depth;
+  return to.T_map_depth * Interpolate(RigidTransform::Identity(), motion, share);
 }
 
 }  // namespace isotherm

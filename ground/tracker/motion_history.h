@@ -3,25 +3,25 @@
 #include <deque>
 #include <optional>
 
-#include "common/geometry/stamped_pose.h"
+#include "common/geometry/map_pose.h"
 
 namespace isotherm {
 
 /// The rig's motion over the last tracked frames, and where it goes on. Thread-compatible.
 class MotionHistory {
  public:
-  void Add(const StampedPose& pose);
+  void Add(const StampedMapPose& pose);
   /// After a lost frame: the motion is not known any more.
   void Clear() { poses_.clear(); }
   /// To other coordinates: every pose becomes T_new_old * pose.
   void Transform(const RigidTransform& T_new_old) {
-    for (StampedPose& pose : poses_) pose.T_world_depth = T_new_old * pose.T_world_depth;
+    for (StampedMapPose& pose : poses_) pose.T_map_depth = T_new_old * pose.T_map_depth;
   }
 
   /// The newest pose; nullopt after Clear.
-  std::optional<StampedPose> last() const;
+  std::optional<StampedMapPose> last() const;
   /// The one before; nullopt if fewer than two were tracked since the last Clear.
-  std::optional<StampedPose> before_last() const;
+  std::optional<StampedMapPose> before_last() const;
 
   /// The pose at `time` if the velocity between the last two poses goes on; nullopt if that is not
   /// known or `time` is too far away.
@@ -31,9 +31,9 @@ class MotionHistory {
   std::optional<RigidTransform> PredictSmoothly(CaptureTime time) const;
 
  private:
-  std::optional<RigidTransform> Extrapolate(const StampedPose& from, CaptureTime time) const;
+  std::optional<RigidTransform> Extrapolate(const StampedMapPose& from, CaptureTime time) const;
 
-  std::deque<StampedPose> poses_;
+  std::deque<StampedMapPose> poses_;
 };
 
 }  // namespace isotherm

@@ -17,9 +17,9 @@ class MotionHistoryTest : public ::testing::Test {
  protected:
   static constexpr milliseconds kFrame{33};
   static CaptureTime At(int frame) { return CaptureTime(std::chrono::hours(1) + frame * kFrame); }
-  static RigidTransform Turned(double angle_rad, const Eigen::Vector3d& p_world) {
+  static RigidTransform Turned(double angle_rad, const Eigen::Vector3d& p_map) {
     const Eigen::Vector3d axis = Eigen::Vector3d(0.4, 1.0, -0.3).normalized();
-    return MakeTransform(p_world, Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis)));
+    return MakeTransform(p_map, Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis)));
   }
   static RigidTransform Sliding(double frame) {
     return Turned(0.7,

@@ -23,10 +23,10 @@ Eigen::Vector3d At(const Image<float>& x_plane, const Image<float>& y_plane,
   return {x_plane.At(x, y), y_plane.At(x, y), z_plane.At(x, y)};
 }
 
-MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_world_depth,
+MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_map_depth,
                       const ModelView& model, const IcpLimits& limits) {
   MotionSums sums;
-  const RigidTransform T_model_depth = model.T_world_depth.inverse() * T_world_depth;
+  const RigidTransform T_model_depth = model.T_map_depth.inverse() * T_map_depth;
   const CameraModel& camera = model.camera;
   const double max_squared = limits.max_distance_m * double{limits.max_distance_m};
   for (int y = 0; y < current.height(); y += kStride) {
@@ -40,12 +40,12 @@ MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_world_
       if (!(u >= 0.0 && v >= 0.0 && u < model.maps.width() && v < model.maps.height())) continue;
       const int i = static_cast<int>(u);
       const int j = static_cast<int>(v);
-      const Eigen::Vector3d arm = T_world_depth.linear() * p_depth;
+      const Eigen::Vector3d arm = T_map_depth.linear() * p_depth;
       const Eigen::Vector3d q = At(model.maps.vx, model.maps.vy, model.maps.vz, i, j);
-      if (!((arm + T_world_depth.translation() - q).squaredNorm() < max_squared)) continue;
+      if (!((arm + T_map_depth.translation() - q).squaredNorm() < max_squared)) continue;
       const Eigen::Vector3d n = At(model.maps.nx, model.maps.ny, model.maps.nz, i, j);
       const Eigen::Vector3d n_current =
-          T_world_depth.linear() * At(current.nx, current.ny, current.nz, x, y);
+          T_map_depth.linear() * At(current.nx, current.ny, current.nz, x, y);
       if (!(n.dot(n_current) > double{limits.min_normal_cosine})) continue;
       Vector6 model_J;
       model_J << n, arm.cross(n);
@@ -83,11 +83,11 @@ std::optional<Vector6> MotionSpace::SolveObserved(const Matrix6& H, const Vector
   return basis * ldlt.solve(-(basis.transpose() * g));
 }
 
-MotionSpace MeasureMotionSpace(const SurfaceMaps& current, const RigidTransform& T_world_depth,
+MotionSpace MeasureMotionSpace(const SurfaceMaps& current, const RigidTransform& T_map_depth,
                                const ModelView& model, const IcpLimits& limits,
                                double min_strength) {
   MotionSpace space;
-  const MotionSums sums = Accumulate(current, T_world_depth, model, limits);
+  const MotionSums sums = Accumulate(current, T_map_depth, model, limits);
   // A share of the pixels that are looked at.
   constexpr double kMinShare = 0.05;
   const double looked_at =

@@ -15,7 +15,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 /// Which motions of the camera the geometry in view can measure. Motions are twists (translation,
-/// rotation about the camera's position, in `world`) with rotations in metres at the mean depth:
+/// rotation about the camera's position, in `map`) with rotations in metres at the mean depth:
 /// twist = scale * motion, element by element.
 struct MotionSpace {
   Vector6 scale = Vector6::Ones();
@@ -39,7 +39,7 @@ struct MotionSpace {
 /// is independent, so that it does not look like structure, as it would in the square of one
 /// side's. `min_strength` separates free from observed axes. All are observed if there are too few
 /// associations to tell.
-MotionSpace MeasureMotionSpace(const SurfaceMaps& current, const RigidTransform& T_world_depth,
+MotionSpace MeasureMotionSpace(const SurfaceMaps& current, const RigidTransform& T_map_depth,
                                const ModelView& model, const IcpLimits& limits,
                                double min_strength);
 

@@ -58,14 +58,14 @@ class MeasureMotionSpaceTest : public ::testing::Test {
     TsdfVolume volume(grid, 0.016, MaxBlocks(options, grid));
     testing::FillVolume(volume, scene);
     view_.camera = testing::SmallDepthCamera();
-    view_.T_world_depth = testing::FirstPose();
-    Raycaster().Cast(volume, view_.camera, view_.T_world_depth, 0.0F, pool_, view_.maps);
+    view_.T_map_depth = testing::FirstPose();
+    Raycaster().Cast(volume, view_.camera, view_.T_map_depth, 0.0F, pool_, view_.maps);
     DepthPreprocessor preprocessor(PreprocessorOptions(), view_.camera);
-    const DepthFrame frame = testing::RenderDepth(scene, view_.camera, view_.T_world_depth);
+    const DepthFrame frame = testing::RenderDepth(scene, view_.camera, view_.T_map_depth);
     current_ = preprocessor.Process(frame, pool_).maps[kPyramidLevels - 1];
   }
   MotionSpace Measure(double min_strength) const {
-    return MeasureMotionSpace(current_, view_.T_world_depth, view_, kLimits, min_strength);
+    return MeasureMotionSpace(current_, view_.T_map_depth, view_, kLimits, min_strength);
   }
   /// Turns each normal by itself.
   static void Roughen(SurfaceMaps& maps, std::mt19937& random) {

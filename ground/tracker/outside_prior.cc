@@ -32,7 +32,7 @@ double ObservedSigma(const MotionSpace& motion, const Matrix6& covariance) {
 OutsidePrior::OutsidePrior(const OutsidePoseOptions& options)
     : options_(options), stream_(options) {}
 
-std::optional<OutsidePrior::Prediction> OutsidePrior::Predict(const StampedPose& last,
+std::optional<OutsidePrior::Prediction> OutsidePrior::Predict(const StampedMapPose& last,
                                                               CaptureTime time,
                                                               const RigidTransform& inertial,
                                                               const PriorError& inertial_error) {
@@ -57,7 +57,7 @@ std::optional<OutsidePrior::Prediction> OutsidePrior::Predict(const StampedPose&
   predicted_ = Used{time, *to};
   const RigidTransform motion = from->T_reference_depth.inverse() * to->T_reference_depth;
   Prediction result;
-  result.T_world_depth = last.T_world_depth * motion;
+  result.T_map_depth = last.T_map_depth * motion;
   result.error.continues = continues;
   result.error.rotation_growth_rad =
       options_.drift_ratio() * RotationAngle(RigidTransform::Identity(), motion);
@@ -67,7 +67,7 @@ std::optional<OutsidePrior::Prediction> OutsidePrior::Predict(const StampedPose&
     result.error.translation_growth_m = options_.drift_ratio() * motion.translation().norm();
     result.error.translation_noise_m = std::numbers::sqrt2 * to->position_noise_m;
   } else {
-    result.T_world_depth.translation() = inertial.translation();
+    result.T_map_depth.translation() = inertial.translation();
     result.error.translation_growth_m = inertial_error.translation_growth_m;
   }
   return result;
@@ -78,12 +78,13 @@ bool OutsidePrior::Contradicts(const TrackingResult& result, CaptureTime time,
   const MotionSpace& motion = result.motion;
   if (anchors_.empty() || !motion.measured || motion.free_axes == 6) return false;
   // Behind a change of what is observed, the tracker corrects what had been held till then.
-  const StampedPose& anchor = motion.free_axes == free_axes_ ? anchors_.front() : anchors_.back();
+  const StampedMapPose& anchor =
+      motion.free_axes == free_axes_ ? anchors_.front() : anchors_.back();
   const auto from = stream_.At(anchor.time);
   const auto to = stream_.At(time);
   if (!from || !to) return false;
   const RigidTransform moved = from->T_reference_depth.inverse() * to->T_reference_depth;
-  Vector6 twist = TwistBetween(anchor.T_world_depth * moved, result.T_world_depth);
+  Vector6 twist = TwistBetween(anchor.T_map_depth * moved, result.T_map_depth);
   double noise_m =
       std::hypot(from->rotation_noise_rad, to->rotation_noise_rad) * motion.mean_depth_m;
   double way_m = RotationAngle(RigidTransform::Identity(), moved) * motion.mean_depth_m;
@@ -111,7 +112,7 @@ void OutsidePrior::Note(const TrackingResult& result, CaptureTime time, const Ma
   NoteTrust(!contradicts, compared);
   if (contradicts || result.motion.free_axes != free_axes_) anchors_.clear();
   free_axes_ = result.motion.free_axes;
-  anchors_.push_back({time, result.T_world_depth});
+  anchors_.push_back({time, result.T_map_depth});
   if (anchors_.size() > kAnchors) anchors_.pop_front();
 }
 
@@ -146,7 +147,7 @@ void OutsidePrior::Reset() {
 }
 
 void OutsidePrior::Transform(const RigidTransform& T_new_old) {
-  for (StampedPose& anchor : anchors_) anchor.T_world_depth = T_new_old * anchor.T_world_depth;
+  for (StampedMapPose& anchor : anchors_) anchor.T_map_depth = T_new_old * anchor.T_map_depth;
 }
 
 }  // namespace isotherm

@@ -4,7 +4,7 @@
 #include <deque>
 #include <optional>
 
-#include "common/geometry/stamped_pose.h"
+#include "common/geometry/map_pose.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tracker/outside_stream.h"
 #include "ground/tracker/prior_error.h"
@@ -34,12 +34,12 @@ class OutsidePrior {
   void Add(const OutsidePose& sample) { stream_.Add(sample); }
 
   struct Prediction {
-    RigidTransform T_world_depth;
+    RigidTransform T_map_depth;
     PriorError error;
   };
   /// Where the depth camera is at `time` if it moved from `last`, the newest tracked pose, as the
   /// source says. `inertial` and its error stand in for what the source does not measure.
-  std::optional<Prediction> Predict(const StampedPose& last, CaptureTime time,
+  std::optional<Prediction> Predict(const StampedMapPose& last, CaptureTime time,
                                     const RigidTransform& inertial,
                                     const PriorError& inertial_error);
 
@@ -71,7 +71,7 @@ class OutsidePrior {
   std::optional<Used> predicted_;  ///< The newest prediction.
   /// Frames tracked since the set of observed directions changed, oldest first: what the newest is
   /// compared with, so that slow contradictions add up.
-  std::deque<StampedPose> anchors_;
+  std::deque<StampedMapPose> anchors_;
   int free_axes_ = 0;  ///< Those of the anchors.
   bool trusted_ = true;
   int agreeing_ = 0;

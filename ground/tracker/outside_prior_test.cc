@@ -30,7 +30,7 @@ class OutsidePriorTest : public ::testing::Test {
     return Turned(0.3 * std::sin(2.0 * t), {0.2, 1.0, 0.1},
                   {0.1 * std::sin(3.0 * t), 0.2 * t, 0.05 * std::cos(2.0 * t)});
   }
-  /// What the source says; `seen` maps time to T_world_depth as the source sees it.
+  /// What the source says; `seen` maps time to T_map_depth as the source sees it.
   template <typename Seen>
   void Feed(double from_s, double to_s, Seen seen) {
     for (int i = static_cast<int>(std::lround(100.0 * from_s)); i < 100.0 * to_s - 0.5; ++i) {
@@ -49,7 +49,7 @@ class OutsidePriorTest : public ::testing::Test {
   /// A frame that was tracked at `pose`; the free axes are x, y, z in this order.
   static TrackingResult Tracked(const RigidTransform& pose, int free_axes = 0) {
     TrackingResult result;
-    result.T_world_depth = pose;
+    result.T_map_depth = pose;
     result.motion.measured = true;
     result.motion.free_axes = free_axes;
     result.motion.mean_depth_m = kDepth;
@@ -82,12 +82,12 @@ class OutsidePriorTest : public ::testing::Test {
 
 TEST_F(OutsidePriorTest, TheMotionCountsWhateverTheReferenceFrame) {
   Feed(0.0, 1.0, True);
-  // The model's world is yet another frame, in which the rig was tracked.
+  // The model is in yet another frame, in which the rig was tracked.
   const RigidTransform elsewhere = Turned(0.4, {1, 1, 1}, {0.5, 0.6, 0.7});
   const auto prediction = Predict(elsewhere * True(0.31), 0.31, 0.34);
   ASSERT_TRUE(prediction.has_value());
-  EXPECT_LT(TranslationDistance(prediction->T_world_depth, elsewhere * True(0.34)), kRounding);
-  EXPECT_LT(RotationAngle(prediction->T_world_depth, elsewhere * True(0.34)), 1e-7);
+  EXPECT_LT(TranslationDistance(prediction->T_map_depth, elsewhere * True(0.34)), kRounding);
+  EXPECT_LT(RotationAngle(prediction->T_map_depth, elsewhere * True(0.34)), 1e-7);
   const double way = (True(0.31).inverse() * True(0.34)).translation().norm();
   EXPECT_NEAR(prediction->error.translation_growth_m, options_.drift_ratio() * way, 1e-7);
   EXPECT_NEAR(prediction->error.translation_noise_m, std::numbers::sqrt2 * position_sigma_m_, 1e-6);
@@ -137,7 +137,7 @@ TEST_F(OutsidePriorTest, ErrorsOfLatePosesDoNotAddUp) {
     const auto prediction = Predict(pose, time, next);
     if (!prediction) continue;
     ++predicted;
-    pose = prediction->T_world_depth;
+    pose = prediction->T_map_depth;
     time = next;
     prior_->Note(Tracked(pose, 6), At(next), known_, true);
     EXPECT_LT(TranslationDistance(pose, True(next)), kMost) << i;
@@ -150,8 +150,8 @@ TEST_F(OutsidePriorTest, AnAttitudeFilterTurnsAndInertiaMoves) {
   Feed(0.0, 0.5, True);
   const auto prediction = Predict(True(0.2), 0.2, 0.23);
   ASSERT_TRUE(prediction.has_value());
-  EXPECT_EQ(prediction->T_world_depth.translation(), Eigen::Vector3d(7, 8, 9));
-  EXPECT_LT(RotationAngle(prediction->T_world_depth, True(0.23)), 1e-7);
+  EXPECT_EQ(prediction->T_map_depth.translation(), Eigen::Vector3d(7, 8, 9));
+  EXPECT_LT(RotationAngle(prediction->T_map_depth, True(0.23)), 1e-7);
   EXPECT_EQ(prediction->error.translation_growth_m, kInertialGrowth);
   EXPECT_EQ(prediction->error.translation_noise_m, 0.0);
   EXPECT_LT(prediction->error.rotation_growth_rad, 0.001);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/geometry/pose_covariance.h"
 #include "ground/tracker/icp_tracker.h"
 
 namespace isotherm {
@@ -36,12 +37,9 @@ void PoseUncertainty::Update(const TrackingResult& result, const PriorError& pri
   surface_sigma_m_ = std::sqrt(std::max(0.0, solver.eigenvalues()(5)));
 }
 
-void PoseUncertainty::Rotate(const Eigen::Matrix3d& R) {
-  Matrix6 turn = Matrix6::Zero();
-  turn.topLeftCorner<3, 3>() = R;
-  turn.bottomRightCorner<3, 3>() = R;
-  covariance_ = turn * covariance_ * turn.transpose();
-  without_noise_ = turn * without_noise_ * turn.transpose();
+void PoseUncertainty::Rotate(const Eigen::Matrix3d& R_new_old) {
+  covariance_ = Rotated(covariance_, R_new_old);
+  without_noise_ = Rotated(without_noise_, R_new_old);
 }
 
 }  // namespace isotherm

@@ -15,11 +15,11 @@ class PoseUncertainty {
   /// After each tracked frame, with the error of the prior that held its free directions.
   void Update(const TrackingResult& result, const PriorError& prior);
 
-  /// To coordinates whose axes are turned: `R` maps from the old ones.
-  void Rotate(const Eigen::Matrix3d& R);
+  /// Goes on in coordinates whose axes are rotated.
+  void Rotate(const Eigen::Matrix3d& R_new_old);
 
-  /// How uncertain T_world_depth is, as a twist (translation, rotation about the camera's position)
-  /// in `world`, m and rad.
+  /// How uncertain T_map_depth is, as a twist (translation, rotation about the camera's position)
+  /// in `map`, m and rad.
   const Matrix6& covariance() const { return covariance_; }
   /// One standard deviation of the least certain motion, as the shift of the surface in view,
   /// metres.

@@ -92,10 +92,10 @@ void ThermalCue::Reduce(const Image<std::uint16_t>& centikelvin, Image<float>& c
 }
 
 std::optional<ThermalCue::Sample> ThermalCue::Look(const Image<float>& celsius,
-                                                   const RigidTransform& T_world_thermal,
-                                                   const Eigen::Vector3d& p_world) const {
-  const Eigen::Matrix3d& R = T_world_thermal.linear();
-  const Eigen::Vector3d p = R.transpose() * (p_world - T_world_thermal.translation());
+                                                   const RigidTransform& T_map_thermal,
+                                                   const Eigen::Vector3d& p_map) const {
+  const Eigen::Matrix3d& R = T_map_thermal.linear();
+  const Eigen::Vector3d p = R.transpose() * (p_map - T_map_thermal.translation());
   if (!(p.z() > 0.0)) return std::nullopt;
   const double u = camera_.fx * p.x() / p.z() + camera_.cx;
   const double v = camera_.fy * p.y() / p.z() + camera_.cy;
@@ -117,7 +117,7 @@ std::optional<ThermalCue::Sample> ThermalCue::Look(const Image<float>& celsius,
   if (!std::isfinite(value)) return std::nullopt;
   const Eigen::Vector3d in_camera(camera_.fx * du / p.z(), camera_.fy * dv / p.z(),
                                   -(du * (u - camera_.cx) + dv * (v - camera_.cy)) / p.z());
-  return Sample{p_world, value, R * in_camera};
+  return Sample{p_map, value, R * in_camera};
 }
 
 void ThermalCue::MakeReference(const SurfaceMaps& model_points) {
@@ -132,7 +132,7 @@ void ThermalCue::MakeReference(const SurfaceMaps& model_points) {
     for (int x = step / 2; x < model_points.width(); x += step) {
       const Eigen::Vector3d p(model_points.vx.At(x, y), model_points.vy.At(x, y),
                               model_points.vz.At(x, y));
-      const auto sample = p.allFinite() ? Look(celsius, T_world_placed_, p) : std::nullopt;
+      const auto sample = p.allFinite() ? Look(celsius, T_map_placed_, p) : std::nullopt;
       if (!sample) continue;
       reference_.push_back(*sample);
       sum += sample->celsius;
@@ -145,7 +145,7 @@ void ThermalCue::MakeReference(const SurfaceMaps& model_points) {
   reference_sigma_m_ = placed_sigma_m_;
 }
 
-void ThermalCue::Begin(const std::optional<StampedPose>& last, CaptureTime time,
+void ThermalCue::Begin(const std::optional<StampedMapPose>& last, CaptureTime time,
                        const RigidTransform& guess) {
   has_picture_ = false;
   is_reduced_ = false;
@@ -158,7 +158,7 @@ void ThermalCue::Begin(const std::optional<StampedPose>& last, CaptureTime time,
   // From the thermal to the depth frame the motion before goes on. To interpolate instead would
   // make the last pose's error, turned over, this one's.
   const double share = ToSeconds(taken - last->time) / ToSeconds(time - last->time);
-  RigidTransform motion = last->T_world_depth.inverse() * guess;
+  RigidTransform motion = last->T_map_depth.inverse() * guess;
   // The way back from where it was believed to be meanwhile is no motion to go on.
   if (since_gap_ == 1) motion.setIdentity();
   T_depth_then_ = motion.inverse() * Interpolate(RigidTransform::Identity(), motion, share);
@@ -166,9 +166,9 @@ void ThermalCue::Begin(const std::optional<StampedPose>& last, CaptureTime time,
   has_picture_ = true;
 }
 
-ThermalCue::Sums ThermalCue::Accumulate(const RigidTransform& T_world_depth,
+ThermalCue::Sums ThermalCue::Accumulate(const RigidTransform& T_map_depth,
                                         const MotionSpace& motion, const Sums& last) {
-  const RigidTransform T_world_thermal = T_world_depth * T_depth_then_ * T_depth_thermal_;
+  const RigidTransform T_map_thermal = T_map_depth * T_depth_then_ * T_depth_thermal_;
   // When the camera moves by a twist, the point moves by its inverse.
   const Matrix6 to_axes = -motion.axes.transpose() * motion.scale.asDiagonal();
   Matrix6 products = Matrix6::Zero();
@@ -181,12 +181,12 @@ ThermalCue::Sums ThermalCue::Accumulate(const RigidTransform& T_world_depth,
   const double limit_k = last.in_view > 0 ? kOutlier * last.spread_k : HUGE_VAL;
   residuals_.clear();
   for (const Sample& before : reference_) {
-    const auto now = Look(picture_, T_world_thermal, before.p_world);
+    const auto now = Look(picture_, T_map_thermal, before.p_map);
     if (!now) continue;
     const double residual = now->celsius - before.celsius;
     residuals_.push_back(residual);
     if (std::abs(residual - last.median_k) > limit_k) continue;
-    const Eigen::Vector3d arm = before.p_world - T_world_depth.translation();
+    const Eigen::Vector3d arm = before.p_map - T_map_depth.translation();
     Vector6 J_before;
     J_before << before.gradient, arm.cross(before.gradient);
     Vector6 J_now;
@@ -215,11 +215,11 @@ ThermalCue::Sums ThermalCue::Accumulate(const RigidTransform& T_world_depth,
   return sums;
 }
 
-Matrix6 ThermalCue::Shifts(const RigidTransform& T_world_depth, const MotionSpace& motion) const {
+Matrix6 ThermalCue::Shifts(const RigidTransform& T_map_depth, const MotionSpace& motion) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   for (const Sample& sample : reference_) {
-    const Eigen::Vector3d arm = sample.p_world - T_world_depth.translation();
+    const Eigen::Vector3d arm = sample.p_map - T_map_depth.translation();
     sum += arm;
     squares += arm * arm.transpose();
   }
@@ -258,7 +258,7 @@ Eigen::VectorXd ThermalCue::FindObserved(const Eigen::MatrixXd& H, const Eigen::
 
 std::optional<ThermalFit> ThermalCue::Align(const MotionSpace& motion,
                                             const SurfaceMaps& model_points,
-                                            RigidTransform& T_world_depth) {
+                                            RigidTransform& T_map_depth) {
   was_wanted_ = true;
   was_measured_ = false;
   if (!has_picture_) return std::nullopt;
@@ -267,8 +267,8 @@ std::optional<ThermalFit> ThermalCue::Align(const MotionSpace& motion,
   if (!is_reduced_) Reduce(newest_->centikelvin, picture_);
   is_reduced_ = true;
   const int free = motion.free_axes;
-  const Eigen::MatrixXd shifts = Shifts(T_world_depth, motion).topLeftCorner(free, free);
-  RigidTransform pose = T_world_depth;
+  const Eigen::MatrixXd shifts = Shifts(T_map_depth, motion).topLeftCorner(free, free);
+  RigidTransform pose = T_map_depth;
   Eigen::VectorXd moved = Eigen::VectorXd::Zero(free);
   Sums sums = Accumulate(pose, motion, Sums());
   ThermalFit fit;
@@ -296,12 +296,12 @@ std::optional<ThermalFit> ThermalCue::Align(const MotionSpace& motion,
   }
   if (last_step_m > 10.0 * kConvergedM) return std::nullopt;
   if (sums.mean_square_k2 > kMaxUnexplained * reference_variance_k2_) return std::nullopt;
-  T_world_depth = pose;
+  T_map_depth = pose;
   was_measured_ = true;
   return fit;
 }
 
-void ThermalCue::End(const std::optional<StampedPose>& before, const StampedPose& last,
+void ThermalCue::End(const std::optional<StampedMapPose>& before, const StampedMapPose& last,
                      double sigma_m) {
   // A reference from before the geometry sufficed is older than need be.
   if (!was_wanted_ || reference_leaves_view_) reference_.clear();
@@ -311,13 +311,12 @@ void ThermalCue::End(const std::optional<StampedPose>& before, const StampedPose
   const CaptureTime taken = newest_->header.capture_time;
   if (taken > last.time) return;
   if (ends_gap) {
-    T_world_placed_ = last.T_world_depth * T_depth_then_ * T_depth_thermal_;
+    T_map_placed_ = last.T_map_depth * T_depth_then_ * T_depth_thermal_;
   } else if (before && taken > before->time) {
     const double share = ToSeconds(taken - before->time) / ToSeconds(last.time - before->time);
-    T_world_placed_ =
-        Interpolate(before->T_world_depth, last.T_world_depth, share) * T_depth_thermal_;
+    T_map_placed_ = Interpolate(before->T_map_depth, last.T_map_depth, share) * T_depth_thermal_;
   } else if (!before && ToSeconds(last.time - taken) < kMaxAgeAtStartS) {
-    T_world_placed_ = last.T_world_depth * T_depth_thermal_;
+    T_map_placed_ = last.T_map_depth * T_depth_thermal_;
   } else {
     return;
   }

@@ -6,7 +6,7 @@
 
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
-#include "common/geometry/stamped_pose.h"
+#include "common/geometry/map_pose.h"
 #include "ground/tracker/motion_space.h"
 
 namespace isotherm {
@@ -37,43 +37,44 @@ class ThermalCue {
   void Add(ThermalFramePtr frame) { newest_ = std::move(frame); }
 
   /// A depth frame of `time` is going to be tracked, near `guess`; `last` is the one before.
-  void Begin(const std::optional<StampedPose>& last, CaptureTime time, const RigidTransform& guess);
+  void Begin(const std::optional<StampedMapPose>& last, CaptureTime time,
+             const RigidTransform& guess);
   /// Moves the depth frame's pose along the free axes of `motion` as far as temperatures observe
   /// them; nullopt and no move if they do not, or if there is nothing to compare. `model_points`:
-  /// maps in `world` from the last pose.
+  /// maps in `map` from the last pose.
   std::optional<ThermalFit> Align(const MotionSpace& motion, const SurfaceMaps& model_points,
-                                  RigidTransform& T_world_depth);
+                                  RigidTransform& T_map_depth);
   /// The depth frame was tracked: `last` is its pose and `before` the one before that, if it is
   /// known. `sigma_m`: how far the surface may be off in the picture.
-  void End(const std::optional<StampedPose>& before, const StampedPose& last, double sigma_m);
+  void End(const std::optional<StampedMapPose>& before, const StampedMapPose& last, double sigma_m);
   /// Tracking was lost.
   void Forget();
 
  private:
   /// A point of the model and what was measured there.
   struct Sample {
-    Eigen::Vector3d p_world;
+    Eigen::Vector3d p_map;
     double celsius;
     Eigen::Vector3d
-        gradient;  ///< Change of the temperature with the point's motion, K/m, in `world`.
+        gradient;  ///< Change of the temperature with the point's motion, K/m, in `map`.
   };
   struct Sums;
 
   /// Returns what a picture shows at a point; nullopt outside of it.
-  std::optional<Sample> Look(const Image<float>& celsius, const RigidTransform& T_world_thermal,
-                             const Eigen::Vector3d& p_world) const;
+  std::optional<Sample> Look(const Image<float>& celsius, const RigidTransform& T_map_thermal,
+                             const Eigen::Vector3d& p_map) const;
   /// The quarter picture without lens distortion, °C; NaN = no value.
   void Reduce(const Image<std::uint16_t>& centikelvin, Image<float>& celsius) const;
   void MakeReference(const SurfaceMaps& model_points);
   /// Mean products of the shifts of the reference's points per motion along the axes.
-  Matrix6 Shifts(const RigidTransform& T_world_depth, const MotionSpace& motion) const;
+  Matrix6 Shifts(const RigidTransform& T_map_depth, const MotionSpace& motion) const;
   /// Separates directions by the mean square of the temperature's change per shift, and returns
   /// that per motion.
   Eigen::VectorXd FindObserved(const Eigen::MatrixXd& H, const Eigen::MatrixXd& shifts,
                                ThermalFit& fit) const;
   /// Along all axes. `last`: the sums at the pose before, if there were any; what is far from them
   /// is left out.
-  Sums Accumulate(const RigidTransform& T_world_depth, const MotionSpace& motion, const Sums& last);
+  Sums Accumulate(const RigidTransform& T_map_depth, const MotionSpace& motion, const Sums& last);
 
   CameraModel camera_;                ///< The camera of the quarter image.
   std::vector<std::int32_t> source_;  ///< Its cells' pixels in the camera's picture, 16 each.
@@ -83,7 +84,7 @@ class ThermalCue {
 
   ThermalFramePtr newest_;
   ThermalFramePtr placed_;  ///< The newest one whose pose is known.
-  RigidTransform T_world_placed_;
+  RigidTransform T_map_placed_;
   double placed_sigma_m_ = 0.0;
 
   std::vector<Sample> reference_;

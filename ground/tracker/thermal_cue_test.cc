@@ -57,19 +57,19 @@ class ThermalCueTest : public ::testing::Test {
 
   static CaptureTime Time(double seconds) { return CaptureTime(FromSeconds(100.0 + seconds)); }
 
-  std::shared_ptr<ThermalFrame> Frame(double seconds, const RigidTransform& T_world_depth,
+  std::shared_ptr<ThermalFrame> Frame(double seconds, const RigidTransform& T_map_depth,
                                       const Temperature& celsius) {
     auto frame = std::make_shared<ThermalFrame>();
     frame->header.capture_time = Time(seconds);
     frame->centikelvin.Resize(camera_.width, camera_.height);
-    const RigidTransform T_world_thermal = T_world_depth * T_thermal_depth_.inverse();
+    const RigidTransform T_map_thermal = T_map_depth * T_thermal_depth_.inverse();
     const std::uint64_t stream = NoiseStream(kSeed, 0, ++frames_);
     for (int v = 0; v < camera_.height; ++v) {
       for (int u = 0; u < camera_.width; ++u) {
         const Eigen::Vector2d xy = Unproject(camera_, {u, v});
-        const Eigen::Vector3d ray = T_world_thermal.linear() * Eigen::Vector3d(xy.x(), xy.y(), 1.0);
-        const Eigen::Vector3d p = T_world_thermal.translation() +
-                                  (kWallM - T_world_thermal.translation().z()) / ray.z() * ray;
+        const Eigen::Vector3d ray = T_map_thermal.linear() * Eigen::Vector3d(xy.x(), xy.y(), 1.0);
+        const Eigen::Vector3d p = T_map_thermal.translation() +
+                                  (kWallM - T_map_thermal.translation().z()) / ray.z() * ray;
         const double noise =
             kNetdK * NormalNoise(stream, static_cast<std::uint64_t>(v * camera_.width + u));
         frame->centikelvin.At(u, v) = static_cast<std::uint16_t>(
@@ -87,7 +87,7 @@ class ThermalCueTest : public ::testing::Test {
     cue_->Add(Frame(0.0, pose, before));
     cue_->End(std::nullopt, {Time(0.0), pose}, kReferenceSigmaM);
     cue_->Add(Frame(0.033, truth, after));
-    cue_->Begin(StampedPose{Time(0.0), pose}, Time(0.033), pose);
+    cue_->Begin(StampedMapPose{Time(0.0), pose}, Time(0.033), pose);
     return cue_->Align(motion_, points_, pose);
   }
 
@@ -180,7 +180,7 @@ TEST_F(ThermalCueTest, PixelsWithoutAValueAreLeftOut) {
     for (int x = 0; x < 100; ++x) frame->centikelvin.At(x, y) = 0;
   }
   cue_->Add(frame);
-  cue_->Begin(StampedPose{Time(0.0), pose}, Time(0.033), pose);
+  cue_->Begin(StampedMapPose{Time(0.0), pose}, Time(0.033), pose);
   ASSERT_TRUE(cue_->Align(motion_, points_, pose));
   ExpectNear(pose, truth);
 }
@@ -194,7 +194,7 @@ TEST_F(ThermalCueTest, MotionBetweenThermalAndDepthFrameIsAccountedFor) {
   cue_->Add(Frame(0.0, last, Spots));
   cue_->End(std::nullopt, {Time(0.0), last}, kReferenceSigmaM);
   cue_->Add(Frame(0.020, then, Spots));
-  cue_->Begin(StampedPose{Time(0.0), last}, Time(0.040), truth);
+  cue_->Begin(StampedMapPose{Time(0.0), last}, Time(0.040), truth);
   ASSERT_TRUE(cue_->Align(motion_, points_, pose));
   ExpectNear(pose, truth);
 }
@@ -203,14 +203,14 @@ TEST_F(ThermalCueTest, OnlyAFrameSinceTheLastDepthFrameCounts) {
   RigidTransform pose = RigidTransform::Identity();
   cue_->Add(Frame(0.0, pose, Spots));
   cue_->End(std::nullopt, {Time(0.0), pose}, kReferenceSigmaM);
-  cue_->Begin(StampedPose{Time(0.0), pose}, Time(0.033), pose);
+  cue_->Begin(StampedMapPose{Time(0.0), pose}, Time(0.033), pose);
   EXPECT_FALSE(cue_->Align(motion_, points_, pose)) << "the frame of the reference itself";
   cue_->Add(Frame(0.05, pose, Spots));
-  cue_->Begin(StampedPose{Time(0.0), pose}, Time(0.033), pose);
+  cue_->Begin(StampedMapPose{Time(0.0), pose}, Time(0.033), pose);
   EXPECT_FALSE(cue_->Align(motion_, points_, pose)) << "a frame after the depth frame";
   cue_->Begin(std::nullopt, Time(0.066), pose);
   EXPECT_FALSE(cue_->Align(motion_, points_, pose)) << "no depth frame before";
-  cue_->Begin(StampedPose{Time(0.033), pose}, Time(0.066), pose);
+  cue_->Begin(StampedMapPose{Time(0.033), pose}, Time(0.066), pose);
   EXPECT_TRUE(cue_->Align(motion_, points_, pose));
 }
 
@@ -219,7 +219,7 @@ TEST_F(ThermalCueTest, NothingIsComparedWithWhatWasBeforeALoss) {
   ASSERT_TRUE(Align(Spots, Spots, Shifted(0.002, 0.0, 0.0), pose));
   cue_->Forget();
   cue_->Add(Frame(0.066, pose, Spots));
-  cue_->Begin(StampedPose{Time(0.033), pose}, Time(0.066), pose);
+  cue_->Begin(StampedMapPose{Time(0.033), pose}, Time(0.066), pose);
   EXPECT_FALSE(cue_->Align(motion_, points_, pose));
 }
 

@@ -122,14 +122,14 @@ class IcpTrackerTest : public ::testing::Test {
   }
   void LookFrom(const RigidTransform& pose) {
     view_.camera = camera_;
-    view_.T_world_depth = pose;
+    view_.T_map_depth = pose;
     Raycaster().Cast(*volume_, camera_, pose, 0.0F, pool_, view_.maps);
   }
   TrackingResult Track(const DepthFrame& frame, int threads = 2) {
     ThreadPool pool(threads);
     DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
     return IcpTracker(options_).Track(preprocessor.Process(frame, pool), view_, grid_,
-                                      {view_.T_world_depth, view_.T_world_depth}, pool);
+                                      {view_.T_map_depth, view_.T_map_depth}, pool);
   }
   DepthFrame Render(const RigidTransform& pose) const {
     return testing::RenderDepth(testing::BallInCorner, camera_, pose);
@@ -157,15 +157,15 @@ TEST_F(IcpTrackerTest, FindsAKnownMotion) {
                                 << " step_rad=" << result.step_rad
                                 << " inliers=" << result.inlier_ratio
                                 << " residual_m=" << result.residual_m;
-  EXPECT_LT(TranslationDistance(result.T_world_depth, truth), kMaxError);
-  EXPECT_LT(RotationAngle(result.T_world_depth, truth), kMaxAngle);
+  EXPECT_LT(TranslationDistance(result.T_map_depth, truth), kMaxError);
+  EXPECT_LT(RotationAngle(result.T_map_depth, truth), kMaxAngle);
   EXPECT_GT(result.inlier_ratio, 0.8);
   EXPECT_NEAR(result.step_m, std::sqrt(64e-6 + 25e-6 + 36e-6), kMaxError);
 }
 
 TEST_F(IcpTrackerTest, DoesNotDependOnTheNumberOfThreads) {
   const DepthFrame frame = Render(Moved({0.004, 0.002, -0.003}, 0.5));
-  EXPECT_EQ(Track(frame, 1).T_world_depth.matrix(), Track(frame, 3).T_world_depth.matrix());
+  EXPECT_EQ(Track(frame, 1).T_map_depth.matrix(), Track(frame, 3).T_map_depth.matrix());
 }
 
 TEST_F(IcpTrackerTest, ACoveredCameraIsLost) {
@@ -189,14 +189,14 @@ TEST_F(IcpTrackerTest, APoseThatIsNoneIsLost) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, 1e30}) {
     for (int i = 0; i < 36; ++i) {  // Each entry of the guess, the prior and the model's pose.
       IcpTracker::Start start{testing::FirstPose(), testing::FirstPose()};
-      view_.T_world_depth = testing::FirstPose();
-      RigidTransform* const poses[] = {&start.guess, &view_.T_world_depth, &start.prior};
+      view_.T_map_depth = testing::FirstPose();
+      RigidTransform* const poses[] = {&start.guess, &view_.T_map_depth, &start.prior};
       poses[i / 12]->matrix()(i % 3, i % 12 / 3) = bad;
       const TrackingResult result = IcpTracker(options_).Track(depth, view_, grid_, start, pool_);
       // All directions are observed here: what the prior says must not matter.
       ASSERT_EQ(result.tracked(), i >= 24) << bad << " at " << i;
       if (result.tracked()) {
-        ASSERT_TRUE(result.T_world_depth.matrix().allFinite());
+        ASSERT_TRUE(result.T_map_depth.matrix().allFinite());
       }
     }
   }
@@ -216,7 +216,7 @@ TEST_F(IcpTrackerTest, AJumpBeyondTheStepLimitIsLost) {
 IcpSums ReferenceSums(const SurfaceMaps& current, const RigidTransform& T, const ModelView& model,
                       const VoxelGrid& grid, const IcpLimits& limits) {
   IcpSums sums;
-  const RigidTransform T_model_world = model.T_world_depth.inverse();
+  const RigidTransform T_model_map = model.T_map_depth.inverse();
   for (int y = 0; y < current.height(); ++y) {
     for (int x = 0; x < current.width(); ++x) {
       const Eigen::Vector3d p_depth(current.vx.At(x, y), current.vy.At(x, y), current.vz.At(x, y));
@@ -225,7 +225,7 @@ IcpSums ReferenceSums(const SurfaceMaps& current, const RigidTransform& T, const
       if ((p.array() < grid.min_m.array()).any() || (p.array() > grid.max_m().array()).any())
         continue;
       ++sums.candidates;
-      const auto pixel = Project(model.camera, T_model_world * p);
+      const auto pixel = Project(model.camera, T_model_map * p);
       if (!pixel) continue;
       const int u = static_cast<int>(std::floor(pixel->x() + 0.5));
       const int v = static_cast<int>(std::floor(pixel->y() + 0.5));

@@ -336,9 +336,9 @@ HWY_INLINE void WriteSurface(const RaycastKernelArgs& a, const Rays& rays, const
   const MF valid = hn::And(surface.valid, hn::Gt(squared, least));
   const VF scale = hn::Div(one, hn::Sqrt(hn::Max(squared, least)));
   const VF metres = hn::Mul(surface.depth, hn::Set(d, a.voxel_m));
-  const VF planes[6] = {hn::MulAdd(metres, rays.direction.x, hn::Set(d, a.world_origin[0])),
-                        hn::MulAdd(metres, rays.direction.y, hn::Set(d, a.world_origin[1])),
-                        hn::MulAdd(metres, rays.direction.z, hn::Set(d, a.world_origin[2])),
+  const VF planes[6] = {hn::MulAdd(metres, rays.direction.x, hn::Set(d, a.map_origin[0])),
+                        hn::MulAdd(metres, rays.direction.y, hn::Set(d, a.map_origin[1])),
+                        hn::MulAdd(metres, rays.direction.z, hn::Set(d, a.map_origin[2])),
                         hn::Mul(surface.gradient.x, scale),
                         hn::Mul(surface.gradient.y, scale),
                         hn::Mul(surface.gradient.z, scale)};

@@ -24,14 +24,14 @@ struct RaycastKernelArgs {
   float R[9];       ///< World from camera, row-major.
   float fx, fy, cx, cy;
   float voxel_m;
-  float world_origin[3];  ///< Camera position in metres.
+  float map_origin[3];  ///< Camera position in metres.
 };
 
 /// Pixels per side of a tile.
 inline constexpr int kRaycastTile = 8;
 
 /// Casts the rays of the tile whose first pixel is (x, y), from depth `near_vox` to the greater
-/// `far_vox` along the camera's z, and writes all six planes of `maps` there (world, metres; NaN =
+/// `far_vox` along the camera's z, and writes all six planes of `maps` there (`map`, metres; NaN =
 /// no surface).
 void RaycastTile(const RaycastKernelArgs& args, int x, int y, float near_vox, float far_vox,
                  SurfaceMaps& maps);

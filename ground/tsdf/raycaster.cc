@@ -111,14 +111,14 @@ Status Validate(const RaycastOptions& o) {
 }
 
 void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
-                       const RigidTransform& T_world_camera) {
+                       const RigidTransform& T_map_camera) {
   tiles_x_ = (camera.width + kRaycastTile - 1) / kRaycastTile;
   tiles_y_ = (camera.height + kRaycastTile - 1) / kRaycastTile;
   const auto count = static_cast<std::size_t>(tiles_x_) * static_cast<std::size_t>(tiles_y_);
   near_vox_.assign(count, std::numeric_limits<float>::max());
   far_vox_.assign(count, 0.0F);
   const VoxelGrid& grid = volume.grid();
-  const BlockToCamera to_camera(grid, T_world_camera.inverse());
+  const BlockToCamera to_camera(grid, T_map_camera.inverse());
   const Eigen::Vector3f half = to_camera.HalfExtent();
   const auto inverse_voxel = static_cast<float>(1.0 / grid.voxel_size_m);
   const auto fx = static_cast<float>(camera.fx);
@@ -131,7 +131,7 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
   // A ray ends where it comes from an observed voxel before the surface into one behind it: start
   // early enough to meet the former.
   constexpr float kLeadVox = 1.5F;
-  for (const std::int32_t block : visible_.Find(volume, camera, T_world_camera)) {
+  for (const std::int32_t block : visible_.Find(volume, camera, T_map_camera)) {
     if (!volume.may_end_rays(block)) continue;
     const Eigen::Vector3f p = to_camera.Centre(volume.block_coordinates(block));
     const float near = p.z() - half.z();
@@ -161,7 +161,7 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
 }
 
 void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
-                     const RigidTransform& T_world_camera, float min_weight, ThreadPool& pool,
+                     const RigidTransform& T_map_camera, float min_weight, ThreadPool& pool,
                      SurfaceMaps& maps) {
   maps.Resize(camera.width, camera.height);
   if (volume.block_count() == 0) {
@@ -169,7 +169,7 @@ void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
       plane->Fill(kNan);
     return;
   }
-  range_.Compute(volume, camera, T_world_camera);
+  range_.Compute(volume, camera, T_map_camera);
   const VoxelGrid& grid = volume.grid();
   RaycastKernelArgs args{};
   args.table = volume.table().data();
@@ -187,12 +187,12 @@ void Raycaster::Cast(const TsdfVolume& volume, const CameraModel& camera,
   args.max_last_step_vox = exact ? 0.5F : 1.5F;
   args.truncation_vox = static_cast<float>(volume.truncation_distance_m() / grid.voxel_size_m);
   const Eigen::Vector3f origin =
-      (grid.ToVoxel(T_world_camera.translation()) + Eigen::Vector3d::Constant(kBlockSide))
+      (grid.ToVoxel(T_map_camera.translation()) + Eigen::Vector3d::Constant(kBlockSide))
           .cast<float>();
-  const Eigen::Vector3f world_origin = T_world_camera.translation().cast<float>();
-  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_world_camera.linear().cast<float>();
+  const Eigen::Vector3f map_origin = T_map_camera.translation().cast<float>();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_map_camera.linear().cast<float>();
   std::copy_n(origin.data(), 3, args.origin);
-  std::copy_n(world_origin.data(), 3, args.world_origin);
+  std::copy_n(map_origin.data(), 3, args.map_origin);
   std::copy_n(R.data(), 9, args.R);
   args.fx = static_cast<float>(camera.fx);
   args.fy = static_cast<float>(camera.fy);

@@ -21,7 +21,7 @@ Status Validate(const RaycastOptions& options);
 class RangeMap {
  public:
   void Compute(const TsdfVolume& volume, const CameraModel& camera,
-               const RigidTransform& T_world_camera);
+               const RigidTransform& T_map_camera);
 
   int tiles_x() const { return tiles_x_; }
   int tiles_y() const { return tiles_y_; }
@@ -52,11 +52,10 @@ class Raycaster {
   explicit Raycaster(RaycastPrecision precision = RaycastPrecision::kSurface)
       : precision_(precision) {}
 
-  /// Maps in `world`, seen by `camera` (its distortion is ignored) from `T_world_camera`. Voxels
+  /// Maps in `map`, seen by `camera` (its distortion is ignored) from `T_map_camera`. Voxels
   /// lighter than `min_weight` do not count as observed.
-  void Cast(const TsdfVolume& volume, const CameraModel& camera,
-            const RigidTransform& T_world_camera, float min_weight, ThreadPool& pool,
-            SurfaceMaps& maps);
+  void Cast(const TsdfVolume& volume, const CameraModel& camera, const RigidTransform& T_map_camera,
+            float min_weight, ThreadPool& pool, SurfaceMaps& maps);
 
  private:
   const RaycastPrecision precision_;

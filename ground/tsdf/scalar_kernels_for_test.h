@@ -174,11 +174,11 @@ class ScalarRaycaster {
 
   /// The first change from positive to negative along the ray. What is first met from behind hides
   /// what lies beyond it.
-  std::optional<Hit> Cast(const Eigen::Vector3d& origin_world,
-                          const Eigen::Vector3d& direction_world) const {
+  std::optional<Hit> Cast(const Eigen::Vector3d& origin_map,
+                          const Eigen::Vector3d& direction_map) const {
     constexpr double kStep = 0.25;  // Voxels.
-    const Eigen::Vector3d origin = grid_.ToVoxel(origin_world);
-    const Eigen::Vector3d direction = direction_world.normalized();
+    const Eigen::Vector3d origin = grid_.ToVoxel(origin_map);
+    const Eigen::Vector3d direction = direction_map.normalized();
     const double end = (origin - 0.5 * size_.cast<double>()).norm() + size_.cast<double>().norm();
     double before = std::numeric_limits<double>::quiet_NaN();
     for (double t = 0.0; t < end; t += kStep) {

@@ -100,7 +100,7 @@ void TsdfIntegrator::MakeSamples(const PreparedDepth& depth, ThreadPool& pool) {
   });
 }
 
-void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransform& T_world_depth,
+void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransform& T_map_depth,
                                   ThreadPool& pool, TsdfVolume& volume) {
   const CameraF camera(depth.camera);
   const VoxelGrid& grid = volume.grid();
@@ -109,9 +109,9 @@ void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransfo
   args.fx = camera.fx;
   args.cx = camera.cx;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R =
-      (T_world_depth.linear() / grid.block_size_m()).cast<float>();
+      (T_map_depth.linear() / grid.block_size_m()).cast<float>();
   const Eigen::Vector3f t =
-      ((T_world_depth.translation() - grid.min_m) / grid.block_size_m() + Eigen::Vector3d::Ones())
+      ((T_map_depth.translation() - grid.min_m) / grid.block_size_m() + Eigen::Vector3d::Ones())
           .cast<float>();
   std::copy_n(R.data(), 9, args.R);
   std::copy_n(t.data(), 3, args.t);
@@ -144,18 +144,18 @@ void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransfo
   }
 }
 
-void TsdfIntegrator::SelectBlocks(const CameraModel& camera, const RigidTransform& T_world_depth,
+void TsdfIntegrator::SelectBlocks(const CameraModel& camera, const RigidTransform& T_map_depth,
                                   const TsdfVolume& volume) {
   const CameraF c(camera);
   const VoxelGrid& grid = volume.grid();
-  const BlockToCamera to_camera(grid, T_world_depth.inverse());
+  const BlockToCamera to_camera(grid, T_map_depth.inverse());
   const float radius = BlockRadius(grid);
   const float reach = radius + 2.0F * static_cast<float>(volume.truncation_distance_m());
   const auto tile_of = [](float pixel, int tiles) {
     return std::clamp(static_cast<int>(pixel) / kTile, 0, tiles - 1);
   };
   updated_blocks_.clear();
-  for (const std::int32_t block : visible_.Find(volume, camera, T_world_depth)) {
+  for (const std::int32_t block : visible_.Find(volume, camera, T_map_depth)) {
     const Eigen::Vector3f p = to_camera.Centre(volume.block_coordinates(block));
     if (p.z() < 2.0F * radius) continue;  // Nearer than any depth camera sees.
     // Skip blocks that are entirely behind all that is measured where they project.
@@ -175,13 +175,13 @@ void TsdfIntegrator::SelectBlocks(const CameraModel& camera, const RigidTransfor
   }
 }
 
-void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth,
+void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform& T_map_depth,
                                ThreadPool& pool, TsdfVolume& volume) {
   MakeSamples(depth, pool);
-  AllocateBand(depth, T_world_depth, pool, volume);
-  SelectBlocks(depth.camera, T_world_depth, volume);
+  AllocateBand(depth, T_map_depth, pool, volume);
+  SelectBlocks(depth.camera, T_map_depth, volume);
 
-  const RigidTransform T_depth_world = T_world_depth.inverse();
+  const RigidTransform T_depth_map = T_map_depth.inverse();
   const CameraF camera(depth.camera);
   const VoxelGrid& grid = volume.grid();
   IntegrationKernelArgs args{};
@@ -193,7 +193,7 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
   args.cx = camera.cx;
   args.cy = camera.cy;
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> axes =
-      (T_depth_world.linear() * grid.voxel_size_m).cast<float>();
+      (T_depth_map.linear() * grid.voxel_size_m).cast<float>();
   std::copy_n(axes.data(), 9, args.axes);
   args.truncation_m = static_cast<float>(volume.truncation_distance_m());
   args.max_weight = static_cast<float>(options_.max_weight());
@@ -205,7 +205,7 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
     for (int i = task * kBlocksPerTask; i < end; ++i) {
       const std::int32_t block = updated_blocks_[i];
       const Eigen::Vector3f first =
-          (T_depth_world * grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide))
+          (T_depth_map * grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide))
               .cast<float>();
       volume.set_may_end_rays(
           block, IntegrateBlock(args, first.data(), &volume.voxels(block).front().bits));
@@ -214,24 +214,22 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
 }
 
 bool IntegrationGate::Accepts(const std::optional<RigidTransform>& previous,
-                              const RigidTransform& T_world_depth) {
+                              const RigidTransform& T_map_depth) {
   const auto exceeds = [](double value, double bound) { return bound > 0.0 && value > bound; };
   const bool young = bootstrapping();
   bool accept = true;
   if (previous && !young) {
-    accept =
-        !exceeds(TranslationDistance(*previous, T_world_depth), options_.max_step_m()) &&
-        !exceeds(RotationAngle(*previous, T_world_depth), options_.max_step_deg() * kRadPerDeg);
+    accept = !exceeds(TranslationDistance(*previous, T_map_depth), options_.max_step_m()) &&
+             !exceeds(RotationAngle(*previous, T_map_depth), options_.max_step_deg() * kRadPerDeg);
   } else if (!previous && last_integrated_) {
     accept = false;  // The motion since the frame before is not known.
   }
   if (accept && last_integrated_ && !young) {
-    accept =
-        TranslationDistance(*last_integrated_, T_world_depth) >= options_.min_step_m() ||
-        RotationAngle(*last_integrated_, T_world_depth) >= options_.min_step_deg() * kRadPerDeg;
+    accept = TranslationDistance(*last_integrated_, T_map_depth) >= options_.min_step_m() ||
+             RotationAngle(*last_integrated_, T_map_depth) >= options_.min_step_deg() * kRadPerDeg;
   }
   if (accept) {
-    last_integrated_ = T_world_depth;
+    last_integrated_ = T_map_depth;
     ++accepted_;
   }
   return accept;

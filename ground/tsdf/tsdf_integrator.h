@@ -32,7 +32,7 @@ class TsdfIntegrator {
 
   /// Allocates the blocks within the truncation distance of the measured surface, then updates
   /// these and all that lie in front of it.
-  void Integrate(const PreparedDepth& depth, const RigidTransform& T_world_depth, ThreadPool& pool,
+  void Integrate(const PreparedDepth& depth, const RigidTransform& T_map_depth, ThreadPool& pool,
                  TsdfVolume& volume);
 
   /// Blocks that the last call updated.
@@ -40,9 +40,9 @@ class TsdfIntegrator {
 
  private:
   void MakeSamples(const PreparedDepth& depth, ThreadPool& pool);
-  void AllocateBand(const PreparedDepth& depth, const RigidTransform& T_world_depth,
-                    ThreadPool& pool, TsdfVolume& volume);
-  void SelectBlocks(const CameraModel& camera, const RigidTransform& T_world_depth,
+  void AllocateBand(const PreparedDepth& depth, const RigidTransform& T_map_depth, ThreadPool& pool,
+                    TsdfVolume& volume);
+  void SelectBlocks(const CameraModel& camera, const RigidTransform& T_map_depth,
                     const TsdfVolume& volume);
 
   const TsdfOptions options_;
@@ -59,7 +59,7 @@ class IntegrationGate {
   explicit IntegrationGate(const TsdfOptions& options) : options_(options) {}
 
   /// `previous` is the pose of the frame before, if that was tracked.
-  bool Accepts(const std::optional<RigidTransform>& previous, const RigidTransform& T_world_depth);
+  bool Accepts(const std::optional<RigidTransform>& previous, const RigidTransform& T_map_depth);
   std::uint64_t accepted() const { return accepted_; }
   /// The model is good already.
   void EndBootstrap() { bootstrap_ended_ = true; }

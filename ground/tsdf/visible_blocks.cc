@@ -8,7 +8,7 @@ namespace isotherm {
 
 std::span<const std::int32_t> VisibleBlocks::Find(const TsdfVolume& volume,
                                                   const CameraModel& camera,
-                                                  const RigidTransform& T_world_camera) {
+                                                  const RigidTransform& T_map_camera) {
   // Planes of the pyramid through the image's borders, inward normals, camera coordinates.
   const double left = (-0.5 - camera.cx) / camera.fx;
   const double right = (camera.width - 0.5 - camera.cx) / camera.fx;
@@ -17,10 +17,10 @@ std::span<const std::int32_t> VisibleBlocks::Find(const TsdfVolume& volume,
   const Eigen::Vector3d normals[kFrustumPlanes] = {
       {1.0, 0.0, -left}, {-1.0, 0.0, right}, {0.0, 1.0, -top}, {0.0, -1.0, bottom}, {0, 0, 1}};
   const VoxelGrid& grid = volume.grid();
-  const RigidTransform T_camera_world = T_world_camera.inverse();
-  const Eigen::Matrix3d A = T_camera_world.linear() * grid.block_size_m();
+  const RigidTransform T_camera_map = T_map_camera.inverse();
+  const Eigen::Matrix3d A = T_camera_map.linear() * grid.block_size_m();
   const Eigen::Vector3d t =
-      T_camera_world * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m()));
+      T_camera_map * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m()));
   float planes[kFrustumPlanes][4];
   for (int i = 0; i < kFrustumPlanes; ++i) {
     const Eigen::Vector3d n = normals[i].normalized();

@@ -16,7 +16,7 @@ class VisibleBlocks {
  public:
   /// Lens distortion of `camera` is ignored. Blocks in ascending order.
   std::span<const std::int32_t> Find(const TsdfVolume& volume, const CameraModel& camera,
-                                     const RigidTransform& T_world_camera);
+                                     const RigidTransform& T_map_camera);
 
  private:
   std::vector<std::int32_t> blocks_;
@@ -27,9 +27,9 @@ struct BlockToCamera {
   Eigen::Matrix3f A;
   Eigen::Vector3f t;
 
-  BlockToCamera(const VoxelGrid& grid, const RigidTransform& T_camera_world)
-      : A((T_camera_world.linear() * grid.block_size_m()).cast<float>()),
-        t((T_camera_world * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m())))
+  BlockToCamera(const VoxelGrid& grid, const RigidTransform& T_camera_map)
+      : A((T_camera_map.linear() * grid.block_size_m()).cast<float>()),
+        t((T_camera_map * (grid.min_m + Eigen::Vector3d::Constant(0.5 * grid.block_size_m())))
               .cast<float>()) {}
   /// Half the size of the box around a block, along the camera's axes.
   Eigen::Vector3f HalfExtent() const { return 0.5F * A.cwiseAbs().rowwise().sum(); }

@@ -17,7 +17,7 @@ inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 using GridIndex = Eigen::Vector3i;
 
 /// Where the voxels of the scan volume are. Voxel (i, j, k) has its centre at
-/// min_m + (i + 0.5, j + 0.5, k + 0.5) * voxel_size_m in `world`.
+/// min_m + (i + 0.5, j + 0.5, k + 0.5) * voxel_size_m in `map`.
 struct VoxelGrid {
   Eigen::Vector3d min_m = Eigen::Vector3d::Zero();
   double voxel_size_m = 0.0;
@@ -28,8 +28,8 @@ struct VoxelGrid {
   Eigen::Vector3d max_m() const { return min_m + size_m(); }
   std::int64_t block_count() const { return std::int64_t{blocks.x()} * blocks.y() * blocks.z(); }
   /// Continuous voxel coordinates of a point: voxel centres are at integers.
-  Eigen::Vector3d ToVoxel(const Eigen::Vector3d& p_world) const {
-    return (p_world - min_m) / voxel_size_m - Eigen::Vector3d::Constant(0.5);
+  Eigen::Vector3d ToVoxel(const Eigen::Vector3d& p_map) const {
+    return (p_map - min_m) / voxel_size_m - Eigen::Vector3d::Constant(0.5);
   }
   Eigen::Vector3d VoxelCentre(const GridIndex& voxel) const {
     return min_m + (voxel.cast<double>() + Eigen::Vector3d::Constant(0.5)) * voxel_size_m;

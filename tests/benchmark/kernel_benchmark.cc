@@ -138,13 +138,13 @@ void Raycast(benchmark::State& state, ThreadPool& pool, int halvings) {
 void FuseThermal(benchmark::State& state, ThreadPool& pool) {
   const Scene& scene = SharedScene();
   const Rig& rig = scene.frames.rig;
-  const RigidTransform T_world_thermal = scene.view.T_world_depth * rig.T_thermal_depth->inverse();
+  const RigidTransform T_world_thermal = scene.view.T_map_depth * rig.T_thermal_depth->inverse();
   const ThermalFrame& frame = scene.frames.thermal.back();
   ThermalFuser fuser(scene.options.thermal(), *rig.thermal, scene.MinWeight());
   ThermalVolume thermal(kMaxBlocks);
   FusionReport report;
   for (auto _ : state) {
-    report = fuser.Fuse(frame, T_world_thermal, scene.view.camera, scene.view.T_world_depth,
+    report = fuser.Fuse(frame, T_world_thermal, scene.view.camera, scene.view.T_map_depth,
                         *scene.volume, pool, thermal);
   }
   CHECK(report.assigned > 0);

@@ -169,7 +169,7 @@ Outcome Run(const Scene& scene, const Setting& setting) {
       outcome.most_free = std::max(outcome.most_free, report.tracking.motion.free_axes);
     }
     outcome.degraded += report.tracking.verdict() == Verdict::kDegraded ? 1 : 0;
-    const RigidTransform& pose = report.tracking.T_world_depth;
+    const RigidTransform& pose = report.pose.T_map_depth;
     const Eigen::Vector3d off = pose.translation() - truth.translation();
     squares_x += off.x() * off.x();
     squares_y += off.y() * off.y();

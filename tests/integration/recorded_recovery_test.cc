@@ -195,8 +195,8 @@ class RecordedRecoveryTest : public ::testing::Test {
     const bool disturbed = i >= script.disturbed && i < script.back;
     if (report.tracked) {
       const RigidTransform& truth = Truth(script.shots[i].frame);
-      const double error_m = TranslationDistance(report.tracking.T_world_depth, truth);
-      const double error_deg = RotationAngle(report.tracking.T_world_depth, truth) * kDegPerRad;
+      const double error_m = TranslationDistance(report.pose.T_map_depth, truth);
+      const double error_deg = RotationAngle(report.pose.T_map_depth, truth) * kDegPerRad;
       const bool covered = script.shots[i].cover != Shot::Cover::kNothing;
       const bool wrong = covered || error_m > kWrongPoseM || error_deg > kWrongPoseDeg;
       outcome.largest_error_m = std::max(outcome.largest_error_m, error_m);

@@ -1,0 +1,34 @@
+#pragma once
+
+#include "common/geometry/pose_covariance.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/time/time_types.h"
+
+namespace isotherm {
+
+/// Where the depth camera is in the coordinates of a sub-map (`map`), and how certain that is.
+struct MapPose {
+  int map = 0;  ///< The sub-map's index in the atlas.
+  RigidTransform T_map_depth = RigidTransform::Identity();
+  /// Of T_map_depth, along the sub-map's axes. Zero for a pose that was chosen, not measured.
+  PoseCovariance covariance = PoseCovariance::Zero();
+};
+
+/// The same in `world`.
+struct WorldPose {
+  RigidTransform T_world_depth = RigidTransform::Identity();
+  PoseCovariance covariance = PoseCovariance::Zero();
+};
+
+/// Takes a pose to `world` together with its covariance: neither means anything in the axes of the
+/// other. `T_world_map` is where the pose's sub-map is.
+WorldPose ToWorld(const MapPose& pose, const RigidTransform& T_world_map);
+
+/// A pose of the depth camera on the time line, in the coordinates of the sub-map that it was
+/// tracked against.
+struct StampedMapPose {
+  CaptureTime time;
+  RigidTransform T_map_depth;
+};
+
+}  // namespace isotherm
