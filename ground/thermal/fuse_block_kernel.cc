@@ -52,7 +52,7 @@ HWY_INLINE MI NearSurface(VI tsdf_word, VI max_code) {
 /// Where voxels are in the thermal image.
 struct ImagePlace {
   VF u, v;         ///< Pixels.
-  VF column, row;  ///< Of the nearest pixel.
+  VF column, row;  ///< Place of the nearest pixel.
 };
 
 HWY_INLINE ImagePlace ProjectVoxels(const FusionKernelArgs& a, const Vector3& p) {

@@ -30,7 +30,7 @@ struct ThermalLayout {
   static constexpr int kAngleShift = 0;
 
   static constexpr int kClassBits = 4;
-  static constexpr std::uint32_t kClassMask = 0xFU;  ///< Of any class, after its shift.
+  static constexpr std::uint32_t kClassMask = 0xFU;  ///< Mask of any class after its shift.
   static constexpr std::uint32_t kClassesMask = 0xFFFFU;
   static constexpr std::uint32_t kMotionMask = kClassMask << kMotionShift;
   static constexpr std::uint32_t kDisagreementMask = kClassMask << kDisagreementShift;
@@ -42,7 +42,7 @@ struct ThermalLayout {
   static constexpr float kMinCelsius = -100.0F;
   static constexpr float kStepKelvin = 0.025F;
   static constexpr float kStepsPerKelvin = 40.0F;
-  static constexpr std::uint32_t kCodeMask = 0xFFFFU;  ///< After its shift.
+  static constexpr std::uint32_t kCodeMask = 0xFFFFU;  ///< Mask of the code after its shift.
   static constexpr float kMaxCode = 65535.0F;
 
   static constexpr std::uint32_t Code(std::uint32_t word) { return word >> kCodeShift; }

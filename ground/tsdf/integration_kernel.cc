@@ -149,7 +149,7 @@ std::int32_t FindMissingBlocks(const BandRowArgs& a, std::int32_t* missing) {
   return found;
 }
 
-/// What IntegrateBlock needs in all lanes.
+/// Holds what IntegrateBlock needs in all lanes.
 struct UpdateConstants {
   VF width, height;
   VI row_stride, nowhere;
@@ -180,7 +180,7 @@ HWY_INLINE VI SampleOf(const IntegrationKernelArgs& a, const UpdateConstants& c,
   return hn::IfThenElse(hn::RebindMask(di, inside), pixel, c.nowhere);
 }
 
-/// What samples say about the voxels that are seen in them.
+/// Holds what samples say about the voxels that are seen in them.
 struct Observation {
   VF depth, weight;
   VF distance;  ///< To the plane over the truncation distance, not truncated.

@@ -45,7 +45,7 @@ HWY_INLINE VI BlockOf(VI voxel) { return hn::ShiftRight<BlockLayout::kSideBits>(
 
 HWY_INLINE VI FirstElement(VI block) { return hn::ShiftLeft<BlockLayout::kBlockShift>(block); }
 
-/// What one coordinate of a voxel adds to its element in the block.
+/// Returns what one coordinate of a voxel adds to its element in the block.
 HWY_INLINE VI LocalPart(int axis, VI voxel) {
   const VI local = hn::And(voxel, hn::Set(di, BlockLayout::kSideMask));
   return axis == 0   ? local
@@ -56,7 +56,7 @@ HWY_INLINE VI LocalPart(int axis, VI voxel) {
 /// The eight voxels around a point, x fastest.
 struct Corners {
   VF tsdf[8];
-  VF fraction[3];  ///< Of the way from the lower to the upper ones, along each axis.
+  VF fraction[3];  ///< Fraction of the way from the lower to the upper ones, along each axis.
   VI least_weight;
 };
 
