@@ -54,6 +54,9 @@ class Random {
   std::mt19937 engine_;
 };
 
+/// Rounding of a sum of a few products in single precision, as a share of their magnitudes.
+inline constexpr double kSinglePrecision = 1e-6;
+
 /// Whether a decision falls one way, the other, or is so near its threshold that rounding decides.
 enum class Verdict { kNo, kYes, kEither };
 

@@ -13,12 +13,11 @@ namespace {
 
 GridIndex BlockOf(const GridIndex& voxel) {
   // Rounds down for negative indices too.
-  return voxel.unaryExpr([](int v) { return v >> 3; });
+  return voxel.unaryExpr([](int v) { return v >> BlockLayout::kSideBits; });
 }
 
 std::size_t OffsetInBlock(const GridIndex& voxel) {
-  return static_cast<std::size_t>((voxel.x() & 7) +
-                                  kBlockSide * ((voxel.y() & 7) + kBlockSide * (voxel.z() & 7)));
+  return static_cast<std::size_t>(BlockLayout::Element(voxel.x(), voxel.y(), voxel.z()));
 }
 
 struct Sample {

@@ -135,7 +135,7 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
   const double voxel_area_m2 = grid.voxel_size_m * grid.voxel_size_m;
   BlockSurface surface;
   for (int i = 0; i < kBlockVoxels; ++i) {
-    const GridIndex local(i & 7, (i >> 3) & 7, i >> 6);
+    const GridIndex local(BlockLayout::X(i), BlockLayout::Y(i), BlockLayout::Z(i));
     const PairReader::Place here = pairs.At(local);
     const float distance = pairs.Distance(here);
     if (!(std::abs(distance) < max_change)) continue;  // Nor if it was never observed.

@@ -3,88 +3,19 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "common/testing/kernel_checks_for_test.h"
+#include "ground/thermal/reference/fuse_block_reference.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/thermal/thermal_kernel.h"
 
 namespace isotherm {
 namespace {
 
-using testing::AtLeastZero;
-using testing::Both;
 using testing::Random;
 using testing::Verdict;
-
-/// Holds what FuseBlock must do with one voxel.
-struct ScalarFusion {
-  Verdict considered = Verdict::kNo;
-  Verdict assigned = Verdict::kNo;
-  double code = 0.0;  ///< Code of the temperature, before rounding.
-  double slack = 0.0;
-  std::int32_t classes = 0;
-};
-
-ScalarFusion FuseScalarVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p, TsdfVoxel voxel,
-                             ThermalVoxel old) {
-  constexpr double kNearPixelBorder = 2e-3;  // Pixels.
-  constexpr double kSinglePrecision = 1e-6;  // Metres, at up to a metre.
-  ScalarFusion result;
-  if (!voxel.observed() || std::abs(static_cast<std::int32_t>(voxel.bits) >> 16) > a.max_tsdf_code)
-    return result;
-  if (!(p.z() > 0.0)) return result;
-  const double u = a.fx * p.x() / p.z() + a.cx;
-  const double v = a.fy * p.y() / p.z() + a.cy;
-  const double column = std::floor(u + 0.5);
-  const double row = std::floor(v + 0.5);
-  const double to_border =
-      std::min(std::abs(u + 0.5 - std::round(u + 0.5)), std::abs(v + 0.5 - std::round(v + 0.5)));
-  if (to_border < kNearPixelBorder) {
-    result.considered = result.assigned = Verdict::kEither;
-    return result;
-  }
-  if (!(column >= 0.0 && column < a.width && row >= 0.0 && row < a.height)) return result;
-  const ThermalPixel& pixel = a.pixels[static_cast<int>(row) * a.width + static_cast<int>(column)];
-  const Eigen::Vector3d vertex =
-      pixel.depth_m * Eigen::Vector3d((column - a.cx) / a.fx, (row - a.cy) / a.fy, 1.0);
-  if ((pixel.flags & ThermalPixel::kSeen) == 0) return result;
-  result.considered = AtLeastZero(double{a.max_distance_m} - (p - vertex).norm(), kSinglePrecision);
-  if ((pixel.flags & ThermalPixel::kAssignable) == 0) return result;
-  result.classes = pixel.flags & 0xF0FF;
-  const ThermalVoxel conditions{static_cast<std::uint32_t>(result.classes)};
-  if (a.validate && !ReplacesMeasurement(conditions.distance_class(), conditions.angle_class(),
-                                         conditions.motion_class(), old)) {
-    return result;
-  }
-  result.assigned = result.considered;
-  const double slope_u = static_cast<std::int16_t>(pixel.slopes & 0xFFFF);
-  const double slope_v = pixel.slopes >> 16;
-  constexpr double kSlopeScale = ThermalPixel::kSlopeScale;
-  constexpr double kStepsPerKelvin = 1.0 / 0.025;
-  const double celsius =
-      pixel.celsius + (slope_u * (u - column) + slope_v * (v - row)) / kSlopeScale;
-  result.code = std::clamp(1.0 + kStepsPerKelvin * (celsius + 100.0), 1.0, 65535.0);
-  constexpr double kPixelError = 1e-4;  // Of a projection.
-  result.slack =
-      0.52 + kPixelError * kStepsPerKelvin / kSlopeScale * (std::abs(slope_u) + std::abs(slope_v)) +
-      1e-6 * result.code;
-  const bool bad = conditions.distance_class() == ConditionClass::kBad ||
-                   conditions.angle_class() == ConditionClass::kBad;
-  if (!a.keep_bad && bad) result.code = result.slack = 0.0;
-  constexpr std::int32_t kAllGood = 0x3011;
-  if (a.keep_lowest && result.classes == kAllGood && (old.bits & 0xF0FF) == kAllGood) {
-    const double margin = static_cast<double>(old.bits >> 16) - result.code;
-    if (std::abs(margin) <= result.slack + 0.5) {
-      result.assigned = result.assigned == Verdict::kNo ? Verdict::kNo : Verdict::kEither;
-    } else if (margin < 0.0) {
-      result.assigned = Verdict::kNo;
-    }
-  }
-  return result;
-}
 
 class FuseBlockTest : public ::testing::Test {
  protected:
@@ -92,7 +23,7 @@ class FuseBlockTest : public ::testing::Test {
   static constexpr float kVoxel = 0.004F;
   using Words = std::array<std::uint32_t, kVoxels + 1>;
   /// Unchecked, acceptable, good: smeared pixels are never assignable.
-  static constexpr std::int32_t kAllGood = 0x3011;
+  static constexpr std::int32_t kAllGood = 0x3011;  ///< As docs/model-format.md has it.
   static constexpr std::array kMotionCodes = {0, 2 << 12, 3 << 12};
 
   /// A camera of any size before a bumpy wall half a metre away, of which a part is not seen.
@@ -167,7 +98,7 @@ class FuseBlockTest : public ::testing::Test {
       const auto index = static_cast<int>(i);
       const Eigen::Vector3d p =
           first_.cast<double>() + axes * Eigen::Vector3d(index & 7, (index >> 3) & 7, index >> 6);
-      const ScalarFusion truth = FuseScalarVoxel(args_, p, {tsdf_[i]}, {before[i]});
+      const reference::VoxelFusion truth = reference::FuseVoxel(args_, p, {tsdf_[i]}, {before[i]});
       count(truth.considered, least.considered, most.considered);
       // Bad conditions leave no temperature (code 0).
       const bool takes = truth.code > 0.0 || truth.assigned == Verdict::kEither;
@@ -205,7 +136,8 @@ class FuseBlockTest : public ::testing::Test {
     ASSERT_EQ(noted, assigned);
     good_not_taken_ += measured.count - noted;
   }
-  static void CompareVoxel(const ScalarFusion& truth, std::uint32_t before, std::uint32_t after) {
+  static void CompareVoxel(const reference::VoxelFusion& truth, std::uint32_t before,
+                           std::uint32_t after) {
     if (truth.assigned == Verdict::kNo) {
       ASSERT_EQ(after, before);
     }

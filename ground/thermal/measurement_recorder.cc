@@ -11,9 +11,6 @@ namespace {
 constexpr int kMinGoodCount = 5;
 /// Noise alone hardly ever shows a range of more standard deviations.
 constexpr double kNoiseRange = 6.0;
-/// Good in motion, distance and angle, where ThermalVoxel has them.
-constexpr std::uint32_t kClassBits = 0xF0FF;
-constexpr std::uint32_t kAllGood = 0x3011;
 
 }  // namespace
 
@@ -49,7 +46,7 @@ void MeasurementRecorder::Record(const BlockMeasurements& measured, const Eigen:
   // Rows lie anywhere in memory: all are asked for before the first one is needed.
   std::array<RecordRow*, ThermalRecords::kRowsPerBlock> rows{};
   for (int i = 0; i < measured.count; ++i) {
-    const int voxel = measured.voxels[i] & (kBlockVoxels - 1);
+    const int voxel = measured.voxels[i] & BlockMeasurements::kVoxelMask;
     RecordRow*& row = rows[static_cast<std::size_t>(voxel / RecordRow::kVoxels)];
     if (row != nullptr) continue;
     row = &thermal.records()->Row(block, voxel / RecordRow::kVoxels);
@@ -57,15 +54,15 @@ void MeasurementRecorder::Record(const BlockMeasurements& measured, const Eigen:
     __builtin_prefetch(row->disagreement, 1);
   }
   for (int i = 0; i < measured.count; ++i) {
-    const std::int32_t voxel = measured.voxels[i] & (kBlockVoxels - 1);
+    const std::int32_t voxel = measured.voxels[i] & BlockMeasurements::kVoxelMask;
     const auto word = static_cast<std::uint32_t>(measured.words[i]);
-    const bool good = (word & kClassBits) == kAllGood;
+    const bool good = (word & ThermalLayout::kConditionMask) == kAllGood;
     RecordRow* row = rows[static_cast<std::size_t>(voxel / RecordRow::kVoxels)];
     ConditionRecord& record = row->conditions[voxel % RecordRow::kVoxels];
     if ((measured.voxels[i] & BlockMeasurements::kAssigned) != 0) {
-      const Eigen::Vector3f offset(static_cast<float>(voxel & 7),
-                                   static_cast<float>(voxel >> 3 & 7),
-                                   static_cast<float>(voxel >> 6));
+      const Eigen::Vector3f offset(static_cast<float>(BlockLayout::X(voxel)),
+                                   static_cast<float>(BlockLayout::Y(voxel)),
+                                   static_cast<float>(BlockLayout::Z(voxel)));
       const float distance_m = (first + axes_ * offset).norm();
       const std::uint32_t count = record.good_count;
       record = frame_;
@@ -80,7 +77,7 @@ void MeasurementRecorder::Record(const BlockMeasurements& measured, const Eigen:
     if (!good) continue;
     DisagreementRecord& disagreement = row->disagreement[voxel % RecordRow::kVoxels];
     const int count = static_cast<int>(record.good_count);
-    disagreement.Add(static_cast<std::uint16_t>(word >> 16), count);
+    disagreement.Add(static_cast<std::uint16_t>(ThermalLayout::Code(word)), count);
     if (record.good_count < ConditionRecord::kMaxGoodCount)
       record.good_count = (record.good_count + 1) & ConditionRecord::kMaxGoodCount;
     voxels[voxel].set_disagreement_class(

@@ -8,13 +8,12 @@
 
 #include "common/frame/image.h"
 #include "common/testing/kernel_checks_for_test.h"
-#include "ground/thermal/camera_motion.h"
+#include "ground/thermal/reference/pixel_row_reference.h"
 #include "ground/thermal/thermal_kernel.h"
 
 namespace isotherm {
 namespace {
 
-using testing::AtLeastZero;
 using testing::Both;
 using testing::Random;
 using testing::Verdict;
@@ -27,111 +26,6 @@ constexpr double kSinglePrecision = 2e-6;  ///< Relative error of a sum of a few
 /// For `width` pixels, and memory behind them for a whole vector.
 std::vector<float> Row(int width, float value) {
   return std::vector<float>(static_cast<std::size_t>(width + testing::kMostLanes), value);
-}
-
-/// Holds what MakePixelRow must make of a pixel.
-struct ScalarPixel {
-  double depth_m = 0.0;
-  double slope_u = 0.0, slope_v = 0.0;  ///< Codes.
-  double smear_px = 0.0;
-  Verdict surface = Verdict::kNo, seen = Verdict::kNo;
-  Verdict occluded = Verdict::kNo, assignable = Verdict::kNo;
-  Verdict sharp = Verdict::kNo, still = Verdict::kNo, even = Verdict::kNo;
-  double cosine = 0.0;
-  int distance_class = 0;
-  int angle_class = 0;
-  bool certain_angle = true;
-  bool certain_distance = true;
-};
-
-/// Whether the row is smeared by less than its limits here.
-void JudgeSmear(const PixelRowArgs& a, int x, ScalarPixel& result) {
-  const auto vector = [](const float* v) {
-    return Eigen::Map<const Eigen::Vector3f>(v).cast<double>().eval();
-  };
-  const CameraMotion motion{vector(a.velocity_m_s), vector(a.rate_rad_s)};
-  const Eigen::Vector2d xy((x - double{a.cx}) / a.fx, a.y);
-  const Eigen::Vector2d speed = ImageVelocity(motion, xy, result.depth_m);
-  const double smear_px = double{a.smear_s} * std::hypot(a.fx * speed.x(), a.fy * speed.y());
-  constexpr double kRelative = 1e-4;  // Of a reciprocal and differences.
-  result.smear_px = smear_px;
-  result.sharp = AtLeastZero(a.smear_max_px - smear_px, kRelative * (1.0 + smear_px));
-  result.still = AtLeastZero(a.smear_good_px - smear_px, kRelative * (1.0 + smear_px));
-}
-
-Verdict Not(Verdict v) {
-  if (v == Verdict::kEither) return v;
-  return v == Verdict::kYes ? Verdict::kNo : Verdict::kYes;
-}
-
-int ScalarClass(double value, double good_low, double good_high, double low, double high) {
-  if (value >= good_low && value <= good_high) return 1;
-  return value >= low && value <= high ? 2 : 0;
-}
-
-double ScalarSlope(float before, float after) {
-  const double half = 0.5 * (double{after} - before) * double{ThermalPixel::kSlopeScale};
-  return std::isnan(half) ? 0.0 : std::clamp(half, -32767.0, 32767.0);
-}
-
-ScalarPixel MakeScalarPixel(const PixelRowArgs& a, int x) {
-  ScalarPixel result;
-  const Eigen::Vector3d p(a.vx[x], a.vy[x], a.vz[x]);
-  result.slope_u = ScalarSlope(a.celsius[x - 1], a.celsius[x + 1]);
-  result.slope_v = ScalarSlope(a.celsius[x - a.celsius_stride], a.celsius[x + a.celsius_stride]);
-  const Eigen::Vector3d z_axis = Eigen::Map<const Eigen::Vector3f>(a.z_axis).cast<double>();
-  result.depth_m = z_axis.dot(p) + a.z_axis[3];
-  const double reach = z_axis.cwiseAbs().dot(p.cwiseAbs()) + std::abs(a.z_axis[3]);
-  result.surface = AtLeastZero(result.depth_m, kSinglePrecision * reach);
-
-  const Eigen::Matrix3d R =
-      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(a.R_depth).cast<double>();
-  const Eigen::Vector3d q = R * p + Eigen::Map<const Eigen::Vector3f>(a.t_depth).cast<double>();
-  const double q_slack = kSinglePrecision * (p.cwiseAbs().sum() + 1.0);
-  result.seen = Both(result.surface, AtLeastZero(q.z(), q_slack));
-  const auto in_image = [&](double along, double f, double c, double size) {
-    const double pixel = f * along / q.z() + c + 0.5;
-    const double slack = 1e-4 + f * q_slack * (1.0 + std::abs(along / q.z())) / std::abs(q.z());
-    return Both(AtLeastZero(pixel, slack), AtLeastZero(size - pixel, slack));
-  };
-  result.seen =
-      Both(result.seen, Both(in_image(q.x(), a.depth_fx, a.depth_cx, double{a.depth_width}),
-                             in_image(q.y(), a.depth_fy, a.depth_cy, double{a.depth_height})));
-
-  const double distance = a.distance_m[x];
-  double nearest = distance;
-  for (int row = -a.margin; row <= a.margin; ++row) {
-    for (int column = -a.margin; column <= a.margin; ++column)
-      nearest = std::min(nearest, double{a.distance_m[x + row * a.distance_stride + column]});
-  }
-  result.occluded = AtLeastZero(distance - nearest - double{a.occlusion_tolerance_m},
-                                kSinglePrecision * distance);
-  const Eigen::Vector3d to_camera =
-      Eigen::Map<const Eigen::Vector3f>(a.position).cast<double>() - p;
-  const Eigen::Vector3d n(a.nx[x], a.ny[x], a.nz[x]);
-  const double cosine = std::min(n.dot(to_camera) / distance, 1.0);
-  result.cosine = cosine;
-  const double resolved = cosine * a.max_footprint_m - distance / a.fx;
-  result.certain_distance = std::abs(resolved) > 1e-6;
-  result.distance_class = resolved < 0.0
-                              ? 0
-                              : ScalarClass(distance, a.distance_min_m, a.distance_good_m,
-                                            a.distance_min_m, a.distance_max_m);
-  result.angle_class = ScalarClass(cosine, a.cosine_good_angle, a.cosine_min_angle,
-                                   a.cosine_max_angle, a.cosine_min_angle);
-  for (const float limit : {a.cosine_good_angle, a.cosine_min_angle, a.cosine_max_angle})
-    result.certain_angle = result.certain_angle && std::abs(cosine - double{limit}) > 1e-5;
-  JudgeSmear(a, x, result);
-  const double slope_k = std::hypot(result.slope_u, result.slope_v) / ThermalPixel::kSlopeScale;
-  // Codes stop at their limits, temperatures do not.
-  const double error_k = slope_k * std::max(double{a.uncertainty_px}, result.smear_px);
-  result.even =
-      slope_k > 400.0 ? Verdict::kNo : AtLeastZero(a.max_error_k - error_k, 1e-4 * (1.0 + error_k));
-  result.assignable = Both(result.seen, Not(result.occluded));
-  result.assignable = Both(result.assignable, Both(result.sharp, result.even));
-  result.assignable = Both(result.assignable, AtLeastZero(cosine, 1e-5));
-  if (std::isnan(a.celsius[x])) result.assignable = Verdict::kNo;
-  return result;
 }
 
 class MakePixelRowTest : public ::testing::Test {
@@ -235,11 +129,11 @@ class MakePixelRowTest : public ::testing::Test {
     };
     for (int x = 0; x < args_.width && !HasFatalFailure(); ++x) {
       SCOPED_TRACE(::testing::Message() << "pixel " << x << " of " << args_.width);
-      const ScalarPixel truth = MakeScalarPixel(args_, x);
-      const Verdict visible = Both(truth.seen, Not(truth.occluded));
+      const reference::Pixel truth = reference::MakePixel(args_, x);
+      const Verdict visible = Both(truth.seen, reference::Not(truth.occluded));
       tally(Both(truth.seen, truth.occluded), least.occluded, most.occluded);
-      tally(Both(visible, Not(truth.sharp)), least.smeared, most.smeared);
-      tally(Both(Both(visible, truth.sharp), Not(truth.even)), least.steep, most.steep);
+      tally(Both(visible, reference::Not(truth.sharp)), least.smeared, most.smeared);
+      tally(Both(Both(visible, truth.sharp), reference::Not(truth.even)), least.steep, most.steep);
       ComparePixel(pixels[static_cast<std::size_t>(x)], truth, args_.celsius[x]);
     }
     for (const auto reason :
@@ -254,7 +148,7 @@ class MakePixelRowTest : public ::testing::Test {
       ASSERT_EQ((pixel.flags & flag) != 0, truth == Verdict::kYes) << "flag " << flag;
     }
   }
-  void ComparePixel(const ThermalPixel& pixel, const ScalarPixel& truth, float celsius) {
+  void ComparePixel(const ThermalPixel& pixel, const reference::Pixel& truth, float celsius) {
     constexpr double kStep = 0.51;  // Codes.
     ASSERT_EQ(pixel.celsius, std::isnan(celsius) ? 0.0F : celsius);
     ASSERT_NEAR(static_cast<std::int16_t>(pixel.slopes & 0xFFFF), truth.slope_u, kStep);

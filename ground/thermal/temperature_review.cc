@@ -98,7 +98,10 @@ std::int64_t TemperatureReview::Review(std::int32_t block, const TsdfVolume& tsd
         continue;
       }
       // The classes stay, but for the angle's: a new measurement of any kind replaces it.
-      voxel.bits = (voxel.bits & 0xFFF0U) | static_cast<std::uint32_t>(ConditionClass::kBad);
+      constexpr std::uint32_t kBadAngle = static_cast<std::uint32_t>(ConditionClass::kBad)
+                                          << ThermalLayout::kAngleShift;
+      voxel.bits =
+          (voxel.bits & ThermalLayout::kClassesMask & ~ThermalLayout::kAngleMask) | kBadAngle;
       record = ConditionRecord();
       ++dropped;
     }

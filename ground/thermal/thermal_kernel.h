@@ -2,24 +2,37 @@
 
 #include <cstdint>
 
+#include "ground/thermal/voxel_layout.h"
+#include "ground/tsdf/block_layout.h"
+
 namespace isotherm {
 
 /// Holds what one pixel of the ideal thermal camera says about the surface that it shows, in 16
 /// bytes.
 struct ThermalPixel {
   static constexpr float kSlopeScale = 64.0F;
-  static constexpr std::int32_t kSeen = 1 << 8;        ///< Both cameras see the surface here.
-  static constexpr std::int32_t kAssignable = 1 << 9;  ///< And its temperature may be assigned.
+  static constexpr int kSlopeVShift = 16;
+  static constexpr std::int32_t kSlopeUMask = 0xFFFF;
+  static constexpr std::int32_t kMaxSlopeCode = 32767;
 
-  static constexpr int kCosineShift = 16;
+  /// Both cameras see the surface here.
+  static constexpr std::int32_t kSeen = 1 << ThermalLayout::kDisagreementShift;
+  /// And its temperature may be assigned.
+  static constexpr std::int32_t kAssignable = 2 << ThermalLayout::kDisagreementShift;
+  static constexpr int kCosineShift = ThermalLayout::kCodeShift;
+  static constexpr float kCosineScale = 255.0F;
 
   float depth_m;        ///< Depth of the model's surface along the thermal camera's z; 0 = none.
   float celsius;        ///< At the pixel's centre.
-  std::int32_t slopes;  ///< d celsius / dv << 16 | d celsius / du, signed, in 1 / kSlopeScale K/px.
-  std::int32_t flags;   ///< kSeen, kAssignable, classes where ThermalVoxel has them, and from
-                        ///< kCosineShift on the cosine of the emission angle in 1/255.
+  std::int32_t slopes;  ///< d celsius / dv above d celsius / du, signed, in 1 / kSlopeScale K/px.
+  std::int32_t flags;   ///< The classes where ThermalLayout has them, kSeen and kAssignable in
+                        ///< place of disagreement, and from kCosineShift on, in place of the
+                        ///< temperature, the cosine of the emission angle in 1 / kCosineScale.
 };
 static_assert(sizeof(ThermalPixel) == 16);
+static_assert(((ThermalPixel::kSeen | ThermalPixel::kAssignable) &
+               ~static_cast<std::int32_t>(ThermalLayout::kDisagreementMask)) == 0,
+              "flags must leave the classes alone");
 
 /// Bilinear look-up of one row of a picture.
 struct ResampleRowArgs {
@@ -97,12 +110,13 @@ struct FusionKernelCounts {
 /// Holds what was measured of the voxels of one block: those that took a new temperature, and those
 /// that were measured under good conditions, whether they took it or not.
 struct BlockMeasurements {
-  static constexpr std::int32_t kAssigned = 1 << 9;  ///< Beside the voxel's index.
-  static constexpr int kRoom = 512 + 64;             ///< Vectors are written whole.
+  static constexpr std::int32_t kVoxelMask = kBlockVoxels - 1;
+  static constexpr std::int32_t kAssigned = kBlockVoxels;  ///< Beside the voxel's index.
+  static constexpr int kRoom = kBlockVoxels + 64;          ///< Vectors are written whole.
 
   int count = 0;
   std::int32_t voxels[kRoom];  ///< Index and kAssigned.
-  std::int32_t words[kRoom];   ///< As ThermalVoxel has them, without disagreement.
+  std::int32_t words[kRoom];   ///< ThermalLayout without disagreement.
   std::int32_t flags[kRoom];   ///< Flags of the pixel.
 };
 /// Algorithms 5 and 6 for the 512 voxels of a block whose first voxel's centre is at `first`

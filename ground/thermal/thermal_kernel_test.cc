@@ -9,6 +9,7 @@
 
 #include "common/frame/image.h"
 #include "common/testing/kernel_checks_for_test.h"
+#include "ground/thermal/reference/thermal_row_reference.h"
 
 namespace isotherm {
 namespace {
@@ -17,7 +18,6 @@ using testing::Random;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kFar = std::numeric_limits<float>::max();
 constexpr double kSinglePrecision = 2e-6;  ///< Relative error of a sum of a few products.
 
 /// For `width` pixels, and memory behind them for a whole vector.
@@ -56,16 +56,12 @@ TEST(ResampleRowTest, MatchesTheScalarReferenceForAnyWidth) {
         fy[x] = random.Chance(0.1) ? 0.0F : random.Uniform(0.0F, 1.0F);
       }
       std::vector<float> out = Output(width);
-      ResampleRow({picture.data(), kWidth, source.data(), fx.data(), fy.data(), width}, out.data());
+      const ResampleRowArgs args{picture.data(), kWidth,    source.data(),
+                                 fx.data(),      fy.data(), width};
+      ResampleRow(args, out.data());
       ASSERT_NO_FATAL_FAILURE(ExpectCanary(out, width));
       for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
-        double truth = kNan;
-        if (source[x] >= 0) {
-          const float* p = picture.data() + source[x];
-          const double above = p[0] + double{fx[x]} * (double{p[1]} - p[0]);
-          const double below = p[kWidth] + double{fx[x]} * (double{p[kWidth + 1]} - p[kWidth]);
-          truth = above + double{fy[x]} * (below - above);
-        }
+        const double truth = reference::ResamplePixel(args, static_cast<int>(x));
         ASSERT_EQ(std::isnan(out[x]), std::isnan(truth)) << "pixel " << x << " of " << width;
         if (!std::isfinite(truth)) continue;
         ASSERT_NEAR(out[x], truth, 500.0 * kSinglePrecision);
@@ -98,10 +94,8 @@ TEST(DistanceRowTest, MatchesTheScalarReferenceForAnyWidth) {
                   out.data());
       ASSERT_NO_FATAL_FAILURE(ExpectCanary(out, width));
       for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
-        double squared = 0.0;
-        for (int axis = 0; axis < 3; ++axis)
-          squared += std::pow(double{planes[axis][x]} - position[axis], 2);
-        const double truth = std::isnan(squared) ? kFar : std::sqrt(squared);
+        const float vertex[3] = {planes[0][x], planes[1][x], planes[2][x]};
+        const double truth = reference::Distance(vertex, position);
         if (truth > kHuge) {
           ASSERT_GT(out[x], kHuge) << "pixel " << x << " of " << width;
         } else {

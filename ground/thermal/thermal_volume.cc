@@ -7,13 +7,11 @@ namespace isotherm {
 
 ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, ConditionClass angle,
                                 ConditionClass motion, ConditionClass disagreement) {
-  constexpr float kMaxCode = 65535.0F;
-  const float code =
-      std::clamp(1.0F + std::round((celsius - kMinCelsius) / kStepKelvin), 1.0F, kMaxCode);
+  const float code = std::clamp(1.0F + std::round((celsius - kMinCelsius) / kStepKelvin), 1.0F,
+                                ThermalLayout::kMaxCode);
   ThermalVoxel voxel;
-  voxel.bits = (static_cast<std::uint32_t>(code) << 16) | (Encode(motion) << kMotionShift) |
-               (Encode(disagreement) << kDisagreementShift) |
-               (static_cast<std::uint32_t>(distance) << 4) | static_cast<std::uint32_t>(angle);
+  voxel.bits = static_cast<std::uint32_t>(code) << ThermalLayout::kCodeShift |
+               ThermalLayout::Classes(distance, angle, motion, disagreement);
   return voxel;
 }
 
@@ -39,9 +37,7 @@ struct VoxelPlace {
 
 VoxelPlace PlaceOf(const TsdfVolume& tsdf, const GridIndex& voxel) {
   if ((voxel.array() < 0).any()) return {};
-  const GridIndex local(voxel.x() % kBlockSide, voxel.y() % kBlockSide, voxel.z() % kBlockSide);
-  return {tsdf.Find(voxel / kBlockSide),
-          local.x() + kBlockSide * (local.y() + kBlockSide * local.z())};
+  return {tsdf.Find(voxel / kBlockSide), BlockLayout::Element(voxel.x(), voxel.y(), voxel.z())};
 }
 
 ThermalVoxel VoxelAt(const ThermalVolume& thermal, const VoxelPlace& place) {

@@ -6,66 +6,49 @@
 #include <span>
 
 #include "ground/thermal/thermal_records.h"
+#include "ground/thermal/voxel_layout.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
 
-/// Exported where a point was never assigned a temperature.
-inline constexpr std::uint8_t kNeverMeasured = 255;
-
-/// Class of a measurement condition (eq. 6.3a-b) as it is exported.
-enum class ConditionClass : std::uint8_t {
-  kBad = 0,
-  kGood = 1,
-  kAcceptable = 2,
-  kUnchecked = kNeverMeasured,  ///< Motion and disagreement only: not known.
-};
-
-/// One thermal voxel in 32 bits (thesis fig. 6.9; the table is in docs/model-format.md):
-///   bits 31..16  temperature code: 0 = none, never measured or not kept, else 1 + (celsius + 100)
-///   / 0.025 (steps of
-///                0.025 K from -100 to 1538 °C)
-///   bits 15..12  motion class, bits 11..8 disagreement class, each as 0 unchecked, 1 bad,
-///                2 acceptable, 3 good: the zeros of a voxel from before these checks are right
-///   bits  7..4   distance class, bits 3..0 angle class (ConditionClass)
+/// One thermal voxel in 32 bits (ThermalLayout): a temperature and the classes of the conditions
+/// under which it was measured.
 struct ThermalVoxel {
-  static constexpr float kMinCelsius = -100.0F;
-  static constexpr float kStepKelvin = 0.025F;
+  static constexpr float kMinCelsius = ThermalLayout::kMinCelsius;
+  static constexpr float kStepKelvin = ThermalLayout::kStepKelvin;
 
   std::uint32_t bits = 0;
 
   static ThermalVoxel Make(float celsius, ConditionClass distance, ConditionClass angle,
                            ConditionClass motion = ConditionClass::kUnchecked,
                            ConditionClass disagreement = ConditionClass::kUnchecked);
-  bool measured() const { return (bits >> 16) != 0; }
+  bool measured() const { return ThermalLayout::Code(bits) != 0; }
   /// Measured, or tried under bad conditions: the classes say which (temperature code 0).
   bool judged() const { return bits != 0; }
   /// °C; NaN = never measured.
   float celsius() const {
-    const std::uint32_t code = bits >> 16;
+    const std::uint32_t code = ThermalLayout::Code(bits);
     return code == 0 ? NAN : kMinCelsius + kStepKelvin * static_cast<float>(code - 1);
   }
-  ConditionClass distance_class() const { return static_cast<ConditionClass>((bits >> 4) & 0xFU); }
-  ConditionClass angle_class() const { return static_cast<ConditionClass>(bits & 0xFU); }
+  ConditionClass distance_class() const {
+    return static_cast<ConditionClass>(bits >> ThermalLayout::kDistanceShift &
+                                       ThermalLayout::kClassMask);
+  }
+  ConditionClass angle_class() const {
+    return static_cast<ConditionClass>(bits >> ThermalLayout::kAngleShift &
+                                       ThermalLayout::kClassMask);
+  }
   /// How much the picture was smeared when the temperature was measured.
-  ConditionClass motion_class() const { return Decode(bits >> kMotionShift); }
+  ConditionClass motion_class() const {
+    return ThermalLayout::Decode(bits >> ThermalLayout::kMotionShift);
+  }
   /// How far measurements under good conditions contradict each other.
-  ConditionClass disagreement_class() const { return Decode(bits >> kDisagreementShift); }
+  ConditionClass disagreement_class() const {
+    return ThermalLayout::Decode(bits >> ThermalLayout::kDisagreementShift);
+  }
   void set_disagreement_class(ConditionClass c) {
-    bits = (bits & ~(0xFU << kDisagreementShift)) | (Encode(c) << kDisagreementShift);
-  }
-
-  static constexpr int kMotionShift = 12;
-  static constexpr int kDisagreementShift = 8;
-  /// The four bits of a motion or disagreement class: more is better.
-  static constexpr std::uint32_t Encode(ConditionClass c) {
-    constexpr std::uint32_t kCodes[] = {1, 3, 2};
-    return c == ConditionClass::kUnchecked ? 0 : kCodes[static_cast<std::size_t>(c)];
-  }
-  static constexpr ConditionClass Decode(std::uint32_t code) {
-    constexpr ConditionClass kClasses[] = {ConditionClass::kUnchecked, ConditionClass::kBad,
-                                           ConditionClass::kAcceptable, ConditionClass::kGood};
-    return kClasses[code & 0x3U];
+    bits = (bits & ~ThermalLayout::kDisagreementMask) |
+           (ThermalLayout::Encode(c) << ThermalLayout::kDisagreementShift);
   }
 };
 static_assert(sizeof(ThermalVoxel) == 4);

@@ -1,9 +1,7 @@
 // A cast of the model at half size made a whole one. Compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/thermal/upsample_kernel.cc"
-#include <hwy/foreach_target.h>  // Must come before highway.h.
-//
-#include <hwy/highway.h>
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include <limits>
 
@@ -11,13 +9,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<float>;
-using VF = hn::Vec<D>;
-using MF = hn::Mask<D>;
-
-constexpr D d;
 
 struct Vertices {
   VF p[3], n[3];
@@ -61,6 +52,12 @@ HWY_INLINE void Normalize(VF* n) {
   for (int i = 0; i < 3; ++i) n[i] = hn::Mul(n[i], scale);
 }
 
+// Makes a row of surface maps of twice the resolution. Even pixels in even rows are coarse ones;
+// the others are the mean of the two or four coarse ones around, if these lie on one surface (each
+// within max_plane_distance_m of the other's plane), else NaN. A pixel without a vertex still gets
+// the distance of the nearest around, so that it hides what is behind it.
+// Rows: planes; a lane makes one even and one odd pixel. Fast: a quarter of the rays are cast, and
+// the rest is four loads per plane; both halves of the row leave interleaved.
 void UpsampleRow(const UpsampleRowArgs& args, int y, SurfaceMaps& fine, float* distance_m) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int width = fine.width();

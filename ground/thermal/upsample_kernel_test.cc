@@ -3,19 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <vector>
 
 #include "common/testing/kernel_checks_for_test.h"
+#include "ground/thermal/reference/upsample_reference.h"
 
 namespace isotherm {
 namespace {
 
-using testing::AtLeastZero;
-using testing::Both;
 using testing::Random;
 using testing::Verdict;
 
@@ -24,57 +21,8 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr double kSinglePrecision = 1e-6;  ///< Metres, at up to a metre.
 
-struct Vertex {
-  Eigen::Vector3d p, n;
-};
-
 std::array<Image<float>*, 6> Planes(SurfaceMaps& maps) {
   return {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz};
-}
-
-Vertex At(const SurfaceMaps& maps, int x, int y) {
-  return {Eigen::Vector3d(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y)),
-          Eigen::Vector3d(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y))};
-}
-
-Verdict OnOneSurface(const Vertex& a, const Vertex& b, double max_distance) {
-  const auto within = [&](const Eigen::Vector3d& n) {
-    return AtLeastZero(max_distance - std::abs(n.dot(b.p - a.p)), kSinglePrecision);
-  };
-  return Both(within(a.n), within(b.n));
-}
-
-/// Holds what UpsampleRow must make of a fine pixel.
-struct ScalarUpsample {
-  Verdict has_vertex = Verdict::kYes;
-  Vertex vertex;
-  double distance_with = 0.0;     ///< If there is a vertex,
-  double distance_without = 0.0;  ///< and if not.
-};
-
-ScalarUpsample UpsampleScalar(const UpsampleRowArgs& args, int x, int y) {
-  // The coarse pixels around, the first is upper left; some are the same in even rows and columns.
-  std::vector<Vertex> around;
-  for (const int row : {y / 2, (y + 1) / 2}) {
-    for (const int column : {x / 2, (x + 1) / 2}) around.push_back(At(*args.coarse, column, row));
-  }
-  ScalarUpsample result;
-  const double max_distance = args.max_plane_distance_m;
-  for (const Vertex& other : around)
-    result.has_vertex = Both(result.has_vertex, OnOneSurface(around[0], other, max_distance));
-  result.has_vertex = Both(result.has_vertex, OnOneSurface(around[1], around[2], max_distance));
-  const Eigen::Vector3d position = Eigen::Map<const Eigen::Vector3f>(args.position).cast<double>();
-  result.vertex = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  result.distance_without = kFar;
-  for (const Vertex& vertex : around) {
-    result.vertex.p += 0.25 * vertex.p;
-    result.vertex.n += 0.25 * vertex.n;
-    const double distance = (vertex.p - position).norm();
-    if (distance < result.distance_without) result.distance_without = distance;
-  }
-  result.vertex.n.normalize();
-  result.distance_with = (result.vertex.p - position).norm();
-  return result;
 }
 
 class UpsampleRowTest : public ::testing::Test {
@@ -119,8 +67,8 @@ class UpsampleRowTest : public ::testing::Test {
     }
   }
   void ComparePixel(int x, int y) {
-    const ScalarUpsample truth = UpsampleScalar(args_, x, y);
-    const Vertex vertex = At(fine_, x, y);
+    const reference::FinePixel truth = reference::UpsamplePixel(args_, x, y);
+    const reference::Vertex vertex = reference::At(fine_, x, y);
     const bool has_vertex = vertex.p.allFinite() && vertex.n.allFinite();
     ASSERT_TRUE(has_vertex || (vertex.p.array().isNaN().all() && vertex.n.array().isNaN().all()));
     if (truth.has_vertex != Verdict::kEither) {

@@ -1,24 +1,18 @@
 // One row of the bilateral filter in SIMD lanes. Compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tracker/filter_kernel.cc"
-#include <hwy/foreach_target.h>  // Must come before highway.h.
-//
-#include <hwy/highway.h>
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include <algorithm>
 #include <limits>
 
+#include "common/frame/frame.h"
 #include "ground/tracker/filter_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::ScalableTag<float>;
-using VF = hn::Vec<D>;
-constexpr D d;
-
-constexpr std::int32_t kSaturated = 65535;  // kNoDepthSaturated.
+constexpr std::int32_t kSaturated = kNoDepthSaturated;
 
 /// Pixel x of the row, with the neighbours that are inside the image.
 float FilterPixel(const BilateralRowArgs& a, int x) {
@@ -42,6 +36,11 @@ float FilterPixel(const BilateralRowArgs& a, int x) {
   return sum / weights;
 }
 
+// Smooths depth along surfaces but not across edges: the mean of the window with weights
+//   w = spatial[dy, dx] (1 - ((z - centre) / tau)^2)^2,   tau = tau_at_1m centre^2,
+// 0 beyond tau (Tukey's biweight in place of a Gaussian of the difference). No return stays none.
+// Rows: 2 radius + 1 image rows, nullptr outside the image; one pixel per lane. Fast: the biweight
+// needs no exponential, and a pixel without return is beyond any tau, so nothing is masked.
 void BilateralRow(const BilateralRowArgs& a, std::span<float> filtered) {
   const int side = 2 * a.radius + 1;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -83,8 +82,9 @@ void BilateralRow(const BilateralRowArgs& a, std::span<float> filtered) {
   for (; x < a.width; ++x) filtered[x] = FilterPixel(a, x);
 }
 
+// Raw depth to metres: raw * metres_per_unit within the limits, else 0; counts what is valid.
+// Rows: 16-bit raw, one pixel per lane. Fast: no branch per pixel; bound by memory.
 int MetresRow(const MetresRowArgs& a, std::span<float> depth_m) {
-  const hn::RebindToSigned<D> di;
   const hn::Rebind<std::uint16_t, D> d16;
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int width = static_cast<int>(depth_m.size());
@@ -128,6 +128,10 @@ float HalfPixel(const HalfRowArgs& a, int x) {
   return count > 0.0F ? sum / count : 0.0F;
 }
 
+// Halves an image: of each 2 x 2 pixels, the mean of those within max_step_ratio of the nearest, so
+// that no depth between two surfaces arises; 0 if there is none.
+// Rows: the two upper image rows, one smaller pixel per lane. Fast: loads part even from odd
+// pixels, so that the four candidates of all lanes stand in four vectors.
 void HalfRow(const HalfRowArgs& a, std::span<float> half_m) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const int width = static_cast<int>(half_m.size());

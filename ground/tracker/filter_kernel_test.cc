@@ -9,6 +9,7 @@
 
 #include "common/frame/image.h"
 #include "common/testing/kernel_checks_for_test.h"
+#include "ground/tracker/reference/filter_reference.h"
 
 namespace isotherm {
 namespace {
@@ -60,33 +61,12 @@ class BilateralRowTest : public ::testing::Test {
     args_ = {rows_.data(), spatial_.data(), radius_, width, random_.Uniform(0.01F, 0.2F)};
   }
 
-  /// The mean with the biweight's weights.
-  double Filter(int x) const {
-    const double centre = rows_[static_cast<std::size_t>(radius_)][x];
-    if (!(centre > 0.0)) return 0.0;
-    const double tau = std::min(args_.tau_at_1m * centre, 1.0) * centre;
-    double sum = 0.0;
-    double weights = 0.0;
-    for (int dy = -radius_; dy <= radius_; ++dy) {
-      const float* row = rows_[static_cast<std::size_t>(dy + radius_)];
-      for (int dx = -radius_; row != nullptr && dx <= radius_; ++dx) {
-        if (x + dx < 0 || x + dx >= args_.width || row[x + dx] == 0.0F) continue;
-        const double u = (row[x + dx] - centre) / tau;
-        const double falloff = std::pow(std::max(0.0, 1.0 - u * u), 2);
-        const int k = (dy + radius_) * (2 * radius_ + 1) + dx + radius_;
-        const double w = falloff * spatial_[static_cast<std::size_t>(k)];
-        sum += w * row[x + dx];
-        weights += w;
-      }
-    }
-    return sum / weights;
-  }
   void CompareRow() {
     Output filtered(args_.width);
     BilateralRow(args_, filtered.row());
     ASSERT_TRUE(filtered.CanaryLives()) << "wrote beyond a row of " << args_.width;
     for (int x = 0; x < args_.width; ++x) {
-      const double truth = Filter(x);
+      const double truth = reference::FilterPixel(args_, x);
       ASSERT_NEAR(filtered[x], truth, 20.0 * kSinglePrecision * truth)
           << "pixel " << x << " of " << args_.width << ", radius " << radius_;
       if (truth > 0.0) ++compared_;
@@ -147,14 +127,11 @@ TEST(MetresRowTest, MatchesTheScalarReferenceForAnyWidth) {
       int valid_truth = 0;
       for (int x = 0; x < width; ++x) {
         const std::uint16_t value = raw[static_cast<std::size_t>(x)];
-        // Products of single precision, as is said of the limits.
-        const float depth = static_cast<float>(value) * scale;
-        const bool good =
-            value != 0 && value != 65535 && depth >= args.min_depth_m && depth <= args.max_depth_m;
-        valid_truth += good ? 1 : 0;
-        ASSERT_NEAR(depth_m[x], good ? double{scale} * value : 0.0, 65.0 * kSinglePrecision)
+        const double truth = reference::Metres(args, value);
+        valid_truth += truth > 0.0 ? 1 : 0;
+        ASSERT_NEAR(depth_m[x], truth, 65.0 * kSinglePrecision)
             << "pixel " << x << " of " << width << ", raw " << value;
-        ASSERT_EQ(depth_m[x] > 0.0F, good);
+        ASSERT_EQ(depth_m[x] > 0.0F, truth > 0.0);
       }
       ASSERT_EQ(valid, valid_truth);
     }
@@ -170,35 +147,6 @@ TEST(MetresRowTest, AScaleThatIsNoneGivesNoDepth) {
       for (int x = 0; x < 37; ++x) EXPECT_EQ(depth_m[x], 0.0F);
     }
   });
-}
-
-/// Mean of those near the nearest; each bound of it, where rounding may decide which are near.
-struct ScalarHalf {
-  std::vector<double> means;
-};
-
-ScalarHalf HalveScalar(const HalfRowArgs& a, int x) {
-  std::vector<double> z;
-  for (const float* row : {a.upper, a.lower}) {
-    for (const int column : {2 * x, 2 * x + 1}) {
-      if (row[column] > 0.0F) z.push_back(row[column]);
-    }
-  }
-  if (z.empty()) return {{0.0}};
-  std::sort(z.begin(), z.end());
-  ScalarHalf result;
-  for (const double slack : {-kSinglePrecision, kSinglePrecision}) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (const double value : z) {
-      if (value != z.front() && value - z.front() > (a.max_step_ratio + slack) * z.front())
-        continue;
-      sum += value;
-      count += 1.0;
-    }
-    result.means.push_back(sum / count);
-  }
-  return result;
 }
 
 TEST(HalfRowTest, MatchesTheScalarReferenceForAnyWidth) {
@@ -219,7 +167,7 @@ TEST(HalfRowTest, MatchesTheScalarReferenceForAnyWidth) {
       HalfRow(args, half.row());
       ASSERT_TRUE(half.CanaryLives()) << "wrote beyond a row of " << width;
       for (int x = 0; x < width; ++x) {
-        const ScalarHalf truth = HalveScalar(args, x);
+        const reference::HalfPixel truth = reference::HalvePixel(args, x);
         const auto near = [&](double mean) { return std::abs(half[x] - mean) <= kSinglePrecision; };
         ASSERT_TRUE(std::any_of(truth.means.begin(), truth.means.end(), near))
             << "pixel " << x << " of " << width << ": " << half[x] << ", not "

@@ -1,32 +1,12 @@
 // One strip of ICP in SIMD lanes along x. Compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tracker/icp_kernel.cc"
-#include <hwy/foreach_target.h>  // Must come before highway.h.
-//
-#include <hwy/highway.h>
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include "ground/tracker/icp_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<D>;
-using VF = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using MF = hn::Mask<D>;
-
-constexpr D d;
-constexpr DI di;
-
-struct Vector3 {
-  VF x, y, z;
-};
-
-HWY_INLINE VF Dot(const Vector3& a, const Vector3& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
-}
 
 HWY_INLINE Vector3 Rotate(const float* R, const Vector3& p) {
   const auto row = [&](int i) {
@@ -50,15 +30,79 @@ HWY_INLINE MF Inside(const IcpKernelArgs& a, const Vector3& p) {
   return hn::And(between(p.x, 0), hn::And(between(p.y, 1), between(p.z, 2)));
 }
 
+/// Pixels of the model's maps.
+struct ModelPixels {
+  VI index;
+  MF inside;  ///< Elsewhere the index is 0.
+};
+
+HWY_INLINE ModelPixels ProjectToModel(const IcpKernelArgs& a, const Vector3& p_model,
+                                      MF candidate) {
+  const SurfaceMaps& model = *a.model;
+  const VF zero = hn::Zero(d);
+  const VF inverse_z = hn::Div(hn::Set(d, 1.0F), p_model.z);
+  const VF u = hn::MulAdd(hn::Mul(p_model.x, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx + 0.5F));
+  const VF v = hn::MulAdd(hn::Mul(p_model.y, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy + 0.5F));
+  MF inside = hn::And(candidate, hn::Gt(p_model.z, zero));
+  inside = hn::And(
+      inside, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(model.width())))));
+  inside = hn::And(
+      inside, hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, static_cast<float>(model.height())))));
+  const VI column = hn::ConvertTo(di, hn::IfThenElseZero(inside, u));
+  const VI row = hn::ConvertTo(di, hn::IfThenElseZero(inside, v));
+  return {hn::Add(hn::Mul(row, hn::Set(di, model.width())), column), inside};
+}
+
+/// The sums of IcpKernelSums, in each lane.
+struct NormalEquations {
+  VF sums[28];
+
+  HWY_INLINE NormalEquations() {
+    for (VF& sum : sums) sum = hn::Zero(d);
+  }
+  /// Adds weight J J^T and weight J residual with J = (n, arm x n); `residual` and all vectors are
+  /// 0 in lanes that do not count.
+  HWY_INLINE void Add(const Vector3& n, const Vector3& arm, VF residual, VF weight) {
+    const VF J[6] = {n.x,
+                     n.y,
+                     n.z,
+                     hn::NegMulAdd(arm.z, n.y, hn::Mul(arm.y, n.z)),
+                     hn::NegMulAdd(arm.x, n.z, hn::Mul(arm.z, n.x)),
+                     hn::NegMulAdd(arm.y, n.x, hn::Mul(arm.x, n.y))};
+    int k = 0;
+    for (int row = 0; row < 6; ++row) {
+      const VF weighted = hn::Mul(weight, J[row]);
+      for (int col = row; col < 6; ++col) {
+        sums[k] = hn::MulAdd(weighted, J[col], sums[k]);
+        ++k;
+      }
+      sums[21 + row] = hn::MulAdd(weighted, residual, sums[21 + row]);
+    }
+    sums[27] = hn::MulAdd(residual, residual, sums[27]);
+  }
+};
+
+/// Zeros where `mask` is false, whatever NaN is there.
+HWY_INLINE Vector3 OnlyWhere(MF mask, const Vector3& v) {
+  return {hn::IfThenElseZero(mask, v.x), hn::IfThenElseZero(mask, v.y),
+          hn::IfThenElseZero(mask, v.z)};
+}
+
+// One pass of point-to-plane ICP with projective association (algorithm 1): a vertex p of the
+// current frame meets the model's vertex q in the pixel that p is projected to; if they are near
+// and their normals agree, it adds to the normal equations of the twist
+//   sum of w (n . (p - q) + J . twist)^2,  J = (n, (p - camera) x n),  w = (reference / depth)^4,
+// the weight being the inverse variance of triangulated depth.
+// Rows: planes of both maps, one pixel of the current ones per lane; 28 sums per lane, added up at
+// the end. Fast: the sums stay in registers, each test ends the vector if no lane is left, and
+// neighbours look up neighbours.
 void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpKernelSums& out) {
   const SurfaceMaps& current = *a.current;
   const SurfaceMaps& model = *a.model;
   const int width = current.width();
   const int lanes = static_cast<int>(hn::Lanes(d));
   const VF zero = hn::Zero(d);
-  const VF one = hn::Set(d, 1.0F);
-  VF sums[28];
-  for (VF& sum : sums) sum = zero;
+  NormalEquations equations;
   for (int y = first_row; y < last_row; ++y) {
     for (int x = 0; x < width; x += lanes) {
       const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
@@ -81,67 +125,37 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
       out.candidates += static_cast<std::int64_t>(hn::CountTrue(d, candidate));
 
       const Vector3 p_model = Add(Rotate(a.R_model_depth, p_depth), a.t_model_depth);
-      const VF inverse_z = hn::Div(one, p_model.z);
-      const VF u =
-          hn::MulAdd(hn::Mul(p_model.x, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx + 0.5F));
-      const VF v =
-          hn::MulAdd(hn::Mul(p_model.y, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy + 0.5F));
-      MF good = hn::And(candidate, hn::Gt(p_model.z, zero));
-      good = hn::And(
-          good, hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(model.width())))));
-      good = hn::And(good, hn::And(hn::Ge(v, zero),
-                                   hn::Lt(v, hn::Set(d, static_cast<float>(model.height())))));
-      if (hn::AllFalse(d, good)) continue;  // There may be no model to look at.
-      const VI column = hn::ConvertTo(di, hn::IfThenElseZero(good, u));
-      const VI row = hn::ConvertTo(di, hn::IfThenElseZero(good, v));
-      const VI j = hn::Add(hn::Mul(row, hn::Set(di, model.width())), column);
-
-      const Vector3 q{hn::GatherIndex(d, model.vx.data(), j),
-                      hn::GatherIndex(d, model.vy.data(), j),
-                      hn::GatherIndex(d, model.vz.data(), j)};
+      const ModelPixels pixels = ProjectToModel(a, p_model, candidate);
+      if (hn::AllFalse(d, pixels.inside)) continue;  // There may be no model to look at.
+      const auto look_up = [&pixels](const Image<float>& plane) {
+        return hn::GatherIndex(d, plane.data(), pixels.index);
+      };
+      const Vector3 q{look_up(model.vx), look_up(model.vy), look_up(model.vz)};
       const Vector3 difference{hn::Sub(p.x, q.x), hn::Sub(p.y, q.y), hn::Sub(p.z, q.z)};
       // The model has a surface where the pixel looks, near or not.
-      out.overlap += static_cast<std::int64_t>(hn::CountTrue(d, hn::And(good, hn::Eq(q.x, q.x))));
-      good =
-          hn::And(good, hn::Lt(Dot(difference, difference), hn::Set(d, a.max_squared_distance_m2)));
+      out.overlap +=
+          static_cast<std::int64_t>(hn::CountTrue(d, hn::And(pixels.inside, hn::Eq(q.x, q.x))));
+      MF good = hn::And(pixels.inside,
+                        hn::Lt(Dot(difference, difference), hn::Set(d, a.max_squared_distance_m2)));
       if (hn::AllFalse(d, good)) continue;
-      Vector3 n{hn::GatherIndex(d, model.nx.data(), j), hn::GatherIndex(d, model.ny.data(), j),
-                hn::GatherIndex(d, model.nz.data(), j)};
+      const Vector3 n{look_up(model.nx), look_up(model.ny), look_up(model.nz)};
       const Vector3 n_current =
           Rotate(a.R_map_depth, {load(current.nx), load(current.ny), load(current.nz)});
       good = hn::And(good, hn::Gt(Dot(n, n_current), hn::Set(d, a.min_normal_cosine)));
       out.inliers += static_cast<std::int64_t>(hn::CountTrue(d, good));
 
-      // Lanes that are no inliers contribute zeros, whatever NaN they hold.
-      n = {hn::IfThenElseZero(good, n.x), hn::IfThenElseZero(good, n.y),
-           hn::IfThenElseZero(good, n.z)};
-      const VF residual = hn::IfThenElseZero(good, Dot(n, difference));
+      // Lanes that are no inliers contribute zeros.
+      const Vector3 n_good = OnlyWhere(good, n);
+      const VF residual = hn::IfThenElseZero(good, Dot(n_good, difference));
       const VF ratio =
           hn::IfThenElseZero(good, hn::Div(hn::Set(d, a.reference_depth_m), p_depth.z));
       const VF squared_ratio = hn::Mul(ratio, ratio);
       const VF weight = hn::Mul(squared_ratio, squared_ratio);
-      const Vector3 r{hn::IfThenElseZero(good, arm.x), hn::IfThenElseZero(good, arm.y),
-                      hn::IfThenElseZero(good, arm.z)};
-      const VF J[6] = {n.x,
-                       n.y,
-                       n.z,
-                       hn::NegMulAdd(r.z, n.y, hn::Mul(r.y, n.z)),
-                       hn::NegMulAdd(r.x, n.z, hn::Mul(r.z, n.x)),
-                       hn::NegMulAdd(r.y, n.x, hn::Mul(r.x, n.y))};
-      int k = 0;
-      for (int row_index = 0; row_index < 6; ++row_index) {
-        const VF weighted = hn::Mul(weight, J[row_index]);
-        for (int col = row_index; col < 6; ++col) {
-          sums[k] = hn::MulAdd(weighted, J[col], sums[k]);
-          ++k;
-        }
-        sums[21 + row_index] = hn::MulAdd(weighted, residual, sums[21 + row_index]);
-      }
-      sums[27] = hn::MulAdd(residual, residual, sums[27]);
+      equations.Add(n_good, OnlyWhere(good, arm), residual, weight);
     }
   }
   for (std::size_t k = 0; k < out.sums.size(); ++k)
-    out.sums[k] += hn::GetLane(hn::SumOfLanes(d, sums[k]));
+    out.sums[k] += hn::GetLane(hn::SumOfLanes(d, equations.sums[k]));
 }
 
 }  // namespace isotherm::HWY_NAMESPACE

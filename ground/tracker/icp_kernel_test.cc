@@ -9,93 +9,21 @@
 #include <limits>
 
 #include "common/testing/kernel_checks_for_test.h"
+#include "ground/tracker/reference/icp_reference.h"
 
 namespace isotherm {
 namespace {
 
-using testing::AtLeastZero;
-using testing::Both;
 using testing::Random;
 using testing::Verdict;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr double kSinglePrecision = 2e-6;
 
 using RowMajor = Eigen::Matrix<float, 3, 3, Eigen::RowMajor>;
 
 std::array<Image<float>*, 6> Planes(SurfaceMaps& maps) {
   return {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz};
-}
-
-struct Sample {
-  Eigen::Vector3d p, n;
-};
-
-Sample At(const SurfaceMaps& maps, int x, int y) {
-  return {Eigen::Vector3d(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y)),
-          Eigen::Vector3d(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y))};
-}
-
-/// Holds what AccumulateIcpRows must add for one pixel.
-struct ScalarPair {
-  Verdict candidate = Verdict::kNo;
-  Verdict inlier = Verdict::kNo;
-  std::array<double, 28> terms{};
-};
-
-ScalarPair MakeScalarPair(const IcpKernelArgs& a, int x, int y) {
-  const auto matrix = [](const float* R) {
-    return Eigen::Matrix3d(Eigen::Map<const RowMajor>(R).cast<double>());
-  };
-  const auto vector = [](const float* t) {
-    return Eigen::Vector3d(Eigen::Map<const Eigen::Vector3f>(t).cast<double>());
-  };
-  constexpr double kNearPixelBorder = 1e-3;
-  ScalarPair result;
-  const Sample current = At(*a.current, x, y);
-  const Eigen::Vector3d arm = matrix(a.R_map_depth) * current.p;
-  const Eigen::Vector3d p = arm + vector(a.t_map_depth);
-  result.candidate = current.p.z() > 0.0 ? Verdict::kYes : Verdict::kNo;
-  const Eigen::Vector3d above = p - vector(a.volume_min);
-  const Eigen::Vector3d below = vector(a.volume_max) - p;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const double inside : {above[axis], below[axis]})
-      result.candidate = Both(result.candidate, AtLeastZero(inside, kSinglePrecision));
-  }
-  const Eigen::Vector3d q = matrix(a.R_model_depth) * current.p + vector(a.t_model_depth);
-  const double u = a.fx * q.x() / q.z() + a.cx + 0.5;
-  const double v = a.fy * q.y() / q.z() + a.cy + 0.5;
-  result.inlier = Both(result.candidate, AtLeastZero(q.z(), kSinglePrecision));
-  for (const double pixel : {u, v}) {
-    if (std::abs(pixel - std::round(pixel)) < kNearPixelBorder)
-      result.inlier = Both(result.inlier, Verdict::kEither);
-  }
-  const int width = a.model->width();
-  const int height = a.model->height();
-  if (!(u >= 0.0 && u < width && v >= 0.0 && v < height)) {
-    if (result.inlier == Verdict::kYes) result.inlier = Verdict::kNo;
-    return result;
-  }
-  const Sample model = At(*a.model, static_cast<int>(u), static_cast<int>(v));
-  const Eigen::Vector3d difference = p - model.p;
-  result.inlier = Both(
-      result.inlier,
-      AtLeastZero(double{a.max_squared_distance_m2} - difference.squaredNorm(), kSinglePrecision));
-  result.inlier = Both(result.inlier, AtLeastZero(model.n.dot(matrix(a.R_map_depth) * current.n) -
-                                                      double{a.min_normal_cosine},
-                                                  kSinglePrecision));
-  const double residual = model.n.dot(difference);
-  const double weight = std::pow(a.reference_depth_m / current.p.z(), 4);
-  Eigen::Matrix<double, 6, 1> J;
-  J << model.n, arm.cross(model.n);
-  std::size_t k = 0;
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) result.terms[k++] = weight * J[i] * J[j];
-  }
-  for (int i = 0; i < 6; ++i) result.terms[k++] = weight * J[i] * residual;
-  result.terms[k] = residual * residual;
-  return result;
 }
 
 class AccumulateIcpRowsTest : public ::testing::Test {
@@ -156,7 +84,7 @@ class AccumulateIcpRowsTest : public ::testing::Test {
   void RemoveUncertain() {
     for (int y = 0; y < current_.height(); ++y) {
       for (int x = 0; x < current_.width(); ++x) {
-        const ScalarPair pair = MakeScalarPair(args_, x, y);
+        const reference::Pair pair = reference::MakePair(args_, x, y);
         if (pair.candidate != Verdict::kEither && pair.inlier != Verdict::kEither) continue;
         for (Image<float>* plane : Planes(current_)) plane->At(x, y) = kNan;
       }
@@ -168,7 +96,7 @@ class AccumulateIcpRowsTest : public ::testing::Test {
     std::array<double, 28> truth{}, magnitude{};
     for (int y = first_row; y < last_row; ++y) {
       for (int x = 0; x < current_.width(); ++x) {
-        const ScalarPair pair = MakeScalarPair(args_, x, y);
+        const reference::Pair pair = reference::MakePair(args_, x, y);
         truth_counts.candidates += pair.candidate == Verdict::kYes ? 1 : 0;
         if (pair.inlier != Verdict::kYes) continue;
         ++truth_counts.inliers;

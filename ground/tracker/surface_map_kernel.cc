@@ -1,9 +1,7 @@
 // One row of vertex and normal maps in SIMD lanes. Compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tracker/surface_map_kernel.cc"
-#include <hwy/foreach_target.h>  // Must come before highway.h.
-//
-#include <hwy/highway.h>
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include <algorithm>
 #include <limits>
@@ -12,11 +10,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<float>;
-using VF = hn::Vec<D>;
-constexpr D d;
 
 /// Largest difference of the steps to either side of a pixel on one surface, as a share of both
 /// together; 1 would be a step on one side only.
@@ -30,6 +23,36 @@ void ClearPixels(SurfaceMaps& maps, int y, int begin, int end) {
   }
 }
 
+/// Depths of pixels and of those `reach` away from them.
+struct Cross {
+  VF centre, left, right, up, down;
+};
+
+/// Whether a pixel and the four around it lie on one surface.
+HWY_INLINE MF OnOneSurface(const SurfaceMapArgs& a, const Cross& depth) {
+  const VF z = depth.centre;
+  // A pixel without a return is as far away as the depth: no neighbour of any surface.
+  const VF limit = hn::Mul(z, hn::Set(d, std::min(a.max_step, 1.0F)));
+  const auto near = [&](VF neighbour) { return hn::Lt(hn::Abs(hn::Sub(neighbour, z)), limit); };
+  // A slope steps on both sides alike; a step on one side only is an edge, where differences
+  // would give the normal of a bridge across it.
+  const VF noise = hn::Mul(hn::Set(d, a.noise_at_1m), hn::Mul(z, z));
+  const auto even = [&](VF before, VF after) {
+    const VF bend = hn::Abs(hn::Sub(hn::Add(before, after), hn::Add(z, z)));
+    const VF slope = hn::Abs(hn::Sub(after, before));
+    return hn::Le(bend, hn::MulAdd(hn::Set(d, kMaxBend), slope, noise));
+  };
+  return hn::And(hn::And(hn::And(near(depth.left), near(depth.right)),
+                         hn::And(near(depth.up), near(depth.down))),
+                 hn::And(even(depth.left, depth.right), even(depth.up, depth.down)));
+}
+
+// Makes a row of vertices and normals of a depth image: vertex = depth * ray, normal = normalised
+// cross product of the differences of the vertices `reach` pixels below and above, right and left.
+// NaN unless the five pixels lie on one surface.
+// Rows: three image rows of depth; six planes of maps, one pixel per lane. Fast: vertices of
+// neighbours are never stored; a ray is one multiplication; the row's end is done by a vector that
+// overlaps the one before.
 void SurfaceMapRow(const SurfaceMapArgs& a, int y, SurfaceMaps& maps) {
   const int width = a.depth_m->width();
   const int height = a.depth_m->height();
@@ -62,34 +85,19 @@ void SurfaceMapRow(const SurfaceMapArgs& a, int y, SurfaceMaps& maps) {
                                 hn::Set(d, static_cast<float>(offset) - a.cx));
       return hn::Mul(column, inverse_fx);
     };
-    const VF z = hn::LoadU(d, centre_row + x);
-    const VF left = hn::LoadU(d, centre_row + x - reach);
-    const VF right = hn::LoadU(d, centre_row + x + reach);
-    const VF up = hn::LoadU(d, upper_row + x);
-    const VF down = hn::LoadU(d, lower_row + x);
-    // A pixel without a return is as far away as the depth: no neighbour of any surface.
-    const VF limit = hn::Mul(z, hn::Set(d, std::min(a.max_step, 1.0F)));
-    const auto near = [&](VF neighbour) { return hn::Lt(hn::Abs(hn::Sub(neighbour, z)), limit); };
-    // A slope steps on both sides alike; a step on one side only is an edge, where differences
-    // would give the normal of a bridge across it.
-    const VF noise = hn::Mul(hn::Set(d, a.noise_at_1m), hn::Mul(z, z));
-    const auto even = [&](VF before, VF after) {
-      const VF bend = hn::Abs(hn::Sub(hn::Add(before, after), hn::Add(z, z)));
-      const VF slope = hn::Abs(hn::Sub(after, before));
-      return hn::Le(bend, hn::MulAdd(hn::Set(d, kMaxBend), slope, noise));
-    };
-    const auto smooth =
-        hn::And(hn::And(hn::And(near(left), near(right)), hn::And(near(up), near(down))),
-                hn::And(even(left, right), even(up, down)));
+    const Cross depth = {hn::LoadU(d, centre_row + x), hn::LoadU(d, centre_row + x - reach),
+                         hn::LoadU(d, centre_row + x + reach), hn::LoadU(d, upper_row + x),
+                         hn::LoadU(d, lower_row + x)};
+    const MF smooth = OnOneSurface(a, depth);
 
     const VF rx = ray_x(0);
     // Differences of the neighbours' vertices.
-    const VF ax = hn::Sub(hn::Mul(ray_x(reach), right), hn::Mul(ray_x(-reach), left));
-    const VF az = hn::Sub(right, left);
+    const VF ax = hn::Sub(hn::Mul(ray_x(reach), depth.right), hn::Mul(ray_x(-reach), depth.left));
+    const VF az = hn::Sub(depth.right, depth.left);
     const VF ay = hn::Mul(ray_y_centre, az);
-    const VF bz = hn::Sub(down, up);
+    const VF bz = hn::Sub(depth.down, depth.up);
     const VF bx = hn::Mul(rx, bz);
-    const VF by = hn::Sub(hn::Mul(ray_y_lower, down), hn::Mul(ray_y_upper, up));
+    const VF by = hn::Sub(hn::Mul(ray_y_lower, depth.down), hn::Mul(ray_y_upper, depth.up));
     // b x a points towards the camera (x right, y down, z forward).
     const VF nx = hn::Sub(hn::Mul(by, az), hn::Mul(bz, ay));
     const VF ny = hn::Sub(hn::Mul(bz, ax), hn::Mul(bx, az));
@@ -100,9 +108,9 @@ void SurfaceMapRow(const SurfaceMapArgs& a, int y, SurfaceMaps& maps) {
     const auto store = [&](Image<float>& plane, VF value) {
       hn::StoreU(hn::IfThenElse(good, value, none), d, plane.Row(y).data() + x);
     };
-    store(maps.vx, hn::Mul(rx, z));
-    store(maps.vy, hn::Mul(ray_y_centre, z));
-    store(maps.vz, z);
+    store(maps.vx, hn::Mul(rx, depth.centre));
+    store(maps.vy, hn::Mul(ray_y_centre, depth.centre));
+    store(maps.vz, depth.centre);
     store(maps.nx, hn::Mul(nx, scale));
     store(maps.ny, hn::Mul(ny, scale));
     store(maps.nz, hn::Mul(nz, scale));

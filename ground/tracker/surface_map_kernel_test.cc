@@ -6,15 +6,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "common/testing/kernel_checks_for_test.h"
+#include "ground/tracker/reference/surface_map_reference.h"
 
 namespace isotherm {
 namespace {
 
-using testing::AtLeastZero;
-using testing::Both;
 using testing::Random;
 using testing::Verdict;
 
@@ -22,52 +20,6 @@ constexpr double kSinglePrecision = 1e-6;
 
 std::array<Image<float>*, 6> Planes(SurfaceMaps& maps) {
   return {&maps.vx, &maps.vy, &maps.vz, &maps.nx, &maps.ny, &maps.nz};
-}
-
-/// Holds what SurfaceMapRow must make of a pixel.
-struct ScalarPixel {
-  Verdict has_normal = Verdict::kNo;
-  Eigen::Vector3d p, n;
-  double n_slack = 0.0;
-};
-
-ScalarPixel MakeScalarPixel(const SurfaceMapArgs& a, int x, int y) {
-  constexpr double kMaxBend = 0.3;
-  const Image<float>& depth = *a.depth_m;
-  ScalarPixel result;
-  if (std::min(x, y) < a.reach || x + a.reach >= depth.width() || y + a.reach >= depth.height())
-    return result;
-  const auto vertex = [&](int u, int v) {
-    const double z = depth.At(u, v);
-    return Eigen::Vector3d((u - double{a.cx}) / a.fx * z, (v - double{a.cy}) / a.fy * z, z);
-  };
-  result.p = vertex(x, y);
-  const Eigen::Vector3d left = vertex(x - a.reach, y);
-  const Eigen::Vector3d right = vertex(x + a.reach, y);
-  const Eigen::Vector3d up = vertex(x, y - a.reach);
-  const Eigen::Vector3d down = vertex(x, y + a.reach);
-  const double z = result.p.z();
-  const double slack = kSinglePrecision * (z + 1e-3);
-  result.has_normal = z > 0.0 ? Verdict::kYes : Verdict::kNo;
-  for (const double neighbour : {left.z(), right.z(), up.z(), down.z()}) {
-    if (!(neighbour > 0.0)) result.has_normal = Verdict::kNo;
-    result.has_normal =
-        Both(result.has_normal, AtLeastZero(a.max_step * z - std::abs(neighbour - z), slack));
-  }
-  const auto even = [&](double before, double after) {
-    const double bend = std::abs(before + after - 2.0 * z);
-    return AtLeastZero(kMaxBend * std::abs(after - before) + a.noise_at_1m * z * z - bend,
-                       4.0 * slack);
-  };
-  result.has_normal = Both(result.has_normal, even(left.z(), right.z()));
-  result.has_normal = Both(result.has_normal, even(up.z(), down.z()));
-  const Eigen::Vector3d across = right - left;
-  const Eigen::Vector3d along = down - up;
-  const Eigen::Vector3d cross = along.cross(across);
-  result.n = cross.normalized();
-  // Of differences of vertices in single precision.
-  result.n_slack = 4.0 * slack * (across.norm() + along.norm()) / cross.norm() + 1e-5;
-  return result;
 }
 
 class SurfaceMapRowTest : public ::testing::Test {
@@ -119,7 +71,7 @@ class SurfaceMapRowTest : public ::testing::Test {
     }
   }
   void ComparePixel(int x, int y) {
-    const ScalarPixel truth = MakeScalarPixel(args_, x, y);
+    const reference::MapPixel truth = reference::MakeMapPixel(args_, x, y);
     const Eigen::Vector3d p(maps_.vx.At(x, y), maps_.vy.At(x, y), maps_.vz.At(x, y));
     const Eigen::Vector3d n(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
     const bool has_normal = p.allFinite() && n.allFinite();

@@ -1,24 +1,18 @@
 // Blocks against the planes of a view in SIMD lanes. Compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tsdf/culling_kernel.cc"
-#include <hwy/foreach_target.h>  // Must come before highway.h.
-//
-#include <hwy/highway.h>
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include "ground/tsdf/culling_kernel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
 
-using D = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<D>;
-using VF = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-
-constexpr D d;
-constexpr DI di;
-
+// Keeps the blocks inside a view: p[0] x + p[1] y + p[2] z + p[3] >= 0 for each of its planes,
+// whose offsets the caller has moved out so that a block counts until all of it is outside. Rows:
+// block coordinates are x y z of each block after another; a block per lane. Fast: the table of
+// blocks is read in order, with three loads per vector, and only indices are written; the smallest
+// of the five values decides without a branch.
 std::int32_t CullBlocks(const float (&planes)[kFrustumPlanes][4], const std::int32_t* coordinates,
                         std::int32_t count, std::int32_t* inside) {
   const auto lanes = static_cast<std::int32_t>(hn::Lanes(d));

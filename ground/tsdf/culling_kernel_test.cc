@@ -9,7 +9,7 @@
 #include "common/testing/volume_shapes.h"
 #include "ground/ground_options.pb.h"
 #include "ground/tracker/analytic_views_for_test.h"
-#include "ground/tsdf/scalar_kernels_for_test.h"
+#include "ground/tsdf/reference/culling_reference.h"
 #include "ground/tsdf/visible_blocks.h"
 
 namespace isotherm {
@@ -30,7 +30,7 @@ std::int32_t Compare(const Planes& planes, const std::vector<std::int32_t>& coor
   for (std::int32_t block = 0; block < count; ++block) {
     const bool kept = next < found && inside[static_cast<std::size_t>(next)] == block;
     next += kept ? 1 : 0;
-    const Verdict verdict = testing::ScalarCull(planes, &coordinates[3 * block], precision);
+    const Verdict verdict = reference::CullBlock(planes, &coordinates[3 * block], precision);
     if (verdict != Verdict::kEither) {
       EXPECT_EQ(kept, verdict == Verdict::kYes) << "block " << block << " of " << count;
     }

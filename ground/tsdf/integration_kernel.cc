@@ -2,31 +2,16 @@
 // lanes. Compiled once per instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tsdf/integration_kernel.cc"
-#include <hwy/foreach_target.h>  // Must come before highway.h.
-//
-#include <hwy/highway.h>
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include <cmath>
 
 #include "ground/tsdf/integration_kernel.h"
 #include "ground/tsdf/voxel_kernel-inl.h"
+#include "ground/tsdf/voxel_layout.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<D>;
-using VF = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using MF = hn::Mask<D>;
-
-constexpr D d;
-constexpr DI di;
-
-// TsdfVoxel's scales.
-constexpr float kTsdfScale = 32767.0F;
-constexpr float kWeightScale = 64.0F;
 
 /// Noise reaches this many standard deviations (a generous estimate) behind the surface.
 constexpr float kNoiseReach = 1.0F;
@@ -51,10 +36,18 @@ HWY_INLINE RecordVectors PackSamples(VF depth, VF nx, VF ny, VF nz, VF px, VF py
   const VF scaled_offset =
       hn::MulAdd(hn::ConvertTo(d, ix), px,
                  hn::MulAdd(hn::ConvertTo(d, iy), py, hn::Mul(hn::ConvertTo(d, iz), depth)));
-  return {{depth, hn::BitCast(d, hn::Or(hn::ShiftLeft<16>(iy), hn::And(ix, hn::Set(di, 0xFFFF)))),
-           hn::BitCast(d, hn::Or(hn::ShiftLeft<16>(iz), iw)), scaled_offset}};
+  constexpr int kUpperShift = DepthSample::kUpperShift;
+  const VI lower_x = hn::And(ix, hn::Set(di, DepthSample::kLowerMask));
+  return {{depth, hn::BitCast(d, hn::Or(hn::ShiftLeft<kUpperShift>(iy), lower_x)),
+           hn::BitCast(d, hn::Or(hn::ShiftLeft<kUpperShift>(iz), iw)), scaled_offset}};
 }
 
+// Makes the samples of one image row: the plane n . p = offset that each pixel sees, and how much
+// it counts,
+//   weight = min(1, (0.5 m / depth)^2) cos(angle between normal and ray),
+// at least a quarter for the depth; 1/8 without a normal, where the ray stands in for it.
+// Rows: depth and normals are planes, one pixel per lane; samples are records of 16 bytes. Fast: no
+// branch per pixel, and what IntegrateBlock needs of a pixel lies in one quarter of a cache line.
 void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const VF zero = hn::Zero(d);
@@ -96,6 +89,12 @@ void MakeSampleRow(const SampleRowArgs& a, DepthSample* samples) {
   }
 }
 
+// Finds the blocks that the band of truncation around the surface enters and that do not exist yet:
+// for every second pixel, points along the ray at depth - truncation .. depth + truncation, the
+// block of each, and whether the table has it.
+// Rows: every second pixel of an image row, one per lane; the table is x fastest, with a border of
+// one block. Fast: rays are straight in blocks too, so a step is one multiply-add per axis; most
+// look-ups find a block, and a vector of them ends there.
 std::int32_t FindMissingBlocks(const BandRowArgs& a, std::int32_t* missing) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const VF zero = hn::Zero(d);
@@ -150,110 +149,131 @@ std::int32_t FindMissingBlocks(const BandRowArgs& a, std::int32_t* missing) {
   return found;
 }
 
+/// Holds what IntegrateBlock needs in all lanes.
+struct UpdateConstants {
+  VF width, height;
+  VI row_stride, nowhere;
+  VF double_truncation;
+  VF to_tsdf;  ///< From a distance in metres times DepthSample::kNormalScale.
+  VF noise_reach_at_1m;
+
+  HWY_INLINE explicit UpdateConstants(const IntegrationKernelArgs& a)
+      : width(hn::Set(d, static_cast<float>(a.width))),
+        height(hn::Set(d, static_cast<float>(a.height))),
+        row_stride(hn::Set(di, a.width)),
+        nowhere(hn::Set(di, a.width * a.height)),
+        double_truncation(hn::Set(d, 2.0F * a.truncation_m)),
+        to_tsdf(hn::Set(d, 1.0F / (DepthSample::kNormalScale * a.truncation_m))),
+        noise_reach_at_1m(hn::Set(d, kNoiseReach * a.noise_at_1m / a.truncation_m)) {}
+};
+
+/// The samples that voxels are seen in; the one behind the last, of weight 0, outside the image.
+HWY_INLINE VI SampleOf(const IntegrationKernelArgs& a, const UpdateConstants& c, const Vector3& p) {
+  const VF zero = hn::Zero(d);
+  const VF inverse_z = Reciprocal(p.z);
+  const VF u = hn::MulAdd(hn::Mul(p.x, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx + 0.5F));
+  const VF v = hn::MulAdd(hn::Mul(p.y, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy + 0.5F));
+  const MF inside =
+      hn::And(hn::And(hn::Gt(p.z, zero), hn::And(hn::Ge(u, zero), hn::Lt(u, c.width))),
+              hn::And(hn::Ge(v, zero), hn::Lt(v, c.height)));
+  const VI pixel = hn::Add(hn::Mul(hn::ConvertTo(di, v), c.row_stride), hn::ConvertTo(di, u));
+  return hn::IfThenElse(hn::RebindMask(di, inside), pixel, c.nowhere);
+}
+
+/// Holds what samples say about the voxels that are seen in them.
+struct Observation {
+  VF depth, weight;
+  VF distance;  ///< To the plane over the truncation distance, not truncated.
+  MF is_free;   ///< The distance is 1 whatever it says.
+  MF good;      ///< Counts at all.
+};
+
+HWY_INLINE Observation Observe(const UpdateConstants& c, const RecordVectors& sample,
+                               const Vector3& p) {
+  constexpr int kUpperShift = DepthSample::kUpperShift;
+  Observation o;
+  o.depth = sample.word[0];
+  const VI normal_xy = hn::BitCast(di, sample.word[1]);
+  const VI normal_z_weight = hn::BitCast(di, sample.word[2]);
+  const VF scaled_offset = sample.word[3];
+  const VI scaled_weight = hn::And(normal_z_weight, hn::Set(di, DepthSample::kLowerMask));
+  o.weight = hn::Mul(hn::ConvertTo(d, scaled_weight), hn::Set(d, 1.0F / DepthSample::kWeightScale));
+  const VF along_ray = hn::Sub(o.depth, p.z);
+  const VF nx =
+      hn::ConvertTo(d, hn::ShiftRight<kUpperShift>(hn::ShiftLeft<kUpperShift>(normal_xy)));
+  const VF ny = hn::ConvertTo(d, hn::ShiftRight<kUpperShift>(normal_xy));
+  const VF nz = hn::ConvertTo(d, hn::ShiftRight<kUpperShift>(normal_z_weight));
+  o.distance = hn::Mul(hn::MulAdd(nx, p.x, hn::MulAdd(ny, p.y, hn::MulSub(nz, p.z, scaled_offset))),
+                       c.to_tsdf);
+  // Far in front along the ray counts as free whatever the plane's tilt; behind the band is
+  // unknown.
+  o.is_free = hn::Gt(along_ray, c.double_truncation);
+  const MF in_band = hn::And(hn::Ge(along_ray, hn::Neg(c.double_truncation)),
+                             hn::Ge(o.distance, hn::Set(d, -1.0F)));
+  o.good = hn::And(hn::Gt(o.weight, hn::Zero(d)), hn::Or(o.is_free, in_band));
+  return o;
+}
+
+/// The words after the observation: the running weighted average where it is good.
+HWY_INLINE VI Average(const UpdateConstants& c, const Observation& o, float max_weight, VI word) {
+  const VF one = hn::Set(d, 1.0F);
+  const VF tsdf = hn::IfThenElse(o.is_free, one, hn::Min(one, o.distance));
+  // Full weight as far behind the surface as noise reaches; from there to the end of the band
+  // less and less, so that what only stood in the shadow of an edge yields to free space seen
+  // from elsewhere (Bylow et al., Real-time camera tracking and 3D reconstruction using
+  // signed distance functions, 2013).
+  const VF noise_reach = hn::Min(hn::Mul(hn::Mul(o.depth, o.depth), c.noise_reach_at_1m), one);
+  const VF room = hn::Max(hn::Sub(one, noise_reach), hn::Set(d, kLeastCertainty));
+  const VF certainty = hn::Max(hn::Set(d, kLeastCertainty),
+                               hn::Min(one, hn::Mul(hn::Add(one, tsdf), Reciprocal(room))));
+  const VF new_weight = hn::Mul(o.weight, certainty);
+  const VF old_tsdf = hn::ConvertTo(d, hn::ShiftRight<TsdfLayout::kTsdfShift>(word));
+  const VI old_weight_code = hn::And(word, hn::Set(di, TsdfLayout::kWeightMask));
+  const VF old_weight =
+      hn::Mul(hn::ConvertTo(d, old_weight_code), hn::Set(d, 1.0F / TsdfLayout::kWeightScale));
+  const VF total = hn::Add(old_weight, new_weight);
+  const VF scaled_tsdf = hn::Mul(tsdf, hn::Set(d, TsdfLayout::kTsdfScale));
+  const VF averaged = hn::Mul(hn::MulAdd(old_tsdf, old_weight, hn::Mul(scaled_tsdf, new_weight)),
+                              Reciprocal(total));
+  const VI tsdf_code = hn::NearestInt(averaged);
+  const VI weight_code = hn::NearestInt(
+      hn::Mul(hn::Min(total, hn::Set(d, max_weight)), hn::Set(d, TsdfLayout::kWeightScale)));
+  // An observation too light to count leaves the voxel as it was.
+  const MI counts = hn::And(hn::RebindMask(di, o.good), hn::Gt(weight_code, hn::Zero(di)));
+  const VI packed = hn::Or(hn::ShiftLeft<TsdfLayout::kTsdfShift>(tsdf_code), weight_code);
+  return hn::IfThenElse(counts, packed, word);
+}
+
+// Takes the depth frame into the voxels of a block (algorithm 2). A voxel is seen in the pixel it
+// is projected to; its distance is that to the pixel's plane, n . p - offset over the truncation
+// distance, cut off at 1 in front, and passed over behind the band. It enters a running average:
+//   tsdf <- (W tsdf + w new) / (W + w),   W <- min(W + w, max_weight).
+// Rows: lanes are neighbours along x, then y, of one layer of 64 voxels; words are TsdfLayout's,
+// samples DepthSample's. Fast: a layer is projected first, so that its look-ups wait for memory
+// together; a sample is one 16-byte load; lanes without observation cost no average.
 bool IntegrateBlock(const IntegrationKernelArgs& a, const float* first, std::uint32_t* voxels) {
   auto* words = reinterpret_cast<std::int32_t*>(voxels);
   const int lanes = static_cast<int>(hn::Lanes(d));
-  constexpr int kLayer = 64;
-  HWY_ALIGN float along_x[kLayer];  // Of the layer's voxels from the layer's first, camera x.
-  HWY_ALIGN float along_y[kLayer];
-  HWY_ALIGN float along_z[kLayer];
+  constexpr int kLayer = BlockLayout::kLayerVoxels;
   HWY_ALIGN std::int32_t pixels[kLayer];
-  const VF zero = hn::Zero(d);
-  const VF one = hn::Set(d, 1.0F);
-  const VF double_truncation = hn::Set(d, 2.0F * a.truncation_m);
-  const VF to_tsdf = hn::Set(d, 1.0F / (DepthSample::kNormalScale * a.truncation_m));
-  const VF noise_reach_at_1m = hn::Set(d, kNoiseReach * a.noise_at_1m / a.truncation_m);
-  const VF width = hn::Set(d, static_cast<float>(a.width));
-  const VF height = hn::Set(d, static_cast<float>(a.height));
-  const VI row_stride = hn::Set(di, a.width);
-  const VI nowhere = hn::Set(di, a.width * a.height);
-  const VI seven = hn::Set(di, 7);
-  for (int i = 0; i < kLayer; i += lanes) {
-    const VI index = hn::Iota(di, i);
-    const VF x = hn::ConvertTo(d, hn::And(index, seven));
-    const VF y = hn::ConvertTo(d, hn::ShiftRight<3>(index));
-    const auto offset = [&](int row) {
-      return hn::MulAdd(hn::Set(d, a.axes[3 * row]), x,
-                        hn::Mul(hn::Set(d, a.axes[3 * row + 1]), y));
-    };
-    hn::Store(offset(0), d, along_x + i);
-    hn::Store(offset(1), d, along_y + i);
-    hn::Store(offset(2), d, along_z + i);
-  }
+  const UpdateConstants c(a);
+  const BlockPoints points(a.axes, first);
   VI behind = hn::Zero(di);  // Not zero in lanes where an observed voxel has distance <= 0.
-  const VI first_positive = hn::Set(di, 0x10000);
-  for (int layer = 0; layer < 8; ++layer, words += kLayer) {
-    const auto step = static_cast<float>(layer);
-    const VF origin_x = hn::Set(d, first[0] + step * a.axes[2]);
-    const VF origin_y = hn::Set(d, first[1] + step * a.axes[5]);
-    const VF origin_z = hn::Set(d, first[2] + step * a.axes[8]);
-    for (int i = 0; i < kLayer; i += lanes) {
-      const VF px = hn::Add(origin_x, hn::Load(d, along_x + i));
-      const VF py = hn::Add(origin_y, hn::Load(d, along_y + i));
-      const VF pz = hn::Add(origin_z, hn::Load(d, along_z + i));
-      const VF inverse_z = Reciprocal(pz);
-      const VF u = hn::MulAdd(hn::Mul(px, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx + 0.5F));
-      const VF v = hn::MulAdd(hn::Mul(py, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy + 0.5F));
-      const MF inside =
-          hn::And(hn::And(hn::Gt(pz, zero), hn::And(hn::Ge(u, zero), hn::Lt(u, width))),
-                  hn::And(hn::Ge(v, zero), hn::Lt(v, height)));
-      const VI pixel = hn::Add(hn::Mul(hn::ConvertTo(di, v), row_stride), hn::ConvertTo(di, u));
-      hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, nowhere), di, pixels + i);
-    }
+  const VI first_positive = hn::Set(di, TsdfLayout::kFirstPositive);
+  for (int layer = 0; layer < kBlockSide; ++layer, words += kLayer) {
+    const Vector3 origin = points.Origin(layer);
+    for (int i = 0; i < kLayer; i += lanes)
+      hn::Store(SampleOf(a, c, points.At(origin, i)), di, pixels + i);
     for (int i = 0; i < kLayer; i += lanes) {
       const RecordVectors sample = GatherRecords(a.samples, pixels + i);
-      const VF depth = sample.word[0];
-      const VI normal_xy = hn::BitCast(di, sample.word[1]);
-      const VI normal_z_weight = hn::BitCast(di, sample.word[2]);
-      const VF scaled_offset = sample.word[3];
-      const VI word = hn::LoadU(di, words + i);
-      const VF px = hn::Add(origin_x, hn::Load(d, along_x + i));
-      const VF py = hn::Add(origin_y, hn::Load(d, along_y + i));
-      const VF pz = hn::Add(origin_z, hn::Load(d, along_z + i));
-      const VF weight = hn::Mul(hn::ConvertTo(d, hn::And(normal_z_weight, hn::Set(di, 0xFFFF))),
-                                hn::Set(d, 1.0F / DepthSample::kWeightScale));
-      const VF along_ray = hn::Sub(depth, pz);
-      const VF nx = hn::ConvertTo(d, hn::ShiftRight<16>(hn::ShiftLeft<16>(normal_xy)));
-      const VF ny = hn::ConvertTo(d, hn::ShiftRight<16>(normal_xy));
-      const VF nz = hn::ConvertTo(d, hn::ShiftRight<16>(normal_z_weight));
-      const VF distance = hn::Mul(
-          hn::MulAdd(nx, px, hn::MulAdd(ny, py, hn::MulSub(nz, pz, scaled_offset))), to_tsdf);
-      // Far in front along the ray counts as free whatever the plane's tilt; behind the band is
-      // unknown.
-      const MF is_free = hn::Gt(along_ray, double_truncation);
-      const MF in_band = hn::And(hn::Ge(along_ray, hn::Neg(double_truncation)),
-                                 hn::Ge(distance, hn::Set(d, -1.0F)));
-      const MF good = hn::And(hn::Gt(weight, zero), hn::Or(is_free, in_band));
-      VI result = word;
-      if (!hn::AllFalse(d, good)) {
-        const VF tsdf = hn::IfThenElse(is_free, one, hn::Min(one, distance));
-        // Full weight as far behind the surface as noise reaches; from there to the end of the band
-        // less and less, so that what only stood in the shadow of an edge yields to free space seen
-        // from elsewhere (Bylow et al., Real-time camera tracking and 3D reconstruction using
-        // signed distance functions, 2013).
-        const VF noise_reach = hn::Min(hn::Mul(hn::Mul(depth, depth), noise_reach_at_1m), one);
-        const VF room = hn::Max(hn::Sub(one, noise_reach), hn::Set(d, kLeastCertainty));
-        const VF certainty = hn::Max(hn::Set(d, kLeastCertainty),
-                                     hn::Min(one, hn::Mul(hn::Add(one, tsdf), Reciprocal(room))));
-        const VF new_weight = hn::Mul(weight, certainty);
-        const VF old_tsdf = hn::ConvertTo(d, hn::ShiftRight<16>(word));
-        const VF old_weight = hn::Mul(hn::ConvertTo(d, hn::And(word, hn::Set(di, 0xFFFF))),
-                                      hn::Set(d, 1.0F / kWeightScale));
-        const VF total = hn::Add(old_weight, new_weight);
-        const VF averaged =
-            hn::Mul(hn::MulAdd(old_tsdf, old_weight,
-                               hn::Mul(hn::Mul(tsdf, hn::Set(d, kTsdfScale)), new_weight)),
-                    Reciprocal(total));
-        const VI tsdf_code = hn::NearestInt(averaged);
-        const VI weight_code = hn::NearestInt(
-            hn::Mul(hn::Min(total, hn::Set(d, a.max_weight)), hn::Set(d, kWeightScale)));
-        // An observation too light to count leaves the voxel as it was.
-        const auto counts = hn::And(hn::RebindMask(di, good), hn::Gt(weight_code, hn::Zero(di)));
-        result = hn::IfThenElse(counts, hn::Or(hn::ShiftLeft<16>(tsdf_code), weight_code), word);
-        hn::StoreU(result, di, words + i);
+      const Observation o = Observe(c, sample, points.At(origin, i));
+      VI word = hn::LoadU(di, words + i);
+      if (!hn::AllFalse(d, o.good)) {
+        word = Average(c, o, a.max_weight, word);
+        hn::StoreU(word, di, words + i);
       }
       // Words of observed voxels are not 0; the distance is the upper half.
-      behind = hn::Or(behind, hn::IfThenElseZero(hn::Lt(result, first_positive), result));
+      behind = hn::Or(behind, hn::IfThenElseZero(hn::Lt(word, first_positive), word));
     }
   }
   return !hn::AllTrue(di, hn::Eq(behind, hn::Zero(di)));
@@ -277,11 +297,11 @@ DepthSample DepthSample::Make(const float* n, const float* p, float weight) {
   const std::int32_t y = code(n[1]);
   const std::int32_t z = code(n[2]);
   const auto high = [](std::int32_t value) {
-    return static_cast<std::int32_t>(static_cast<std::uint32_t>(value) << 16);
+    return static_cast<std::int32_t>(static_cast<std::uint32_t>(value) << kUpperShift);
   };
   DepthSample sample;
   sample.depth_m = p[2];
-  sample.normal_xy = high(y) | (x & 0xFFFF);
+  sample.normal_xy = high(y) | (x & kLowerMask);
   sample.normal_z_weight = high(z) | static_cast<std::int32_t>(std::lrint(weight * kWeightScale));
   sample.scaled_offset =
       static_cast<float>(x) * p[0] + static_cast<float>(y) * p[1] + static_cast<float>(z) * p[2];

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "ground/tsdf/block_layout.h"
+
 namespace isotherm {
 
 /// Holds what one depth pixel says about the surface, in 16 bytes: the plane n . p = offset (camera
@@ -10,10 +12,12 @@ namespace isotherm {
 struct DepthSample {
   static constexpr float kNormalScale = 32767.0F;
   static constexpr float kWeightScale = 65535.0F;
+  static constexpr int kUpperShift = 16;
+  static constexpr std::int32_t kLowerMask = 0xFFFF;
 
   float depth_m;
-  std::int32_t normal_xy;        ///< y << 16 | x, each signed, in 1 / kNormalScale.
-  std::int32_t normal_z_weight;  ///< z << 16, signed, | weight in 1 / kWeightScale.
+  std::int32_t normal_xy;        ///< y above x, each signed, in 1 / kNormalScale.
+  std::int32_t normal_z_weight;  ///< z, signed, above the weight in 1 / kWeightScale.
   float scaled_offset;           ///< n . p with the rounded n, times kNormalScale.
 
   /// `n` unit length, `p` the observed point, 0 <= `weight` <= 1.
@@ -73,7 +77,7 @@ struct IntegrationKernelArgs {
   float noise_at_1m;  ///< Noise of the depth, metres; grows with the square of the depth.
 };
 
-/// Updates the 512 voxel words of a block whose first voxel's centre is at `first` (camera
+/// Updates the voxel words (TsdfLayout) of a block whose first voxel's centre is at `first` (camera
 /// coordinates, metres). Returns whether an observed voxel of it lies at or behind the surface.
 bool IntegrateBlock(const IntegrationKernelArgs& args, const float* first, std::uint32_t* voxels);
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/testing/kernel_checks_for_test.h"
-#include "ground/tsdf/scalar_kernels_for_test.h"
+#include "ground/tsdf/reference/integration_reference.h"
 
 namespace isotherm {
 namespace {
@@ -73,7 +73,7 @@ class MakeSampleRowTest : public ::testing::Test {
   void ComparePixel(const DepthSample& sample, int x) {
     constexpr double kStep = 1.01;  // Codes: rounding may choose the neighbour.
     SCOPED_TRACE(::testing::Message() << "pixel " << x << " of " << args_.width);
-    const testing::ScalarSample truth = testing::MakeScalarSample(args_, x);
+    const reference::Sample truth = reference::MakeSample(args_, x);
     const int weight_code = sample.normal_z_weight & 0xFFFF;
     if (truth.weight == 0.0) {
       ASSERT_EQ(weight_code, 0);
@@ -186,7 +186,7 @@ TEST_F(FindMissingBlocksTest, NamesExactlyTheMissingBlocksOfTheBand) {
         Rearrange(width);
         std::set<std::int32_t> truth;
         for (int x = 0; x < width; ++x) {
-          const auto of_pixel = testing::ScalarMissingBlocks(args_, x);
+          const auto of_pixel = reference::MissingBlocks(args_, x);
           if (of_pixel) {
             truth.insert(of_pixel->begin(), of_pixel->end());
           } else {
@@ -297,7 +297,7 @@ class IntegrateBlockTest : public ::testing::Test {
     constexpr int kStep = 1;            // Of both codes: the kernel's mean is rounded as well.
     std::vector<int> tsdf, weight;
     for (const double error : {-kRounding, 0.0, kRounding}) {
-      const testing::ScalarUpdate truth = testing::UpdateScalarVoxel(args_, p, before, error);
+      const reference::VoxelUpdate truth = reference::UpdateVoxel(args_, p, before, error);
       if (!truth.certain) return;
       tsdf.push_back(static_cast<int>(truth.voxel.bits) >> 16);
       weight.push_back(static_cast<int>(truth.voxel.bits & 0xFFFFU));

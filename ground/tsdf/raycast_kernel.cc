@@ -2,26 +2,16 @@
 // instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "ground/tsdf/raycast_kernel.cc"
-#include <hwy/foreach_target.h>  // Must come before highway.h.
-//
-#include <hwy/highway.h>
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
 #include <limits>
 
+#include "ground/tsdf/block_layout.h"
 #include "ground/tsdf/raycast_kernel.h"
+#include "ground/tsdf/voxel_layout.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<D>;
-using VF = hn::Vec<D>;
-using VI = hn::Vec<DI>;
-using MF = hn::Mask<D>;
-
-constexpr D d;
-constexpr DI di;
 
 /// Lanes are 4 pixels wide (1 where there is but one lane) and as many rows high as fit.
 constexpr int kLaneColumnsLog2 = hn::MaxLanes(d) >= 4 ? 2 : 0;
@@ -33,21 +23,16 @@ constexpr float kMaxStepVox = 3.0F;
 /// A step below this leaves an error of second order.
 constexpr float kConvergedVox = 0.1F;
 
-struct Point {
-  VF x, y, z;
-};
-
-HWY_INLINE VF Dot(const Point& a, const Point& b) {
-  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
-}
-
-/// tsdf in [-1, 1] from a voxel word; the scale is TsdfVoxel::kTsdfScale.
+/// tsdf in [-1, 1] from a voxel word.
 HWY_INLINE VF DecodeTsdf(VI word) {
-  return hn::Mul(hn::ConvertTo(d, hn::ShiftRight<16>(word)), hn::Set(d, 1.0F / 32767.0F));
+  return hn::Mul(hn::ConvertTo(d, hn::ShiftRight<TsdfLayout::kTsdfShift>(word)),
+                 hn::Set(d, 1.0F / TsdfLayout::kTsdfScale));
 }
 
-HWY_INLINE hn::Mask<DI> Observed(const RaycastKernelArgs& a, VI word) {
-  return hn::Gt(hn::And(word, hn::Set(di, 0xFFFF)), hn::Set(di, a.min_weight_code - 1));
+HWY_INLINE VI WeightCode(VI word) { return hn::And(word, hn::Set(di, TsdfLayout::kWeightMask)); }
+
+HWY_INLINE MI Observed(const RaycastKernelArgs& a, VI word) {
+  return hn::Gt(WeightCode(word), hn::Set(di, a.min_weight_code - 1));
 }
 
 /// Whole voxels of a coordinate, kept within the table: lanes that are done, or whose ray misses
@@ -56,47 +41,51 @@ HWY_INLINE VI ToVoxel(VF coordinate, std::int32_t last) {
   return hn::Min(hn::Max(hn::ConvertTo(di, coordinate), hn::Zero(di)), hn::Set(di, last));
 }
 
-struct Interpolated {
-  VF value;
-  Point gradient;  ///< Per voxel.
-  MF valid;        ///< All eight voxels around were observed.
+HWY_INLINE VI BlockOf(VI voxel) { return hn::ShiftRight<BlockLayout::kSideBits>(voxel); }
+
+HWY_INLINE VI FirstElement(VI block) { return hn::ShiftLeft<BlockLayout::kBlockShift>(block); }
+
+/// Returns what one coordinate of a voxel adds to its element in the block.
+HWY_INLINE VI LocalPart(int axis, VI voxel) {
+  const VI local = hn::And(voxel, hn::Set(di, BlockLayout::kSideMask));
+  return axis == 0   ? local
+         : axis == 1 ? hn::ShiftLeft<BlockLayout::kShiftY>(local)
+                     : hn::ShiftLeft<BlockLayout::kShiftZ>(local);
+}
+
+/// The eight voxels around a point, x fastest.
+struct Corners {
+  VF tsdf[8];
+  VF fraction[3];  ///< Fraction of the way from the lower to the upper ones, along each axis.
+  VI least_weight;
 };
 
-/// Trilinear interpolation of the distance and its gradient within the cell.
-HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Point& p) {
+HWY_INLINE Corners LoadCorners(const RaycastKernelArgs& a, const Vector3& p) {
   const VI one = hn::Set(di, 1);
-  const VI seven = hn::Set(di, 7);
   // Per axis, for the lower and the upper voxel: share of the table index and of the index in the
   // block. Positions on rays are positive, so truncation is the floor.
   VI table_part[3][2], local_part[3][2];
-  VF fraction[3];
+  Corners corners;
   bool crosses[3];
   const VF position[3] = {p.x, p.y, p.z};
   const VI stride[3] = {one, hn::Set(di, a.stride_y), hn::Set(di, a.stride_z)};
   for (int axis = 0; axis < 3; ++axis) {
     const VI lower = ToVoxel(position[axis], a.last[axis] - 1);
-    fraction[axis] = hn::Sub(position[axis], hn::ConvertTo(d, lower));
+    corners.fraction[axis] = hn::Sub(position[axis], hn::ConvertTo(d, lower));
     const VI upper = hn::Add(lower, one);
-    const VI lower_block = hn::ShiftRight<3>(lower);
-    const VI upper_block = hn::ShiftRight<3>(upper);
+    const VI lower_block = BlockOf(lower);
+    const VI upper_block = BlockOf(upper);
     crosses[axis] = !hn::AllTrue(di, hn::Eq(lower_block, upper_block));
     table_part[axis][0] = axis == 0 ? lower_block : hn::Mul(lower_block, stride[axis]);
     table_part[axis][1] =
         crosses[axis] ? hn::IfThenElse(hn::Eq(lower_block, upper_block), table_part[axis][0],
                                        hn::Add(table_part[axis][0], stride[axis]))
                       : table_part[axis][0];
-    const VI lower_local = hn::And(lower, seven);
-    const VI upper_local = hn::And(upper, seven);
-    local_part[axis][0] = axis == 0   ? lower_local
-                          : axis == 1 ? hn::ShiftLeft<3>(lower_local)
-                                      : hn::ShiftLeft<6>(lower_local);
-    local_part[axis][1] = axis == 0   ? upper_local
-                          : axis == 1 ? hn::ShiftLeft<3>(upper_local)
-                                      : hn::ShiftLeft<6>(upper_local);
+    local_part[axis][0] = LocalPart(axis, lower);
+    local_part[axis][1] = LocalPart(axis, upper);
   }
   VI block[8];
-  VF corner[8];
-  VI least_weight = hn::Set(di, 0xFFFF);
+  corners.least_weight = hn::Set(di, TsdfLayout::kWeightMask);
   for (int k = 0; k < 8; ++k) {
     // Where no lane crosses a border of blocks, both corners lie in the same block.
     if ((k & 1) != 0 && !crosses[0]) {
@@ -108,14 +97,28 @@ HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Point& p) 
     } else {
       const VI entry = hn::Add(table_part[0][k & 1],
                                hn::Add(table_part[1][(k >> 1) & 1], table_part[2][k >> 2]));
-      block[k] = hn::ShiftLeft<9>(hn::GatherIndex(di, a.table, entry));
+      block[k] = FirstElement(hn::GatherIndex(di, a.table, entry));
     }
     const VI local =
         hn::Or(local_part[0][k & 1], hn::Or(local_part[1][(k >> 1) & 1], local_part[2][k >> 2]));
     const VI word = hn::GatherIndex(di, a.voxels, hn::Add(block[k], local));
-    least_weight = hn::Min(least_weight, hn::And(word, hn::Set(di, 0xFFFF)));
-    corner[k] = DecodeTsdf(word);
+    corners.least_weight = hn::Min(corners.least_weight, WeightCode(word));
+    corners.tsdf[k] = DecodeTsdf(word);
   }
+  return corners;
+}
+
+struct Interpolated {
+  VF value;
+  Vector3 gradient;  ///< Per voxel.
+  MF valid;          ///< All eight voxels around were observed.
+};
+
+/// Trilinear interpolation of the distance and its gradient within the cell.
+HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Vector3& p) {
+  const Corners corners = LoadCorners(a, p);
+  const VF* const corner = corners.tsdf;
+  const VF* const fraction = corners.fraction;
   const auto lerp = [](VF from, VF to, VF f) { return hn::MulAdd(f, hn::Sub(to, from), from); };
   const VF x00 = lerp(corner[0], corner[1], fraction[0]);
   const VF x10 = lerp(corner[2], corner[3], fraction[0]);
@@ -130,18 +133,19 @@ HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Point& p) 
       lerp(hn::Sub(corner[5], corner[4]), hn::Sub(corner[7], corner[6]), fraction[1]), fraction[2]);
   result.gradient.y = lerp(hn::Sub(x10, x00), hn::Sub(x11, x01), fraction[2]);
   result.gradient.z = hn::Sub(far, near);
-  result.valid = hn::RebindMask(d, hn::Gt(least_weight, hn::Set(di, a.min_weight_code - 1)));
+  result.valid =
+      hn::RebindMask(d, hn::Gt(corners.least_weight, hn::Set(di, a.min_weight_code - 1)));
   return result;
 }
 
 /// Rays origin + depth * direction, depth along the camera's z in voxels.
 struct Rays {
-  Point direction;
-  Point inverse;
+  Vector3 direction;
+  Vector3 inverse;
   VF length;  ///< Length of direction.
   const float* origin;
 
-  HWY_INLINE Point At(VF depth) const {
+  HWY_INLINE Vector3 At(VF depth) const {
     return {hn::MulAdd(depth, direction.x, hn::Set(d, origin[0])),
             hn::MulAdd(depth, direction.y, hn::Set(d, origin[1])),
             hn::MulAdd(depth, direction.z, hn::Set(d, origin[2]))};
@@ -164,9 +168,10 @@ HWY_INLINE void ClipToAxis(float low, float high, float origin, VF inverse, VF& 
 
 /// Depth at which the ray leaves the block of `b` along one axis.
 HWY_INLINE VF AxisExit(VI b, float origin, VF direction, VF inverse) {
-  const VF low = hn::Sub(hn::ConvertTo(d, hn::ShiftLeft<3>(b)), hn::Set(d, 0.5F + origin));
-  const VF face =
-      hn::IfThenElse(hn::Ge(direction, hn::Zero(d)), hn::Add(low, hn::Set(d, 8.0F)), low);
+  const VF low = hn::Sub(hn::ConvertTo(d, hn::ShiftLeft<BlockLayout::kSideBits>(b)),
+                         hn::Set(d, 0.5F + origin));
+  const VF face = hn::IfThenElse(hn::Ge(direction, hn::Zero(d)),
+                                 hn::Add(low, hn::Set(d, static_cast<float>(kBlockSide))), low);
   return hn::Mul(face, inverse);
 }
 
@@ -196,20 +201,18 @@ class March {
   HWY_INLINE void Step(const RaycastKernelArgs& a) {
     const VF zero = hn::Zero(d);
     const VF half = hn::Set(d, 0.5F);
-    const VI seven = hn::Set(di, 7);
-    const Point p = rays_.At(depth_);
+    const Vector3 p = rays_.At(depth_);
     const VI x = ToVoxel(hn::Add(p.x, half), a.last[0]);
     const VI y = ToVoxel(hn::Add(p.y, half), a.last[1]);
     const VI z = ToVoxel(hn::Add(p.z, half), a.last[2]);
-    const VI bx = hn::ShiftRight<3>(x);
-    const VI by = hn::ShiftRight<3>(y);
-    const VI bz = hn::ShiftRight<3>(z);
+    const VI bx = BlockOf(x);
+    const VI by = BlockOf(y);
+    const VI bz = BlockOf(z);
     const VI entry = hn::Add(
         bx, hn::Add(hn::Mul(by, hn::Set(di, a.stride_y)), hn::Mul(bz, hn::Set(di, a.stride_z))));
     const VI block = hn::GatherIndex(di, a.table, entry);
-    const VI local = hn::Or(hn::And(x, seven), hn::Or(hn::ShiftLeft<3>(hn::And(y, seven)),
-                                                      hn::ShiftLeft<6>(hn::And(z, seven))));
-    const VI word = hn::GatherIndex(di, a.voxels, hn::Add(hn::ShiftLeft<9>(block), local));
+    const VI local = hn::Or(LocalPart(0, x), hn::Or(LocalPart(1, y), LocalPart(2, z)));
+    const VI word = hn::GatherIndex(di, a.voxels, hn::Add(FirstElement(block), local));
     const MF in_block = hn::RebindMask(d, hn::Gt(block, hn::Set(di, -1)));
     const MF observed = hn::RebindMask(d, Observed(a, word));
     const VF value = DecodeTsdf(word);
@@ -287,7 +290,7 @@ struct Bundle {
 
 struct Surface {
   VF depth;
-  Point gradient;
+  Vector3 gradient;
   MF valid;
 };
 
@@ -355,6 +358,14 @@ HWY_INLINE void WriteSurface(const RaycastKernelArgs& a, const Rays& rays, const
   }
 }
 
+// Casts the rays of a tile of 8 x 8 pixels through the volume (algorithm 3). March goes along a ray
+// by 0.8 of the distance read in the nearest voxel, by a voxel where nothing was observed and by a
+// block where there is none, until the distance turns from positive to negative. Refine goes from
+// there to the zero of the trilinearly interpolated distance by Newton steps; its gradient is the
+// normal. A change from negative to positive ends the ray: what is met from behind hides the rest.
+// Rows: lanes are 4 columns by n rows of pixels, whose rays stay close and read the same blocks.
+// Fast: steps are long in free space; the table's border and block -1 spare all bounds checks; two
+// bundles wait for memory together.
 void RaycastTile(const RaycastKernelArgs& a, int tile_x, int tile_y, float near_vox, float far_vox,
                  SurfaceMaps& maps) {
   const int width = maps.width();

@@ -13,7 +13,7 @@
 #include "common/testing/volume_shapes.h"
 #include "ground/ground_options.pb.h"
 #include "ground/tsdf/raycaster.h"
-#include "ground/tsdf/scalar_kernels_for_test.h"
+#include "ground/tsdf/reference/raycast_reference.h"
 
 namespace isotherm {
 namespace {
@@ -23,7 +23,7 @@ constexpr double kTruncation = 0.016;
 constexpr double kSide = 0.32;
 constexpr double kMaxErrorVox = 0.1;
 
-using Hits = std::vector<std::optional<testing::ScalarRaycaster::Hit>>;
+using Hits = std::vector<std::optional<reference::Raycaster::Hit>>;
 
 /// A surface of random waves across the middle of a small volume.
 class RaycastTileTest : public ::testing::Test {
@@ -96,7 +96,7 @@ class RaycastTileTest : public ::testing::Test {
     Raycaster(precision).Cast(*volume_, camera, pose, min_weight, pool, maps);
     return maps;
   }
-  static Hits CastScalar(const testing::ScalarRaycaster& caster, const CameraModel& camera,
+  static Hits CastScalar(const reference::Raycaster& caster, const CameraModel& camera,
                          const RigidTransform& pose) {
     Hits hits;
     for (int v = 0; v < camera.height; ++v) {
@@ -145,7 +145,7 @@ class RaycastTileTest : public ::testing::Test {
     Hits truth;
   };
   std::vector<View> RandomViews(const std::vector<CameraModel>& cameras, float min_weight = 0.0F) {
-    const testing::ScalarRaycaster caster(*volume_, min_weight);
+    const reference::Raycaster caster(*volume_, min_weight);
     std::vector<View> views;
     for (const CameraModel& camera : cameras) {
       const RigidTransform pose = RandomPose();

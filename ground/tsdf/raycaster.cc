@@ -21,7 +21,7 @@ class VoxelCursor {
 
   /// First voxel of the block that holds `voxel`; null if there is none.
   const TsdfVoxel* Block(const GridIndex& voxel) {
-    const GridIndex block(voxel.x() >> 3, voxel.y() >> 3, voxel.z() >> 3);
+    const GridIndex block = voxel.unaryExpr([](int v) { return v >> BlockLayout::kSideBits; });
     if (block != block_) {
       block_ = block;
       const std::int32_t index = volume_.Find(block);
@@ -31,11 +31,10 @@ class VoxelCursor {
   }
 
   static std::size_t Local(const GridIndex& voxel) {
-    return static_cast<std::size_t>((voxel.x() & 7) | ((voxel.y() & 7) << 3) |
-                                    ((voxel.z() & 7) << 6));
+    return static_cast<std::size_t>(BlockLayout::Element(voxel.x(), voxel.y(), voxel.z()));
   }
 
-  bool Observed(TsdfVoxel voxel) const { return (voxel.bits & 0xFFFFU) >= min_weight_; }
+  bool Observed(TsdfVoxel voxel) const { return TsdfLayout::WeightCode(voxel.bits) >= min_weight_; }
 
   /// NaN where nothing was observed.
   float Tsdf(const GridIndex& voxel) {
@@ -51,12 +50,16 @@ class VoxelCursor {
     const Eigen::Vector3f f = p - lower;
     const GridIndex i = lower.cast<int>();
     std::array<float, 8> d;
-    if ((i.x() & 7) != 7 && (i.y() & 7) != 7 && (i.z() & 7) != 7) {
+    const auto next_in_block = [](int v) {
+      return (v & BlockLayout::kSideMask) != BlockLayout::kSideMask;
+    };
+    if (next_in_block(i.x()) && next_in_block(i.y()) && next_in_block(i.z())) {
       const TsdfVoxel* block = Block(i);
       if (block == nullptr) return kNan;
       const std::size_t local = Local(i);
       for (std::size_t k = 0; k < 8; ++k) {
-        const TsdfVoxel v = block[local + (k & 1) + ((k >> 1) & 1) * 8 + (k >> 2) * 64];
+        const TsdfVoxel v = block[local + (k & 1) + ((k >> 1) & 1) * kBlockSide +
+                                  (k >> 2) * BlockLayout::kLayerVoxels];
         if (!Observed(v)) return kNan;
         d[k] = v.tsdf();
       }

@@ -29,7 +29,7 @@ void TsdfVoxel::Update(float new_tsdf, float observation_weight, float max_weigh
   const auto tsdf_code = static_cast<std::int32_t>(std::lrint(averaged * kTsdfScale));
   const auto weight_code =
       static_cast<std::uint32_t>(std::lrint(std::min(total, max_weight) * kWeightScale));
-  bits = (static_cast<std::uint32_t>(tsdf_code) << 16) | weight_code;
+  bits = TsdfLayout::Pack(tsdf_code, weight_code);
 }
 
 GrowingArena::GrowingArena(std::size_t reserve_bytes, const std::filesystem::path& spill_dir)
@@ -144,9 +144,7 @@ TsdfVoxel TsdfVolume::VoxelAt(const GridIndex& voxel) const {
   if ((voxel.array() < 0).any()) return {};
   const std::int32_t block = Find(voxel / kBlockSide);
   if (block == kNoBlock) return {};
-  const auto local = [](int i) { return static_cast<std::size_t>(i % kBlockSide); };
-  return voxels(
-      block)[local(voxel.x()) + kBlockSide * (local(voxel.y()) + kBlockSide * local(voxel.z()))];
+  return voxels(block)[BlockLayout::Element(voxel.x(), voxel.y(), voxel.z())];
 }
 
 std::size_t TsdfVolume::memory_bytes() const {

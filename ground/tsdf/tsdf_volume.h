@@ -9,24 +9,26 @@
 
 #include "common/base/status.h"
 #include "ground/tsdf/voxel_grid.h"
+#include "ground/tsdf/voxel_layout.h"
 
 namespace isotherm {
 
-/// One voxel in 32 bits: the upper 16 hold the truncated signed distance divided by the truncation
-/// distance (positive in front of the surface, signed, 32767 = 1), the lower 16 the weight in 1/64
-/// observations. Weight 0 = never observed. Update rule: running weighted average (algorithm 2,
-/// line 10).
+/// One voxel in 32 bits (TsdfLayout): the truncated signed distance divided by the truncation
+/// distance, positive in front of the surface, and the weight of what was observed, 0 = never.
+/// Update rule: running weighted average (algorithm 2, line 10).
 struct TsdfVoxel {
-  static constexpr float kTsdfScale = 32767.0F;
-  static constexpr float kWeightScale = 64.0F;
+  static constexpr float kTsdfScale = TsdfLayout::kTsdfScale;
+  static constexpr float kWeightScale = TsdfLayout::kWeightScale;
 
   std::uint32_t bits = 0;
 
   float tsdf() const {
-    return static_cast<float>(static_cast<std::int32_t>(bits) >> 16) * (1.0F / kTsdfScale);
+    return static_cast<float>(TsdfLayout::TsdfCode(bits)) * (1.0F / kTsdfScale);
   }
-  float weight() const { return static_cast<float>(bits & 0xFFFFU) * (1.0F / kWeightScale); }
-  bool observed() const { return (bits & 0xFFFFU) != 0; }
+  float weight() const {
+    return static_cast<float>(TsdfLayout::WeightCode(bits)) * (1.0F / kWeightScale);
+  }
+  bool observed() const { return TsdfLayout::WeightCode(bits) != 0; }
   /// Averages `tsdf` in [-1, 1] with weight `observation_weight` into the voxel; the weight stops
   /// at `max_weight`.
   void Update(float tsdf, float observation_weight, float max_weight);

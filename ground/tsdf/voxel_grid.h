@@ -4,14 +4,11 @@
 #include <cstdint>
 
 #include "common/base/status.h"
+#include "ground/tsdf/block_layout.h"
 
 namespace isotherm {
 
 class VolumeOptions;
-
-/// Blocks have 8 x 8 x 8 voxels, x fastest: voxel (x, y, z) of a block is element x + 8 (y + 8 z).
-inline constexpr int kBlockSide = 8;
-inline constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
 
 /// Block coordinates, or voxel coordinates where said.
 using GridIndex = Eigen::Vector3i;

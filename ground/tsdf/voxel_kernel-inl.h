@@ -1,5 +1,7 @@
-// What the voxel kernels share: reciprocals, and records of four 32-bit words looked up or written
-// by SIMD lanes. Included once per instruction set, after hwy/highway.h.
+// What the voxel kernels share: where a block's voxels are, and records of four 32-bit words looked
+// up or written by SIMD lanes. Included once per instruction set.
+#include "common/simd/kernel_prelude-inl.h"
+
 #if defined(ISOTHERM_VOXEL_KERNEL_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef ISOTHERM_VOXEL_KERNEL_INL_H_
 #undef ISOTHERM_VOXEL_KERNEL_INL_H_
@@ -7,73 +9,75 @@
 #define ISOTHERM_VOXEL_KERNEL_INL_H_
 #endif
 
-#include <hwy/highway.h>
-
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+
+#include "ground/tsdf/block_layout.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
 
-/// The first `count` lanes from any address, zeros in the others. A whole vector must be readable
-/// (Image has slack): without AVX2, a masked load takes aligned addresses only.
-HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> LoadFirst(
-    std::size_t count, const float* p) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  const hn::ScalableTag<float> d;
-  return hn::IfThenElseZero(hn::FirstN(d, count), hn::LoadU(d, p));
-}
-
-/// Writes the first `count` lanes to any address and nothing behind them, where a blended store
-/// would write what it has read: the next row may be another thread's.
-HWY_INLINE void StoreFirst(hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> v,
-                           std::size_t count, float* p) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  const hn::ScalableTag<float> d;
-  if (count >= hn::Lanes(d)) {
-    hn::StoreU(v, d, p);
-    return;
+/// Camera coordinates of a block's voxels, layer by layer of equal z: within each they differ from
+/// the layer's first voxel by the same offsets, which are computed once.
+class BlockPoints {
+ public:
+  /// `axes` has the step of one voxel along x, y and z as columns, row-major; `first` is the
+  /// block's first voxel.
+  HWY_INLINE BlockPoints(const float* axes, const float* first) : axes_(axes), first_(first) {
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    for (int i = 0; i < BlockLayout::kLayerVoxels; i += lanes) {
+      const VI element = hn::Iota(di, i);
+      const VF x = hn::ConvertTo(d, hn::And(element, hn::Set(di, BlockLayout::kSideMask)));
+      const VF y = hn::ConvertTo(d, hn::ShiftRight<BlockLayout::kShiftY>(element));
+      for (int row = 0; row < 3; ++row) {
+        const float* axis = axes + 3 * row;
+        hn::Store(hn::MulAdd(hn::Set(d, axis[0]), x, hn::Mul(hn::Set(d, axis[1]), y)), d,
+                  along_[row] + i);
+      }
+    }
   }
-  HWY_ALIGN float all[hn::MaxLanes(hn::ScalableTag<float>())];
-  hn::Store(v, d, all);
-  std::memcpy(p, all, sizeof(float) * count);
-}
 
-/// 1 / v to about 22 bits.
-HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> Reciprocal(
-    hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> v) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  const hn::ScalableTag<float> d;
-#if HWY_ARCH_X86
-  const auto estimate = hn::ApproximateReciprocal(v);
-  return hn::Mul(estimate, hn::NegMulAdd(v, estimate, hn::Set(d, 2.0F)));
-#else
-  return hn::Div(hn::Set(d, 1.0F), v);
-#endif
-}
+  /// The first voxel of a layer, in all lanes.
+  HWY_INLINE Vector3 Origin(int layer) const {
+    const auto step = static_cast<float>(layer);
+    const auto coordinate = [&](int row) {
+      return hn::Set(d, first_[row] + step * axes_[3 * row + 2]);
+    };
+    return {coordinate(0), coordinate(1), coordinate(2)};
+  }
+  /// Voxels from number `i` of the layer on.
+  HWY_INLINE Vector3 At(const Vector3& origin, int i) const {
+    return {hn::Add(origin.x, hn::Load(d, along_[0] + i)),
+            hn::Add(origin.y, hn::Load(d, along_[1] + i)),
+            hn::Add(origin.z, hn::Load(d, along_[2] + i))};
+  }
+
+ private:
+  const float* axes_;
+  const float* first_;
+  HWY_ALIGN float along_[3][BlockLayout::kLayerVoxels];
+};
 
 /// Four vectors; lane i of each is a word of record i. Integer words are bit casts.
 struct RecordVectors {
-  hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> word[4];
+  VF word[4];
 };
 
 #if HWY_TARGET == HWY_SCALAR
 
 HWY_INLINE RecordVectors GatherRecords(const void* records, const std::int32_t* indices) {
-  const hwy::HWY_NAMESPACE::ScalableTag<float> tag;
   float words[4];
   std::memcpy(words, static_cast<const std::byte*>(records) + 16 * std::ptrdiff_t{*indices}, 16);
   RecordVectors v;
-  for (int i = 0; i < 4; ++i) v.word[i] = hwy::HWY_NAMESPACE::Set(tag, words[i]);
+  for (int i = 0; i < 4; ++i) v.word[i] = hn::Set(d, words[i]);
   return v;
 }
 
 #else
 
 /// The 128-bit records `indices[0]`, `indices[4]`, `indices[8]`, ... side by side.
-HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> LoadEveryFourth(
-    const float* records, const std::int32_t* indices) {
-  namespace hn = hwy::HWY_NAMESPACE;
+HWY_INLINE VF LoadEveryFourth(const float* records, const std::int32_t* indices) {
   const hn::Full128<float> d4;
   const auto load = [&](int i) { return hn::LoadU(d4, records + 4 * std::ptrdiff_t{indices[i]}); };
 #if HWY_MAX_BYTES == 16
@@ -92,9 +96,7 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<hwy::HWY_NAMESPACE::ScalableTag<float>> LoadE
 /// Record `indices[i]` for each lane i. One load of 16 bytes per lane and a transposition of 4 x 4
 /// words in each 128-bit block cost a quarter of four gathers.
 HWY_INLINE RecordVectors GatherRecords(const void* records, const std::int32_t* indices) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  const hn::ScalableTag<float> d;
-  const hn::Repartition<double, decltype(d)> dd;
+  const hn::Repartition<double, D> dd;
   const auto* base = static_cast<const float*>(records);
   const auto r0 = LoadEveryFourth(base, indices);
   const auto r1 = LoadEveryFourth(base, indices + 1);
@@ -114,14 +116,12 @@ HWY_INLINE RecordVectors GatherRecords(const void* records, const std::int32_t* 
 
 /// Writes the first `count` lanes to consecutive records.
 HWY_INLINE void StoreRecords(const RecordVectors& v, std::size_t count, void* records) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  const hn::ScalableTag<float> d;
   auto* target = static_cast<float*>(records);
   if (count >= hn::Lanes(d)) {
     hn::StoreInterleaved4(v.word[0], v.word[1], v.word[2], v.word[3], d, target);
     return;
   }
-  HWY_ALIGN float all[4 * hn::MaxLanes(hn::ScalableTag<float>())];
+  HWY_ALIGN float all[4 * hn::MaxLanes(d)];
   hn::StoreInterleaved4(v.word[0], v.word[1], v.word[2], v.word[3], d, all);
   std::memcpy(target, all, 16 * count);
 }

@@ -22,11 +22,12 @@ const std::map<std::string_view, Folders>& AllowedFolders() {
     return folders;
   };
   static const Folders kCommon =
-      with(kFrameParts,
-           {"common/radiometry", "common/png", "common/codec", "common/config", "common/recording",
-            "common/dataset", "common/simulation", "common/stamping", "common/transport"});
+      with(kFrameParts, {"common/simd", "common/radiometry", "common/png", "common/codec",
+                         "common/config", "common/recording", "common/dataset", "common/simulation",
+                         "common/stamping", "common/transport"});
   static const std::map<std::string_view, Folders> kAllowed = {
       {"common/base", {}},
+      {"common/simd", {}},
       {"common/time", {"common/base"}},
       {"common/concurrency", {"common/base", "common/time"}},
       {"common/geometry", {"common/base", "common/time", "common/concurrency"}},
@@ -177,6 +178,7 @@ std::string CheckOwn(const SourceFile& file, std::string_view header) {
   if (from == "common" && to != "common") return "common must not include " + std::string(to);
   if (file.IsTest()) return {};
   if (to == "tests" || target == "common/testing") return "test helpers are for tests only";
+  if (target.ends_with("/reference")) return "references of kernels are for tests only";
   if (folder == target || (JoinsStages(folder) && to == from)) return {};
   const auto rule = AllowedFolders().find(JoinsStages(folder) ? from : std::string_view(folder));
   if (rule == AllowedFolders().end()) {

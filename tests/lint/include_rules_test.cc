@@ -89,6 +89,18 @@ TEST(IncludeRulesTest, TestHelpersStayOutOfPrograms) {
               IsEmpty());
 }
 
+TEST(IncludeRulesTest, ReferencesOfKernelsStayOutOfPrograms) {
+  constexpr char kReference[] = "#include \"ground/tsdf/reference/raycast_reference.h\"";
+  for (const char* program : {"ground/tsdf/raycaster.cc", "ground/ground_pipeline.cc"}) {
+    EXPECT_THAT(MessagesFor(program, kReference),
+                ElementsAre(HasSubstr("references of kernels are for tests only")));
+  }
+  EXPECT_THAT(MessagesFor("ground/tsdf/raycast_kernel_test.cc", kReference), IsEmpty());
+  EXPECT_THAT(MessagesFor("ground/tsdf/reference/raycast_reference.h",
+                          "#include \"common/testing/kernel_checks_for_test.h\""),
+              IsEmpty());
+}
+
 TEST(IncludeRulesTest, OddWaysToIncludeAreRefused) {
   EXPECT_THAT(MessagesFor("ground/tsdf/a.cc", "#include \"../tracker/icp.h\""),
               ElementsAre(HasSubstr("path from the root")));

@@ -1,0 +1,186 @@
+// Temperatures for the voxels of a block in SIMD lanes. Compiled once per instruction set.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "ground/thermal/fuse_block_kernel.cc"
+#include "common/simd/kernel_prelude-inl.h"  // Before everything else.
+
+#include "ground/thermal/thermal_kernel.h"
+#include "ground/thermal/voxel_layout.h"
+#include "ground/tsdf/block_layout.h"
+#include "ground/tsdf/voxel_kernel-inl.h"
+#include "ground/tsdf/voxel_layout.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace isotherm::HWY_NAMESPACE {
+
+/// Neither distance nor angle is bad.
+HWY_INLINE MI BothValid(VI classes) {
+  return hn::And(hn::Ne(hn::And(classes, hn::Set(di, ThermalLayout::kAngleMask)), hn::Zero(di)),
+                 hn::Ne(hn::And(classes, hn::Set(di, ThermalLayout::kDistanceMask)), hn::Zero(di)));
+}
+
+/// Where a voxel's new temperature is no better than the one it has (algorithm 6).
+HWY_INLINE MI KeepsOld(VI old_word, VI word) {
+  // Smaller is better: distance, then angle, then motion (whose code grows the better it is).
+  const auto order = [&](VI classes) {
+    constexpr std::uint32_t kDistanceAndAngle =
+        ThermalLayout::kDistanceMask | ThermalLayout::kAngleMask;
+    return hn::Sub(
+        hn::ShiftLeft<ThermalLayout::kClassBits>(hn::And(classes, hn::Set(di, kDistanceAndAngle))),
+        hn::And(hn::ShiftRight<ThermalLayout::kMotionShift>(classes),
+                hn::Set(di, ThermalLayout::kClassMask)));
+  };
+  // A voxel never measured has no valid classes either.
+  return hn::And(BothValid(old_word),
+                 hn::Or(hn::Not(BothValid(word)), hn::Gt(order(word), order(old_word))));
+}
+
+/// Where a voxel was measured under good conditions, and lower than now.
+HWY_INLINE MI OldIsLower(VI old_word, VI code) {
+  const VI old_code = hn::And(hn::ShiftRight<ThermalLayout::kCodeShift>(old_word),
+                              hn::Set(di, ThermalLayout::kCodeMask));
+  const VI old_classes = hn::And(old_word, hn::Set(di, ThermalLayout::kConditionMask));
+  return hn::And(hn::Eq(old_classes, hn::Set(di, kAllGood)), hn::Gt(code, old_code));
+}
+
+/// Observed voxels whose distance is below `max_code` on either side of the surface.
+HWY_INLINE MI NearSurface(VI tsdf_word, VI max_code) {
+  const VI weight = hn::And(tsdf_word, hn::Set(di, TsdfLayout::kWeightMask));
+  const VI tsdf_code = hn::ShiftRight<TsdfLayout::kTsdfShift>(tsdf_word);
+  return hn::And(hn::Gt(weight, hn::Zero(di)), hn::Lt(hn::Abs(tsdf_code), max_code));
+}
+
+/// Where voxels are in the thermal image.
+struct ImagePlace {
+  VF u, v;         ///< Pixels.
+  VF column, row;  ///< Place of the nearest pixel.
+};
+
+HWY_INLINE ImagePlace ProjectVoxels(const FusionKernelArgs& a, const Vector3& p) {
+  const VF half = hn::Set(d, 0.5F);
+  const VF inverse_z = Reciprocal(p.z);
+  ImagePlace place;
+  place.u = hn::MulAdd(hn::Mul(p.x, inverse_z), hn::Set(d, a.fx), hn::Set(d, a.cx));
+  place.v = hn::MulAdd(hn::Mul(p.y, inverse_z), hn::Set(d, a.fy), hn::Set(d, a.cy));
+  place.column = hn::Floor(hn::Add(place.u, half));
+  place.row = hn::Floor(hn::Add(place.v, half));
+  return place;
+}
+
+/// Squared distance between voxels and the vertices that their pixels show (algorithm 5).
+HWY_INLINE VF SquaredToVertex(const FusionKernelArgs& a, const Vector3& p, const ImagePlace& place,
+                              VF depth) {
+  const VF ray_x = hn::Mul(hn::Sub(place.column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
+  const VF ray_y = hn::Mul(hn::Sub(place.row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy));
+  const VF dx = hn::NegMulAdd(ray_x, depth, p.x);
+  const VF dy = hn::NegMulAdd(ray_y, depth, p.y);
+  const VF dz = hn::Sub(p.z, depth);
+  return hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+}
+
+/// The temperature at a place, as ThermalLayout's code: to first order between pixel centres.
+HWY_INLINE VI TemperatureCode(const RecordVectors& record, const ImagePlace& place) {
+  constexpr int kSlopeVShift = ThermalPixel::kSlopeVShift;
+  const VF one = hn::Set(d, 1.0F);
+  const VI slopes = hn::BitCast(di, record.word[2]);
+  const VF slope_u =
+      hn::ConvertTo(d, hn::ShiftRight<kSlopeVShift>(hn::ShiftLeft<kSlopeVShift>(slopes)));
+  const VF slope_v = hn::ConvertTo(d, hn::ShiftRight<kSlopeVShift>(slopes));
+  const VF change = hn::MulAdd(slope_u, hn::Sub(place.u, place.column),
+                               hn::Mul(slope_v, hn::Sub(place.v, place.row)));
+  const VF celsius =
+      hn::MulAdd(change, hn::Set(d, 1.0F / ThermalPixel::kSlopeScale), record.word[1]);
+  const VF code = hn::MulAdd(hn::Sub(celsius, hn::Set(d, ThermalLayout::kMinCelsius)),
+                             hn::Set(d, ThermalLayout::kStepsPerKelvin), one);
+  return hn::NearestInt(hn::Min(hn::Max(code, one), hn::Set(d, ThermalLayout::kMaxCode)));
+}
+
+/// Appends the lanes of `noted` to what was measured; `i` is the first lane's voxel.
+HWY_INLINE void Note(int i, VI fresh, VI flags, MI noted, MI takes, BlockMeasurements& measured) {
+  const VI index =
+      hn::Or(hn::Iota(di, i), hn::IfThenElseZero(takes, hn::Set(di, BlockMeasurements::kAssigned)));
+  hn::CompressStore(fresh, noted, di, measured.words + measured.count);
+  hn::CompressStore(flags, noted, di, measured.flags + measured.count);
+  measured.count +=
+      static_cast<int>(hn::CompressStore(index, noted, di, measured.voxels + measured.count));
+}
+
+// Gives the voxels near the surface the temperatures of the pixels they are seen in. A voxel takes
+// part if it lies within max_distance_m of the vertex that its pixel shows (algorithm 5), and takes
+// the temperature unless the one it has was measured under better conditions (algorithm 6) or, with
+// keep_lowest, is lower under conditions as good.
+// Rows: lanes are neighbours along x, then y, of a layer; words are TsdfLayout's and
+// ThermalLayout's of the same 512 voxels, pixels ThermalPixel. Fast: most vectors have no voxel
+// near the surface and end at their first load; a pixel is one load of 16 bytes; what was measured
+// is written packed, so that the slow part (MeasurementRecorder) meets these voxels only.
+void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
+               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured) {
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  constexpr int kLayer = BlockLayout::kLayerVoxels;
+  const auto* distances = reinterpret_cast<const std::int32_t*>(tsdf);
+  auto* temperatures = reinterpret_cast<std::int32_t*>(thermal);
+  const BlockPoints points(a.axes, first);
+  HWY_ALIGN std::int32_t pixels[hn::MaxLanes(d)];
+  const VF zero = hn::Zero(d);
+  const VI conditions = hn::Set(di, ThermalLayout::kConditionMask);
+  const VI all_good = hn::Set(di, kAllGood);
+  const VI max_code = hn::Set(di, a.max_tsdf_code + 1);
+  const VF width = hn::Set(d, static_cast<float>(a.width));
+  const VF height = hn::Set(d, static_cast<float>(a.height));
+  const VI nowhere = hn::Set(di, a.width * a.height);
+  const VF max_squared = hn::Set(d, a.max_distance_m * a.max_distance_m);
+  for (int i = 0; i < kBlockVoxels; i += lanes) {
+    const VI word = hn::LoadU(di, distances + i);
+    const MI near = NearSurface(word, max_code);
+    if (hn::AllFalse(di, near)) continue;
+    const Vector3 p = points.At(points.Origin(i / kLayer), i % kLayer);
+    const ImagePlace place = ProjectVoxels(a, p);
+    const MF inside =
+        hn::And(hn::And(hn::RebindMask(d, near), hn::Gt(p.z, zero)),
+                hn::And(hn::And(hn::Ge(place.column, zero), hn::Lt(place.column, width)),
+                        hn::And(hn::Ge(place.row, zero), hn::Lt(place.row, height))));
+    // Exact in single precision: pictures have far less than 2^24 pixels.
+    const VI pixel = hn::ConvertTo(di, hn::MulAdd(place.row, width, place.column));
+    hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, nowhere), di, pixels);
+    const RecordVectors record = GatherRecords(a.pixels, pixels);
+    const VI flags = hn::BitCast(di, record.word[3]);
+    const VF squared = SquaredToVertex(a, p, place, record.word[0]);
+    const auto has = [&](std::int32_t bit) {
+      return hn::Ne(hn::And(flags, hn::Set(di, bit)), hn::Zero(di));
+    };
+    const MI on_surface = hn::And(hn::RebindMask(di, hn::And(inside, hn::Lt(squared, max_squared))),
+                                  has(ThermalPixel::kSeen));
+    const VI old = hn::LoadU(di, temperatures + i);
+    const VI classes = hn::And(flags, conditions);
+    const MI assignable = hn::And(on_surface, has(ThermalPixel::kAssignable));
+    MI assign = assignable;
+    if (a.validate) assign = hn::AndNot(KeepsOld(old, classes), assign);
+    counts.considered += static_cast<std::int64_t>(hn::CountTrue(di, on_surface));
+    const MI good = hn::And(assignable, hn::Eq(classes, all_good));
+    if (hn::AllFalse(di, hn::Or(assign, good))) continue;
+    VI stored = TemperatureCode(record, place);
+    if (!a.keep_bad) stored = hn::IfThenElseZero(BothValid(classes), stored);
+    const VI fresh = hn::Or(hn::ShiftLeft<ThermalLayout::kCodeShift>(stored), classes);
+    if (a.keep_lowest) assign = hn::AndNot(hn::And(good, OldIsLower(old, stored)), assign);
+    const MI takes = hn::And(assign, hn::Gt(stored, hn::Zero(di)));
+    counts.assigned += static_cast<std::int64_t>(hn::CountTrue(di, takes));
+    const VI disagreement = hn::And(old, hn::Set(di, ThermalLayout::kDisagreementMask));
+    hn::StoreU(hn::IfThenElse(assign, hn::Or(fresh, disagreement), old), di, temperatures + i);
+    if (measured != nullptr) Note(i, fresh, flags, hn::Or(takes, good), takes, *measured);
+  }
+}
+
+}  // namespace isotherm::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace isotherm {
+
+HWY_EXPORT(FuseBlock);
+
+void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
+               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured) {
+  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, first, tsdf, thermal, counts, measured);
+}
+
+}  // namespace isotherm
+#endif  // HWY_ONCE

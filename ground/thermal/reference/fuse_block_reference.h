@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "common/testing/kernel_checks_for_test.h"
+#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_kernel.h"
+#include "ground/thermal/thermal_volume.h"
+
+// What the kernel beside this folder must do, one element at a time and in double precision: its
+// specification. Compiled for tests only.
+namespace isotherm::reference {
+
+using testing::AtLeastZero;
+using testing::Verdict;
+
+/// Holds what FuseBlock must do with one voxel.
+struct VoxelFusion {
+  Verdict considered = Verdict::kNo;
+  Verdict assigned = Verdict::kNo;
+  double code = 0.0;  ///< Code of the temperature, before rounding.
+  double slack = 0.0;
+  std::int32_t classes = 0;
+};
+
+inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p, TsdfVoxel voxel,
+                             ThermalVoxel old) {
+  constexpr double kNearPixelBorder = 2e-3;  // Pixels.
+  constexpr double kSinglePrecision = 1e-6;  // Metres, at up to a metre.
+  VoxelFusion result;
+  if (!voxel.observed() || std::abs(TsdfLayout::TsdfCode(voxel.bits)) > a.max_tsdf_code)
+    return result;
+  if (!(p.z() > 0.0)) return result;
+  const double u = a.fx * p.x() / p.z() + a.cx;
+  const double v = a.fy * p.y() / p.z() + a.cy;
+  const double column = std::floor(u + 0.5);
+  const double row = std::floor(v + 0.5);
+  const double to_border =
+      std::min(std::abs(u + 0.5 - std::round(u + 0.5)), std::abs(v + 0.5 - std::round(v + 0.5)));
+  if (to_border < kNearPixelBorder) {
+    result.considered = result.assigned = Verdict::kEither;
+    return result;
+  }
+  if (!(column >= 0.0 && column < a.width && row >= 0.0 && row < a.height)) return result;
+  const ThermalPixel& pixel = a.pixels[static_cast<int>(row) * a.width + static_cast<int>(column)];
+  const Eigen::Vector3d vertex =
+      pixel.depth_m * Eigen::Vector3d((column - a.cx) / a.fx, (row - a.cy) / a.fy, 1.0);
+  if ((pixel.flags & ThermalPixel::kSeen) == 0) return result;
+  result.considered = AtLeastZero(double{a.max_distance_m} - (p - vertex).norm(), kSinglePrecision);
+  if ((pixel.flags & ThermalPixel::kAssignable) == 0) return result;
+  result.classes = pixel.flags & ThermalLayout::kConditionMask;
+  const ThermalVoxel conditions{static_cast<std::uint32_t>(result.classes)};
+  if (a.validate && !ReplacesMeasurement(conditions.distance_class(), conditions.angle_class(),
+                                         conditions.motion_class(), old)) {
+    return result;
+  }
+  result.assigned = result.considered;
+  const double slope_u = static_cast<std::int16_t>(pixel.slopes & ThermalPixel::kSlopeUMask);
+  const double slope_v = pixel.slopes >> ThermalPixel::kSlopeVShift;
+  constexpr double kSlopeScale = ThermalPixel::kSlopeScale;
+  constexpr double kStepsPerKelvin = 1.0 / 0.025;
+  const double celsius =
+      pixel.celsius + (slope_u * (u - column) + slope_v * (v - row)) / kSlopeScale;
+  result.code = std::clamp(1.0 + kStepsPerKelvin * (celsius + 100.0), 1.0, 65535.0);
+  constexpr double kPixelError = 1e-4;  // Of a projection.
+  result.slack =
+      0.52 + kPixelError * kStepsPerKelvin / kSlopeScale * (std::abs(slope_u) + std::abs(slope_v)) +
+      1e-6 * result.code;
+  const bool bad = conditions.distance_class() == ConditionClass::kBad ||
+                   conditions.angle_class() == ConditionClass::kBad;
+  if (!a.keep_bad && bad) result.code = result.slack = 0.0;
+  if (a.keep_lowest && result.classes == static_cast<std::int32_t>(kAllGood) &&
+      (old.bits & ThermalLayout::kConditionMask) == kAllGood) {
+    const double margin = static_cast<double>(ThermalLayout::Code(old.bits)) - result.code;
+    if (std::abs(margin) <= result.slack + 0.5) {
+      result.assigned = result.assigned == Verdict::kNo ? Verdict::kNo : Verdict::kEither;
+    } else if (margin < 0.0) {
+      result.assigned = Verdict::kNo;
+    }
+  }
+  return result;
+}
+
+}  // namespace isotherm::reference

@@ -1,0 +1,127 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "common/testing/kernel_checks_for_test.h"
+#include "ground/thermal/camera_motion.h"
+#include "ground/thermal/thermal_kernel.h"
+
+// What the kernel beside this folder must do, one element at a time and in double precision: its
+// specification. Compiled for tests only.
+namespace isotherm::reference {
+
+using testing::AtLeastZero;
+using testing::Both;
+using testing::Verdict;
+
+/// Rounding of a sum of a few products in single precision.
+inline constexpr double kPixelPrecision = 2e-6;
+
+/// Holds what MakePixelRow must make of a pixel.
+struct Pixel {
+  double depth_m = 0.0;
+  double slope_u = 0.0, slope_v = 0.0;  ///< Codes.
+  double smear_px = 0.0;
+  Verdict surface = Verdict::kNo, seen = Verdict::kNo;
+  Verdict occluded = Verdict::kNo, assignable = Verdict::kNo;
+  Verdict sharp = Verdict::kNo, still = Verdict::kNo, even = Verdict::kNo;
+  double cosine = 0.0;
+  int distance_class = 0;
+  int angle_class = 0;
+  bool certain_angle = true;
+  bool certain_distance = true;
+};
+
+/// Whether the row is smeared by less than its limits here.
+inline void JudgeSmear(const PixelRowArgs& a, int x, Pixel& result) {
+  const auto vector = [](const float* v) {
+    return Eigen::Map<const Eigen::Vector3f>(v).cast<double>().eval();
+  };
+  const CameraMotion motion{vector(a.velocity_m_s), vector(a.rate_rad_s)};
+  const Eigen::Vector2d xy((x - double{a.cx}) / a.fx, a.y);
+  const Eigen::Vector2d speed = ImageVelocity(motion, xy, result.depth_m);
+  const double smear_px = double{a.smear_s} * std::hypot(a.fx * speed.x(), a.fy * speed.y());
+  constexpr double kRelative = 1e-4;  // Of a reciprocal and differences.
+  result.smear_px = smear_px;
+  result.sharp = AtLeastZero(a.smear_max_px - smear_px, kRelative * (1.0 + smear_px));
+  result.still = AtLeastZero(a.smear_good_px - smear_px, kRelative * (1.0 + smear_px));
+}
+
+inline Verdict Not(Verdict v) {
+  if (v == Verdict::kEither) return v;
+  return v == Verdict::kYes ? Verdict::kNo : Verdict::kYes;
+}
+
+inline int ConditionCode(double value, double good_low, double good_high, double low, double high) {
+  if (value >= good_low && value <= good_high) return 1;
+  return value >= low && value <= high ? 2 : 0;
+}
+
+inline double SlopeCode(float before, float after) {
+  const double half = 0.5 * (double{after} - before) * double{ThermalPixel::kSlopeScale};
+  return std::isnan(half) ? 0.0 : std::clamp(half, -32767.0, 32767.0);
+}
+
+inline Pixel MakePixel(const PixelRowArgs& a, int x) {
+  Pixel result;
+  const Eigen::Vector3d p(a.vx[x], a.vy[x], a.vz[x]);
+  result.slope_u = SlopeCode(a.celsius[x - 1], a.celsius[x + 1]);
+  result.slope_v = SlopeCode(a.celsius[x - a.celsius_stride], a.celsius[x + a.celsius_stride]);
+  const Eigen::Vector3d z_axis = Eigen::Map<const Eigen::Vector3f>(a.z_axis).cast<double>();
+  result.depth_m = z_axis.dot(p) + a.z_axis[3];
+  const double reach = z_axis.cwiseAbs().dot(p.cwiseAbs()) + std::abs(a.z_axis[3]);
+  result.surface = AtLeastZero(result.depth_m, kPixelPrecision * reach);
+
+  const Eigen::Matrix3d R =
+      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(a.R_depth).cast<double>();
+  const Eigen::Vector3d q = R * p + Eigen::Map<const Eigen::Vector3f>(a.t_depth).cast<double>();
+  const double q_slack = kPixelPrecision * (p.cwiseAbs().sum() + 1.0);
+  result.seen = Both(result.surface, AtLeastZero(q.z(), q_slack));
+  const auto in_image = [&](double along, double f, double c, double size) {
+    const double pixel = f * along / q.z() + c + 0.5;
+    const double slack = 1e-4 + f * q_slack * (1.0 + std::abs(along / q.z())) / std::abs(q.z());
+    return Both(AtLeastZero(pixel, slack), AtLeastZero(size - pixel, slack));
+  };
+  result.seen =
+      Both(result.seen, Both(in_image(q.x(), a.depth_fx, a.depth_cx, double{a.depth_width}),
+                             in_image(q.y(), a.depth_fy, a.depth_cy, double{a.depth_height})));
+
+  const double distance = a.distance_m[x];
+  double nearest = distance;
+  for (int row = -a.margin; row <= a.margin; ++row) {
+    for (int column = -a.margin; column <= a.margin; ++column)
+      nearest = std::min(nearest, double{a.distance_m[x + row * a.distance_stride + column]});
+  }
+  result.occluded =
+      AtLeastZero(distance - nearest - double{a.occlusion_tolerance_m}, kPixelPrecision * distance);
+  const Eigen::Vector3d to_camera =
+      Eigen::Map<const Eigen::Vector3f>(a.position).cast<double>() - p;
+  const Eigen::Vector3d n(a.nx[x], a.ny[x], a.nz[x]);
+  const double cosine = std::min(n.dot(to_camera) / distance, 1.0);
+  result.cosine = cosine;
+  const double resolved = cosine * a.max_footprint_m - distance / a.fx;
+  result.certain_distance = std::abs(resolved) > 1e-6;
+  result.distance_class = resolved < 0.0
+                              ? 0
+                              : ConditionCode(distance, a.distance_min_m, a.distance_good_m,
+                                              a.distance_min_m, a.distance_max_m);
+  result.angle_class = ConditionCode(cosine, a.cosine_good_angle, a.cosine_min_angle,
+                                     a.cosine_max_angle, a.cosine_min_angle);
+  for (const float limit : {a.cosine_good_angle, a.cosine_min_angle, a.cosine_max_angle})
+    result.certain_angle = result.certain_angle && std::abs(cosine - double{limit}) > 1e-5;
+  JudgeSmear(a, x, result);
+  const double slope_k = std::hypot(result.slope_u, result.slope_v) / ThermalPixel::kSlopeScale;
+  // Codes stop at their limits, temperatures do not.
+  const double error_k = slope_k * std::max(double{a.uncertainty_px}, result.smear_px);
+  result.even =
+      slope_k > 400.0 ? Verdict::kNo : AtLeastZero(a.max_error_k - error_k, 1e-4 * (1.0 + error_k));
+  result.assignable = Both(result.seen, Not(result.occluded));
+  result.assignable = Both(result.assignable, Both(result.sharp, result.even));
+  result.assignable = Both(result.assignable, AtLeastZero(cosine, 1e-5));
+  if (std::isnan(a.celsius[x])) result.assignable = Verdict::kNo;
+  return result;
+}
+
+}  // namespace isotherm::reference

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/opencv_camera_for_test.h"
+#include "ground/thermal/thermal_rectifier.h"
+
+namespace isotherm {
+namespace {
+
+/// OpenCV's map is in single precision, and neighbouring pixels differ by up to 20 K.
+constexpr double kToleranceK = 2e-3;
+/// Nearer than this to the border of the image, rounding decides whether there is a value.
+constexpr double kNearBorderPx = 1e-3;
+
+CameraModel DistortedCamera(double k1, double k2, double k3) {
+  CameraModel camera;
+  camera.width = 382;
+  camera.height = 288;
+  camera.fx = 371.4;
+  camera.fy = 372.1;
+  camera.cx = 205.5;
+  camera.cy = 150.5;
+  camera.k1 = k1;
+  camera.k2 = k2;
+  camera.p1 = 0.0031;
+  camera.p2 = -0.0022;
+  camera.k3 = k3;
+  return camera;
+}
+
+/// Bilinear between the four pixels around, °C; NaN outside the image.
+double Look(const Image<std::uint16_t>& centikelvin, double x, double y) {
+  if (!(x >= 0.0 && y >= 0.0 && x <= centikelvin.width() - 1 && y <= centikelvin.height() - 1))
+    return std::numeric_limits<double>::quiet_NaN();
+  const int left = std::min(static_cast<int>(x), centikelvin.width() - 2);
+  const int top = std::min(static_cast<int>(y), centikelvin.height() - 2);
+  double sum = 0.0;
+  for (int row = 0; row < 2; ++row) {
+    for (int column = 0; column < 2; ++column) {
+      const double weight = (1.0 - std::abs(x - left - column)) * (1.0 - std::abs(y - top - row));
+      sum += weight * centikelvin.At(left + column, top + row);
+    }
+  }
+  return 0.01 * sum - 273.15;
+}
+
+void CompareWithOpencv(const CameraModel& camera, int least_outside) {
+  testing::Random random;
+  Image<std::uint16_t> centikelvin(camera.width, camera.height);
+  for (std::uint16_t& value : centikelvin.pixels())
+    value = static_cast<std::uint16_t>(random.Integer(29'000, 31'000));
+  ThreadPool pool(1);
+  Image<float> celsius;
+  constexpr int kApron = 1;
+  ThermalRectifier(camera).Rectify(centikelvin, kApron, pool, celsius);
+  const testing::OpencvRectification truth(camera);
+  int compared = 0;
+  int outside = 0;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const double x = truth.x(v, u);
+      const double y = truth.y(v, u);
+      const auto near_border = [](double c, int size) {
+        return std::abs(c) < kNearBorderPx || std::abs(c - (size - 1)) < kNearBorderPx;
+      };
+      if (near_border(x, camera.width) || near_border(y, camera.height)) continue;
+      const double expected = Look(centikelvin, x, y);
+      const float found = celsius.At(u + kApron, v + kApron);
+      ASSERT_EQ(std::isnan(found), std::isnan(expected)) << "pixel " << u << ", " << v;
+      if (std::isnan(expected)) {
+        ++outside;
+        continue;
+      }
+      ASSERT_NEAR(found, expected, kToleranceK) << "pixel " << u << ", " << v;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 90'000);
+  EXPECT_GE(outside, least_outside);
+}
+
+TEST(ThermalRectificationTest, ABarrelLensIsStraightenedAsByOpencv) {
+  CompareWithOpencv(DistortedCamera(-0.439, 0.29, -0.114), 0);
+}
+
+TEST(ThermalRectificationTest, APincushionLensIsStraightenedAsByOpencv) {
+  CompareWithOpencv(DistortedCamera(0.12, -0.05, 0.02), 3'000);
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/testing/opencv_camera_for_test.h"
+#include "ground/tracker/depth_preprocessor.h"
+
+namespace isotherm {
+namespace {
+
+/// Nearer than this to the border of two pixels, single precision decides which is the nearest.
+constexpr float kNearBorderPx = 1e-3F;
+
+CameraModel DistortedCamera() {
+  CameraModel camera;
+  camera.width = 320;
+  camera.height = 240;
+  camera.fx = 285.0;
+  camera.fy = 287.0;
+  camera.cx = 163.2;
+  camera.cy = 117.9;
+  camera.k1 = -0.21;
+  camera.k2 = 0.09;
+  camera.p1 = 0.0023;
+  camera.p2 = -0.0031;
+  camera.k3 = 0.02;
+  return camera;
+}
+
+/// Another depth, in millimetres, than that of any pixel near it.
+std::uint16_t RawAt(int x, int y) { return static_cast<std::uint16_t>(500 + (x + 61 * y) % 3000); }
+
+TEST(DepthRectificationTest, EachPixelShowsTheDepthThatOpencvFindsThere) {
+  const CameraModel camera = DistortedCamera();
+  DepthFrame frame;
+  frame.depth_scale = 1000.0;
+  frame.depth_raw = Image<std::uint16_t>(camera.width, camera.height);
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) frame.depth_raw.At(x, y) = RawAt(x, y);
+  }
+  ThreadPool pool(1);
+  DepthPreprocessor preprocessor(PreprocessorOptions(), camera);
+  const Image<float>& depth_m = preprocessor.Process(frame, pool).depth_m;
+  const testing::OpencvRectification truth(camera);
+  int compared = 0;
+  int outside = 0;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const float x = truth.x(v, u);
+      const float y = truth.y(v, u);
+      const auto near_border = [](float c) {
+        return std::abs(c + 0.5F - std::round(c + 0.5F)) < kNearBorderPx;
+      };
+      if (near_border(x) || near_border(y)) continue;
+      const int column = static_cast<int>(std::lround(x));
+      const int row = static_cast<int>(std::lround(y));
+      const bool inside = frame.depth_raw.Contains(column, row);
+      const double expected_m = inside ? RawAt(column, row) / 1000.0 : 0.0;
+      ASSERT_NEAR(depth_m.At(u, v), expected_m, 1e-6) << "pixel " << u << ", " << v;
+      ++(inside ? compared : outside);
+    }
+  }
+  EXPECT_GT(compared, 70'000);
+  EXPECT_LT(outside, 100) << "a barrel lens sees more than the ideal camera";
+}
+
+}  // namespace
+}  // namespace isotherm
