@@ -16,12 +16,12 @@ set -eu
 packages="build-essential cmake ninja-build ccache pkg-config git ca-certificates
   cyclonedds-dev cyclonedds-tools
   libeigen3-dev libhwy-dev
-  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev
   libprotobuf-dev protobuf-compiler
-  libexpected-dev libfmt-dev libcli11-dev
+  libexpected-dev libfmt-dev libcli11-dev nlohmann-json3-dev
   libzstd-dev zlib1g-dev libpng-dev libsystemd-dev
   libusb-1.0-0-dev libopenni2-dev
-  libgtest-dev libgmock-dev libbenchmark-dev"
+  libgtest-dev libgmock-dev libbenchmark-dev
+  libopencv-core-dev libopencv-imgproc-dev libopencv-calib3d-dev"
 
 # Recordings are checked against the format's reference implementation, which is JavaScript. Node.js may come from
 # elsewhere (NodeSource's package brings its own npm and conflicts with Debian's).

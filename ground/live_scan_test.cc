@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "ground/tracker/analytic_views_for_test.h"
 
@@ -217,7 +218,7 @@ TEST_F(LiveScanTest, FeedbackSaysHowWellViewAndModelAreMeasured) {
   EXPECT_LT(feedback->covered_area_m2, 0.6);
   ASSERT_FALSE(feedback->picture.empty());
   EXPECT_LE(feedback->picture.size(), kMaxPictureBytes);
-  EXPECT_EQ(scan_->DescribeFeedback().ToText().find("\"messages\": 0"), std::string::npos);
+  EXPECT_EQ(JsonText(scan_->DescribeFeedback()).find("\"messages\": 0"), std::string::npos);
 }
 
 TEST_F(LiveScanTest, TheNextViewIsGivenInWorldAndFromTheRig) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "common/testing/temporary_directory.h"
 #include "ground/link_account.h"
 #include "ground/scan_recorder.h"
@@ -38,7 +40,7 @@ TEST(RigClockTest, F18StatsHaveAllOfItWithUnits) {
   Json link;
   DescribeAccount(account, {}, link);
   EXPECT_THAT(
-      link.ToText(),
+      JsonText(link),
       AllOf(HasSubstr("\"synchronised\": true"), HasSubstr("\"estimated_error_ms\": 0.1"),
             HasSubstr("\"max_error_ms\": 2"), HasSubstr("\"steps\": 0"), HasSubstr("\"ms\": 125"),
             HasSubstr("\"uncertainty_ms\": 0.5"), HasSubstr("\"largest_certain_ms\": 120"),

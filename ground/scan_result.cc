@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <utility>
 
-#include "common/config/text_proto.h"
+#include "common/config/rig_calibration.h"
+#include "common/config/rig_calibration.pb.h"
+#include "ground/export/message_json.h"
 #include "ground/export/results.h"
 #include "ground/outcome_text.h"
 #include "ground/renderer/layers.h"
@@ -261,8 +264,8 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   const VoxelGrid& grid = pipeline.tsdf().grid();
   Json& volume = json["volume"];
   for (int axis = 0; axis < 3; ++axis) {
-    volume["min_m"].Append(grid.min_m[axis]);
-    volume["size_m"].Append(grid.size_m()[axis]);
+    volume["min_m"].push_back(grid.min_m[axis]);
+    volume["size_m"].push_back(grid.size_m()[axis]);
   }
   volume["voxel_size_m"] = grid.voxel_size_m;
   volume["truncation_distance_m"] = pipeline.tsdf().truncation_distance_m();
@@ -275,8 +278,8 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
       static_cast<std::size_t>(pipeline.tsdf().block_count()) * kBlockVoxels * sizeof(ThermalVoxel);
   if (const ThermalRecords* records = pipeline.thermal().records())
     volume["record_bytes"] = records->memory_bytes();
-  json["calibration"] = ToText(rig);
-  json["configuration"] = ToTextProto(options);
+  json["calibration"] = ToJson(ToProto(rig));
+  json["configuration"] = ToJson(options);
   if (!pipeline.thermal_status().ok())
     json["thermal_not_fused_because"] = pipeline.thermal_status().message();
   return json;
@@ -301,7 +304,7 @@ Result<WrittenScan> WriteScan(
                             options.thermal(),
                             options.export_(),
                             interpreted ? &*interpretation : nullptr,
-                            std::move(stats),
+                            stats,
                             [&](const ResultSummary& summary) {
                               AddResultDoubts(pipeline, options, summary, doubts);
                               return doubts;

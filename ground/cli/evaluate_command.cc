@@ -1,6 +1,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "common/base/progress.h"
@@ -62,7 +63,7 @@ int Run(const Arguments& arguments) {
   const Result<EvaluationReport> report = Evaluate(request);
   if (!report) return Fail(report.error());
   if (progress) progress->Finish();
-  const std::string text = arguments.json ? ToJson(*report).ToText() : ToText(*report);
+  const std::string text = arguments.json ? JsonText(ToJson(*report)) : ToText(*report);
   std::fwrite(text.data(), 1, text.size(), stdout);
   return 0;
 }

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
@@ -49,7 +50,7 @@ int Run(const Arguments& arguments) {
   }
   const RecordingReport report = MakeReport(**reader, arguments.recording);
   const std::string text =
-      arguments.json ? ToJson(report).ToText() : PrintableLines(ToText(report));
+      arguments.json ? JsonText(ToJson(report)) : PrintableLines(ToText(report));
   std::fwrite(text.data(), 1, text.size(), stdout);
   return Warn(report.doubts);
 }

@@ -1,11 +1,12 @@
 #include "ground/cli/model_export.h"
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "common/concurrency/thread_pool.h"
-#include "common/config/text_proto.h"
 #include "ground/cli/simulation_files.h"
+#include "ground/export/message_json.h"
 #include "ground/model/load_model.h"
 #include "ground/tsdf/raycaster.h"
 
@@ -35,7 +36,7 @@ Result<ResultSummary> ExportModel(const std::filesystem::path& model_path, Groun
   const std::optional<SurfaceMaps> view = CastLastView(*model, options, pool);
   Json stats;
   stats["source"]["model"] = model_path.filename().string();
-  stats["configuration"] = ToTextProto(options);
+  stats["configuration"] = ToJson(options);
   ResultInputs inputs{.tsdf = *model->tsdf,
                       .thermal = *model->thermal,
                       .trajectory = std::nullopt,
@@ -44,7 +45,7 @@ Result<ResultSummary> ExportModel(const std::filesystem::path& model_path, Groun
                       .thermal_options = options.thermal(),
                       .export_options = options.export_(),
                       .interpretation = &interpretation,
-                      .stats = std::move(stats)};
+                      .stats = stats};
   if (view) inputs.viewer_world = model->known_poses.back().translation();
   return WriteResults(inputs, dir, pool, progress);
 }

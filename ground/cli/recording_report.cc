@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <ctime>
+#include <nlohmann/json.hpp>
 
 #include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
@@ -310,13 +311,13 @@ Json NucJson(const RecordingSummary& summary) {
     closed["start"] = FormatStamp(run.start);
     closed["end"] = FormatStamp(run.end);
     closed["frames"] = run.frames;
-    json["closed"].Append(std::move(closed));
+    json["closed"].push_back(std::move(closed));
   }
   for (const NucEvent& event : summary.nuc_events) {
     Json item;
     item["start"] = FormatStamp(event.start);
     item["end"] = FormatStamp(event.end);
-    json["events"].Append(std::move(item));
+    json["events"].push_back(std::move(item));
   }
   return json;
 }
@@ -376,7 +377,7 @@ Json ToJson(const RecordingReport& report) {
     item["offset"] = gap.offset;
     item["bytes"] = gap.bytes;
     for (const auto& [topic, count] : gap.messages_by_topic) item["messages"][topic] = count;
-    json["gaps"].Append(std::move(item));
+    json["gaps"].push_back(std::move(item));
   }
   json["viewable"] = IsViewable(report.summary);
   json["unreadable_messages"] = report.summary.unreadable;
@@ -390,7 +391,7 @@ Json ToJson(const RecordingReport& report) {
     item["time"] = FormatStamp(step.time);
     item["step_s"] = ToSeconds(step.step);
     item["utc_minus_capture_time_s"] = ToSeconds(step.wall_minus_time);
-    json["clock"]["steps"].Append(std::move(item));
+    json["clock"]["steps"].push_back(std::move(item));
   }
   for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
   for (const auto& [source, count] : report.summary.outside_poses)
@@ -400,14 +401,14 @@ Json ToJson(const RecordingReport& report) {
     line["time"] = FormatStamp(log.time);
     line["level"] = log.level;
     line["text"] = log.text;
-    json["log"].Append(std::move(line));
+    json["log"].push_back(std::move(line));
   }
   json["log_left_out"] = report.summary.log_left_out;
   for (const auto& [topic, count] : report.info.messages_by_topic) json["messages"][topic] = count;
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) json["metadata"][name][key] = value;
   }
-  for (const std::string& doubt : report.doubts) json["warnings"].Append(doubt);
+  for (const std::string& doubt : report.doubts) json["warnings"].push_back(doubt);
   json["calibration"]["present"] = report.rig.has_value();
   if (report.rig) {
     json["calibration"]["depth"] = report.rig->depth.has_value();

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "ground/cli/frame_picture.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/recording_report.h"
@@ -171,7 +173,7 @@ TEST(RecordingReportTest, F15StepsOfTheClockAreShown) {
   EXPECT_THAT(ToText(report),
               HasSubstr("set by +1.000 s at 2.500000000: from there on UTC = capture "
                         "time -2.000 s"));
-  EXPECT_THAT(ToJson(report).ToText(), HasSubstr("\"utc_minus_capture_time_s\": -3"));
+  EXPECT_THAT(JsonText(ToJson(report)), HasSubstr("\"utc_minus_capture_time_s\": -3"));
 }
 
 TEST(RecordingReportTest, F17AnUnsynchronisedClockIsShown) {

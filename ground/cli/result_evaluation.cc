@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "common/config/text_proto.h"
 #include "common/dataset/trajectory.h"

@@ -1,14 +1,14 @@
 #include "ground/cli/result_folder.h"
 
 #include <fmt/format.h>
-#include <google/protobuf/struct.pb.h>
-#include <google/protobuf/util/json_util.h>
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "common/config/text_proto.h"
 #include "common/dataset/text_lines.h"
 #include "common/dataset/trajectory.h"
+#include "ground/export/message_json.h"
 
 namespace isotherm {
 namespace {
@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kModelName = "model.iso";
+constexpr int kMaxNesting = 32;
 
 }  // namespace
 
@@ -37,14 +38,18 @@ Result<fs::path> FindModel(const fs::path& place) {
 std::optional<GroundOptions> ConfigurationOf(const fs::path& folder) {
   const Result<std::string> text = ReadTextFile(folder / "stats.json");
   if (!text) return std::nullopt;
-  google::protobuf::Struct stats;
-  if (!google::protobuf::util::JsonStringToMessage(*text, &stats).ok()) return std::nullopt;
-  const auto found = stats.fields().find("configuration");
-  if (found == stats.fields().end()) return std::nullopt;
+  // Values that are nested deeper than any option are left out: what writes and frees them
+  // recurses.
+  const auto is_shallow = [](int depth, Json::parse_event_t, Json&) { return depth < kMaxNesting; };
+  const Json stats = Json::parse(*text, is_shallow, /*allow_exceptions=*/false);
+  const auto found = stats.find("configuration");
+  if (found == stats.end()) return std::nullopt;
   GroundOptions options;
-  if (!ParseTextProto(found->second.string_value(), "stats.json", options).ok()) {
-    return std::nullopt;
-  }
+  // Before version 0.2 it was text format in a string.
+  const Status parsed = found->is_string()
+                            ? ParseTextProto(found->get<std::string>(), "stats.json", options)
+                            : FromJson(*found, "stats.json", options);
+  if (!parsed.ok()) return std::nullopt;
   return options;
 }
 

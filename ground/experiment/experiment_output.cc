@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <system_error>
 
@@ -83,14 +84,14 @@ Json ToJson(const Experiment& experiment, const ExperimentReport& report) {
     requirement["measured"] = r.measured;
     requirement["unit"] = r.unit;
     requirement["met"] = r.IsMet();
-    json["requirements"].Append(std::move(requirement));
+    json["requirements"].push_back(std::move(requirement));
   }
   for (const ExperimentTable::Row& row : report.table.rows) {
     Json line;
     line[report.table.rows_are] = row.label;
     for (std::size_t i = 0; i < row.values.size(); ++i)
       line[report.table.columns[i]] = row.values[i];
-    json["table"].Append(std::move(line));
+    json["table"].push_back(std::move(line));
   }
   return json;
 }
@@ -127,7 +128,7 @@ Status WriteExperiment(const Experiment& experiment, const ExperimentReport& rep
     return IoError(fmt::format("{}: cannot be created: {}", dir.string(), error.message()));
   const std::string name(experiment.name);
   ISOTHERM_RETURN_IF_ERROR(WriteFile(dir / (name + ".csv"), ToCsv(report.table)));
-  ISOTHERM_RETURN_IF_ERROR(WriteFile(dir / (name + ".json"), ToJson(experiment, report).ToText()));
+  ISOTHERM_RETURN_IF_ERROR(WriteFile(dir / (name + ".json"), JsonText(ToJson(experiment, report))));
   for (const ExperimentPicture& picture : report.pictures) {
     const Result<std::vector<std::uint8_t>> png = EncodePng(picture.picture);
     if (!png) return png.error();

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ground/ground_options.pb.h"
 
@@ -202,14 +203,14 @@ std::vector<std::string> Interpretation::Errors(const std::vector<PartReport>& r
 
 Json Interpretation::Describe(const std::vector<PartReport>& reports) const {
   Json json;
-  json["band_um"].Append(band_.band().min_um);
-  json["band_um"].Append(band_.band().max_um);
+  json["band_um"].push_back(band_.band().min_um);
+  json["band_um"].push_back(band_.band().max_um);
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     Json part;
     part["name"] = parts_[i].name;
     if (i > 0) {
       for (const auto& corner : {parts_[i].box_world.min(), parts_[i].box_world.max()})
-        for (const float coordinate : corner) part["box_m"].Append(coordinate);
+        for (const float coordinate : corner) part["box_m"].push_back(coordinate);
     }
     part["emissivity"] = parts_[i].emissivity;
     part["reflected_celsius"] = parts_[i].reflected_celsius;
@@ -217,9 +218,9 @@ Json Interpretation::Describe(const std::vector<PartReport>& reports) const {
     part["measured_points"] = reports[i].measured;
     part["without_solution"] = reports[i].unsolved();
     if (!parts_[i].problem.empty()) part["refused_because"] = parts_[i].problem;
-    json["parts"].Append(std::move(part));
+    json["parts"].push_back(std::move(part));
   }
-  for (const std::string& sentence : Overlaps()) json["overlaps"].Append(sentence);
+  for (const std::string& sentence : Overlaps()) json["overlaps"].push_back(sentence);
   return json;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "ground/ground_options.pb.h"
 
@@ -203,7 +204,7 @@ TEST_F(InterpretationTest, StatsSayWhatWasAppliedAndToHowMuch) {
   AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
   const Interpretation interpretation = Make();
   Surface surface = SurfaceOf({{-0.5F, 80.0F}, {0.5F, 80.0F}});
-  const std::string json = interpretation.Describe(interpretation.Apply(surface)).ToText();
+  const std::string json = JsonText(interpretation.Describe(interpretation.Apply(surface)));
   for (const char* text :
        {"\"whole model\"", "\"pipe\"", "\"emissivity\": 0.85", "\"emissivity\": 0.5",
         "\"measured_points\": 1", "\"without_solution\": 0", "\"box_m\""}) {

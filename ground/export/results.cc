@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <vector>
 
@@ -109,7 +110,8 @@ Json CompleteStats(const ResultInputs& inputs, const ResultSummary& summary) {
   if (inputs.interpretation != nullptr)
     stats["interpretation"] = inputs.interpretation->Describe(summary.interpretation);
   if (inputs.warnings) {
-    for (const std::string& warning : inputs.warnings(summary)) stats["warnings"].Append(warning);
+    for (const std::string& warning : inputs.warnings(summary))
+      stats["warnings"].push_back(warning);
   }
   return stats;
 }
@@ -199,7 +201,7 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
     summary = SummarizeSurface(surface, inputs.renderer_options);
     summary.interpretation = std::move(reports);
     announce("stats.json", 0.4);
-    failure.Add(WriteFile(dir / "stats.json", CompleteStats(inputs, summary).ToText()));
+    failure.Add(WriteFile(dir / "stats.json", JsonText(CompleteStats(inputs, summary))));
     const ColourTable colours(inputs.renderer_options);
     const PlyStyle style{.colours = colours,
                          .scale = summary.scale,

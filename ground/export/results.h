@@ -53,7 +53,7 @@ struct ResultInputs {
   const ThermalOptions& thermal_options;
   const ExportOptions& export_options;
   const Interpretation* interpretation = nullptr;  ///< nullptr: temperatures stay apparent.
-  Json stats;  ///< Becomes stats.json, with `software`, `surface`, `interpretation` added.
+  const Json& stats;  ///< Becomes stats.json, with `software`, `surface`, `interpretation` added.
   /// What to warn of, knowing the surface; goes into stats.json as `warnings`. May be empty.
   std::function<std::vector<std::string>(const ResultSummary&)> warnings{};
 };

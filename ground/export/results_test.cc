@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <locale>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -60,7 +61,7 @@ class ResultsTest : public ::testing::Test {
   }
 
   ResultInputs Inputs() const {
-    ResultInputs inputs{.tsdf = tsdf_,
+    return ResultInputs{.tsdf = tsdf_,
                         .thermal = thermal_,
                         .trajectory = poses_,
                         .view = &view_,
@@ -68,9 +69,7 @@ class ResultsTest : public ::testing::Test {
                         .renderer_options = renderer_,
                         .thermal_options = thermal_options_,
                         .export_options = export_,
-                        .stats = {}};
-    inputs.stats["frames"]["depth"] = 3;
-    return inputs;
+                        .stats = stats_};
   }
 
   Result<ResultSummary> Write(const fs::path& dir, int threads = 2) const {
@@ -85,6 +84,7 @@ class ResultsTest : public ::testing::Test {
   RendererOptions renderer_;
   ThermalOptions thermal_options_;
   ExportOptions export_;
+  const Json stats_ = {{"frames", {{"depth", 3}}}};
   const testing::TemporaryDirectory folder_;
 };
 
@@ -326,24 +326,24 @@ TEST(TrajectoryTest, F70LineIsExactAndIndependentOfTheLocale) {
   EXPECT_EQ(TumLine(pose), expected);
   const LocaleWithComma locale;
   EXPECT_EQ(TumLine(pose), expected);
-  EXPECT_EQ(Json(0.5).ToText(), "0.5\n");
+  EXPECT_EQ(JsonText(0.5), "0.5\n");
 }
 
 TEST(JsonTest, KeepsOrderAndEscapes) {
   Json json;
   json["b"] = 1;
   json["a"]["nested"] = "tab\there \"quoted\" \\ caf\u00e9";
-  json["list"].Append(0.1);
-  json["list"].Append(true);
+  json["list"].push_back(0.1);
+  json["list"].push_back(true);
   json["nan"] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(json.ToText(),
-            "{\n  \"b\": 1,\n  \"a\": {\n    \"nested\": \"tab\\u0009here \\\"quoted\\\" \\\\ "
+  EXPECT_EQ(JsonText(json),
+            "{\n  \"b\": 1,\n  \"a\": {\n    \"nested\": \"tab\\there \\\"quoted\\\" \\\\ "
             "caf\u00e9\"\n"
             "  },\n  \"list\": [\n    0.1,\n    true\n  ],\n  \"nan\": null\n}\n");
 }
 
 TEST(JsonTest, F70BytesThatAreNotUtf8AreReplaced) {
-  EXPECT_EQ(Json(std::string("a\xff\xc3(\xe2\x82")).ToText(), "\"a\uFFFD\uFFFD(\uFFFD\uFFFD\"\n");
+  EXPECT_EQ(JsonText("a\xff\xc3(\xe2\x82"), "\"a\uFFFD\uFFFD(\uFFFD\"\n");
 }
 
 }  // namespace

@@ -1,81 +1,54 @@
 #include "ground/renderer/canvas.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
-#include <string>
+#include <vector>
+
+#include "ground/renderer/stroke_font.h"
 
 namespace isotherm {
 namespace {
 
-// Shapes are drawn into a mask this many times larger and averaged down: OpenCV's stroke fonts look
-// coarse at their own anti-aliasing.
-constexpr int kSupersampling = 4;
-constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
-// Height of a capital letter of the Hershey simplex font at scale 1, pixels.
-constexpr double kCapitalHeight = 21.0;
+/// Width of a letter's stroke, in heights of a capital letter.
 constexpr double kStrokePerHeight = 0.125;
-constexpr std::string_view kDegree = "\u00B0";
-// Size of the drawn degree sign, in capital heights.
-constexpr double kDegreeRadius = 0.16;
-constexpr double kDegreeAdvance = 0.55;
 
-struct Stroke {
-  double scale;
-  int thickness;
-};
+/// How much of a pixel a shape covers whose edge is so many pixels from the pixel's centre,
+/// negative inside. Exact for an edge along a row or a column.
+double Cover(double distance_px) { return std::clamp(0.5 - distance_px, 0.0, 1.0); }
 
-Stroke StrokeFor(double height_px) {
-  const double height = height_px * kSupersampling;
-  return {height / kCapitalHeight,
-          std::max(1, static_cast<int>(std::lround(height * kStrokePerHeight)))};
+/// Mixes as much of `colour` into the pixel, if there is one.
+void Blend(int x, int y, Rgb8 colour, double cover, RgbImage& picture) {
+  if (!(cover > 0.0) || !picture.Contains(x, y)) return;
+  const auto mix = [cover](std::uint8_t from, std::uint8_t to) {
+    return static_cast<std::uint8_t>(std::lround(from + cover * (to - from)));
+  };
+  Rgb8& pixel = picture.At(x, y);
+  pixel = {mix(pixel.r, colour.r), mix(pixel.g, colour.g), mix(pixel.b, colour.b)};
 }
 
-/// Advances `x` (supersampled pixels) over `text`; draws into `mask` unless it is empty.
-void Write(std::string_view text, double height_px, double baseline, double& x, cv::Mat& mask) {
-  const Stroke stroke = StrokeFor(height_px);
-  const double capital = height_px * kSupersampling;
-  const cv::Scalar white(255);
-  while (!text.empty()) {
-    if (text.starts_with(kDegree)) {
-      const cv::Point centre(static_cast<int>(x + capital * 0.25),
-                             static_cast<int>(baseline - capital * (1.0 - kDegreeRadius)));
-      if (!mask.empty()) {
-        cv::circle(mask, centre, static_cast<int>(capital * kDegreeRadius), white, stroke.thickness,
-                   cv::LINE_AA);
-      }
-      x += capital * kDegreeAdvance;
-      text.remove_prefix(kDegree.size());
-      continue;
-    }
-    const std::string part(text.substr(0, text.find(kDegree)));
-    int below = 0;
-    const cv::Size size = cv::getTextSize(part, kFont, stroke.scale, stroke.thickness, &below);
-    if (!mask.empty()) {
-      cv::putText(mask, part, cv::Point(static_cast<int>(x), static_cast<int>(baseline)), kFont,
-                  stroke.scale, white, stroke.thickness, cv::LINE_AA);
-    }
-    x += size.width;
-    text.remove_prefix(part.size());
-  }
+double Distance(double x, double y, const StrokeLine& line) {
+  const double dx = line.x1 - line.x0, dy = line.y1 - line.y0;
+  const double square = dx * dx + dy * dy;
+  const double along = square > 0.0 ? ((x - line.x0) * dx + (y - line.y0) * dy) / square : 0.0;
+  const double t = std::clamp(along, 0.0, 1.0);
+  return std::hypot(x - line.x0 - t * dx, y - line.y0 - t * dy);
 }
 
-/// Mixes `colour` into the picture where the supersampled `mask`, whose corner is at (x, y), is
-/// set.
-void Blend(const cv::Mat& mask, int x, int y, Rgb8 colour, RgbImage& picture) {
-  cv::Mat small;
-  cv::resize(mask, small, cv::Size(mask.cols / kSupersampling, mask.rows / kSupersampling), 0, 0,
-             cv::INTER_AREA);
-  for (int v = 0; v < small.rows; ++v) {
-    for (int u = 0; u < small.cols; ++u) {
-      if (!picture.Contains(x + u, y + v)) continue;
-      Rgb8& pixel = picture.At(x + u, y + v);
-      const int cover = small.at<std::uint8_t>(v, u);
-      const auto mix = [cover](std::uint8_t from, std::uint8_t to) {
-        return static_cast<std::uint8_t>((from * (255 - cover) + to * cover + 127) / 255);
-      };
-      pixel = {mix(pixel.r, colour.r), mix(pixel.g, colour.g), mix(pixel.b, colour.b)};
+int Floor(double value) { return static_cast<int>(std::floor(value)); }
+int Ceil(double value) { return static_cast<int>(std::ceil(value)); }
+
+/// Raises the cover of the pixels around `line` to that of a stroke with round ends: where strokes
+/// meet, the one counts that covers a pixel most.
+void Stroke(const StrokeLine& line, double half_width_px, Image<float>& mask) {
+  const double reach = half_width_px + 1.0;
+  const int left = std::max(Floor(std::min(line.x0, line.x1) - reach), 0);
+  const int top = std::max(Floor(std::min(line.y0, line.y1) - reach), 0);
+  const int right = std::min(Ceil(std::max(line.x0, line.x1) + reach), mask.width());
+  const int bottom = std::min(Ceil(std::max(line.y0, line.y1) + reach), mask.height());
+  for (int v = top; v < bottom; ++v) {
+    for (int u = left; u < right; ++u) {
+      const double cover = Cover(Distance(u + 0.5, v + 0.5, line) - half_width_px);
+      mask.At(u, v) = std::max(mask.At(u, v), static_cast<float>(cover));
     }
   }
 }
@@ -99,18 +72,23 @@ void Canvas::Frame(int x, int y, int width, int height, Rgb8 colour) {
 
 void Canvas::FillTriangle(double x0, double y0, double x1, double y1, double x2, double y2,
                           Rgb8 colour) {
-  const int left = static_cast<int>(std::floor(std::min({x0, x1, x2})));
-  const int top = static_cast<int>(std::floor(std::min({y0, y1, y2})));
-  const int width = static_cast<int>(std::ceil(std::max({x0, x1, x2}))) - left + 1;
-  const int height = static_cast<int>(std::ceil(std::max({y0, y1, y2}))) - top + 1;
-  cv::Mat mask = cv::Mat::zeros(height * kSupersampling, width * kSupersampling, CV_8U);
-  const auto point = [&](double x, double y) {
-    return cv::Point(static_cast<int>(std::lround((x - left) * kSupersampling)),
-                     static_cast<int>(std::lround((y - top) * kSupersampling)));
-  };
-  const std::array<cv::Point, 3> corners = {point(x0, y0), point(x1, y1), point(x2, y2)};
-  cv::fillConvexPoly(mask, corners.data(), 3, cv::Scalar(255), cv::LINE_AA);
-  Blend(mask, left, top, colour, picture_);
+  const StrokeLine sides[] = {{x0, y0, x1, y1}, {x1, y1, x2, y2}, {x2, y2, x0, y0}};
+  const double winding = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0) > 0.0 ? 1.0 : -1.0;
+  const int left = std::max(Floor(std::min({x0, x1, x2})) - 1, 0);
+  const int top = std::max(Floor(std::min({y0, y1, y2})) - 1, 0);
+  const int right = std::min(Ceil(std::max({x0, x1, x2})) + 1, picture_.width());
+  const int bottom = std::min(Ceil(std::max({y0, y1, y2})) + 1, picture_.height());
+  for (int v = top; v < bottom; ++v) {
+    for (int u = left; u < right; ++u) {
+      double cover = 1.0;
+      for (const StrokeLine& side : sides) {
+        const double dx = side.x1 - side.x0, dy = side.y1 - side.y0;
+        const double cross = dy * (u + 0.5 - side.x0) - dx * (v + 0.5 - side.y0);
+        cover = std::min(cover, Cover(winding * cross / std::hypot(dx, dy)));
+      }
+      Blend(u, v, colour, cover, picture_);
+    }
+  }
 }
 
 void Canvas::Text(double x, double y_middle, std::string_view text, double height_px, Rgb8 colour,
@@ -119,21 +97,23 @@ void Canvas::Text(double x, double y_middle, std::string_view text, double heigh
   const double left = align == TextAlign::kLeft    ? x
                       : align == TextAlign::kRight ? x - width
                                                    : x - width / 2.0;
-  const int margin = static_cast<int>(std::ceil(height_px));  // Room for descenders and strokes.
-  const int corner_x = static_cast<int>(std::floor(left)) - margin;
-  const int corner_y = static_cast<int>(std::floor(y_middle - height_px / 2.0)) - margin;
-  const int mask_width = static_cast<int>(std::ceil(width)) + 2 * margin;
-  cv::Mat mask = cv::Mat::zeros(kSupersampling * 3 * margin, kSupersampling * mask_width, CV_8U);
-  double pen = (left - corner_x) * kSupersampling;
-  Write(text, height_px, (y_middle + height_px / 2.0 - corner_y) * kSupersampling, pen, mask);
-  Blend(mask, corner_x, corner_y, colour, picture_);
+  const int margin = Ceil(height_px);  // Room for descenders and strokes.
+  const int corner_x = Floor(left) - margin;
+  const int corner_y = Floor(y_middle - height_px / 2.0) - margin;
+  const double baseline = y_middle + height_px / 2.0;
+  Image<float> mask(Ceil(width) + 2 * margin, 3 * margin);
+  for (const StrokeLine& line : TextStrokes(text)) {
+    const auto u = [&](double unit) { return left + height_px * unit - corner_x; };
+    const auto v = [&](double unit) { return baseline + height_px * unit - corner_y; };
+    Stroke({u(line.x0), v(line.y0), u(line.x1), v(line.y1)}, 0.5 * kStrokePerHeight * height_px,
+           mask);
+  }
+  for (int v = 0; v < mask.height(); ++v) {
+    for (int u = 0; u < mask.width(); ++u)
+      Blend(corner_x + u, corner_y + v, colour, mask.At(u, v), picture_);
+  }
 }
 
-double TextWidth(std::string_view text, double height_px) {
-  double x = 0.0;
-  cv::Mat no_mask;
-  Write(text, height_px, 0.0, x, no_mask);
-  return x / kSupersampling;
-}
+double TextWidth(std::string_view text, double height_px) { return height_px * TextAdvance(text); }
 
 }  // namespace isotherm

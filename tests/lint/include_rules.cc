@@ -112,7 +112,8 @@ const std::map<std::string_view, std::string_view>& SdkHomes() {
 
 /// Heavy headers that would slow down everybody who includes one of our shared headers.
 constexpr std::string_view kSourceOnly[] = {
-    "opencv2/", "google/protobuf/", "zstd.h", "zlib.h", "hwy/", "CLI/", "boost/"};
+    "opencv2/", "google/protobuf/", "zstd.h",           "zlib.h", "hwy/",
+    "CLI/",     "boost/",           "nlohmann/json.hpp"};
 
 /// Headers with no place in this code, and what to take instead.
 struct ForbiddenHeader {

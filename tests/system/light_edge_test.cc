@@ -27,7 +27,7 @@ constexpr std::size_t kMaxEdgeLibraries = 40;
 constexpr double kMaxEdgeMemory_mb = 25.0;
 
 /// Beginnings of libraries that draw, show windows, calibrate, solve large systems, or read every
-/// format there is. Nothing of that is the edge's work.
+/// format there is. Nothing of that is the work of a program that ships.
 constexpr std::string_view kUnwanted[] = {"libopencv",  "libgdal",    "libavcodec", "libX11",
                                           "libGL",      "libgtk",     "libQt",      "libvtk",
                                           "libhdf5",    "libblas",    "liblapack",  "libtbb",
@@ -82,6 +82,16 @@ TEST(LightEdgeTest, TheEdgeLoadsFewLibrariesAndNoneOfOthersWork) {
   EXPECT_TRUE(libraries.contains("libc.so.6")) << Names(libraries);
   EXPECT_LE(libraries.size(), kMaxEdgeLibraries) << Names(libraries);
   EXPECT_THAT(Unwanted(libraries), IsEmpty());
+}
+
+/// Letters of renderings are drawn without OpenCV, which would bring X11 and LAPACK with it.
+TEST(LightEdgeTest, GroundServiceAndToolLoadNoneOfThemEither) {
+  for (const std::filesystem::path& program : {GroundService(), Tool()}) {
+    const std::set<std::string> libraries = LibrariesOf(program);
+    EXPECT_TRUE(libraries.contains("libc.so.6")) << program << '\n' << Names(libraries);
+    EXPECT_LE(libraries.size(), kMaxEdgeLibraries) << program << '\n' << Names(libraries);
+    EXPECT_THAT(Unwanted(libraries), IsEmpty()) << program;
+  }
 }
 
 TEST(LightEdgeTest, TheRunningEdgeHasOpenedNoMore) {

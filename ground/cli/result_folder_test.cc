@@ -1,0 +1,65 @@
+#include "ground/cli/result_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/config/text_proto.h"
+#include "common/testing/temporary_directory.h"
+#include "ground/export/message_json.h"
+
+namespace isotherm {
+namespace {
+
+class ResultFolderTest : public ::testing::Test {
+ protected:
+  std::optional<GroundOptions> ConfigurationIn(const std::string& stats) const {
+    std::ofstream(folder_.path() / "stats.json") << stats;
+    return ConfigurationOf(folder_.path());
+  }
+  static GroundOptions Options() {
+    GroundOptions options;
+    options.mutable_volume()->set_voxel_size_m(0.0037);
+    return options;
+  }
+
+  const testing::TemporaryDirectory folder_;
+};
+
+TEST_F(ResultFolderTest, TheConfigurationIsReadFromItsObject) {
+  Json stats;
+  stats["frames"]["depth"]["in"] = 300;
+  stats["configuration"] = ToJson(Options());
+  const std::optional<GroundOptions> read = ConfigurationIn(JsonText(stats));
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(ToTextProto(*read), ToTextProto(Options()));
+}
+
+TEST_F(ResultFolderTest, TheConfigurationOfAnOlderVersionIsTextInAString) {
+  Json stats;
+  stats["configuration"] = ToTextProto(Options());
+  const std::optional<GroundOptions> read = ConfigurationIn(JsonText(stats));
+  ASSERT_TRUE(read.has_value());
+  EXPECT_EQ(read->volume().voxel_size_m(), 0.0037);
+}
+
+TEST_F(ResultFolderTest, WhatIsNotUnderstoodIsNoConfiguration) {
+  EXPECT_FALSE(ConfigurationOf(folder_.path()).has_value());
+  for (const char* text : {"", "{", "[1, 2]", "{}", R"({"configuration": 7})",
+                           R"({"configuration": {"voxels_of_tomorrow": 1}})",
+                           R"({"configuration": {"threads": 1e999}})"}) {
+    EXPECT_FALSE(ConfigurationIn(text).has_value()) << text;
+  }
+}
+
+TEST_F(ResultFolderTest, NestingWithoutEndIsNoConfiguration) {
+  constexpr std::size_t kLevels = 400'000;
+  const std::string open(kLevels, '[');
+  const std::string close(kLevels, ']');
+  EXPECT_FALSE(ConfigurationIn(R"({"configuration": {"threads": )" + open + close + "}}"));
+}
+
+}  // namespace
+}  // namespace isotherm
