@@ -101,7 +101,7 @@ run_reconstruct() {
 }
 
 : >"$out/results.tsv"
-run_benchmark codec_benchmark common/codec '--benchmark_filter=/(isotherm|png_1)/'
+run_benchmark codec_benchmark tests/benchmark '--benchmark_filter=/(isotherm|png_1)/'
 run_benchmark kernel_benchmark tests/benchmark --benchmark_enable_random_interleaving=true
 run_benchmark pipeline_benchmark tests/benchmark '--benchmark_filter=voxel_mm:2/'
 run_benchmark growth_benchmark tests/benchmark

@@ -6,8 +6,8 @@
 #include <clocale>
 #include <locale>
 
-#include "common/dataset/dataset_folder_for_test.h"
 #include "common/dataset/image_file.h"
+#include "common/dataset/testing/dataset_folder.h"
 #include "common/dataset/text_lines.h"
 
 namespace isotherm {

@@ -8,8 +8,8 @@
 #include <random>
 
 #include "common/codec/codec.h"
-#include "common/dataset/dataset_folder_for_test.h"
 #include "common/dataset/image_file.h"
+#include "common/dataset/testing/dataset_folder.h"
 
 namespace isotherm {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/camera.h"
-#include "common/testing/opencv_camera_for_test.h"
+#include "common/testing/opencv_camera.h"
 
 namespace isotherm {
 namespace {

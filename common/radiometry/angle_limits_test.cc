@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/radiometry/fresnel_for_test.h"
 #include "common/radiometry/materials.h"
+#include "common/radiometry/testing/fresnel.h"
 
 namespace isotherm {
 namespace {

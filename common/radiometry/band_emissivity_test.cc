@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/radiometry/fresnel_for_test.h"
+#include "common/radiometry/testing/fresnel.h"
 
 namespace isotherm {
 namespace {

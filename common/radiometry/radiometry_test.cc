@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "common/radiometry/fresnel_for_test.h"
+#include "common/radiometry/testing/fresnel.h"
 
 namespace isotherm {
 namespace {

@@ -8,8 +8,8 @@
 #include "common/recording/mcap_file_index.h"
 #include "common/recording/mcap_message_stream.h"
 #include "common/recording/mcap_writer.h"
-#include "common/recording/memory_stream.h"
-#include "common/recording/test_seed.h"
+#include "common/recording/testing/memory_stream.h"
+#include "common/testing/test_seed.h"
 
 namespace isotherm::mcap {
 namespace {

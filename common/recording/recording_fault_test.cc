@@ -6,8 +6,8 @@
 
 #include "common/recording/mcap_file_index.h"
 #include "common/recording/mcap_records.h"
-#include "common/recording/recording_test_data.h"
-#include "common/recording/test_seed.h"
+#include "common/recording/testing/recording_data.h"
+#include "common/testing/test_seed.h"
 
 namespace isotherm {
 namespace {

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/recording/recording_test_data.h"
+#include "common/recording/testing/recording_data.h"
 
 namespace isotherm {
 namespace {

@@ -9,7 +9,7 @@
 #include <fstream>
 
 #include "common/codec/codec.h"
-#include "common/recording/recording_test_data.h"
+#include "common/recording/testing/recording_data.h"
 
 namespace isotherm {
 namespace {

@@ -5,7 +5,7 @@
 #include <iostream>
 #include <random>
 
-#include "common/simulation/test_shapes.h"
+#include "common/simulation/testing/shapes.h"
 
 namespace isotherm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {

@@ -6,7 +6,7 @@
 #include <iostream>
 #include <vector>
 
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/noise.h"
 #include "common/geometry/rigid_transform.h"
-#include "common/simulation/noise.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
 

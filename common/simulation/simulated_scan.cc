@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/check.h"
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
 

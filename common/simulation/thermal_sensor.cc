@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "common/base/noise.h"
 #include "common/frame/frame.h"
-#include "common/simulation/noise.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iostream>
 
+#include "common/base/noise.h"
 #include "common/frame/frame.h"
-#include "common/simulation/noise.h"
 #include "common/simulation/options.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/scenes.h"

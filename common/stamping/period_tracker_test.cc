@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 
 namespace isotherm {
 namespace {

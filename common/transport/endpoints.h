@@ -8,7 +8,7 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 #include "common/transport/participant.h"
 #include "common/transport/refusal.h"
 

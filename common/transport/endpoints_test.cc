@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "common/transport/qos.h"
-#include "common/transport/test_domain.h"
+#include "common/transport/testing/test_domain.h"
 #include "common/transport/wait_set.h"
 
 namespace isotherm {

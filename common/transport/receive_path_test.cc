@@ -21,8 +21,8 @@
 #include "common/base/check.h"
 #include "common/transport/bounded_text.h"
 #include "common/transport/conversions.h"
-#include "common/transport/example_messages.h"
-#include "common/transport/test_domain.h"
+#include "common/transport/testing/example_messages.h"
+#include "common/transport/testing/test_domain.h"
 #include "common/transport/transport_environment.h"
 
 namespace isotherm {

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <optional>
 
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 #include "common/transport/refusal.h"
 
 /// Checks of what a peer sent, on plain numbers as they arrived, before anything is allocated or

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 
 // Generated from idl/; complete only in the .cc files of this folder.
 struct isotherm_wire_DepthFrame;

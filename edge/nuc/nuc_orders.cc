@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "edge/edge_options.pb.h"
 #include "edge/nuc/nuc_supervisor.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

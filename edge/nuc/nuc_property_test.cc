@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "common/recording/test_seed.h"
-#include "edge/edge_options.pb.h"
+#include "common/testing/test_seed.h"
 #include "edge/nuc/nuc_supervisor.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

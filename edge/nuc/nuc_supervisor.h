@@ -9,7 +9,7 @@
 #include "common/base/log.h"
 #include "common/base/status.h"
 #include "common/frame/frame.h"
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 #include "edge/nuc/picture_watch.h"
 #include "edge/nuc/shutter_log.h"
 #include "edge/nuc/warm_up_watch.h"

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/nuc/nuc_supervisor_for_test.h"
+#include "edge/nuc/testing/supervised_camera.h"
 
 namespace isotherm {
 namespace {

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "common/frame/frame.h"
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "common/recording/test_seed.h"
-#include "edge/edge_options.pb.h"
+#include "common/testing/test_seed.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

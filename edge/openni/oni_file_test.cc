@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "common/testing/temporary_directory.h"
-#include "edge/edge_options.pb.h"
-#include "edge/openni/fake_depth_camera.h"
 #include "edge/openni/openni_depth_source.h"
-#include "edge/openni/record_oni.h"
+#include "edge/openni/testing/fake_depth_camera.h"
+#include "edge/openni/testing/record_oni.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -9,9 +9,9 @@
 #include <cmath>
 
 #include "common/testing/temporary_directory.h"
-#include "edge/edge_options.pb.h"
-#include "edge/openni/fake_depth_camera.h"
 #include "edge/openni/openni_list.h"
+#include "edge/openni/testing/fake_depth_camera.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "edge/edge_options.pb.h"
 #include "edge/openni/openni_settings.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

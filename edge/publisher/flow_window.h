@@ -5,8 +5,8 @@
 #include <deque>
 #include <optional>
 
+#include "common/messages/messages.h"
 #include "common/time/time_types.h"
-#include "common/transport/messages.h"
 
 namespace isotherm {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "common/messages/messages.h"
 #include "common/time/time_types.h"
-#include "common/transport/messages.h"
 
 namespace isotherm {
 

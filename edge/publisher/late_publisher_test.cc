@@ -4,7 +4,7 @@
 
 #include <thread>
 
-#include "edge/fake_publisher.h"
+#include "edge/publisher/testing/fake_publisher.h"
 
 namespace isotherm {
 namespace {

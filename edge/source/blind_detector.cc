@@ -1,6 +1,6 @@
 #include "edge/source/blind_detector.h"
 
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 

@@ -8,7 +8,7 @@
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/source/pause.h"
 
 namespace isotherm {

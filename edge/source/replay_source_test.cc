@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/codec/codec.h"
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

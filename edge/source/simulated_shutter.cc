@@ -1,6 +1,6 @@
 #include "edge/source/simulated_shutter.h"
 
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/source/pause.h"
 
 namespace isotherm {

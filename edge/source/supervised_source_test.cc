@@ -5,8 +5,8 @@
 #include <map>
 #include <utility>
 
-#include "edge/edge_options.pb.h"
-#include "edge/source/fake_source.h"
+#include "edge/options/edge_options.pb.h"
+#include "edge/source/testing/fake_source.h"
 
 namespace isotherm {
 namespace {

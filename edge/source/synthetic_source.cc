@@ -8,7 +8,7 @@
 #include "common/base/progress.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/simulation/render_recording.h"
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/source/replay_source.h"
 
 namespace isotherm {

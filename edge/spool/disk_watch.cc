@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

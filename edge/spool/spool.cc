@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "common/transport/feedback_record.h"
-#include "edge/edge_options.pb.h"
+#include "common/recording/feedback_record.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -12,12 +12,12 @@
 
 #include "common/base/status.h"
 #include "common/concurrency/latest_value.h"
+#include "common/messages/messages.h"
 #include "common/recording/recording.h"
 #include "common/time/back_off.h"
 #include "common/time/clock.h"
-#include "common/transport/messages.h"
-#include "edge/encoded_frame.h"
-#include "edge/frame_account.h"
+#include "edge/frame/encoded_frame.h"
+#include "edge/frame/frame_account.h"
 #include "edge/spool/disk_watch.h"
 
 namespace isotherm {

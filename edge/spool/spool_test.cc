@@ -4,8 +4,8 @@
 
 #include <deque>
 
-#include "edge/edge_options.pb.h"
-#include "edge/spool/fake_recording_writer.h"
+#include "edge/options/edge_options.pb.h"
+#include "edge/spool/testing/fake_recording_writer.h"
 
 namespace isotherm {
 namespace {

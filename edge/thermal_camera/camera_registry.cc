@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/check.h"
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/thermal_camera/lepton_camera.h"
 #include "edge/thermal_camera/optris_camera.h"
 #include "edge/thermal_camera/p2pro_camera.h"

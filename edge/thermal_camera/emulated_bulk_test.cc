@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "edge/thermal_camera/camera_fixture_for_test.h"
+#include "edge/thermal_camera/testing/camera_fixture.h"
 #include "edge/thermal_camera/testing/emulated_p2pro.h"
 #include "edge/thermal_camera/testing/emulated_p3.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <thread>
 
-#include "edge/thermal_camera/camera_fixture_for_test.h"
+#include "edge/thermal_camera/testing/camera_fixture.h"
 #include "edge/thermal_camera/testing/emulated_seek.h"
 
 namespace isotherm {

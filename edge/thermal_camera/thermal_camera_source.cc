@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -9,7 +9,7 @@
 #include <functional>
 #include <sstream>
 
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

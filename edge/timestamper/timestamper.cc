@@ -1,6 +1,6 @@
 #include "edge/timestamper/timestamper.h"
 
-#include "edge/edge_options.pb.h"
+#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {

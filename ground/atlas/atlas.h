@@ -12,7 +12,7 @@
 #include "common/geometry/map_pose.h"
 #include "ground/atlas/pose_graph.h"
 #include "ground/atlas/sub_map.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "common/simulation/options.h"
-#include "ground/atlas/volumes_for_test.h"
+#include "ground/atlas/testing/volumes.h"
 
 namespace isotherm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "ground/atlas/volumes_for_test.h"
+#include "ground/atlas/testing/volumes.h"
 
 namespace isotherm {
 namespace {

@@ -10,7 +10,7 @@
 #include "common/base/log.h"
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/scan_views.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/geometry/camera.h"
 #include "ground/calibration/find_delay.h"
 #include "ground/calibration/thermal_selection.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

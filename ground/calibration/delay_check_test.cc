@@ -7,12 +7,12 @@
 #include <fstream>
 #include <memory>
 
+#include "common/base/noise.h"
 #include "common/config/text_proto.h"
-#include "common/simulation/noise.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/testing/temporary_directory.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 
 namespace isotherm {
 namespace {

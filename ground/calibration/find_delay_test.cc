@@ -8,7 +8,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 
 namespace isotherm {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {

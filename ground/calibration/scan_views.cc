@@ -13,7 +13,7 @@
 #include "common/recording/recording.h"
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/point_visibility.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
 namespace {

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "common/base/output_file.h"
 #include "common/base/progress.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/config/edit_field.h"
@@ -15,9 +16,8 @@
 #include "ground/calibration/scan_views.h"
 #include "ground/cli/command.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/export/output_file.h"
-#include "ground/ground_options.pb.h"
-#include "ground/validate_options.h"
+#include "ground/configuration/validate_options.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 namespace {

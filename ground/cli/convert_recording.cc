@@ -10,11 +10,11 @@
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
+#include "common/recording/feedback_record.h"
 #include "common/recording/mcap_message_stream.h"
 #include "common/recording/recording_streams.h"
 #include "common/recording/recording_topics.h"
 #include "common/recording/schema.h"
-#include "common/transport/feedback_record.h"
 
 namespace isotherm {
 namespace {

@@ -10,8 +10,8 @@
 #include "ground/cli/interpretation_arguments.h"
 #include "ground/cli/model_export.h"
 #include "ground/cli/result_folder.h"
+#include "ground/configuration/validate_options.h"
 #include "ground/export/interpretation.h"
-#include "ground/validate_options.h"
 
 namespace isotherm {
 namespace {

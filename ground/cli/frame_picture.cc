@@ -6,7 +6,7 @@
 
 #include "common/codec/codec.h"
 #include "ground/export/png_file.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/renderer/legend.h"
 #include "ground/renderer/palette.h"
 #include "ground/renderer/temperature_scale.h"

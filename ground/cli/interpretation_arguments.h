@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/base/status.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

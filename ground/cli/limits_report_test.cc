@@ -8,7 +8,7 @@
 
 #include "common/config/text_proto.h"
 #include "common/radiometry/materials.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/thermal/thermal_fuser.h"
 
 namespace isotherm {

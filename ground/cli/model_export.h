@@ -4,7 +4,7 @@
 
 #include "ground/export/interpretation.h"
 #include "ground/export/results.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

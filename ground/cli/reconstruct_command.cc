@@ -9,9 +9,9 @@
 #include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"
+#include "ground/configuration/validate_options.h"
 #include "ground/export/results.h"
-#include "ground/reconstruct.h"
-#include "ground/validate_options.h"
+#include "ground/offline/reconstruct.h"
 
 namespace isotherm {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
-#include "common/transport/clock_record.h"
+#include "common/recording/clock_record.h"
 
 namespace isotherm {
 namespace {

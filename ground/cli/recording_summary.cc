@@ -8,7 +8,7 @@
 
 #include "common/base/quantile.h"
 #include "common/codec/codec.h"
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 
 namespace isotherm {
 namespace {

@@ -14,10 +14,10 @@
 #include "ground/cli/numbers.h"
 #include "ground/cli/result_folder.h"
 #include "ground/cli/simulation_files.h"
+#include "ground/configuration/validate_options.h"
 #include "ground/renderer/palette.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/viewpoint.h"
-#include "ground/validate_options.h"
 
 namespace isotherm {
 namespace {

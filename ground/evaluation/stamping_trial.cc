@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "common/base/check.h"
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 #include "common/stamping/envelope_clock.h"
 #include "common/stamping/median_clock.h"
 #include "common/stamping/period_tracker.h"

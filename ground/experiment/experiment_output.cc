@@ -8,8 +8,8 @@
 #include <span>
 #include <system_error>
 
+#include "common/base/output_file.h"
 #include "ground/export/json.h"
-#include "ground/export/output_file.h"
 #include "ground/renderer/png.h"
 
 namespace isotherm {

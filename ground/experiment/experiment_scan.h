@@ -8,7 +8,7 @@
 #include "common/frame/frame.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
 

@@ -9,7 +9,7 @@
 #include "common/simulation/scene.h"
 #include "common/simulation/simulated_scan.h"
 #include "ground/export/surface.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/view_maps.h"
 

@@ -6,7 +6,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 #include "ground/thermal/measurement_conditions.h"
 #include "ground/thermal/thermal_rectifier.h"
 #include "ground/thermal/thermal_volume.h"

@@ -5,7 +5,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/simulation/simulated_scan.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/thermal/thermal_volume.h"
 
 namespace isotherm {

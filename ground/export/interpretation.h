@@ -9,7 +9,7 @@
 #include "common/radiometry/radiometry.h"
 #include "ground/export/json.h"
 #include "ground/export/surface.h"
-#include "ground/tracker/surface_maps.h"
+#include "ground/surface/surface_maps.h"
 
 namespace isotherm {
 

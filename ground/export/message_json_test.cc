@@ -8,7 +8,7 @@
 #include "common/config/rig_calibration.h"
 #include "common/config/rig_calibration.pb.h"
 #include "common/config/text_proto.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 namespace {

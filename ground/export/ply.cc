@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "ground/export/output_file.h"
+#include "common/base/output_file.h"
 
 namespace isotherm {
 namespace {

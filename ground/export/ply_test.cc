@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "common/testing/temporary_directory.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 namespace {

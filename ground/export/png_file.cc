@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "ground/export/output_file.h"
+#include "common/base/output_file.h"
 #include "ground/renderer/png.h"
 
 namespace isotherm {

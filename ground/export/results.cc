@@ -9,13 +9,13 @@
 #include <system_error>
 #include <vector>
 
+#include "common/base/output_file.h"
 #include "common/concurrency/thread_pool.h"
-#include "ground/export/output_file.h"
 #include "ground/export/ply.h"
 #include "ground/export/png_file.h"
 #include "ground/export/surface.h"
 #include "ground/export/trajectory.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/renderer/renderer.h"
 
 namespace isotherm {

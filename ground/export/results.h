@@ -14,8 +14,8 @@
 #include "ground/export/interpretation.h"
 #include "ground/export/json.h"
 #include "ground/renderer/temperature_scale.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_volume.h"
-#include "ground/tracker/surface_maps.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {

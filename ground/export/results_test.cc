@@ -15,7 +15,7 @@
 #include "common/testing/temporary_directory.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/export/trajectory.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 namespace {

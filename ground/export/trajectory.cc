@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "ground/export/output_file.h"
+#include "common/base/output_file.h"
 
 namespace isotherm {
 

@@ -8,7 +8,7 @@
 #include "common/base/status.h"
 #include "common/time/time_types.h"
 #include "ground/feedback/coverage.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

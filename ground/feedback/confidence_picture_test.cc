@@ -6,7 +6,7 @@
 #include <iostream>
 #include <random>
 
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 
 namespace isotherm {
 namespace {

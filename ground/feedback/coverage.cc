@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 namespace {

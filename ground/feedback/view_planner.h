@@ -7,9 +7,9 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
 #include "ground/feedback/model_coverage.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_fuser.h"
-#include "ground/tracker/surface_maps.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {

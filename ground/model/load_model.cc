@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "ground/model/model_file.h"
-#include "ground/tsdf/voxel_grid.h"
+#include "ground/surface/voxel_grid.h"
 
 namespace isotherm {
 

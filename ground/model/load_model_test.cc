@@ -5,7 +5,7 @@
 #include "common/testing/temporary_directory.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/model/model_file.h"
-#include "ground/tsdf/voxel_grid.h"
+#include "ground/surface/voxel_grid.h"
 
 namespace isotherm {
 namespace {

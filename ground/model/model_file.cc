@@ -12,8 +12,8 @@
 #include <string>
 #include <utility>
 
+#include "common/base/output_file.h"
 #include "common/recording/byte_stream.h"
-#include "ground/export/output_file.h"
 #include "ground/model/model.pb.h"
 #include "ground/model/record_part.h"
 #include "ground/tsdf/tsdf_integrator.h"

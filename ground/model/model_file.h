@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/geometry/camera.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/thermal/thermal_volume.h"
 #include "ground/tsdf/tsdf_volume.h"
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "common/concurrency/thread_pool.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/relocaliser/view_library.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tsdf/raycaster.h"

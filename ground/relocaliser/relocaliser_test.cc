@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "common/testing/volume_shapes.h"
-#include "ground/tracker/analytic_views_for_test.h"
-#include "ground/tracker/depth_preprocessor.h"
+#include "ground/surface/depth_preprocessor.h"
+#include "ground/surface/testing/analytic_views.h"
 
 namespace isotherm {
 namespace {

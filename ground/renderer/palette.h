@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/renderer/rgb.h"
 
 namespace isotherm {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 namespace {

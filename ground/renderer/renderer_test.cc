@@ -9,7 +9,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/testing/volume_shapes.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/renderer/legend.h"
 #include "ground/renderer/png.h"
 

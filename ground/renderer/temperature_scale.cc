@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/renderer/temperature_unit.h"
 
 namespace isotherm {

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/ticks.h"
 

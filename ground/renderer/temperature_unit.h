@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "common/base/status.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "common/frame/image.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_volume.h"
-#include "ground/tracker/surface_maps.h"
 
 namespace isotherm {
 

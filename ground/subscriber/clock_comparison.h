@@ -5,9 +5,9 @@
 #include <deque>
 #include <optional>
 
+#include "common/messages/messages.h"
 #include "common/time/step_watch.h"
 #include "common/time/time_types.h"
-#include "common/transport/messages.h"
 
 namespace isotherm {
 

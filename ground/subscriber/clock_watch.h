@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
+#include "common/messages/messages.h"
 #include "common/time/kernel_clock.h"
 #include "common/time/time_types.h"
-#include "common/transport/messages.h"
 #include "ground/subscriber/session_account.h"
 
 namespace isotherm {

@@ -5,7 +5,7 @@
 #include <map>
 #include <vector>
 
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 
 namespace isotherm {
 

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "common/base/status.h"
+#include "common/messages/messages.h"
 #include "common/time/clock.h"
 #include "common/transport/endpoints.h"
-#include "common/transport/messages.h"
 #include "common/transport/participant.h"
 #include "common/transport/wait_set.h"
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <thread>
 
-#include "common/transport/test_domain.h"
+#include "common/transport/testing/test_domain.h"
 #include "common/transport/transport_environment.h"
 
 namespace isotherm {

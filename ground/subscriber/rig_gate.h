@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "common/frame/frame.h"
+#include "common/messages/messages.h"
 #include "common/time/time_types.h"
 #include "common/transport/endpoints.h"
-#include "common/transport/messages.h"
 #include "common/transport/refusal.h"
 
 namespace isotherm {

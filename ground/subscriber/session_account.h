@@ -4,7 +4,7 @@
 #include <limits>
 #include <optional>
 
-#include "common/transport/messages.h"
+#include "common/messages/messages.h"
 #include "common/transport/refusal.h"
 #include "ground/subscriber/clock_comparison.h"
 

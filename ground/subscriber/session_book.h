@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "common/messages/messages.h"
 #include "common/time/time_types.h"
-#include "common/transport/messages.h"
 #include "ground/subscriber/frame_stream.h"
 #include "ground/subscriber/session_account.h"
 

@@ -9,8 +9,8 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
+#include "common/messages/messages.h"
 #include "common/time/clock.h"
-#include "common/transport/messages.h"
 #include "common/transport/participant.h"
 #include "common/transport/refusal.h"
 #include "ground/subscriber/received_frame.h"

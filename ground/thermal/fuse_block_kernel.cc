@@ -3,9 +3,9 @@
 #define HWY_TARGET_INCLUDE "ground/thermal/fuse_block_kernel.cc"
 #include "common/simd/kernel_prelude-inl.h"  // Before everything else.
 
+#include "ground/surface/block_layout.h"
 #include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/voxel_layout.h"
-#include "ground/tsdf/block_layout.h"
 #include "ground/tsdf/voxel_kernel-inl.h"
 #include "ground/tsdf/voxel_layout.h"
 

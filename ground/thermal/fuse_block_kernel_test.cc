@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/thermal/reference/fuse_block_reference.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/thermal/thermal_kernel.h"

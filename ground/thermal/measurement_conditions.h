@@ -2,7 +2,7 @@
 
 #include "common/base/status.h"
 #include "common/geometry/camera.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/thermal/thermal_volume.h"
 
 namespace isotherm {

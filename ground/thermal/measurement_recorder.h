@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "common/geometry/rigid_transform.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/thermal/nuc_epochs.h"
 #include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/thermal_volume.h"

@@ -5,9 +5,9 @@
 
 #include "common/frame/image.h"
 #include "common/geometry/camera.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_kernel.h"
-#include "ground/tracker/surface_maps.h"
 
 namespace isotherm {
 

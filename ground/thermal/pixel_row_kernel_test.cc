@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/frame/image.h"
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/thermal/reference/pixel_row_reference.h"
 #include "ground/thermal/thermal_kernel.h"
 

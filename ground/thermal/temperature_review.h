@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/thermal/measurement_conditions.h"
 #include "ground/thermal/thermal_volume.h"
 #include "ground/tsdf/tsdf_volume.h"

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include "ground/surface/block_layout.h"
 #include "ground/thermal/voxel_layout.h"
-#include "ground/tsdf/block_layout.h"
 
 namespace isotherm {
 

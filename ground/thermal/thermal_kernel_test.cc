@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/frame/image.h"
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/thermal/reference/thermal_row_reference.h"
 
 namespace isotherm {

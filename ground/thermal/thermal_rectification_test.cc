@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "common/testing/kernel_checks_for_test.h"
-#include "common/testing/opencv_camera_for_test.h"
+#include "common/testing/kernel_checks.h"
+#include "common/testing/opencv_camera.h"
 #include "ground/thermal/thermal_rectifier.h"
 
 namespace isotherm {

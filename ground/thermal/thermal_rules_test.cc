@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "ground/thermal/ball_and_wall_for_test.h"
 #include "ground/thermal/measurement_recorder.h"
+#include "ground/thermal/testing/ball_and_wall.h"
 
 namespace isotherm {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "ground/thermal/ball_and_wall_for_test.h"
+#include "ground/thermal/testing/ball_and_wall.h"
 
 namespace isotherm {
 namespace {

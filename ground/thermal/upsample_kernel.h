@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ground/tracker/surface_maps.h"
+#include "ground/surface/surface_maps.h"
 
 namespace isotherm {
 

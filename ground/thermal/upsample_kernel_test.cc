@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/thermal/reference/upsample_reference.h"
 
 namespace isotherm {

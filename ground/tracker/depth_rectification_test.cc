@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "common/testing/opencv_camera_for_test.h"
-#include "ground/tracker/depth_preprocessor.h"
+#include "common/testing/opencv_camera.h"
+#include "ground/surface/depth_preprocessor.h"
 
 namespace isotherm {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "ground/tracker/surface_maps.h"
+#include "ground/surface/surface_maps.h"
 
 namespace isotherm {
 

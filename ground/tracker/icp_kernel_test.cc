@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/tracker/reference/icp_reference.h"
 
 namespace isotherm {

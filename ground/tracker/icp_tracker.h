@@ -5,11 +5,11 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
-#include "ground/ground_options.pb.h"
-#include "ground/tracker/depth_preprocessor.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/surface/depth_preprocessor.h"
+#include "ground/surface/surface_maps.h"
+#include "ground/surface/voxel_grid.h"
 #include "ground/tracker/motion_space.h"
-#include "ground/tracker/surface_maps.h"
-#include "ground/tsdf/voxel_grid.h"
 
 namespace isotherm {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "common/geometry/rigid_transform.h"
-#include "ground/tracker/surface_maps.h"
+#include "ground/surface/surface_maps.h"
 
 namespace isotherm {
 

@@ -9,7 +9,7 @@
 #include "common/base/status.h"
 #include "common/geometry/outside_pose.h"
 #include "common/geometry/rigid_transform.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 

@@ -6,8 +6,8 @@
 
 #include "common/base/check.h"
 #include "common/base/quantile.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/tracker/icp_tracker.h"
-#include "ground/tracker/surface_maps.h"
 
 namespace isotherm {
 namespace {

@@ -8,8 +8,8 @@
 #include <memory>
 #include <numbers>
 
-#include "common/simulation/noise.h"
-#include "ground/tracker/surface_maps.h"
+#include "common/base/noise.h"
+#include "ground/surface/surface_maps.h"
 
 namespace isotherm {
 namespace {

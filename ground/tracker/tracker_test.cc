@@ -6,8 +6,8 @@
 #include <random>
 
 #include "common/testing/volume_shapes.h"
-#include "ground/tracker/analytic_views_for_test.h"
-#include "ground/tracker/depth_preprocessor.h"
+#include "ground/surface/depth_preprocessor.h"
+#include "ground/surface/testing/analytic_views.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tsdf/raycaster.h"
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "common/testing/volume_shapes.h"
-#include "ground/ground_options.pb.h"
-#include "ground/tracker/analytic_views_for_test.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/surface/testing/analytic_views.h"
 #include "ground/tsdf/reference/culling_reference.h"
 #include "ground/tsdf/visible_blocks.h"
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ground/tsdf/block_layout.h"
+#include "ground/surface/block_layout.h"
 
 namespace isotherm {
 

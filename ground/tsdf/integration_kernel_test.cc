@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/tsdf/reference/integration_reference.h"
 
 namespace isotherm {

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-#include "ground/tsdf/block_layout.h"
+#include "ground/surface/block_layout.h"
 #include "ground/tsdf/raycast_kernel.h"
 #include "ground/tsdf/voxel_layout.h"
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "ground/tracker/surface_maps.h"
+#include "ground/surface/surface_maps.h"
 
 namespace isotherm {
 

@@ -9,9 +9,9 @@
 #include <optional>
 #include <vector>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "common/testing/volume_shapes.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/reference/raycast_reference.h"
 

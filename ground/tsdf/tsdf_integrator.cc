@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "ground/tracker/depth_preprocessor.h"
+#include "ground/surface/depth_preprocessor.h"
 
 namespace isotherm {
 namespace {

@@ -8,7 +8,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/image.h"
 #include "common/geometry/rigid_transform.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
 #include "ground/tsdf/integration_kernel.h"
 #include "ground/tsdf/tsdf_volume.h"
 #include "ground/tsdf/visible_blocks.h"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "common/testing/volume_shapes.h"
-#include "ground/tracker/analytic_views_for_test.h"
-#include "ground/tracker/depth_preprocessor.h"
+#include "ground/surface/depth_preprocessor.h"
+#include "ground/surface/testing/analytic_views.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_integrator.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/base/status.h"
-#include "ground/tsdf/voxel_grid.h"
+#include "ground/surface/voxel_grid.h"
 #include "ground/tsdf/voxel_layout.h"
 
 namespace isotherm {

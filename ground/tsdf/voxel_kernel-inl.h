@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "ground/tsdf/block_layout.h"
+#include "ground/surface/block_layout.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {

@@ -13,8 +13,8 @@
 
 #include "common/base/check.h"
 #include "common/base/quantile.h"
-#include "ground/ground_pipeline.h"
-#include "ground/tracker/analytic_views_for_test.h"
+#include "ground/pipeline/ground_pipeline.h"
+#include "ground/surface/testing/analytic_views.h"
 
 namespace isotherm {
 namespace {

@@ -11,9 +11,9 @@
 #include <string>
 
 #include "common/base/check.h"
-#include "ground/ground_options.pb.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/surface/depth_preprocessor.h"
 #include "ground/thermal/thermal_fuser.h"
-#include "ground/tracker/depth_preprocessor.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_integrator.h"

@@ -12,7 +12,7 @@
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"
 #include "ground/evaluation/trajectory_evaluation.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 #include "ground/tsdf/tsdf_integrator.h"
 #include "tests/benchmark/frames.h"
 #include "tests/benchmark/machine.h"

@@ -13,7 +13,7 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/stamped_pose.h"
-#include "ground/tsdf/voxel_grid.h"
+#include "ground/surface/voxel_grid.h"
 
 namespace isotherm {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "common/base/check.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 #include "tests/benchmark/frames.h"
 
 namespace isotherm {

@@ -1,7 +1,7 @@
 // A recording: index or scan, rig, all messages, their images.
 #include "common/codec/codec.h"
-#include "common/recording/memory_stream.h"
 #include "common/recording/recording_streams.h"
+#include "common/recording/testing/memory_stream.h"
 
 namespace {
 

@@ -8,13 +8,13 @@
 #include <numbers>
 #include <vector>
 
+#include "common/base/noise.h"
 #include "common/simulation/depth_sensor.h"
-#include "common/simulation/noise.h"
 #include "common/simulation/options.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_sensor.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
 namespace {

@@ -10,13 +10,13 @@
 #include <optional>
 #include <vector>
 
+#include "common/base/noise.h"
 #include "common/dataset/dataset.h"
-#include "common/dataset/dataset_folder_for_test.h"
 #include "common/dataset/image_file.h"
-#include "common/simulation/noise.h"
+#include "common/dataset/testing/dataset_folder.h"
 #include "ground/evaluation/surface_evaluation.h"
 #include "ground/export/surface.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm {
 namespace {

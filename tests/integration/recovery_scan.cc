@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/base/check.h"
-#include "common/simulation/noise.h"
+#include "common/base/noise.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "ground/tsdf/raycaster.h"

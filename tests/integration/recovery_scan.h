@@ -7,7 +7,7 @@
 #include "common/geometry/camera.h"
 #include "common/simulation/depth_sensor.h"
 #include "common/simulation/scenes.h"
-#include "ground/ground_pipeline.h"
+#include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm::testing {
 

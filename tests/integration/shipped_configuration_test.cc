@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "common/config/text_proto.h"
-#include "edge/edge_options.pb.h"
-#include "edge/validate_options.h"
-#include "ground/ground_options.pb.h"
-#include "ground/validate_options.h"
+#include "edge/daemon/validate_options.h"
+#include "edge/options/edge_options.pb.h"
+#include "ground/configuration/validate_options.h"
+#include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
 namespace {

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "common/testing/temporary_directory.h"
-#include "ground/ground_pipeline.h"
-#include "ground/tracker/analytic_views_for_test.h"
+#include "ground/pipeline/ground_pipeline.h"
+#include "ground/surface/testing/analytic_views.h"
 
 namespace isotherm {
 namespace {

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "common/transport/endpoints.h"
-#include "common/transport/test_domain.h"
+#include "common/transport/testing/test_domain.h"
 #include "tests/link/edge_side.h"
 #include "tests/link/ground_side.h"
-#include "tests/system/process.h"
+#include "tests/support/process.h"
 
 namespace isotherm {
 namespace {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "common/concurrency/latest_value.h"
-#include "common/transport/test_domain.h"
+#include "common/transport/testing/test_domain.h"
 #include "tests/link/edge_side.h"
 #include "tests/link/ground_side.h"
-#include "tests/system/process.h"
+#include "tests/support/process.h"
 
 namespace isotherm {
 namespace {

@@ -6,7 +6,7 @@
 #include <mutex>
 
 #include "common/transport/endpoints.h"
-#include "common/transport/test_domain.h"
+#include "common/transport/testing/test_domain.h"
 #include "ground/subscriber/subscriber.h"
 #include "tests/link/edge_side.h"
 

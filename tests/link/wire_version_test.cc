@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "common/transport/endpoints.h"
-#include "common/transport/test_domain.h"
+#include "common/transport/testing/test_domain.h"
 #include "common/transport/wait_set.h"
-#include "tests/system/process.h"
+#include "tests/support/process.h"
 
 namespace isotherm {
 namespace {

@@ -7,89 +7,10 @@
 #include <string>
 #include <string_view>
 
+#include "tests/lint/folder_arrows.h"
+
 namespace isotherm::lint {
 namespace {
-
-using Folders = std::vector<std::string_view>;
-
-/// Returns what each folder may include besides itself: folders, or single headers. `ground` and
-/// `edge` stand for the pipelines, mains and options.
-const std::map<std::string_view, Folders>& AllowedFolders() {
-  static const Folders kFrameParts = {"common/base", "common/time", "common/concurrency",
-                                      "common/geometry", "common/frame"};
-  static const auto with = [](Folders folders, const Folders& more) {
-    folders.insert(folders.end(), more.begin(), more.end());
-    return folders;
-  };
-  static const Folders kCommon =
-      with(kFrameParts, {"common/simd", "common/radiometry", "common/png", "common/codec",
-                         "common/config", "common/recording", "common/dataset", "common/simulation",
-                         "common/stamping", "common/transport"});
-  static const std::map<std::string_view, Folders> kAllowed = {
-      {"common/base", {}},
-      {"common/simd", {}},
-      {"common/time", {"common/base"}},
-      {"common/concurrency", {"common/base", "common/time"}},
-      {"common/geometry", {"common/base", "common/time", "common/concurrency"}},
-      {"common/radiometry", {"common/base", "common/geometry"}},
-      {"common/stamping", {"common/base", "common/time", "common/simulation/noise.h"}},
-      {"common/frame", kFrameParts},
-      {"common/png", kFrameParts},
-      {"common/codec", with(kFrameParts, {"common/png"})},
-      {"common/config", kFrameParts},
-      {"common/recording", with(kFrameParts, {"common/codec", "common/config"})},
-      {"common/dataset",
-       with(kFrameParts, {"common/png", "common/codec", "common/config", "common/recording"})},
-      {"common/simulation", with(kFrameParts, {"common/radiometry", "common/codec", "common/config",
-                                               "common/recording"})},
-      {"common/transport",
-       with(kFrameParts, {"common/codec", "common/config", "common/recording"})},
-      {"edge", with(kCommon, {"edge"})},
-      {"edge/source", with(kCommon, {"edge"})},
-      {"edge/openni", with(kCommon, {"edge", "edge/source"})},
-      {"edge/usb", with(kCommon, {"edge"})},
-      {"edge/usb/testing", with(kCommon, {"edge/usb"})},
-      {"edge/thermal_camera", with(kCommon, {"edge", "edge/source", "edge/usb"})},
-      {"edge/thermal_camera/testing",
-       with(kCommon, {"edge/thermal_camera", "edge/usb", "edge/usb/testing"})},
-      {"edge/timestamper", with(kCommon, {"edge"})},
-      {"edge/nuc", with(kCommon, {"edge"})},
-      {"edge/spool", with(kCommon, {"edge"})},
-      {"edge/publisher", with(kCommon, {"edge"})},
-      {"ground", with(kCommon, {"ground"})},
-      {"ground/subscriber", with(kCommon, {"ground"})},
-      {"ground/assembler", with(kCommon, {"ground"})},
-      // The tracker's maps are what the ray cast of the model returns; the volume bounds what it
-      // looks at.
-      {"ground/tracker", with(kCommon, {"ground", "ground/tsdf/voxel_grid.h"})},
-      {"ground/tsdf", with(kCommon, {"ground", "ground/tracker"})},
-      {"ground/relocaliser", with(kCommon, {"ground", "ground/tracker", "ground/tsdf"})},
-      {"ground/atlas", with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal",
-                                      "ground/relocaliser"})},
-      {"ground/thermal",
-       with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/assembler"})},
-      {"ground/renderer",
-       with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal"})},
-      {"ground/export", with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal",
-                                       "ground/renderer"})},
-      {"ground/model", with(kCommon, {"ground", "ground/tracker", "ground/tsdf", "ground/thermal",
-                                      "ground/export/output_file.h"})},
-      {"ground/evaluation", with(kCommon, {"ground", "ground/export"})},
-      {"ground/experiment", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
-                                           "ground/thermal", "ground/renderer", "ground/export"})},
-      {"ground/calibration", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
-                                            "ground/thermal", "ground/export"})},
-      {"ground/feedback", with(kCommon, {"ground", "ground/tracker", "ground/tsdf",
-                                         "ground/thermal", "ground/renderer"})},
-  };
-  return kAllowed;
-}
-
-/// Files directly in these folders put the stages of their side together, so they may include all
-/// of it.
-bool JoinsStages(std::string_view folder) {
-  return folder == "edge" || folder == "ground" || folder == "ground/cli";
-}
 
 /// SDK header prefixes, each at home in one folder, in .cc files only.
 const std::map<std::string_view, std::string_view>& SdkHomes() {
@@ -158,10 +79,6 @@ std::optional<Include> ParseInclude(std::string_view line) {
   return Include{std::string(line.substr(1, end - 1)), quoted};
 }
 
-bool Contains(const Folders& folders, std::string_view folder) {
-  return std::find(folders.begin(), folders.end(), folder) != folders.end();
-}
-
 std::string_view TopFolder(std::string_view path) { return path.substr(0, path.find('/')); }
 
 /// Why `file` must not include our header `header`; empty if it may.
@@ -178,15 +95,21 @@ std::string CheckOwn(const SourceFile& file, std::string_view header) {
   if (from == "ground" && to == "edge") return "ground must not include edge";
   if (from == "common" && to != "common") return "common must not include " + std::string(to);
   if (file.IsTest()) return {};
-  if (to == "tests" || target == "common/testing") return "test helpers are for tests only";
+  if (to == "tests" || target.ends_with("/testing")) return "test helpers are for tests only";
   if (target.ends_with("/reference")) return "references of kernels are for tests only";
-  if (folder == target || (JoinsStages(folder) && to == from)) return {};
-  const auto rule = AllowedFolders().find(JoinsStages(folder) ? from : std::string_view(folder));
-  if (rule == AllowedFolders().end()) {
-    return "folder " + folder + " has no rule yet: add it to tests/lint/include_rules.cc";
+  if (folder == target) return {};
+  const auto rule = AllowedArrows().find(folder);
+  if (rule == AllowedArrows().end()) {
+    return "folder " + folder + " has no rule yet: add it to tests/lint/folder_arrows.cc";
   }
-  if (Contains(rule->second, target) || Contains(rule->second, header)) return {};
+  if (rule->second.contains(std::string(target))) return {};
   return folder + " must not include " + std::string(target);
+}
+
+/// A folder, what imitates the device for its tests, and for DDS the peers that tests play.
+bool IsHome(std::string_view folder, std::string_view home) {
+  return folder == home || folder == std::string(home) + "/testing" ||
+         (home == "common/transport" && folder == "tests/link/peers");
 }
 
 /// Why `file` must not include a library's header; empty if it may.
@@ -199,7 +122,7 @@ std::string CheckLibrary(const SourceFile& file, std::string_view header) {
   }
   for (const auto& [prefix, home] : SdkHomes()) {
     if (!header.starts_with(prefix)) continue;
-    if (file.folder() != home)
+    if (!IsHome(file.folder(), home))
       return std::string(header) + " belongs to " + std::string(home) + " only";
     if (!file.IsSource()) return std::string(header) + " may be included by .cc files only";
   }
@@ -268,6 +191,26 @@ std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files) {
     }
   }
   return violations;
+}
+
+std::vector<Violation> CheckCircles(const std::vector<SourceFile>& files) {
+  FolderArrows arrows;
+  for (const SourceFile& file : files) {
+    if (!file.IsCode() || file.IsTest()) continue;
+    for (const std::string& line : file.lines) {
+      const std::optional<Include> include = ParseInclude(line);
+      if (!include || !IsOurs(*include)) continue;
+      const std::size_t slash = include->header.rfind('/');
+      if (slash == std::string::npos) continue;
+      const std::string target = include->header.substr(0, slash);
+      if (target != file.folder()) arrows[file.folder()].insert(target);
+    }
+  }
+  const std::vector<std::string> circle = FindCircle(arrows);
+  if (circle.empty()) return {};
+  std::string message = "folders include each other in a circle: " + circle.front();
+  for (std::size_t i = 1; i < circle.size(); ++i) message += " -> " + circle[i];
+  return {{circle.front(), 0, std::move(message)}};
 }
 
 }  // namespace isotherm::lint

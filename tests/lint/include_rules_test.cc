@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/lint/folder_arrows.h"
+
 namespace isotherm::lint {
 namespace {
 
+using ::testing::AnyOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -30,9 +33,10 @@ TEST(IncludeRulesTest, TheRepositoryKeepsTheDependencyRule) {
 TEST(IncludeRulesTest, EdgeAndGroundNeverIncludeEachOther) {
   EXPECT_THAT(MessagesFor("edge/nuc/nuc_supervisor.cc", "#include \"ground/tsdf/tsdf_volume.h\""),
               ElementsAre(HasSubstr("edge must not include ground")));
-  EXPECT_THAT(MessagesFor("ground/ground_main.cc", "#  include \"edge/source/frame_source.h\""),
-              ElementsAre(HasSubstr("ground must not include edge")));
-  EXPECT_THAT(MessagesFor("edge/edge_pipeline_test.cc", "#include \"ground/cli/tool.h\""),
+  EXPECT_THAT(
+      MessagesFor("ground/service/ground_main.cc", "#  include \"edge/source/frame_source.h\""),
+      ElementsAre(HasSubstr("ground must not include edge")));
+  EXPECT_THAT(MessagesFor("edge/pipeline/edge_pipeline_test.cc", "#include \"ground/cli/tool.h\""),
               ElementsAre(HasSubstr("edge must not include ground")));
 }
 
@@ -51,8 +55,9 @@ TEST(IncludeRulesTest, StagesDoNotIncludeTheirSiblings) {
               ElementsAre(HasSubstr("ground/tracker must not include ground/renderer")));
   EXPECT_THAT(MessagesFor("ground/thermal/fuser.h", "#include \"ground/tsdf/tsdf_volume.h\""),
               IsEmpty());
-  EXPECT_THAT(MessagesFor("ground/ground_pipeline.cc", "#include \"ground/renderer/palette.h\""),
-              IsEmpty());
+  EXPECT_THAT(
+      MessagesFor("ground/service/ground_service.cc", "#include \"ground/renderer/palette.h\""),
+      IsEmpty());
 }
 
 TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
@@ -73,7 +78,7 @@ TEST(IncludeRulesTest, HeavyHeadersDoNotLeaveTheirFolder) {
   EXPECT_THAT(CheckIncludes({picture, message, neighbour}), IsEmpty());
 
   const SourceFile pipeline = {
-      "ground/ground_pipeline.cc",
+      "ground/service/ground_service.cc",
       {"#include \"ground/renderer/picture.h\"", "#include \"common/config/rig.h\""}};
   const std::vector<Violation> violations = CheckIncludes({picture, message, neighbour, pipeline});
   ASSERT_EQ(violations.size(), 2U) << ToString(violations);
@@ -91,13 +96,13 @@ TEST(IncludeRulesTest, TestHelpersStayOutOfPrograms) {
 
 TEST(IncludeRulesTest, ReferencesOfKernelsStayOutOfPrograms) {
   constexpr char kReference[] = "#include \"ground/tsdf/reference/raycast_reference.h\"";
-  for (const char* program : {"ground/tsdf/raycaster.cc", "ground/ground_pipeline.cc"}) {
+  for (const char* program : {"ground/tsdf/raycaster.cc", "ground/service/ground_service.cc"}) {
     EXPECT_THAT(MessagesFor(program, kReference),
                 ElementsAre(HasSubstr("references of kernels are for tests only")));
   }
   EXPECT_THAT(MessagesFor("ground/tsdf/raycast_kernel_test.cc", kReference), IsEmpty());
   EXPECT_THAT(MessagesFor("ground/tsdf/reference/raycast_reference.h",
-                          "#include \"common/testing/kernel_checks_for_test.h\""),
+                          "#include \"common/testing/kernel_checks.h\""),
               IsEmpty());
 }
 
@@ -110,6 +115,49 @@ TEST(IncludeRulesTest, OddWaysToIncludeAreRefused) {
               ElementsAre(HasSubstr("is not used here")));
   EXPECT_THAT(MessagesFor("common/nowhere/a.cc", "#include \"common/base/status.h\""),
               ElementsAre(HasSubstr("has no rule yet")));
+}
+
+TEST(IncludeRulesTest, NoFoldersStandOnEachOther) {
+  const std::vector<Violation> violations = CheckCircles(ReadSourceTree(ISOTHERM_SOURCE_DIR));
+  EXPECT_TRUE(violations.empty()) << ToString(violations);
+  EXPECT_THAT(FindCircle(AllowedArrows()), IsEmpty()) << "the table itself has a circle";
+}
+
+TEST(IncludeRulesTest, ACircleOfFoldersIsFound) {
+  const SourceFile tracker = {"ground/tracker/icp.h", {"#include \"ground/tsdf/grid.h\""}};
+  const SourceFile tsdf = {"ground/tsdf/raycaster.cc", {"#include \"ground/surface/maps.h\""}};
+  const SourceFile surface = {"ground/surface/maps.cc", {"#include \"ground/tracker/icp.h\""}};
+  EXPECT_THAT(CheckCircles({tracker, tsdf}), IsEmpty());
+
+  const std::vector<Violation> violations = CheckCircles({tracker, tsdf, surface});
+  ASSERT_EQ(violations.size(), 1U);
+  EXPECT_THAT(violations[0].message,
+              HasSubstr("ground/surface -> ground/tracker -> ground/tsdf -> ground/surface"));
+
+  // A test may look back at what stands on its folder.
+  const SourceFile test = {"ground/surface/maps_test.cc", surface.lines};
+  EXPECT_THAT(CheckCircles({tracker, tsdf, test}), IsEmpty());
+}
+
+TEST(IncludeRulesTest, AStageKnowsItsOptionsAndItsInputButNeverThePipeline) {
+  EXPECT_THAT(
+      MessagesFor("ground/tracker/icp.cc", "#include \"ground/options/ground_options.pb.h\""),
+      IsEmpty());
+  EXPECT_THAT(MessagesFor("ground/tracker/icp.cc", "#include \"ground/surface/surface_maps.h\""),
+              IsEmpty());
+  EXPECT_THAT(
+      MessagesFor("ground/tracker/icp.cc", "#include \"ground/pipeline/ground_pipeline.h\""),
+      ElementsAre(HasSubstr("ground/tracker must not include ground/pipeline")));
+  EXPECT_THAT(MessagesFor("edge/nuc/nuc_control.h", "#include \"edge/pipeline/edge_pipeline.h\""),
+              ElementsAre(HasSubstr("edge/nuc must not include edge/pipeline")));
+  EXPECT_THAT(MessagesFor("ground/pipeline/x.h", "#include \"ground/service/live_scan.h\""),
+              ElementsAre(HasSubstr("ground/pipeline must not include ground/service")));
+  for (const auto& [folder, targets] : AllowedArrows()) {
+    if (targets.contains("ground/pipeline")) {
+      EXPECT_THAT(folder, AnyOf("ground/experiment", "ground/calibration", "ground/results",
+                                "ground/offline", "ground/service"));
+    }
+  }
 }
 
 }  // namespace

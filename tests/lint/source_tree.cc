@@ -37,10 +37,9 @@ std::string SourceFile::extension() const {
 }
 
 bool SourceFile::IsTest() const {
-  return path.starts_with("tests/") || path.starts_with("common/testing/") ||
-         path.find("/reference/") != std::string::npos || path.ends_with("_test.cc") ||
-         path.ends_with("_for_test.h") || path.ends_with("_test_data.h") ||
-         path.ends_with("_benchmark.cc");
+  return path.starts_with("tests/") || path.ends_with("_test.cc") ||
+         path.find("/testing/") != std::string::npos ||
+         path.find("/reference/") != std::string::npos;
 }
 
 std::string ToString(const std::vector<Violation>& violations) {

@@ -11,8 +11,8 @@
 #include <functional>
 #include <sstream>
 
-#include "common/dataset/dataset_folder_for_test.h"
-#include "tests/system/programs.h"
+#include "common/dataset/testing/dataset_folder.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

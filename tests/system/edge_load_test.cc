@@ -20,18 +20,18 @@
 
 #include "common/testing/temporary_directory.h"
 #include "common/transport/participant.h"
-#include "edge/count_losses.h"
-#include "edge/edge_options.pb.h"
-#include "edge/edge_pipeline.h"
-#include "edge/host_status.h"
-#include "edge/openni/fake_depth_camera.h"
-#include "edge/openni/shared_counter.h"
+#include "edge/camera_process/camera_process.h"
+#include "edge/daemon/count_losses.h"
+#include "edge/daemon/host_status.h"
+#include "edge/openni/testing/fake_depth_camera.h"
+#include "edge/openni/testing/shared_counter.h"
+#include "edge/options/edge_options.pb.h"
+#include "edge/pipeline/edge_pipeline.h"
 #include "edge/source/camera_pair.h"
-#include "edge/source/camera_process.h"
 #include "edge/source/pause.h"
 #include "edge/spool/recording_files.h"
-#include "tests/system/machine_load.h"
-#include "tests/system/programs.h"
+#include "tests/support/machine_load.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "common/testing/temporary_directory.h"
-#include "tests/system/programs.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "common/testing/temporary_directory.h"
-#include "tests/system/programs.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

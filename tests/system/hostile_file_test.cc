@@ -12,7 +12,7 @@
 
 #include "common/recording/mcap_records.h"
 #include "common/testing/temporary_directory.h"
-#include "tests/system/programs.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/system/process.h"
+#include "tests/support/process.h"
 
 namespace isotherm::system_test {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "common/testing/temporary_directory.h"
-#include "tests/system/programs.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <chrono>
 
 #include "common/testing/temporary_directory.h"
-#include "tests/system/programs.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

@@ -12,8 +12,8 @@
 #include <sstream>
 #include <thread>
 
-#include "tests/system/container.h"
-#include "tests/system/programs.h"
+#include "tests/support/container.h"
+#include "tests/support/programs.h"
 
 namespace isotherm::system_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/thermal/measurement_conditions.h"
 #include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/thermal_volume.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/thermal/camera_motion.h"
 #include "ground/thermal/thermal_kernel.h"
 

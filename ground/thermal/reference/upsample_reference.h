@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/thermal/upsample_kernel.h"
 
 // What the kernel beside this folder must do, one element at a time and in double precision: its

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "common/frame/frame.h"
-#include "common/testing/kernel_checks_for_test.h"
-#include "ground/tracker/filter_kernel.h"
+#include "common/testing/kernel_checks.h"
+#include "ground/surface/filter_kernel.h"
 
 // What the kernels beside this folder must do, one element at a time and in double precision: their
 // specification. Compiled for tests only.

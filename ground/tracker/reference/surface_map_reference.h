@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/testing/kernel_checks_for_test.h"
-#include "ground/tracker/surface_map_kernel.h"
+#include "common/testing/kernel_checks.h"
+#include "ground/surface/surface_map_kernel.h"
 
 // What the kernel beside this folder must do, one element at a time and in double precision: its
 // specification. Compiled for tests only.

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/tsdf/culling_kernel.h"
 
 // What the kernel beside this folder must do, one element at a time and in double precision: its

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "common/testing/kernel_checks_for_test.h"
+#include "common/testing/kernel_checks.h"
 #include "ground/tsdf/integration_kernel.h"
 #include "ground/tsdf/tsdf_volume.h"
 

@@ -1,0 +1,102 @@
+#include "common/messages/feedback_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace isotherm {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+
+// Nobody holds a rig more exactly than this.
+constexpr double kLeastMove_m = 0.03;
+constexpr double kLeastTurn_deg = 5.0;
+
+void Append(std::string part, std::string& text) {
+  if (!text.empty()) text += ", ";
+  text += part;
+}
+
+void AppendMove(double metres, const char* positive, const char* negative, std::string& text) {
+  if (std::abs(metres) < kLeastMove_m) return;
+  Append(fmt::format("{:.2f} m {}", std::abs(metres), metres > 0.0 ? positive : negative), text);
+}
+
+void AppendTurn(double deg, const char* positive, const char* negative, std::string& text) {
+  if (std::abs(deg) < kLeastTurn_deg) return;
+  Append(fmt::format("turn {:.0f} deg {}", std::abs(deg), deg > 0.0 ? positive : negative), text);
+}
+
+}  // namespace
+
+std::string MoveText(const RigidTransform& T_depth_next) {
+  std::string text;
+  // The depth camera's axes: x right, y down, z forward.
+  const Eigen::Vector3d t = T_depth_next.translation();
+  AppendMove(t.x(), "right", "left", text);
+  AppendMove(t.y(), "down", "up", text);
+  AppendMove(t.z(), "forward", "back", text);
+  const Eigen::Vector3d ahead = T_depth_next.linear().col(2);
+  AppendTurn(std::atan2(ahead.x(), ahead.z()) * kDegPerRad, "right", "left", text);
+  AppendTurn(std::atan2(ahead.y(), std::hypot(ahead.x(), ahead.z())) * kDegPerRad, "down", "up",
+             text);
+  return text.empty() ? "here" : text;
+}
+
+std::string AdviceText(const Feedback& feedback) {
+  std::string text;
+  for (const Advice advice : feedback.advice) Append(std::string(ToString(advice)), text);
+  if (text.empty()) return feedback.advice_reason.empty() ? "go on" : feedback.advice_reason;
+  return feedback.advice_reason.empty() ? text
+                                        : fmt::format("{} ({})", text, feedback.advice_reason);
+}
+
+std::vector<std::string> FeedbackParts(const Feedback& feedback) {
+  std::vector<std::string> parts = {AdviceText(feedback)};
+  std::string& tracking = parts.emplace_back(ToString(feedback.tracking_state));
+  if (feedback.pose_covariance) {
+    const PoseSigma sigma = LargestSigma(*feedback.pose_covariance);
+    tracking += fmt::format(" within {:.1f} mm {:.2f} deg", 1e3 * sigma.translation_m,
+                            sigma.rotation_rad * kDegPerRad);
+  }
+  if (std::isfinite(feedback.view.good))
+    parts.push_back(fmt::format("view {:.0f} % good", 100.0 * feedback.view.good));
+  if (std::isfinite(feedback.model.good)) {
+    parts.push_back(fmt::format("all {:.0f} % of {:.2f} m2", 100.0 * feedback.model.good,
+                                feedback.covered_area_m2));
+  }
+  if (feedback.T_depth_next) {
+    parts.push_back(fmt::format("next view: {}", MoveText(*feedback.T_depth_next)));
+  } else if (feedback.tracking_state == TrackingState::kLost && feedback.T_world_depth_next) {
+    const Eigen::Vector3d p = feedback.T_world_depth_next->translation();
+    const Eigen::Vector3d ahead = feedback.T_world_depth_next->linear().col(2);
+    parts.push_back(
+        fmt::format("it worked at ({:.2f} {:.2f} {:.2f}) m looking ({:.2f} {:.2f} {:.2f})", p.x(),
+                    p.y(), p.z(), ahead.x(), ahead.y(), ahead.z()));
+  }
+  return parts;
+}
+
+std::string FeedbackText(const Feedback& feedback) {
+  std::string text;
+  for (std::string& part : FeedbackParts(feedback)) Append(std::move(part), text);
+  return text;
+}
+
+std::string LatencyText(const FeedbackLatency& latency) {
+  if (!std::isfinite(latency.p50_s)) return "unknown";
+  return fmt::format("p50 {:.0f} ms, p99 {:.0f} ms", 1e3 * latency.p50_s, 1e3 * latency.p99_s);
+}
+
+std::optional<std::string> FeedbackNarrator::Tell(const Feedback& feedback) {
+  const bool same = told_ && told_->tracking_state == feedback.tracking_state &&
+                    told_->advice == feedback.advice && told_->done == feedback.done;
+  if (same) return std::nullopt;
+  told_ = feedback;
+  told_->picture.clear();
+  return FeedbackText(feedback);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,85 @@
+#include "common/recording/feedback_record.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "common/recording/feedback.pb.h"
+#include "common/recording/schema.h"
+
+namespace isotherm {
+namespace {
+
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+void SetTime(CaptureTime time, google::protobuf::Timestamp& message) {
+  const std::int64_t ns = ToNanoseconds(time);
+  message.set_seconds(ns / kNanosecondsPerSecond);
+  message.set_nanos(static_cast<std::int32_t>(ns % kNanosecondsPerSecond));
+}
+
+void SetPose(const RigidTransform& pose, recording::PoseRecord& record) {
+  const Eigen::Vector3d t = pose.translation();
+  record.mutable_translation()->set_x(t.x());
+  record.mutable_translation()->set_y(t.y());
+  record.mutable_translation()->set_z(t.z());
+  const Eigen::Quaterniond q(Eigen::Matrix3d(pose.linear()));
+  record.mutable_rotation()->set_x(q.x());
+  record.mutable_rotation()->set_y(q.y());
+  record.mutable_rotation()->set_z(q.z());
+  record.mutable_rotation()->set_w(q.w());
+}
+
+void SetShares(const CoverageShares& shares, recording::CoverageRecord& record) {
+  record.set_good(shares.good);
+  record.set_acceptable(shares.acceptable);
+  record.set_bad(shares.bad);
+  record.set_never_measured(shares.never_measured);
+}
+
+recording::FeedbackRecord ToRecord(const Feedback& feedback,
+                                   const std::optional<CaptureTime>& arrival) {
+  recording::FeedbackRecord record;
+  SetTime(feedback.capture_time, *record.mutable_timestamp());
+  if (arrival) SetTime(*arrival, *record.mutable_arrival());
+  record.set_session(feedback.session);
+  record.set_frame_number(feedback.frame_number);
+  record.set_tracking(std::string(ToString(feedback.tracking_state)));
+  if (feedback.T_world_depth) SetPose(*feedback.T_world_depth, *record.mutable_world_from_depth());
+  if (std::isfinite(feedback.view.good)) SetShares(feedback.view, *record.mutable_view());
+  if (std::isfinite(feedback.model.good)) SetShares(feedback.model, *record.mutable_model());
+  record.set_covered_area_m2(feedback.covered_area_m2);
+  for (const Advice advice : feedback.advice) record.add_advice(std::string(ToString(advice)));
+  record.set_reason(feedback.advice_reason);
+  record.set_done(feedback.done);
+  if (feedback.T_world_depth_next)
+    SetPose(*feedback.T_world_depth_next, *record.mutable_world_from_next());
+  if (feedback.T_depth_next) SetPose(*feedback.T_depth_next, *record.mutable_depth_from_next());
+  record.set_next_gain_m2(feedback.next_gain_m2);
+  return record;
+}
+
+template <typename Message>
+Status WriteAs(std::string_view topic, CaptureTime time, const Message& message,
+               RecordingWriter& writer) {
+  const google::protobuf::Descriptor& descriptor = *Message::descriptor();
+  return writer.WriteMessage(topic, descriptor.full_name(), recording::SerializedSchema(descriptor),
+                             time, message.SerializeAsString());
+}
+
+}  // namespace
+
+Status WriteFeedback(const Feedback& feedback, const std::optional<CaptureTime>& arrival,
+                     RecordingWriter& writer, const std::optional<CaptureTime>& newest) {
+  const CaptureTime time = newest.value_or(feedback.capture_time);
+  ISOTHERM_RETURN_IF_ERROR(
+      WriteAs(kFeedbackRecordTopic, time, ToRecord(feedback, arrival), writer));
+  if (feedback.picture.empty()) return OkStatus();
+  foxglove::CompressedImage picture;
+  SetTime(feedback.capture_time, *picture.mutable_timestamp());
+  picture.set_frame_id("depth");
+  picture.set_format("png");
+  picture.set_data(feedback.picture.data(), feedback.picture.size());
+  return WriteAs(kFeedbackPictureTopic, time, picture, writer);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,102 @@
+#include "edge/daemon/camera_access.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "common/base/log.h"
+#include "edge/camera_process/usb_nodes.h"
+#include "edge/options/edge_options.pb.h"
+#include "edge/source/device_description.h"
+#include "edge/thermal_camera/camera_registry.h"
+
+namespace isotherm {
+namespace {
+
+/// Libraries, and what they look up: their settings, time zone, and what the kernel and udev say of
+/// devices.
+constexpr const char* kSystem[] = {
+    "/usr",         "/lib",           "/lib64",     "/etc/ld.so.cache", "/etc/ld.so.preload",
+    "/etc/openni2", "/etc/localtime", "/proc/self", "/proc/cpuinfo",    "/dev/urandom"};
+constexpr const char* kDeviceLists[] = {"/sys/bus", "/sys/class", "/sys/devices", "/run/udev/data",
+                                        "/run/udev/control"};
+
+void AddPaths(const std::string& separated, std::vector<std::string>& paths) {
+  std::istringstream words(separated);
+  for (std::string path; std::getline(words, path, ':');) {
+    if (!path.empty()) paths.push_back(path);
+  }
+}
+
+/// Those that somebody has named, so that a typing error is not silent.
+void AddNamedPaths(const std::string& separated, const char* option,
+                   std::vector<std::string>& paths) {
+  const std::size_t before = paths.size();
+  AddPaths(separated, paths);
+  for (std::size_t i = before; i < paths.size(); ++i) {
+    std::error_code ignored;
+    if (std::filesystem::exists(paths[i], ignored)) continue;
+    LOG(Edge, Warning) << "source.camera_sandbox." << option << ": there is no " << paths[i]
+                       << "; the camera's library will not have it";
+  }
+}
+
+/// One of the cameras that a driver of the other sensor is for.
+bool IsThermalCamera(const UsbNode& node, const std::string& only_driver = {}) {
+  const std::vector<DeviceDescription> cameras = SupportedThermalCameras();
+  return std::any_of(cameras.begin(), cameras.end(), [&](const DeviceDescription& camera) {
+    return camera.vendor_id == node.vendor_id && camera.product_id == node.product_id &&
+           (only_driver.empty() || camera.driver == only_driver);
+  });
+}
+
+/// OpenNI2 may have drivers for cameras that nothing here knows: any device that could be one, and
+/// is no thermal camera.
+bool MayBeDepthCamera(const UsbNode& node) {
+  return !IsThermalCamera(node) && !node.has_foreign_interface();
+}
+
+void AddDevices(Sensor sensor, CameraSandbox& sandbox) {
+  sandbox.read.insert(sandbox.read.end(), std::begin(kDeviceLists), std::end(kDeviceLists));
+  sandbox.list.push_back("/dev/bus/usb");
+  for (const UsbNode& node : ListUsbNodes()) {
+    const bool is_its_own =
+        sensor == Sensor::kDepth ? MayBeDepthCamera(node) : IsThermalCamera(node, "optris-sdk");
+    if (!is_its_own) continue;
+    sandbox.write.insert(sandbox.write.end(), node.paths.begin(), node.paths.end());
+  }
+}
+
+}  // namespace
+
+std::optional<CameraSandbox> AccessFor(Sensor sensor, const SourceOptions& options) {
+  const CameraSandboxOptions& wanted = options.camera_sandbox();
+  if (!wanted.enabled()) return std::nullopt;
+  CameraSandbox sandbox;
+  sandbox.local_sockets = wanted.local_sockets();
+  sandbox.read.assign(std::begin(kSystem), std::end(kSystem));
+  sandbox.write = {"/dev/null"};
+  if (const char* libraries = std::getenv("LD_LIBRARY_PATH")) AddPaths(libraries, sandbox.read);
+  AddNamedPaths(wanted.read(), "read", sandbox.read);
+  AddNamedPaths(wanted.write(), "write", sandbox.write);
+  const std::string& uri = options.depth_camera().uri();
+  if (sensor == Sensor::kDepth && uri.ends_with(".oni")) {
+    sandbox.read.push_back(uri);
+    return sandbox;
+  }
+  if (sensor == Sensor::kThermal) {
+    const ThermalCameraOptions& thermal = options.thermal_camera();
+    for (const std::string& path :
+         {thermal.optris_library(), thermal.optris_config(), thermal.optris_formats()}) {
+      if (path.find('/') != std::string::npos) sandbox.read.push_back(path);
+    }
+  }
+  AddDevices(sensor, sandbox);
+  return sandbox;
+}
+
+}  // namespace isotherm

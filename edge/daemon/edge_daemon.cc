@@ -1,0 +1,396 @@
+#include "edge/daemon/edge_daemon.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/base/exit_deadline.h"
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+#include "common/config/text_proto.h"
+#include "common/frame/plausibility.h"
+#include "common/recording/clock_record.h"
+#include "common/transport/join_domain.h"
+#include "edge/daemon/edge_report.h"
+#include "edge/daemon/host_status.h"
+#include "edge/daemon/housekeeping.h"
+#include "edge/daemon/open_source.h"
+#include "edge/options/edge_options.pb.h"
+#include "edge/pipeline/edge_pipeline.h"
+#include "edge/publisher/late_publisher.h"
+#include "edge/source/pause.h"
+#include "edge/spool/recording_files.h"
+#include "edge/spool/recording_name.h"
+
+namespace isotherm {
+namespace {
+
+using std::chrono::milliseconds;
+
+// How often the main thread looks around.
+constexpr Nanoseconds kTick = milliseconds(50);
+// Time to let the ground confirm the last frames when a signal says to leave.
+constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
+// What is told to leave leaves within two seconds. The cameras end first, a vendor's process within
+// one second, ...
+constexpr Nanoseconds kTimeForCameras = milliseconds(1750);
+// ... then the recording: a disk may take this long to answer, ...
+constexpr Nanoseconds kTimeForDisk = milliseconds(3500);
+// ... the link takes less than this by itself, if nothing in it hangs, ...
+constexpr Nanoseconds kTimeForLink = milliseconds(2500);
+// ... and with its network interface down the middleware never ends by itself.
+constexpr Nanoseconds kTimeForMiddleware = milliseconds(400);
+
+// EX_CANTCREAT of sysexits.h: the recording could not be created or not be finished.
+constexpr int kExitRecording = 73;
+
+int Fail(const Status& status) {
+  LOG(Edge, Error) << status.message();
+  return ExitCode(status);
+}
+
+/// The configured calibration file; nullopt if none is.
+Result<std::optional<Rig>> LoadCalibration(const SourceOptions& options) {
+  if (options.rig_file().empty()) return std::nullopt;
+  Result<Rig> rig = LoadRigCalibration(options.rig_file());
+  if (!rig) return Err(rig.error());
+  return std::optional<Rig>(std::move(*rig));
+}
+
+/// Says what is missing for temperatures on the surface.
+void TellAboutRig(const std::optional<Rig>& rig) {
+  if (!rig) {
+    LOG(Edge, Warning) << "no rig calibration: thermal frames cannot be fused with depth";
+    return;
+  }
+  for (const std::string& doubt : DoubtsAbout(*rig)) LOG(Edge, Warning) << doubt;
+  if (const Status fusion = CheckThermalFusion(*rig); !fusion.ok()) {
+    LOG(Edge, Warning) << "thermal frames cannot be fused with depth: " << fusion.message()
+                       << "; name a calibration with --rig";
+  }
+  if (rig->method.starts_with("nominal")) {
+    LOG(Edge, Warning) << "intrinsics of the depth camera are " << rig->method
+                       << ", fx=" << rig->depth->fx << " fy=" << rig->depth->fy;
+  }
+}
+
+/// Says it at the start, not when the scan is over.
+void TellAboutCounts(const std::vector<CameraDescription>& cameras) {
+  for (const CameraDescription& camera : cameras) {
+    if (!camera.counts_only) continue;
+    LOG(Edge, Warning) << "the thermal camera (" << camera.driver
+                       << ") sends counts, not temperatures: they are recorded and published as "
+                          "that, and the surface will have no temperatures; "
+                          "source.thermal_camera.kelvin_per_count and offset_kelvin could say what "
+                          "counts mean";
+  }
+}
+
+/// A replay that keeps its own times does not care.
+void TellAboutClock(const EdgeOptions& options, const KernelClock& clock) {
+  if (TimeBaseOf(options.source()) != TimeBase::kWallClock) return;
+  if (const std::optional<std::string> problem = ClockProblem(clock)) {
+    LOG(Edge, Warning) << *problem;
+  }
+}
+
+/// The rig as it is published and recorded: capture times already contain the thermal delay.
+std::optional<Rig> WithoutThermalDelay(std::optional<Rig> rig) {
+  if (rig) rig->thermal_delay_s = 0.0;
+  return rig;
+}
+
+/// Holds what was found out before anything starts.
+struct Start {
+  CaptureTime time;
+  std::vector<CameraDescription> cameras;
+  std::optional<Rig> rig;            ///< As published and recorded.
+  double rig_thermal_delay_s = 0.0;  ///< As calibrated.
+  KernelClock clock;
+
+  /// One per start of a scan.
+  std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
+};
+
+/// "lepton-uvc, PureThermal".
+std::string ModelText(const CameraDescription& camera) {
+  return fmt::format("{}, {}", camera.driver, camera.model);
+}
+
+Encoding EncodingOf(const CameraDescription& camera) {
+  if (camera.sensor == Sensor::kDepth) return Encoding::kDepthRans;
+  return camera.counts_only ? Encoding::kCounts16 : Encoding::kThermalRans;
+}
+
+RigDescription Describe(const EdgeOptions& options, const Start& start) {
+  RigDescription description;
+  description.session = start.session();
+  description.waits_for_ground = options.source().rate() == 0.0;
+  if (start.rig) description.rig = *start.rig;
+  const auto mode = [](const std::optional<CameraModel>& camera, Encoding encoding) {
+    StreamMode stream;
+    if (camera) stream = {camera->width, camera->height, 0.0, encoding, "", ""};
+    return stream;
+  };
+  description.depth = mode(description.rig.depth, Encoding::kDepthRans);
+  description.thermal = mode(description.rig.thermal, Encoding::kThermalRans);
+  for (const CameraDescription& camera : start.cameras) {
+    StreamMode& stream = camera.sensor == Sensor::kDepth ? description.depth : description.thermal;
+    stream = {camera.width,       camera.height, camera.rate_hz,
+              EncodingOf(camera), camera.serial, ModelText(camera)};
+  }
+  return description;
+}
+
+/// Returns what the recording says of the cameras.
+std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
+  std::map<std::string, std::string> metadata;
+  for (const CameraDescription& camera : cameras) {
+    const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
+    metadata[name] = ModelText(camera);
+    metadata[name + "_serial"] = camera.serial;
+    metadata[name + "_mode"] =
+        fmt::format("{}x{}@{:g}", camera.width, camera.height, camera.rate_hz);
+    metadata[name + "_settings"] = camera.settings;
+  }
+  return metadata;
+}
+
+RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options, const Start& start) {
+  const TimestamperOptions& timing = options.timestamper();
+  RecordingDescription::Metadata metadata = {
+      {"configuration", {{"edge", ToTextProto(options)}}},
+      {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
+      {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
+      {"timing",
+       {{"depth_delay_s", fmt::format("{}", timing.depth_delay_s())},
+        {"thermal_delay_s",
+         fmt::format("{}", timing.thermal_delay_s() + start.rig_thermal_delay_s)}}}};
+  if (!start.cameras.empty()) metadata["cameras"] = CameraMetadata(start.cameras);
+  return metadata;
+}
+
+/// Null if nothing is to be recorded. Without a disk it waits for one, unless somebody waits for
+/// the end of the source: then that is an error.
+Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const Start& start,
+                                         const Clock& clock, FrameAccount& account) {
+  const std::optional<std::filesystem::path> path =
+      RecordingPath(options.spool().record(), start.time, start.session());
+  if (!path) return nullptr;
+  const auto files = std::make_shared<RecordingFiles>(
+      RecordingDescription{*path, FromSeconds(options.spool().flush_interval_s()), start.rig,
+                           RecordingMetadata(options, start)});
+  auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
+                                                  [path] { return FreeDiskBytes(*path); },
+                                                  options.spool(), clock, account});
+  if (options.exit_at_end()) {
+    if (Status begun = spool->Begin(); !begun.ok()) return Err(begun);
+  }
+  return spool;
+}
+
+Result<std::unique_ptr<Publisher>> MakePublisher(const EdgeOptions& options,
+                                                 const Participant& participant,
+                                                 const Clock& clock) {
+  PublisherOptions publisher;
+  publisher.edge_id = options.link().edge_id();
+  publisher.software_version = ISOTHERM_VERSION;
+  const bool lossless = options.link().policy() == LOSSLESS || options.source().rate() == 0.0;
+  publisher.policy = lossless ? PublishPolicy::kLossless : PublishPolicy::kLive;
+  return Publisher::Create(participant, clock, publisher);
+}
+
+void WaitForGround(Publisher& publisher, const std::stop_token& stop) {
+  LOG(Edge, Info) << "waiting for a ground station";
+  while (!stop.stop_requested() && !publisher.WaitForGround(milliseconds(500), stop)) {
+    NotifyWatchdog();
+  }
+}
+
+/// Lets the ground confirm what was sent. False if it did not in time.
+bool Drain(Publisher& publisher, const LinkOptions& options, const Clock& clock,
+           const std::stop_token& stop) {
+  const SteadyTime start = clock.SteadyNow();
+  while (!publisher.Drain(kTick)) {
+    const Nanoseconds configured = FromSeconds(options.linger_s());
+    const Nanoseconds limit =
+        stop.stop_requested() ? std::min(configured, kLingerAfterSignal) : configured;
+    if (clock.SteadyNow() - start >= limit) return false;
+  }
+  return true;
+}
+
+void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Housekeeping& housekeeping,
+                     const std::stop_token& stop) {
+  bool told = false;
+  while (!stop.stop_requested()) {
+    housekeeping.Tick();
+    if (pipeline.finished()) {
+      if (options.exit_at_end()) return;
+      if (!std::exchange(told, true)) {
+        LOG(Edge, Info) << "the source has ended; waiting for a signal to leave";
+      }
+    }
+    Pause(stop, kTick);
+  }
+}
+
+/// Ends the process in time once it was told to leave, whatever it is at then.
+struct Leaving {
+  ExitDeadline deadline;
+  std::atomic<int> status_if_stuck{0};
+};
+
+/// Holds what the end of a capture needs.
+struct Ending {
+  ExitDeadline& deadline;
+  const FrameAccount& account;
+  const CameraHealth& health;
+  bool recording = false;
+};
+
+void PrintSummary(const Ending& ending, const Publisher& publisher, const EdgePipeline& pipeline) {
+  std::fputs(
+      Summary(ending.account, ending.recording, publisher.receipt(), pipeline.feedback().latency())
+          .c_str(),
+      stdout);
+  std::fputs(
+      CameraSummary(ending.health.Get(Sensor::kDepth), ending.health.Get(Sensor::kThermal)).c_str(),
+      stdout);
+  std::fflush(stdout);
+}
+
+/// Ends the recording, then the link, each in its time. The process's exit status.
+int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeline,
+          Housekeeping& housekeeping, Publisher& publisher, const Clock& clock,
+          const std::stop_token& stop) {
+  const auto say = [&] { PrintSummary(ending, publisher, pipeline); };
+  // With a signal the time already runs.
+  ending.deadline.ArmFirst(kTimeForCameras + kTimeForDisk, kExitRecording, "a camera", say);
+  const bool cameras_ended = pipeline.StopCapture(kTimeForCameras);
+  if (!cameras_ended) {
+    LOG(Edge, Error) << "a camera did not end within " << ToSeconds(kTimeForCameras)
+                     << " s; leaving without it";
+  }
+  ending.deadline.Arm(kTimeForDisk, kExitRecording, "the disk", say);
+  const int status = pipeline.StopRecording().ok() ? 0 : kExitRecording;
+  const Nanoseconds linger =
+      stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().linger_s());
+  ending.deadline.Arm(kTimeForLink + linger, status, "the network", say);
+  static_cast<void>(pipeline.Stop());
+  housekeeping.PublishEnd();
+  if (!Drain(publisher, options.link(), clock, stop)) {
+    LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
+  }
+  ending.deadline.Arm(kTimeForMiddleware, status,
+                      cameras_ended ? "the middleware or standard output" : "a camera");
+  say();
+  return status;
+}
+
+/// Captures until told to leave, then hands on what is under way. The process's exit status.
+int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
+            std::unique_ptr<Spool> spool, FrameAccount& account, CameraHealth& health,
+            Publisher& publisher, Leaving& leaving, const Clock& clock,
+            const std::stop_token& stop) {
+  if (spool != nullptr) leaving.status_if_stuck = kExitRecording;
+  const Ending ending{leaving.deadline, account, health, spool != nullptr};
+  EdgePipeline pipeline(options, {source, publisher, account, health, clock, std::move(spool),
+                                  start.session(), start.rig_thermal_delay_s});
+  pipeline.StartReceiving();
+  NotifyReady(fmt::format("capturing from {}", source.name()));
+  LOG(Edge, Info) << "started: " << source.name() << ", edge_id=" << options.link().edge_id()
+                  << " domain=" << options.link().domain() << " session=" << start.session();
+  if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
+
+  pipeline.StartCapture();
+  Housekeeping housekeeping(clock, pipeline, publisher, account, health,
+                            options.display().picture_file());
+  RunUntilStopped(options, pipeline, housekeeping, stop);
+  NotifyStopping();
+  return Leave(options, ending, pipeline, housekeeping, publisher, clock, stop);
+}
+
+/// A participant and what publishes through it; the first must outlive the second.
+struct Link {
+  std::unique_ptr<Participant> participant;
+  std::unique_ptr<Publisher> publisher;
+};
+
+/// Without a network it captures and records all the same, unless somebody waits for the end of
+/// the source. `link` must stay where it is.
+Status Connect(const EdgeOptions& options, const TransportEnvironment& environment,
+               const Clock& clock, Link& link) {
+  const int domain = options.link().domain();
+  Result<std::unique_ptr<Participant>> joined = Participant::Create(environment, domain);
+  if (joined) {
+    link.participant = std::move(*joined);
+    Result<std::unique_ptr<Publisher>> made = MakePublisher(options, *link.participant, clock);
+    if (!made) return made.error();
+    link.publisher = std::move(*made);
+    return OkStatus();
+  }
+  if (options.exit_at_end() || joined.error().code() != StatusCode::kUnavailable) {
+    return joined.error();
+  }
+  link.publisher = std::make_unique<LatePublisher>(
+      [&options, &environment, &clock, &link, domain](
+          const std::stop_token& stop,
+          const LatePublisher::Waiting& waiting) -> Result<std::unique_ptr<Publisher>> {
+        Result<std::unique_ptr<Participant>> late =
+            JoinDomain(environment, domain, clock, stop, waiting);
+        if (!late) return Err(late.error());
+        link.participant = std::move(*late);
+        return MakePublisher(options, *link.participant, clock);
+      });
+  return OkStatus();
+}
+
+}  // namespace
+
+int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment, const Clock& clock,
+            const StopSignal& signal) {
+  const std::stop_token stop = signal.token();
+  Leaving leaving;  // Outlives what may not end.
+  const std::stop_callback on_signal(stop, [&leaving] {
+    leaving.deadline.ArmFirst(kTimeForDisk, leaving.status_if_stuck, "what was under way");
+  });
+  FrameAccount account;
+  CameraHealth health;
+  const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
+  if (!calibration) return Fail(calibration.error());
+  const Result<std::unique_ptr<FrameSource>> source =
+      OpenSource(options, {clock, account, health, *calibration, stop});
+  if (!source) return stop.stop_requested() ? 0 : Fail(source.error());
+  const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
+  TellAboutRig(rig);
+  TellAboutCounts((*source)->cameras());
+  const Start start{clock.Now(), (*source)->cameras(), WithoutThermalDelay(rig),
+                    rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
+  TellAboutClock(options, start.clock);
+
+  Link link;
+  if (const Status connected = Connect(options, environment, clock, link); !connected.ok()) {
+    return Fail(connected);
+  }
+  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, start, clock, account);
+  if (!spool) {
+    LOG(Edge, Error) << spool.error().message();
+    return kExitRecording;
+  }
+  const Status begun = link.publisher->BeginSession(Describe(options, start));
+  if (!begun.ok()) return Fail(begun);
+  return Capture(options, start, **source, std::move(*spool), account, health, *link.publisher,
+                 leaving, clock, stop);
+}
+
+}  // namespace isotherm

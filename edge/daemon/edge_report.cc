@@ -1,0 +1,217 @@
+#include "edge/daemon/edge_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "common/messages/feedback_text.h"
+#include "common/recording/clock_record.h"
+
+namespace isotherm {
+namespace {
+
+/// "idle", "desired (held for 20 s: ...)", "error, STORM: 9/min, 41 % closed".
+std::string NucText(const NucReport& nuc) {
+  std::string text(ToString(nuc.state));
+  if (!nuc.reason.empty()) text += fmt::format(" ({})", nuc.reason);
+  if (nuc.storm) {
+    text += fmt::format(", STORM: {}/min, {:.0f} % closed", nuc.closings_per_minute,
+                        100.0 * nuc.closed_share);
+  }
+  if (nuc.warming_up) text += ", warming up";
+  return text;
+}
+
+// By default the ground raises an alarm at this difference, too (LiveOptions.max_clock_offset_s).
+constexpr double kDoubtfulClock_s = 0.05;
+
+std::uint64_t Dropped(const SensorAccount& account) {
+  return account.rejected + account.left_out + account.record_queue_full + account.record_failed +
+         account.publish_queue_full + account.publish_failed;
+}
+
+/// "captured 900 = recorded 890 + rejected 0 + queue full 10 + write failed 0".
+std::string Equation(std::string_view done, const SensorAccount& account, std::uint64_t succeeded,
+                     std::uint64_t queue_full, std::uint64_t failed, std::int64_t on_the_way) {
+  std::string text =
+      fmt::format("captured {} = {} {} + rejected {} + queue full {} + failed {}", account.captured,
+                  done, succeeded, account.rejected, queue_full, failed);
+  if (account.left_out != 0) {
+    text += fmt::format(" + no free slot in the camera's process {}", account.left_out);
+  }
+  if (on_the_way != 0) text += fmt::format(" + unaccounted {}", on_the_way);
+  return text;
+}
+
+/// " (lost)" behind a rate; nothing for a camera that works.
+std::string StateText(const CameraReport& camera) {
+  if (camera.state == CameraState::kLost) return " (camera lost)";
+  return camera.state == CameraState::kBlind ? " (camera blind)" : "";
+}
+
+std::string ReceiptText(const StreamReceipt& receipt) {
+  return fmt::format("ground received {}, missing {}", receipt.received,
+                     receipt.next - receipt.received);
+}
+
+}  // namespace
+
+double RateMeter::Update(std::uint64_t count, SteadyTime now) {
+  double rate = 0.0;
+  if (last_time_ && now > *last_time_) {
+    rate = static_cast<double>(count - last_count_) / ToSeconds(now - *last_time_);
+  }
+  last_time_ = now;
+  last_count_ = count;
+  return rate;
+}
+
+StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz) {
+  StreamStatus status;
+  status.captured = account.captured;
+  status.published = account.published;
+  status.rate_hz = rate_hz;
+  status.queue_frames = static_cast<std::uint32_t>(account.OnTheWayToGround());
+  status.dropped = {{"rejected", account.rejected},
+                    {"no free slot in the camera's process", account.left_out},
+                    {"queue full", account.publish_queue_full},
+                    {"publish failed", account.publish_failed}};
+  return status;
+}
+
+std::uint64_t ToReport(std::optional<std::uint64_t> disk_free_bytes) {
+  return disk_free_bytes ? std::max<std::uint64_t>(*disk_free_bytes, 1) : 0;
+}
+
+void AddHostStatus(const HostStatus& host, EdgeStatus& status) {
+  status.disk_free_bytes = ToReport(host.disk_free_bytes);
+  status.cpu_temperature_celsius = host.cpu_temperature_celsius;
+  status.clock = ToReport(host.clock);
+}
+
+std::string_view CameraText(CameraState state) {
+  switch (state) {
+    case CameraState::kNone:
+      return "none";
+    case CameraState::kWorking:
+      return "working";
+    case CameraState::kLost:
+      return "lost, the scan goes on without it";
+    case CameraState::kBlind:
+      return "blind: covered, too close or too far";
+  }
+  return "?";
+}
+
+std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal) {
+  std::string text;
+  const auto add = [&text](std::string_view name, const CameraReport& camera) {
+    if (camera.state == CameraState::kNone || std::isnan(camera.stamping_p99_s)) return;
+    text += fmt::format(
+        "{}  camera failed {} times, stamped {:.2f} ms after arrival (p99 {:.2f} ms)\n", name,
+        camera.failures, camera.stamping_p50_s * 1e3, camera.stamping_p99_s * 1e3);
+  };
+  add("depth  ", depth);
+  add("thermal", thermal);
+  return text;
+}
+
+std::optional<std::string> ClockProblem(const KernelClock& clock) {
+  if (!clock.synchronised) {
+    return "the wall clock is not synchronised: capture times are right among themselves, but not "
+           "as "
+           "UTC, and the recording says so. Install chrony with a server that the rig reaches "
+           "(deploy/chrony, docs/timing.md); chronyc tracking says how it is doing";
+  }
+  const double off_s = std::max(std::abs(clock.offset_s), clock.estimated_error_s);
+  if (!(off_s > kDoubtfulClock_s)) return std::nullopt;
+  return fmt::format(
+      "the wall clock is off by about {:.0f} ms by its own estimate: wait until chrony has "
+      "corrected "
+      "it (chronyc waitsync), or see chronyc sources for a better server",
+      1e3 * off_s);
+}
+
+std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base) {
+  if (time_base != TimeBase::kWallClock) return {{"time_base", "that of the replayed recording"}};
+  std::map<std::string, std::string> metadata = ToMetadata(ToReport(clock));
+  metadata["time_base"] = "wall clock at the start, carried on by the monotonic clock";
+  return metadata;
+}
+
+std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
+                       const std::optional<Feedback>& feedback, const std::string& ground_problem) {
+  const SensorAccount depth = account.Get(Sensor::kDepth);
+  const SensorAccount thermal = account.Get(Sensor::kThermal);
+  const std::string stamps = StampText(status.depth_camera, status.thermal_camera);
+  return fmt::format(
+      "ground: {} | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  "
+      "dropped {}  clock {}{}{}",
+      !ground_present           ? "absent"
+      : !ground_problem.empty() ? ground_problem
+      : feedback                ? FeedbackText(*feedback)
+                                : "no feedback yet",
+      status.depth.rate_hz, StateText(status.depth_camera), status.thermal.rate_hz,
+      StateText(status.thermal_camera), NucText(status.nuc), depth.recorded + thermal.recorded,
+      depth.published + thermal.published, Dropped(depth) + Dropped(thermal), ToText(status.clock),
+      stamps.empty() ? "" : "  stamps ", stamps);
+}
+
+std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameAccount& account,
+                                     bool ground_present, const std::optional<Feedback>& feedback,
+                                     const std::vector<std::string>& problems) {
+  const SensorAccount depth = account.Get(Sensor::kDepth);
+  const SensorAccount thermal = account.Get(Sensor::kThermal);
+  std::vector<std::string> ground = {"ground: absent"};
+  if (ground_present) ground = {"ground: no feedback yet"};
+  if (ground_present && feedback) ground = FeedbackParts(*feedback);
+  std::vector<std::string> parts = {ground.front()};
+  parts.insert(parts.end(), problems.begin(), problems.end());
+  for (const auto& [name, camera] :
+       {std::pair("depth", status.depth_camera), std::pair("thermal", status.thermal_camera)}) {
+    if (const std::string state = StateText(camera); !state.empty()) parts.push_back(name + state);
+  }
+  const std::uint64_t dropped = Dropped(depth) + Dropped(thermal);
+  if (dropped > 0) parts.push_back(fmt::format("dropped {}", dropped));
+  parts.insert(parts.end(), ground.begin() + 1, ground.end());
+  parts.push_back(fmt::format("{:.0f}+{:.0f}/s", status.depth.rate_hz, status.thermal.rate_hz));
+  parts.push_back("NUC " + NucText(status.nuc));
+  parts.push_back(fmt::format("recorded {}", depth.recorded + thermal.recorded));
+  parts.push_back(fmt::format("published {}", depth.published + thermal.published));
+  parts.push_back("clock " + ToText(status.clock));
+  return parts;
+}
+
+std::string Summary(const FrameAccount& account, bool recording,
+                    const std::optional<Receipt>& receipt, const FeedbackLatency& feedback) {
+  std::string text;
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const bool is_depth = sensor == Sensor::kDepth;
+    const SensorAccount counts = account.Get(sensor);
+    const std::string_view name = is_depth ? "depth  " : "thermal";
+    if (recording) {
+      text += fmt::format("{}  {}\n", name,
+                          Equation("recorded", counts, counts.recorded, counts.record_queue_full,
+                                   counts.record_failed, counts.OnTheWayToDisk()));
+    }
+    text += fmt::format("{}  {}\n", name,
+                        Equation("published", counts, counts.published, counts.publish_queue_full,
+                                 counts.publish_failed, counts.OnTheWayToGround()));
+    if (counts.lost_in_camera > 0) {
+      text +=
+          fmt::format("{}  lost in the camera or its library {}\n", name, counts.lost_in_camera);
+    }
+    if (receipt) {
+      text +=
+          fmt::format("{}  {}\n", name, ReceiptText(is_depth ? receipt->depth : receipt->thermal));
+    }
+  }
+  text += fmt::format("feedback {} messages, depth capture to arrival {}\n", feedback.count,
+                      LatencyText(feedback));
+  return text;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,184 @@
+#include "edge/daemon/edge_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "edge/frame/frame_account.h"
+
+namespace isotherm {
+namespace {
+
+using std::chrono::seconds;
+using testing::HasSubstr;
+using testing::Not;
+
+class EdgeReportTest : public testing::Test {
+ protected:
+  void Count(Sensor sensor, FrameFate fate, std::uint64_t count) {
+    account_.Set(sensor, fate, count);
+  }
+  FrameAccount account_;
+};
+
+TEST_F(EdgeReportTest, TheAccountClosesWhenEachFrameHasItsFate) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 10);
+  Count(Sensor::kDepth, FrameFate::kRejected, 1);
+  Count(Sensor::kDepth, FrameFate::kRecorded, 6);
+  Count(Sensor::kDepth, FrameFate::kRecordFailed, 3);
+  Count(Sensor::kDepth, FrameFate::kPublished, 7);
+  Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 1);
+  EXPECT_EQ(account_.Get(Sensor::kDepth).OnTheWayToDisk(), 0);
+  EXPECT_EQ(account_.Get(Sensor::kDepth).OnTheWayToGround(), 1);
+}
+
+TEST_F(EdgeReportTest, SummaryIsTheAccountAsAnEquation) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 10);
+  Count(Sensor::kDepth, FrameFate::kRecorded, 8);
+  Count(Sensor::kDepth, FrameFate::kRecordQueueFull, 2);
+  Count(Sensor::kDepth, FrameFate::kPublished, 10);
+  const std::string text = Summary(account_, true, std::nullopt, {});
+  EXPECT_THAT(text, HasSubstr("captured 10 = recorded 8 + rejected 0 + queue full 2 + failed 0\n"));
+  EXPECT_THAT(text,
+              HasSubstr("captured 10 = published 10 + rejected 0 + queue full 0 + failed 0\n"));
+  EXPECT_THAT(text, Not(HasSubstr("unaccounted")));
+}
+
+TEST_F(EdgeReportTest, FramesThatTheCamerasProcessLeftOutAreCapturedAndDropped) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 10);
+  Count(Sensor::kDepth, FrameFate::kLeftOut, 3);
+  Count(Sensor::kDepth, FrameFate::kRecorded, 7);
+  Count(Sensor::kDepth, FrameFate::kPublished, 7);
+  Count(Sensor::kDepth, FrameFate::kLostInCamera, 4);
+  const SensorAccount depth = account_.Get(Sensor::kDepth);
+  EXPECT_EQ(depth.OnTheWayToDisk(), 0);
+  EXPECT_EQ(depth.OnTheWayToGround(), 0);
+  const std::string text = Summary(account_, true, std::nullopt, {});
+  EXPECT_THAT(text, HasSubstr("captured 10 = recorded 7 + rejected 0 + queue full 0 + failed 0 + "
+                              "no free slot in the camera's process 3\n"));
+  EXPECT_THAT(text, HasSubstr("depth    lost in the camera or its library 4\n"));
+  EXPECT_THAT(text, Not(HasSubstr("unaccounted")));
+  const std::vector<DropCount> dropped = ToStreamStatus(depth, 30.0).dropped;
+  EXPECT_TRUE(std::ranges::any_of(dropped, [](const auto& drop) {
+    return drop.reason == "no free slot in the camera's process" && drop.frames == 3;
+  }));
+}
+
+TEST_F(EdgeReportTest, SummarySaysWhatTheGroundHas) {
+  Receipt receipt;
+  receipt.depth = {.next = 10, .handled = 10, .received = 9};
+  EXPECT_THAT(Summary(account_, false, receipt, {}),
+              HasSubstr("depth    ground received 9, missing 1"));
+}
+
+TEST_F(EdgeReportTest, SummarySaysHowSoonTheGroundAnswered) {
+  EXPECT_THAT(
+      Summary(account_, false, std::nullopt, {.count = 12, .p50_s = 0.048, .p99_s = 0.0924}),
+      HasSubstr("feedback 12 messages, depth capture to arrival p50 48 ms, p99 92 ms\n"));
+  EXPECT_THAT(Summary(account_, false, std::nullopt, {}), HasSubstr("arrival unknown"));
+}
+
+TEST_F(EdgeReportTest, F08TheStatusLineShowsTheDutyCycleOfAStorm) {
+  EdgeStatus status;
+  status.nuc.state = NucState::kError;
+  status.nuc.reason = "shutter closed for 7 s";
+  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+              HasSubstr("NUC error (shutter closed for 7 s)  recorded"));
+  status.nuc = {
+      .state = NucState::kIdle, .closings_per_minute = 9, .closed_share = 0.41, .storm = true};
+  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+              HasSubstr("NUC idle, STORM: 9/min, 41 % closed"));
+}
+
+TEST_F(EdgeReportTest, AnAccountThatDoesNotCloseIsNotHidden) {
+  Count(Sensor::kThermal, FrameFate::kCaptured, 5);
+  Count(Sensor::kThermal, FrameFate::kPublished, 4);
+  EXPECT_THAT(Summary(account_, false, std::nullopt, {}), HasSubstr("unaccounted 1"));
+}
+
+TEST_F(EdgeReportTest, StreamStatusAddsUp) {
+  Count(Sensor::kDepth, FrameFate::kCaptured, 20);
+  Count(Sensor::kDepth, FrameFate::kRejected, 2);
+  Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 3);
+  Count(Sensor::kDepth, FrameFate::kPublished, 11);
+  const StreamStatus status = ToStreamStatus(account_.Get(Sensor::kDepth), 30.0);
+  std::uint64_t dropped = 0;
+  for (const DropCount& drop : status.dropped) dropped += drop.frames;
+  EXPECT_EQ(status.captured, status.published + dropped + status.queue_frames);
+}
+
+TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
+  Feedback feedback;
+  feedback.tracking_state = TrackingState::kLost;
+  feedback.model.good = 0.34F;
+  feedback.covered_area_m2 = 0.5;
+  feedback.advice = {Advice::kGoBackToRelocalise};
+  EXPECT_THAT(StatusLine({}, account_, true, feedback),
+              HasSubstr("ground: go back, LOST, all 34 % of 0.50 m2"));
+  feedback.tracking_state = TrackingState::kDegraded;
+  feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
+  EXPECT_THAT(StatusLine({}, account_, true, feedback),
+              HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
+  EXPECT_THAT(StatusLine({}, account_, false, feedback), HasSubstr("ground: absent"));
+  EXPECT_THAT(StatusLine({}, account_, true, feedback, "refuses this scan"),
+              HasSubstr("ground: refuses this scan |"));
+  EXPECT_THAT(StatusLine({}, account_, true, std::nullopt), HasSubstr("no feedback yet"));
+}
+
+TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
+  EdgeStatus status;
+  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+              HasSubstr("clock not synchronised"));
+  HostStatus host;
+  host.clock = {
+      .synchronised = true, .offset_s = 0.0, .estimated_error_s = 0.0001, .max_error_s = 0.0012};
+  AddHostStatus(host, status);
+  status.clock.steps = 2;
+  status.clock.step_sum_s = 3.02;
+  status.depth_camera.stamp_sigma_s = 0.00005;
+  status.thermal_camera.unsynchronised_frames = 7;
+  EXPECT_THAT(
+      StatusLine(status, account_, true, std::nullopt),
+      HasSubstr("clock synchronised, off by about 0.10 ms, at most 1.2 ms, set 2 times by "
+                "+3.020 s in all  stamps +-0.050 ms depth, UNSYNCHRONISED frames 0 depth, 7 "
+                "thermal"));
+}
+
+TEST_F(EdgeReportTest, F17WhatIsWrongWithTheClockIsSaidWithWhatToDo) {
+  const auto unsynchronised = ClockProblem({});
+  ASSERT_TRUE(unsynchronised.has_value());
+  EXPECT_THAT(*unsynchronised, HasSubstr("not synchronised"));
+  EXPECT_THAT(*unsynchronised, HasSubstr("chrony"));
+  EXPECT_THAT(*unsynchronised, HasSubstr("docs/timing.md"));
+  KernelClock clock{
+      .synchronised = true, .offset_s = -0.02, .estimated_error_s = 0.001, .max_error_s = 0.4};
+  EXPECT_EQ(ClockProblem(clock), std::nullopt) << "a wide bound alone is no error";
+  clock.estimated_error_s = 0.06;
+  EXPECT_THAT(ClockProblem(clock).value_or(""), HasSubstr("off by about 60 ms"));
+  clock = {.synchronised = true, .offset_s = -0.08, .estimated_error_s = 0.001};
+  EXPECT_THAT(ClockProblem(clock).value_or(""), HasSubstr("off by about 80 ms"));
+}
+
+TEST_F(EdgeReportTest, F17TheRecordingSaysThatTheClockWasNotSynchronised) {
+  EXPECT_EQ(ClockMetadata({}, TimeBase::kWallClock).at("synchronised"), "no");
+  const KernelClock clock{
+      .synchronised = true, .offset_s = 0.0, .estimated_error_s = 0.0001, .max_error_s = 0.0012};
+  const auto metadata = ClockMetadata(clock, TimeBase::kWallClock);
+  EXPECT_EQ(metadata.at("synchronised"), "yes");
+  EXPECT_EQ(metadata.at("estimated_error_s"), "0.0001");
+  EXPECT_EQ(metadata.at("max_error_s"), "0.0012");
+  EXPECT_FALSE(ClockMetadata({}, TimeBase::kShifted).contains("synchronised"))
+      << "a replay with its own times does not depend on this clock";
+}
+
+TEST(RateMeterTest, CountsPerSecond) {
+  RateMeter meter;
+  const SteadyTime start{seconds(100)};
+  EXPECT_EQ(meter.Update(7, start), 0.0);
+  EXPECT_DOUBLE_EQ(meter.Update(67, start + seconds(2)), 30.0);
+  EXPECT_EQ(meter.Update(80, start + seconds(2)), 0.0) << "no time has passed";
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,224 @@
+#include "edge/daemon/housekeeping.h"
+
+#include <optional>
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/base/service.h"
+#include "edge/daemon/picture_file.h"
+
+namespace isotherm {
+namespace {
+
+constexpr Nanoseconds kStatusInterval = std::chrono::seconds(1);
+constexpr Nanoseconds kLogInterval = std::chrono::seconds(10);
+// A camera that works sends something, or its source says that it is lost.
+constexpr Nanoseconds kNoFrames = std::chrono::seconds(10);
+
+}  // namespace
+
+Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
+                           const FrameAccount& account, const CameraHealth& health,
+                           std::filesystem::path picture_file)
+    : clock_(clock),
+      pipeline_(pipeline),
+      publisher_(publisher),
+      account_(account),
+      health_(health),
+      picture_file_(std::move(picture_file)),
+      terminal_(line_->is_terminal()),
+      synchronised_(ReadKernelClock().synchronised),
+      next_status_(clock.SteadyNow()),
+      next_log_(next_status_ + kLogInterval),
+      watchdog_interval_(WatchdogInterval()),
+      next_feed_(next_status_),
+      newest_depth_{.at = next_status_},
+      newest_thermal_{.at = next_status_} {}
+
+void Housekeeping::Tick() {
+  pipeline_.AnswerCommands();
+  const SteadyTime now = clock_.SteadyNow();
+  FeedWatchdog(now);
+  ShowFeedback();
+  if (now < next_status_) return;
+  next_status_ += kStatusInterval;
+  const bool ended = pipeline_.finished();
+  const EdgeStatus before = std::exchange(status_, {});
+  status_ = MakeStatus(ended ? ScanState::kEnded : ScanState::kScanning, now);
+  TellCameras(before);
+  TellClock();
+  const Status published = publisher_.Publish(status_);
+  if (!published.ok()) {
+    LOG(Edge, Debug) << "status not published: " << published.message();
+  }
+  ShowLine();
+  TellStatus();
+  Log();
+}
+
+void Housekeeping::PublishEnd() {
+  const Status published = publisher_.Publish(MakeStatus(ScanState::kEnded, clock_.SteadyNow()));
+  if (!published.ok()) {
+    LOG(Edge, Warning) << "final status not published: " << published.message();
+  }
+  line_.reset();  // What follows is below it.
+}
+
+EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
+  const SensorAccount depth = account_.Get(Sensor::kDepth);
+  const SensorAccount thermal = account_.Get(Sensor::kThermal);
+  EdgeStatus status;
+  status.time = clock_.Now();
+  status.scan_state = scan_state;
+  status.depth = ToStreamStatus(depth, depth_rate_.Update(depth.captured, now));
+  status.thermal = ToStreamStatus(thermal, thermal_rate_.Update(thermal.captured, now));
+  status.nuc = pipeline_.nuc();
+  status.feedback = pipeline_.feedback().latency();
+  status.spool_fill_ratio = pipeline_.spool_fill_ratio();
+  status.depth_camera = health_.Get(Sensor::kDepth);
+  status.thermal_camera = health_.Get(Sensor::kThermal);
+  AddHostStatus(ReadHostStatus("."), status);
+  if (const std::optional<SpoolStatus> recording = pipeline_.recording()) {
+    status.disk_free_bytes = ToReport(recording->free_bytes);
+  }
+  status.clock.steps = pipeline_.clock_steps();
+  status.clock.step_sum_s = ToSeconds(pipeline_.clock_step_total());
+  return status;
+}
+
+void Housekeeping::TellCameras(const EdgeStatus& before) const {
+  const auto tell = [](std::string_view name, const CameraReport& was, const CameraReport& is) {
+    // A camera may have been lost and be back between two looks.
+    if (is.state == CameraState::kNone || (was.state == is.state && was.failures == is.failures)) {
+      return;
+    }
+    if (is.state == CameraState::kWorking) {
+      LOG(Edge, Info) << name << " camera: " << CameraText(is.state)
+                      << ", failures=" << is.failures;
+    } else {
+      LOG(Edge, Warning) << name << " camera: " << CameraText(is.state)
+                         << ", failures=" << is.failures;
+    }
+  };
+  tell("depth", before.depth_camera, status_.depth_camera);
+  tell("thermal", before.thermal_camera, status_.thermal_camera);
+}
+
+void Housekeeping::TellClock() {
+  const bool synchronised = status_.clock.synchronised;
+  if (std::exchange(synchronised_, synchronised) == synchronised) return;
+  if (synchronised) {
+    LOG(Edge, Info) << "the wall clock is " << ToText(status_.clock);
+  } else {
+    LOG(Edge, Warning) << *ClockProblem({});
+  }
+}
+
+void Housekeeping::ShowFeedback() {
+  const std::uint64_t count = pipeline_.feedback().latency().count;
+  if (count == feedback_shown_) return;
+  feedback_shown_ = count;
+  const std::optional<Feedback> feedback = pipeline_.feedback().newest();
+  if (!picture_file_.empty() && !feedback->picture.empty()) {
+    const Status written = ReplaceFile(picture_file_, feedback->picture);
+    if (!written.ok() && !picture_fails_) {
+      LOG(Edge, Warning) << "no confidence picture: " << written.message();
+    }
+    picture_fails_ = !written.ok();
+  }
+  const std::optional<std::string> news = narrator_.Tell(*feedback);
+  ShowLine();
+  if (!terminal_ && news) {
+    LOG(Edge, Info) << "ground: " << *news;
+  }
+}
+
+std::string Housekeeping::Line() const {
+  const PublisherStats link = publisher_.stats();
+  return StatusLine(status_, account_, link.ground_present, pipeline_.feedback().newest(),
+                    link.ground_problem);
+}
+
+void Housekeeping::ShowLine() {
+  if (!terminal_ || !line_) return;
+  std::vector<std::string> problems;
+  if (const auto recording = pipeline_.recording(); recording && !recording->brief.empty())
+    problems.push_back(recording->brief);
+  const PublisherStats link = publisher_.stats();
+  if (!link.problem.empty()) problems.emplace_back("NO NETWORK");
+  if (!link.ground_problem.empty()) problems.push_back("GROUND " + link.ground_problem);
+  if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
+    problems.push_back(*stuck);
+  line_->Show(
+      StatusParts(status_, account_, link.ground_present, pipeline_.feedback().newest(), problems),
+      "  ");
+}
+
+std::vector<std::string> Housekeeping::Problems() const {
+  std::vector<std::string> problems;
+  if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
+    problems.push_back(*stuck);
+  if (const auto recording = pipeline_.recording(); recording && !recording->problem.empty())
+    problems.push_back("not recording: " + recording->problem);
+  const PublisherStats link = publisher_.stats();
+  if (!link.problem.empty()) problems.push_back(link.problem);
+  if (!link.ground_problem.empty()) problems.push_back("the ground station " + link.ground_problem);
+  const auto look = [&problems](std::string_view name, const CameraReport& camera) {
+    if (camera.state == CameraState::kLost) {
+      problems.push_back(std::string(name) + " camera is lost: look at its cable and power; " +
+                         "it is opened again as soon as it is there");
+    }
+  };
+  look("the depth", status_.depth_camera);
+  look("the thermal", status_.thermal_camera);
+  return problems;
+}
+
+void Housekeeping::TellStatus() {
+  std::vector<std::string> problems = Problems();
+  if (problems == told_) return;
+  told_ = std::move(problems);
+  std::string text;
+  for (const std::string& problem : told_) text += (text.empty() ? "" : "; ") + problem;
+  NotifyStatus(text.empty() ? "all is well again" : text);
+}
+
+void Housekeeping::Log() {
+  if (clock_.SteadyNow() < next_log_) return;
+  next_log_ += kLogInterval;
+  const std::string line = Line();
+  if (!terminal_) {
+    LOG(Edge, Info) << line;
+  }
+  if (told_.empty()) NotifyStatus(line);
+}
+
+bool Housekeeping::GetsOn(SteadyTime now) {
+  const auto sends = [&](Sensor sensor, Newest* newest) {
+    const CameraState state = health_.Get(sensor).state;
+    const bool is_due = state == CameraState::kWorking || state == CameraState::kBlind;
+    const std::uint64_t captured = account_.Get(sensor).captured;
+    // A camera that is lost is looked for: that is progress. So is a source that has ended.
+    if (std::exchange(newest->captured, captured) != captured || !is_due || pipeline_.finished())
+      newest->at = now;
+    return now - newest->at <= kNoFrames;
+  };
+  const bool depth_sends = sends(Sensor::kDepth, &newest_depth_);
+  const bool thermal_sends = sends(Sensor::kThermal, &newest_thermal_);
+  std::optional<std::string> stuck = pipeline_.StuckIn(now);
+  if (!stuck && !depth_sends) stuck = "the depth camera sends nothing and does not fail";
+  if (!stuck && !thermal_sends) stuck = "the thermal camera sends nothing and does not fail";
+  if (stuck.has_value() != std::exchange(stuck_, stuck.has_value())) {
+    LOG(Edge, Error) << (stuck ? *stuck + ": the service manager is no longer told that all is well"
+                               : "it goes on");
+  }
+  return !stuck;
+}
+
+void Housekeeping::FeedWatchdog(SteadyTime now) {
+  if (now < next_feed_) return;
+  next_feed_ = now + watchdog_interval_.value_or(kStatusInterval);
+  if (GetsOn(now) && watchdog_interval_) NotifyWatchdog();
+}
+
+}  // namespace isotherm

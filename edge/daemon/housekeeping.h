@@ -1,0 +1,83 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/base/terminal_line.h"
+#include "common/messages/feedback_text.h"
+#include "common/time/clock.h"
+#include "edge/daemon/edge_report.h"
+#include "edge/frame/frame_account.h"
+#include "edge/pipeline/camera_health.h"
+#include "edge/pipeline/edge_pipeline.h"
+#include "edge/publisher/publisher.h"
+
+namespace isotherm {
+
+/// Does what is left to the daemon's main thread beside the line: answers commands, publishes the
+/// status once a second, tells the operator and the service manager. Thread-bound.
+class Housekeeping {
+ public:
+  /// All must outlive it. `picture_file`: where the confidence picture goes (empty: nowhere).
+  Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
+               const FrameAccount& account, const CameraHealth& health,
+               std::filesystem::path picture_file);
+
+  /// Does what is due; call it often.
+  void Tick();
+  /// Publishes the final counts.
+  void PublishEnd();
+
+ private:
+  EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
+  /// The newest feedback, if it was not shown yet: picture, status line or journal.
+  void ShowFeedback();
+  std::string Line() const;
+  void ShowLine();
+  /// Returns what is wrong, each in a sentence that says what to do.
+  std::vector<std::string> Problems() const;
+  /// To the service manager, at once if something became wrong or right.
+  void TellStatus();
+  /// Whether the program makes progress, with or without cameras.
+  bool GetsOn(SteadyTime now);
+  /// Logs what became of the cameras since the last status.
+  void TellCameras(const EdgeStatus& before) const;
+  /// That synchronisation was lost or found; how it is at the start is told there.
+  void TellClock();
+  void Log();
+  void FeedWatchdog(SteadyTime now);
+
+  const Clock& clock_;
+  EdgePipeline& pipeline_;
+  Publisher& publisher_;
+  const FrameAccount& account_;
+  const CameraHealth& health_;
+  const std::filesystem::path picture_file_;
+  std::optional<TerminalLine> line_{std::in_place};  ///< Until the end.
+  const bool terminal_;
+  bool synchronised_;
+  SteadyTime next_status_;
+  SteadyTime next_log_;
+  const std::optional<Nanoseconds> watchdog_interval_;  ///< Nullopt: nobody watches.
+  SteadyTime next_feed_;
+  RateMeter depth_rate_;
+  RateMeter thermal_rate_;
+  /// The newest frames of one camera.
+  struct Newest {
+    std::uint64_t captured = 0;
+    SteadyTime at{};
+  };
+  Newest newest_depth_, newest_thermal_;
+  std::vector<std::string> told_;  ///< Problems, to the service manager.
+  bool stuck_ = false;
+  EdgeStatus status_;  ///< The last one published.
+  std::uint64_t feedback_shown_ = 0;
+  FeedbackNarrator narrator_;
+  bool picture_fails_ = false;
+};
+
+}  // namespace isotherm

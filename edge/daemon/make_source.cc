@@ -1,0 +1,87 @@
+#include "edge/daemon/make_source.h"
+
+#include <utility>
+#include <vector>
+
+#include "common/base/log.h"
+#include "edge/daemon/count_losses.h"
+#include "edge/daemon/make_camera.h"
+#include "edge/options/edge_options.pb.h"
+#include "edge/source/camera_pair.h"
+#include "edge/source/replay_source.h"
+#include "edge/source/supervised_source.h"
+#include "edge/source/synthetic_source.h"
+
+namespace isotherm {
+namespace {
+
+std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source,
+                                            const EdgeOptions& options,
+                                            const SourceContext& context) {
+  const auto count_as = [&account = context.account](FrameFate fate) {
+    return [fate, &account](Sensor sensor) { account.Count(sensor, fate); };
+  };
+  auto supervised = std::make_unique<SupervisedSource>(
+      std::move(source), options.frame_check(), context.clock, count_as(FrameFate::kCaptured),
+      count_as(FrameFate::kRejected));
+  if (context.calibration) supervised->Expect(*context.calibration);
+  return supervised;
+}
+
+void Tell(Sensor sensor, const std::string& problem, ToldProblems& told) {
+  if (std::exchange(told[sensor], problem) == problem) return;
+  LOG(Edge, Warning) << problem;
+}
+
+Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
+                                                 const SourceContext& context, ToldProblems& told) {
+  const SourceOptions& source = options.source();
+  std::vector<CameraPair::Camera> cameras;
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const bool enabled = sensor == Sensor::kDepth ? source.depth_camera().enabled()
+                                                  : source.thermal_camera().enabled();
+    if (!enabled) continue;
+    Result<std::unique_ptr<FrameSource>> camera =
+        RunsInOwnProcess(sensor, source)
+            ? MakeCameraProcess(sensor, source, context.clock, context.stop)
+            : MakeCamera(sensor, source, context.clock);
+    if (!camera) {
+      Tell(sensor, camera.error().message(), told);
+      continue;
+    }
+    auto supervised = Supervise(std::move(*camera), options, context);
+    supervised->OnWorks(
+        [&health = context.health, sensor](bool works) { health.SetWorks(sensor, works); });
+    CountLosses(*supervised, context.account);
+    cameras.push_back({sensor, std::move(supervised)});
+  }
+  if (cameras.empty()) return Err(Unavailable("no camera can be used"));
+  CameraPair::Queue queue;
+  queue.capacity = static_cast<std::size_t>(options.capture_queue_frames());
+  queue.policy = source.rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
+  queue.on_drop = [&account = context.account](Sensor sensor) {
+    account.Count(sensor, FrameFate::kRecordQueueFull);
+    account.Count(sensor, FrameFate::kPublishQueueFull);
+  };
+  return std::make_unique<CameraPair>(std::move(cameras), std::move(queue));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> MakeSource(const EdgeOptions& options,
+                                                const SourceContext& context, ToldProblems& told) {
+  const SourceOptions& source = options.source();
+  switch (source.kind()) {
+    case REPLAY:
+      return Supervise(std::make_unique<ReplaySource>(source, source.recording(), context.clock),
+                       options, context);
+    case CAMERAS:
+      return MakeCameras(options, context, told);
+    case SYNTHETIC:
+      break;
+  }
+  return Supervise(std::make_unique<SyntheticSource>(source, context.clock, context.stop), options,
+                   context);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,31 @@
+#include "edge/daemon/rig_name.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+namespace isotherm {
+namespace {
+
+constexpr std::size_t kMaxBytes = 32;
+
+}  // namespace
+
+std::string RigNameOf(std::string_view host_name) {
+  std::string name(host_name.substr(0, std::min(host_name.find('.'), kMaxBytes)));
+  std::replace_if(
+      name.begin(), name.end(),
+      [](unsigned char c) { return c > 127 || (std::isalnum(c) == 0 && c != '_' && c != '-'); },
+      '-');
+  return name.empty() ? "edge" : name;
+}
+
+std::string HostRigName() {
+  std::array<char, 256> name{};
+  if (gethostname(name.data(), name.size() - 1) != 0) return RigNameOf("");
+  return RigNameOf(name.data());
+}
+
+}  // namespace isotherm

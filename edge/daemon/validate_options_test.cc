@@ -1,0 +1,102 @@
+#include "edge/daemon/validate_options.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "common/config/text_proto.h"
+#include "edge/options/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(ValidateEdgeOptionsTest, DefaultsAreValid) {
+  const Status status = Validate(EdgeOptions());
+  EXPECT_TRUE(status.ok()) << status.message();
+}
+
+TEST(ValidateEdgeOptionsTest, TheShippedFileLoadsAndIsValid) {
+  EdgeOptions options;
+  const Status loaded = LoadTextProto(ISOTHERM_SOURCE_DIR "/deploy/edge.textproto", options);
+  ASSERT_TRUE(loaded.ok()) << loaded.message();
+  const Status valid = Validate(options);
+  EXPECT_TRUE(valid.ok()) << valid.message();
+}
+
+TEST(ValidateEdgeOptionsTest, F59AllProblemsAreListed) {
+  EdgeOptions options;
+  options.mutable_source()->set_rate(-1);
+  options.mutable_timestamper()->set_depth_window(0);
+  options.mutable_nuc()->set_settle_time_s(std::numeric_limits<double>::quiet_NaN());
+  options.mutable_nuc()->set_min_interval_s(0);
+  options.mutable_link()->set_domain(231);
+  options.mutable_link()->set_edge_id("drone 1");
+  const Status status = Validate(options);
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(status.message(), HasSubstr("source.rate: is -1"));
+  EXPECT_THAT(status.message(), HasSubstr("timestamper.depth_window: is 0"));
+  EXPECT_THAT(status.message(), HasSubstr("nuc.settle_time_s: is nan"));
+  EXPECT_THAT(status.message(), HasSubstr("nuc.min_interval_s: is 0"));
+  EXPECT_THAT(status.message(), HasSubstr("link.domain: is 231"));
+  EXPECT_THAT(status.message(), HasSubstr("link.edge_id: is \"drone 1\""));
+}
+
+TEST(ValidateEdgeOptionsTest, WithoutANameItIsTheComputers) {
+  EdgeOptions options;
+  options.mutable_link()->set_edge_id("");
+  EXPECT_TRUE(Validate(options).ok()) << Validate(options).message();
+}
+
+TEST(ValidateEdgeOptionsTest, ReplayNeedsARecording) {
+  EdgeOptions options;
+  options.mutable_source()->set_kind(REPLAY);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("source.recording: is empty"));
+  options.mutable_source()->set_recording("scan.mcap");
+  EXPECT_TRUE(Validate(options).ok());
+}
+
+TEST(ValidateEdgeOptionsTest, MeasuringRangeHasTwoEndsInOrder) {
+  EdgeOptions options;
+  ThermalCameraOptions& camera = *options.mutable_source()->mutable_thermal_camera();
+  camera.set_optris_min_celsius(100);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("optris_max_celsius: is not set"));
+  camera.set_optris_max_celsius(100);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("must be above optris_min_celsius"));
+  camera.set_optris_max_celsius(250);
+  EXPECT_TRUE(Validate(options).ok());
+}
+
+TEST(ValidateEdgeOptionsTest, PathsOfTheSandboxAreAbsolute) {
+  EdgeOptions options;
+  CameraSandboxOptions& sandbox = *options.mutable_source()->mutable_camera_sandbox();
+  sandbox.set_read("/usr/share/vendor::/opt/vendor");
+  EXPECT_TRUE(Validate(options).ok());
+  sandbox.set_read("/usr/share/vendor:calibrations");
+  EXPECT_THAT(Validate(options).message(),
+              HasSubstr("source.camera_sandbox.read: names \"calibrations\""));
+  sandbox.set_write("./log");
+  EXPECT_THAT(Validate(options).message(), HasSubstr("source.camera_sandbox.write"));
+}
+
+TEST(ValidateEdgeOptionsTest, TemperatureLimitsMustBeInOrder) {
+  EdgeOptions options;
+  options.mutable_frame_check()->set_min_celsius(100);
+  options.mutable_frame_check()->set_max_celsius(50);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("must be above min_celsius, which is 100"));
+}
+
+TEST(ValidateEdgeOptionsTest, BoundariesAreIncluded) {
+  EdgeOptions options;
+  options.mutable_source()->set_rate(0);
+  options.mutable_source()->set_loops(0);
+  options.mutable_timestamper()->set_depth_window(1);
+  options.mutable_link()->set_domain(230);
+  options.mutable_nuc()->set_settle_time_s(0);
+  EXPECT_TRUE(Validate(options).ok());
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,188 @@
+#include "edge/nuc/nuc_control.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/options/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+/// Fills in, from the source, what the options leave open.
+NucOptions Resolved(const EdgeOptions& options) {
+  NucOptions nuc = options.nuc();
+  if (!nuc.has_before_scan()) nuc.set_before_scan(options.source().kind() == CAMERAS);
+  return nuc;
+}
+
+NucSupervisor::Role RoleFor(const EdgeOptions& options) {
+  return options.source().kind() == REPLAY ? NucSupervisor::Role::kFollow
+                                           : NucSupervisor::Role::kSupervise;
+}
+
+CameraControl ToControl(NucOrder order) {
+  switch (order) {
+    case NucOrder::kAutomaticOn:
+      return SetAutomaticNuc{true};
+    case NucOrder::kAutomaticOff:
+      return SetAutomaticNuc{false};
+    case NucOrder::kRestartCamera:
+      return RestartCamera{};
+    case NucOrder::kTrigger:
+      break;
+  }
+  return TriggerNuc{};
+}
+
+NucOrder OrderOf(const CameraControl& control) {
+  if (std::holds_alternative<RestartCamera>(control)) return NucOrder::kRestartCamera;
+  const auto* automatic = std::get_if<SetAutomaticNuc>(&control);
+  if (automatic == nullptr) return NucOrder::kTrigger;
+  return automatic->on ? NucOrder::kAutomaticOn : NucOrder::kAutomaticOff;
+}
+
+/// As a recording has it.
+std::string LevelName(LogLevel level) {
+  switch (level) {
+    case LogLevel::kDebug:
+      return "debug";
+    case LogLevel::kInfo:
+      return "info";
+    case LogLevel::kWarning:
+      return "warning";
+    case LogLevel::kError:
+      break;
+  }
+  return "error";
+}
+
+/// A source that knows no such command is not a failure of the camera.
+CommandOutcome OutcomeOf(const Status& status) {
+  if (status.ok()) return CommandOutcome::kDone;
+  const bool failed =
+      status.code() == StatusCode::kIoError || status.code() == StatusCode::kInternal;
+  return failed ? CommandOutcome::kFailed : CommandOutcome::kRefused;
+}
+
+}  // namespace
+
+NucControl::NucControl(const EdgeOptions& options, FrameSource& source)
+    : source_(source),
+      supervisor_(Resolved(options), RoleFor(options)),
+      pictures_(options.nuc()),
+      patience_(FromSeconds(options.nuc().answer_s())) {}
+
+NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
+  TakeCameraAnswers();
+  CheckPatience(time);
+  NucObservation seen;
+  seen.time = time;
+  seen.shutter_closed = frame.shutter_closed;
+  seen.camera = frame.camera_nuc;
+  seen.housekeeping = housekeeping_ = frame.housekeeping;
+  const bool known_closed = frame.shutter_closed ||
+                            (frame.camera_nuc && frame.camera_nuc->state == NucState::kInProgress);
+  seen.picture = pictures_.Add(frame.pixels, time, known_closed);
+  status_ = supervisor_.Update(seen);
+  if (status_.order) Pass(*status_.order, time);
+  Tell();
+  return status_;
+}
+
+void NucControl::Pass(NucOrder order, CaptureTime time) {
+  if (order == NucOrder::kTrigger) triggered_at_ = time;
+  const std::optional<Status> answer = source_.Control(ToControl(order));
+  if (answer) OnCameraAnswer(order, *answer);
+}
+
+void NucControl::TakeCameraAnswers() {
+  for (const ControlAnswer& answer : source_.TakeControlAnswers()) {
+    const NucOrder order = OrderOf(answer.control);
+    const bool too_late = order == NucOrder::kTrigger && answers_too_late_ > 0;
+    if (too_late) {
+      --answers_too_late_;
+      LOG(Nuc, Warning) << "the camera answers an order too late: "
+                        << (answer.status.ok() ? "done" : answer.status.message());
+      continue;
+    }
+    OnCameraAnswer(order, answer.status);
+  }
+  Tell();
+}
+
+void NucControl::CheckPatience(CaptureTime time) {
+  if (!triggered_at_ || time - *triggered_at_ < patience_) return;
+  ++answers_too_late_;
+  OnCameraAnswer(
+      NucOrder::kTrigger,
+      Unavailable(fmt::format("the camera did not answer within {:.1f} s", ToSeconds(patience_))));
+}
+
+void NucControl::OnCameraAnswer(NucOrder order, const Status& answer) {
+  supervisor_.OnAnswer(order, answer);
+  if (order != NucOrder::kTrigger) return;
+  triggered_at_.reset();
+  for (const std::uint64_t number : std::exchange(waiting_, {})) {
+    Answer(number, answer, answer.ok() ? "the camera has the order" : answer.message());
+  }
+}
+
+void NucControl::Obey(const Command& command) {
+  Result<std::string> done = std::string();
+  switch (command.kind) {
+    case CommandKind::kTriggerNuc:
+      done = supervisor_.Request();
+      // Only when the camera has answered is known how it takes the order.
+      if (done && done->empty()) return waiting_.push_back(command.number);
+      break;
+    case CommandKind::kHoldNuc:
+      done = supervisor_.Hold(command.hold_s);
+      break;
+    case CommandKind::kSetNucPolicy:
+      if (const Status set = supervisor_.SetPolicy(command.nuc_policy); !set.ok()) done = Err(set);
+      break;
+    default:
+      done = Err(InvalidArgument("not a command about the NUC"));
+  }
+  Tell();
+  Answer(command.number, done ? OkStatus() : done.error(), done ? *done : done.error().message());
+}
+
+void NucControl::End() {
+  for (const std::uint64_t number : std::exchange(waiting_, {}))
+    Answer(number, Unavailable(""), "the source has ended");
+}
+
+void NucControl::Answer(std::uint64_t number, const Status& status, std::string text) {
+  answers_.push_back({number, OutcomeOf(status), std::move(text)});
+}
+
+void NucControl::Tell() {
+  for (NucNotice& notice : supervisor_.TakeNotices()) {
+    if (IsLogged(notice.level)) WriteLog(notice.level, "Nuc", notice.text);
+    log_.push_back({notice.time, LevelName(notice.level), "nuc: " + notice.text});
+  }
+}
+
+NucReport NucControl::Report() const {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  NucReport report;
+  report.state = status_.state;
+  report.source = status_.source;
+  report.policy = supervisor_.policy();
+  report.seconds_since = status_.seconds_since_nuc.value_or(kUnknown);
+  report.closings_per_minute =
+      static_cast<std::uint32_t>(supervisor_.shutter().closings_per_minute());
+  report.closed_share = supervisor_.shutter().closed_share();
+  report.storm = supervisor_.is_storm();
+  report.warming_up = supervisor_.is_warming_up();
+  report.fpa_celsius = static_cast<double>(housekeeping_.fpa_celsius);
+  report.housing_celsius = static_cast<double>(housekeeping_.housing_celsius);
+  report.reason = supervisor_.reason();
+  return report;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+
+#include "common/base/stage_stats.h"
+#include "common/frame/frame.h"
+#include "common/messages/messages.h"
+#include "common/stamping/stamp.h"
+#include "common/time/time_types.h"
+
+namespace isotherm {
+
+/// How the cameras are: their threads and the capture thread write it, the status reads it.
+/// Thread-safe.
+class CameraHealth {
+ public:
+  /// Frames come, or the camera failed.
+  void SetWorks(Sensor sensor, bool works);
+  /// The picture shows (almost) nothing.
+  void SetBlind(Sensor sensor, bool blind) { At(sensor).blind = blind; }
+  /// How long a frame took from its arrival to its capture time.
+  void AddStamping(Sensor sensor, Nanoseconds latency);
+  /// Takes note of a frame's stamp.
+  void NoteStamp(Sensor sensor, const Stamp& stamp);
+
+  CameraReport Get(Sensor sensor) const;
+
+ private:
+  struct Entry {
+    std::atomic<CameraState> state{CameraState::kNone};  ///< But for kBlind.
+    std::atomic<bool> blind{false};
+    std::atomic<std::uint32_t> failures{0};
+    mutable std::mutex mutex;
+    StageStats stamping_ms;  ///< Guarded by `mutex`, as what follows.
+    double stamp_sigma_s = std::numeric_limits<double>::quiet_NaN();
+    std::uint64_t unsynchronised_frames = 0;
+  };
+  Entry& At(Sensor sensor) { return entries_[static_cast<std::size_t>(sensor)]; }
+
+  std::array<Entry, 2> entries_;
+};
+
+}  // namespace isotherm

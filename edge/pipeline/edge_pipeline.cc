@@ -1,0 +1,379 @@
+#include "edge/pipeline/edge_pipeline.h"
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "common/base/log.h"
+#include "edge/options/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+/// Frames that may wait for the codec: a quarter of a second of both cameras, 10 MB.
+constexpr std::size_t kCodecQueueFrames = 16;
+
+/// Without a frame for so long, the recording brings to the disk what it has collected.
+constexpr Nanoseconds kIdle = std::chrono::milliseconds(250);
+/// A disk may stall for some seconds, and the link may wait for the ground for ten
+/// (PublisherOptions::flow_timeout). What takes longer than these hangs.
+constexpr Nanoseconds kStuck = std::chrono::seconds(10);
+constexpr Nanoseconds kLinkStuck = std::chrono::seconds(15);
+constexpr Nanoseconds kNoLimit = std::chrono::hours(24 * 365);
+
+OverflowPolicy PolicyFor(const EdgeOptions& options) {
+  return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
+}
+
+/// Logs what was wrong with a camera's clock, if anything.
+void ReportStamping(std::string_view stream, const StampingCounts& counts) {
+  if (counts.resets + counts.moved + counts.unsynchronised == 0) return;
+  LOG(Edge, Warning) << stream << " camera's clock: resets=" << counts.resets
+                     << " moved_stamps=" << counts.moved
+                     << " unsynchronised_frames=" << counts.unsynchronised;
+}
+
+bool SendsCounts(const FrameSource& source) {
+  const std::vector<CameraDescription> cameras = source.cameras();
+  return std::any_of(cameras.begin(), cameras.end(),
+                     [](const CameraDescription& camera) { return camera.counts_only; });
+}
+
+auto CountDropsAs(FrameFate fate, FrameAccount& account) {
+  return [fate, &account](const EncodedFramePtr& frame) { account.Count(frame->sensor(), fate); };
+}
+
+}  // namespace
+
+EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
+    : source_(parts.source),
+      publisher_(parts.publisher),
+      account_(parts.account),
+      health_(parts.health),
+      clock_(parts.clock),
+      spool_(std::move(parts.spool)),
+      session_(parts.session),
+      thermal_is_counts_(SendsCounts(parts.source)),
+      step_watch_(ReadClocks(clock_)),
+      depth_timestamper_(options.timestamper(), Sensor::kDepth, Nanoseconds(0)),
+      thermal_timestamper_(options.timestamper(), Sensor::kThermal,
+                           FromSeconds(parts.rig_thermal_delay_s)),
+      nuc_(options, parts.source),
+      blind_detector_(options.frame_check()),
+      time_base_(TimeBaseOf(options.source())),
+      feedback_(time_base_),
+      codec_queue_(kCodecQueueFrames, OverflowPolicy::kBlock),
+      spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
+      spool_queue_(spool_capacity_, PolicyFor(options),
+                   CountDropsAs(FrameFate::kRecordQueueFull, account_)),
+      publish_queue_(static_cast<std::size_t>(options.link().queue_frames()), PolicyFor(options),
+                     CountDropsAs(FrameFate::kPublishQueueFull, account_)) {}
+
+EdgePipeline::~EdgePipeline() { static_cast<void>(Stop()); }
+
+void EdgePipeline::StartReceiving() {
+  receive_thread_ = std::jthread([this](const std::stop_token& stop) {
+    PublisherHandlers handlers;
+    handlers.command = [this, &stop](const Command& command) { commands_.Push(command, stop); };
+    handlers.feedback = [this, &stop](const Feedback& feedback, CaptureTime arrival) {
+      // Its age counts on the time line of capture times.
+      feedback_.Add(feedback, arrival - clock_step_total());
+      if (spool_) feedback_to_record_.Push({feedback, arrival}, stop);
+    };
+    publisher_.Run(stop, handlers);
+  });
+}
+
+void EdgePipeline::StartCapture() {
+  if (spool_) spool_thread_ = std::jthread([this](const std::stop_token& stop) { Record(stop); });
+  publish_thread_ = std::jthread([this](const std::stop_token& stop) { Publish(stop); });
+  codec_thread_ = std::jthread([this](const std::stop_token& stop) { Encode(stop); });
+  std::promise<void> ended;
+  capture_ended_ = ended.get_future();
+  capture_thread_ = std::jthread(
+      [this](const std::stop_token& stop, std::promise<void> at_end) {
+        Capture(stop);
+        at_end.set_value();
+      },
+      std::move(ended));
+}
+
+bool EdgePipeline::StopCapture(Nanoseconds limit) {
+  if (std::exchange(capture_stopped_, true)) return !capture_left_behind_;
+  // Along the line, so that each stage can still hand on what it has.
+  capture_thread_.request_stop();
+  if (capture_thread_.joinable()) {
+    capture_left_behind_ = capture_ended_.wait_for(limit) != std::future_status::ready;
+    if (!capture_left_behind_) capture_thread_.join();
+  }
+  codec_thread_.request_stop();
+  if (codec_thread_.joinable()) codec_thread_.join();
+  return !capture_left_behind_;
+}
+
+Status EdgePipeline::StopRecording() {
+  if (std::exchange(recording_stopped_, true)) return recording_status_;
+  static_cast<void>(StopCapture(kNoLimit));
+  publish_thread_.request_stop();  // It need not wait for the disk.
+  spool_thread_.request_stop();
+  if (spool_thread_.joinable()) spool_thread_.join();
+  if (!spool_) return recording_status_;
+  RecordFeedback();
+  if (feedback_to_record_.dropped() > 0) {
+    LOG(Spool, Warning) << "feedback not recorded, messages=" << feedback_to_record_.dropped();
+  }
+  recording_status_ = spool_->Close();
+  return recording_status_;
+}
+
+Status EdgePipeline::Stop() {
+  static_cast<void>(StopRecording());
+  if (std::exchange(stopped_, true)) return recording_status_;
+  for (std::jthread* thread : {&publish_thread_, &receive_thread_}) {
+    thread->request_stop();
+    if (thread->joinable()) thread->join();
+  }
+  if (clock_steps_ > 0) {
+    LOG(Edge, Warning) << "the wall clock was set during the scan, steps=" << clock_steps_
+                       << "; wall clock minus capture times at the end, s="
+                       << ToSeconds(clock_step_total());
+  }
+  if (capture_left_behind_) return recording_status_;  // It may still use what follows.
+  ReportStamping("depth", depth_timestamper_.counts());
+  ReportStamping("thermal", thermal_timestamper_.counts());
+  if (outside_poses_captured_ > 0) {
+    LOG(Edge, Info) << "poses from outside, captured=" << outside_poses_captured_
+                    << " published=" << outside_poses_published_
+                    << " not_published=" << outside_poses_captured_ - outside_poses_published_;
+  }
+  return recording_status_;
+}
+
+bool EdgePipeline::finished() const {
+  if (!source_ended_) return false;
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    const SensorAccount account = account_.Get(sensor);
+    if (account.OnTheWayToGround() != 0) return false;
+    if (spool_ && account.OnTheWayToDisk() != 0) return false;
+  }
+  return true;
+}
+
+double EdgePipeline::spool_fill_ratio() const {
+  return static_cast<double>(spool_queue_.size()) / static_cast<double>(spool_capacity_);
+}
+
+std::optional<SpoolStatus> EdgePipeline::recording() const {
+  return spool_ ? std::optional(spool_->status()) : std::nullopt;
+}
+
+std::optional<std::string> EdgePipeline::StuckIn(SteadyTime now) const {
+  if (recording_.AtItFor(now) > kStuck) return "the disk does not answer";
+  if (reading_.AtItFor(now) > kStuck) return "the source of frames does not answer";
+  if (publishing_.AtItFor(now) > kLinkStuck) return "the network does not answer";
+  return std::nullopt;
+}
+
+Result<SourceItem> EdgePipeline::Read(const std::stop_token& stop) {
+  const ThreadProgress::Work step(reading_, clock_.SteadyNow());
+  return source_.Read(stop);
+}
+
+void EdgePipeline::Capture(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    ServeNucCommands();
+    Result<SourceItem> item = Read(stop);
+    if (!item || std::holds_alternative<EndOfStream>(*item)) break;
+    WatchClock();
+    if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
+    if (OutsidePose* pose = std::get_if<OutsidePose>(&*item)) Keep(std::move(*pose));
+  }
+  source_.Close();
+  while (std::optional<RawFrame> raw = source_.TakeUnread()) Process(std::move(*raw), stop);
+  ServeNucCommands();
+  nuc_.End();
+  ServeNucCommands();
+  source_ended_ = true;
+}
+
+void EdgePipeline::ServeNucCommands() {
+  while (nuc_commands_.size() > 0) nuc_.Obey(*nuc_commands_.Pop({}));
+  nuc_.TakeCameraAnswers();
+  for (CommandResult& answer : nuc_.TakeAnswers()) nuc_answers_.Push(std::move(answer), {});
+}
+
+void EdgePipeline::WatchClock() {
+  const std::optional<Nanoseconds> step = step_watch_.Observe(ReadClocks(clock_));
+  if (!step) return;
+  clock_steps_ = step_watch_.steps();
+  clock_step_total_ns_ = step_watch_.total().count();
+  LOG(Edge, Warning) << "the wall clock was set, step_s=" << ToSeconds(*step)
+                     << "; capture times go on without it, wall clock minus capture time base, s="
+                     << ToSeconds(step_watch_.total());
+}
+
+void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
+  // From here on, arrival is on the time line that steps of the wall clock do not touch. Arrivals
+  // of sources that do not read the clocks (a replay's) are on a time line of their own.
+  if (raw.arrival_steady != SteadyTime{}) raw.arrival_wall = step_watch_.At(raw.arrival_steady);
+  if (raw.sensor == Sensor::kDepth) {
+    ProcessDepth(std::move(raw), stop);
+  } else {
+    ProcessThermal(std::move(raw), stop);
+  }
+}
+
+void EdgePipeline::Keep(OutsidePose pose) {
+  // Cameras that stopped must not make the buffer grow.
+  constexpr std::size_t kMost = 1024;
+  if (outside_poses_.size() == kMost) outside_poses_.erase(outside_poses_.begin());
+  outside_poses_.push_back({session_, outside_poses_captured_++, std::move(pose)});
+}
+
+void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
+  const Stamp stamp = depth_timestamper_.Process(raw, raw.arrival_wall);
+  NoteStamped(raw, stamp);
+  feedback_.NoteCapture(stamp.time, TimeLineNow());
+  health_.SetBlind(Sensor::kDepth, blind_detector_.Update(raw));
+  EncodedDepthFrame frame;
+  frame.header = Header(raw, stamp);
+  frame.depth_scale = raw.depth_scale;
+  HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
+}
+
+void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
+  const Stamp stamp = thermal_timestamper_.Process(raw, raw.arrival_wall);
+  NoteStamped(raw, stamp);
+  const NucStatus nuc = nuc_.Process(raw, stamp.time);
+  EncodedThermalFrame frame;
+  frame.header = Header(raw, stamp);
+  frame.nuc_state = nuc.state;
+  frame.nuc_source = nuc.source;
+  frame.seconds_since_nuc = nuc.seconds_since_nuc;
+  frame.valid = nuc.valid && !thermal_is_counts_;
+  if (thermal_is_counts_) frame.image.encoding = Encoding::kCounts16;
+  frame.housekeeping = raw.housekeeping;
+  nuc_report_.Set(nuc_.Report());
+  HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
+}
+
+void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
+  health_.NoteStamp(raw.sensor, stamp);
+  if (raw.arrival_steady == SteadyTime{}) return;  // Not from a camera.
+  health_.AddStamping(raw.sensor, clock_.SteadyNow() - raw.arrival_steady);
+}
+
+FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const {
+  return {session_, raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
+}
+
+void EdgePipeline::HandOn(UncodedFrame uncoded, const std::stop_token& stop) {
+  uncoded.frame.outside_poses = std::exchange(outside_poses_, {});
+  uncoded.frame.log = nuc_.TakeLog();
+  if (time_base_ == TimeBase::kWallClock) uncoded.frame.wall_minus_time = step_watch_.total();
+  const Sensor sensor = uncoded.frame.sensor();
+  if (codec_queue_.Push(std::move(uncoded), stop)) return;
+  if (spool_) account_.Count(sensor, FrameFate::kRecordQueueFull);
+  account_.Count(sensor, FrameFate::kPublishQueueFull);
+}
+
+void EdgePipeline::Encode(const std::stop_token& stop) {
+  while (std::optional<UncodedFrame> uncoded = codec_queue_.Pop(stop)) {
+    auto& content = uncoded->frame.content;
+    if (auto* depth = std::get_if<EncodedDepthFrame>(&content))
+      depth->image = depth_encoder_.Encode(uncoded->pixels);
+    if (auto* thermal = std::get_if<EncodedThermalFrame>(&content)) {
+      const bool is_counts = thermal->image.encoding == Encoding::kCounts16;
+      thermal->image =
+          is_counts ? PackCounts(uncoded->pixels) : thermal_encoder_.Encode(uncoded->pixels);
+    }
+    Emit(std::move(uncoded->frame), stop);
+  }
+}
+
+void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
+  const auto frame = std::make_shared<const EncodedFrame>(std::move(encoded));
+  if (spool_ && !spool_queue_.Push(frame, stop)) {
+    account_.Count(frame->sensor(), FrameFate::kRecordQueueFull);
+  }
+  if (!publish_queue_.Push(frame, stop)) {
+    account_.Count(frame->sensor(), FrameFate::kPublishQueueFull);
+  }
+}
+
+void EdgePipeline::Record(const std::stop_token& stop) {
+  {
+    const ThreadProgress::Work step(recording_, clock_.SteadyNow());
+    spool_->Tend(/*idle=*/false);
+  }
+  while (true) {
+    const std::optional<EncodedFramePtr> frame = spool_queue_.PopFor(kIdle, stop);
+    if (!frame && stop.stop_requested()) return;
+    const ThreadProgress::Work step(recording_, clock_.SteadyNow());
+    RecordFeedback();
+    if (frame) spool_->Add(**frame);
+    spool_->Tend(/*idle=*/!frame);
+  }
+}
+
+void EdgePipeline::RecordFeedback() {
+  while (feedback_to_record_.size() > 0) {
+    const std::optional<ReceivedFeedback> received = feedback_to_record_.Pop({});
+    spool_->Add(received->feedback, received->arrival);
+  }
+}
+
+void EdgePipeline::PublishOutsidePoses(const EncodedFrame& frame, const std::stop_token& stop) {
+  for (const OutsidePoseSample& sample : frame.outside_poses) {
+    if (publisher_.Publish(sample, stop).ok()) ++outside_poses_published_;
+  }
+}
+
+void EdgePipeline::Publish(const std::stop_token& stop) {
+  while (const std::optional<EncodedFramePtr> frame = publish_queue_.Pop(stop)) {
+    const ThreadProgress::Work step(publishing_, clock_.SteadyNow());
+    // First, so that the ground has them when it tracks the frame.
+    PublishOutsidePoses(**frame, stop);
+    const Status published =
+        std::visit([this, &stop](const auto& content) { return publisher_.Publish(content, stop); },
+                   (*frame)->content);
+    account_.Count((*frame)->sensor(),
+                   published.ok() ? FrameFate::kPublished : FrameFate::kPublishFailed);
+  }
+}
+
+void EdgePipeline::AnswerCommands() {
+  while (commands_.size() > 0) Obey(*commands_.Pop({}));
+  while (nuc_answers_.size() > 0) Answer(*nuc_answers_.Pop({}));
+  // Nobody serves these any more.
+  while (source_ended_ && nuc_commands_.size() > 0) {
+    Answer({nuc_commands_.Pop({})->number, CommandOutcome::kRefused, "the source has ended"});
+  }
+}
+
+void EdgePipeline::Answer(const CommandResult& result) {
+  const Status answered = publisher_.Answer(result);
+  if (!answered.ok()) {
+    LOG(Edge, Warning) << "command not answered: " << answered.message();
+  }
+}
+
+void EdgePipeline::Obey(const Command& command) {
+  switch (command.kind) {
+    case CommandKind::kSetPublishPolicy:
+      publisher_.SetPolicy(command.publish_policy);
+      return Answer({command.number, CommandOutcome::kDone, ""});
+    case CommandKind::kTriggerNuc:
+    case CommandKind::kSetNucPolicy:
+    case CommandKind::kHoldNuc:
+      static_cast<void>(nuc_commands_.Push(command, {}));
+      return;
+    case CommandKind::kStartScan:
+    case CommandKind::kStopScan:
+      break;
+  }
+  Answer({command.number, CommandOutcome::kRefused,
+          "a scan lasts from the start to the end of isotherm-edge"});
+}
+
+}  // namespace isotherm

@@ -1,0 +1,39 @@
+#include "edge/pipeline/feedback_monitor.h"
+
+#include <algorithm>
+
+namespace isotherm {
+
+void FeedbackMonitor::NoteCapture(CaptureTime capture_time, CaptureTime now) {
+  if (time_base_ != TimeBase::kShifted) return;
+  const std::scoped_lock lock(mutex_);
+  shift_ = std::min(shift_.value_or(Nanoseconds::max()), Nanoseconds(now - capture_time));
+}
+
+void FeedbackMonitor::Add(const Feedback& feedback, CaptureTime arrival) {
+  constexpr double kMsPerS = 1e3;
+  const std::scoped_lock lock(mutex_);
+  newest_ = feedback;
+  ++count_;
+  const Nanoseconds age = arrival - feedback.capture_time;
+  if (time_base_ == TimeBase::kWallClock) latency_.Add(kMsPerS * ToSeconds(age));
+  if (shift_) latency_.Add(kMsPerS * ToSeconds(age - *shift_));
+}
+
+std::optional<Feedback> FeedbackMonitor::newest() const {
+  const std::scoped_lock lock(mutex_);
+  return newest_;
+}
+
+FeedbackLatency FeedbackMonitor::latency() const {
+  constexpr double kSPerMs = 1e-3;
+  const std::scoped_lock lock(mutex_);
+  FeedbackLatency latency;
+  latency.count = count_;
+  if (latency_.count() == 0) return latency;
+  latency.p50_s = kSPerMs * latency_.Percentile(50);
+  latency.p99_s = kSPerMs * latency_.Percentile(99);
+  return latency;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,86 @@
+#include "ground/configuration/validate_options.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "common/geometry/pose_text.h"
+#include "ground/calibration/delay_check.h"
+#include "ground/export/interpretation.h"
+#include "ground/export/results.h"
+#include "ground/feedback/advice.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/relocaliser/relocaliser.h"
+#include "ground/renderer/renderer.h"
+#include "ground/surface/depth_preprocessor.h"
+#include "ground/thermal/thermal_fuser.h"
+#include "ground/tracker/icp_tracker.h"
+#include "ground/tsdf/raycaster.h"
+#include "ground/tsdf/tsdf_integrator.h"
+
+namespace isotherm {
+
+Status Validate(const LiveOptions& o) {
+  constexpr int kMaxDomain = 230;
+  if (o.domain() < 0 || o.domain() > kMaxDomain) {
+    return InvalidArgument(
+        fmt::format("live.domain must be 0..{}, got {}", kMaxDomain, o.domain()));
+  }
+  if (o.queue_frames() < 1 || o.queue_frames() > 4096) {
+    return InvalidArgument(
+        fmt::format("live.queue_frames must be 1..4096, got {}", o.queue_frames()));
+  }
+  if (!(o.feedback_hz() > 0.0 && o.feedback_hz() <= 100.0)) {
+    return InvalidArgument(fmt::format(
+        "live.feedback_hz must be above 0 and at most 100 Hz, got {}", o.feedback_hz()));
+  }
+  if (!(o.reorder_window_s() >= 0.0 && o.reorder_window_s() <= 0.2)) {
+    return InvalidArgument(
+        fmt::format("live.reorder_window_s must be 0..0.2 s, got {}", o.reorder_window_s()));
+  }
+  if (!(o.max_wait_s() == 0.0 || (o.max_wait_s() >= 0.05 && o.max_wait_s() <= 10.0))) {
+    return InvalidArgument(
+        fmt::format("live.max_wait_s must be 0 (never leave work out) or 0.05 to 10 s, got {}",
+                    o.max_wait_s()));
+  }
+  if (!(o.max_clock_offset_s() == 0.0 ||
+        (o.max_clock_offset_s() >= 0.001 && o.max_clock_offset_s() <= 3600.0))) {
+    return InvalidArgument(
+        fmt::format("live.max_clock_offset_s must be 0 (no alarm) or 0.001 to 3600 s, got {}",
+                    o.max_clock_offset_s()));
+  }
+  if (o.output_dir().empty()) return InvalidArgument("live.output_dir must name a folder");
+  return OkStatus();
+}
+
+std::vector<Status> ValidateAll(const GroundOptions& options) {
+  std::vector<Status> problems;
+  const auto check = [&](Status status) {
+    if (!status.ok()) problems.push_back(std::move(status));
+  };
+  check(Validate(options.volume()));
+  check(Validate(options.preprocessor()));
+  check(Validate(options.tracker()));
+  check(Validate(options.relocaliser()));
+  check(Validate(options.tsdf(), options.volume()));
+  check(Validate(options.raycast()));
+  check(Validate(options.thermal()));
+  check(Validate(options.renderer()));
+  check(Validate(options.export_()));
+  check(Validate(options.interpretation()));
+  check(Validate(options.live()));
+  check(Validate(options.feedback()));
+  check(Validate(options.delay_check()));
+  if (options.threads() < 0 || options.threads() > 256) {
+    check(InvalidArgument(
+        fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));
+  }
+  if (!options.volume().initial_pose().empty()) {
+    if (const auto pose = ParsePose(options.volume().initial_pose()); !pose) {
+      check(pose.error().WithContext("volume.initial_pose"));
+    }
+  }
+  return problems;
+}
+
+}  // namespace isotherm

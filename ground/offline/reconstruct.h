@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "common/base/status.h"
+#include "common/frame/plausibility.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+#include "ground/options/ground_options.pb.h"
+
+namespace isotherm {
+
+struct ReconstructRequest {
+  std::filesystem::path recording;
+  std::filesystem::path output_dir;
+  GroundOptions options;
+  std::optional<RigidTransform> initial_pose;  ///< T_world_depth of the first depth frame.
+  /// A saved model to go on with; empty: a new one. Its volume replaces that of the options.
+  std::filesystem::path model;
+  /// Instead of the calibration in the recording.
+  std::optional<Rig> rig;
+  /// Called now and then with the share done (0..1) and what is being done.
+  std::function<void(double fraction, std::string_view text)> progress;
+};
+
+struct ReconstructSummary {
+  std::uint64_t depth_frames = 0;
+  std::uint64_t repeated_frames = 0;
+  std::uint64_t tracked_frames = 0;
+  std::uint64_t thermal_frames = 0;
+  std::uint64_t fused_thermal_frames = 0;
+  std::string text;  ///< One screen for the user.
+  Doubts doubts;  ///< Why the result is not what was asked for, or the recording cannot be right.
+};
+
+/// The inline driver: one recording in, one folder of results out, the same each time. Everything
+/// good in a damaged recording is used. Fails before any work if the output folder cannot be
+/// written, the recording has no calibration or no depth, or an option is out of range.
+Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request);
+
+}  // namespace isotherm

@@ -1,0 +1,404 @@
+#include "ground/pipeline/ground_pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "ground/export/surface.h"
+#include "ground/surface/testing/analytic_views.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+class GroundPipelineTest : public ::testing::Test {
+ protected:
+  static constexpr double kStep = 0.003;  // Metres per frame.
+  static constexpr unsigned kSeed = 12;
+
+  GroundPipelineTest() {
+    rig_.depth = testing::SmallDepthCamera();
+    rig_.thermal = rig_.depth;
+    rig_.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+    VolumeOptions& volume = *options_.mutable_volume();
+    volume.set_size_x_m(0.64);
+    volume.set_size_y_m(0.64);
+    volume.set_size_z_m(0.64);
+    volume.set_voxel_size_m(0.004);
+    options_.mutable_tsdf()->set_truncation_distance_m(0.016);
+    options_.set_threads(2);
+    Start();
+  }
+  void Start() {
+    auto created = GroundPipeline::Create(options_, rig_, testing::FirstPose());
+    ASSERT_TRUE(created.has_value()) << created.error().message();
+    pipeline_ = std::move(*created);
+  }
+
+  static RigidTransform TruePose(int i) {
+    const double turn = 0.3 * i * std::numbers::pi / 180.0;
+    return testing::FirstPose() *
+           MakeTransform({kStep * i, 0.5 * kStep * i, 0.0},
+                         Eigen::Quaterniond(Eigen::AngleAxisd(-turn, Eigen::Vector3d::UnitY())));
+  }
+  static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
+
+  DepthReport Depth(int i) {
+    DepthFrame frame = testing::RenderDepth(testing::BallInCorner, *rig_.depth, TruePose(i));
+    frame.header.capture_time = Time(i);
+    return pipeline_->ProcessDepth(frame);
+  }
+  DepthReport Covered(int i) {
+    DepthFrame frame;
+    frame.depth_raw =
+        Image<std::uint16_t>(rig_.depth->width, rig_.depth->height, kNoDepthSaturated);
+    frame.header.capture_time = Time(i);
+    return pipeline_->ProcessDepth(frame);
+  }
+  void Thermal(double at, bool valid = true, Nanoseconds sigma = Nanoseconds(0)) {
+    auto frame = std::make_shared<ThermalFrame>();
+    frame->header.capture_time = Time(at);
+    frame->header.capture_sigma = sigma;
+    frame->centikelvin =
+        Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);  // 50 °C
+    frame->valid = valid;
+    pipeline_->ProcessThermal(frame);
+  }
+  std::uint64_t LeftOut(const std::string& reason) const {
+    const auto found = pipeline_->counts().thermal_left_out.find(reason);
+    return found == pipeline_->counts().thermal_left_out.end() ? 0 : found->second;
+  }
+
+  Rig rig_;
+  GroundOptions options_;
+  std::unique_ptr<GroundPipeline> pipeline_;
+};
+
+TEST_F(GroundPipelineTest, FollowsAKnownPath) {
+  constexpr double kMaxError = 0.001;  // Metres after ten frames: a quarter of a voxel.
+  for (int i = 0; i < 10; ++i) {
+    const DepthReport report = Depth(i);
+    ASSERT_TRUE(report.tracked) << i;
+    EXPECT_LT(TranslationDistance(pipeline_->trajectory().back().T_world_depth, TruePose(i)),
+              kMaxError)
+        << i;
+  }
+  EXPECT_EQ(pipeline_->counts().depth_tracked, 10U);
+}
+
+TEST_F(GroundPipelineTest, ResultDoesNotDependOnTheNumberOfThreads) {
+  for (int i = 0; i < 4; ++i) Depth(i);
+  const RigidTransform two = pipeline_->trajectory().back().T_world_depth;
+  const std::int32_t blocks = pipeline_->tsdf().block_count();
+  options_.set_threads(3);
+  Start();
+  for (int i = 0; i < 4; ++i) Depth(i);
+  EXPECT_EQ(pipeline_->trajectory().back().T_world_depth.matrix(), two.matrix());
+  EXPECT_EQ(pipeline_->tsdf().block_count(), blocks);
+}
+
+TEST_F(GroundPipelineTest, F13ACoveredCameraLeavesTheModelAloneAndTrackingComesBack) {
+  for (int i = 0; i < 4; ++i) Depth(i);
+  const std::uint64_t integrated = pipeline_->counts().depth_integrated;
+  for (int i = 4; i < 7; ++i) EXPECT_FALSE(Covered(i).tracked);
+  EXPECT_EQ(pipeline_->counts().depth_integrated, integrated);
+  EXPECT_EQ(pipeline_->counts().depth_lost.at("too_few_pixels"), 3U);
+  // Found again, but believed and fused only when two more frames agree.
+  EXPECT_TRUE(Depth(4).unconfirmed);
+  EXPECT_TRUE(Depth(5).unconfirmed);
+  EXPECT_EQ(pipeline_->trajectory().size(), 4U);
+  EXPECT_EQ(pipeline_->counts().depth_integrated, integrated);
+  EXPECT_TRUE(Depth(6).tracked);
+  EXPECT_EQ(pipeline_->trajectory().size(), 7U);
+}
+
+TEST_F(GroundPipelineTest, ThermalFramesWaitForTheDepthFrameBehindThem) {
+  Depth(0);
+  Thermal(0.5);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  Depth(1);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
+  int measured = 0;
+  for (std::int32_t block = 0; block < pipeline_->tsdf().block_count(); ++block) {
+    for (const ThermalVoxel& voxel : pipeline_->thermal().voxels(block)) {
+      if (!voxel.measured()) continue;
+      ++measured;
+      ASSERT_NEAR(voxel.celsius(), 50.0, 0.03);
+    }
+  }
+  EXPECT_GT(measured, 1000);
+}
+
+TEST_F(GroundPipelineTest, F10FramesOfAnUncertainTimeAreNotFused) {
+  Depth(0);
+  Thermal(0.3, true, std::chrono::milliseconds(2));
+  Thermal(0.6, true, std::chrono::milliseconds(25));  // As the edge marks what is unsynchronised.
+  Depth(1);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
+  EXPECT_EQ(LeftOut("time_uncertain"), 1U);
+}
+
+TEST_F(GroundPipelineTest, EachThermalFrameIsAccountedFor) {
+  Thermal(-0.5);  // Before the first pose.
+  Depth(0);
+  Thermal(0.5);
+  Thermal(0.7, /*valid=*/false);  // Shutter closed.
+  Depth(1);
+  Thermal(1.5);
+  Covered(2);
+  for (int i = 3; i < 6; ++i) Depth(i);  // Found again; the motion around 1.5 is not known.
+  Thermal(5.5);
+  pipeline_->Finish();
+  const PipelineCounts& counts = pipeline_->counts();
+  EXPECT_EQ(counts.thermal_in, 5U);
+  EXPECT_EQ(counts.thermal_fused, 1U);
+  EXPECT_EQ(LeftOut("nuc"), 1U);
+  EXPECT_EQ(LeftOut("pose_unknown"), 2U);
+  EXPECT_EQ(LeftOut("no_depth_after"), 1U);
+}
+
+TEST_F(GroundPipelineTest, F56WithoutExtrinsicsGeometryGoesOnAndThermalIsRefused) {
+  rig_.T_thermal_depth.reset();
+  Start();
+  EXPECT_EQ(pipeline_->thermal_status().code(), StatusCode::kFailedPrecondition);
+  Depth(0);
+  Thermal(0.5);
+  EXPECT_TRUE(Depth(1).tracked);
+  EXPECT_EQ(LeftOut("no_calibration"), 1U);
+}
+
+TEST_F(GroundPipelineTest, F11AFrameOfAnotherSizeIsRefusedAndCounted) {
+  Depth(0);
+  DepthFrame frame;
+  frame.depth_raw = Image<std::uint16_t>(17, 3, 500);
+  ::testing::internal::CaptureStderr();
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked);
+  EXPECT_EQ(pipeline_->counts().depth_refused, 100U);
+  EXPECT_TRUE(Depth(1).tracked);
+  const std::string log = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(std::ranges::count(log, '\n'), 2) << log;  // When it began, and when it was over.
+  EXPECT_NE(log.find("refused=100"), std::string::npos) << log;
+}
+
+TEST_F(GroundPipelineTest, WithoutAPoseTheVolumesCentreLiesOnTheFirstAxis) {
+  auto created = GroundPipeline::Create(options_, rig_, std::nullopt);
+  ASSERT_TRUE(created.has_value());
+  pipeline_ = std::move(*created);
+  Depth(0);
+  const RigidTransform& pose = pipeline_->trajectory().front().T_world_depth;
+  EXPECT_NEAR(pose.translation().x(), 0.32, 1e-9);
+  EXPECT_NEAR(pose.translation().y(), 0.32, 1e-9);
+  EXPECT_LT(pose.translation().z(), 0.0);
+}
+
+TEST_F(GroundPipelineTest, OptionsOutOfRangeAreNamed) {
+  options_.mutable_tsdf()->set_truncation_distance_m(0.001);
+  const auto created = GroundPipeline::Create(options_, rig_, std::nullopt);
+  ASSERT_FALSE(created.has_value());
+  EXPECT_NE(created.error().message().find("tsdf.truncation_distance_m"), std::string::npos);
+  rig_.depth.reset();
+  options_.clear_tsdf();
+  EXPECT_FALSE(GroundPipeline::Create(options_, rig_, std::nullopt).has_value());
+}
+
+TEST_F(GroundPipelineTest, F12EmptyFramesAreLostAndLeaveNothing) {
+  DepthFrame empty;
+  empty.depth_raw = Image<std::uint16_t>(rig_.depth->width, rig_.depth->height, kNoDepth);
+  for (int i = 0; i < 3; ++i) {
+    empty.header.capture_time = Time(i);
+    EXPECT_FALSE(pipeline_->ProcessDepth(empty).tracked);
+  }
+  Thermal(0.5);
+  EXPECT_EQ(pipeline_->tsdf().block_count(), 0);
+  EXPECT_TRUE(pipeline_->trajectory().empty());
+  EXPECT_EQ(pipeline_->counts().depth_lost.at("too_few_pixels"), 3U);
+  EXPECT_TRUE(Depth(3).tracked) << "the scan begins with the first frame that shows something";
+  EXPECT_EQ(LeftOut("pose_unknown"), 1U);
+}
+
+TEST_F(GroundPipelineTest, F11FramesWithoutPixelsAreRefusedAndCounted) {
+  DepthFrame none;
+  EXPECT_FALSE(pipeline_->ProcessDepth(none).tracked);
+  EXPECT_EQ(pipeline_->counts().depth_refused, 1U);
+  auto thermal = std::make_shared<ThermalFrame>();
+  thermal->valid = true;
+  pipeline_->ProcessThermal(thermal);
+  EXPECT_EQ(LeftOut("wrong_size"), 1U);
+  EXPECT_TRUE(Depth(0).tracked);
+}
+
+TEST_F(GroundPipelineTest, CountsAreLeftOutWithASentenceAndGeometryGoesOn) {
+  EXPECT_TRUE(pipeline_->thermal_status().ok());
+  Depth(0);
+  for (int i = 0; i < 3; ++i) pipeline_->ProcessThermal(std::make_shared<ThermalFrame>());
+  EXPECT_TRUE(Depth(1).tracked);
+  EXPECT_EQ(LeftOut("counts"), 3U);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_NE(pipeline_->thermal_status().message().find("sends counts"), std::string::npos);
+}
+
+TEST_F(GroundPipelineTest, F12AScaleThatIsNoneIsLostAndLeavesNothing) {
+  DepthFrame frame = testing::RenderDepth(testing::BallInCorner, *rig_.depth, TruePose(0));
+  for (const double bad : {std::nan(""), 0.0, -1000.0, std::numeric_limits<double>::infinity()}) {
+    frame.depth_scale = bad;
+    EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked) << bad;
+  }
+  EXPECT_EQ(pipeline_->tsdf().block_count(), 0);
+}
+
+TEST_F(GroundPipelineTest, F01WithoutDepthNothingIsFused) {
+  for (int i = 0; i < 3; ++i) Depth(i);
+  const std::int32_t blocks = pipeline_->tsdf().block_count();
+  for (int i = 3; i < 33; ++i) Thermal(i);
+  pipeline_->Finish();
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_EQ(LeftOut("no_depth_after"), 30U);
+  EXPECT_EQ(pipeline_->tsdf().block_count(), blocks);
+}
+
+TEST_F(GroundPipelineTest, F04WithoutThermalGeometryGoesOnAndHasNoTemperature) {
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(Depth(i).tracked);
+  EXPECT_EQ(pipeline_->counts().depth_integrated, 5U);
+  const Surface surface =
+      ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
+  ASSERT_GT(surface.points.size(), 500U);
+  for (const CloudPoint& point : surface.points) ASSERT_TRUE(std::isnan(point.celsius));
+}
+
+TEST_F(GroundPipelineTest, F07WhileTheShutterIsClosedGeometryGoesOnAndNoTemperatureIsTaken) {
+  Depth(0);
+  for (int i = 1; i < 5; ++i) {
+    Thermal(i - 0.5, /*valid=*/false);
+    EXPECT_TRUE(Depth(i).tracked) << "no loss of tracking";
+  }
+  EXPECT_EQ(LeftOut("nuc"), 4U);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+}
+
+TEST_F(GroundPipelineTest, F12TheMapHoldsNoValueThatIsNone) {
+  std::mt19937 random(kSeed);
+  const auto spoil = [&random](Image<std::uint16_t>& image, std::vector<std::uint16_t> with) {
+    for (std::uint16_t& pixel : image.pixels())
+      if (random() % 5 == 0) pixel = with[random() % with.size()];
+  };
+  for (int i = 0; i < 6; ++i) {
+    DepthFrame depth = testing::RenderDepth(testing::BallInCorner, *rig_.depth, TruePose(i));
+    depth.header.capture_time = Time(i);
+    spoil(depth.depth_raw, {kNoDepth, kNoDepthSaturated, 1, 65'534});
+    auto thermal = std::make_shared<ThermalFrame>();
+    thermal->header.capture_time = Time(i - 0.5);
+    thermal->centikelvin = Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);
+    spoil(thermal->centikelvin, {0});  // As the edge leaves what is out of range.
+    thermal->valid = true;
+    if (i > 0) pipeline_->ProcessThermal(thermal);
+    EXPECT_TRUE(pipeline_->ProcessDepth(depth).tracked) << i;
+  }
+  for (const StampedPose& pose : pipeline_->trajectory())
+    EXPECT_TRUE(pose.T_world_depth.matrix().allFinite());
+  const Surface surface =
+      ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
+  ASSERT_GT(surface.points.size(), 500U);
+  int measured = 0;
+  for (const CloudPoint& point : surface.points) {
+    ASSERT_TRUE(point.position_m.allFinite());
+    ASSERT_TRUE(point.normal.allFinite());
+    if (std::isnan(point.celsius)) continue;  // Never measured.
+    ++measured;
+    ASSERT_NEAR(point.celsius, 50.0, 0.03) << "of 20 % nothing";
+  }
+  EXPECT_GT(measured, 300);
+}
+
+TEST_F(GroundPipelineTest, F56ACameraWithoutPixelsIsNamed) {
+  for (const auto& [width, height] : {std::pair{0, 240}, std::pair{320, 0}, std::pair{0, 0}}) {
+    Rig rig = rig_;
+    rig.depth->width = width;
+    rig.depth->height = height;
+    const auto created = GroundPipeline::Create(options_, rig, std::nullopt);
+    ASSERT_FALSE(created.has_value());
+    EXPECT_EQ(created.error().code(), StatusCode::kInvalidArgument);
+    EXPECT_NE(created.error().message().find("depth: width and height"), std::string::npos);
+    rig = rig_;
+    rig.thermal->width = width;
+    rig.thermal->height = height;
+    EXPECT_NE(GroundPipeline::Create(options_, rig, std::nullopt)
+                  .error()
+                  .message()
+                  .find("thermal: width and height"),
+              std::string::npos);
+  }
+}
+
+TEST_F(GroundPipelineTest, F71AVolumeThatIsNoneOrTooLargeIsRefusedWithTheReason) {
+  options_.mutable_volume()->set_size_z_m(0.0);
+  const auto none = GroundPipeline::Create(options_, rig_, std::nullopt);
+  ASSERT_FALSE(none.has_value());
+  EXPECT_NE(none.error().message().find("must be positive, got 0.64 x 0.64 x 0 m"),
+            std::string::npos)
+      << none.error().message();
+  VolumeOptions& volume = *options_.mutable_volume();
+  volume.set_size_x_m(100.0);
+  volume.set_size_y_m(100.0);
+  volume.set_size_z_m(100.0);
+  volume.set_voxel_size_m(0.001);
+  const auto huge = GroundPipeline::Create(options_, rig_, std::nullopt);
+  ASSERT_FALSE(huge.has_value());
+  EXPECT_EQ(huge.error().code(), StatusCode::kResourceExhausted);
+  // 12502^3 blocks of 4 bytes; 1 GiB holds 645^3, of 8 voxels each.
+  EXPECT_NE(huge.error().message().find("needs 7279.5 GiB"), std::string::npos)
+      << huge.error().message();
+  EXPECT_NE(huge.error().message().find("use voxels of 0.019"), std::string::npos)
+      << huge.error().message();
+}
+
+TEST_F(GroundPipelineTest, WithoutTimeForThermalItIsLeftOutAndCounted) {
+  Depth(0);
+  pipeline_->set_effort(Effort::kNoThermal);
+  Thermal(0.5);
+  Depth(1);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_EQ(LeftOut("behind"), 1U);
+  EXPECT_EQ(pipeline_->counts().depth_integrated, 2U);
+  EXPECT_EQ(pipeline_->counts().depth_behind, 0U);
+  pipeline_->set_effort(Effort::kAll);
+  Thermal(1.5);
+  Depth(2);
+  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
+  EXPECT_EQ(LeftOut("behind"), 1U);
+}
+
+TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
+  constexpr double kMaxError = 0.002;  // Metres: half a voxel.
+  constexpr int kFrames = 8;
+  Depth(0);
+  pipeline_->set_effort(Effort::kEverySecond);
+  for (int i = 1; i <= kFrames; ++i) {
+    Thermal(i - 0.5);
+    const DepthReport report = Depth(i);
+    ASSERT_TRUE(report.tracked) << i;
+    EXPECT_EQ(report.integrated, i % 2 == 1) << i;
+    EXPECT_LT(TranslationDistance(report.pose.T_map_depth, TruePose(i)), kMaxError) << i;
+  }
+  const PipelineCounts& counts = pipeline_->counts();
+  EXPECT_EQ(counts.depth_tracked, 1U + kFrames);
+  EXPECT_EQ(counts.depth_integrated, 1U + kFrames / 2);
+  EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
+  EXPECT_EQ(LeftOut("behind"), 0U + kFrames);
+  pipeline_->set_effort(Effort::kAll);
+  for (int i = kFrames + 1; i <= kFrames + 3; ++i) {
+    Thermal(i - 0.5);
+    EXPECT_TRUE(Depth(i).integrated) << i;
+  }
+  EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
+  EXPECT_EQ(counts.thermal_fused, 3U);
+}
+
+}  // namespace
+}  // namespace isotherm

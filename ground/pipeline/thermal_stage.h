@@ -1,0 +1,73 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "common/base/stage_stats.h"
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/map_pose.h"
+#include "ground/pipeline/pipeline_counts.h"
+#include "ground/thermal/near_holes.h"
+#include "ground/thermal/nuc_epochs.h"
+#include "ground/thermal/sight_lines.h"
+#include "ground/thermal/thermal_fuser.h"
+#include "ground/tracker/icp_tracker.h"
+
+namespace isotherm {
+
+/// The rig at a tracked depth frame, in the coordinates of `tsdf`.
+struct TrackedDepth {
+  const Image<float>& depth_m;           ///< The frame itself; 0 = no return.
+  const ModelView& view;                 ///< The model from its pose.
+  std::optional<StampedMapPose> before;  ///< The frame before it; nullopt = not known.
+  StampedMapPose now;
+  double surface_sigma_rad = 0.0;  ///< One standard deviation of the pose, as a shift of surface
+                                   ///< over its mean depth.
+  const TsdfVolume& tsdf;
+  const char* refusal = nullptr;  ///< Why thermal frames cannot be fused now at all.
+};
+
+/// Takes thermal frames from their arrival to the model: each waits for the depth frame behind it,
+/// since its pose lies between those of two depth frames (6.2.3). Thread-bound.
+class ThermalStage {
+ public:
+  /// CheckThermalFusion(rig) is ok. Voxels lighter than `min_weight` do not count as observed.
+  /// `counts` and `timing` must outlive the stage.
+  ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight,
+               PipelineCounts& counts, StageStats& timing);
+
+  /// Keeps a frame, or counts why not. In order of capture time. True if it was kept.
+  bool Add(ThermalFramePtr frame);
+  /// Fuses, or counts as left out, what was captured up to `depth.now`.
+  void FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool);
+  /// Counts what still waits as left out, and reviews all temperatures.
+  void Finish(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool);
+
+ private:
+  struct Waiting {
+    ThermalFramePtr frame;
+    NucAge nuc;
+  };
+
+  double RegistrationSigmaPx(const TrackedDepth& depth) const;
+  /// nullptr: the frame can be fused.
+  const char* WhyLeftOut(CaptureTime time, const TrackedDepth& depth) const;
+  void Fuse(const Waiting& waiting, const TrackedDepth& depth, ThermalVolume& thermal,
+            ThreadPool& pool);
+  void LeaveOut(const char* reason) { ++counts_.thermal_left_out[reason]; }
+
+  const ThermalOptions options_;
+  const CameraModel camera_;
+  const RigidTransform T_depth_thermal_;
+  PipelineCounts& counts_;
+  StageStats& timing_;
+  ThermalFuser fuser_;
+  NearHoles near_holes_;
+  SightLines sight_lines_;
+  NucEpochs nuc_epochs_;
+  std::deque<Waiting> waiting_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,190 @@
+#include "ground/pipeline/thermal_stage.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "common/testing/volume_shapes.h"
+#include "ground/surface/testing/analytic_views.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using LeftOut = std::map<std::string, std::uint64_t>;
+
+/// A stage between thermal frames and depth frames whose pose is given.
+class ThermalStageTest : public ::testing::Test {
+ protected:
+  ThermalStageTest() {
+    rig_.depth = testing::SmallDepthCamera();
+    rig_.thermal = rig_.depth;
+    rig_.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+    VolumeOptions volume;
+    volume.set_size_x_m(0.64);
+    volume.set_size_y_m(0.64);
+    volume.set_size_z_m(0.64);
+    volume.set_voxel_size_m(0.004);
+    const VoxelGrid grid = MakeVoxelGrid(volume).value();
+    const std::int32_t max_blocks = MaxBlocks(volume, grid);
+    tsdf_ = std::make_unique<TsdfVolume>(grid, 0.016, max_blocks);
+    testing::FillVolume(*tsdf_, testing::BallInCorner);
+    thermal_ = std::make_unique<ThermalVolume>(max_blocks);
+    EXPECT_TRUE(thermal_->Back(tsdf_->block_count()));
+    view_.camera = rig_.depth->Downscaled(1);
+    view_.T_map_depth = testing::FirstPose();
+    Raycaster().Cast(*tsdf_, view_.camera, view_.T_map_depth, 0.0F, pool_, view_.maps);
+    depth_m_ = Image<float>(rig_.depth->width, rig_.depth->height, 0.5F);
+    stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_, timing_);
+  }
+
+  static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
+
+  std::shared_ptr<ThermalFrame> Frame(double at) const {
+    auto frame = std::make_shared<ThermalFrame>();
+    frame->header.capture_time = Time(at);
+    frame->centikelvin =
+        Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);  // 50 °C.
+    frame->valid = true;
+    return frame;
+  }
+  /// A depth frame at `at` whose predecessor was at `before`; the rig is at rest.
+  TrackedDepth Depth(double before, double at) const {
+    return {.depth_m = depth_m_,
+            .view = view_,
+            .before = StampedMapPose{Time(before), view_.T_map_depth},
+            .now = {Time(at), view_.T_map_depth},
+            .tsdf = *tsdf_};
+  }
+  void Fuse(const TrackedDepth& depth) { stage_->FuseUpTo(depth, *thermal_, pool_); }
+  int Measured() const {
+    int measured = 0;
+    for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
+      for (const ThermalVoxel& voxel : std::as_const(*thermal_).voxels(block))
+        measured += voxel.measured() ? 1 : 0;
+    }
+    return measured;
+  }
+
+  Rig rig_;
+  ThermalOptions options_;
+  ThreadPool pool_{2};
+  std::unique_ptr<TsdfVolume> tsdf_;
+  std::unique_ptr<ThermalVolume> thermal_;
+  ModelView view_;
+  Image<float> depth_m_;
+  PipelineCounts counts_;
+  StageStats timing_;
+  std::unique_ptr<ThermalStage> stage_;
+};
+
+TEST_F(ThermalStageTest, AFrameBetweenTwoTrackedDepthFramesIsFused) {
+  EXPECT_TRUE(stage_->Add(Frame(0.5)));
+  EXPECT_EQ(counts_.thermal_fused, 0U) << "where the rig was is not known yet";
+  Fuse(Depth(0.0, 1.0));
+  EXPECT_EQ(counts_.thermal_fused, 1U);
+  EXPECT_TRUE(counts_.thermal_left_out.empty());
+  EXPECT_GT(Measured(), 1000);
+}
+
+TEST_F(ThermalStageTest, AFrameBehindTheDepthFrameWaitsForTheNext) {
+  stage_->Add(Frame(1.5));
+  Fuse(Depth(0.0, 1.0));
+  EXPECT_EQ(counts_.thermal_fused, 0U);
+  Fuse(Depth(1.0, 2.0));
+  EXPECT_EQ(counts_.thermal_fused, 1U);
+}
+
+TEST_F(ThermalStageTest, F07WhileTheShutterIsClosedItIsNuc) {
+  auto frame = Frame(0.5);
+  frame->valid = false;
+  EXPECT_FALSE(stage_->Add(frame));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"nuc", 1}}));
+}
+
+TEST_F(ThermalStageTest, OfAnotherSizeThanTheCalibrations) {
+  auto frame = Frame(0.5);
+  frame->centikelvin = Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height - 1, 32'315);
+  EXPECT_FALSE(stage_->Add(frame));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"wrong_size", 1}}));
+}
+
+TEST_F(ThermalStageTest, F10DatedTooUncertainly) {
+  auto frame = Frame(0.5);
+  frame->header.capture_sigma = FromSeconds(options_.max_time_sigma_s()) + 1us;
+  EXPECT_FALSE(stage_->Add(frame));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"time_uncertain", 1}}));
+  frame = Frame(0.5);
+  frame->header.capture_sigma = FromSeconds(options_.max_time_sigma_s()) - 1us;
+  EXPECT_TRUE(stage_->Add(frame));
+}
+
+TEST_F(ThermalStageTest, F01WithoutDepthTheOldestGo) {
+  constexpr int kWaiting = 64;
+  for (int i = 0; i < kWaiting + 3; ++i) EXPECT_TRUE(stage_->Add(Frame(0.1 * i)));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"no_depth", 3}}));
+}
+
+TEST_F(ThermalStageTest, WithoutAPoseBeforeIt) {
+  stage_->Add(Frame(0.5));
+  TrackedDepth depth = Depth(0.0, 1.0);
+  depth.before.reset();
+  Fuse(depth);
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"pose_unknown", 1}}));
+  EXPECT_EQ(Measured(), 0);
+}
+
+TEST_F(ThermalStageTest, FromBeforeTheRigWasFoundAgain) {
+  stage_->Add(Frame(0.5));
+  Fuse(Depth(0.6, 1.0));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"pose_unknown", 1}}));
+}
+
+TEST_F(ThermalStageTest, WhereThePoseMovesTheImageTooFar) {
+  const double limit_rad = options_.max_registration_px() / rig_.thermal->fx;
+  stage_->Add(Frame(0.5));
+  TrackedDepth depth = Depth(0.0, 1.0);
+  depth.surface_sigma_rad = 1.01 * limit_rad;
+  Fuse(depth);
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"pose_uncertain", 1}}));
+  stage_->Add(Frame(1.5));
+  TrackedDepth better = Depth(1.0, 2.0);
+  better.surface_sigma_rad = 0.99 * limit_rad;
+  Fuse(better);
+  EXPECT_EQ(counts_.thermal_fused, 1U);
+}
+
+TEST_F(ThermalStageTest, WhereDepthFramesAreTooFarApart) {
+  const double frames = 30.0 * options_.max_wait_s();
+  stage_->Add(Frame(0.5));
+  Fuse(Depth(0.0, frames + 0.1));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"depth_gap", 1}}));
+  stage_->Add(Frame(100.5));
+  Fuse(Depth(100.0, 100.0 + frames - 0.1));
+  EXPECT_EQ(counts_.thermal_fused, 1U);
+}
+
+TEST_F(ThermalStageTest, ForThePipelinesReasonBeforeAnyOther) {
+  stage_->Add(Frame(0.5));
+  TrackedDepth depth = Depth(0.0, 1.0);
+  depth.before.reset();
+  depth.refusal = "disk_full";
+  Fuse(depth);
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"disk_full", 1}}));
+}
+
+TEST_F(ThermalStageTest, WhatStillWaitsAtTheEndHasNoDepthBehindIt) {
+  for (int i = 0; i < 3; ++i) stage_->Add(Frame(i));
+  stage_->Finish(*tsdf_, *thermal_, pool_);
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"no_depth_after", 3}}));
+  stage_->Finish(*tsdf_, *thermal_, pool_);
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"no_depth_after", 3}})) << "counted once";
+}
+
+}  // namespace
+}  // namespace isotherm

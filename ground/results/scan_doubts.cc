@@ -1,0 +1,76 @@
+#include "ground/results/scan_doubts.h"
+
+#include <fmt/format.h>
+
+#include "ground/results/outcome_text.h"
+
+namespace isotherm {
+namespace {
+
+/// Why the model that was gone on with is all there is.
+std::string NotFoundInModel(const ScanOutcome& outcome) {
+  const std::string elsewhere =
+      outcome.maps > 1 ? "; what this scan saw is in model-2.iso and so on" : "";
+  return fmt::format(
+      "none of {} depth frames was found in the model that the scan was to go on with: what was "
+      "written is that model, unchanged{}. Does the recording show the same place, from about the "
+      "same directions? Reconstruct it without --continue to see what it shows",
+      outcome.counts.depth_in, elsewhere);
+}
+
+std::string CauseOfNoPose(const ScanOutcome& outcome) {
+  const std::string reason = MainReason(outcome.counts.depth_lost);
+  if (reason == "too_few_pixels") {
+    const PreprocessorOptions& range = outcome.options.preprocessor();
+    return fmt::format(
+        "nearly all depths lie outside of preprocessor.min_depth_m to max_depth_m ({:g} to {:g} "
+        "m): "
+        "is depth_scale (raw units per metre) of the calibration right?",
+        range.min_depth_m(), range.max_depth_m());
+  }
+  if (reason == "outside_volume") {
+    return "at the first pose nothing in view lies in the scan volume: correct --initial-pose "
+           "(T_world_depth), --volume or --volume-min, or leave the pose out";
+  }
+  return reason.empty() ? "they could not be used" : ExplainLost(reason);
+}
+
+std::string NoTemperature(const ScanOutcome& outcome) {
+  const PipelineCounts& counts = outcome.counts;
+  if (counts.thermal_fused == 0) {
+    return fmt::format("none of {} thermal frames could be used: {}", counts.thermal_in,
+                       ExplainLeftOut(MainReason(counts.thermal_left_out)));
+  }
+  if (counts.fusion.considered == 0) {
+    return fmt::format(
+        "{} thermal frames were used, but the thermal camera does not look at the surface: is "
+        "T_thermal_depth right (metres, depth to thermal coordinates), and are the thermal "
+        "intrinsics?",
+        counts.thermal_fused);
+  }
+  const ThermalOptions& limits = outcome.options.thermal();
+  return fmt::format(
+      "{} thermal frames were used, but no temperature was measured under acceptable conditions: "
+      "go "
+      "nearer than thermal.distance_max_m ({:g} m) and less oblique than thermal.angle_max_deg "
+      "({:g} degrees), or keep such temperatures with thermal.keep_bad",
+      counts.thermal_fused, limits.distance_max_m(), limits.angle_max_deg());
+}
+
+}  // namespace
+
+Doubts DoubtsAboutResult(const ScanOutcome& outcome) {
+  const PipelineCounts& counts = outcome.counts;
+  if (counts.depth_in > 0 && outcome.poses == 0) {
+    if (outcome.continued) return {NotFoundInModel(outcome)};
+    return {fmt::format("none of {} depth frames was tracked, so there is no surface: {}",
+                        counts.depth_in, CauseOfNoPose(outcome))};
+  }
+  if (counts.thermal_in > 0 && outcome.can_fuse && outcome.points > 0 &&
+      outcome.measured_points == 0) {
+    return {NoTemperature(outcome)};
+  }
+  return {};
+}
+
+}  // namespace isotherm

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "common/base/status.h"
+#include "common/frame/plausibility.h"
+#include "common/geometry/camera.h"
+#include "ground/calibration/delay_check.h"
+#include "ground/export/json.h"
+#include "ground/pipeline/ground_pipeline.h"
+
+namespace isotherm {
+
+/// How long a stage took, as it goes into stats.json.
+Json DescribeStage(const StageStats& stats);
+
+/// Frames, stages, volume and calibration of a scan as they go into stats.json.
+Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig);
+
+struct WrittenScan {
+  std::string text;  ///< One screen for the user.
+  Doubts doubts;     ///< About what came in and what came out; stats.json has them as `warnings`.
+};
+
+/// Writes all result files of a scan into `dir`. What an earlier scan left there and this one does
+/// not write is removed. `stats` is DescribeScan() plus whatever the driver adds; `delay` goes into
+/// stats and text, `doubts` about the frames into stats.
+Result<WrittenScan> WriteScan(
+    GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
+    Json stats, const std::filesystem::path& dir,
+    const std::function<void(std::string_view what, double share)>& progress);
+
+}  // namespace isotherm

@@ -1,0 +1,122 @@
+#include "ground/service/distributor.h"
+
+#include <memory>
+
+#include "common/base/log.h"
+#include "ground/service/live_scan.h"
+#include "ground/service/scan_board.h"
+
+namespace isotherm {
+namespace {
+
+std::uint64_t SessionOf(const Item& item) {
+  if (const auto* depth = std::get_if<ReceivedDepth>(&item)) return depth->frame->header.session;
+  if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
+    return thermal->frame->header.session;
+  if (const auto* sample = std::get_if<OutsidePoseSample>(&item)) return sample->session;
+  return 0;
+}
+
+}  // namespace
+
+void Distributor::OnRig(const RigDescription& rig) {
+  if (rig.session == session_ || over_) return;
+  if (session_ && single_scan_) {  // The edge was started anew: the one scan is over.
+    over_ = true;
+    SessionAccount end;
+    end.session = *session_;
+    SendMark(end);
+    return;
+  }
+  start_ = {.rig = rig,
+            .folder = SessionFolder(options_, single_scan_, rig.session, clock_.Now()),
+            .recording = std::make_shared<RecordingLedger>()};
+  session_ = rig.session;
+  recording_behind_ = false;
+  board_.recording.Set(start_.recording);
+  SendMark(start_);
+  std::deque<Item> early = std::exchange(early_, {});
+  for (Item& item : early) {
+    if (SessionOf(item) == session_) Send(std::move(item));
+  }
+}
+
+void Distributor::OnFrame(Item item) {
+  if (over_) return;
+  if (SessionOf(item) == session_) {
+    Send(std::move(item));
+    return;
+  }
+  constexpr std::size_t kMaxEarly = 128;
+  if (early_.size() == kMaxEarly) {
+    early_.pop_front();
+    if (const auto left_out = early_limiter_.Admit(clock_.SteadyNow())) {
+      LOG(Ground, Warning)
+          << "frames arrive but no rig description: is the edge of another version?"
+          << LeftOutText(*left_out);
+    }
+  }
+  early_.push_back(std::move(item));
+}
+
+void Distributor::OnSessionEnd(const SessionAccount& account) {
+  if (account.session != session_ || over_) return;
+  over_ = single_scan_;
+  SendMark(account);
+}
+
+void Distributor::Send(Item item) {
+  if (auto* depth = std::get_if<ReceivedDepth>(&item)) depth->queued = clock_.Now();
+  if (auto* thermal = std::get_if<ReceivedThermal>(&item)) thermal->queued = clock_.Now();
+  Record(item);
+  Reconstruct(std::move(item));
+}
+
+void Distributor::SendMark(const Item& mark) {
+  recording_.Push(mark);
+  Reconstruct(mark);
+}
+
+void Distributor::Reconstruct(Item item) {
+  progress_.Idle();  // Whether that goes on is for the reconstruction to say.
+  reconstruction_.Push(std::move(item), stop_);
+  progress_.Busy(clock_.SteadyNow());
+}
+
+void Distributor::Record(const Item& item) {
+  if (!options_.live().record()) return;
+  // A live edge does not wait for us, so nothing may hold up reception; a replay does.
+  constexpr Nanoseconds kPatience = std::chrono::seconds(1);
+  const Nanoseconds patience = start_.rig.waits_for_ground ? kPatience : Nanoseconds(0);
+  bool taken = true;
+  if (const auto* depth = std::get_if<ReceivedDepth>(&item)) {
+    // Pixels are for the reconstruction.
+    taken = recording_.Offer(ReceivedDepth{nullptr, depth->encoded, depth->arrival, depth->queued},
+                             patience, stop_);
+    if (!taken) start_.recording->CountLeftOut(Sensor::kDepth, NotRecorded::kDiskTooSlow);
+  } else if (const auto* thermal = std::get_if<ReceivedThermal>(&item)) {
+    taken = recording_.Offer(
+        ReceivedThermal{nullptr, thermal->encoded, thermal->arrival, thermal->queued}, patience,
+        stop_);
+    if (!taken) start_.recording->CountLeftOut(Sensor::kThermal, NotRecorded::kDiskTooSlow);
+  } else {
+    recording_.Offer(item, {}, stop_);
+    return;
+  }
+  TellRecording(taken);
+}
+
+void Distributor::TellRecording(bool taken) {
+  if (taken != recording_behind_) return;
+  recording_behind_ = !taken;
+  if (recording_behind_) {
+    LOG(Ground, Warning) << "the disk does not take the recording fast enough: frames are left out "
+                            "of it from here on, counted; the scan itself goes on, folder="
+                         << start_.folder.string();
+  } else {
+    LOG(Ground, Info) << "the disk takes the recording again, frames_left_out="
+                      << start_.recording->Get().left_out();
+  }
+}
+
+}  // namespace isotherm

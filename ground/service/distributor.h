@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+#include "common/time/clock.h"
+#include "common/time/line_limiter.h"
+#include "common/time/thread_progress.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/service/recording_queue.h"
+#include "ground/service/session_item.h"
+
+namespace isotherm {
+
+struct ScanBoard;
+
+/// Turns what the subscriber delivers into items for both consumers. Frames that arrive before
+/// their session's calibration are kept until it is there. It waits for the reconstruction, whose
+/// work cannot be left out uncounted, but for the disk only for a bounded time: frames that find no
+/// room there are left out of the recording, counted. Thread-bound to the receive thread.
+class Distributor {
+ public:
+  Distributor(const GroundOptions& options, bool single_scan, const Clock& clock,
+              ItemQueue& reconstruction, RecordingQueue& recording, ScanBoard& board,
+              ThreadProgress& progress)
+      : options_(options),
+        single_scan_(single_scan),
+        clock_(clock),
+        reconstruction_(reconstruction),
+        recording_(recording),
+        board_(board),
+        progress_(progress) {}
+
+  /// Nothing is waited for any more when `stop` is requested.
+  void SetStop(std::stop_token stop) { stop_ = std::move(stop); }
+
+  void OnRig(const RigDescription& rig);
+  void OnFrame(Item item);
+  void OnClock(const ClockAccount& clock) { recording_.Offer(clock, {}, stop_); }
+  void OnLate(Item item) { Record(std::move(item)); }
+  void OnSessionEnd(const SessionAccount& account);
+
+ private:
+  /// To both consumers.
+  void Send(Item item);
+  /// A beginning or an end: to both, whatever waits there.
+  void SendMark(const Item& mark);
+  void Reconstruct(Item item);
+  void Record(const Item& item);
+  void TellRecording(bool taken);
+
+  const GroundOptions& options_;
+  const bool single_scan_;
+  const Clock& clock_;
+  ItemQueue& reconstruction_;
+  RecordingQueue& recording_;
+  ScanBoard& board_;
+  ThreadProgress& progress_;
+  std::stop_token stop_;
+  std::optional<std::uint64_t> session_;
+  SessionStart start_;  ///< That session's.
+  bool over_ = false;   ///< The single scan has ended.
+  bool recording_behind_ = false;
+  std::deque<Item> early_;
+  LineLimiter early_limiter_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,225 @@
+#include "ground/service/feedback_maker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "ground/feedback/confidence_picture.h"
+
+namespace isotherm {
+namespace {
+
+/// Coverage of the view is judged by so many pixels per row at least, whatever the picture's size.
+constexpr int kLeastColumns = 160;
+
+/// Once parts of the model are on the disk, only blocks within this distance of the rig are
+/// counted.
+constexpr double kResidentReach_m = 1.0;
+
+std::vector<Advice> ToWire(AdviceKind kind) {
+  switch (kind) {
+    case AdviceKind::kGoBack:
+      return {Advice::kGoBackToRelocalise};
+    case AdviceKind::kHoldForNuc:
+      return {Advice::kHoldForNuc};
+    case AdviceKind::kDone:
+      return {Advice::kDone};
+    case AdviceKind::kSlower:
+      return {Advice::kSlower};
+    case AdviceKind::kCloser:
+      return {Advice::kMoveCloser};
+    case AdviceKind::kFarther:
+      return {Advice::kMoveFarther};
+    case AdviceKind::kLessOblique:
+      return {Advice::kLessOblique};
+    case AdviceKind::kMoreOblique:
+      return {Advice::kMoreOblique};
+    case AdviceKind::kNone:
+      break;
+  }
+  return {};
+}
+
+CoverageShares ToShares(const CoverageSummary& view) {
+  if (view.surface == 0.0) return {};
+  return {static_cast<float>(view.good), static_cast<float>(view.acceptable),
+          static_cast<float>(view.bad), static_cast<float>(view.never_measured)};
+}
+
+CoverageShares ToShares(const SurfaceAreas& areas) {
+  const double total = areas.total_m2();
+  if (!(total > 0.0)) return {};
+  const auto share = [total](double area) {
+    return static_cast<float>(std::clamp(area / total, 0.0, 1.0));
+  };
+  return {share(areas.good_m2), share(areas.acceptable_m2), share(areas.bad_m2),
+          share(areas.never_m2)};
+}
+
+TrackingState StateOf(const DepthReport& report) {
+  if (!report.tracked) return TrackingState::kLost;
+  return report.tracking.verdict() == Verdict::kDegraded ? TrackingState::kDegraded
+                                                         : TrackingState::kTracked;
+}
+
+/// Every `stride`th pixel of each row and column.
+void Thin(const SurfaceMaps& maps, int stride, SurfaceMaps& thin) {
+  thin.Resize(maps.width() / stride, maps.height() / stride);
+  const auto copy = [&](const Image<float>& from, Image<float>& to) {
+    for (int y = 0; y < to.height(); ++y) {
+      for (int x = 0; x < to.width(); ++x) to.At(x, y) = from.At(stride * x, stride * y);
+    }
+  };
+  copy(maps.vx, thin.vx);
+  copy(maps.vy, thin.vy);
+  copy(maps.vz, thin.vz);
+  copy(maps.nx, thin.nx);
+  copy(maps.ny, thin.ny);
+  copy(maps.nz, thin.nz);
+}
+
+/// A pose that was chosen, not measured, in `world`; nullopt while its sub-map is not joined.
+std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
+                                      const RigidTransform& T_map_depth) {
+  const std::optional<WorldPose> pose = atlas.ToWorld({.map = map, .T_map_depth = T_map_depth});
+  if (!pose) return std::nullopt;
+  return pose->T_world_depth;
+}
+
+/// Where tracking last worked, in `world`; nullopt if that is not known.
+std::optional<RigidTransform> LastKnownPose(const GroundPipeline& pipeline) {
+  if (!pipeline.trajectory().empty()) return pipeline.trajectory().back().T_world_depth;
+  const Atlas& atlas = pipeline.atlas();
+  const std::vector<RigidTransform>& known = atlas.active().relocaliser->library().poses();
+  if (known.empty()) return std::nullopt;
+  return InWorld(atlas, atlas.active_index(), known.back());
+}
+
+}  // namespace
+
+FeedbackMaker::FeedbackMaker(const GroundOptions& options, const RigDescription& rig)
+    : options_(options),
+      rig_(rig.rig),
+      session_(rig.session),
+      T_depth_thermal_(rig.rig.T_thermal_depth ? rig.rig.T_thermal_depth->inverse()
+                                               : RigidTransform::Identity()),
+      adviser_(options.feedback(), options.thermal()) {}
+
+SurfaceAreas FeedbackMaker::areas() const {
+  SurfaceAreas sum;
+  for (const auto& [map, coverage] : coverages_) sum += coverage.areas();
+  return sum;
+}
+
+ModelCoverage& FeedbackMaker::ActiveCoverage(const GroundPipeline& pipeline) {
+  return coverages_
+      .try_emplace(pipeline.atlas().active_index(),
+                   static_cast<float>(options_.export_().min_weight()))
+      .first->second;
+}
+
+ViewPlanner* FeedbackMaker::Planner(const GroundPipeline& pipeline) {
+  if (!rig_.depth || !rig_.thermal || !rig_.T_thermal_depth) return nullptr;
+  if (!planner_ || planned_map_ != pipeline.atlas().active_index()) {
+    planned_map_ = pipeline.atlas().active_index();
+    planner_.emplace(options_.feedback(), options_.thermal(), rig_,
+                     static_cast<float>(options_.raycast().min_weight()));
+  }
+  return &*planner_;
+}
+
+CoverageSummary FeedbackMaker::LookAtView(GroundPipeline& pipeline) {
+  const ModelView& model = pipeline.view();
+  view_.Resize(0, 0);
+  if (model.maps.width() == 0) return {};
+  const int columns = std::max(kLeastColumns, options_.feedback().picture_width_px());
+  Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
+  // Distances and angles are limits of the thermal camera.
+  SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
+             pipeline.thermal(), pipeline.pool(), view_);
+  return SummarizeCoverage(view_, options_.thermal());
+}
+
+ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
+  ScanSituation situation;
+  situation.tracking_lost = !moment.report.tracked;
+  situation.nuc_running = moment.nuc_running;
+  situation.speed_m_s = moment.speed_m_s;
+  situation.turn_rate_deg_s = moment.turn_rate_deg_s;
+  if (moment.frame_interval_s > 0.0) {
+    situation.max_speed_m_s = options_.tsdf().max_step_m() / moment.frame_interval_s;
+    situation.max_turn_rate_deg_s = options_.tsdf().max_step_deg() / moment.frame_interval_s;
+  }
+  const bool complete = !coverages_.empty() && std::ranges::all_of(coverages_, [](const auto& c) {
+    return c.second.complete();
+  });
+  const SurfaceAreas all = areas();
+  if (complete && all.total_m2() > 0.0) situation.model_good = all.good_m2 / all.total_m2();
+  return situation;
+}
+
+void FeedbackMaker::AddNextPose(const DepthReport& report, const GroundPipeline& pipeline,
+                                Feedback& feedback) const {
+  if (!report.tracked) {
+    feedback.T_world_depth_next = LastKnownPose(pipeline);
+    return;
+  }
+  if (feedback.done || !planner_ || planned_map_ != report.pose.map) return;
+  const std::optional<NextView>& best = planner_->best();
+  if (!best) return;
+  feedback.T_world_depth_next = InWorld(pipeline.atlas(), planned_map_, best->T_map_depth);
+  feedback.next_gain_m2 = best->gain_m2;
+  feedback.T_depth_next = report.pose.T_map_depth.inverse() * best->T_map_depth;
+}
+
+Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipeline) {
+  ++messages_;
+  Feedback feedback;
+  feedback.session = session_;
+  feedback.frame_number = moment.header.frame_number;
+  feedback.capture_time = moment.header.capture_time;
+  feedback.tracking_state = StateOf(moment.report);
+  if (const auto pose =
+          moment.report.tracked ? pipeline.atlas().ToWorld(moment.report.pose) : std::nullopt) {
+    feedback.T_world_depth = pose->T_world_depth;
+    feedback.pose_covariance = pose->covariance;
+  }
+  const CoverageSummary view = LookAtView(pipeline);
+  feedback.view = ToShares(view);
+  feedback.model = ToShares(areas());
+  feedback.covered_area_m2 = std::max(0.0, areas().total_m2());
+  OperatorAdvice advice = adviser_.Update(moment.header.capture_time, view, Situation(moment));
+  feedback.advice = ToWire(advice.kind);
+  feedback.advice_reason = std::move(advice.reason);
+  feedback.done = adviser_.done();
+  AddNextPose(moment.report, pipeline, feedback);
+  if (options_.feedback().picture_width_px() > 0 && view_.width() > 0) {
+    feedback.picture = EncodeWithin(
+        DrawConfidence(view_, feedback.tracking_state == TrackingState::kLost), kMaxPictureBytes);
+  }
+  return feedback;
+}
+
+void FeedbackMaker::ThinkAhead(GroundPipeline& pipeline) {
+  ModelCoverage& coverage = ActiveCoverage(pipeline);
+  // Looking at blocks that were given back would bring them back from the disk: those near the rig
+  // are in memory.
+  const bool has_spilled = pipeline.spiller().spilled() > 0;
+  const VoxelGrid& grid = pipeline.tsdf().grid();
+  const Eigen::Vector3d rig_vox = grid.ToVoxel(pipeline.view().T_map_depth.translation());
+  const double reach_vox = kResidentReach_m / grid.voxel_size_m;
+  coverage.Update(
+      pipeline.tsdf(), pipeline.thermal(),
+      [&](std::int32_t block) {
+        const GridIndex first = pipeline.tsdf().block_coordinates(block) * kBlockSide;
+        return has_spilled && (first.cast<double>() - rig_vox).norm() > reach_vox;
+      },
+      options_.feedback().blocks_per_message(), pipeline.pool());
+  ViewPlanner* planner = Planner(pipeline);
+  if (planner == nullptr || pipeline.view().maps.width() == 0 || adviser_.done()) return;
+  planner->Step(pipeline.tsdf(), pipeline.thermal(), coverage, pipeline.view().T_map_depth,
+                pipeline.pool());
+}
+
+}  // namespace isotherm

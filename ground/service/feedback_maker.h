@@ -1,0 +1,65 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "common/messages/messages.h"
+#include "ground/feedback/advice.h"
+#include "ground/feedback/model_coverage.h"
+#include "ground/feedback/view_planner.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/pipeline/ground_pipeline.h"
+
+namespace isotherm {
+
+/// Holds what a message of feedback is about.
+struct FeedbackMoment {
+  FrameHeader header;  ///< The newest depth frame's.
+  DepthReport report;  ///< What became of it.
+  bool nuc_running = false;
+  /// How the rig moved since the message before, and the time between two frames.
+  double speed_m_s = 0.0;
+  double turn_rate_deg_s = 0.0;
+  double frame_interval_s = 0.0;
+};
+
+/// Puts the feedback on a scan together from the model. What would take long is done a part at a
+/// time after each message (ThinkAhead). Thread-bound.
+class FeedbackMaker {
+ public:
+  FeedbackMaker(const GroundOptions& options, const RigDescription& rig);
+
+  Feedback Make(const FeedbackMoment& moment, GroundPipeline& pipeline);
+  /// Goes on with the coverage of the whole model and with the search for the next view.
+  void ThinkAhead(GroundPipeline& pipeline);
+
+  /// Surface that several sub-maps share counts in each of them.
+  SurfaceAreas areas() const;
+  /// Enough of the whole surface is measured well.
+  bool done() const { return adviser_.done(); }
+  std::uint64_t messages() const { return messages_; }
+
+ private:
+  /// The model as the depth camera saw it last, with what the thermal camera makes of it.
+  CoverageSummary LookAtView(GroundPipeline& pipeline);
+  ScanSituation Situation(const FeedbackMoment& moment) const;
+  void AddNextPose(const DepthReport& report, const GroundPipeline& pipeline,
+                   Feedback& feedback) const;
+  /// The coverage of the active sub-map, in whose coordinates the planner works too.
+  ModelCoverage& ActiveCoverage(const GroundPipeline& pipeline);
+  ViewPlanner* Planner(const GroundPipeline& pipeline);
+
+  const GroundOptions options_;
+  const Rig rig_;
+  const std::uint64_t session_;
+  const RigidTransform T_depth_thermal_;
+  OperatorAdviser adviser_;
+  std::map<int, ModelCoverage> coverages_;  ///< By sub-map.
+  int planned_map_ = 0;                     ///< The sub-map in whose coordinates views are planned.
+  std::optional<ViewPlanner> planner_;      ///< Not without a calibrated thermal camera.
+  SurfaceMaps maps_;                        ///< Every so manieth pixel of the model's view.
+  ViewMaps view_;
+  std::uint64_t messages_ = 0;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,282 @@
+#include "ground/service/ground_service.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+#include "common/base/exit_deadline.h"
+#include "common/base/log.h"
+#include "common/base/service.h"
+#include "common/transport/join_domain.h"
+#include "ground/export/results.h"
+#include "ground/service/distributor.h"
+#include "ground/service/health.h"
+#include "ground/service/reconstruction_loop.h"
+#include "ground/service/recording_loop.h"
+#include "ground/service/result_writer.h"
+#include "ground/service/scan_board.h"
+#include "ground/service/status_teller.h"
+#include "ground/service/worker.h"
+#include "ground/subscriber/subscriber.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+// All results are written by then. With its network interface down, the middleware never ends.
+constexpr auto kTimeToLeaveNetwork = 500ms;
+
+int Fail(const Status& status) {
+  LOG(Ground, Error) << status.message();
+  return ExitCode(status);
+}
+
+/// Six seconds of a rig's frames.
+constexpr RecordingQueue::Limits kRecordingLimits{.items = 450, .bytes = 128U << 20};
+
+/// A disk may be slow for longer than the service manager lets the service be silent, but not for
+/// ever.
+Nanoseconds DiskLimit() {
+  constexpr int kIntervals = 12;
+  constexpr std::chrono::microseconds kUnwatched = 5s;
+  return kIntervals * Nanoseconds(WatchdogInterval().value_or(kUnwatched));
+}
+
+/// Somebody who waits for one scan wants to know at once that the network is not there.
+Result<std::unique_ptr<Participant>> Join(int domain, const ServiceMode& mode,
+                                          const TransportEnvironment& environment,
+                                          const Clock& clock, const std::stop_token& stop) {
+  if (mode.single_scan) return Participant::Create(environment, domain);
+  return JoinDomain(environment, domain, clock, stop,
+                    [](const Status& reason) { NotifyWaiting(reason.message()); });
+}
+
+/// The service's threads and what joins them. Thread-bound to the main thread.
+class GroundService {
+ public:
+  GroundService(const GroundOptions& options, const ServiceMode& mode, const Clock& clock,
+                StopSignal& signal)
+      : options_(options),
+        mode_(mode),
+        clock_(clock),
+        signal_(signal),
+        health_(DiskLimit()),
+        to_reconstruction_(static_cast<std::size_t>(options.live().queue_frames()),
+                           OverflowPolicy::kBlock),
+        to_recording_(kRecordingLimits),
+        distributor_(options, mode.single_scan, clock, to_reconstruction_, to_recording_, board_,
+                     health_.receive) {}
+
+  /// Joins the link.
+  Status Open(const TransportEnvironment& environment);
+  /// Serves until the signal, then lets everything end. The exit status.
+  int Run();
+
+ private:
+  SubscriberOptions LinkOptions() const;
+  SubscriberHandlers Handlers();
+  /// Tells the service manager that all is well, while it is, and the operator how it goes.
+  void GuardUntilStopped();
+  void FeedWatchdog();
+  GroundSituation Situation() const;
+  /// Waits for a thread's end as long as what it needs goes on, and leaves without it otherwise.
+  void WaitForEnd(Worker& worker, GroundThread thread);
+  /// Ends the process although a thread is stuck in it.
+  [[noreturn]] void LeaveBehind(GroundThread stuck);
+  std::string StuckText(GroundThread stuck) const;
+
+  const GroundOptions& options_;
+  const ServiceMode mode_;
+  const Clock& clock_;
+  StopSignal& signal_;
+  ScanBoard board_;
+  Health health_;
+  ItemQueue to_reconstruction_;
+  RecordingQueue to_recording_;
+  Distributor distributor_;
+  ExitDeadline leaving_;  // Outlives the participant.
+  std::unique_ptr<Participant> participant_;
+  std::unique_ptr<Subscriber> subscriber_;
+  SteadyTime next_feed_{};
+  std::optional<std::string> told_problem_;
+};
+
+SubscriberOptions GroundService::LinkOptions() const {
+  SubscriberOptions link;
+  link.edge_id = options_.live().edge_id();
+  link.software_version = ISOTHERM_VERSION;
+  link.reorder_window = FromSeconds(options_.live().reorder_window_s());
+  link.max_clock_offset = FromSeconds(options_.live().max_clock_offset_s());
+  return link;
+}
+
+SubscriberHandlers GroundService::Handlers() {
+  SubscriberHandlers handlers;
+  Distributor& to = distributor_;
+  handlers.depth = [&to](ReceivedDepth depth) { to.OnFrame(std::move(depth)); };
+  handlers.thermal = [&to](ReceivedThermal thermal) { to.OnFrame(std::move(thermal)); };
+  handlers.late_depth = [&to](ReceivedDepth depth) { to.OnLate(std::move(depth)); };
+  handlers.late_thermal = [&to](ReceivedThermal thermal) { to.OnLate(std::move(thermal)); };
+  handlers.outside_pose = [&to](const OutsidePoseSample& pose) { to.OnFrame(pose); };
+  handlers.rig = [&to](const RigDescription& rig) { to.OnRig(rig); };
+  handlers.clock = [&to](const ClockAccount& account) { to.OnClock(account); };
+  handlers.session_end = [&to](const SessionAccount& account) { to.OnSessionEnd(account); };
+  handlers.status = [this](const EdgeStatus& status) { board_.edge.Set(status); };
+  handlers.turn = [this] { health_.receive.Busy(clock_.SteadyNow()); };
+  return handlers;
+}
+
+Status GroundService::Open(const TransportEnvironment& environment) {
+  Result<std::unique_ptr<Participant>> participant =
+      Join(options_.live().domain(), mode_, environment, clock_, signal_.token());
+  if (!participant) return participant.error();
+  participant_ = std::move(*participant);
+  Result<std::unique_ptr<Subscriber>> subscriber =
+      Subscriber::Create(*participant_, clock_, LinkOptions(), Handlers());
+  if (!subscriber) return subscriber.error();
+  subscriber_ = std::move(*subscriber);
+  return OkStatus();
+}
+
+int GroundService::Run() {
+  const auto written = [this] {
+    if (mode_.single_scan) signal_.Request();
+  };
+  const auto account = [this](std::uint64_t session) { return subscriber_->account(session); };
+  ResultWriter results(options_, clock_, account, board_, health_.results, written);
+  RecordingLoop recording(options_, clock_, board_, health_.recording);
+  ReconstructionLoop reconstruction(options_, clock_, *subscriber_, to_recording_, results, board_,
+                                    health_.reconstruction);
+  {
+    Worker result_thread([&](const std::stop_token& stop) { results.Run(stop); });
+    Worker recording_thread(
+        [&](const std::stop_token& stop) { recording.Run(to_recording_, stop); });
+    Worker reconstruction_thread(
+        [&](const std::stop_token& stop) { reconstruction.Run(to_reconstruction_, stop); });
+    Worker receive_thread([&](const std::stop_token& stop) {
+      distributor_.SetStop(stop);
+      subscriber_->Run(stop);
+      health_.receive.Idle();
+    });
+    NotifyReady("waiting for an edge");
+    LOG(Ground, Info) << "ready, domain=" << options_.live().domain() << " edge_id=\""
+                      << options_.live().edge_id()
+                      << "\" output_dir=" << options_.live().output_dir();
+    GuardUntilStopped();
+    NotifyStopping();
+    // Reception first; then each consumer empties its queue and closes its files.
+    receive_thread.RequestStop();
+    WaitForEnd(receive_thread, GroundThread::kReception);
+    recording_thread.RequestStop();
+    reconstruction_thread.RequestStop();
+    WaitForEnd(reconstruction_thread, GroundThread::kReconstruction);
+    result_thread.RequestStop();
+    WaitForEnd(result_thread, GroundThread::kResults);
+    WaitForEnd(recording_thread, GroundThread::kRecording);
+  }
+  int exit_code = 0;
+  for (const Status& status : {recording.status(), results.status(), reconstruction.status()}) {
+    if (exit_code == 0) exit_code = ExitCode(status);
+  }
+  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "the middleware");
+  return exit_code;
+}
+
+void GroundService::GuardUntilStopped() {
+  constexpr Nanoseconds kTick = 200ms;
+  StatusTeller status(clock_);
+  std::mutex mutex;
+  std::condition_variable_any wake;
+  std::unique_lock lock(mutex);
+  const std::stop_token stop = signal_.token();
+  while (!wake.wait_for(lock, stop, kTick, [&] { return stop.stop_requested(); })) {
+    FeedWatchdog();
+    status.Tell(Situation());
+  }
+}
+
+void GroundService::FeedWatchdog() {
+  const SteadyTime now = clock_.SteadyNow();
+  const std::optional<std::string> problem = health_.Problem(now);
+  if (problem && !told_problem_) {
+    LOG(Ground, Error) << *problem << "; the service manager is not told any more that all is well";
+  } else if (!problem && told_problem_) {
+    LOG(Ground, Info) << "all goes on again";
+  }
+  told_problem_ = problem;
+  if (problem || now < next_feed_) return;
+  constexpr std::chrono::microseconds kUnwatched = 1s;
+  next_feed_ = now + WatchdogInterval().value_or(kUnwatched);
+  NotifyWatchdog();
+}
+
+GroundSituation GroundService::Situation() const {
+  GroundSituation situation{.link = subscriber_->stats(),
+                            .feedback = board_.feedback.Get(),
+                            .edge = board_.edge.Get(),
+                            .behind = board_.behind.Get().value_or(BehindCounts()),
+                            .recording = {},
+                            .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
+                            .scans_being_written = board_.scans_being_written,
+                            .scans_given_up = board_.scans_given_up,
+                            .problem = told_problem_};
+  if (const auto ledger = board_.recording.Get()) situation.recording = (*ledger)->Get();
+  return situation;
+}
+
+void GroundService::WaitForEnd(Worker& worker, GroundThread thread) {
+  constexpr Nanoseconds kTick = 50ms;
+  constexpr std::chrono::microseconds kExtension = 10s;
+  while (!worker.WaitForEnd(kTick)) {
+    if (const auto stuck = health_.StuckBeforeEnd(thread, clock_.SteadyNow())) LeaveBehind(*stuck);
+    NotifyExtendTimeout(kExtension);
+    FeedWatchdog();
+  }
+}
+
+std::string GroundService::StuckText(GroundThread stuck) const {
+  switch (stuck) {
+    case GroundThread::kReception:
+      return "reception is stuck";
+    case GroundThread::kReconstruction:
+      return "the reconstruction is stuck";
+    case GroundThread::kResults:
+      return "the disk is stuck: results are not complete, output_dir=" +
+             options_.live().output_dir();
+    case GroundThread::kRecording:
+      break;
+  }
+  const auto ledger = board_.recording.Get();
+  return "the disk is stuck: the recording is not complete, file=" +
+         (ledger ? (*ledger)->Get().path.string() : "?");
+}
+
+void GroundService::LeaveBehind(GroundThread stuck) {
+  const int exit_code = ExitCode(IoError(""));
+  LOG(Ground, Error) << StuckText(stuck) << "; leaving without it";
+  // The link is not torn down: the stuck thread may still use it. The rig notices within the lease.
+  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "standard output");
+  std::fflush(nullptr);
+  _exit(exit_code);
+}
+
+}  // namespace
+
+int RunGround(const GroundOptions& options, const ServiceMode& mode,
+              const TransportEnvironment& environment, const Clock& clock, StopSignal& signal) {
+  if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
+    return Fail(prepared);
+  GroundService service(options, mode, clock, signal);
+  if (const Status opened = service.Open(environment); !opened.ok())
+    return signal.token().stop_requested() ? 0 : Fail(opened);
+  return service.Run();
+}
+
+}  // namespace isotherm

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "ground/export/json.h"
+#include "ground/service/recording_ledger.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+/// Describes what became of a session's frames, how soon feedback reached the edge and how good the
+/// rig's clock was, as it goes into stats.json.
+void DescribeAccount(const SessionAccount& account, const RecordingAccount& recording, Json& link);
+
+/// The same for the user: a line per stream, one about feedback if its age is known, one about the
+/// clock.
+std::string AccountText(const SessionAccount& account, const RecordingAccount& recording);
+
+}  // namespace isotherm

@@ -1,0 +1,215 @@
+#include "ground/service/live_scan.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <utility>
+
+#include "common/base/log.h"
+#include "ground/results/scan_result.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kMsPerS = 1e3;
+
+}  // namespace
+
+std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
+                                    std::uint64_t session, CaptureTime start) {
+  const std::filesystem::path base(options.live().output_dir());
+  if (single_scan) return base;
+  const std::time_t seconds = ToNanoseconds(start) / 1'000'000'000;
+  return base / fmt::format("scan-{:%Y%m%dT%H%M%SZ}-{:08x}", fmt::gmtime(seconds),
+                            static_cast<std::uint32_t>(session));
+}
+
+Result<std::unique_ptr<LiveScan>> LiveScan::Create(const Clock& clock, const GroundOptions& options,
+                                                   const RigDescription& rig) {
+  Result<std::unique_ptr<GroundPipeline>> pipeline =
+      GroundPipeline::Create(options, rig.rig, std::nullopt);
+  if (!pipeline) return Err(pipeline.error());
+  return std::unique_ptr<LiveScan>(new LiveScan(clock, options, rig, std::move(*pipeline)));
+}
+
+LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
+                   std::unique_ptr<GroundPipeline> pipeline)
+    : clock_(clock),
+      options_(options),
+      session_(rig.session),
+      rig_(rig.rig),
+      keeps_up_(options.live().max_wait_s() > 0.0 && !rig.waits_for_ground),
+      pipeline_(std::move(pipeline)),
+      assembler_(rig.rig.thermal.has_value()),
+      delay_check_(options.delay_check(), rig.rig, std::nullopt),
+      feedback_(options, rig) {}
+
+void LiveScan::Add(const ReceivedDepth& depth) {
+  if (keeps_up_) KeepUp(clock_.Now() - depth.queued);
+  arrivals_[depth.frame.get()] = depth.arrival;
+  assembler_.Add(depth.frame);
+  while (const auto frame = assembler_.Pop()) Process(*frame);
+}
+
+void LiveScan::Add(const ReceivedThermal& thermal) {
+  const NucState state = thermal.frame->nuc_state;
+  moment_.nuc_running = state == NucState::kImminent || state == NucState::kInProgress ||
+                        state == NucState::kSettling;
+  arrivals_[thermal.frame.get()] = thermal.arrival;
+  assembler_.Add(thermal.frame);
+  while (const auto frame = assembler_.Pop()) Process(*frame);
+}
+
+void LiveScan::Add(const OutsidePoseSample& sample) {
+  ++outside_poses_received_;
+  next_outside_pose_ = std::max(next_outside_pose_, sample.number + 1);
+  pipeline_->ProcessOutsidePose(sample.pose);
+}
+
+void LiveScan::FinishFrames(const std::function<void(double share)>& progress) {
+  while (const auto frame = assembler_.Flush()) Process(*frame);
+  pipeline_->Finish(progress);
+}
+
+BehindCounts LiveScan::behind() const {
+  const PipelineCounts& counts = pipeline_->counts();
+  const auto thermal = counts.thermal_left_out.find("behind");
+  return {.now = is_behind_,
+          .thermal_frames = thermal == counts.thermal_left_out.end() ? 0 : thermal->second,
+          .depth_frames = counts.depth_behind};
+}
+
+DelayReport LiveScan::CheckDelay(const std::function<void()>& progress) {
+  constexpr Nanoseconds kSilence = std::chrono::seconds(2);
+  const SteadyTime start = clock_.SteadyNow();
+  bool told = false;
+  return delay_check_.Finish(*pipeline_, [&](double share) {
+    if (progress) progress();
+    if (told || clock_.SteadyNow() - start < kSilence) return;
+    told = true;
+    LOG(Ground, Info) << fmt::format("checking the delay of the thermal camera, {:.0f} % done",
+                                     100.0 * share);
+  });
+}
+
+void LiveScan::NoteTurn(const void* frame) {
+  const auto arrival = arrivals_.extract(frame);
+  constexpr double kMsPerNs = 1e-6;
+  if (arrival) {
+    waiting_.Add(kMsPerNs * static_cast<double>((clock_.Now() - arrival.mapped()).count()));
+  }
+  // Frames that the assembler refused never have a turn.
+  constexpr std::size_t kMostHeld = 1024;
+  if (arrivals_.size() > kMostHeld) arrivals_.clear();
+}
+
+void LiveScan::KeepUp(Nanoseconds queued) {
+  // The rest is for the other stream's next frame.
+  constexpr double kThermalShare = 0.4;
+  constexpr double kIntegrationShare = 0.7;
+  const double share = ToSeconds(queued) / options_.live().max_wait_s();
+  is_behind_ = share > kThermalShare;
+  pipeline_->set_effort(share > kIntegrationShare ? Effort::kEverySecond
+                        : share > kThermalShare   ? Effort::kNoThermal
+                                                  : Effort::kAll);
+  if (share <= kIntegrationShare || told_behind_) return;
+  told_behind_ = true;
+  LOG(Ground, Warning) << fmt::format(
+      "a frame waited {:.0f} ms for its turn: work is left out to keep up (frames left out as "
+      "\"behind\" in stats.json; the recording has all)",
+      1e3 * ToSeconds(queued));
+}
+
+void LiveScan::Process(const Assembler::Frame& frame) {
+  if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
+    NoteTurn(thermal->get());
+    pipeline_->ProcessThermal(*thermal);
+    delay_check_.Add(*thermal, *pipeline_);
+    return;
+  }
+  const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
+  NoteTurn(&depth);
+  const DepthReport report = pipeline_->ProcessDepth(depth);
+  if (report.repeated) return;  // Says nothing new.
+  const CaptureTime time = depth.header.capture_time;
+  NoteMotion(report, time);
+  moment_.report = report;
+  moment_.header = depth.header;
+  if (next_feedback_ && time < *next_feedback_) return;
+  feedback_waiting_ = true;
+  // From the deadline before, so that jitter does not lower the rate; after a gap, from now.
+  const Nanoseconds period = FromSeconds(1.0 / options_.live().feedback_hz());
+  const CaptureTime due = next_feedback_.value_or(time) + period;
+  next_feedback_ = due > time ? due : time + period;
+}
+
+void LiveScan::NoteMotion(const DepthReport& report, CaptureTime time) {
+  if (!motion_since_) {
+    motion_since_ = time;
+    return;
+  }
+  ++frames_;
+  if (report.tracked) {
+    path_m_ += report.tracking.step_m;
+    turned_rad_ += report.tracking.step_rad;
+  }
+  const double elapsed_s = ToSeconds(time - *motion_since_);
+  if (elapsed_s <= 0.0) return;
+  moment_.speed_m_s = path_m_ / elapsed_s;
+  moment_.turn_rate_deg_s = turned_rad_ * kDegPerRad / elapsed_s;
+  moment_.frame_interval_s = elapsed_s / frames_;
+}
+
+std::optional<Feedback> LiveScan::TakeFeedback() {
+  if (!feedback_waiting_) return std::nullopt;
+  feedback_waiting_ = false;
+  const SteadyTime start = clock_.SteadyNow();
+  Feedback feedback = feedback_.Make(moment_, *pipeline_);
+  making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
+  motion_since_ = moment_.header.capture_time;
+  path_m_ = 0.0;
+  turned_rad_ = 0.0;
+  frames_ = 0;
+  TellWhenDone();
+  return feedback;
+}
+
+void LiveScan::TellWhenDone() {
+  if (feedback_.done() == told_done_) return;
+  told_done_ = feedback_.done();
+  const SurfaceAreas areas = feedback_.areas();
+  LOG(Ground, Info) << fmt::format(
+      "{}: {:.1f} % of {:.3f} m2 of surface are measured well, {:.1f} % are asked for "
+      "(feedback.done_share)",
+      told_done_ ? "the scan is done" : "the scan is not done any more: there is more surface",
+      100.0 * areas.good_m2 / areas.total_m2(), areas.total_m2(),
+      100.0 * options_.feedback().done_share());
+}
+
+void LiveScan::ThinkAhead() {
+  if (is_behind_) return;
+  const SteadyTime start = clock_.SteadyNow();
+  feedback_.ThinkAhead(*pipeline_);
+  thinking_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
+}
+
+Json LiveScan::DescribeFeedback() const {
+  const SurfaceAreas areas = feedback_.areas();
+  Json json;
+  json["messages"] = feedback_.messages();
+  json["done"] = feedback_.done();
+  json["surface_m2"] = areas.total_m2();
+  json["good_m2"] = areas.good_m2;
+  json["acceptable_m2"] = areas.acceptable_m2;
+  json["bad_m2"] = areas.bad_m2;
+  json["never_measured_m2"] = areas.never_m2;
+  json["making"] = DescribeStage(making_);
+  json["thinking_ahead"] = DescribeStage(thinking_);
+  return json;
+}
+
+}  // namespace isotherm

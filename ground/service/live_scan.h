@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "common/base/stage_stats.h"
+#include "common/base/status.h"
+#include "common/messages/messages.h"
+#include "common/time/clock.h"
+#include "ground/assembler/assembler.h"
+#include "ground/calibration/delay_check.h"
+#include "ground/export/json.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/pipeline/ground_pipeline.h"
+#include "ground/service/feedback_maker.h"
+#include "ground/service/scan_board.h"
+#include "ground/subscriber/received_frame.h"
+
+namespace isotherm {
+
+/// Where the results of a session go.
+std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
+                                    std::uint64_t session, CaptureTime start);
+
+/// One session of the live driver: the same stages as the inline one, fed by the link. Owns no
+/// thread. Thread-bound to the reconstruction thread.
+class LiveScan {
+ public:
+  /// `clock` must outlive the scan; it is only asked how long frames waited.
+  static Result<std::unique_ptr<LiveScan>> Create(const Clock& clock, const GroundOptions& options,
+                                                  const RigDescription& rig);
+
+  void Add(const ReceivedDepth& depth);
+  void Add(const ReceivedThermal& thermal);
+  /// Not held back: frames wait for each other, so poses are there before them.
+  void Add(const OutsidePoseSample& sample);
+  /// Processes what the assembler still holds back.
+  void FinishFrames(const std::function<void(double share)>& progress = {});
+  /// After that: whether the delay that the edge added to thermal stamps is right.
+  DelayReport CheckDelay(const std::function<void()>& progress = {});
+
+  /// Feedback on the newest depth frame if one is due (LiveOptions.feedback_hz, by capture time).
+  std::optional<Feedback> TakeFeedback();
+  /// To be called when that was sent: prepares the next. Left out while frames wait.
+  void ThinkAhead();
+  /// Coverage of the whole model as it goes into stats.json.
+  Json DescribeFeedback() const;
+
+  /// From a frame's arrival to its turn: in queues, and for the other stream.
+  const StageStats& waiting() const { return waiting_; }
+
+  std::uint64_t session() const { return session_; }
+  /// The model's surface by how well it was measured.
+  SurfaceAreas areas() const { return feedback_.areas(); }
+  /// Returns what was left out to keep up.
+  BehindCounts behind() const;
+  std::uint64_t out_of_order() const { return assembler_.refused_late(); }
+  std::uint64_t outside_poses_received() const { return outside_poses_received_; }
+  /// Numbers below the highest received that did not come.
+  std::uint64_t outside_poses_missing() const {
+    return next_outside_pose_ - std::min(next_outside_pose_, outside_poses_received_);
+  }
+  GroundPipeline& pipeline() { return *pipeline_; }
+  const Rig& rig() const { return rig_; }
+
+ private:
+  LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
+           std::unique_ptr<GroundPipeline> pipeline);
+  void Process(const Assembler::Frame& frame);
+  void NoteTurn(const void* frame);
+  /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
+  void KeepUp(Nanoseconds queued);
+  /// Sums up what the rig did since the last feedback.
+  void NoteMotion(const DepthReport& report, CaptureTime time);
+  void TellWhenDone();
+
+  const Clock& clock_;
+  const GroundOptions options_;
+  const std::uint64_t session_;
+  const Rig rig_;
+  const bool keeps_up_;
+  std::unique_ptr<GroundPipeline> pipeline_;
+  Assembler assembler_;
+  DelayCheck delay_check_;
+  FeedbackMaker feedback_;
+  FeedbackMoment moment_;  ///< The newest depth frame's.
+  bool feedback_waiting_ = false;
+  std::optional<CaptureTime> next_feedback_;
+  std::optional<CaptureTime>
+      motion_since_;  ///< Time of the last frame before those summed up here.
+  double path_m_ = 0.0;
+  double turned_rad_ = 0.0;
+  int frames_ = 0;
+  bool is_behind_ = false;
+  bool told_done_ = false;
+  std::uint64_t outside_poses_received_ = 0;
+  std::uint64_t next_outside_pose_ = 0;
+  std::map<const void*, CaptureTime> arrivals_;  ///< When the frames in the assembler arrived.
+  StageStats waiting_;
+  StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
+  bool told_behind_ = false;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,115 @@
+#include "ground/service/reconstruction_loop.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/frame/plausibility.h"
+#include "ground/service/status_teller.h"
+
+namespace isotherm {
+namespace {
+
+/// What the results of a model take per block of 512 voxels, about: model.iso, cloud and mesh.
+constexpr std::uint64_t kResultBytesPerBlock = 6'000;
+/// Pictures, trajectory, statistics.
+constexpr std::uint64_t kResultBytesAtLeast = 4U << 20;
+
+}  // namespace
+
+void ReconstructionLoop::Run(ItemQueue& queue, const std::stop_token& stop) {
+  stop_ = stop;
+  while (std::optional<Item> item = queue.Pop(stop)) {
+    progress_.Busy(clock_.SteadyNow());
+    if (stop.stop_requested() && IsFrame(*item)) {
+      ++unprocessed_;
+    } else {
+      std::visit([this](const auto& value) { Handle(value); }, *item);
+    }
+    progress_.Idle();
+  }
+  End();
+  progress_.Idle();
+}
+
+void ReconstructionLoop::Handle(const SessionStart& start) {
+  End();
+  start_ = start;
+  started_ = true;
+  TellAboutCameras(start.rig);
+  Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
+  if (!scan) {
+    LOG(Ground, Error) << "session " << start.rig.session
+                       << " is recorded only: " << scan.error().message();
+    status_ = scan.error();
+    return;
+  }
+  scan_ = std::move(*scan);
+  LOG(Ground, Info) << "scan started, session=" << start.rig.session
+                    << " results=" << start.folder.string();
+  for (const std::string& doubt : DoubtsAbout(start.rig.rig)) LOG(Ground, Warning) << doubt;
+  if (const Status& thermal = scan_->pipeline().thermal_status(); !thermal.ok()) {
+    LOG(Ground, Warning) << thermal.message();
+  }
+}
+
+void ReconstructionLoop::Handle(const SessionAccount& account) {
+  LOG(Ground, Info) << "scan ended, session=" << account.session;
+  End();
+}
+
+void ReconstructionLoop::Handle(const OutsidePoseSample& sample) {
+  if (scan_) scan_->Add(sample);
+}
+
+template <typename Frame>
+void ReconstructionLoop::HandleFrame(const Frame& frame) {
+  if (!scan_) return;
+  scan_->Add(frame);
+  const std::optional<Feedback> feedback = scan_->TakeFeedback();
+  if (!feedback) return;
+  SendFeedback(*feedback);
+  EstimateResults();
+  scan_->ThinkAhead();
+}
+
+void ReconstructionLoop::EstimateResults() {
+  if (board_.scans_being_written == 0) ended_result_bytes_ = 0;
+  const auto blocks = static_cast<std::uint64_t>(scan_->pipeline().tsdf().block_count());
+  result_bytes_ = kResultBytesAtLeast + kResultBytesPerBlock * blocks;
+  board_.result_bytes = ended_result_bytes_ + result_bytes_;
+}
+
+void ReconstructionLoop::SendFeedback(const Feedback& feedback) {
+  const BehindCounts behind = scan_->behind();
+  board_.feedback.Set(feedback);
+  board_.behind.Set(behind);
+  // The edge has no member for this; its operator is told in words.
+  Feedback sent = feedback;
+  if (behind.thermal_frames > 0) {
+    sent.advice_reason +=
+        fmt::format("{}the ground is behind, {} thermal frames were left out",
+                    sent.advice_reason.empty() ? "" : "; ", behind.thermal_frames);
+  }
+  if (const Status status = subscriber_.Publish(sent); !status.ok()) {
+    LOG(Ground, Debug) << "feedback not sent: " << status.message();
+  }
+  recording_.Offer(std::move(sent), {}, stop_);
+}
+
+void ReconstructionLoop::Handle(const ReceivedDepth& frame) { HandleFrame(frame); }
+
+void ReconstructionLoop::Handle(const ReceivedThermal& frame) { HandleFrame(frame); }
+
+void ReconstructionLoop::End() {
+  if (!std::exchange(started_, false)) return;
+  board_.feedback.Take();
+  board_.behind.Take();
+  ended_result_bytes_ += std::exchange(result_bytes_, 0);
+  progress_.Idle();  // If it has to wait, then for the results of others.
+  results_.Hand({std::move(start_), std::move(scan_), std::exchange(unprocessed_, 0)}, stop_);
+  progress_.Busy(clock_.SteadyNow());
+}
+
+}  // namespace isotherm

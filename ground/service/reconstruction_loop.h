@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+
+#include "common/time/clock.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/service/live_scan.h"
+#include "ground/service/recording_queue.h"
+#include "ground/service/result_writer.h"
+#include "ground/service/scan_board.h"
+#include "ground/service/session_item.h"
+#include "ground/subscriber/subscriber.h"
+
+namespace isotherm {
+
+/// Reconstructs one session after the other, hands ended ones over to have their results written,
+/// and sends feedback. Thread-bound to the reconstruction thread.
+class ReconstructionLoop {
+ public:
+  /// `recording` gets the feedback, `results` the scans that have ended.
+  ReconstructionLoop(const GroundOptions& options, const Clock& clock, Subscriber& subscriber,
+                     RecordingQueue& recording, ResultWriter& results, ScanBoard& board,
+                     ThreadProgress& progress)
+      : clock_(clock),
+        options_(options),
+        subscriber_(subscriber),
+        recording_(recording),
+        results_(results),
+        board_(board),
+        progress_(progress) {}
+
+  /// Until stop is requested; frames that wait then are counted and left out.
+  void Run(ItemQueue& queue, const std::stop_token& stop);
+  /// The last failure. Not while it runs.
+  const Status& status() const { return status_; }
+
+ private:
+  void Handle(const SessionStart& start);
+  void Handle(const SessionAccount& account);
+  void Handle(const OutsidePoseSample& sample);
+  void Handle(const ReceivedDepth& frame);
+  void Handle(const ReceivedThermal& frame);
+  void Handle(const Feedback& /*feedback*/) {}   // Comes from here.
+  void Handle(const ClockAccount& /*clock*/) {}  // For the recording.
+  template <typename Frame>
+  void HandleFrame(const Frame& frame);
+  void SendFeedback(const Feedback& feedback);
+  /// Tells how much of the disk the results will need.
+  void EstimateResults();
+  void End();
+
+  const Clock& clock_;
+  const GroundOptions& options_;
+  Subscriber& subscriber_;
+  RecordingQueue& recording_;
+  ResultWriter& results_;
+  ScanBoard& board_;
+  ThreadProgress& progress_;
+  std::stop_token stop_;
+  bool started_ = false;  ///< A session; without a scan if that could not be begun.
+  SessionStart start_;    ///< That session's.
+  std::unique_ptr<LiveScan> scan_;
+  std::uint64_t unprocessed_ = 0;  ///< Frames of this session.
+  std::uint64_t result_bytes_ = 0;
+  std::uint64_t ended_result_bytes_ = 0;  ///< Results of scans that are still being written.
+  Status status_;
+};
+
+}  // namespace isotherm

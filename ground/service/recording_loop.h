@@ -1,0 +1,64 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <stop_token>
+
+#include "common/time/clock.h"
+#include "common/time/thread_progress.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/service/recording_queue.h"
+#include "ground/service/scan_board.h"
+#include "ground/service/scan_recorder.h"
+#include "ground/service/session_item.h"
+
+namespace isotherm {
+
+/// Records one session after the other, and leaves room on the disk for the results: the recording
+/// ends when no more than these are expected to take is free. Thread-bound to the recording thread.
+class RecordingLoop {
+ public:
+  RecordingLoop(const GroundOptions& options, const Clock& clock, const ScanBoard& board,
+                ThreadProgress& progress)
+      : options_(options), clock_(clock), board_(board), progress_(progress) {}
+
+  /// Until stop is requested and the queue is empty.
+  void Run(RecordingQueue& queue, const std::stop_token& stop);
+  /// The last failure. Not while it runs.
+  const Status& status() const { return status_; }
+
+ private:
+  void Handle(const SessionStart& start);
+  void Handle(const SessionAccount& /*account*/) { End(); }
+  void Handle(const Feedback& feedback);
+  void Handle(const ClockAccount& clock);
+  void Handle(const OutsidePoseSample& sample);
+  void Handle(const ReceivedDepth& frame) { HandleFrame(frame, Sensor::kDepth); }
+  void Handle(const ReceivedThermal& frame) { HandleFrame(frame, Sensor::kThermal); }
+  template <typename Frame>
+  void HandleFrame(const Frame& frame, Sensor sensor);
+  void Open();
+  /// Looks from time to time how much is free; false if that is for the results.
+  bool HasRoom();
+  std::uint64_t ReserveBytes(std::uint64_t capacity) const;
+  void StopForReserve();
+  void Fail(const Status& status);
+  /// Enters what was written so far into the account.
+  void Enter();
+  void End();
+
+  const GroundOptions& options_;
+  const Clock& clock_;
+  const ScanBoard& board_;
+  ThreadProgress& progress_;
+  SessionStart start_;
+  std::unique_ptr<ScanRecorder> recorder_;
+  bool nearly_full_ = false;  ///< The recording was ended for the results' sake.
+  bool flushed_ = true;
+  SteadyTime opened_{};
+  SteadyTime next_look_{};
+  Status status_;
+};
+
+}  // namespace isotherm

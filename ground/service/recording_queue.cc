@@ -1,0 +1,66 @@
+#include "ground/service/recording_queue.h"
+
+#include <utility>
+#include <variant>
+
+namespace isotherm {
+namespace {
+
+/// Returns what an item keeps in memory, but for what all have.
+std::size_t Bytes(const Item& item) {
+  if (const auto* depth = std::get_if<ReceivedDepth>(&item))
+    return depth->encoded->image.payload.size();
+  if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
+    return thermal->encoded->image.payload.size();
+  if (const auto* feedback = std::get_if<Feedback>(&item)) return feedback->picture.size();
+  return 0;
+}
+
+}  // namespace
+
+bool RecordingQueue::HasRoom(std::size_t bytes) const {
+  return items_.empty() || (items_.size() < limits_.items && bytes_ + bytes <= limits_.bytes);
+}
+
+void RecordingQueue::Add(Item item, std::size_t bytes) {
+  items_.emplace_back(std::move(item), bytes);
+  bytes_ += bytes;
+  changed_.notify_all();
+}
+
+bool RecordingQueue::Offer(Item item, std::chrono::nanoseconds patience,
+                           const std::stop_token& stop) {
+  const std::size_t bytes = Bytes(item);
+  std::unique_lock lock(mutex_);
+  if (!HasRoom(bytes)) {
+    if (!moved_ || patience.count() == 0) return false;
+    if (!changed_.wait_for(lock, stop, patience, [&] { return HasRoom(bytes); })) {
+      moved_ = false;
+      return false;
+    }
+  }
+  Add(std::move(item), bytes);
+  return true;
+}
+
+void RecordingQueue::Push(Item item) {
+  const std::size_t bytes = Bytes(item);
+  std::scoped_lock lock(mutex_);
+  Add(std::move(item), bytes);
+}
+
+RecordingQueue::Outcome RecordingQueue::Pop(std::chrono::nanoseconds timeout,
+                                            const std::stop_token& stop,
+                                            std::optional<Item>& item) {
+  std::unique_lock lock(mutex_);
+  if (!changed_.wait_for(lock, stop, timeout, [this] { return !items_.empty(); }))
+    return stop.stop_requested() ? Outcome::kEnd : Outcome::kTimeout;
+  item = std::move(items_.front().first);
+  bytes_ -= items_.front().second;
+  items_.pop_front();
+  moved_ = true;
+  changed_.notify_all();
+  return Outcome::kItem;
+}
+
+}  // namespace isotherm

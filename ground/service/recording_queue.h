@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "ground/service/session_item.h"
+
+namespace isotherm {
+
+/// The way to the disk, which may be slow or stuck: whoever offers waits for a bounded time, once,
+/// and memory is bounded by items and by bytes. Thread-safe.
+class RecordingQueue {
+ public:
+  struct Limits {
+    std::size_t items = 1;
+    std::size_t bytes = 1;
+  };
+  explicit RecordingQueue(const Limits& limits) : limits_(limits) {}
+
+  /// Returns false if there is no room for `item` after `patience`. A queue from which nothing was
+  /// taken while somebody waited is not waited for again before something is.
+  bool Offer(Item item, std::chrono::nanoseconds patience, const std::stop_token& stop);
+  /// Takes what is rare and must not be lost, beginnings and ends of sessions, in any case.
+  void Push(Item item);
+
+  enum class Outcome { kItem, kTimeout, kEnd };
+  /// Waits for an item up to `timeout`. kEnd: stop was requested and nothing is left.
+  Outcome Pop(std::chrono::nanoseconds timeout, const std::stop_token& stop,
+              std::optional<Item>& item);
+
+ private:
+  bool HasRoom(std::size_t bytes) const;
+  void Add(Item item, std::size_t bytes);
+
+  const Limits limits_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::deque<std::pair<Item, std::size_t>> items_;  ///< With their size in bytes.
+  std::size_t bytes_ = 0;
+  bool moved_ = true;  ///< Something was taken since somebody waited in vain.
+};
+
+}  // namespace isotherm

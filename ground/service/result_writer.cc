@@ -1,0 +1,186 @@
+#include "ground/service/result_writer.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "common/base/log.h"
+#include "ground/export/results.h"
+#include "ground/results/scan_result.h"
+#include "ground/service/link_account.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+namespace fs = std::filesystem;
+
+/// The recording's end is written at the same time. A disk that takes longer is slow or stuck.
+constexpr Nanoseconds kClosingPatience = 1s;
+
+Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionAccount& account,
+                 const RecordingAccount& recording, std::uint64_t unprocessed) {
+  Json stats = DescribeScan(scan.pipeline(), options, scan.rig());
+  Json& link = stats["link"];
+  link["session"] = account.session;
+  link["closed"] = account.closed;
+  link["final"] = account.ended;
+  link["not_processed_at_stop"] = unprocessed;
+  link["waiting"] = DescribeStage(scan.waiting());
+  link["out_of_order_frames"] = scan.out_of_order();
+  if (scan.outside_poses_received() > 0) {
+    link["outside_poses"]["received"] = scan.outside_poses_received();
+    link["outside_poses"]["missing"] = scan.outside_poses_missing();
+  }
+  DescribeAccount(account, recording, link);
+  stats["feedback"] = scan.DescribeFeedback();
+  return stats;
+}
+
+/// Where results go that cannot be written where they belong.
+fs::path SecondFolder(const fs::path& folder) {
+  std::error_code error;
+  const fs::path base = fs::temp_directory_path(error);
+  const fs::path name = fs::absolute(folder, error).lexically_normal();
+  return base /
+         ("isotherm-" + (name.has_filename() ? name : name.parent_path()).filename().string());
+}
+
+/// Returns what to do next, for whoever holds the rig.
+std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
+                           const RecordingAccount& recording) {
+  std::string text;
+  if (const BehindCounts behind = scan.behind(); behind.thermal_frames > 0) {
+    text += fmt::format(
+        "behind   {} thermal frames were left out to keep up: isotherm reconstruct {} -o FOLDER "
+        "uses them\n",
+        behind.thermal_frames, recording.path.empty() ? "RECORDING" : recording.path.string());
+  }
+  const SurfaceAreas areas = scan.areas();
+  if (!(areas.total_m2() > 0.0)) return text;
+  const auto percent = [&](double area_m2) { return 100.0 * area_m2 / areas.total_m2(); };
+  text += fmt::format("next     measured well: {:.0f} % of {:.2f} m2", percent(areas.good_m2),
+                      areas.total_m2());
+  if (areas.good_m2 >= options.feedback().done_share() * areas.total_m2())
+    return text + ", as was asked for: the scan is done\n";
+  return text + fmt::format(
+                    ", {:.0f} % are asked for: go on with the {:.0f} % that were never measured "
+                    "and the {:.0f} % from a bad distance or angle\n",
+                    100.0 * options.feedback().done_share(), percent(areas.never_m2),
+                    percent(areas.bad_m2));
+}
+
+}  // namespace
+
+void ResultWriter::Hand(EndedScan ended, const std::stop_token& stop) {
+  ++board_.scans_being_written;
+  const Nanoseconds patience = ended.start.rig.waits_for_ground ? kReplayPatience : Nanoseconds(0);
+  std::unique_lock lock(mutex_);
+  if (!WaitForRoom(lock, patience, stop)) {
+    --board_.scans_being_written;
+    lock.unlock();
+    return GiveUp(ended);
+  }
+  waiting_ = std::move(ended);
+  changed_.notify_all();
+}
+
+bool ResultWriter::WaitForRoom(std::unique_lock<std::mutex>& lock, Nanoseconds patience,
+                               const std::stop_token& stop) {
+  const auto has_room = [this] { return !waiting_; };
+  if (changed_.wait_for(lock, stop, patience, has_room)) return true;
+  if (!stop.stop_requested()) return false;
+  changed_.wait(lock, has_room);
+  return true;
+}
+
+void ResultWriter::GiveUp(const EndedScan& ended) {
+  if (!ended.scan) return;  // It had none.
+  const fs::path recording = ended.start.recording->Get().path;
+  given_up_ = ResourceExhausted(fmt::format(
+      "the results of a scan are lost, session={}: those of two scans before it are still being "
+      "written, the disk is slow or stuck, output_dir={}; {}",
+      ended.start.rig.session, options_.live().output_dir(),
+      recording.empty() ? "its frames were not recorded"
+                        : fmt::format("its frames are in the recording: isotherm reconstruct {} -o "
+                                      "{}",
+                                      recording.string(), ended.start.folder.string())));
+  ++board_.scans_given_up;
+  LOG(Ground, Error) << given_up_.message();
+}
+
+std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  if (!changed_.wait(lock, stop, [this] { return waiting_.has_value(); })) return std::nullopt;
+  std::optional<EndedScan> ended = std::exchange(waiting_, std::nullopt);
+  changed_.notify_all();
+  return ended;
+}
+
+void ResultWriter::Run(const std::stop_token& stop) {
+  while (std::optional<EndedScan> ended = Take(stop)) {
+    progress_.Busy(clock_.SteadyNow());
+    Write(std::move(*ended));
+    progress_.Idle();
+    // The reserve on the disk was for these results; a scan under way says again what it needs.
+    if (--board_.scans_being_written == 0) board_.result_bytes = 0;
+    written_();
+  }
+}
+
+void ResultWriter::Write(EndedScan ended) {
+  if (!ended.scan) return;  // Recorded only.
+  LiveScan& scan = *ended.scan;
+  const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
+  scan.FinishFrames([&](double) { go_on(); });
+  const DelayReport delay = scan.CheckDelay([&] { go_on(); });
+  go_on();
+  const RecordingAccount recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
+  const SessionAccount account = account_(scan.session());
+  const Json stats = DescribeEnd(scan, options_, account, recording, ended.unprocessed);
+  const Result<std::string> text = WriteSomewhere(scan, delay, stats, ended.start.folder);
+  if (!text) {
+    status_ = text.error();
+    LOG(Ground, Error) << status_.message();
+    return;
+  }
+  const std::string summary =
+      *text + AccountText(account, recording) + ConclusionText(scan, options_, recording);
+  std::fputs(summary.c_str(), stdout);
+  std::fflush(stdout);
+}
+
+Result<std::string> ResultWriter::WriteSomewhere(LiveScan& scan, const DelayReport& delay,
+                                                 const Json& stats, const fs::path& folder) {
+  const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
+  const auto write = [&](const fs::path& to) -> Result<std::string> {
+    if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
+    Result<WrittenScan> written =
+        WriteScan(scan.pipeline(), options_, delay, DoubtsAbout(scan.rig()), stats, to, progress);
+    if (!written) return Err(written.error());
+    for (const std::string& doubt : written->doubts) LOG(Ground, Warning) << doubt;
+    return std::move(written->text);
+  };
+  const Result<std::string> first = write(folder);
+  if (first) return first;
+  status_ = first.error();
+  const fs::path second_folder = SecondFolder(folder);
+  LOG(Ground, Error) << "the results of this scan cannot be written: " << first.error().message()
+                     << "; trying " << second_folder.string();
+  Result<std::string> second = write(second_folder);
+  if (!second) {
+    return Err(first.error().WithContext("the results are lost: writing to " +
+                                         second_folder.string() + " failed too, " +
+                                         second.error().message()));
+  }
+  LOG(Ground, Warning) << "the results are in " << second_folder.string()
+                       << ", because they could not be written to " << folder.string();
+  return *second + fmt::format("         not in {}, which could not be written\n", folder.string());
+}
+
+}  // namespace isotherm

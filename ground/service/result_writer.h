@@ -1,0 +1,82 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+
+#include "common/time/clock.h"
+#include "common/time/thread_progress.h"
+#include "ground/export/json.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/service/live_scan.h"
+#include "ground/service/scan_board.h"
+#include "ground/service/session_item.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+/// A scan whose last frame was processed.
+struct EndedScan {
+  SessionStart start;
+  std::unique_ptr<LiveScan> scan;  ///< nullptr if it was recorded only.
+  std::uint64_t unprocessed = 0;   ///< Frames that were left in the queue at the stop.
+};
+
+/// Writes the results of one scan after the other, so that the next scan can be received and
+/// reconstructed meanwhile. At most one more waits: there are never more than three models in
+/// memory. Who brings another one to a disk that is stuck loses its results, and never waits for
+/// long: the recording has its frames. Hand() is for the reconstruction thread; the rest is bound
+/// to the thread of results.
+class ResultWriter {
+ public:
+  /// What is known of a session's frames by now.
+  using AccountSource = std::function<SessionAccount(std::uint64_t session)>;
+  /// `written` is called after each scan, whatever became of its results.
+  ResultWriter(const GroundOptions& options, const Clock& clock, AccountSource account,
+               ScanBoard& board, ThreadProgress& progress, std::function<void()> written)
+      : options_(options),
+        clock_(clock),
+        account_(std::move(account)),
+        board_(board),
+        progress_(progress),
+        written_(std::move(written)) {}
+
+  /// Takes a scan, or gives its results up, counted and said, if there is no room for it. A live
+  /// rig does not wait for us; a replay does for kReplayPatience, and who was asked to stop
+  /// receives nothing meanwhile.
+  void Hand(EndedScan ended, const std::stop_token& stop);
+  /// Until stop is requested and no scan waits.
+  void Run(const std::stop_token& stop);
+  /// The last failure. Not while it runs.
+  const Status& status() const { return status_.ok() ? given_up_ : status_; }
+
+ private:
+  static constexpr Nanoseconds kReplayPatience = std::chrono::seconds(10);
+
+  /// False if there is still no room after `patience`.
+  bool WaitForRoom(std::unique_lock<std::mutex>& lock, Nanoseconds patience,
+                   const std::stop_token& stop);
+  void GiveUp(const EndedScan& ended);
+  std::optional<EndedScan> Take(const std::stop_token& stop);
+  void Write(EndedScan ended);
+  /// Into the scan's folder or, if that fails, into another. The summary.
+  Result<std::string> WriteSomewhere(LiveScan& scan, const DelayReport& delay, const Json& stats,
+                                     const std::filesystem::path& folder);
+
+  const GroundOptions& options_;
+  const Clock& clock_;
+  const AccountSource account_;
+  ScanBoard& board_;
+  ThreadProgress& progress_;
+  const std::function<void()> written_;
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<EndedScan> waiting_;
+  Status status_;
+  Status given_up_;  ///< Of the reconstruction thread.
+};
+
+}  // namespace isotherm

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <variant>
+
+#include "common/concurrency/bounded_queue.h"
+#include "common/messages/messages.h"
+#include "ground/service/recording_ledger.h"
+#include "ground/subscriber/received_frame.h"
+#include "ground/subscriber/session_account.h"
+
+namespace isotherm {
+
+/// A new session: both consumers get the same folder and the account of what is recorded.
+struct SessionStart {
+  RigDescription rig;
+  std::filesystem::path folder;
+  std::shared_ptr<RecordingLedger> recording;
+};
+
+using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, OutsidePoseSample,
+                          SessionAccount, Feedback, ClockAccount>;
+using ItemQueue = BoundedQueue<Item>;
+
+inline bool IsFrame(const Item& item) {
+  return std::holds_alternative<ReceivedDepth>(item) ||
+         std::holds_alternative<ReceivedThermal>(item);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,173 @@
+#include "ground/surface/depth_preprocessor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "ground/surface/filter_kernel.h"
+#include "ground/surface/surface_map_kernel.h"
+
+namespace isotherm {
+namespace {
+
+constexpr int kRowsPerTask = 16;
+constexpr int kMaxBilateralRadius = 8;
+
+/// Pixels to either side for normals, per pyramid level: about the same patch of surface at each.
+constexpr std::array<int, kPyramidLevels> kNormalReach = {3, 2, 1};
+
+void ForRows(ThreadPool& pool, int height, const std::function<void(int)>& row) {
+  pool.ParallelFor((height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
+    const int end = std::min(height, (task + 1) * kRowsPerTask);
+    for (int y = task * kRowsPerTask; y < end; ++y) row(y);
+  });
+}
+
+Image<std::int32_t> MakeRectification(const CameraModel& camera) {
+  Image<std::int32_t> source(camera.width, camera.height, -1);
+  const CameraModel ideal = camera.WithoutDistortion();
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const Eigen::Vector2d pixel = ProjectNormalized(camera, Unproject(ideal, {u, v}));
+      const int x = static_cast<int>(std::lround(pixel.x()));
+      const int y = static_cast<int>(std::lround(pixel.y()));
+      if (source.Contains(x, y)) source.At(u, v) = y * camera.width + x;
+    }
+  }
+  return source;
+}
+
+}  // namespace
+
+Status Validate(const PreprocessorOptions& o) {
+  if (!(o.min_depth_m() >= 0.0 && o.max_depth_m() > o.min_depth_m() && o.max_depth_m() <= 100.0)) {
+    return InvalidArgument(
+        fmt::format("preprocessor: need 0 <= min_depth_m < max_depth_m <= 100 m, got {} m and {} m",
+                    o.min_depth_m(), o.max_depth_m()));
+  }
+  if (o.bilateral_radius_px() < 0 || o.bilateral_radius_px() > kMaxBilateralRadius) {
+    return InvalidArgument(
+        fmt::format("preprocessor.bilateral_radius_px must be 0..{} pixels, got {}",
+                    kMaxBilateralRadius, o.bilateral_radius_px()));
+  }
+  if (!(o.bilateral_sigma_px() > 0.0 && o.bilateral_sigma_depth_m() > 0.0 &&
+        o.max_surface_angle_deg() > 0.0 && o.max_surface_angle_deg() < 90.0)) {
+    return InvalidArgument(
+        "preprocessor: bilateral_sigma_px and bilateral_sigma_depth_m must be positive, "
+        "max_surface_angle_deg in (0, 90) "
+        "be positive");
+  }
+  return OkStatus();
+}
+
+void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
+                     ThreadPool& pool, Image<float>& filtered_m) {
+  const int width = depth_m.width();
+  const int height = depth_m.height();
+  const int radius = options.bilateral_radius_px();
+  filtered_m.Resize(width, height);
+  if (radius == 0) {
+    std::copy(depth_m.pixels().begin(), depth_m.pixels().end(), filtered_m.pixels().begin());
+    return;
+  }
+  const double sigma_px = options.bilateral_sigma_px();
+  const int side = 2 * radius + 1;
+  std::vector<float> spatial;
+  for (int dy = -radius; dy <= radius; ++dy) {
+    for (int dx = -radius; dx <= radius; ++dx) {
+      spatial.push_back(
+          static_cast<float>(std::exp(-(dx * dx + dy * dy) / (2.0 * sigma_px * sigma_px))));
+    }
+  }
+  // The biweight with tau = sqrt(7) sigma has the variance of a Gaussian with that sigma.
+  const auto tau_at_1m = static_cast<float>(options.bilateral_sigma_depth_m() * std::sqrt(7.0));
+  ForRows(pool, height, [&](int y) {
+    std::array<const float*, 2 * kMaxBilateralRadius + 1> rows{};
+    for (int k = 0; k < side; ++k) {
+      const int row = y + k - radius;
+      rows[k] = row >= 0 && row < height ? depth_m.Row(row).data() : nullptr;
+    }
+    BilateralRow({rows.data(), spatial.data(), radius, width, tau_at_1m}, filtered_m.Row(y));
+  });
+}
+
+float StepPerPixel(const CameraModel& camera, double angle_deg) {
+  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+  return static_cast<float>(std::tan(angle_deg * kRadPerDeg) / std::min(camera.fx, camera.fy));
+}
+
+void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
+                Image<float>& half_m) {
+  half_m.Resize(depth_m.width() / 2, depth_m.height() / 2);
+  ForRows(pool, half_m.height(), [&](int y) {
+    HalfRow({depth_m.Row(2 * y).data(), depth_m.Row(2 * y + 1).data(), max_step_ratio},
+            half_m.Row(y));
+  });
+}
+
+void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
+                     float max_step_ratio, float noise_at_1m, ThreadPool& pool, SurfaceMaps& maps) {
+  maps.Resize(depth_m.width(), depth_m.height());
+  const SurfaceMapArgs args{&depth_m,
+                            static_cast<float>(camera.fx),
+                            static_cast<float>(camera.fy),
+                            static_cast<float>(camera.cx),
+                            static_cast<float>(camera.cy),
+                            reach,
+                            max_step_ratio * static_cast<float>(reach),
+                            noise_at_1m};
+  ForRows(pool, depth_m.height(), [&](int y) { SurfaceMapRow(args, y, maps); });
+}
+
+DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options,
+                                     const CameraModel& depth_camera)
+    : options_(options), camera_(depth_camera.WithoutDistortion()) {
+  if (depth_camera.HasDistortion()) rectification_ = MakeRectification(depth_camera);
+  prepared_.camera = camera_;
+  prepared_.noise_at_1m = static_cast<float>(options.bilateral_sigma_depth_m());
+}
+
+void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
+  prepared_.depth_m.Resize(camera_.width, camera_.height);
+  const Image<std::uint16_t>* raw = &frame.depth_raw;
+  if (!rectification_.empty()) {
+    rectified_raw_.Resize(camera_.width, camera_.height);
+    ForRows(pool, camera_.height, [&](int y) {
+      const std::span<const std::int32_t> source = rectification_.Row(y);
+      std::transform(source.begin(), source.end(), rectified_raw_.Row(y).begin(),
+                     [&](std::int32_t i) { return i < 0 ? kNoDepth : frame.depth_raw.data()[i]; });
+    });
+    raw = &rectified_raw_;
+  }
+  const auto metres_per_unit = static_cast<float>(1.0 / frame.depth_scale);
+  const auto min_depth = static_cast<float>(options_.min_depth_m());
+  const auto max_depth = static_cast<float>(options_.max_depth_m());
+  std::atomic<int> valid{0};
+  ForRows(pool, camera_.height, [&](int y) {
+    valid += MetresRow({raw->Row(y).data(), metres_per_unit, min_depth, max_depth},
+                       prepared_.depth_m.Row(y));
+  });
+  prepared_.valid_pixels = valid;
+}
+
+const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadPool& pool) {
+  CHECK(frame.depth_raw.width() == camera_.width && frame.depth_raw.height() == camera_.height);
+  ToMetres(frame, pool);
+  BilateralFilter(prepared_.depth_m, options_, pool, filtered_m_[0]);
+  float finer_step = 0.0F;
+  for (int level = 0; level < kPyramidLevels; ++level) {
+    if (level > 0) HalveDepth(filtered_m_[level - 1], finer_step, pool, filtered_m_[level]);
+    const CameraModel camera = camera_.Downscaled(level);
+    const float step = StepPerPixel(camera, options_.max_surface_angle_deg());
+    MakeSurfaceMaps(filtered_m_[level], camera, kNormalReach[level], step, prepared_.noise_at_1m,
+                    pool, prepared_.maps[level]);
+    finer_step = step;
+  }
+  return prepared_;
+}
+
+}  // namespace isotherm

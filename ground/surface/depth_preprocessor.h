@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/surface/surface_maps.h"
+
+namespace isotherm {
+
+inline constexpr int kPyramidLevels = 3;
+
+/// A depth image made ready for tracking and integration. Depth camera coordinates, metres.
+struct PreparedDepth {
+  CameraModel camera;                            ///< Full resolution, without distortion.
+  Image<float> depth_m;                          ///< Measured depth along z, 0 = no return.
+  std::array<SurfaceMaps, kPyramidLevels> maps;  ///< Level 0 is full resolution, each next is half.
+  /// Standard deviation of depth at 1 m, metres; it grows with the square of the depth.
+  float noise_at_1m = 0.0F;
+  int valid_pixels = 0;  ///< Pixels of level 0 with a depth.
+};
+
+Status Validate(const PreprocessorOptions& options);
+
+/// Algorithm 1, lines 2-3: range check, rectification, bilateral filter, depth pyramid, vertex and
+/// normal maps. Keeps its images, so a stream of equal frames allocates nothing. Thread-compatible.
+class DepthPreprocessor {
+ public:
+  DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera);
+
+  /// `frame` must have the camera's size (CHECK). The result stays valid until the next call.
+  const PreparedDepth& Process(const DepthFrame& frame, ThreadPool& pool);
+
+ private:
+  void ToMetres(const DepthFrame& frame, ThreadPool& pool);
+
+  const PreprocessorOptions options_;
+  const CameraModel camera_;
+  Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside;
+                                       ///< empty: no distortion.
+  Image<std::uint16_t> rectified_raw_;
+  std::array<Image<float>, kPyramidLevels> filtered_m_;
+  PreparedDepth prepared_;
+};
+
+/// Bilateral filter with a Gaussian over pixels and a compact biweight (1 - (d/tau)^2)^2 over
+/// depth, tau growing with depth squared as the noise of a triangulating sensor does. 0 = no
+/// return, in and out.
+void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
+                     ThreadPool& pool, Image<float>& filtered_m);
+
+/// Difference in depth between neighbouring pixels, as a share of the depth, on a surface whose
+/// normal is turned away from the line of sight by `angle_deg`.
+float StepPerPixel(const CameraModel& camera, double angle_deg);
+
+/// Halves a depth image: mean of those of the 2x2 pixels that lie within `max_step_ratio` of the
+/// nearest.
+void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
+                Image<float>& half_m);
+
+/// Vertices and normals in camera coordinates. Normals from central differences over +-`reach`
+/// pixels; NaN where a neighbour is missing, further away than `max_step_ratio` times the depth per
+/// pixel of reach, or where the surface bends there by more than a slope and noise explain.
+/// `noise_at_1m` (metres) grows with depth squared.
+void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
+                     float max_step_ratio, float noise_at_1m, ThreadPool& pool, SurfaceMaps& maps);
+
+}  // namespace isotherm

@@ -1,0 +1,114 @@
+#include "tests/support/machine_load.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <fstream>
+#include <sstream>
+
+#include "tests/support/process.h"
+
+namespace isotherm::system_test {
+namespace {
+
+constexpr std::chrono::seconds kWindow{1};
+/// The programs need a third of one of two processors: with half of them they have what they need.
+constexpr double kBusyOnAverage = 0.5;
+constexpr double kBusyForASecond = 0.8;
+
+/// User and system time of a process and of its children that have ended.
+std::uint64_t TicksOf(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos) return 0;
+  std::istringstream fields(text.substr(name_end + 1));
+  std::string skipped;
+  for (int field = 3; field < 14; ++field) fields >> skipped;
+  std::uint64_t sum = 0;
+  for (int field = 14; field <= 17; ++field) {
+    std::uint64_t ticks = 0;
+    fields >> ticks;
+    sum += ticks;
+  }
+  return sum;
+}
+
+std::uint64_t TicksWithDescendants(pid_t pid) {
+  std::uint64_t sum = TicksOf(pid);
+  for (const pid_t child : ChildrenOf(pid)) sum += TicksWithDescendants(child);
+  return sum;
+}
+
+}  // namespace
+
+MachineLoad::MachineLoad()
+    : start_(Read()), thread_([this](const std::stop_token& stop) { Watch(stop); }) {}
+
+MachineLoad::Account MachineLoad::Read() {
+  Account account;
+  // The own part last: it is never too small for what it is taken off from.
+  std::ifstream file("/proc/stat");
+  std::string name;
+  file >> name;
+  // user, nice, system, idle, iowait, irq, softirq, steal; what follows is contained in these.
+  constexpr int kFields = 8;
+  constexpr int kIdle = 3;
+  constexpr int kWaitingForDisks = 4;
+  for (int field = 0; field < kFields; ++field) {
+    std::uint64_t ticks = 0;
+    file >> ticks;
+    account.all += ticks;
+    if (field != kIdle && field != kWaitingForDisks) account.busy += ticks;
+  }
+  account.own = TicksWithDescendants(::getpid());
+  return account;
+}
+
+double MachineLoad::OthersShare(const Account& from, const Account& to) {
+  const auto all = static_cast<double>(to.all - from.all);
+  if (all <= 0.0) return 0.0;
+  const double others =
+      static_cast<double>(to.busy - from.busy) - static_cast<double>(to.own - from.own);
+  return std::clamp(others / all, 0.0, 1.0);
+}
+
+void MachineLoad::Watch(const std::stop_token& stop) {
+  std::mutex mutex;
+  std::condition_variable_any never;
+  Account before = start_;
+  while (!stop.stop_requested()) {
+    std::unique_lock lock(mutex);
+    never.wait_for(lock, stop, kWindow, [] { return false; });
+    if (stop.stop_requested()) return;
+    const Account now = Read();
+    const std::scoped_lock worst_lock(mutex_);
+    worst_ = std::max(worst_, OthersShare(before, now));
+    before = now;
+  }
+}
+
+double MachineLoad::others_share() const { return OthersShare(start_, Read()); }
+
+double MachineLoad::worst_others_share() const {
+  const std::scoped_lock lock(mutex_);
+  return std::max(worst_, others_share());
+}
+
+bool MachineLoad::is_busy() const {
+  return others_share() > kBusyOnAverage || worst_others_share() > kBusyForASecond;
+}
+
+std::string MachineLoad::ToText() const {
+  return fmt::format(
+      "others took {:.0f} % of this computer's processors, {:.0f} % in the worst "
+      "second",
+      100.0 * others_share(), 100.0 * worst_others_share());
+}
+
+}  // namespace isotherm::system_test

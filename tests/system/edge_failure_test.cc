@@ -1,0 +1,412 @@
+// isotherm-edge as a process, when what it needs is missing or fails: cameras, disk, network,
+// whoever reads its messages. The test plays the service manager.
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "common/testing/temporary_directory.h"
+#include "edge/openni/testing/fake_depth_camera.h"
+#include "tests/support/programs.h"
+#include "tests/support/small_scan.h"
+
+namespace isotherm::system_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+/// As in the shipped unit.
+constexpr const char* kWatchdog = "WATCHDOG_USEC=10000000";
+constexpr Seconds kWatchdogSec{10};
+constexpr const char* kFed = "WATCHDOG=1";
+/// What is promised after SIGTERM, and what a loaded test computer adds.
+constexpr Seconds kTimeToLeave{2.0};
+constexpr Seconds kSlack{4.0};
+
+int Count(const std::string& text, const std::string& words) {
+  int count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+    ++count;
+  return count;
+}
+
+class EdgeFailureTest : public ::testing::Test {
+ protected:
+  EdgeFailureTest() { WriteSmallScan(scan_); }
+
+  Command Edge(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--domain", std::to_string(TestDomain())});
+    return {EdgeDaemon(),
+            std::move(arguments),
+            {"LD_LIBRARY_PATH=" FAKE_OPENNI, manager_.environment(), kWatchdog},
+            {}};
+  }
+  Command OnCameras(std::vector<std::string> more) const {
+    // The fake camera's script lies in the test's folder, which its confined process may read.
+    std::vector<std::string> arguments = {
+        "--source", "cameras",
+        "--set",    "source.thermal_camera.enabled=false",
+        "--set",    "source.camera_sandbox.read=\"" + folder_.path().string() + "\""};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Edge(std::move(arguments));
+  }
+  /// A scan that goes on until the end of the test.
+  Command Replay(std::vector<std::string> more) const {
+    std::vector<std::string> arguments = {"--recording", scan_.string(), "--set", "source.loops=0"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Edge(std::move(arguments));
+  }
+  /// Ends it and measures how long it takes.
+  static Seconds Leave(Process& edge, int expected_status) {
+    const auto asked = std::chrono::steady_clock::now();
+    edge.Signal(SIGTERM);
+    EXPECT_EQ(edge.WaitForExit(kPatience), expected_status) << edge.output();
+    return std::chrono::steady_clock::now() - asked;
+  }
+  static std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+  }
+  bool WaitForSize(Process& edge, const std::filesystem::path& file, std::uintmax_t bytes) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    std::error_code missing;
+    while (!std::filesystem::exists(file) || std::filesystem::file_size(file, missing) < bytes) {
+      manager_.Drain();
+      if (edge.WaitForExit(Seconds(0.05))) return false;
+      if (std::chrono::steady_clock::now() > deadline) return false;
+    }
+    return true;
+  }
+
+  const ::isotherm::testing::TemporaryDirectory folder_;
+  NotifySocket manager_{folder_.path()};
+  FakeDepthCamera camera_{folder_.path()};
+  const std::filesystem::path scan_ = folder_.path() / "scan.mcap";
+  const std::filesystem::path disk_ = folder_.path() / "disk";
+  const std::filesystem::path file_ = disk_ / "copy.mcap";
+};
+
+TEST_F(EdgeFailureTest, F01F39WithoutItsCameraForLongItLivesOnAndTheRecordingIsOnTheDisk) {
+  Process edge(OnCameras({"--record", file_}));
+  ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience)) << edge.output();
+  ASSERT_TRUE(WaitForSize(edge, file_, 100'000)) << edge.output();
+  camera_.Plug(false);
+  ASSERT_TRUE(edge.WaitForOutput("depth camera: lost", kPatience)) << edge.output();
+  // With the shipped back-off.
+  EXPECT_LT(manager_.LongestSilence(kFed, Seconds(15)), kWatchdogSec);
+  EXPECT_TRUE(manager_.WaitForText("STATUS=the depth camera is lost", kPatience));
+  EXPECT_EQ(edge.WaitForExit(Seconds(0)), std::nullopt) << edge.output();
+  const RecordingContent meanwhile = ReadRecording(file_);
+  EXPECT_FALSE(meanwhile.complete);
+  Leave(edge, 0);
+  const RecordingContent content = ReadRecording(file_);
+  EXPECT_TRUE(content.complete);
+  EXPECT_EQ(meanwhile.depth.size(), content.depth.size()) << "the last frames waited for others";
+  EXPECT_LE(Count(edge.output(), "opening it again"), 3) << edge.output();
+}
+
+TEST_F(EdgeFailureTest, F39WhenTheRecordingHangsTheWatchdogIsNotFedAndSigtermIsServed) {
+  ASSERT_EQ(mkfifo((folder_.path() / "pipe").c_str(), 0600), 0);
+  // Opened, but never read: a disk that takes a little and then nothing.
+  const int stuck = open((folder_.path() / "pipe").c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(stuck, 0);
+  Process edge(Replay({"--record", folder_.path() / "pipe"}));
+  ASSERT_TRUE(manager_.WaitFor(kFed, kPatience)) << edge.output();
+  EXPECT_TRUE(manager_.WaitForSilence(kFed, kWatchdogSec, kPatience)) << edge.output();
+  EXPECT_THAT(edge.output(), HasSubstr("the disk does not answer"));
+  EXPECT_LT(Leave(edge, 73), Seconds(3.5) + kSlack);
+  EXPECT_THAT(edge.output(), HasSubstr("= published")) << "the account is told all the same";
+  close(stuck);
+}
+
+TEST_F(EdgeFailureTest, F39WhenTheCamerasLibraryHangsInThisProcessTheWatchdogIsNotFed) {
+  camera_.script.faults[30] = {FakeDepthFault::kStall};
+  camera_.Apply();
+  // Nothing else notices within this test.
+  Process edge(OnCameras({"--set", "source.depth_camera.stall_timeout_s=60", "--set",
+                          "source.depth_camera.own_process=false"}));
+  ASSERT_TRUE(manager_.WaitFor(kFed, kPatience)) << edge.output();
+  EXPECT_TRUE(manager_.WaitForSilence(kFed, kWatchdogSec, kPatience)) << edge.output();
+  EXPECT_THAT(edge.output(), HasSubstr("sends nothing"));
+}
+
+TEST_F(EdgeFailureTest, F31ACameraThatIsNotThereAtTheStartIsWaitedFor) {
+  camera_.Plug(false);
+  Process edge(OnCameras({"--record", file_}));
+  ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience)) << edge.output();
+  EXPECT_TRUE(manager_.WaitForText("STATUS=waiting for a camera", kPatience)) << edge.output();
+  EXPECT_LT(manager_.LongestSilence(kFed, Seconds(8)), kWatchdogSec);
+  EXPECT_EQ(Count(edge.output(), "waiting for it"), 1) << "not said at each try\n" << edge.output();
+  EXPECT_FALSE(std::filesystem::exists(file_)) << "no empty file";
+  camera_.Plug(true);
+  ASSERT_TRUE(WaitForSize(edge, file_, 100'000)) << edge.output();
+  EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
+  EXPECT_TRUE(ReadRecording(file_).complete);
+}
+
+TEST_F(EdgeFailureTest, F31AScriptIsToldAtOnceThatThereIsNoCamera) {
+  camera_.Plug(false);
+  EXPECT_EQ(RunToEnd(OnCameras({"--exit-at-end"}), kPatience).status, 69);
+}
+
+TEST_F(EdgeFailureTest, F38AStopWhileItWaitsForACameraIsServed) {
+  camera_.Plug(false);
+  Process edge(OnCameras({}));
+  ASSERT_TRUE(manager_.WaitForText("STATUS=waiting for a camera", kPatience)) << edge.output();
+  EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
+}
+
+TEST_F(EdgeFailureTest, F38F39AnOpeningThatDoesNotComeBackIsNoSignOfLifeAndAStopIsServed) {
+  camera_.Plug(false);
+  Process edge(OnCameras({"--set", "source.depth_camera.own_process=false"}));
+  ASSERT_TRUE(manager_.WaitForText("STATUS=waiting for a camera", kPatience)) << edge.output();
+  camera_.script.open_hangs = true;
+  camera_.Plug(true);
+  EXPECT_TRUE(manager_.WaitForSilence(kFed, kWatchdogSec, 2 * kPatience)) << edge.output();
+  EXPECT_THAT(edge.output(), HasSubstr("has not come back from opening it"));
+  EXPECT_LT(Leave(edge, 0), Seconds(3.5) + kSlack);
+  EXPECT_THAT(edge.output(), HasSubstr("leaving without it"));
+}
+
+TEST_F(EdgeFailureTest, F31WithoutItsNetworkItRecordsAndSaysWhatIsMissing) {
+  const std::filesystem::path profile = folder_.path() / "profile.xml";
+  std::ofstream(profile) << "<CycloneDDS><Domain><General><Interfaces><NetworkInterface "
+                            "name=\"nowhere0\"/></Interfaces></General></Domain></CycloneDDS>";
+  Command command = Replay({"--record", file_});
+  command.environment.push_back("CYCLONEDDS_URI=file://" + profile.string());
+  Process edge(command);
+  ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience)) << edge.output();
+  EXPECT_TRUE(manager_.WaitForText("nowhere0", kPatience)) << edge.output();
+  ASSERT_TRUE(WaitForSize(edge, file_, 100'000)) << edge.output();
+  EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
+  EXPECT_LE(Count(edge.output(), "cannot join"), 1) << edge.output();
+  const FrameAccountText recorded = AccountOf(edge.output(), Sensor::kDepth, "recorded");
+  EXPECT_TRUE(recorded.Closes());
+  EXPECT_EQ(recorded.done, recorded.captured);
+  EXPECT_TRUE(AccountOf(edge.output(), Sensor::kDepth, "published").Closes());
+  EXPECT_TRUE(ReadRecording(file_).complete);
+  command.arguments.push_back("--exit-at-end");
+  EXPECT_EQ(RunToEnd(command, kPatience).status, 69);
+}
+
+TEST_F(EdgeFailureTest, F40TwoScansOfOneSecondGetAFileEach) {
+  std::filesystem::create_directory(disk_);
+  const std::vector<std::string> arguments = {"--recording", scan_, "--record",     disk_,
+                                              "--rate",      "0",   "--exit-at-end"};
+  Process one(Edge(arguments));
+  Process two(Edge(arguments));
+  EXPECT_EQ(one.WaitForExit(kPatience), 0) << one.output();
+  EXPECT_EQ(two.WaitForExit(kPatience), 0) << two.output();
+  const auto files = FilesIn(disk_);
+  ASSERT_EQ(files.size(), 2U);
+  for (const auto& file : files) EXPECT_EQ(ReadRecording(file).depth.size(), 30U) << file;
+}
+
+TEST_F(EdgeFailureTest, F37AKilledEdgeLeavesAReadableFileAndTheNextOneItsOwn) {
+  RecordingContent before;
+  {
+    Process edge(Replay({"--record", file_}));
+    ASSERT_TRUE(WaitForSize(edge, file_, 100'000)) << edge.output();
+    before = ReadRecording(file_);
+    edge.Signal(SIGKILL);
+    edge.WaitForExit(kPatience);
+  }
+  const RecordingContent after = ReadRecording(file_);
+  EXPECT_FALSE(after.complete);
+  ASSERT_GE(after.depth.size(), before.depth.size());
+  EXPECT_THAT(before.depth, Not(IsEmpty()));
+  const std::uintmax_t size = std::filesystem::file_size(file_);
+  const Finished next = RunToEnd(
+      Edge({"--recording", scan_, "--record", file_, "--rate", "0", "--exit-at-end"}), kPatience);
+  EXPECT_EQ(next.status, 0) << next.output;
+  EXPECT_EQ(std::filesystem::file_size(file_), size) << "the first one is left alone";
+  EXPECT_EQ(ReadRecording(disk_ / "copy-2.mcap").depth.size(), 30U);
+}
+
+/// errno of what a failing disk answers to fdatasync.
+class F43SyncErrorTest : public EdgeFailureTest, public ::testing::WithParamInterface<int> {};
+
+TEST_P(F43SyncErrorTest, TheFileIsLeftANewOneBegunAndEachFrameIsAccountedFor) {
+  const std::filesystem::path failing = folder_.path() / "failing";
+  Command command = Replay({"--record", file_});
+  command.environment.push_back("LD_PRELOAD=" FAILING_DISK);
+  command.environment.push_back("FAILING_DISK=" + failing.string());
+  Process edge(command);
+  ASSERT_TRUE(WaitForSize(edge, file_, 50'000)) << edge.output();
+  const std::filesystem::path next = failing.string() + ".next";
+  std::ofstream(next) << GetParam();
+  std::filesystem::rename(next, failing);
+  ASSERT_TRUE(edge.WaitForOutput("recording ended early", kPatience)) << edge.output();
+  EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: cannot sync", kPatience));
+  EXPECT_TRUE(edge.WaitForOutput("recording to", kPatience, 2)) << "it is tried again";
+  std::filesystem::remove(failing);
+  ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
+  EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
+  EXPECT_EQ(Count(edge.output(), "recording ended early"), 1) << edge.output();
+
+  const FrameAccountText account = AccountOf(edge.output(), Sensor::kDepth, "recorded");
+  EXPECT_TRUE(account.Closes()) << edge.output();
+  EXPECT_GT(account.failed, 0);
+  long found = 0;
+  const auto files = FilesIn(disk_);
+  ASSERT_EQ(files.size(), 2U) << "the suspect one and the next; none without a frame";
+  for (const auto& file : files) found += static_cast<long>(ReadRecording(file).depth.size());
+  // Frames that were not synced count as lost, and may be there all the same.
+  EXPECT_GE(found, account.done);
+  EXPECT_LE(found, account.done + account.failed);
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, F43SyncErrorTest, ::testing::Values(EIO, EROFS, ENOSPC));
+
+/// A file system of its own, which takes root.
+class SmallDiskTest : public EdgeFailureTest {
+ protected:
+  void Mount(int megabytes) {
+    std::filesystem::create_directory(disk_);
+    const std::string size = "size=" + std::to_string(megabytes) + "m";
+    if (mount("none", disk_.c_str(), "tmpfs", 0, size.c_str()) != 0)
+      GTEST_SKIP() << "no file system of its own: mounting takes root";
+    mounted_ = true;
+  }
+  ~SmallDiskTest() override {
+    if (mounted_) umount2(disk_.c_str(), MNT_DETACH);
+  }
+
+ private:
+  bool mounted_ = false;
+};
+
+TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
+  Mount(4);
+  if (IsSkipped()) return;
+  const std::filesystem::path ballast = disk_ / "ballast";
+  {
+    std::ofstream other(ballast);
+    other << std::string(4'180'000, 'x');
+  }
+  // Without a reserve the disk itself says no.
+  Process edge(
+      Replay({"--record", file_, "--set", "spool.reserve_mb=0", "--set", "spool.reserve_s=0"}));
+  ASSERT_TRUE(edge.WaitForOutput("recording ended early", kPatience)) << edge.output();
+  EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: cannot write", kPatience))
+      << edge.output();
+  std::filesystem::remove(ballast);
+  ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
+  EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
+  const FrameAccountText account = AccountOf(edge.output(), Sensor::kDepth, "recorded");
+  EXPECT_TRUE(account.Closes()) << edge.output();
+  long found = 0;
+  for (const auto& file : FilesIn(disk_)) {
+    EXPECT_GT(std::filesystem::file_size(file), 0U);
+    found += static_cast<long>(ReadRecording(file).depth.size());
+  }
+  EXPECT_EQ(found, account.done);
+}
+
+TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) {
+  Mount(64);
+  if (IsSkipped()) return;
+  // As soon as the rate is known, the reserve is more than this disk has.
+  Process edge(Replay(
+      {"--record", file_, "--set", "spool.reserve_s=86400", "--set", "spool.reserve_mb=66"}));
+  ASSERT_TRUE(edge.WaitForOutput("the disk is full but for its reserve", kPatience))
+      << edge.output();
+  const RecordingContent content = ReadRecording(file_);
+  EXPECT_TRUE(content.complete);
+  EXPECT_THAT(content.depth, Not(IsEmpty()));
+  EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: the disk is full", kPatience));
+  Leave(edge, 73);
+  const FrameAccountText published = AccountOf(edge.output(), Sensor::kDepth, "published");
+  EXPECT_EQ(published.done, published.captured);
+  EXPECT_GT(published.done, static_cast<long>(content.depth.size()));
+}
+
+/// What the daemon writes to, as a pipe of which the test has both ends.
+class OutputPipeTest : public EdgeFailureTest {
+ protected:
+  OutputPipeTest() {
+    if (mkfifo(pipe_.c_str(), 0600) != 0) return;
+    reader_ = open(pipe_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    writer_ = open(pipe_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  }
+  ~OutputPipeTest() override {
+    CloseReader();
+    close(writer_);
+  }
+  void CloseReader() {
+    if (reader_ >= 0) close(std::exchange(reader_, -1));
+  }
+  /// Until nothing more fits.
+  void Fill() const {
+    const std::string page(4096, 'x');
+    while (write(writer_, page.data(), page.size()) > 0) {
+    }
+  }
+  Command WithIts(Command command, const std::string& descriptor = "2") const {
+    const std::string script = "exec \"$0\" \"$@\" " + descriptor + ">" + pipe_.string();
+    command.arguments.insert(command.arguments.begin(), {"-c", script, command.program});
+    command.program = "/bin/sh";
+    return command;
+  }
+  /// It does what it should although nobody reads what it says.
+  void ExpectAllIsWell(Process& edge) {
+    ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience));
+    ASSERT_TRUE(WaitForSize(edge, file_, 50'000));
+    EXPECT_LT(manager_.LongestSilence(kFed, Seconds(12)), kWatchdogSec);
+    EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
+    EXPECT_TRUE(ReadRecording(file_).complete);
+    EXPECT_TRUE(AccountOf(edge.output(), Sensor::kDepth, "recorded").Closes());
+  }
+
+  const std::filesystem::path pipe_ = folder_.path() / "output";
+  int reader_ = -1;
+  int writer_ = -1;
+};
+
+TEST_F(OutputPipeTest, F38AReaderThatIsGoneDoesNotEndTheScan) {
+  Process edge(WithIts(Replay({"--record", file_, "--log-level", "debug"})));
+  ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience));
+  close(std::exchange(writer_, -1));
+  CloseReader();
+  ExpectAllIsWell(edge);
+}
+
+TEST_F(OutputPipeTest, F39AFullPipeThatNobodyReadsHoldsUpNothing) {
+  Fill();
+  Process edge(WithIts(Replay({"--record", file_, "--log-level", "debug"})));
+  ExpectAllIsWell(edge);
+}
+
+TEST_F(OutputPipeTest, F39AForcedExitDoesNotWaitForWhoReadsTheSummary) {
+  Fill();
+  const std::filesystem::path disk = folder_.path() / "pipe";
+  ASSERT_EQ(mkfifo(disk.c_str(), 0600), 0);
+  const int stuck = open(disk.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(stuck, 0);
+  Process edge(WithIts(Replay({"--record", disk}), "1"));
+  ASSERT_TRUE(manager_.WaitFor(kFed, kPatience));
+  EXPECT_TRUE(edge.WaitForOutput("the disk does not answer", kPatience)) << edge.output();
+  EXPECT_LT(Leave(edge, 73), Seconds(3.5) + kSlack);
+  EXPECT_THAT(edge.output(), HasSubstr("the disk did not end"));
+  close(stuck);
+}
+
+}  // namespace
+}  // namespace isotherm::system_test

@@ -1,0 +1,133 @@
+// `isotherm convert` and what `inspect` says of recordings, as a user runs them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/codec/codec.h"
+#include "common/recording/recording.h"
+#include "tests/support/tool.h"
+
+namespace isotherm {
+namespace {
+
+namespace fs = std::filesystem;
+using isotherm::testing::Outcome;
+using isotherm::testing::ReadAll;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr int kUsage = 64, kNoInput = 66;
+
+/// Everything of a recording that must survive a conversion.
+struct Content {
+  std::vector<std::vector<std::uint16_t>> pixels;
+  std::vector<std::pair<std::uint64_t, std::int64_t>> frames;  ///< Number and time.
+  std::map<std::string, std::vector<StampedPose>> poses;
+  std::string rig;
+  RecordingInfo info;
+};
+
+class ConvertToolTest : public isotherm::testing::ToolRun {
+ protected:
+  void Simulate() const {
+    const Outcome outcome = Run("simulate --scene corner-sphere --duration 0.2 -o scan.mcap");
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+
+  template <typename Frame>
+  static void Add(const Frame& frame, Content& content) {
+    const auto pixels = Decode(frame.image);
+    ASSERT_TRUE(pixels) << pixels.error().message();
+    content.pixels.emplace_back(pixels->pixels().begin(), pixels->pixels().end());
+    content.frames.emplace_back(frame.header.frame_number,
+                                ToNanoseconds(frame.header.capture_time));
+  }
+
+  void Read(const std::string& name, Content& content) const {
+    auto reader = RecordingReader::Open(folder_ / name);
+    ASSERT_TRUE(reader) << reader.error().message();
+    content.info = (*reader)->info();
+    const Rig rig = (*reader)->ReadRig().value();
+    content.rig = std::to_string(rig.thermal_delay_s) + std::to_string(rig.depth->fx);
+    while (true) {
+      const auto item = (*reader)->Next();
+      ASSERT_TRUE(item) << item.error().message();
+      if (!*item) return;
+      if (const auto* depth = std::get_if<RecordedDepth>(&**item)) Add(depth->frame, content);
+      if (const auto* thermal = std::get_if<RecordedThermal>(&**item)) Add(thermal->frame, content);
+      if (const auto* pose = std::get_if<RecordedPose>(&**item))
+        content.poses[pose->stream].push_back(pose->pose);
+    }
+  }
+};
+
+TEST_F(ConvertToolTest, ThereAndBackNothingOfTheFramesChanges) {
+  Simulate();
+  const Outcome viewable = Run("convert scan.mcap -o view.mcap --encoding viewable");
+  ASSERT_EQ(viewable.status, 0) << viewable.err;
+  const Outcome compact = Run("convert view.mcap -o small.mcap --encoding compact");
+  ASSERT_EQ(compact.status, 0) << compact.err;
+  Content scan, view, small;
+  Read("scan.mcap", scan);
+  Read("view.mcap", view);
+  Read("small.mcap", small);
+  ASSERT_GT(scan.pixels.size(), 10U);
+  for (const Content* other : {&view, &small}) {
+    EXPECT_EQ(other->pixels, scan.pixels);
+    EXPECT_EQ(other->frames, scan.frames);
+    EXPECT_EQ(other->rig, scan.rig);
+    EXPECT_EQ(other->poses.at("groundtruth").size(), scan.poses.at("groundtruth").size());
+    EXPECT_EQ(other->info.metadata.at("simulation"), scan.info.metadata.at("simulation"));
+  }
+  EXPECT_LT(fs::file_size(folder_ / "small.mcap"), fs::file_size(folder_ / "view.mcap"));
+  EXPECT_TRUE(view.info.messages_by_topic.contains("/thermal/transform"));
+}
+
+TEST_F(ConvertToolTest, InspectSaysWhichOfBothItIs) {
+  Simulate();
+  ASSERT_EQ(Run("convert scan.mcap -o view.mcap").status, 0);
+  EXPECT_THAT(Run("inspect scan.mcap").out,
+              AllOf(HasSubstr("compact: lossless, only Isotherm"),
+                    HasSubstr("isotherm convert scan.mcap -o OUT.mcap --encoding viewable")));
+  EXPECT_THAT(Run("inspect view.mcap").out, HasSubstr("viewable: Foxglove and Lichtblick"));
+  EXPECT_THAT(Run("inspect view.mcap --json").out, HasSubstr("\"viewable\": true"));
+}
+
+TEST_F(ConvertToolTest, PosesOfAResultComeAlong) {
+  Simulate();
+  fs::create_directory(folder_ / "result");
+  Write("result/trajectory.txt", "1.5 0.1 0.2 0.3 0 0 0 1\n1.6 0.1 0.2 0.4 0 0 0 1\n");
+  const Outcome outcome = Run("convert scan.mcap -o view.mcap --trajectory result");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("2 of the rig, from the trajectory"));
+  Content view;
+  Read("view.mcap", view);
+  ASSERT_EQ(view.poses["trajectory"].size(), 2U);
+  EXPECT_EQ(view.poses["trajectory"][1].T_world_depth.translation(),
+            Eigen::Vector3d(0.1, 0.2, 0.4));
+}
+
+TEST_F(ConvertToolTest, WhatCannotBeIsRefusedAndNothingIsLost) {
+  Simulate();
+  Write("there.mcap", "precious");
+  const Outcome exists = Run("convert scan.mcap -o there.mcap");
+  EXPECT_EQ(exists.status, kUsage);
+  EXPECT_THAT(exists.err, HasSubstr("exists already; --force replaces it"));
+  EXPECT_EQ(ReadAll(folder_ / "there.mcap"), "precious");
+  EXPECT_EQ(Run("convert nowhere.mcap -o x.mcap").status, kNoInput);
+  EXPECT_EQ(Run("convert scan.mcap -o x.mcap --trajectory nowhere").status, kNoInput);
+  EXPECT_THAT(Run("convert scan.mcap -o x.mcap --encoding png").err,
+              HasSubstr("'png' is none of compact, viewable"));
+  EXPECT_THAT(Run("convert scan.mcap -o ''").err, HasSubstr("names no file"));
+  for (const auto& entry : fs::directory_iterator(folder_))
+    EXPECT_FALSE(entry.path().extension() == ".partial") << entry.path();
+}
+
+}  // namespace
+}  // namespace isotherm
