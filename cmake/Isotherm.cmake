@@ -72,7 +72,7 @@ set(isotherm_threaded_tests base_test block_spiller_test camera_process_test clo
 
 # isotherm_test(NAME <name> SRCS <files> [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>])
 # Labels: unit (default), integration, system, hardware, lint; experiment (figures of the thesis, which sanitizers need not
-# judge); threads is added to what isotherm_threaded_tests names.
+# assess); threads is added to what isotherm_threaded_tests names.
 function(isotherm_test)
   cmake_parse_arguments(ARG "" "NAME;TIMEOUT" "SRCS;DEPS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)

@@ -7,7 +7,7 @@
 #                                   truth, which then gives the first pose
 #
 # A table is a measurement only on a machine that does nothing else: it says how busy the machine was before, and which
-# share of the cores others took meanwhile. Codecs are measured on the data in $ISOTHERM_DATA_DIR (or ../shared/data).
+# fraction of the cores others took meanwhile. Codecs are measured on the data in $ISOTHERM_DATA_DIR (or ../shared/data).
 # All that the programs said is kept in build/release/bench.
 set -eu
 
@@ -114,7 +114,7 @@ seconds=$(($(date +%s) - start))
 own_s >"$out/own_after.txt"
 others=$(awk -v all="$(busy_s)" -v before="$busy_before" -v own="$(cat "$out/own_after.txt")" \
   -v own_before="$(cat "$out/own_before.txt")" -v s="$seconds" -v cores="$cores" \
-  'BEGIN { share = 100 * (all - before - own + own_before) / (s * cores); printf "%.0f", (share > 0 ? share : 0) }')
+  'BEGIN { fraction = 100 * (all - before - own + own_before) / (s * cores); printf "%.0f", (fraction > 0 ? fraction : 0) }')
 simd=$(sed -n 's/.*"machine": ".*SIMD \([A-Z0-9_]*\)".*/\1/p' "$out/kernel_benchmark.json")
 cpu=$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n 1)
 commit=$(git describe --always --dirty 2>/dev/null || echo unknown)

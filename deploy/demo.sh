@@ -36,10 +36,10 @@ if [ "$headless" = 0 ]; then
   cat <<TEXT
   cloud.ply   points with temperature and measurement classes: open in CloudCompare or MeshLab
   mesh.ply    the same as a triangle mesh
-  renders/    pictures: temperature, measurement classes, coverage
+  renders/    renderings: temperature, measurement classes, coverage
   stats.json  what was measured and how long it took
   scan.mcap   the scan itself, to reconstruct again
-Further pictures:   build/release/bin/isotherm render out/demo -o PICTURE.png --size 800x600
+Further renderings:   build/release/bin/isotherm render out/demo -o IMAGE.png --size 800x600
 The web console is not part of this version.
 TEXT
 fi

@@ -125,7 +125,7 @@ def feedback_of(recording):
                 channel, _, time = struct.unpack_from("<HIQ", content, begin)
                 if topics.get(channel) == "/feedback":
                     words[time] = fields(content[begin + 22:end])
-                elif topics.get(channel) == "/feedback/picture":
+                elif topics.get(channel) == "/feedback/image":
                     images[time] = fields(content[begin + 22:end])[2][0]
     return [((time - start) / 1e9, words[time], images.get(time)) for time in sorted(words)]
 

@@ -8,13 +8,13 @@
 
 namespace isotherm {
 
-/// The value that a share (0..1) of the others lies below, by nearest rank downwards: 0 is the
+/// The value that a fraction (0..1) of the others lies below, by nearest rank downwards: 0 is the
 /// least, 1 the largest. Changes the order of `values`; there must be some, and none NaN.
 template <typename T>
-T TakeQuantile(std::vector<T>& values, double share) {
-  CHECK(!values.empty() && share >= 0.0 && share <= 1.0);
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+T TakeQuantile(std::vector<T>& values, double fraction) {
+  CHECK(!values.empty() && fraction >= 0.0 && fraction <= 1.0);
+  const auto at = values.begin() +
+                  static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }

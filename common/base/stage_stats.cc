@@ -6,14 +6,14 @@
 namespace isotherm {
 namespace {
 
-constexpr double kSmallestMs = 1e-4;
+constexpr double kSmallest_ms = 1e-4;
 constexpr double kBinRatio = 1.01;
 
 }  // namespace
 
 int StageStats::BinOf(double ms) {
-  if (ms <= kSmallestMs) return 0;
-  const int bin = static_cast<int>(std::log(ms / kSmallestMs) / std::log(kBinRatio)) + 1;
+  if (ms <= kSmallest_ms) return 0;
+  const int bin = static_cast<int>(std::log(ms / kSmallest_ms) / std::log(kBinRatio)) + 1;
   return std::min(bin, kBins - 1);
 }
 
@@ -28,9 +28,9 @@ void StageStats::Add(double ms) {
 
 double StageStats::Percentile(double percent) const {
   if (count_ == 0) return 0.0;
-  const double share = std::clamp(percent, 0.0, 100.0) / 100.0;
+  const double fraction = std::clamp(percent, 0.0, 100.0) / 100.0;
   const auto rank = std::max<std::uint64_t>(
-      1, static_cast<std::uint64_t>(std::ceil(share * static_cast<double>(count_))));
+      1, static_cast<std::uint64_t>(std::ceil(fraction * static_cast<double>(count_))));
   if (rank == count_) return max_ms_;
   std::uint64_t seen = 0;
   int bin = 0;
@@ -40,7 +40,7 @@ double StageStats::Percentile(double percent) const {
   }
   // Bin b > 0 covers [kBinRatio^(b-1), kBinRatio^b) times the smallest; its geometric middle halves
   // the error.
-  const double middle_ms = kSmallestMs * std::pow(kBinRatio, bin - 0.5);
+  const double middle_ms = kSmallest_ms * std::pow(kBinRatio, bin - 0.5);
   return std::clamp(middle_ms, min_ms_, max_ms_);
 }
 

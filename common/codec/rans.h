@@ -16,7 +16,7 @@ namespace isotherm::codec {
 
 inline constexpr unsigned kScaleBits = 10;
 inline constexpr std::uint32_t kScale = 1U << kScaleBits;
-inline constexpr std::uint32_t kLeastState = 1U << 16;
+inline constexpr std::uint32_t kMinState = 1U << 16;
 
 /// Scales `counts` so that they add up to kScale and no symbol that occurs gets 0. All zero stays
 /// all zero.
@@ -63,7 +63,7 @@ class RansEncoder {
   }
 
  private:
-  std::uint64_t state_ = kLeastState;
+  std::uint64_t state_ = kMinState;
   std::uint16_t* next_;
 };
 
@@ -120,13 +120,13 @@ class RansDecoder {
     const std::uint32_t symbol = tables.SymbolOf(context, slot);
     const auto place = tables.PlaceOf(context, symbol);
     state_ = place.frequency * (state_ >> kScaleBits) + slot - place.start;
-    if (state_ < kLeastState) state_ = state_ << 16 | Word();
+    if (state_ < kMinState) state_ = state_ << 16 | Word();
     return symbol;
   }
 
   bool ok() const { return ok_; }
   /// True if all words were used and the state is what encoding started with.
-  bool AtEnd() const { return next_ == end_ && state_ == kLeastState; }
+  bool AtEnd() const { return next_ == end_ && state_ == kMinState; }
 
  private:
   std::uint32_t Word() {

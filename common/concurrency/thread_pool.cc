@@ -13,7 +13,7 @@ ThreadPool::ThreadPool(int threads) {
 
 ThreadPool::~ThreadPool() = default;
 
-void ThreadPool::RunShare(const std::function<void(int)>& body, int count) {
+void ThreadPool::RunFractions(const std::function<void(int)>& body, int count) {
   for (int i = next_.fetch_add(1, std::memory_order_relaxed); i < count;
        i = next_.fetch_add(1, std::memory_order_relaxed)) {
     body(i);
@@ -35,7 +35,7 @@ void ThreadPool::ParallelFor(int count, const std::function<void(int)>& body) {
     ++generation_;
   }
   wake_.notify_all();
-  RunShare(body, count);
+  RunFractions(body, count);
   std::unique_lock lock(mutex_);
   done_.wait(lock, [this] { return running_ == 0; });
 }
@@ -52,7 +52,7 @@ void ThreadPool::Work(std::stop_token stop) {
       body = body_;
       count = count_;
     }
-    RunShare(*body, count);
+    RunFractions(*body, count);
     std::scoped_lock lock(mutex_);
     if (--running_ == 0) done_.notify_one();
   }

@@ -29,7 +29,7 @@ class ThreadPool {
 
  private:
   void Work(std::stop_token stop);
-  void RunShare(const std::function<void(int)>& body, int count);
+  void RunFractions(const std::function<void(int)>& body, int count);
 
   std::mutex mutex_;
   std::condition_variable_any wake_;

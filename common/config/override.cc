@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/config/nearest_name.h"
+#include "common/config/renamed_options.h"
 #include "common/config/text_proto.h"
 
 namespace isotherm {
@@ -120,7 +121,7 @@ Status ApplyOverride(std::string_view assignment, pb::Message& message) {
       return InvalidArgument(fmt::format("'{}': there is no {} '{}'{}.{} Known: {}.", assignment,
                                          begin == 0 ? "stage or option" : "option", name,
                                          where.empty() ? "" : fmt::format(" in '{}'", where),
-                                         DidYouMean(name, known), JoinNames(known)));
+                                         SuggestOption(type, name), JoinNames(known)));
     }
     if (dot == std::string_view::npos) return SetScalar(*target, field, value).WithContext(path);
     if (field->message_type() == nullptr) {

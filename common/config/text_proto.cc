@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "common/config/nearest_name.h"
+#include "common/config/renamed_options.h"
 
 namespace isotherm {
 namespace {
@@ -105,11 +106,6 @@ std::vector<std::string> FieldNames(const pb::Descriptor& type) {
   return names;
 }
 
-std::string KnownNames(std::string_view what, std::string_view name,
-                       const std::vector<std::string>& known) {
-  return fmt::format("{} Known {}: {}.", DidYouMean(name, known), what, JoinNames(known));
-}
-
 // Protobuf's wording for an unknown field, with its type's fields added.
 void ExplainUnknownField(const pb::Descriptor& root, TextError& error) {
   constexpr std::string_view kType = "Message type \"";
@@ -122,8 +118,8 @@ void ExplainUnknownField(const pb::Descriptor& root, TextError& error) {
   name.resize(std::min({name.find('"'), name.size(), kMaxNameBytes}));
   const pb::Descriptor* type = root.file()->pool()->FindMessageTypeByName(type_name);
   if (type == nullptr) return;
-  error.message = fmt::format("unknown field '{}'.{}", name,
-                              KnownNames("fields here", name, FieldNames(*type)));
+  error.message = fmt::format("unknown field '{}'.{} Known fields here: {}.", name,
+                              SuggestOption(*type, name), JoinNames(FieldNames(*type)));
 }
 
 bool IsAboutFieldBefore(const std::string& message) {

@@ -73,12 +73,12 @@ Result<Rig> ReadRig(const DatasetOptions& options, const std::vector<std::string
   return LoadRigCalibration(path);
 }
 
-Status ReadOutsidePoses(const fs::path& path, std::vector<OutsidePose>& poses) {
+Status ReadExternalOdometry(const fs::path& path, std::vector<ExternalOdometry>& poses) {
   const Result<std::vector<StampedPose>> read = ReadTrajectory(path);
   if (!read) return read.error();
   constexpr std::size_t kMaxSourceBytes = 32;
   for (const StampedPose& stamped : *read) {
-    OutsidePose& pose = poses.emplace_back();
+    ExternalOdometry& pose = poses.emplace_back();
     pose.source = path.stem().string().substr(0, kMaxSourceBytes);
     pose.time = stamped.time;
     pose.translation_m = stamped.T_world_depth.translation();
@@ -213,9 +213,9 @@ Result<Dataset> OpenDataset(const DatasetOptions& options) {
     status = ReadOptional(options.folder / "groundtruth.txt", names, ParseTrajectory,
                           dataset.groundtruth, dataset.notes);
   }
-  if (status.ok() && options.outside_poses) {
-    status =
-        ReadOutsidePoses(Resolve(*options.outside_poses, options.folder), dataset.outside_poses);
+  if (status.ok() && options.external_odometry) {
+    status = ReadExternalOdometry(Resolve(*options.external_odometry, options.folder),
+                                  dataset.external_odometry);
   }
   if (!status.ok()) return Err(std::move(status));
   if (dataset.depth.empty()) {

@@ -9,7 +9,7 @@
 #include "common/base/status.h"
 #include "common/dataset/trajectory.h"
 #include "common/geometry/camera.h"
-#include "common/geometry/outside_pose.h"
+#include "common/geometry/external_odometry.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {
@@ -35,9 +35,9 @@ struct DatasetOptions {
   std::optional<std::filesystem::path> thermal_list;
   /// Instead of rig.textproto.
   std::optional<std::filesystem::path> rig;
-  /// A trajectory that something outside measured on the clock of the lists, in TUM format: poses
+  /// A trajectory that external odometry measured on the clock of the lists, in TUM format: poses
   /// of a body in any reference frame. As given, or else inside the folder.
-  std::optional<std::filesystem::path> outside_poses{};
+  std::optional<std::filesystem::path> external_odometry{};
 };
 
 /// A dataset folder in TUM style with everything checked but the pixels. Depth or thermal may be
@@ -50,7 +50,7 @@ struct Dataset {
   std::vector<ImageEntry> thermal;
   std::vector<NucInterval> nuc;
   std::vector<StampedPose> groundtruth;
-  std::vector<OutsidePose> outside_poses;  ///< Their source is the name of the file.
+  std::vector<ExternalOdometry> external_odometry;  ///< Their source is the name of the file.
   std::vector<std::string>
       notes;  ///< What a user should know although it is no error, a sentence each.
 };

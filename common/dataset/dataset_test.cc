@@ -205,12 +205,12 @@ class ImageFileTest : public DatasetTest {
 };
 
 TEST_F(ImageFileTest, ReadsEveryValue) {
-  Image<std::uint16_t> picture(32, 24);
+  Image<std::uint16_t> pattern(32, 24);
   for (int y = 0; y < 24; ++y) {
-    for (int x = 0; x < 32; ++x) picture.At(x, y) = static_cast<std::uint16_t>(y * 2700 + x);
+    for (int x = 0; x < 32; ++x) pattern.At(x, y) = static_cast<std::uint16_t>(y * 2700 + x);
   }
-  picture.At(31, 23) = 65535;
-  folder_.WriteImage("all.png", picture);
+  pattern.At(31, 23) = 65535;
+  folder_.WriteImage("all.png", pattern);
   const auto image = ReadGrey16(folder_.path() / "all.png", 32, 24);
   ASSERT_TRUE(image) << image.error().message();
   EXPECT_EQ(image->At(5, 20), 54005);
@@ -245,7 +245,7 @@ TEST_F(ImageFileTest, F11DamagedImagesAreErrorsAtEveryLength) {
     folder_.Write("cut.png", bytes.substr(0, length));
     EXPECT_NE(ReadError("cut.png"), "accepted") << length;
   }
-  folder_.Write("text.png", "this is no picture");
+  folder_.Write("text.png", "this is no image");
   EXPECT_THAT(ReadError("text.png"), HasSubstr("damaged or not a PNG"));
   EXPECT_THAT(ReadError("missing.png"), HasSubstr("cannot be opened"));
   std::string huge = bytes;  // Claims 2^31-1 pixels in width; must not be allocated.

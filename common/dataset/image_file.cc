@@ -43,7 +43,7 @@ Status CheckFormat(const PngHead& head, int width, int height) {
   if (head.channels != 1) {
     return DataLoss(fmt::format(
         "has {} channels, expected one channel of 16 bits (raw depth or centi-kelvin, not a "
-        "coloured picture)",
+        "coloured image)",
         head.channels));
   }
   if (head.bits != 16) {

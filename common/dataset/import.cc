@@ -41,7 +41,7 @@ class Importer {
   bool Done() const {
     return depth_ == dataset_.depth.size() && thermal_ == dataset_.thermal.size() &&
            pose_ == dataset_.groundtruth.size() && event_ == dataset_.nuc.size() &&
-           outside_ == dataset_.outside_poses.size();
+           next_odometry_ == dataset_.external_odometry.size();
   }
 
   Status WriteHeader() {
@@ -61,15 +61,16 @@ class Importer {
     const CaptureTime event = event_ < dataset_.nuc.size() ? dataset_.nuc[event_].start : kNever;
     const CaptureTime pose =
         pose_ < dataset_.groundtruth.size() ? dataset_.groundtruth[pose_].time : kNever;
-    const CaptureTime outside =
-        outside_ < dataset_.outside_poses.size() ? dataset_.outside_poses[outside_].time : kNever;
+    const CaptureTime odometry = next_odometry_ < dataset_.external_odometry.size()
+                                     ? dataset_.external_odometry[next_odometry_].time
+                                     : kNever;
     const CaptureTime depth = depth_ < dataset_.depth.size() ? dataset_.depth[depth_].time : kNever;
     const CaptureTime thermal =
         thermal_ < dataset_.thermal.size() ? dataset_.thermal[thermal_].time : kNever;
-    const CaptureTime first = std::min({event, pose, outside, depth, thermal});
+    const CaptureTime first = std::min({event, pose, odometry, depth, thermal});
     if (event == first) return WriteEvent();
     if (pose == first) return WritePose();
-    if (outside == first) return WriteOutsidePose();
+    if (odometry == first) return WriteExternalOdometry();
     if (request_.progress) request_.progress(Fraction());
     return depth == first ? WriteDepth() : WriteThermal();
   }
@@ -90,9 +91,9 @@ class Importer {
     return writer_.WritePose("groundtruth", pose);
   }
 
-  Status WriteOutsidePose() {
-    ++summary_.outside_poses;
-    return writer_.Write(dataset_.outside_poses[outside_++]);
+  Status WriteExternalOdometry() {
+    ++summary_.external_odometry;
+    return writer_.Write(dataset_.external_odometry[next_odometry_++]);
   }
 
   FrameHeader Header(const ImageEntry& entry, std::size_t index) const {
@@ -176,7 +177,7 @@ class Importer {
   PlausibilityCheck plausibility_;
   ImportSummary summary_;
   std::size_t depth_ = 0, thermal_ = 0, pose_ = 0, event_ = 0,
-              outside_ = 0;  // Next of each stream.
+              next_odometry_ = 0;  // Next of each stream.
 };
 
 Result<ImportSummary> WriteRecording(const ImportRequest& request, const Dataset& dataset,

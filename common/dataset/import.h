@@ -32,7 +32,7 @@ struct ImportSummary {
   std::uint64_t thermal_frames_in_nuc = 0;  ///< Recorded as invalid.
   std::uint64_t skipped_images = 0;
   std::uint64_t groundtruth_poses = 0;
-  std::uint64_t outside_poses = 0;
+  std::uint64_t external_odometry = 0;
   std::uint64_t image_bytes = 0;  ///< Raw pixels.
   std::uint64_t recording_bytes = 0;
   std::vector<std::string> notes;
@@ -45,7 +45,7 @@ struct ImportSummary {
 Result<ImportSummary> ImportDataset(const ImportRequest& request);
 
 /// NUC state of thermal frames by the intervals of nuc.txt. Frames inside are in progress and
-/// invalid; frames that repeat the picture of such a frame bit for bit right behind it are too
+/// invalid; frames that repeat the image of such a frame bit for bit right behind it are too
 /// (stamps and intervals may disagree by a frame when another stamp list is used).
 /// Thread-compatible.
 class NucMarker {
@@ -58,7 +58,7 @@ class NucMarker {
   std::vector<NucInterval> intervals_;
   std::size_t next_ = 0;  ///< First interval that has not ended.
   std::optional<CaptureTime> last_end_;
-  std::optional<Image<std::uint16_t>> frozen_;  ///< Picture of the last frame, if that was marked.
+  std::optional<Image<std::uint16_t>> frozen_;  ///< Image of the last frame, if that was marked.
 };
 
 }  // namespace isotherm

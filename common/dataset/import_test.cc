@@ -22,7 +22,7 @@ struct Content {
   std::vector<RecordedThermal> thermal;
   std::vector<NucEvent> events;
   std::vector<RecordedPose> poses;
-  std::vector<OutsidePose> outside_poses;
+  std::vector<ExternalOdometry> external_odometry;
   std::vector<CaptureTime> order;
 };
 
@@ -40,9 +40,9 @@ Content ReadBack(RecordingReader& reader) {
       content.thermal.push_back(std::move(*thermal));
     } else if (auto* event = std::get_if<NucEvent>(&**item)) {
       content.events.push_back(*event);
-    } else if (auto* outside = std::get_if<OutsidePose>(&**item)) {
-      content.order.push_back(outside->time);
-      content.outside_poses.push_back(std::move(*outside));
+    } else if (auto* odometry = std::get_if<ExternalOdometry>(&**item)) {
+      content.order.push_back(odometry->time);
+      content.external_odometry.push_back(std::move(*odometry));
     } else {
       content.poses.push_back(std::get<RecordedPose>(**item));
     }
@@ -94,9 +94,9 @@ TEST_F(ImportTest, RecordingHasWhatTheFolderHad) {
     EXPECT_EQ(content.depth[2].frame.header.frame_number, 2U);
     EXPECT_EQ(ToNanoseconds(content.depth[2].frame.header.capture_time), 100'166'000'000);
     EXPECT_EQ(content.depth[2].frame.depth_scale, 1000.0);
-    const auto picture = Decode(content.depth[2].frame.image);
-    ASSERT_TRUE(picture) << picture.error().message();
-    EXPECT_EQ(*picture, *ReadGrey16(folder_.path() / "depth/2.png", 32, 24));
+    const auto image = Decode(content.depth[2].frame.image);
+    ASSERT_TRUE(image) << image.error().message();
+    EXPECT_EQ(*image, *ReadGrey16(folder_.path() / "depth/2.png", 32, 24));
     EXPECT_EQ(Decode(content.thermal[5].frame.image)->At(0, 0), 30005);
     ASSERT_EQ(content.poses.size(), 2U);
     EXPECT_EQ(content.poses[1].stream, "groundtruth");
@@ -105,19 +105,19 @@ TEST_F(ImportTest, RecordingHasWhatTheFolderHad) {
   }
 }
 
-TEST_F(ImportTest, PosesFromOutsideComeAlongInOrderOfTime) {
+TEST_F(ImportTest, OdometryPosesComeAlongInOrderOfTime) {
   folder_.Write(
       "vio.txt",
       "# any reference frame\n100.090 5 6 7 0 0 0 1\n100.120 5.01 6 7 0 0 0.1 0.99498744\n"
       "100.150 5.02 6 7 0 0 0 1\n");
-  request_.dataset.outside_poses = "vio.txt";
+  request_.dataset.external_odometry = "vio.txt";
   const auto summary = ImportDataset(request_);
   ASSERT_TRUE(summary) << summary.error().message();
-  EXPECT_EQ(summary->outside_poses, 3U);
+  EXPECT_EQ(summary->external_odometry, 3U);
   const Content content = ReadBack(**RecordingReader::Open(request_.recording));
   EXPECT_TRUE(std::is_sorted(content.order.begin(), content.order.end()));
-  ASSERT_EQ(content.outside_poses.size(), 3U);
-  const OutsidePose& pose = content.outside_poses[1];
+  ASSERT_EQ(content.external_odometry.size(), 3U);
+  const ExternalOdometry& pose = content.external_odometry[1];
   EXPECT_EQ(pose.source, "vio");
   EXPECT_EQ(ToNanoseconds(pose.time), 100'120'000'000);
   EXPECT_NEAR(pose.translation_m.x(), 5.01, 1e-12);
@@ -125,8 +125,8 @@ TEST_F(ImportTest, PosesFromOutsideComeAlongInOrderOfTime) {
   EXPECT_TRUE(std::isnan(pose.position_sigma_m)) << "a trajectory file does not say";
 }
 
-TEST_F(ImportTest, BadPosesFromOutsideNameTheirFileAndLine) {
-  request_.dataset.outside_poses = "vio.txt";
+TEST_F(ImportTest, BadOdometryPosesNameTheirFileAndLine) {
+  request_.dataset.external_odometry = "vio.txt";
   EXPECT_THAT(Error(), HasSubstr("vio.txt"));
   folder_.Write("vio.txt", "100.1 0 0 0 0 0 0 1\n100.2 0 0 0 0 0 0 2\n");
   EXPECT_THAT(Error(), AllOf(HasSubstr("vio.txt:2"), HasSubstr("unit quaternion")));
@@ -145,7 +145,7 @@ TEST_F(ImportTest, FramesInsideNucIntervalsStayButAreInvalid) {
   EXPECT_NEAR(content.thermal[5].frame.seconds_since_nuc.value(), 0.050, 1e-9);
 }
 
-TEST(NucMarkerTest, RepeatsOfAFrozenPictureBehindTheIntervalAreInvalidToo) {
+TEST(NucMarkerTest, RepeatsOfAFrozenImageBehindTheIntervalAreInvalidToo) {
   const auto time = [](int ms) { return CaptureTime(std::chrono::milliseconds(ms)); };
   NucMarker marker({{time(100), time(150)}});
   const auto valid = [&](int ms, std::uint16_t value) {
@@ -174,7 +174,7 @@ TEST_F(ImportTest, BadImageEndsItWithItsPlaceAndLeavesNothing) {
 
 TEST_F(ImportTest, SkipBadLeavesBadImagesOutAndCountsThem) {
   folder_.WriteOtherPng("depth/2.png", 32, 24, 1, 8);
-  folder_.Write("thermal/0.png", "no picture");
+  folder_.Write("thermal/0.png", "no image");
   request_.skip_bad = true;
   const auto summary = ImportDataset(request_);
   ASSERT_TRUE(summary) << summary.error().message();

@@ -15,7 +15,7 @@ namespace isotherm {
 namespace {
 
 constexpr std::string_view kSpace = " \t\r\f\v";
-constexpr double kMaxStampSeconds = 9.2e9;  // Limit of 64-bit nanoseconds, year 2261.
+constexpr double kMaxStamp_s = 9.2e9;  // Limit of 64-bit nanoseconds, year 2261.
 
 std::string_view Trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(kSpace);
@@ -43,7 +43,7 @@ bool ParseDecimal(std::string_view word, Nanoseconds& time) {
   std::int64_t nanoseconds = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), nanoseconds);
   if (fraction.size() > kNanoDigits && fraction[kNanoDigits] >= '5') ++nanoseconds;
-  if (static_cast<double>(seconds) > kMaxStampSeconds) return false;
+  if (static_cast<double>(seconds) > kMaxStamp_s) return false;
   time = std::chrono::seconds(seconds) + Nanoseconds(nanoseconds);
   return true;
 }
@@ -118,7 +118,7 @@ Result<CaptureTime> ParseStamp(std::string_view word) {
     return Err(
         DataLoss(fmt::format("timestamp '{}' is negative; add a constant to all stamps", word)));
   }
-  if (*seconds > kMaxStampSeconds) {
+  if (*seconds > kMaxStamp_s) {
     return Err(
         DataLoss(fmt::format("timestamp '{}' is beyond year 2261; stamps are in seconds", word)));
   }

@@ -34,13 +34,13 @@ enum class NucState : std::uint8_t {
   kError = 7,
 };
 
-inline constexpr float kUnknownCelsius = std::numeric_limits<float>::quiet_NaN();
+inline constexpr float kUnknown_celsius = std::numeric_limits<float>::quiet_NaN();
 
 /// Camera temperatures, °C, NaN = the camera does not say.
 struct ThermalHousekeeping {
-  float fpa_celsius = kUnknownCelsius;
-  float housing_celsius = kUnknownCelsius;
-  float shutter_celsius = kUnknownCelsius;
+  float fpa_celsius = kUnknown_celsius;
+  float housing_celsius = kUnknown_celsius;
+  float shutter_celsius = kUnknown_celsius;
 };
 
 /// Holds what identifies and dates a frame, from the edge to the end.
@@ -67,10 +67,10 @@ struct DepthFrame {
 
 /// Zero of the thermal scale: raw centi-kelvin = 100 x kelvin.
 inline constexpr double kCentikelvinPerKelvin = 100.0;
-inline constexpr double kCelsiusZeroKelvin = 273.15;
+inline constexpr double kCelsiusZero_k = 273.15;
 
 constexpr float CentikelvinToCelsius(double centikelvin) {
-  return static_cast<float>(centikelvin / kCentikelvinPerKelvin - kCelsiusZeroKelvin);
+  return static_cast<float>(centikelvin / kCentikelvinPerKelvin - kCelsiusZero_k);
 }
 
 struct ThermalFrame {

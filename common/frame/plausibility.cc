@@ -20,7 +20,7 @@ constexpr double kMinRate_hz = 1.0;
 constexpr double kMaxRate_hz = 1000.0;
 /// The slowest that may be meant: a time lapse.
 constexpr double kMaxPeriod_s = 600.0;
-/// The least overlap, as a share of the shorter stream.
+/// The least overlap, as a fraction of the shorter stream.
 constexpr double kMinOverlap = 0.5;
 constexpr double kMinDepth_m = 0.2, kMaxDepth_m = 20.0;
 constexpr double kMinMean_celsius = -40.0;
@@ -61,7 +61,7 @@ void CheckRate(std::string_view name, const StreamTimes& times, Doubts& doubts) 
     return;
   }
   const double rate_hz = 1.0 / times.period_s;
-  // A picture every few seconds may be meant so.
+  // An image every few seconds may be meant so.
   if (rate_hz < kMinRate_hz &&
       (LikelyUnit(times.period_s) != nullptr || times.period_s > kMaxPeriod_s)) {
     doubts.push_back(fmt::format("{}: one frame every {:.6g} s, {:.6g} s in all: {}", name,
@@ -91,7 +91,7 @@ void CheckOverlap(const StreamTimes& depth, const StreamTimes& thermal, Doubts& 
       ToSeconds(thermal.first - depth.first), std::max(0.0, common_s)));
 }
 
-double ToCelsius(double kelvin) { return kelvin - kCelsiusZeroKelvin; }
+double ToCelsius(double kelvin) { return kelvin - kCelsiusZero_k; }
 
 bool IsLikely(double celsius) {
   return celsius >= kLikelyMin_celsius && celsius <= kLikelyMax_celsius;

@@ -44,7 +44,7 @@ struct ThermalPixels {
 };
 Doubts DoubtsAboutTemperatures(const ThermalPixels& pixels);
 
-/// Collects what the functions above judge from the frames of one scan, in bounded time and memory
+/// Collects what the functions above assess from the frames of one scan, in bounded time and memory
 /// per frame: all stamps, and pixels of few frames. Thread-compatible.
 class PlausibilityCheck {
  public:

@@ -103,7 +103,7 @@ TEST(PlausibilityTest, ThermalImagesInOtherUnitsAreDoubted) {
               ElementsAre(HasSubstr("largest value")));
 }
 
-TEST(PlausibilityTest, AScanIsJudgedByItsStampsAndByFewOfItsFrames) {
+TEST(PlausibilityTest, AScanIsAssessedByItsStampsAndByFewOfItsFrames) {
   PlausibilityCheck check(SoundRig());
   int looked_at = 0;
   for (const CaptureTime time : Stamps(1000, 100.0, 1.0 / 30.0)) {

@@ -12,7 +12,7 @@ namespace isotherm {
 namespace {
 
 /// Both compute the same polynomial in double precision, in another order.
-constexpr double kRoundingPx = 1e-9;
+constexpr double kRounding_px = 1e-9;
 /// Both stop their iterations far below this, in normalised image coordinates.
 constexpr double kIterations = 1e-9;
 
@@ -87,8 +87,8 @@ TEST_P(CameraAgainstOpencvTest, PointsOfARigProjectWhereProjectPointsPutsThem) {
     const Eigen::Vector3d p_rig(points[i].x, points[i].y, points[i].z);
     const auto pixel = Project(camera_, T_camera_rig * p_rig);
     ASSERT_TRUE(pixel.has_value()) << p_rig.transpose();
-    EXPECT_NEAR(pixel->x(), truth[i].x, kRoundingPx) << p_rig.transpose();
-    EXPECT_NEAR(pixel->y(), truth[i].y, kRoundingPx) << p_rig.transpose();
+    EXPECT_NEAR(pixel->x(), truth[i].x, kRounding_px) << p_rig.transpose();
+    EXPECT_NEAR(pixel->y(), truth[i].y, kRounding_px) << p_rig.transpose();
   }
 }
 

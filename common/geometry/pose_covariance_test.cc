@@ -11,7 +11,7 @@ namespace {
 constexpr double kRounding = 1e-12;
 
 /// Sigmas 1, 2, 3 mm and 4, 5, 6 mrad along axes that are turned away from x, y, z.
-PoseCovariance Turned() {
+PoseCovariance Rotated() {
   const Eigen::Matrix3d R =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   PoseCovariance covariance = PoseCovariance::Zero();
@@ -23,7 +23,7 @@ PoseCovariance Turned() {
 }
 
 TEST(PoseCovarianceTest, LargestSigmaIsAlongTheLeastCertainDirectionWhereverItPoints) {
-  const PoseSigma sigma = LargestSigma(Turned());
+  const PoseSigma sigma = LargestSigma(Rotated());
   EXPECT_NEAR(sigma.translation_m, 0.003, kRounding);
   EXPECT_NEAR(sigma.rotation_rad, 0.006, kRounding);
 }
@@ -34,19 +34,19 @@ TEST(PoseCovarianceTest, OfNothingUncertainIsZero) {
 }
 
 TEST(PoseCovarianceTest, WhatCannotBeACovarianceIsNone) {
-  EXPECT_TRUE(IsCovariance(Turned()));
-  PoseCovariance bad = Turned();
+  EXPECT_TRUE(IsCovariance(Rotated()));
+  PoseCovariance bad = Rotated();
   bad(2, 2) = -1e-6;
   EXPECT_FALSE(IsCovariance(bad)) << "a negative variance";
-  bad = Turned();
+  bad = Rotated();
   bad(0, 5) = bad(5, 0) = 2.0 * std::sqrt(bad(0, 0) * bad(5, 5));
   EXPECT_FALSE(IsCovariance(bad)) << "a correlation of 2";
-  bad = Turned();
+  bad = Rotated();
   bad(0, 1) += 1e-9;
   EXPECT_FALSE(IsCovariance(bad)) << "not symmetric";
   for (const double value :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    bad = Turned();
+    bad = Rotated();
     bad(3, 3) = value;
     EXPECT_FALSE(IsCovariance(bad)) << value;
   }

@@ -11,8 +11,8 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Nobody holds a rig more exactly than this.
-constexpr double kLeastMove_m = 0.03;
-constexpr double kLeastTurn_deg = 5.0;
+constexpr double kMinMove_m = 0.03;
+constexpr double kMinRotation_deg = 5.0;
 
 void Append(std::string part, std::string& text) {
   if (!text.empty()) text += ", ";
@@ -20,12 +20,12 @@ void Append(std::string part, std::string& text) {
 }
 
 void AppendMove(double metres, const char* positive, const char* negative, std::string& text) {
-  if (std::abs(metres) < kLeastMove_m) return;
+  if (std::abs(metres) < kMinMove_m) return;
   Append(fmt::format("{:.2f} m {}", std::abs(metres), metres > 0.0 ? positive : negative), text);
 }
 
-void AppendTurn(double deg, const char* positive, const char* negative, std::string& text) {
-  if (std::abs(deg) < kLeastTurn_deg) return;
+void AppendRotation(double deg, const char* positive, const char* negative, std::string& text) {
+  if (std::abs(deg) < kMinRotation_deg) return;
   Append(fmt::format("turn {:.0f} deg {}", std::abs(deg), deg > 0.0 ? positive : negative), text);
 }
 
@@ -39,9 +39,9 @@ std::string MoveText(const RigidTransform& T_depth_next) {
   AppendMove(t.y(), "down", "up", text);
   AppendMove(t.z(), "forward", "back", text);
   const Eigen::Vector3d ahead = T_depth_next.linear().col(2);
-  AppendTurn(std::atan2(ahead.x(), ahead.z()) * kDegPerRad, "right", "left", text);
-  AppendTurn(std::atan2(ahead.y(), std::hypot(ahead.x(), ahead.z())) * kDegPerRad, "down", "up",
-             text);
+  AppendRotation(std::atan2(ahead.x(), ahead.z()) * kDegPerRad, "right", "left", text);
+  AppendRotation(std::atan2(ahead.y(), std::hypot(ahead.x(), ahead.z())) * kDegPerRad, "down", "up",
+                 text);
   return text.empty() ? "here" : text;
 }
 
@@ -90,12 +90,12 @@ std::string LatencyText(const FeedbackLatency& latency) {
   return fmt::format("p50 {:.0f} ms, p99 {:.0f} ms", 1e3 * latency.p50_s, 1e3 * latency.p99_s);
 }
 
-std::optional<std::string> FeedbackNarrator::Tell(const Feedback& feedback) {
-  const bool same = told_ && told_->tracking_state == feedback.tracking_state &&
-                    told_->advice == feedback.advice && told_->done == feedback.done;
+std::optional<std::string> FeedbackReporter::Report(const Feedback& feedback) {
+  const bool same = reported_ && reported_->tracking_state == feedback.tracking_state &&
+                    reported_->advice == feedback.advice && reported_->done == feedback.done;
   if (same) return std::nullopt;
-  told_ = feedback;
-  told_->picture.clear();
+  reported_ = feedback;
+  reported_->image.clear();
   return FeedbackText(feedback);
 }
 

@@ -28,13 +28,13 @@ std::string FeedbackText(const Feedback& feedback);
 std::string LatencyText(const FeedbackLatency& latency);
 
 /// Says what has changed in the feedback, for a journal. Thread-compatible.
-class FeedbackNarrator {
+class FeedbackReporter {
  public:
   /// A line if tracking state, advice or "done" differ from the last time.
-  std::optional<std::string> Tell(const Feedback& feedback);
+  std::optional<std::string> Report(const Feedback& feedback);
 
  private:
-  std::optional<Feedback> told_;
+  std::optional<Feedback> reported_;
 };
 
 }  // namespace isotherm

@@ -105,7 +105,7 @@ std::string_view ToString(NucSource source) {
     case NucSource::kCommanded:
       return "our order alone";
     case NucSource::kInferred:
-      return "its pictures";
+      return "its images";
   }
   return "?";
 }

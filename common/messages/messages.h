@@ -9,7 +9,7 @@
 
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
-#include "common/geometry/outside_pose.h"
+#include "common/geometry/external_odometry.h"
 #include "common/geometry/pose_covariance.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/time/kernel_clock.h"
@@ -17,7 +17,7 @@
 
 /// What crosses the link besides frames, in the program's own types. idl/ says how it is packed,
 /// qos.cc how it is carried. The bounds of the link are the constants below: writers cut text and
-/// lists that are longer, and leave out a picture that is too large.
+/// lists that are longer, and leave out an image that is too large.
 namespace isotherm {
 
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
@@ -36,7 +36,7 @@ inline constexpr std::size_t kMaxHoles = 64;               ///< Ranges in one re
 inline constexpr std::size_t kMaxDropReasons = 16;
 inline constexpr std::size_t kMaxAdvice = 8;
 inline constexpr std::size_t kMaxStageLatencies = 16;
-inline constexpr std::size_t kMaxPictureBytes = 20'000;  ///< Confidence picture.
+inline constexpr std::size_t kMaxConfidenceImageBytes = 20'000;  ///< Confidence image.
 
 enum class Role : std::uint8_t { kEdge = 0, kGround = 1 };
 
@@ -76,17 +76,17 @@ struct RigDescription {
   bool waits_for_ground = false;
 };
 
-/// A pose from outside on its way to the ground.
-struct OutsidePoseSample {
+/// An odometry pose on its way to the ground.
+struct ExternalOdometrySample {
   std::uint64_t session = 0;
   std::uint64_t number = 0;  ///< Counts the session's samples from 0, so that losses are seen.
-  OutsidePose pose;
+  ExternalOdometry pose;
 };
 
 enum class ScanState : std::uint8_t {
   kIdle = 0,      ///< No session yet.
   kScanning = 1,  ///< Frames are being published.
-  kEnded = 2,     ///< The counts in the status are final: the ground can close its account.
+  kEnded = 2,     ///< The counts in the status are final: the ground can close its counters.
 };
 
 /// Says what happens when the link or the ground is slower than the cameras.
@@ -112,7 +112,7 @@ struct NucReport {
   NucPolicy policy = NucPolicy::kAutomatic;
   double seconds_since = std::numeric_limits<double>::quiet_NaN();  ///< Since the shutter opened.
   std::uint32_t closings_per_minute = 0;
-  double closed_share = std::numeric_limits<double>::quiet_NaN();  ///< In the last minute, 0..1.
+  double closed_fraction = std::numeric_limits<double>::quiet_NaN();  ///< In the last minute, 0..1.
   bool storm = false;       ///< More closings per minute than allowed.
   bool warming_up = false;  ///< Temperatures may still be off.
   double fpa_celsius = std::numeric_limits<double>::quiet_NaN();
@@ -125,7 +125,8 @@ struct DropCount {
   std::uint64_t frames = 0;
 };
 
-/// Account of one stream on the edge: captured = published + dropped (all reasons) + in the queues.
+/// Counters of one stream on the edge: captured = published + dropped (all reasons) + in the
+/// queues.
 struct StreamStatus {
   std::uint64_t captured = 0;
   std::uint64_t published = 0;
@@ -289,7 +290,7 @@ std::string_view ToString(Advice advice);
 
 /// Parts of a surface by the best conditions under which it was measured; they add up to 1. NaN =
 /// no surface yet.
-struct CoverageShares {
+struct CoverageFractions {
   float good = std::numeric_limits<float>::quiet_NaN();
   float acceptable = std::numeric_limits<float>::quiet_NaN();
   float bad = std::numeric_limits<float>::quiet_NaN();
@@ -312,13 +313,13 @@ struct Feedback {
   std::optional<RigidTransform>
       T_world_depth;             ///< Absent while lost, and in a sub-map that is not joined.
   double covered_area_m2 = 0.0;  ///< Surface in the model.
-  CoverageShares model;          ///< The whole surface.
-  CoverageShares view;           ///< The surface in view.
+  CoverageFractions model;       ///< The whole surface.
+  CoverageFractions view;        ///< The surface in view.
   std::vector<Advice> advice{};  ///< Most urgent first; at most kMaxAdvice.
   /// Where to go next; while lost, where tracking last worked.
   std::optional<RigidTransform> T_world_depth_next;
   std::vector<std::uint8_t>
-      picture;  ///< Confidence picture, PNG or JPEG; at most kMaxPictureBytes.
+      image;  ///< Confidence image, PNG or JPEG; at most kMaxConfidenceImageBytes.
   std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
   /// How uncertain T_world_depth is relative to the model, along the axes of `world`; present if
   /// the pose is.

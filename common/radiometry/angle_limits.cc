@@ -50,12 +50,12 @@ EmissionError EmissionCurve::WithOperatorMirrored() const {
 }
 
 double EmissionCurve::LargestAngle(const ErrorTolerance& tolerance) const {
-  constexpr double kStepDeg = 0.1;
-  constexpr double kLastDeg = 89.9;
+  constexpr double kStep_deg = 0.1;
+  constexpr double kLast_deg = 89.9;
   double within_deg = 0.0;
-  for (int i = 1; i * kStepDeg <= kLastDeg; ++i) {
-    if (!Within(At(i * kStepDeg * kDegree), tolerance)) break;
-    within_deg = i * kStepDeg;
+  for (int i = 1; i * kStep_deg <= kLast_deg; ++i) {
+    if (!Within(At(i * kStep_deg * kDegree), tolerance)) break;
+    within_deg = i * kStep_deg;
   }
   return within_deg * kDegree;
 }

@@ -54,10 +54,10 @@ TEST(DepthOfFieldTest, BeyondTheHyperfocalDistanceItHasNoEnd) {
 TEST(FootprintTest, GrowsWithDistanceAndWithTilt) {
   // Optris PI 450: 1.1 mm at 0.5 m and 2.3 mm at 1 m (thesis 3.3.1).
   constexpr double kPublishedRounding = 0.05e-3;
-  constexpr double kIfovRad = 2.25e-3;
-  EXPECT_NEAR(FootprintOfPixel(kIfovRad, 0.5, 0.0).across_m, 1.1e-3, kPublishedRounding);
-  EXPECT_NEAR(FootprintOfPixel(kIfovRad, 1.0, 0.0).across_m, 2.3e-3, kPublishedRounding + 1e-12);
-  const PixelFootprint tilted = FootprintOfPixel(kIfovRad, 1.0, 60.0 * kDegree);
+  constexpr double kIfov_rad = 2.25e-3;
+  EXPECT_NEAR(FootprintOfPixel(kIfov_rad, 0.5, 0.0).across_m, 1.1e-3, kPublishedRounding);
+  EXPECT_NEAR(FootprintOfPixel(kIfov_rad, 1.0, 0.0).across_m, 2.3e-3, kPublishedRounding + 1e-12);
+  const PixelFootprint tilted = FootprintOfPixel(kIfov_rad, 1.0, 60.0 * kDegree);
   EXPECT_NEAR(tilted.across_m, 2.25e-3, 1e-12);
   EXPECT_NEAR(tilted.along_m, 4.5e-3, 1e-12);
 }

@@ -13,7 +13,7 @@ namespace isotherm {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kZeroCelsiusKelvin = 273.15;
+constexpr double kZeroCelsius_k = 273.15;
 
 // CODATA 2018 (exact in the SI since 2019).
 constexpr double kPlanck = 6.62607015e-34;
@@ -21,7 +21,8 @@ constexpr double kLightSpeed = 299792458.0;
 constexpr double kBoltzmann = 1.380649e-23;
 
 // 1 K and 1/2048 of the logarithmic range keep the interpolation error below 0.01 mK.
-constexpr int kForwardIntervals = static_cast<int>(kMaxRadiometricCelsius - kMinRadiometricCelsius);
+constexpr int kForwardIntervals =
+    static_cast<int>(kMaxRadiometric_celsius - kMinRadiometric_celsius);
 constexpr int kInverseIntervals = 2048;
 
 /// Integral of x^3 / (e^x - 1) from x to infinity (series in e^-nx).
@@ -56,13 +57,13 @@ double KelvinSlope(double kelvin, const SpectralBand& band) {
 
 double InvertExactly(double radiance, double first_guess, const SpectralBand& band) {
   constexpr int kMaxIterations = 30;
-  constexpr double kConvergedKelvin = 1e-9;
+  constexpr double kConverged_k = 1e-9;
   double celsius = first_guess;
   for (int i = 0; i < kMaxIterations; ++i) {
     const double step =
         (PlanckBandRadiance(celsius, band) - radiance) / PlanckBandRadianceSlope(celsius, band);
     celsius -= step;
-    if (std::abs(step) < kConvergedKelvin) break;
+    if (std::abs(step) < kConverged_k) break;
   }
   return celsius;
 }
@@ -70,22 +71,22 @@ double InvertExactly(double radiance, double first_guess, const SpectralBand& ba
 }  // namespace
 
 double PlanckBandRadiance(double celsius, const SpectralBand& band) {
-  const double kelvin = celsius + kZeroCelsiusKelvin;
+  const double kelvin = celsius + kZeroCelsius_k;
   const double tails = PlanckTail(ScaledFrequency(band.max_um, kelvin)) -
                        PlanckTail(ScaledFrequency(band.min_um, kelvin));
   return kPrefactor * kelvin * kelvin * kelvin * kelvin * tails;
 }
 
 double PlanckBandRadianceSlope(double celsius, const SpectralBand& band) {
-  return KelvinSlope(celsius + kZeroCelsiusKelvin, band);
+  return KelvinSlope(celsius + kZeroCelsius_k, band);
 }
 
 BandRadiance::BandRadiance(const SpectralBand& band) : band_(band) {
   CHECK(band.min_um > 0.0 && band.max_um > band.min_um);
   constexpr double kStep =
-      (kMaxRadiometricCelsius - kMinRadiometricCelsius) / static_cast<double>(kForwardIntervals);
+      (kMaxRadiometric_celsius - kMinRadiometric_celsius) / static_cast<double>(kForwardIntervals);
   for (int i = 0; i <= kForwardIntervals; ++i) {
-    const double celsius = kMinRadiometricCelsius + i * kStep;
+    const double celsius = kMinRadiometric_celsius + i * kStep;
     radiance_.push_back(
         {PlanckBandRadiance(celsius, band), PlanckBandRadianceSlope(celsius, band) * kStep});
   }
@@ -93,7 +94,7 @@ BandRadiance::BandRadiance(const SpectralBand& band) : band_(band) {
   max_radiance_ = radiance_.back().value;
   min_log_ = std::log(min_radiance_);
   log_step_ = (std::log(max_radiance_) - min_log_) / kInverseIntervals;
-  double celsius = kMinRadiometricCelsius;
+  double celsius = kMinRadiometric_celsius;
   for (int i = 0; i <= kInverseIntervals; ++i) {
     const double radiance = std::exp(min_log_ + i * log_step_);
     celsius = InvertExactly(radiance, celsius, band);
@@ -114,10 +115,10 @@ double BandRadiance::Evaluate(const std::vector<Knot>& table, double position) {
 }
 
 double BandRadiance::RadianceFromCelsius(double celsius) const {
-  if (!(celsius >= kMinRadiometricCelsius && celsius <= kMaxRadiometricCelsius)) return kNan;
+  if (!(celsius >= kMinRadiometric_celsius && celsius <= kMaxRadiometric_celsius)) return kNan;
   constexpr double kPerCelsius =
-      kForwardIntervals / (kMaxRadiometricCelsius - kMinRadiometricCelsius);
-  return Evaluate(radiance_, (celsius - kMinRadiometricCelsius) * kPerCelsius);
+      kForwardIntervals / (kMaxRadiometric_celsius - kMinRadiometric_celsius);
+  return Evaluate(radiance_, (celsius - kMinRadiometric_celsius) * kPerCelsius);
 }
 
 double BandRadiance::CelsiusFromRadiance(double radiance) const {
@@ -170,7 +171,7 @@ Result<double> TrueCelsius(const BandRadiance& band, double apparent_celsius, do
   if (!std::isfinite(apparent) || !std::isfinite(reflected)) {
     return Err(InvalidArgument(fmt::format(
         "temperatures must be {}..{} °C, got {} °C apparent and {} °C reflected",
-        kMinRadiometricCelsius, kMaxRadiometricCelsius, apparent_celsius, reflected_celsius)));
+        kMinRadiometric_celsius, kMaxRadiometric_celsius, apparent_celsius, reflected_celsius)));
   }
   const double emitted = (apparent - (1.0 - emissivity) * reflected) / emissivity;
   const double celsius = band.CelsiusFromRadiance(emitted);
@@ -178,7 +179,7 @@ Result<double> TrueCelsius(const BandRadiance& band, double apparent_celsius, do
     return Err(FailedPrecondition(
         fmt::format("no temperature in {}..{} °C looks like {} °C with emissivity {} and {} °C "
                     "reflected",
-                    kMinRadiometricCelsius, kMaxRadiometricCelsius, apparent_celsius, emissivity,
+                    kMinRadiometric_celsius, kMaxRadiometric_celsius, apparent_celsius, emissivity,
                     reflected_celsius)));
   }
   return celsius;

@@ -13,8 +13,8 @@ struct SpectralBand {
 };
 
 /// Range of BandRadiance. Covers every range of the cameras in use.
-inline constexpr double kMinRadiometricCelsius = -100.0;
-inline constexpr double kMaxRadiometricCelsius = 1500.0;
+inline constexpr double kMinRadiometric_celsius = -100.0;
+inline constexpr double kMaxRadiometric_celsius = 1500.0;
 
 /// Radiance of a black body within `band`, W/(m^2 sr): Planck's law (thesis eq. 2.4) integrated by
 /// its exact series. Any temperature above absolute zero; slow (use BandRadiance for pixels).
@@ -24,7 +24,7 @@ double PlanckBandRadiance(double celsius, const SpectralBand& band);
 double PlanckBandRadianceSlope(double celsius, const SpectralBand& band);
 
 /// Black-body radiance within a camera's band and its inverse, from tables (cubic Hermite, error
-/// far below 1 mK). Values outside kMinRadiometricCelsius..kMaxRadiometricCelsius give NaN.
+/// far below 1 mK). Values outside kMinRadiometric_celsius..kMaxRadiometric_celsius give NaN.
 /// Building takes a few milliseconds: make one and keep it. Thread-safe (immutable).
 class BandRadiance {
  public:
@@ -53,7 +53,7 @@ class BandRadiance {
   double log_step_ = 0.0;
 };
 
-/// Share of unpolarised radiation that a smooth surface with the refractive index n + i kappa
+/// Fraction of unpolarised radiation that a smooth surface with the refractive index n + i kappa
 /// reflects into the mirror direction, at `angle_rad` from its normal (thesis B.2). Angles beyond
 /// 90 degrees give 1.
 double FresnelReflectivity(double angle_rad, double n, double kappa);

@@ -13,7 +13,7 @@ namespace isotherm {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kInterpolationKelvin = 1e-3;  // What the class promises.
+constexpr double kInterpolation_k = 1e-3;  // What the class promises.
 
 /// Planck's spectral radiance (thesis eq. 2.4, medium: air), W/(m^2 sr m).
 double SpectralRadiance(double wavelength_m, double kelvin) {
@@ -70,8 +70,8 @@ TEST(BandRadianceTest, InterpolatesWithinAMillikelvin) {
   const unsigned seed = 7;
   std::cout << "seed " << seed << '\n';
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> celsius_in_range(kMinRadiometricCelsius,
-                                                          kMaxRadiometricCelsius);
+  std::uniform_real_distribution<double> celsius_in_range(kMinRadiometric_celsius,
+                                                          kMaxRadiometric_celsius);
   double worst_forward = 0.0, worst_round_trip = 0.0;
   for (int i = 0; i < 20000; ++i) {
     const double celsius = celsius_in_range(random);
@@ -84,8 +84,8 @@ TEST(BandRadianceTest, InterpolatesWithinAMillikelvin) {
   }
   std::cout << "worst forward error_kelvin=" << worst_forward
             << " round trip error_kelvin=" << worst_round_trip << '\n';
-  EXPECT_LT(worst_forward, kInterpolationKelvin);
-  EXPECT_LT(worst_round_trip, kInterpolationKelvin);
+  EXPECT_LT(worst_forward, kInterpolation_k);
+  EXPECT_LT(worst_round_trip, kInterpolation_k);
 }
 
 TEST(BandRadianceTest, OutsideTheRangeIsNan) {
@@ -153,9 +153,9 @@ TEST(DirectionalEmissivityTest, FallsFromItsValueAlongTheNormal) {
 
 TEST(ApparentCelsiusTest, BlackBodiesAndEqualSurroundingsShowTheTruth) {
   const BandRadiance band;
-  EXPECT_NEAR(ApparentCelsius(band, 280.0, 1.0, 23.0), 280.0, kInterpolationKelvin);
-  EXPECT_NEAR(ApparentCelsius(band, 23.0, 0.3, 23.0), 23.0, kInterpolationKelvin);
-  EXPECT_NEAR(ApparentCelsius(band, 280.0, 0.0, 23.0), 23.0, kInterpolationKelvin);
+  EXPECT_NEAR(ApparentCelsius(band, 280.0, 1.0, 23.0), 280.0, kInterpolation_k);
+  EXPECT_NEAR(ApparentCelsius(band, 23.0, 0.3, 23.0), 23.0, kInterpolation_k);
+  EXPECT_NEAR(ApparentCelsius(band, 280.0, 0.0, 23.0), 23.0, kInterpolation_k);
 }
 
 TEST(ApparentCelsiusTest, HotPaintedSteelLooksColder) {
@@ -170,7 +170,7 @@ TEST(TrueCelsiusTest, InvertsApparentCelsius) {
       const double apparent = ApparentCelsius(band, celsius, emissivity, 23.0);
       const Result<double> restored = TrueCelsius(band, apparent, emissivity, 23.0);
       ASSERT_TRUE(restored.has_value());
-      EXPECT_NEAR(*restored, celsius, kInterpolationKelvin) << celsius << " " << emissivity;
+      EXPECT_NEAR(*restored, celsius, kInterpolation_k) << celsius << " " << emissivity;
     }
   }
 }

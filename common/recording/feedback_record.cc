@@ -29,11 +29,11 @@ void SetPose(const RigidTransform& pose, recording::PoseRecord& record) {
   record.mutable_rotation()->set_w(q.w());
 }
 
-void SetShares(const CoverageShares& shares, recording::CoverageRecord& record) {
-  record.set_good(shares.good);
-  record.set_acceptable(shares.acceptable);
-  record.set_bad(shares.bad);
-  record.set_never_measured(shares.never_measured);
+void SetFractions(const CoverageFractions& fractions, recording::CoverageRecord& record) {
+  record.set_good(fractions.good);
+  record.set_acceptable(fractions.acceptable);
+  record.set_bad(fractions.bad);
+  record.set_never_measured(fractions.never_measured);
 }
 
 recording::FeedbackRecord ToRecord(const Feedback& feedback,
@@ -45,8 +45,8 @@ recording::FeedbackRecord ToRecord(const Feedback& feedback,
   record.set_frame_number(feedback.frame_number);
   record.set_tracking(std::string(ToString(feedback.tracking_state)));
   if (feedback.T_world_depth) SetPose(*feedback.T_world_depth, *record.mutable_world_from_depth());
-  if (std::isfinite(feedback.view.good)) SetShares(feedback.view, *record.mutable_view());
-  if (std::isfinite(feedback.model.good)) SetShares(feedback.model, *record.mutable_model());
+  if (std::isfinite(feedback.view.good)) SetFractions(feedback.view, *record.mutable_view());
+  if (std::isfinite(feedback.model.good)) SetFractions(feedback.model, *record.mutable_model());
   record.set_covered_area_m2(feedback.covered_area_m2);
   for (const Advice advice : feedback.advice) record.add_advice(std::string(ToString(advice)));
   record.set_reason(feedback.advice_reason);
@@ -73,13 +73,13 @@ Status WriteFeedback(const Feedback& feedback, const std::optional<CaptureTime>&
   const CaptureTime time = newest.value_or(feedback.capture_time);
   ISOTHERM_RETURN_IF_ERROR(
       WriteAs(kFeedbackRecordTopic, time, ToRecord(feedback, arrival), writer));
-  if (feedback.picture.empty()) return OkStatus();
-  foxglove::CompressedImage picture;
-  SetTime(feedback.capture_time, *picture.mutable_timestamp());
-  picture.set_frame_id("depth");
-  picture.set_format("png");
-  picture.set_data(feedback.picture.data(), feedback.picture.size());
-  return WriteAs(kFeedbackPictureTopic, time, picture, writer);
+  if (feedback.image.empty()) return OkStatus();
+  foxglove::CompressedImage image;
+  SetTime(feedback.capture_time, *image.mutable_timestamp());
+  image.set_frame_id("depth");
+  image.set_format("png");
+  image.set_data(feedback.image.data(), feedback.image.size());
+  return WriteAs(kFeedbackImageTopic, time, image, writer);
 }
 
 }  // namespace isotherm

@@ -8,9 +8,9 @@
 
 namespace isotherm {
 
-/// Where feedback lies in a recording, and its pictures beside it.
+/// Where feedback lies in a recording, and its images beside it.
 inline constexpr std::string_view kFeedbackRecordTopic = "/feedback";
-inline constexpr std::string_view kFeedbackPictureTopic = "/feedback/picture";
+inline constexpr std::string_view kFeedbackImageTopic = "/feedback/image";
 
 /// Records feedback at the capture time of the depth frame that it is about, so that it belongs to
 /// the time base of the frames even in a replay. `arrival`: when it reached the edge, for the

@@ -72,15 +72,15 @@ TEST_F(FeedbackRecordTest, SaysWhatTheGroundSaid) {
   EXPECT_FALSE(record.has_world_from_next());
 }
 
-TEST_F(FeedbackRecordTest, APictureIsOneThatViewersShow) {
-  feedback_.picture = {1, 2, 3};
+TEST_F(FeedbackRecordTest, AnImageIsOneThatViewersShow) {
+  feedback_.image = {1, 2, 3};
   ASSERT_TRUE(WriteFeedback(feedback_, std::nullopt, *writer_).ok());
-  feedback_.picture.clear();
+  feedback_.image.clear();
   ASSERT_TRUE(WriteFeedback(feedback_, std::nullopt, *writer_).ok());
-  const auto pictures = Messages<foxglove::CompressedImage>("/feedback/picture");
-  ASSERT_EQ(pictures.size(), 1U);
-  EXPECT_EQ(pictures[0].format(), "png");
-  EXPECT_EQ(pictures[0].data(), std::string({1, 2, 3}));
+  const auto images = Messages<foxglove::CompressedImage>("/feedback/image");
+  ASSERT_EQ(images.size(), 1U);
+  EXPECT_EQ(images[0].format(), "png");
+  EXPECT_EQ(images[0].data(), std::string({1, 2, 3}));
 }
 
 TEST_F(FeedbackRecordTest, AScanWithFeedbackIsReadAsOneWithout) {

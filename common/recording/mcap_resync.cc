@@ -10,7 +10,7 @@ namespace {
 
 /// Chunk fields with the longest plausible name of a compression.
 constexpr std::uint64_t kChunkFieldsBytes = 8 + 8 + 8 + 4 + 4 + 32 + 8;
-/// So much of a record's start must be there to judge it.
+/// So much of a record's start must be there to assess it.
 constexpr std::size_t kHeadBytes = kRecordPrefixBytes + kChunkFieldsBytes;
 constexpr std::uint64_t kIndexFieldsBytes = 2 + 4;
 constexpr std::uint64_t kIndexEntryBytes = 16;

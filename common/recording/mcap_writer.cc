@@ -150,7 +150,7 @@ Status Writer::WriteChunk() {
                    .uncompressed_size = header.uncompressed_size};
   ISOTHERM_RETURN_IF_ERROR(WriteBytes(out_));
   // From here on the messages are in the file, even if their indexes do not fit.
-  Account(chunk_);
+  AddToStatistics(chunk_);
   ISOTHERM_RETURN_IF_ERROR(WriteMessageIndexes(index));
   chunk_indexes_.push_back(std::move(index));
   return OkStatus();
@@ -169,7 +169,7 @@ Status Writer::WriteMessageIndexes(ChunkIndex& index) {
   return WriteBytes(out_);
 }
 
-void Writer::Account(const OpenChunk& chunk) {
+void Writer::AddToStatistics(const OpenChunk& chunk) {
   statistics_.start =
       statistics_.message_count == 0 ? chunk.start : std::min(statistics_.start, chunk.start);
   statistics_.end = std::max(statistics_.end, chunk.end);

@@ -77,7 +77,7 @@ class Writer {
   void AppendSummaryGroup(Opcode group, Bytes& out, std::vector<SummaryOffset>& offsets) const;
   /// Writes and counts; remembers the first failure.
   Status WriteBytes(std::span<const std::uint8_t> bytes);
-  void Account(const OpenChunk& chunk);
+  void AddToStatistics(const OpenChunk& chunk);
 
   const std::unique_ptr<ByteSink> sink_;
   const WriterOptions options_;

@@ -13,7 +13,7 @@
 #include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
-#include "common/geometry/outside_pose.h"
+#include "common/geometry/external_odometry.h"
 #include "common/geometry/stamped_pose.h"
 
 namespace isotherm {
@@ -46,7 +46,7 @@ struct RecordingOptions {
   bool sync = true;  ///< fdatasync after each chunk, so that a power cut costs at most the last.
 };
 
-/// Counts for the account: written + failed = offered.
+/// Counters: written + failed = offered.
 struct RecordingStats {
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;
@@ -73,7 +73,7 @@ class RecordingWriter {
   virtual Status Write(const NucEvent& event) = 0;
   virtual Status Write(const ClockStep& step) = 0;
   /// As it came, right or wrong; written as foxglove.PoseInFrame.
-  virtual Status Write(const OutsidePose& pose) = 0;
+  virtual Status Write(const ExternalOdometry& pose) = 0;
   /// `stream`: "groundtruth" or "trajectory"; written as foxglove.FrameTransform world -> depth.
   virtual Status WritePose(std::string_view stream, const StampedPose& pose) = 0;
   /// Free text kept as MCAP metadata: `configuration`, `software`, `origin`, ...
@@ -111,7 +111,7 @@ struct RecordedLog {
   std::string text{};
 };
 using RecordedItem = std::variant<RecordedDepth, RecordedThermal, NucEvent, RecordedPose,
-                                  OutsidePose, RecordedLog, ClockStep>;
+                                  ExternalOdometry, RecordedLog, ClockStep>;
 
 /// A part of the file that is damaged or was never finished.
 struct RecordingGap {

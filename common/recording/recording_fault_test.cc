@@ -40,7 +40,7 @@ std::vector<std::uint8_t> First(const std::vector<std::uint8_t>& bytes, std::siz
   return {bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
-TEST(RecordingFaultTest, FullDiskIsReportedAndTheAccountIsExact) {
+TEST(RecordingFaultTest, FullDiskIsReportedAndTheCountersAreExact) {
   const auto scan = SmallScan();
   const std::size_t offered = scan.depth.size() + scan.thermal.size();
   const std::size_t whole = SmallFile().size();

@@ -25,7 +25,7 @@ constexpr std::size_t kChunkBytes = 1U << 20;
 /// The chunk packed and unpacked, its neighbour, the frame in several stages, the test's own
 /// frames, and as much again that the allocator keeps in between.
 constexpr std::size_t kAllowedBytes = 20 * kChunkBytes;
-constexpr std::uint64_t kLeastFileBytes = 60U << 20;
+constexpr std::uint64_t kMinFileBytes = 60U << 20;
 
 /// "VmRSS", what the process has in memory, or "VmHWM", the most that it had.
 std::size_t ResidentBytes(std::string_view key) {
@@ -73,7 +73,7 @@ class RecordingMemoryTest : public ::testing::Test {
       ASSERT_TRUE((*writer)->Write(frame, std::nullopt).ok());
     }
     ASSERT_TRUE((*writer)->Close().ok());
-    ASSERT_GT(std::filesystem::file_size(path_), kLeastFileBytes);
+    ASSERT_GT(std::filesystem::file_size(path_), kMinFileBytes);
   }
 
   int CountItems() {

@@ -240,13 +240,13 @@ foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_i
   return message;
 }
 
-foxglove::PoseInFrame ToMessage(const OutsidePose& pose) {
+foxglove::PoseInFrame ToMessage(const ExternalOdometry& pose) {
   foxglove::PoseInFrame message;
   SetTime(pose.time, *message.mutable_timestamp());
   message.set_frame_id(pose.source);
   SetVector(pose.translation_m, *message.mutable_pose()->mutable_position());
   SetQuaternion(pose.rotation, *message.mutable_pose()->mutable_orientation());
-  OutsidePoseInfo& info = *message.mutable_outside();
+  ExternalOdometryInfo& info = *message.mutable_external_odometry();
   info.set_time_sigma_ns(pose.time_sigma.count());
   if (!std::isnan(pose.position_sigma_m)) info.set_position_sigma_m(pose.position_sigma_m);
   if (!std::isnan(pose.rotation_sigma_rad)) info.set_rotation_sigma_rad(pose.rotation_sigma_rad);
@@ -362,23 +362,23 @@ Result<StampedPose> FromMessage(const foxglove::FrameTransform& message) {
   if (!time) return Err(DataLoss("its timestamp is out of range"));
   const Eigen::Vector3d translation = ToVector(message.translation());
   const Eigen::Quaterniond rotation = ToQuaternion(message.rotation());
-  constexpr double kLeastNorm = 1e-6;
-  if (!translation.allFinite() || !(rotation.norm() > kLeastNorm) ||
+  constexpr double kMinNorm = 1e-6;
+  if (!translation.allFinite() || !(rotation.norm() > kMinNorm) ||
       !std::isfinite(rotation.norm())) {
     return Err(DataLoss("its pose is not finite"));
   }
   return StampedPose{.time = *time, .T_world_depth = MakeTransform(translation, rotation)};
 }
 
-Result<OutsidePose> FromMessage(const foxglove::PoseInFrame& message) {
+Result<ExternalOdometry> FromMessage(const foxglove::PoseInFrame& message) {
   const std::optional<CaptureTime> time = ToTime(message.timestamp());
   if (!time) return Err(DataLoss("its timestamp is out of range"));
-  OutsidePose pose;
+  ExternalOdometry pose;
   pose.source = message.frame_id();
   pose.time = *time;
   pose.translation_m = ToVector(message.pose().position());
   pose.rotation = ToQuaternion(message.pose().orientation());
-  const OutsidePoseInfo& info = message.outside();
+  const ExternalOdometryInfo& info = message.external_odometry();
   pose.time_sigma = Nanoseconds(info.time_sigma_ns());
   if (info.has_position_sigma_m()) pose.position_sigma_m = info.position_sigma_m();
   if (info.has_rotation_sigma_rad()) pose.rotation_sigma_rad = info.rotation_sigma_rad();

@@ -24,7 +24,7 @@ foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_i
 foxglove::FrameTransform ToMessage(const StampedPose& pose);
 /// Where the thermal camera is on the rig, for viewers: depth -> thermal.
 foxglove::FrameTransform ThermalTransform(CaptureTime time, const RigidTransform& T_thermal_depth);
-foxglove::PoseInFrame ToMessage(const OutsidePose& pose);
+foxglove::PoseInFrame ToMessage(const ExternalOdometry& pose);
 NucRecord ToMessage(const NucEvent& event);
 ClockStepRecord ToMessage(const ClockStep& step);
 RigRecord ToMessage(CaptureTime time, const Rig& rig);
@@ -37,8 +37,8 @@ Result<RecordedDepth> ToDepth(Image& message, CaptureTime log_time, std::uint32_
 template <typename Image>
 Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uint32_t sequence);
 Result<StampedPose> FromMessage(const foxglove::FrameTransform& message);
-/// Checks nothing but the time: what the numbers are worth is judged where they are used.
-Result<OutsidePose> FromMessage(const foxglove::PoseInFrame& message);
+/// Checks nothing but the time: what the numbers are worth is assessed where they are used.
+Result<ExternalOdometry> FromMessage(const foxglove::PoseInFrame& message);
 Result<NucEvent> FromMessage(const NucRecord& message);
 Result<ClockStep> FromMessage(const ClockStepRecord& message);
 Result<RecordedLog> FromMessage(const foxglove::Log& message);

@@ -24,7 +24,7 @@ enum class Content {
   kNuc,
   kClock,
   kPose,
-  kOutsidePose,
+  kExternalOdometry,
   kLog,
   kRig
 };
@@ -45,8 +45,9 @@ Content ContentOf(std::string_view topic, std::string_view schema_name) {
   }
   if (topic == rec::kNucTopic && Is<rec::NucRecord>(schema_name)) return Content::kNuc;
   if (topic == rec::kClockTopic && Is<rec::ClockStepRecord>(schema_name)) return Content::kClock;
-  if (topic == rec::kOutsidePoseTopic && Is<foxglove::PoseInFrame>(schema_name))
-    return Content::kOutsidePose;
+  if ((topic == rec::kExternalOdometryTopic || topic == rec::kOldOdometryTopic) &&
+      Is<foxglove::PoseInFrame>(schema_name))
+    return Content::kExternalOdometry;
   if (topic == rec::kLogTopic && Is<foxglove::Log>(schema_name)) return Content::kLog;
   if (topic == rec::kRigTopic && Is<rec::RigRecord>(schema_name)) return Content::kRig;
   if ((topic == rec::kGroundtruthTopic || topic == rec::kTrajectoryTopic) &&
@@ -200,7 +201,7 @@ class McapRecordingReader final : public RecordingReader {
       case Content::kClock:
         return ParseItem<rec::ClockStepRecord>(
             message, [](const rec::ClockStepRecord& record) { return rec::FromMessage(record); });
-      case Content::kOutsidePose:
+      case Content::kExternalOdometry:
         return ParseItem<foxglove::PoseInFrame>(
             message, [](const foxglove::PoseInFrame& pose) { return rec::FromMessage(pose); });
       case Content::kLog:

@@ -9,6 +9,9 @@
 #include <fstream>
 
 #include "common/codec/codec.h"
+#include "common/recording/recording_messages.h"
+#include "common/recording/recording_topics.h"
+#include "common/recording/schema.h"
 #include "common/recording/testing/recording_data.h"
 
 namespace isotherm {
@@ -255,9 +258,9 @@ TEST(RecordingOptionsTest, ImpossibleOptionsAreRefused) {
   EXPECT_NE(WriterTo(disk, {.flush_interval = 1000ms}), nullptr);
 }
 
-/// What a source outside said is evidence: it is kept as it came, right or wrong.
-TEST(RecordingTest, PosesFromOutsideComeBackAsTheyWere) {
-  OutsidePose pose;
+/// What an odometry source said is evidence: it is kept as it came, right or wrong.
+TEST(RecordingTest, OdometryPosesComeBackAsTheyWere) {
+  ExternalOdometry pose;
   pose.source = "vio";
   pose.time = kScanStart + 7ms;
   pose.time_sigma = Nanoseconds(3000);
@@ -265,11 +268,11 @@ TEST(RecordingTest, PosesFromOutsideComeBackAsTheyWere) {
   pose.rotation.coeffs() = Eigen::Vector4d(0.1, 0.2, 0.3, 2.0);
   pose.position_sigma_m = 0.01;
   pose.rotation_sigma_rad = 0.002;
-  OutsidePose attitude;
+  ExternalOdometry attitude;
   attitude.source = "imu";
   attitude.time = kScanStart + 8ms;
-  attitude.position_sigma_m = OutsidePose::kNotMeasured;
-  OutsidePose astray = attitude;
+  attitude.position_sigma_m = ExternalOdometry::kNotMeasured;
+  ExternalOdometry astray = attitude;
   astray.time = kScanStart + 1h;
   auto disk = std::make_shared<MemorySink::Disk>();
   auto writer = WriterTo(disk);
@@ -280,8 +283,8 @@ TEST(RecordingTest, PosesFromOutsideComeBackAsTheyWere) {
   ASSERT_TRUE(writer->Close().ok());
   auto reader = ReaderOf(disk->bytes);
   ASSERT_TRUE(reader.has_value());
-  EXPECT_EQ((*reader)->info().messages_by_topic.at("/outside_pose"), 3U);
-  const std::vector<OutsidePose> read = ReadAll(**reader).All<OutsidePose>();
+  EXPECT_EQ((*reader)->info().messages_by_topic.at("/external_odometry"), 3U);
+  const std::vector<ExternalOdometry> read = ReadAll(**reader).All<ExternalOdometry>();
   ASSERT_EQ(read.size(), 3U);
   EXPECT_EQ((*reader)->info().end, attitude.time) << "a wrong stamp stretches nothing, ...";
   EXPECT_EQ(read[2].time, astray.time) << "... and is kept";
@@ -295,6 +298,30 @@ TEST(RecordingTest, PosesFromOutsideComeBackAsTheyWere) {
   EXPECT_EQ(read[0].rotation_sigma_rad, 0.002);
   EXPECT_FALSE(read[1].has_position());
   EXPECT_TRUE(std::isnan(read[1].rotation_sigma_rad));
+}
+
+/// The channel had another name before.
+TEST(RecordingTest, OdometryUnderItsOldNameIsStillRead) {
+  ExternalOdometry pose;
+  pose.source = "vio";
+  pose.time = kScanStart + 7ms;
+  const foxglove::PoseInFrame message = recording::ToMessage(pose);
+  const auto& type = *foxglove::PoseInFrame::descriptor();
+  auto disk = std::make_shared<MemorySink::Disk>();
+  auto writer = WriterTo(disk);
+  ASSERT_TRUE(writer->Write(MakeDepth(0, kScanStart), std::nullopt).ok());
+  ASSERT_TRUE(writer
+                  ->WriteMessage(recording::kOldOdometryTopic, type.full_name(),
+                                 recording::SerializedSchema(type), pose.time,
+                                 message.SerializeAsString())
+                  .ok());
+  ASSERT_TRUE(writer->Close().ok());
+  auto reader = ReaderOf(disk->bytes);
+  ASSERT_TRUE(reader.has_value());
+  const std::vector<ExternalOdometry> read = ReadAll(**reader).All<ExternalOdometry>();
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].source, "vio");
+  EXPECT_EQ(read[0].time, pose.time);
 }
 
 }  // namespace

@@ -24,7 +24,9 @@ inline constexpr std::string_view kNucTopic = "/nuc";
 inline constexpr std::string_view kClockTopic = "/clock";
 inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
 inline constexpr std::string_view kTrajectoryTopic = "/trajectory";
-inline constexpr std::string_view kOutsidePoseTopic = "/outside_pose";
+inline constexpr std::string_view kExternalOdometryTopic = "/external_odometry";
+/// What kExternalOdometryTopic was called before; still read.
+inline constexpr std::string_view kOldOdometryTopic = "/outside_pose";
 inline constexpr std::string_view kLogTopic = "/log";
 
 /// The pose of the depth camera that a message of feedback carries; nullopt while the rig was lost,

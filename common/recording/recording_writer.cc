@@ -47,13 +47,13 @@ class McapRecordingWriter final : public RecordingWriter {
     return Append(rec::kClockTopic, step.time, step.time, rec::ToMessage(step));
   }
 
-  Status Write(const OutsidePose& pose) override {
+  Status Write(const ExternalOdometry& pose) override {
     // Filed under its own time, unless that is nonsense: it must not stretch the recording.
     constexpr Nanoseconds kFar = std::chrono::seconds(10);
     const CaptureTime newest = last_time_.value_or(pose.time);
     const bool is_far = pose.time < newest - kFar || pose.time > newest + kFar;
     const CaptureTime time = is_far ? newest : pose.time;
-    return Append(rec::kOutsidePoseTopic, time, time, rec::ToMessage(pose));
+    return Append(rec::kExternalOdometryTopic, time, time, rec::ToMessage(pose));
   }
 
   Status WritePose(std::string_view stream, const StampedPose& pose) override {
@@ -224,11 +224,11 @@ class McapRecordingWriter final : public RecordingWriter {
 };
 
 Status Validate(const RecordingOptions& options) {
-  constexpr std::size_t kLeastChunkBytes = 4096;
+  constexpr std::size_t kMinChunkBytes = 4096;
   constexpr Nanoseconds kLongestFlushInterval = std::chrono::seconds(1);
-  if (options.chunk_bytes < kLeastChunkBytes ||
+  if (options.chunk_bytes < kMinChunkBytes ||
       options.chunk_bytes > mcap::Writer::kMaxMessageBytes) {
-    return InvalidArgument(fmt::format("chunk_bytes must be {} to {}, not {}", kLeastChunkBytes,
+    return InvalidArgument(fmt::format("chunk_bytes must be {} to {}, not {}", kMinChunkBytes,
                                        mcap::Writer::kMaxMessageBytes, options.chunk_bytes));
   }
   if (options.flush_interval <= Nanoseconds(0) || options.flush_interval > kLongestFlushInterval) {

@@ -138,8 +138,9 @@ ScanPath MakePath() {
 }  // namespace
 
 StagedScene MakeCalibratorScene(const SceneOptions& options) {
-  constexpr double kDefaultHotCelsius = 100.0;
-  const double hot_celsius = options.has_hot_celsius() ? options.hot_celsius() : kDefaultHotCelsius;
+  constexpr double kDefaultHot_celsius = 100.0;
+  const double hot_celsius =
+      options.has_hot_celsius() ? options.hot_celsius() : kDefaultHot_celsius;
   SceneBuilder scene(options.surround_celsius());
   scene.UseMaterial({0.96, 1.5, 0.0, false});
   AddRoom(scene);

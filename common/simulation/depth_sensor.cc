@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Neighbours on different surfaces whose depth differs by more than this share are an edge.
+/// Neighbours on different surfaces whose depth differs by more than this fraction are an edge.
 constexpr float kEdgeStepRatio = 0.015F;
 
 /// Noise that neighbours share: the correlation window of a real sensor covers several pixels.
@@ -104,7 +104,7 @@ void DepthSensor::FindShadow(const HitImage& hits, Image<std::uint8_t>& lit) con
   // Camera and projector share their rows. Seen from the projector, a point is one disparity
   // further left. From right to left the projector must see the points in the same order; one that
   // comes out of order is hidden behind a point that was already passed.
-  constexpr float kSameSurfacePx = 0.5F;
+  constexpr float kSameSurface_px = 0.5F;
   const int width = grid_.width();
   lit.Resize(width, grid_.height());
   for (int y = 0; y < grid_.height(); ++y) {
@@ -113,7 +113,7 @@ void DepthSensor::FindShadow(const HitImage& hits, Image<std::uint8_t>& lit) con
       const float z = hits.z_m.At(x, y);
       const bool hit = z < std::numeric_limits<float>::infinity();
       const float column = static_cast<float>(x) - (hit ? disparity_metres_px_ / z : 0.0F);
-      lit.At(x, y) = hit && column <= leftmost + kSameSurfacePx ? 1 : 0;
+      lit.At(x, y) = hit && column <= leftmost + kSameSurface_px ? 1 : 0;
       if (hit) leftmost = std::min(leftmost, column);
     }
   }
@@ -124,22 +124,22 @@ bool DepthSensor::IsDropped(const HitImage& hits, const CameraView& view, int x,
   const auto counter = static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(grid_.width()) +
                        static_cast<std::uint64_t>(x);
   const float cosine = view.CosineAt(hits.primitive.At(x, y), grid_.Ray(x, y), hits.z_m.At(x, y));
-  float dropped_share = 0.0F;
+  float dropped_fraction = 0.0F;
   if (cosine < grazing_start_cos_) {
     if (cosine <= grazing_end_cos_) return true;
-    dropped_share = (grazing_start_cos_ - cosine) / (grazing_start_cos_ - grazing_end_cos_);
+    dropped_fraction = (grazing_start_cos_ - cosine) / (grazing_start_cos_ - grazing_end_cos_);
   }
   if (edge_dropout_ > 0.0F && IsEdge(hits, x, y)) {
-    dropped_share = std::max(dropped_share, edge_dropout_);
+    dropped_fraction = std::max(dropped_fraction, edge_dropout_);
   }
-  return dropped_share > 0.0F && UniformNoise(drop_stream, counter) < dropped_share;
+  return dropped_fraction > 0.0F && UniformNoise(drop_stream, counter) < dropped_fraction;
 }
 
 void DepthSensor::MeasureRow(std::span<const float> z_m, Scratch& scratch) const {
   // Without branches and member accesses inside, so that the divisions become SIMD code.
   constexpr float kLargest = static_cast<float>(kNoDepthSaturated - 1);
   constexpr float kUnquantised = 1e-4F;  // A step far below any noise.
-  constexpr float kMostPx = 1e5F;        // Nearer than any camera; keeps steps within 32 bits.
+  constexpr float kMax_px = 1e5F;        // Nearer than any camera; keeps steps within 32 bits.
   const float disparity_metres_px = disparity_metres_px_, sigma_px = sigma_px_;
   const float step_px = step_px_ > 0.0F ? step_px_ : kUnquantised;
   const float min_m = min_depth_m_, max_m = max_depth_m_, scale = depth_scale_;
@@ -150,7 +150,7 @@ void DepthSensor::MeasureRow(std::span<const float> z_m, Scratch& scratch) const
   const int width = static_cast<int>(z_m.size());
   for (int x = 0; x < width; ++x) {
     const float true_px = disparity_metres_px / z[x];
-    const float noisy_px = std::min(true_px, kMostPx) + sigma_px * noise[x];
+    const float noisy_px = std::min(true_px, kMax_px) + sigma_px * noise[x];
     const float measured_m = disparity_metres_px / (RoundPositive(noisy_px / step_px) * step_px);
     const float raw = measured_m * scale;
     const bool good = (measured_m >= min_m) & (measured_m <= max_m) & (raw <= kLargest);

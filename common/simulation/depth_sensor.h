@@ -29,7 +29,7 @@ class DepthSensor {
     Image<std::uint8_t> lit;  ///< 1 = the projector reaches it.
   };
 
-  /// One picture, `depth_scale` units per metre, 0 = no return. The same `noise_stream` gives the
+  /// One image, `depth_scale` units per metre, 0 = no return. The same `noise_stream` gives the
   /// same noise.
   Image<std::uint16_t> Render(const Scene& scene, const RigidTransform& T_world_depth,
                               std::uint64_t noise_stream, Scratch& scratch) const;

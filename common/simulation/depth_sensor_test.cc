@@ -127,7 +127,7 @@ TEST_F(DepthSensorTest, NeighboursShareTheirNoiseAndFramesDoNot) {
   EXPECT_NEAR(correlation(second, 0, 0), 0.0, 0.03);
 }
 
-TEST_F(DepthSensorTest, TheSameStreamGivesTheSamePicture) {
+TEST_F(DepthSensorTest, TheSameStreamGivesTheSameImage) {
   AddWall(0.8);
   EXPECT_EQ(Render(5), Render(5));
   EXPECT_NE(Render(5), Render(6));
@@ -144,7 +144,7 @@ TEST_F(DepthSensorTest, NothingReturnsOutOfRange) {
 }
 
 TEST_F(DepthSensorTest, GrazingSurfacesHaveHoles) {
-  // Spheres show all angles; the share of returns falls from 1 to 0 between the two limits.
+  // Spheres show all angles; the fraction of returns falls from 1 to 0 between the two limits.
   builder_.Sphere("ball", {0.0, 0.0, 0.8}, 0.25);
   options_.set_edge_dropout(0.0);
   const Image<std::uint16_t> depth = Render();
@@ -176,9 +176,9 @@ TEST_F(DepthSensorTest, GrazingSurfacesHaveHoles) {
 }
 
 TEST_F(DepthSensorTest, ThingsThrowAShadowToTheLeftAsWideAsTheDisparityDifference) {
-  constexpr double kNearM = 0.6, kFarM = 0.9;
-  builder_.Box("near", {-0.05, -0.05, kNearM}, {0.05, 0.05, kNearM + 0.001});
-  AddWall(kFarM);
+  constexpr double kNear_m = 0.6, kFar_m = 0.9;
+  builder_.Box("near", {-0.05, -0.05, kNear_m}, {0.05, 0.05, kNear_m + 0.001});
+  AddWall(kFar_m);
   options_.set_edge_dropout(0.0);
   const Image<std::uint16_t> depth = Render();
   const int row = camera_.height / 2;
@@ -188,13 +188,13 @@ TEST_F(DepthSensorTest, ThingsThrowAShadowToTheLeftAsWideAsTheDisparityDifferenc
     ++holes;
     last_hole = x;
   }
-  const double expected_px = camera_.fx * options_.baseline_m() * (1.0 / kNearM - 1.0 / kFarM);
+  const double expected_px = camera_.fx * options_.baseline_m() * (1.0 / kNear_m - 1.0 / kFar_m);
   EXPECT_NEAR(holes, expected_px, 2.0);
   // It ends where the near thing begins.
-  EXPECT_NEAR(last_hole, camera_.cx - 0.05 / kNearM * camera_.fx, 2.0);
+  EXPECT_NEAR(last_hole, camera_.cx - 0.05 / kNear_m * camera_.fx, 2.0);
 }
 
-TEST_F(DepthSensorTest, EdgesLoseTheShareThatTheOptionsSay) {
+TEST_F(DepthSensorTest, EdgesLoseTheFractionThatTheOptionsSay) {
   builder_.Box("near", {-0.2, -0.2, 0.6}, {0.2, 0.2, 0.601});
   AddWall(0.9);
   options_.set_edge_dropout(0.5);

@@ -149,8 +149,9 @@ ScanPath MakePath() {
 }  // namespace
 
 StagedScene MakeFurnaceDoorScene(const SceneOptions& options) {
-  constexpr double kDefaultHotCelsius = 280.0;
-  const double hot_celsius = options.has_hot_celsius() ? options.hot_celsius() : kDefaultHotCelsius;
+  constexpr double kDefaultHot_celsius = 280.0;
+  const double hot_celsius =
+      options.has_hot_celsius() ? options.hot_celsius() : kDefaultHot_celsius;
   SceneBuilder scene(options.surround_celsius());
   scene.UseMaterial(PaintedSteel());
   AddWall(scene);

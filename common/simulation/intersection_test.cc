@@ -13,9 +13,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr unsigned kSeed = 11;
-constexpr double kMarchM = 1e-7;      // Where the reference calls it a hit.
-constexpr double kExactM = 2e-5;      // The reference's own error at grazing angles.
-constexpr double kFloatM = 2e-5;      // Closed form in float at 1 m.
+constexpr double kMarch_m = 1e-7;     // Where the reference calls it a hit.
+constexpr double kExact_m = 2e-5;     // The reference's own error at grazing angles.
+constexpr double kFloat_m = 2e-5;     // Closed form in float at 1 m.
 constexpr double kGrazingCos = 0.05;  // Rays that graze hit or miss by rounding.
 
 template <typename T>
@@ -29,11 +29,11 @@ T Intersect(const Primitive& primitive, const Vector3d& o, const Vector3d& d) {
 
 /// Sphere tracing along a unit direction; infinity = no hit within 3 m.
 double March(const Primitive& primitive, const Vector3d& o, const Vector3d& d) {
-  constexpr double kFarM = 3.0;
+  constexpr double kFar_m = 3.0;
   double t = 0.0;
-  while (t < kFarM) {
+  while (t < kFar_m) {
     const double distance = SignedDistance(primitive, o + t * d);
-    if (distance < kMarchM) return t;
+    if (distance < kMarch_m) return t;
     t += distance;
   }
   return kNoHit<double>;
@@ -75,9 +75,9 @@ TEST_F(IntersectionTest, AgreesWithRayMarchingOnAllShapes) {
       const Vector3d normal = NormalAt(primitive, origin_ + exact * direction_);
       const double cosine = std::abs(normal.dot(direction_));
       if (cosine < kGrazingCos) continue;
-      EXPECT_NEAR(exact, expected, kExactM) << static_cast<int>(primitive.shape);
+      EXPECT_NEAR(exact, expected, kExact_m) << static_cast<int>(primitive.shape);
       if (!std::isinf(single)) {
-        EXPECT_NEAR(single, exact, kFloatM / cosine);
+        EXPECT_NEAR(single, exact, kFloat_m / cosine);
       }
     }
     EXPECT_LE(different, 2) << static_cast<int>(primitive.shape);
@@ -88,14 +88,14 @@ TEST_F(IntersectionTest, AgreesWithRayMarchingOnAllShapes) {
 
 TEST_F(IntersectionTest, NormalIsTheGradientOfTheDistance) {
   constexpr double kStep = 1e-8;
-  constexpr double kBeforeM = 1e-5;  // In front of the surface flat shapes have a gradient too.
+  constexpr double kBefore_m = 1e-5;  // In front of the surface flat shapes have a gradient too.
   for (const Primitive& primitive : OneOfEach()) {
     int hits = 0, different = 0;
     for (int i = 0; i < 2000; ++i) {
       MakeRay();
       const double t = Intersect<double>(primitive, origin_, direction_);
       if (std::isinf(t)) continue;
-      const Vector3d p = origin_ + (t - kBeforeM) * direction_;
+      const Vector3d p = origin_ + (t - kBefore_m) * direction_;
       Vector3d gradient;
       for (int axis = 0; axis < 3; ++axis) {
         const Vector3d step = kStep * Vector3d::Unit(axis);
@@ -108,7 +108,7 @@ TEST_F(IntersectionTest, NormalIsTheGradientOfTheDistance) {
       ++hits;
       different += normal.dot(gradient) < 0.999;
     }
-    // Within kBeforeM of an edge the gradient points somewhere in between.
+    // Within kBefore_m of an edge the gradient points somewhere in between.
     EXPECT_LE(different, 0.005 * hits) << static_cast<int>(primitive.shape);
   }
 }

@@ -53,17 +53,17 @@ void CheckClock(const std::string& name, const ClockOptions& clock, RangeCheck& 
   check((name + ".drift_ppm").c_str(), clock.drift_ppm(), -1e5, 1e5);
   check((name + ".delay_s").c_str(), clock.delay_s(), 0.0, 10.0);
   check((name + ".jitter_s").c_str(), clock.jitter_s(), 0.0, 1.0);
-  check((name + ".impulse_share").c_str(), clock.impulse_share(), 0.0, 1.0);
+  check((name + ".impulse_fraction").c_str(), clock.impulse_fraction(), 0.0, 1.0);
   check((name + ".impulse_max_s").c_str(), clock.impulse_max_s(), 0.0, 10.0);
 }
 
 void SetClock(double offset_s, double drift_ppm, double delay_s, double jitter_s,
-              double impulse_share, double impulse_max_s, ClockOptions& clock) {
+              double impulse_fraction, double impulse_max_s, ClockOptions& clock) {
   clock.set_offset_s(offset_s);
   clock.set_drift_ppm(drift_ppm);
   clock.set_delay_s(delay_s);
   clock.set_jitter_s(jitter_s);
-  clock.set_impulse_share(impulse_share);
+  clock.set_impulse_fraction(impulse_fraction);
   clock.set_impulse_max_s(impulse_max_s);
 }
 
@@ -74,8 +74,8 @@ Status Validate(const SimulationOptions& options) {
   RangeCheck check;
   check("duration_s", options.duration_s(), 0.0, kHour);
   const SceneOptions& scene = options.scene();
-  check("scene.surround_celsius", scene.surround_celsius(), kMinRadiometricCelsius,
-        kMaxRadiometricCelsius);
+  check("scene.surround_celsius", scene.surround_celsius(), kMinRadiometric_celsius,
+        kMaxRadiometric_celsius);
   // The hottest parts of a scene are never hotter than this, the coldest not colder than the
   // surroundings.
   if (scene.has_hot_celsius()) check("scene.hot_celsius", scene.hot_celsius(), 0.0, 1400.0);
@@ -86,8 +86,8 @@ Status Validate(const SimulationOptions& options) {
   check("shutter.interval_s", shutter.interval_s(), 0.0, kHour);
   check("shutter.duration_s", shutter.duration_s(), 0.0, kHour);
   check("shutter.duration_step_s", shutter.duration_step_s(), 0.0, kHour);
-  check("shutter.shutter_celsius", shutter.shutter_celsius(), kMinRadiometricCelsius,
-        kMaxRadiometricCelsius);
+  check("shutter.shutter_celsius", shutter.shutter_celsius(), kMinRadiometric_celsius,
+        kMaxRadiometric_celsius);
   check("shutter.drift_k", shutter.drift_k(), 0.0, 100.0);
   check("shutter.order_delay_s", shutter.order_delay_s(), 0.0, 60.0);
   const ThermalDriftOptions& drift = options.drift();

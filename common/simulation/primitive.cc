@@ -36,11 +36,11 @@ double TemperatureField::CelsiusAt(const Vector3d& p_primitive) const {
   if (kind == Kind::kUniform) return near_celsius;
   const Vector3d offset = p_primitive - origin;
   const double along = offset.dot(direction);
-  double share = along / length_m;
-  if (kind == Kind::kRadial) share = (offset - along * direction).norm() / length_m;
-  share = std::clamp(share, 0.0, 1.0);
-  if (kind == Kind::kRadial) share = share * share * (3.0 - 2.0 * share);
-  return near_celsius + (far_celsius - near_celsius) * share;
+  double fraction = along / length_m;
+  if (kind == Kind::kRadial) fraction = (offset - along * direction).norm() / length_m;
+  fraction = std::clamp(fraction, 0.0, 1.0);
+  if (kind == Kind::kRadial) fraction = fraction * fraction * (3.0 - 2.0 * fraction);
+  return near_celsius + (far_celsius - near_celsius) * fraction;
 }
 
 Vector3d HalfExtents(const Primitive& primitive) {

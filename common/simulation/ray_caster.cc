@@ -33,10 +33,10 @@ void SetBounds(const Primitive& primitive, const RigidTransform& T_camera_primit
     low = low.cwiseMin(normalized);
     high = high.cwiseMax(normalized);
   }
-  constexpr double kNearM = 0.01;
+  constexpr double kNear_m = 0.01;
   constexpr double kMargin = 1e-5;  // Float rounding.
   seen.min_z = static_cast<float>(std::max(0.0, min_z - kMargin));
-  if (min_z < kNearM) return;
+  if (min_z < kNear_m) return;
   seen.min_x = static_cast<float>(low.x() - kMargin);
   seen.min_y = static_cast<float>(low.y() - kMargin);
   seen.max_x = static_cast<float>(high.x() + kMargin);

@@ -11,11 +11,11 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDepthM =
+constexpr double kDepth_m =
     1e-5;  // Float rounding at 1 m, on surfaces that are not seen at a grazing angle.
-constexpr double kEdgeShare = 0.002;  // Pixels whose ray passes an edge within rounding.
+constexpr double kEdgeFraction = 0.002;  // Pixels whose ray passes an edge within rounding.
 constexpr double kCosine = 1e-3;
-constexpr double kTemperatureKelvin = 0.02;  // Steep fields times kDepthM.
+constexpr double kTemperature_k = 0.02;  // Steep fields times kDepth_m.
 
 class RayCasterTest : public ::testing::TestWithParam<int> {
  protected:
@@ -48,14 +48,14 @@ class RayCasterTest : public ::testing::TestWithParam<int> {
         if (cosine < 0.05) continue;
         const float z_m = hits.z_m.At(x, y);
         // The direction has a depth of 1, so its multiple is the depth.
-        EXPECT_NEAR(z_m, truth->distance, kDepthM / cosine);
+        EXPECT_NEAR(z_m, truth->distance, kDepth_m / cosine);
         const CameraView::Surface surface = view.At(primitive, grid.Ray(x, y), z_m);
         if (std::abs(static_cast<double>(surface.cosine) - cosine) > kCosine) ++different;
-        EXPECT_NEAR(surface.celsius, truth->point.celsius, kTemperatureKelvin / cosine);
+        EXPECT_NEAR(surface.celsius, truth->point.celsius, kTemperature_k / cosine);
         EXPECT_EQ(surface.cosine, view.CosineAt(primitive, grid.Ray(x, y), z_m));
       }
     }
-    EXPECT_LE(different, kEdgeShare * compared);
+    EXPECT_LE(different, kEdgeFraction * compared);
   }
 
   SceneOptions options_;
@@ -81,9 +81,9 @@ TEST(CastRaysTest, PartsBehindAndBesideTheCameraAreNoTrouble) {
   const CameraModel camera = DefaultSimulatedRig().depth->Downscaled(2);
   const RayGrid grid(camera);
   HitImage hits;
-  for (const double turn_rad : {0.0, 1.5, 3.1}) {
+  for (const double rotation_rad : {0.0, 1.5, 3.1}) {
     T_world_camera.linear() =
-        Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
+        Eigen::AngleAxisd(rotation_rad, Eigen::Vector3d::UnitY()).toRotationMatrix();
     CastRays(staged.scene, grid, T_world_camera, hits);
     for (int y = 0; y < camera.height; y += 5) {
       for (int x = 0; x < camera.width; x += 5) {

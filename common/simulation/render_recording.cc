@@ -31,7 +31,7 @@ struct Item {
 };
 
 std::vector<Item> InOrderOfTime(const SimulatedScan& scan,
-                                const std::vector<OutsidePose>& odometry) {
+                                const std::vector<ExternalOdometry>& odometry) {
   std::vector<Item> items;
   for (std::size_t i = 0; i < odometry.size(); ++i)
     items.push_back({odometry[i].time, Item::Kind::kOdometry, i});
@@ -94,7 +94,7 @@ struct Worker {
   }
 };
 
-Status WriteItem(const SimulatedScan& scan, const std::vector<OutsidePose>& odometry,
+Status WriteItem(const SimulatedScan& scan, const std::vector<ExternalOdometry>& odometry,
                  const Item& item, const Worker& worker, RecordingWriter& writer) {
   switch (item.kind) {
     case Item::Kind::kNuc:
@@ -149,7 +149,7 @@ Status RenderRecording(const SimulationOptions& options, const std::filesystem::
   // Threads render whole frames; a batch is written in order when all of it is done.
   constexpr int kFramesPerThread = 6;
   std::vector<Worker> workers(static_cast<std::size_t>(pool.threads() * kFramesPerThread));
-  const std::vector<OutsidePose> odometry =
+  const std::vector<ExternalOdometry> odometry =
       SimulateOdometry(options.odometry(), **scan, options.seed());
   const std::vector<Item> items = InOrderOfTime(**scan, odometry);
   for (std::size_t done = 0; done < items.size();) {

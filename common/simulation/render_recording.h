@@ -13,7 +13,7 @@ namespace isotherm {
 
 class SimulationOptions;
 
-/// Gets the share that is done, 0..1. Called from the calling thread.
+/// Gets the fraction that is done, 0..1. Called from the calling thread.
 using SimulationProgress = std::function<void(double fraction)>;
 
 /// Renders a simulated scan into a recording: depth and thermal frames, NUC events, the rig, ground

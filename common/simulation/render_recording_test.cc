@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A scan of 1.2 s with small pictures: 36 depth and 48 thermal frames.
+/// A scan of 1.2 s with small renderings: 36 depth and 48 thermal frames.
 class RenderRecordingTest : public ::testing::Test {
  protected:
   RenderRecordingTest() {
@@ -110,9 +110,9 @@ TEST_F(RenderRecordingTest, OdometrySeesTheTrueMotionWithItsErrors) {
   ASSERT_TRUE(Render(dir_ / "scan.mcap").ok());
   const auto scan = SimulatedScan::Create(options_);
   ASSERT_TRUE(scan);
-  std::vector<OutsidePose> poses;
+  std::vector<ExternalOdometry> poses;
   for (const RecordedItem& item : ReadAll(dir_ / "scan.mcap")) {
-    if (const auto* pose = std::get_if<OutsidePose>(&item)) poses.push_back(*pose);
+    if (const auto* pose = std::get_if<ExternalOdometry>(&item)) poses.push_back(*pose);
   }
   const std::vector<SimulatedFrameTime>& frames = (*scan)->depth_times();
   const double seconds = ToSeconds(frames.back().exposure - frames.front().exposure);
@@ -125,7 +125,7 @@ TEST_F(RenderRecordingTest, OdometrySeesTheTrueMotionWithItsErrors) {
   const RigidTransform truth =
       (*scan)->PoseAt(poses[0].time).inverse() * (*scan)->PoseAt(poses[last].time);
   ASSERT_GT(truth.translation().norm(), 0.02);
-  // Five sigmas of both ends, and the lever of the first one's turn.
+  // Five sigmas of both ends, and the lever of the first one's rotation.
   constexpr double kJitter = 5.0 * 1.5 * 0.0005;
   EXPECT_LT((motion.translation() - 1.5 * truth.translation()).norm(), kJitter);
   EXPECT_LT(RotationAngle(motion, truth), 0.003);
@@ -166,14 +166,14 @@ TEST_F(RenderRecordingTest, FramesAreFlaggedAndFrozenWhileTheShutterIsClosed) {
     EXPECT_EQ(frame.nuc_state == NucState::kInProgress, inside);
     EXPECT_EQ(frame.valid, !inside);
     EXPECT_EQ(frame.seconds_since_nuc.has_value(), time >= event->end);
-    const auto picture = Decode(frame.image);
-    ASSERT_TRUE(picture);
+    const auto rendering = Decode(frame.image);
+    ASSERT_TRUE(rendering);
     if (inside) {
       ++closed;
-      EXPECT_EQ(*picture, last_open);
+      EXPECT_EQ(*rendering, last_open);
     } else {
-      EXPECT_NE(*picture, last_open);
-      last_open = *picture;
+      EXPECT_NE(*rendering, last_open);
+      last_open = *rendering;
     }
   }
   EXPECT_EQ(closed, 15);  // 0.375 s at 40 Hz.

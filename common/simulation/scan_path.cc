@@ -9,17 +9,17 @@ namespace {
 
 /// Time that runs slowly at first: the speed is 1 - exp(-t / tau).
 double EaseIn(double time_s) {
-  constexpr double kTauS = 0.3;
+  constexpr double kTau_s = 0.3;
   const double t = std::max(0.0, time_s);
-  return t - kTauS * (1.0 - std::exp(-t / kTauS));
+  return t - kTau_s * (1.0 - std::exp(-t / kTau_s));
 }
 
 }  // namespace
 
 double Swing::At(double time_s) const {
-  constexpr double kTurn = 2.0 * std::numbers::pi;
-  return center + amplitude * std::sin(kTurn * time_s / period_s + phase_rad) +
-         second_amplitude * std::sin(kTurn * time_s / second_period_s);
+  constexpr double kFullCircle = 2.0 * std::numbers::pi;
+  return center + amplitude * std::sin(kFullCircle * time_s / period_s + phase_rad) +
+         second_amplitude * std::sin(kFullCircle * time_s / second_period_s);
 }
 
 RigidTransform ScanPath::PoseAt(double time_s) const {

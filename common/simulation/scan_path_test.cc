@@ -16,11 +16,11 @@ namespace {
 
 // Thesis 6.1.3: the fastest scan whose steps between frames at 30 Hz are still integrated, and the
 // smallest step.
-constexpr double kMaxSpeedMps = 0.3;
-constexpr double kMaxTurnRadps = 17.0 * std::numbers::pi / 180.0;
-constexpr double kMinStepM = 0.001;
-constexpr double kMinStepRad = 0.06 * std::numbers::pi / 180.0;
-constexpr double kFrameS = 1.0 / 30.0;
+constexpr double kMaxSpeed_m_s = 0.3;
+constexpr double kMaxRotation_rad_s = 17.0 * std::numbers::pi / 180.0;
+constexpr double kMinStep_m = 0.001;
+constexpr double kMinStep_rad = 0.06 * std::numbers::pi / 180.0;
+constexpr double kFrame_s = 1.0 / 30.0;
 
 class ScanPathTest : public ::testing::TestWithParam<int> {
  protected:
@@ -34,12 +34,12 @@ class ScanPathTest : public ::testing::TestWithParam<int> {
 
 TEST_P(ScanPathTest, StaysWithinTheLimitsOfTheMethodAndKeepsMoving) {
   int still = 0, frames = 0;
-  for (double t = 0.0; t < 180.0; t += kFrameS, ++frames) {
-    const RigidTransform a = staged_->path.PoseAt(t), b = staged_->path.PoseAt(t + kFrameS);
+  for (double t = 0.0; t < 180.0; t += kFrame_s, ++frames) {
+    const RigidTransform a = staged_->path.PoseAt(t), b = staged_->path.PoseAt(t + kFrame_s);
     ASSERT_TRUE(IsRigid(a));
-    ASSERT_LE(TranslationDistance(a, b), kMaxSpeedMps * kFrameS) << t;
-    ASSERT_LE(RotationAngle(a, b), kMaxTurnRadps * kFrameS) << t;
-    if (TranslationDistance(a, b) < kMinStepM && RotationAngle(a, b) < kMinStepRad) ++still;
+    ASSERT_LE(TranslationDistance(a, b), kMaxSpeed_m_s * kFrame_s) << t;
+    ASSERT_LE(RotationAngle(a, b), kMaxRotation_rad_s * kFrame_s) << t;
+    if (TranslationDistance(a, b) < kMinStep_m && RotationAngle(a, b) < kMinStep_rad) ++still;
   }
   EXPECT_LE(still, frames / 50);
 }
@@ -50,7 +50,7 @@ TEST_P(ScanPathTest, StartsFromRest) {
   EXPECT_TRUE(staged_->path.PoseAt(-1.0).isApprox(a));
 }
 
-TEST_P(ScanPathTest, KeepsMostOfThePictureInWorkingRange) {
+TEST_P(ScanPathTest, KeepsMostOfTheImageInWorkingRange) {
   const CameraModel camera = DefaultSimulatedRig().depth->Downscaled(3);
   const RayGrid grid(camera);
   HitImage hits;

@@ -110,7 +110,7 @@ TEST(ScenesTest, EveryPartFitsTheCube) {
       const std::string& part =
           staged.scene.primitives()[static_cast<std::size_t>(sample.point.primitive)].name;
       EXPECT_TRUE((sample.point.p_world.array() >= 0.0).all() &&
-                  (sample.point.p_world.array() <= kSceneCubeM).all())
+                  (sample.point.p_world.array() <= kSceneCube_m).all())
           << staged.scene.name() << ": " << part << " " << sample.point.p_world.transpose();
     }
   }
@@ -136,13 +136,13 @@ TEST(SurfaceSamplingTest, PointsLieOnVisibleSurfacesWithTheirNormal) {
     ASSERT_GT(samples.size(), 500U) << staged.scene.name();
     for (const SurfaceSample& sample : samples) {
       // From very near along the normal nothing else is in between.
-      constexpr double kNearM = 2e-5;
-      const auto hit = staged.scene.Intersect(sample.point.p_world + kNearM * sample.point.n_world,
+      constexpr double kNear_m = 2e-5;
+      const auto hit = staged.scene.Intersect(sample.point.p_world + kNear_m * sample.point.n_world,
                                               -sample.point.n_world);
       ASSERT_TRUE(hit);
       const std::string& part =
           staged.scene.primitives()[static_cast<std::size_t>(sample.point.primitive)].name;
-      EXPECT_NEAR(hit->distance, kNearM, 1e-9) << staged.scene.name() << " " << part;
+      EXPECT_NEAR(hit->distance, kNear_m, 1e-9) << staged.scene.name() << " " << part;
       EXPECT_NEAR(hit->point.celsius, sample.point.celsius, 1e-6) << staged.scene.name() << part;
     }
   }

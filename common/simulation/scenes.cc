@@ -32,22 +32,22 @@ Scene SceneAround(const StagedScene& staged, const RigidTransform& T_world_depth
 }
 
 StagedScene MakePlaneScene(const SceneOptions& options) {
-  constexpr double kDefaultCelsius = 30.0;
+  constexpr double kDefault_celsius = 30.0;
   SceneBuilder scene(options.surround_celsius());
   scene.UseMaterial({1.0, 1.0, 0.0, false});  // Black.
-  scene.Box("wall", {0.0, 0.0, 0.6}, {kSceneCubeM, kSceneCubeM, 0.7}).temperature =
-      Uniform(options.has_hot_celsius() ? options.hot_celsius() : kDefaultCelsius);
+  scene.Box("wall", {0.0, 0.0, 0.6}, {kSceneCube_m, kSceneCube_m, 0.7}).temperature =
+      Uniform(options.has_hot_celsius() ? options.hot_celsius() : kDefault_celsius);
   ScanPath path;
-  path.target_x_m = {kSceneCubeM / 2.0};
-  path.target_y_m = {kSceneCubeM / 2.0};
+  path.target_x_m = {kSceneCube_m / 2.0};
+  path.target_y_m = {kSceneCube_m / 2.0};
   path.target_z_m = {0.6};
   path.distance_m = {0.6};
   return {scene.Build("plane"), path, {}};
 }
 
 StagedScene MakeCornerSphereScene(const SceneOptions& options) {
-  constexpr double kDefaultCelsius = 80.0;
-  const double hot_celsius = options.has_hot_celsius() ? options.hot_celsius() : kDefaultCelsius;
+  constexpr double kDefault_celsius = 80.0;
+  const double hot_celsius = options.has_hot_celsius() ? options.hot_celsius() : kDefault_celsius;
   SceneBuilder scene(options.surround_celsius());
   scene.UseMaterial({});
   scene.Box("back wall", {0.02, 0.02, 0.86}, {0.94, 0.94, 0.92}).temperature = Uniform(24.0);

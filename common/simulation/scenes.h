@@ -12,7 +12,7 @@ class SceneOptions;
 
 /// Edge length of the cube that holds every scene; `world` has its origin in the cube's corner, x
 /// to the right, y down, z away from the operator.
-inline constexpr double kSceneCubeM = 0.96;
+inline constexpr double kSceneCube_m = 0.96;
 
 /// A scene and how to scan it.
 struct StagedScene {

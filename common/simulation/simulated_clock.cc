@@ -17,7 +17,7 @@ SimulatedClock::SimulatedClock(const ClockOptions& options, double rate_hz, Capt
       drift_(options.drift_ppm() * 1e-6),
       delay_s_(options.delay_s()),
       jitter_s_(options.jitter_s()),
-      impulse_share_(options.impulse_share()),
+      impulse_fraction_(options.impulse_fraction()),
       impulse_max_s_(options.impulse_max_s()),
       wrap_us_(options.wrap_us()) {}
 
@@ -33,7 +33,7 @@ SimulatedFrameTime SimulatedClock::Next() {
 
   const std::uint64_t counter = 3 * index_;
   double delay_s = delay_s_ - jitter_s_ * std::log1p(-UniformNoise(noise_stream_, counter));
-  if (UniformNoise(noise_stream_, counter + 1) < impulse_share_) {
+  if (UniformNoise(noise_stream_, counter + 1) < impulse_fraction_) {
     delay_s += impulse_max_s_ * UniformNoise(noise_stream_, counter + 2);
   }
   time.arrival = time.exposure + FromSeconds(delay_s);

@@ -32,7 +32,7 @@ class SimulatedClock {
   const CaptureTime start_;
   const CaptureTime first_exposure_;
   const std::uint64_t noise_stream_;
-  const double offset_s_, drift_, delay_s_, jitter_s_, impulse_share_, impulse_max_s_;
+  const double offset_s_, drift_, delay_s_, jitter_s_, impulse_fraction_, impulse_max_s_;
   const std::uint64_t wrap_us_;
   std::uint64_t index_ = 0;
   CaptureTime last_arrival_{};

@@ -14,14 +14,14 @@ namespace {
 
 constexpr std::uint64_t kSeed = 5;
 const CaptureTime kStart = CaptureTimeFromNanoseconds(1'735'689'600'000'000'000);
-constexpr double kRateHz = 30.0;
+constexpr double kRate_hz = 30.0;
 
 class SimulatedClockTest : public ::testing::Test {
  protected:
   SimulatedClockTest() { std::cout << "seed " << kSeed << '\n'; }
 
   std::vector<SimulatedFrameTime> Run(int frames) {
-    SimulatedClock clock(options_, kRateHz, kStart, kStart, NoiseStream(kSeed, 2, 0));
+    SimulatedClock clock(options_, kRate_hz, kStart, kStart, NoiseStream(kSeed, 2, 0));
     std::vector<SimulatedFrameTime> times;
     for (int i = 0; i < frames; ++i) times.push_back(clock.Next());
     return times;
@@ -39,8 +39,8 @@ class SimulatedClockTest : public ::testing::Test {
 TEST_F(SimulatedClockTest, AnIdealClockAndLinkAddNothing) {
   const auto times = Run(100);
   for (std::size_t i = 0; i < times.size(); ++i) {
-    EXPECT_NEAR(ToSeconds(times[i].exposure - kStart), static_cast<double>(i) / kRateHz, 1e-9);
-    EXPECT_NEAR(DeviceS(times[i]), static_cast<double>(i) / kRateHz, 1e-6);
+    EXPECT_NEAR(ToSeconds(times[i].exposure - kStart), static_cast<double>(i) / kRate_hz, 1e-9);
+    EXPECT_NEAR(DeviceS(times[i]), static_cast<double>(i) / kRate_hz, 1e-6);
     EXPECT_EQ(times[i].arrival, times[i].exposure);
   }
 }
@@ -53,7 +53,7 @@ TEST_F(SimulatedClockTest, OffsetAndDriftShowInTheTicks) {
   const double true_s = ToSeconds(times.back().exposure - kStart);
   EXPECT_NEAR(DeviceS(times.back()) - 1000.0, true_s * (1.0 + 200e-6), 2e-6);
   // The camera triggers by its own clock: equidistant ticks, a slightly shorter true period.
-  EXPECT_NEAR(true_s, (30.0 * 600.0 - 1.0) / kRateHz / (1.0 + 200e-6), 1e-6);
+  EXPECT_NEAR(true_s, (30.0 * 600.0 - 1.0) / kRate_hz / (1.0 + 200e-6), 1e-6);
 }
 
 TEST_F(SimulatedClockTest, JitterHasItsMeanAndNeverArrivesEarly) {
@@ -74,7 +74,7 @@ TEST_F(SimulatedClockTest, JitterHasItsMeanAndNeverArrivesEarly) {
 
 TEST_F(SimulatedClockTest, ImpulsesAreRareAndBounded) {
   options_.set_delay_s(0.020);
-  options_.set_impulse_share(0.02);
+  options_.set_impulse_fraction(0.02);
   options_.set_impulse_max_s(0.030);
   const auto times = Run(20000);
   int impulses = 0;
@@ -86,7 +86,7 @@ TEST_F(SimulatedClockTest, ImpulsesAreRareAndBounded) {
 }
 
 TEST_F(SimulatedClockTest, FramesNeverOvertakeEachOther) {
-  options_.set_impulse_share(0.3);
+  options_.set_impulse_fraction(0.3);
   options_.set_impulse_max_s(0.2);
   const auto times = Run(2000);
   for (std::size_t i = 1; i < times.size(); ++i) {

@@ -28,16 +28,16 @@ Eigen::Vector3d Jitter(double sigma, std::uint64_t stream, std::uint64_t counter
 
 }  // namespace
 
-std::vector<OutsidePose> SimulateOdometry(const OdometryOptions& options, const SimulatedScan& scan,
-                                          std::uint64_t seed) {
-  std::vector<OutsidePose> poses;
+std::vector<ExternalOdometry> SimulateOdometry(const OdometryOptions& options,
+                                               const SimulatedScan& scan, std::uint64_t seed) {
+  std::vector<ExternalOdometry> poses;
   if (options.rate_hz() <= 0.0 || scan.depth_times().empty()) return poses;
   const double rotation_sigma_rad = options.rotation_sigma_deg() * std::numbers::pi / 180.0;
   const CaptureTime first = scan.depth_times().front().exposure;
   const CaptureTime last = scan.depth_times().back().exposure;
   const RigidTransform T_world_first = scan.PoseAt(first);
   for (std::uint64_t i = 0;; ++i) {
-    OutsidePose pose;
+    ExternalOdometry pose;
     pose.source = "odometry";
     pose.time = first + FromSeconds(static_cast<double>(i) / options.rate_hz());
     if (pose.time > last) return poses;
@@ -46,18 +46,18 @@ std::vector<OutsidePose> SimulateOdometry(const OdometryOptions& options, const 
     const RigidTransform seen = ReferenceFromWorld() * T_world_first * motion;
     const std::uint64_t stream = NoiseStream(seed, kPurpose, i);
     pose.translation_m = seen.translation() + Jitter(options.position_sigma_m(), stream, 0);
-    const Eigen::Vector3d turn = Jitter(rotation_sigma_rad, stream, 3);
+    const Eigen::Vector3d rotation = Jitter(rotation_sigma_rad, stream, 3);
     pose.rotation =
         Eigen::Quaterniond(seen.linear()) *
         Eigen::Quaterniond(
             TransformFromTwist(
-                (Eigen::Matrix<double, 6, 1>() << Eigen::Vector3d::Zero(), turn).finished())
+                (Eigen::Matrix<double, 6, 1>() << Eigen::Vector3d::Zero(), rotation).finished())
                 .linear());
     pose.position_sigma_m = options.position_sigma_m();
     pose.rotation_sigma_rad = rotation_sigma_rad;
     if (options.attitude_only()) {
       pose.translation_m.setZero();
-      pose.position_sigma_m = OutsidePose::kNotMeasured;
+      pose.position_sigma_m = ExternalOdometry::kNotMeasured;
     }
     poses.push_back(pose);
   }

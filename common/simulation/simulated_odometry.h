@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/geometry/outside_pose.h"
+#include "common/geometry/external_odometry.h"
 
 namespace isotherm {
 
@@ -13,7 +13,7 @@ class SimulatedScan;
 /// Returns what odometry beside the cameras says about the whole of a simulated scan: noisy, of
 /// another scale, in a reference frame of its own. In order of time; empty if its rate is 0.
 /// Everything random follows from `seed`.
-std::vector<OutsidePose> SimulateOdometry(const OdometryOptions& options, const SimulatedScan& scan,
-                                          std::uint64_t seed);
+std::vector<ExternalOdometry> SimulateOdometry(const OdometryOptions& options,
+                                               const SimulatedScan& scan, std::uint64_t seed);
 
 }  // namespace isotherm

@@ -169,7 +169,7 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
     return IsShutterClosed(thermal_times_[number].exposure);
   };
   const bool freeze = options_->shutter().appearance() == ShutterOptions::FREEZE;
-  // A frozen camera repeats the last picture from before the shutter closed, noise included.
+  // A frozen camera repeats the last image from before the shutter closed, noise included.
   std::uint64_t shown = frame_number;
   while (freeze && shown > 0 && closed(shown)) --shown;
   const std::uint64_t noise = NoiseStream(options_->seed(), kThermalPixels, shown);
@@ -191,11 +191,10 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
 }
 
 ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {
-  constexpr double kFpaAboveHousingKelvin = 4.0;
+  constexpr double kFpaAboveHousing_k = 4.0;
   ThermalHousekeeping housekeeping;
   housekeeping.housing_celsius = static_cast<float>(HousingCelsius(ToSeconds(time - start_)));
-  housekeeping.fpa_celsius =
-      housekeeping.housing_celsius + static_cast<float>(kFpaAboveHousingKelvin);
+  housekeeping.fpa_celsius = housekeeping.housing_celsius + static_cast<float>(kFpaAboveHousing_k);
   housekeeping.shutter_celsius = static_cast<float>(options_->shutter().shutter_celsius());
   return housekeeping;
 }

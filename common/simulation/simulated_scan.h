@@ -46,7 +46,7 @@ class SimulatedScan {
   /// The shutter's last opening before `time`, if it was closed before.
   std::optional<CaptureTime> LastOpening(CaptureTime time) const;
 
-  /// How much too warm an open shutter's picture is at `time`, because the housing changed since
+  /// How much too warm an open shutter's image is at `time`, because the housing changed since
   /// the last correction.
   double DriftErrorKelvin(CaptureTime time) const;
 

@@ -46,7 +46,7 @@ class SimulatedScanTest : public ::testing::Test {
   SimulationOptions options_;
 };
 
-TEST_F(SimulatedScanTest, APolishedWallShowsTheOperatorWhoIsNotInTheDepthPicture) {
+TEST_F(SimulatedScanTest, APolishedWallShowsTheOperatorWhoIsNotInTheDepthImage) {
   const auto alone = Create(PolishedWallAndOperator(false));
   const auto held = Create(PolishedWallAndOperator(true));
   SimulatedScan::Scratch scratch;
@@ -58,7 +58,7 @@ TEST_F(SimulatedScanTest, APolishedWallShowsTheOperatorWhoIsNotInTheDepthPicture
       std::ranges::equal(depth.pixels.pixels(), alone->RenderDepth(0, scratch).pixels.pixels()));
 }
 
-/// A wall of one temperature that the rig faces and that fills the thermal picture.
+/// A wall of one temperature that the rig faces and that fills the thermal image.
 StagedScene PlainWall() {
   SceneBuilder builder(23.0);
   builder.UseMaterial({});

@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kFullCircle = 2.0 * std::numbers::pi;
 
 /// Points of one primitive in its own coordinates.
 class LocalSampler {
@@ -88,12 +88,12 @@ class LocalSampler {
   }
 
   void Sphere(double radius) {
-    const int rings = Count(kTurn / 2.0 * radius);
+    const int rings = Count(kFullCircle / 2.0 * radius);
     for (int ring = 0; ring < rings; ++ring) {
-      const double polar = kTurn / 2.0 * (ring + 0.5) / rings;
-      const int count = Count(kTurn * radius * std::sin(polar));
+      const double polar = kFullCircle / 2.0 * (ring + 0.5) / rings;
+      const int count = Count(kFullCircle * radius * std::sin(polar));
       for (int i = 0; i < count; ++i) {
-        const double angle = kTurn * i / count;
+        const double angle = kFullCircle * i / count;
         const Vector3d normal(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),
                               std::cos(polar));
         samples_.push_back({radius * normal, normal});
@@ -102,11 +102,11 @@ class LocalSampler {
   }
 
   void Side(double radius, double half_length, double sign) {
-    const int count_around = Count(kTurn * radius), count_along = Count(2.0 * half_length);
+    const int count_around = Count(kFullCircle * radius), count_along = Count(2.0 * half_length);
     for (int along = 0; along < count_along; ++along) {
       const double z = half_length * ((2.0 * along + 1.0) / count_along - 1.0);
       for (int i = 0; i < count_around; ++i) {
-        const double angle = kTurn * i / count_around;
+        const double angle = kFullCircle * i / count_around;
         const Vector3d outward(std::cos(angle), std::sin(angle), 0.0);
         samples_.push_back({radius * outward + Vector3d(0.0, 0.0, z), sign * outward});
       }
@@ -117,9 +117,9 @@ class LocalSampler {
     const int rings = Count(outer - inner);
     for (int ring = 0; ring < rings; ++ring) {
       const double radius = inner + (outer - inner) * (ring + 0.5) / rings;
-      const int count = Count(kTurn * radius);
+      const int count = Count(kFullCircle * radius);
       for (int i = 0; i < count; ++i) {
-        const double angle = kTurn * i / count;
+        const double angle = kFullCircle * i / count;
         samples_.push_back(
             {{radius * std::cos(angle), radius * std::sin(angle), z}, {0.0, 0.0, sign}});
       }
@@ -144,14 +144,14 @@ void AppendLittleEndian(std::uint16_t value, std::string& out) {
 }  // namespace
 
 std::vector<SurfaceSample> SampleSurface(const Scene& scene, double spacing_m) {
-  constexpr double kTouchingM = 1e-6;
+  constexpr double kTouching_m = 1e-6;
   std::vector<SurfaceSample> samples;
   for (std::size_t i = 0; i < scene.primitives().size(); ++i) {
     const Primitive& primitive = scene.primitives()[i];
     const int index = static_cast<int>(i);
     for (const auto& local : LocalSampler(primitive, spacing_m).Run()) {
       const Vector3d p_world = primitive.T_world_primitive * local.p;
-      if (scene.IsCovered(p_world, index, kTouchingM)) continue;
+      if (scene.IsCovered(p_world, index, kTouching_m)) continue;
       samples.push_back({{p_world, primitive.T_world_primitive.linear() * local.n,
                           primitive.temperature.CelsiusAt(local.p), index}});
     }
@@ -161,7 +161,7 @@ std::vector<SurfaceSample> SampleSurface(const Scene& scene, double spacing_m) {
 
 void CountSeen(const Scene& scene, const CameraModel& camera, const RigidTransform& T_world_camera,
                double max_distance_m, SeenBy seen_by, std::span<SurfaceSample> samples) {
-  constexpr double kSameSurfaceM = 1e-4;
+  constexpr double kSameSurface_m = 1e-4;
   const Vector3d camera_world = T_world_camera.translation();
   const RigidTransform T_camera_world = T_world_camera.inverse();
   for (SurfaceSample& sample : samples) {
@@ -174,7 +174,7 @@ void CountSeen(const Scene& scene, const CameraModel& camera, const RigidTransfo
       continue;
     }
     const auto hit = scene.Intersect(camera_world, to_point / distance);
-    if (hit && hit->distance < distance - kSameSurfaceM) continue;
+    if (hit && hit->distance < distance - kSameSurface_m) continue;
     std::uint16_t& count = seen_by == SeenBy::kDepth ? sample.seen_depth : sample.seen_thermal;
     if (count < std::numeric_limits<std::uint16_t>::max()) ++count;
   }

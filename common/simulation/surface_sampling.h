@@ -22,7 +22,7 @@ struct SurfaceSample {
 /// another part. Shapes without thickness give their +z side.
 std::vector<SurfaceSample> SampleSurface(const Scene& scene, double spacing_m);
 
-/// Adds 1 to the counts of the points that `camera` sees from `T_world_camera`: in the picture, in
+/// Adds 1 to the counts of the points that `camera` sees from `T_world_camera`: in the image, in
 /// front of everything else, facing the camera, within `max_distance_m`.
 enum class SeenBy { kDepth, kThermal };
 void CountSeen(const Scene& scene, const CameraModel& camera, const RigidTransform& T_world_camera,

@@ -13,7 +13,7 @@ namespace isotherm {
 namespace {
 
 constexpr int kEmissivityIntervals = 1024;
-constexpr double kNetdCelsius = 30.0;  // Temperature at which makers state the NETD.
+constexpr double kNetd_celsius = 30.0;  // Temperature at which makers state the NETD.
 
 std::vector<float> GaussianWeights(double sigma_px) {
   constexpr double kCutOffSigmas = 3.0;
@@ -44,7 +44,7 @@ std::vector<double> ResponseDelays(double time_constant_s) {
   return delays_s;
 }
 
-/// Share of the exposure at `times[i]` in what is interpolated linearly at `time_s`.
+/// Fraction of the exposure at `times[i]` in what is interpolated linearly at `time_s`.
 double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, double time_s) {
   if (times_s.size() == 1) return 1.0;
   const double step_s = times_s[1] - times_s[0];
@@ -56,7 +56,7 @@ double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, do
 ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOptions& options)
     : grid_(camera),
       band_(SpectralBand{options.band_min_um(), options.band_max_um()}),
-      noise_radiance_(options.netd_kelvin() * PlanckBandRadianceSlope(kNetdCelsius, band_.band())),
+      noise_radiance_(options.netd_kelvin() * PlanckBandRadianceSlope(kNetd_celsius, band_.band())),
       readout_s_(options.readout_s()),
       delays_s_(ResponseDelays(options.time_constant_s())),
       blur_weights_(GaussianWeights(options.blur_px())) {}
@@ -135,8 +135,8 @@ double ThermalSensor::LookUp(const EmissivityTable& table, float cosine) {
   const float position = cosine * kEmissivityIntervals;
   const auto index =
       static_cast<std::size_t>(std::clamp(static_cast<int>(position), 0, kEmissivityIntervals - 1));
-  const float share = position - static_cast<float>(index);
-  return static_cast<double>(table[index] + share * (table[index + 1] - table[index]));
+  const float fraction = position - static_cast<float>(index);
+  return static_cast<double>(table[index] + fraction * (table[index + 1] - table[index]));
 }
 
 void ThermalSensor::FillRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
@@ -216,7 +216,7 @@ Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream,
     const double measured = static_cast<double>(radiance[i]) +
                             noise_radiance_ * static_cast<double>(NormalNoise(noise_stream, i));
     const double value =
-        (band_.CelsiusFromRadiance(measured) + kCelsiusZeroKelvin) * kCentikelvinPerKelvin;
+        (band_.CelsiusFromRadiance(measured) + kCelsiusZero_k) * kCentikelvinPerKelvin;
     // NaN (out of the radiometric range) and what 16 bits cannot say become 0 = no value.
     out[i] = value >= 0.5 && value < kRange ? static_cast<std::uint16_t>(value + 0.5) : 0;
   }

@@ -31,7 +31,7 @@ class ThermalSensor {
   /// T_world_thermal so many seconds after the capture time.
   using PoseAfter = std::function<RigidTransform(double seconds)>;
 
-  /// One picture in centi-kelvin. The same `noise_stream` gives the same noise.
+  /// One image in centi-kelvin. The same `noise_stream` gives the same noise.
   Image<std::uint16_t> Render(const Scene& scene, const RigidTransform& T_world_thermal,
                               std::uint64_t noise_stream, Scratch& scratch) const;
   /// The same by a camera that moves. A pixel's answer to a change is 1 - exp(-t / time constant);

@@ -17,7 +17,7 @@ namespace isotherm {
 namespace {
 
 constexpr std::uint64_t kSeed = 4;
-constexpr double kHalfUnitKelvin = 0.0051;  // Rounding to centi-kelvin.
+constexpr double kHalfUnit_k = 0.0051;  // Rounding to centi-kelvin.
 
 struct Statistics {
   double mean, sigma;
@@ -73,7 +73,7 @@ TEST_F(ThermalSensorTest, EachPixelShowsTheApparentTemperatureOfWhatItSees) {
   SceneOptions scene_options;
   const StagedScene staged = MakeScene(scene_options);
   const RigidTransform T_world_thermal = staged.path.PoseAt(5.0);
-  const Image<std::uint16_t> picture = Render(staged.scene, T_world_thermal);
+  const Image<std::uint16_t> image = Render(staged.scene, T_world_thermal);
   const BandRadiance band;
   int compared = 0, different = 0;
   for (int y = 0; y < camera_.height; y += 4) {
@@ -85,7 +85,7 @@ TEST_F(ThermalSensorTest, EachPixelShowsTheApparentTemperatureOfWhatItSees) {
           hit ? TrueApparentCelsius(staged.scene, band, hit->point, T_world_thermal.translation())
               : scene_options.surround_celsius();
       ++compared;
-      different += std::abs(picture.At(x, y) / 100.0 - 273.15 - expected) > 0.02;
+      different += std::abs(image.At(x, y) / 100.0 - 273.15 - expected) > 0.02;
     }
   }
   EXPECT_LE(different, 0.003 * compared);  // Pixels on an edge.
@@ -100,10 +100,10 @@ TEST_F(ThermalSensorTest, PolishedPlatesShowTheHotDisc) {
   builder.UseMaterial({1.0, 1.0, 0.0, false});
   builder.Sphere("left", {-1.5, 0.0, 0.5}, 0.3).temperature = Uniform(250.0);
   builder.Sphere("right", {1.5, 0.0, 0.5}, 0.3).temperature = Uniform(250.0);
-  const Image<std::uint16_t> picture = Render(builder.Build("mirror"), RigidTransform::Identity());
-  const double centre = picture.At(205, 150) / 100.0 - 273.15;
+  const Image<std::uint16_t> image = Render(builder.Build("mirror"), RigidTransform::Identity());
+  const double centre = image.At(205, 150) / 100.0 - 273.15;
   EXPECT_GT(centre, 200.0);
-  EXPECT_LT(picture.At(205, 20) / 100.0 - 273.15, 30.0);
+  EXPECT_LT(image.At(205, 20) / 100.0 - 273.15, 30.0);
 }
 
 TEST_F(ThermalSensorTest, BlurKeepsTheMeanRadianceAndSoftensEdges) {
@@ -121,7 +121,7 @@ TEST_F(ThermalSensorTest, BlurKeepsTheMeanRadianceAndSoftensEdges) {
   int between = 0;
   for (int x = 0; x < camera_.width; ++x) {
     const double a = sharp.At(x, 150) / 100.0 - 273.15, b = soft.At(x, 150) / 100.0 - 273.15;
-    EXPECT_TRUE(std::abs(a - 23.0) < kHalfUnitKelvin || std::abs(a - 100.0) < kHalfUnitKelvin);
+    EXPECT_TRUE(std::abs(a - 23.0) < kHalfUnit_k || std::abs(a - 100.0) < kHalfUnit_k);
     between += b > 24.0 && b < 99.0;
     sharp_sum += band.RadianceFromCelsius(a);
     soft_sum += band.RadianceFromCelsius(b);
@@ -135,8 +135,8 @@ TEST_F(ThermalSensorTest, BlurKeepsTheMeanRadianceAndSoftensEdges) {
 /// capture time the edge is in the middle.
 class MovingThermalCameraTest : public ThermalSensorTest {
  protected:
-  static constexpr double kSpeedMS = 0.5;
-  static constexpr double kWallM = 0.5;
+  static constexpr double kSpeed_m_s = 0.5;
+  static constexpr double kWall_m = 0.5;
 
   MovingThermalCameraTest() : scene_(HalfWall()) {
     camera_ = camera_.WithoutDistortion();
@@ -146,7 +146,7 @@ class MovingThermalCameraTest : public ThermalSensorTest {
   static Scene HalfWall() {
     SceneBuilder builder(23.0);
     builder.UseMaterial({1.0, 1.0, 0.0, false});
-    builder.Box("half", {0.0, -3, kWallM}, {3, 3, 0.6}).temperature = Uniform(100.0);
+    builder.Box("half", {0.0, -3, kWall_m}, {3, 3, 0.6}).temperature = Uniform(100.0);
     return builder.Build("half");
   }
   Image<std::uint16_t> RenderMoving(double speed_m_s) {
@@ -159,16 +159,16 @@ class MovingThermalCameraTest : public ThermalSensorTest {
         },
         NoiseStream(kSeed, 1, 0), scratch);
   }
-  /// Share of the hot side's radiance in a pixel.
-  double HotShare(const Image<std::uint16_t>& picture, int x, int y) const {
-    const double radiance = band_.RadianceFromCelsius(picture.At(x, y) / 100.0 - 273.15);
+  /// Fraction of the hot side's radiance in a pixel.
+  double HotFraction(const Image<std::uint16_t>& image, int x, int y) const {
+    const double radiance = band_.RadianceFromCelsius(image.At(x, y) / 100.0 - 273.15);
     const double cold = band_.RadianceFromCelsius(23.0), hot = band_.RadianceFromCelsius(100.0);
     return (radiance - cold) / (hot - cold);
   }
   /// Column at which a row turns hot, to a fraction of a pixel.
-  double EdgeColumn(const Image<std::uint16_t>& picture, int y) const {
+  double EdgeColumn(const Image<std::uint16_t>& image, int y) const {
     double cold_pixels = 0.0;
-    for (int x = 0; x < camera_.width; ++x) cold_pixels += 1.0 - HotShare(picture, x, y);
+    for (int x = 0; x < camera_.width; ++x) cold_pixels += 1.0 - HotFraction(image, x, y);
     return cold_pixels - 0.5;
   }
 
@@ -177,37 +177,37 @@ class MovingThermalCameraTest : public ThermalSensorTest {
 };
 
 TEST_F(MovingThermalCameraTest, SmearsAsAnExponentialAnswerDoes) {
-  constexpr double kTimeConstantS = 0.010;
+  constexpr double kTimeConstant_s = 0.010;
   // A dozen exposures, a third of the time constant apart: the onset becomes a ramp as long as
   // that.
   constexpr double kDiscrete = 0.15;
-  options_.set_time_constant_s(kTimeConstantS);
-  const Image<std::uint16_t> picture = RenderMoving(kSpeedMS);
+  options_.set_time_constant_s(kTimeConstant_s);
+  const Image<std::uint16_t> image = RenderMoving(kSpeed_m_s);
   constexpr int kRow = 100;
   double sum = 0.0;
   for (int x = 0; x < camera_.width; ++x) {
     // The pixel sees the hot half from this time on, and is read one time constant after the
     // capture time, which is the mean time of its radiation.
-    const double hot_from_s = -kWallM * (x - camera_.cx) / camera_.fx / kSpeedMS;
-    const double since_s = kTimeConstantS - hot_from_s;
-    const double share = since_s > 0.0 ? 1.0 - std::exp(-since_s / kTimeConstantS) : 0.0;
-    EXPECT_NEAR(HotShare(picture, x, kRow), share, kDiscrete) << "column " << x;
-    sum += HotShare(picture, x, kRow) - share;
+    const double hot_from_s = -kWall_m * (x - camera_.cx) / camera_.fx / kSpeed_m_s;
+    const double since_s = kTimeConstant_s - hot_from_s;
+    const double fraction = since_s > 0.0 ? 1.0 - std::exp(-since_s / kTimeConstant_s) : 0.0;
+    EXPECT_NEAR(HotFraction(image, x, kRow), fraction, kDiscrete) << "column " << x;
+    sum += HotFraction(image, x, kRow) - fraction;
   }
   EXPECT_NEAR(sum, 0.0, 0.3)
       << "the edge as a whole is where it was at the capture time, in pixels";
 }
 
 TEST_F(MovingThermalCameraTest, RowsThatAreReadLaterSeeTheEdgeLater) {
-  constexpr double kReadoutS = 0.020;
+  constexpr double kReadout_s = 0.020;
   constexpr double kWithinAPixel = 1.0;
-  options_.set_readout_s(kReadoutS);
-  const Image<std::uint16_t> picture = RenderMoving(kSpeedMS);
-  const double shift_px = kSpeedMS * kReadoutS * camera_.fx / kWallM;
+  options_.set_readout_s(kReadout_s);
+  const Image<std::uint16_t> image = RenderMoving(kSpeed_m_s);
+  const double shift_px = kSpeed_m_s * kReadout_s * camera_.fx / kWall_m;
   EXPECT_GT(shift_px, 5.0);
   const int last = camera_.height - 1;
-  EXPECT_NEAR(EdgeColumn(picture, 0) - EdgeColumn(picture, last), shift_px, kWithinAPixel);
-  EXPECT_NEAR(EdgeColumn(picture, last / 2), camera_.cx, kWithinAPixel);
+  EXPECT_NEAR(EdgeColumn(image, 0) - EdgeColumn(image, last), shift_px, kWithinAPixel);
+  EXPECT_NEAR(EdgeColumn(image, last / 2), camera_.cx, kWithinAPixel);
 }
 
 TEST_F(MovingThermalCameraTest, ACameraAtRestSmearsNothing) {
@@ -215,7 +215,7 @@ TEST_F(MovingThermalCameraTest, ACameraAtRestSmearsNothing) {
   options_.set_time_constant_s(0.01);
   options_.set_readout_s(0.02);
   EXPECT_TRUE(std::ranges::equal(RenderMoving(0.0).pixels(), sharp.pixels()));
-  EXPECT_FALSE(std::ranges::equal(RenderMoving(kSpeedMS).pixels(), sharp.pixels()));
+  EXPECT_FALSE(std::ranges::equal(RenderMoving(kSpeed_m_s).pixels(), sharp.pixels()));
 }
 
 TEST_F(ThermalSensorTest, TheShutterIsUniform) {

@@ -14,9 +14,9 @@ namespace {
 // A group counts if it is above the hull's line by at most so many times what the lowest quarter of
 // the groups is. That keeps nearly all groups of jitter alone, and half of all may be late.
 constexpr double kReach = 4.0;
-constexpr double kLowestShare = 0.25;
+constexpr double kLowestFraction = 0.25;
 // With fewer groups than this a quarter of them says nothing.
-constexpr std::size_t kLeastGroups = 4;
+constexpr std::size_t kMinGroups = 4;
 // Ticks have microseconds: closer than this is equal.
 constexpr double kEqual_s = 2e-6;
 
@@ -61,8 +61,8 @@ double EnvelopeLine::Reach(const LowerHull::Line& base) const {
   std::vector<double> excess;
   excess.reserve(groups_.size());
   for (const Point& lowest : groups_) excess.push_back(lowest.y - base.At(lowest.x));
-  if (excess.size() <= kLeastGroups) return *std::ranges::max_element(excess) + kEqual_s;
-  return kReach * TakeQuantile(excess, kLowestShare) + kEqual_s;
+  if (excess.size() <= kMinGroups) return *std::ranges::max_element(excess) + kEqual_s;
+  return kReach * TakeQuantile(excess, kLowestFraction) + kEqual_s;
 }
 
 void EnvelopeLine::Fit() {

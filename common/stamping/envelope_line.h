@@ -29,7 +29,7 @@ class EnvelopeLine {
   EnvelopeLine(std::size_t group, double window_s, double max_slope);
 
   /// `sample.x`: the camera's time, seconds, not below that of the last one; `sample.y`: the
-  /// difference, seconds. Groups are judged when they are full.
+  /// difference, seconds. Groups are assessed when they are full.
   void Add(Point sample);
   void Clear();
 

@@ -38,7 +38,8 @@ struct Sample {
 
 /// Frames at 30 Hz whose arrivals scatter as in fig. 5.15 of the thesis: a millisecond of noise and
 /// now and then an impulse of up to 20 ms.
-std::vector<Sample> JitteredFrames(int count, double noise_s, double impulse_share, unsigned seed) {
+std::vector<Sample> JitteredFrames(int count, double noise_s, double impulse_fraction,
+                                   unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, noise_s);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -46,7 +47,7 @@ std::vector<Sample> JitteredFrames(int count, double noise_s, double impulse_sha
   for (int i = 0; i < count; ++i) {
     const microseconds time = i * microseconds(33'333);
     double delay_s = 0.040 + noise(random);
-    if (uniform(random) < impulse_share) delay_s += 0.020 * uniform(random);
+    if (uniform(random) < impulse_fraction) delay_s += 0.020 * uniform(random);
     samples.push_back({Ticks(time), kEpoch + time + FromSeconds(delay_s)});
   }
   return samples;

@@ -29,7 +29,7 @@ void ForEachInstructionSet(const Check& check) {
 }
 
 /// Most lanes of any instruction set: widths up to several times this meet every tail.
-inline constexpr int kMostLanes = 16;
+inline constexpr int kMaxLanes = 16;
 
 /// A kernel must leave it alone behind its output.
 inline constexpr std::int32_t kCanary = -123456789;
@@ -54,7 +54,7 @@ class Random {
   std::mt19937 engine_;
 };
 
-/// Rounding of a sum of a few products in single precision, as a share of their magnitudes.
+/// Rounding of a sum of a few products in single precision, as a fraction of their magnitudes.
 inline constexpr double kSinglePrecision = 1e-6;
 
 /// Whether a decision falls one way, the other, or is so near its threshold that rounding decides.

@@ -19,11 +19,11 @@ ClockReading ReadClocks(const Clock& clock) {
 
 std::optional<Nanoseconds> StepWatch::Observe(const ClockReading& reading) {
   const Nanoseconds step = reading.wall - At(reading.steady) - total_;
-  if (std::chrono::abs(step) < kLeastStep) {
+  if (std::chrono::abs(step) < kMinStep) {
     agreeing_ = 0;
     return std::nullopt;
   }
-  const bool agrees = agreeing_ > 0 && std::chrono::abs(step - suspected_) < kLeastStep;
+  const bool agrees = agreeing_ > 0 && std::chrono::abs(step - suspected_) < kMinStep;
   agreeing_ = agrees ? agreeing_ + 1 : 1;
   suspected_ = step;
   if (agreeing_ < kConfirmations) return std::nullopt;

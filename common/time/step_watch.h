@@ -29,14 +29,14 @@ class StepWatch {
   CaptureTime At(SteadyTime steady) const { return start_.wall + (steady - start_.steady); }
 
   /// A step, once it is certain: kConfirmations readings in a row agree that the wall clock is off
-  /// by more than kLeastStep. One that was interrupted between both clocks does not count.
+  /// by more than kMinStep. One that was interrupted between both clocks does not count.
   std::optional<Nanoseconds> Observe(const ClockReading& reading);
 
   std::uint64_t steps() const { return steps_; }
   /// Wall clock minus time line: what to add to a capture time to get the wall clock's.
   Nanoseconds total() const { return total_; }
 
-  static constexpr Nanoseconds kLeastStep = std::chrono::milliseconds(1);
+  static constexpr Nanoseconds kMinStep = std::chrono::milliseconds(1);
   static constexpr int kConfirmations = 3;
 
  private:

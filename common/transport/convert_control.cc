@@ -33,18 +33,18 @@ std::optional<RefusalCause> FromWireReceipt(const isotherm_wire_StreamReceipt& f
   return CheckStreamReceipt(*to);
 }
 
-isotherm_wire_CoverageShares ToWireShares(const CoverageShares& shares) {
-  return {.good = shares.good,
-          .acceptable = shares.acceptable,
-          .bad = shares.bad,
-          .never_measured = shares.never_measured};
+isotherm_wire_CoverageShares ToWireFractions(const CoverageFractions& fractions) {
+  return {.good = fractions.good,
+          .acceptable = fractions.acceptable,
+          .bad = fractions.bad,
+          .never_measured = fractions.never_measured};
 }
 
-CoverageShares FromWireShares(const isotherm_wire_CoverageShares& shares) {
-  return {.good = shares.good,
-          .acceptable = shares.acceptable,
-          .bad = shares.bad,
-          .never_measured = shares.never_measured};
+CoverageFractions FromWireFractions(const isotherm_wire_CoverageShares& fractions) {
+  return {.good = fractions.good,
+          .acceptable = fractions.acceptable,
+          .bad = fractions.bad,
+          .never_measured = fractions.never_measured};
 }
 
 std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Feedback* to) {
@@ -92,8 +92,8 @@ std::optional<RefusalCause> FromWireLists(const isotherm_wire_Feedback& from, Fe
     to->latencies.push_back(
         {.stage = ReadText(latency.stage), .p50_s = latency.p50_s, .p99_s = latency.p99_s});
   }
-  const auto picture = Elements(from.picture);
-  to->picture.assign(picture.begin(), picture.end());
+  const auto image = Elements(from.picture);
+  to->image.assign(image.begin(), image.end());
   return std::nullopt;
 }
 
@@ -162,17 +162,17 @@ void ToWire(const Feedback& from, isotherm_wire_Feedback* to) {
   to->has_pose = from.T_world_depth.has_value();
   if (from.T_world_depth) to->t_world_depth = ToWirePose(*from.T_world_depth);
   to->covered_area_m2 = from.covered_area_m2;
-  to->model = ToWireShares(from.model);
-  to->view = ToWireShares(from.view);
+  to->model = ToWireFractions(from.model);
+  to->view = ToWireFractions(from.view);
   to->has_next_pose = from.T_world_depth_next.has_value();
   if (from.T_world_depth_next) to->t_world_depth_next = ToWirePose(*from.T_world_depth_next);
   const auto advice = Allocate(&to->advice, from.advice.size(), kMaxAdvice);
   std::transform(from.advice.begin(), from.advice.begin() + std::ssize(advice), advice.begin(),
                  [](Advice value) { return static_cast<std::uint8_t>(value); });
-  // A picture that is cut is no picture.
-  if (from.picture.size() <= kMaxPictureBytes) {
-    std::ranges::copy(from.picture,
-                      Allocate(&to->picture, from.picture.size(), kMaxPictureBytes).begin());
+  // An image that is cut is no image.
+  if (from.image.size() <= kMaxConfidenceImageBytes) {
+    std::ranges::copy(from.image,
+                      Allocate(&to->picture, from.image.size(), kMaxConfidenceImageBytes).begin());
   }
   const auto latencies = Allocate(&to->latencies, from.latencies.size(), kMaxStageLatencies);
   for (std::size_t i = 0; i < latencies.size(); ++i) {
@@ -200,8 +200,8 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->capture_time = CaptureTimeFromNanoseconds(from.capture_time_ns);
   to->tracking_state = static_cast<TrackingState>(from.tracking_state);
   to->covered_area_m2 = from.covered_area_m2;
-  to->model = FromWireShares(from.model);
-  to->view = FromWireShares(from.view);
+  to->model = FromWireFractions(from.model);
+  to->view = FromWireFractions(from.view);
   const std::span<const double> covariance = Elements(from.pose_covariance);
   if (!covariance.empty() && covariance.size() != kCovarianceNumbers)
     return RefusalCause::kOutOfRange;

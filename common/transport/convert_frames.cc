@@ -110,8 +110,8 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_ThermalFrame& from,
   return std::nullopt;
 }
 
-void ToWire(const OutsidePoseSample& from, isotherm_wire_OutsidePose* to) {
-  const OutsidePose& pose = from.pose;
+void ToWire(const ExternalOdometrySample& from, isotherm_wire_OutsidePose* to) {
+  const ExternalOdometry& pose = from.pose;
   to->session = from.session;
   to->sample_number = from.number;
   CopyText(pose.source, to->source);
@@ -125,23 +125,26 @@ void ToWire(const OutsidePoseSample& from, isotherm_wire_OutsidePose* to) {
                           .qz = pose.rotation.z(),
                           .qw = pose.rotation.w()};
   to->has_position = pose.has_position();
-  to->position_sigma_m = pose.has_position() ? pose.position_sigma_m : OutsidePose::kUnknownSigma;
+  to->position_sigma_m =
+      pose.has_position() ? pose.position_sigma_m : ExternalOdometry::kUnknownSigma;
   to->rotation_sigma_rad = pose.rotation_sigma_rad;
 }
 
-std::optional<RefusalCause> FromWire(const isotherm_wire_OutsidePose& from, OutsidePoseSample* to) {
+std::optional<RefusalCause> FromWire(const isotherm_wire_OutsidePose& from,
+                                     ExternalOdometrySample* to) {
   if (from.capture_time_ns < 0 || from.capture_sigma_ns < 0) return RefusalCause::kNegativeTime;
   if (from.sample_number > kMaxFrameNumber) return RefusalCause::kImpossibleNumber;
   to->session = from.session;
   to->number = from.sample_number;
-  OutsidePose& pose = to->pose;
+  ExternalOdometry& pose = to->pose;
   pose.source = ReadText(from.source);
   pose.time = CaptureTimeFromNanoseconds(from.capture_time_ns);
   pose.time_sigma = Nanoseconds(from.capture_sigma_ns);
   const isotherm_wire_Pose& T = from.t_reference_body;
   pose.translation_m = {T.tx, T.ty, T.tz};
   pose.rotation = Eigen::Quaterniond(T.qw, T.qx, T.qy, T.qz);
-  pose.position_sigma_m = from.has_position ? from.position_sigma_m : OutsidePose::kNotMeasured;
+  pose.position_sigma_m =
+      from.has_position ? from.position_sigma_m : ExternalOdometry::kNotMeasured;
   pose.rotation_sigma_rad = from.rotation_sigma_rad;
   return std::nullopt;
 }

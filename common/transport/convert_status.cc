@@ -112,7 +112,7 @@ void ToWireNuc(const NucReport& from, isotherm_wire_EdgeStatus* to) {
   to->nuc_policy = static_cast<std::uint8_t>(from.policy);
   to->nuc_seconds_since = from.seconds_since;
   to->nuc_closings_per_minute = from.closings_per_minute;
-  to->nuc_closed_share = from.closed_share;
+  to->nuc_closed_share = from.closed_fraction;
   to->nuc_storm = from.storm;
   to->nuc_warming_up = from.warming_up;
   to->nuc_fpa_celsius = from.fpa_celsius;
@@ -132,7 +132,7 @@ std::optional<RefusalCause> FromWireNuc(const isotherm_wire_EdgeStatus& from, Nu
   to->policy = static_cast<NucPolicy>(from.nuc_policy);
   to->seconds_since = from.nuc_seconds_since;
   to->closings_per_minute = from.nuc_closings_per_minute;
-  to->closed_share = from.nuc_closed_share;
+  to->closed_fraction = from.nuc_closed_share;
   to->storm = from.nuc_storm;
   to->warming_up = from.nuc_warming_up;
   to->fpa_celsius = from.nuc_fpa_celsius;

@@ -37,7 +37,7 @@ const dds_topic_descriptor_t* DescriptorOf(TopicId topic) {
       return &isotherm_wire_Feedback_desc;
     case TopicId::kHello:
       return &isotherm_wire_Hello_desc;
-    case TopicId::kOutsidePose:
+    case TopicId::kExternalOdometry:
       return &isotherm_wire_OutsidePose_desc;
   }
   return nullptr;
@@ -118,11 +118,11 @@ int Writer<Message>::matched_readers() const {
 
 template <typename Message>
 bool Writer<Message>::Reaches(PeerHandle peer) const {
-  constexpr std::size_t kMostReaders = 64;
-  std::array<dds_instance_handle_t, kMostReaders> readers{};
+  constexpr std::size_t kMaxReaders = 64;
+  std::array<dds_instance_handle_t, kMaxReaders> readers{};
   const dds_return_t count =
       dds_get_matched_subscriptions(writer_.value(), readers.data(), readers.size());
-  const auto known = std::clamp<std::ptrdiff_t>(count, 0, kMostReaders);
+  const auto known = std::clamp<std::ptrdiff_t>(count, 0, kMaxReaders);
   return peer != 0 && std::any_of(readers.begin(), readers.begin() + known, [&](auto reader) {
            return TakePeer(dds_get_matched_subscription_data(writer_.value(), reader)) == peer;
          });
@@ -237,7 +237,7 @@ std::int32_t Reader<Message>::read_condition() const {
 template class Writer<EncodedDepthFrame>;
 template class Writer<EncodedThermalFrame>;
 template class Writer<RigDescription>;
-template class Writer<OutsidePoseSample>;
+template class Writer<ExternalOdometrySample>;
 template class Writer<EdgeStatus>;
 template class Writer<Command>;
 template class Writer<CommandResult>;
@@ -248,7 +248,7 @@ template class Writer<Hello>;
 template class Reader<EncodedDepthFrame>;
 template class Reader<EncodedThermalFrame>;
 template class Reader<RigDescription>;
-template class Reader<OutsidePoseSample>;
+template class Reader<ExternalOdometrySample>;
 template class Reader<EdgeStatus>;
 template class Reader<Command>;
 template class Reader<CommandResult>;

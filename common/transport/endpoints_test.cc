@@ -171,9 +171,9 @@ TEST_F(EndpointsTest, RigArrivesAsItWasWritten) {
   EXPECT_EQ(rig.depth.rate_hz, 30.0);
 }
 
-/// What a source says is judged where it is used, so wrong numbers arrive as they are.
-TEST_F(EndpointsTest, OutsidePoseArrivesAsItWasWrittenRightOrWrong) {
-  OutsidePoseSample sent{.session = 3, .number = 12, .pose = {}};
+/// What a source says is assessed where it is used, so wrong numbers arrive as they are.
+TEST_F(EndpointsTest, ExternalOdometryArrivesAsItWasWrittenRightOrWrong) {
+  ExternalOdometrySample sent{.session = 3, .number = 12, .pose = {}};
   sent.pose.source = "vio";
   sent.pose.time = CaptureTimeFromNanoseconds(1'700'000'000'123'456'789);
   sent.pose.time_sigma = 40us;
@@ -182,7 +182,7 @@ TEST_F(EndpointsTest, OutsidePoseArrivesAsItWasWrittenRightOrWrong) {
   sent.pose.rotation_sigma_rad = 0.01;
   const auto received = RoundTrip(sent);
   ASSERT_TRUE(received.has_value());
-  const OutsidePose& pose = received->message.pose;
+  const ExternalOdometry& pose = received->message.pose;
   EXPECT_EQ(received->message.session, 3U);
   EXPECT_EQ(received->message.number, 12U);
   EXPECT_EQ(pose.source, "vio");
@@ -194,7 +194,7 @@ TEST_F(EndpointsTest, OutsidePoseArrivesAsItWasWrittenRightOrWrong) {
   EXPECT_TRUE(std::isnan(pose.position_sigma_m)) << "not known";
   EXPECT_TRUE(pose.has_position());
   EXPECT_EQ(pose.rotation_sigma_rad, 0.01);
-  sent.pose.position_sigma_m = OutsidePose::kNotMeasured;
+  sent.pose.position_sigma_m = ExternalOdometry::kNotMeasured;
   EXPECT_FALSE(RoundTrip(sent)->message.pose.has_position());
 }
 
@@ -213,7 +213,7 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
               .policy = NucPolicy::kCamera,
               .seconds_since = 12.5,
               .closings_per_minute = 9,
-              .closed_share = 0.25,
+              .closed_fraction = 0.25,
               .storm = true,
               .warming_up = true,
               .housing_celsius = 31.5,
@@ -242,7 +242,7 @@ TEST_F(EndpointsTest, StatusArrivesWithItsDropReasons) {
   EXPECT_EQ(status.nuc.policy, NucPolicy::kCamera);
   EXPECT_EQ(status.nuc.seconds_since, 12.5);
   EXPECT_EQ(status.nuc.closings_per_minute, 9U);
-  EXPECT_EQ(status.nuc.closed_share, 0.25);
+  EXPECT_EQ(status.nuc.closed_fraction, 0.25);
   EXPECT_TRUE(status.nuc.storm);
   EXPECT_TRUE(status.nuc.warming_up);
   EXPECT_TRUE(std::isnan(status.nuc.fpa_celsius));
@@ -288,7 +288,7 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
   sent.T_world_depth = MakeTransform({1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
   sent.model = {.good = 0.5F, .acceptable = 0.25F, .bad = 0.125F, .never_measured = 0.125F};
   sent.advice = {Advice::kSlower, Advice::kMoveCloser};
-  sent.picture.assign(kMaxPictureBytes, 0xAB);
+  sent.image.assign(kMaxConfidenceImageBytes, 0xAB);
   sent.latencies = {{"track", 0.006F, 0.012F}};
   sent.pose_covariance.emplace();  // Each of its 21 numbers another one, diagonally dominant.
   for (int i = 0; i < 6; ++i) {
@@ -310,7 +310,7 @@ TEST_F(EndpointsTest, FeedbackArrivesAsItWasWritten) {
   EXPECT_EQ(feedback.model.good, 0.5F);
   EXPECT_TRUE(std::isnan(feedback.view.good));
   EXPECT_THAT(feedback.advice, testing::ElementsAre(Advice::kSlower, Advice::kMoveCloser));
-  EXPECT_EQ(feedback.picture, sent.picture);
+  EXPECT_EQ(feedback.image, sent.image);
   ASSERT_EQ(feedback.latencies.size(), 1U);
   EXPECT_EQ(feedback.latencies[0].stage, "track");
   ASSERT_TRUE(feedback.pose_covariance.has_value());

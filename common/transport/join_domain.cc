@@ -11,7 +11,7 @@
 namespace isotherm {
 namespace {
 
-constexpr Nanoseconds kTellInterval = std::chrono::milliseconds(250);
+constexpr Nanoseconds kReportInterval = std::chrono::milliseconds(250);
 
 void Sleep(const std::stop_token& stop, Nanoseconds duration) {
   std::mutex mutex;
@@ -38,7 +38,7 @@ Result<std::unique_ptr<Participant>> JoinDomain(const TransportEnvironment& envi
     for (SteadyTime now = clock.SteadyNow(); now < due && !stop.stop_requested();
          now = clock.SteadyNow()) {
       waiting(joined.error());
-      Sleep(stop, std::min<Nanoseconds>(due - now, kTellInterval));
+      Sleep(stop, std::min<Nanoseconds>(due - now, kReportInterval));
     }
     if (!stop.stop_requested()) joined = Participant::Create(environment, domain_id);
   }

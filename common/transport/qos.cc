@@ -24,7 +24,7 @@ struct Profile {
   dds_duration_t liveliness;
 };
 
-constexpr std::int32_t kLeastReaderHistory = 16;
+constexpr std::int32_t kMinReaderHistory = 16;
 constexpr dds_duration_t kFrameBlocking = DDS_MSECS(100);
 constexpr dds_duration_t kSmallBlocking = DDS_MSECS(50);
 constexpr dds_duration_t kLease = DDS_SECS(1);
@@ -43,7 +43,7 @@ constexpr std::array<Profile, 10> kProfiles = {{
     {"isotherm/2/receipt", 1, false, kSmallBlocking, kLease},
     {"isotherm/2/feedback", 1, false, kSmallBlocking, kLease},
     {"isotherm/hello", 1, true, kSmallBlocking, kLease},
-    {"isotherm/2/outside_pose", kOutsidePoseHistory, true, kSmallBlocking, kLease},
+    {"isotherm/2/outside_pose", kExternalOdometryHistory, true, kSmallBlocking, kLease},
 }};
 
 const Profile& ProfileOf(TopicId topic) { return kProfiles.at(static_cast<std::size_t>(topic)); }
@@ -74,7 +74,7 @@ QosPtr MakeQos(TopicId topic) {
 QosPtr MakeReaderQos(TopicId topic) {
   QosPtr qos = MakeQos(topic);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST,
-                   std::max(ProfileOf(topic).history, kLeastReaderHistory));
+                   std::max(ProfileOf(topic).history, kMinReaderHistory));
   return qos;
 }
 

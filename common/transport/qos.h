@@ -13,8 +13,8 @@ namespace isotherm {
 inline constexpr int kFrameHistory = 32;
 /// A flow window below the history cannot overflow it, neither in the writer nor in the reader.
 inline constexpr int kMaxFlowWindowFrames = kFrameHistory - 4;
-/// Poses from outside that are kept per rig: more than two seconds at 200 Hz.
-inline constexpr int kOutsidePoseHistory = 512;
+/// Odometry poses that are kept per rig: more than two seconds at 200 Hz.
+inline constexpr int kExternalOdometryHistory = 512;
 
 struct DdsQosDeleter {
   void operator()(dds_qos* qos) const;

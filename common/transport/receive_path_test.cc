@@ -149,7 +149,7 @@ bool IsSound(const RigDescription& rig) {
   return modes && IsShort(rig.rig.serial, 256) && IsShort(rig.thermal.model, 256) &&
          (!rig.rig.depth || (rig.rig.depth->width > 0 && std::isfinite(rig.rig.depth->fx)));
 }
-bool IsSound(const OutsidePoseSample& sample) {
+bool IsSound(const ExternalOdometrySample& sample) {
   return ToNanoseconds(sample.pose.time) >= 0 && IsShort(sample.pose.source, 32);
 }
 bool IsSound(const EdgeStatus& status) {
@@ -173,7 +173,7 @@ bool IsSound(const Receipt& receipt) {
 bool IsSound(const Feedback& feedback) {
   return IsOneOf(feedback.tracking_state, 4) && feedback.advice.size() <= 8 &&
          std::ranges::all_of(feedback.advice, [](Advice a) { return IsOneOf(a, 8); }) &&
-         feedback.picture.size() <= 20'000 && feedback.latencies.size() <= 16 &&
+         feedback.image.size() <= 20'000 && feedback.latencies.size() <= 16 &&
          std::isfinite(feedback.covered_area_m2) && IsShort(feedback.advice_reason, 256);
 }
 bool IsSound(const Hello& hello) {
@@ -316,8 +316,8 @@ TEST_F(ReceivePathTest, F60AnyBytesAsAThermalFrame) {
   Run<EncodedThermalFrame>(isotherm_wire_ThermalFrame_desc);
 }
 TEST_F(ReceivePathTest, F60AnyBytesAsARig) { Run<RigDescription>(isotherm_wire_Rig_desc); }
-TEST_F(ReceivePathTest, F60AnyBytesAsAnOutsidePose) {
-  Run<OutsidePoseSample>(isotherm_wire_OutsidePose_desc);
+TEST_F(ReceivePathTest, F60AnyBytesAsExternalOdometry) {
+  Run<ExternalOdometrySample>(isotherm_wire_OutsidePose_desc);
 }
 TEST_F(ReceivePathTest, F60AnyBytesAsAStatus) { Run<EdgeStatus>(isotherm_wire_EdgeStatus_desc); }
 TEST_F(ReceivePathTest, F60AnyBytesAsACommand) { Run<Command>(isotherm_wire_Command_desc); }

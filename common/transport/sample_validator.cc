@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-
 namespace isotherm {
 namespace {
 
@@ -11,26 +10,27 @@ constexpr std::uint32_t kMaxEdgePixels = 16384;  // As for CameraModel.
 // Codes may expand noise a little; twice the raw size is beyond all of them.
 constexpr std::size_t kMaxBytesPerPixel = 4;
 constexpr std::size_t kMaxCodeOverheadBytes = 4096;
-constexpr double kAbsoluteZeroCelsius = -kCelsiusZeroKelvin;
-constexpr double kMaxHousekeepingCelsius = 1000.0;  // No camera survives that.
+constexpr double kAbsoluteZero_celsius = -kCelsiusZero_k;
+constexpr double kMaxHousekeeping_celsius = 1000.0;  // No camera survives that.
 constexpr double kMaxSecondsSinceNuc = 1e9;
 constexpr double kMaxDepthScale = 1e6;
 constexpr std::int64_t kYear2100_ns = 4'102'444'800'000'000'000;
-constexpr float kShareTolerance = 1e-3F;  // Rounding of four floats.
+constexpr float kFractionTolerance = 1e-3F;  // Rounding of four floats.
 
 std::optional<RefusalCause> CheckTemperature(double celsius) {
   if (std::isnan(celsius)) return std::nullopt;  // The camera does not say.
   if (std::isinf(celsius)) return RefusalCause::kNotFinite;
-  if (celsius < kAbsoluteZeroCelsius || celsius > kMaxHousekeepingCelsius) {
+  if (celsius < kAbsoluteZero_celsius || celsius > kMaxHousekeeping_celsius) {
     return RefusalCause::kOutOfRange;
   }
   return std::nullopt;
 }
 
-std::optional<RefusalCause> CheckShares(const CoverageShares& shares) {
-  for (const float share : {shares.good, shares.acceptable, shares.bad, shares.never_measured}) {
-    if (std::isinf(share)) return RefusalCause::kNotFinite;
-    if (share < -kShareTolerance || share > 1.0F + kShareTolerance) {
+std::optional<RefusalCause> CheckFractions(const CoverageFractions& fractions) {
+  for (const float fraction :
+       {fractions.good, fractions.acceptable, fractions.bad, fractions.never_measured}) {
+    if (std::isinf(fraction)) return RefusalCause::kNotFinite;
+    if (fraction < -kFractionTolerance || fraction > 1.0F + kFractionTolerance) {
       return RefusalCause::kOutOfRange;
     }
   }
@@ -122,8 +122,8 @@ std::optional<RefusalCause> CheckFeedback(const Feedback& feedback) {
   if (ToNanoseconds(feedback.capture_time) < 0) return RefusalCause::kNegativeTime;
   if (const auto cause = CheckFinite({feedback.covered_area_m2, feedback.next_gain_m2}))
     return cause;
-  if (const auto cause = CheckShares(feedback.model)) return cause;
-  if (const auto cause = CheckShares(feedback.view)) return cause;
+  if (const auto cause = CheckFractions(feedback.model)) return cause;
+  if (const auto cause = CheckFractions(feedback.view)) return cause;
   for (const StageLatency& latency : feedback.latencies) {
     if (const auto cause = CheckFinite({latency.p50_s, latency.p99_s})) return cause;
   }

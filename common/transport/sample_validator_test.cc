@@ -58,9 +58,9 @@ TEST(SampleValidatorTest, F60PayloadsThatCannotBeAreRefused) {
   EXPECT_EQ(CheckChanged([](auto& f) { f.payload_bytes = 0; }), RefusalCause::kEmptyPayload);
   EXPECT_EQ(CheckChanged([](auto& f) { f.payload_bytes = kMaxPayloadBytes + 1; }),
             RefusalCause::kOversizePayload);
-  constexpr std::size_t kMost = 640 * 480 * 4 + 4096;
-  EXPECT_EQ(CheckChanged([](auto& f) { f.payload_bytes = kMost; }), std::nullopt);
-  EXPECT_EQ(CheckChanged([](auto& f) { f.payload_bytes = kMost + 1; }),
+  constexpr std::size_t kMax = 640 * 480 * 4 + 4096;
+  EXPECT_EQ(CheckChanged([](auto& f) { f.payload_bytes = kMax; }), std::nullopt);
+  EXPECT_EQ(CheckChanged([](auto& f) { f.payload_bytes = kMax + 1; }),
             RefusalCause::kOversizePayload);
 }
 

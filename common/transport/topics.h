@@ -28,7 +28,7 @@ enum class TopicId : std::uint8_t {
   kReceipt,
   kFeedback,
   kHello,
-  kOutsidePose,
+  kExternalOdometry,
 };
 
 /// Relates a message to its topic and to the type that idlc generated for it.
@@ -50,9 +50,9 @@ struct TopicOf<RigDescription> {
   static constexpr TopicId kId = TopicId::kRig;
 };
 template <>
-struct TopicOf<OutsidePoseSample> {
+struct TopicOf<ExternalOdometrySample> {
   using Wire = ::isotherm_wire_OutsidePose;
-  static constexpr TopicId kId = TopicId::kOutsidePose;
+  static constexpr TopicId kId = TopicId::kExternalOdometry;
 };
 template <>
 struct TopicOf<EdgeStatus> {

@@ -30,7 +30,7 @@ constexpr Nanoseconds kTimeToLeave = std::chrono::seconds(1);
 // A process that is killed is gone in milliseconds, unless the kernel waits for its device.
 constexpr Nanoseconds kTimeToDie = std::chrono::milliseconds(250);
 // Some minutes of frames: who claims more is not believed.
-constexpr std::uint64_t kMostMissing = 100'000;
+constexpr std::uint64_t kMaxMissing = 100'000;
 
 /// Starts `program` with the link as descriptor 3, the pixels as 4 and nothing else open.
 Result<pid_t> Spawn(const std::string& program, const std::vector<std::string>& arguments, int link,
@@ -126,7 +126,7 @@ Status CameraProcess::WaitUntilOpened() {
     if (!cameras) return cameras.error();
     rig_ = RigOf(message.opened());
     cameras_ = std::move(*cameras);
-    if (message.opened().has_sandbox()) TellSandbox(FromLink(message.opened().sandbox()));
+    if (message.opened().has_sandbox()) LogSandbox(FromLink(message.opened().sandbox()));
     last_heard_ = clock_.SteadyNow();
     return OkStatus();
   }
@@ -138,7 +138,7 @@ Status CameraProcess::WaitUntilOpened() {
                                  ToSeconds(settings_.open_timeout)));
 }
 
-void CameraProcess::TellSandbox(const Status& sandbox) {
+void CameraProcess::LogSandbox(const Status& sandbox) {
   for (CameraDescription& camera : cameras_) {
     camera.settings += sandbox.ok() ? ", confined" : ", not confined";
   }
@@ -177,7 +177,7 @@ Result<SourceItem> CameraProcess::Take(const FromCamera& message) {
   answer.set_free_slot(message.frame().slot());
   link_->Send(answer);  // A process that does not take it is found out by its silence.
   const std::uint64_t number = frame->frame_number + first_number_;
-  if (number < next_number_ || number - next_number_ > kMostMissing) {
+  if (number < next_number_ || number - next_number_ > kMaxMissing) {
     return Err(DataLoss(fmt::format("its process sent frame {} behind frame {}",
                                     frame->frame_number, next_number_ - first_number_)));
   }
@@ -232,7 +232,7 @@ void CameraProcess::CountLeftOut() {
     const auto index = static_cast<std::size_t>(sensor);
     const std::uint64_t now = slots_->left_out(sensor);
     const std::uint64_t before = std::exchange(left_out_counted_[index], now);
-    if (now > before) left_out_[index] += std::min(now - before, kMostMissing);
+    if (now > before) left_out_[index] += std::min(now - before, kMaxMissing);
   }
 }
 

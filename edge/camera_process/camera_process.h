@@ -67,7 +67,7 @@ class CameraProcess final : public FrameSource {
  private:
   Status Start();
   Status WaitUntilOpened();
-  void TellSandbox(const Status& sandbox);
+  void LogSandbox(const Status& sandbox);
   Result<SourceItem> Take(const FromCamera& message);
   void TakeAnswer(const Status& status);
   /// Why nothing more comes.

@@ -101,11 +101,11 @@ class CameraServer {
       const CameraLink::Received received = link_.Receive(&message, wait);
       if (received == CameraLink::Received::kClosed) return false;
       if (received == CameraLink::Received::kNothingYet) return true;
-      Obey(message);
+      Execute(message);
     }
   }
 
-  void Obey(const ToCamera& message) {
+  void Execute(const ToCamera& message) {
     if (message.has_free_slot() && message.free_slot() >= 0 &&
         message.free_slot() < PixelSlots::kSlots) {
       free_.set(static_cast<std::size_t>(message.free_slot()));

@@ -67,7 +67,7 @@ Result<std::optional<Rig>> LoadCalibration(const SourceOptions& options) {
 }
 
 /// Says what is missing for temperatures on the surface.
-void TellAboutRig(const std::optional<Rig>& rig) {
+void LogRig(const std::optional<Rig>& rig) {
   if (!rig) {
     LOG(Edge, Warning) << "no rig calibration: thermal frames cannot be fused with depth";
     return;
@@ -84,7 +84,7 @@ void TellAboutRig(const std::optional<Rig>& rig) {
 }
 
 /// Says it at the start, not when the scan is over.
-void TellAboutCounts(const std::vector<CameraDescription>& cameras) {
+void LogCounts(const std::vector<CameraDescription>& cameras) {
   for (const CameraDescription& camera : cameras) {
     if (!camera.counts_only) continue;
     LOG(Edge, Warning) << "the thermal camera (" << camera.driver
@@ -96,7 +96,7 @@ void TellAboutCounts(const std::vector<CameraDescription>& cameras) {
 }
 
 /// A replay that keeps its own times does not care.
-void TellAboutClock(const EdgeOptions& options, const KernelClock& clock) {
+void LogClock(const EdgeOptions& options, const KernelClock& clock) {
   if (TimeBaseOf(options.source()) != TimeBase::kWallClock) return;
   if (const std::optional<std::string> problem = ClockProblem(clock)) {
     LOG(Edge, Warning) << *problem;
@@ -182,7 +182,7 @@ RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options, con
 /// Null if nothing is to be recorded. Without a disk it waits for one, unless somebody waits for
 /// the end of the source: then that is an error.
 Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const Start& start,
-                                         const Clock& clock, FrameAccount& account) {
+                                         const Clock& clock, FrameCounters& counters) {
   const std::optional<std::filesystem::path> path =
       RecordingPath(options.spool().record(), start.time, start.session());
   if (!path) return nullptr;
@@ -191,7 +191,7 @@ Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const Start
                            RecordingMetadata(options, start)});
   auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
                                                   [path] { return FreeDiskBytes(*path); },
-                                                  options.spool(), clock, account});
+                                                  options.spool(), clock, counters});
   if (options.exit_at_end()) {
     if (Status begun = spool->Begin(); !begun.ok()) return Err(begun);
   }
@@ -253,14 +253,14 @@ struct Leaving {
 /// Holds what the end of a capture needs.
 struct Ending {
   ExitDeadline& deadline;
-  const FrameAccount& account;
+  const FrameCounters& counters;
   const CameraHealth& health;
   bool recording = false;
 };
 
 void PrintSummary(const Ending& ending, const Publisher& publisher, const EdgePipeline& pipeline) {
   std::fputs(
-      Summary(ending.account, ending.recording, publisher.receipt(), pipeline.feedback().latency())
+      Summary(ending.counters, ending.recording, publisher.receipt(), pipeline.feedback().latency())
           .c_str(),
       stdout);
   std::fputs(
@@ -299,12 +299,12 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
 
 /// Captures until told to leave, then hands on what is under way. The process's exit status.
 int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
-            std::unique_ptr<Spool> spool, FrameAccount& account, CameraHealth& health,
+            std::unique_ptr<Spool> spool, FrameCounters& counters, CameraHealth& health,
             Publisher& publisher, Leaving& leaving, const Clock& clock,
             const std::stop_token& stop) {
   if (spool != nullptr) leaving.status_if_stuck = kExitRecording;
-  const Ending ending{leaving.deadline, account, health, spool != nullptr};
-  EdgePipeline pipeline(options, {source, publisher, account, health, clock, std::move(spool),
+  const Ending ending{leaving.deadline, counters, health, spool != nullptr};
+  EdgePipeline pipeline(options, {source, publisher, counters, health, clock, std::move(spool),
                                   start.session(), start.rig_thermal_delay_s});
   pipeline.StartReceiving();
   NotifyReady(fmt::format("capturing from {}", source.name()));
@@ -313,8 +313,8 @@ int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
   if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
 
   pipeline.StartCapture();
-  Housekeeping housekeeping(clock, pipeline, publisher, account, health,
-                            options.display().picture_file());
+  Housekeeping housekeeping(clock, pipeline, publisher, counters, health,
+                            options.display().image_file());
   RunUntilStopped(options, pipeline, housekeeping, stop);
   NotifyStopping();
   return Leave(options, ending, pipeline, housekeeping, publisher, clock, stop);
@@ -364,32 +364,32 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const std::stop_callback on_signal(stop, [&leaving] {
     leaving.deadline.ArmFirst(kTimeForDisk, leaving.status_if_stuck, "what was under way");
   });
-  FrameAccount account;
+  FrameCounters counters;
   CameraHealth health;
   const Result<std::optional<Rig>> calibration = LoadCalibration(options.source());
   if (!calibration) return Fail(calibration.error());
   const Result<std::unique_ptr<FrameSource>> source =
-      OpenSource(options, {clock, account, health, *calibration, stop});
+      OpenSource(options, {clock, counters, health, *calibration, stop});
   if (!source) return stop.stop_requested() ? 0 : Fail(source.error());
   const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
-  TellAboutRig(rig);
-  TellAboutCounts((*source)->cameras());
+  LogRig(rig);
+  LogCounts((*source)->cameras());
   const Start start{clock.Now(), (*source)->cameras(), WithoutThermalDelay(rig),
                     rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
-  TellAboutClock(options, start.clock);
+  LogClock(options, start.clock);
 
   Link link;
   if (const Status connected = Connect(options, environment, clock, link); !connected.ok()) {
     return Fail(connected);
   }
-  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, start, clock, account);
+  Result<std::unique_ptr<Spool>> spool = MakeSpool(options, start, clock, counters);
   if (!spool) {
     LOG(Edge, Error) << spool.error().message();
     return kExitRecording;
   }
   const Status begun = link.publisher->BeginSession(Describe(options, start));
   if (!begun.ok()) return Fail(begun);
-  return Capture(options, start, **source, std::move(*spool), account, health, *link.publisher,
+  return Capture(options, start, **source, std::move(*spool), counters, health, *link.publisher,
                  leaving, clock, stop);
 }
 

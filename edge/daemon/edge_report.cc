@@ -19,7 +19,7 @@ std::string NucText(const NucReport& nuc) {
   if (!nuc.reason.empty()) text += fmt::format(" ({})", nuc.reason);
   if (nuc.storm) {
     text += fmt::format(", STORM: {}/min, {:.0f} % closed", nuc.closings_per_minute,
-                        100.0 * nuc.closed_share);
+                        100.0 * nuc.closed_fraction);
   }
   if (nuc.warming_up) text += ", warming up";
   return text;
@@ -28,19 +28,19 @@ std::string NucText(const NucReport& nuc) {
 // By default the ground raises an alarm at this difference, too (LiveOptions.max_clock_offset_s).
 constexpr double kDoubtfulClock_s = 0.05;
 
-std::uint64_t Dropped(const SensorAccount& account) {
-  return account.rejected + account.left_out + account.record_queue_full + account.record_failed +
-         account.publish_queue_full + account.publish_failed;
+std::uint64_t Dropped(const SensorCounters& counters) {
+  return counters.rejected + counters.left_out + counters.record_queue_full +
+         counters.record_failed + counters.publish_queue_full + counters.publish_failed;
 }
 
 /// "captured 900 = recorded 890 + rejected 0 + queue full 10 + write failed 0".
-std::string Equation(std::string_view done, const SensorAccount& account, std::uint64_t succeeded,
+std::string Equation(std::string_view done, const SensorCounters& counters, std::uint64_t succeeded,
                      std::uint64_t queue_full, std::uint64_t failed, std::int64_t on_the_way) {
   std::string text =
-      fmt::format("captured {} = {} {} + rejected {} + queue full {} + failed {}", account.captured,
-                  done, succeeded, account.rejected, queue_full, failed);
-  if (account.left_out != 0) {
-    text += fmt::format(" + no free slot in the camera's process {}", account.left_out);
+      fmt::format("captured {} = {} {} + rejected {} + queue full {} + failed {}",
+                  counters.captured, done, succeeded, counters.rejected, queue_full, failed);
+  if (counters.left_out != 0) {
+    text += fmt::format(" + no free slot in the camera's process {}", counters.left_out);
   }
   if (on_the_way != 0) text += fmt::format(" + unaccounted {}", on_the_way);
   return text;
@@ -69,16 +69,16 @@ double RateMeter::Update(std::uint64_t count, SteadyTime now) {
   return rate;
 }
 
-StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz) {
+StreamStatus ToStreamStatus(const SensorCounters& counters, double rate_hz) {
   StreamStatus status;
-  status.captured = account.captured;
-  status.published = account.published;
+  status.captured = counters.captured;
+  status.published = counters.published;
   status.rate_hz = rate_hz;
-  status.queue_frames = static_cast<std::uint32_t>(account.OnTheWayToGround());
-  status.dropped = {{"rejected", account.rejected},
-                    {"no free slot in the camera's process", account.left_out},
-                    {"queue full", account.publish_queue_full},
-                    {"publish failed", account.publish_failed}};
+  status.queue_frames = static_cast<std::uint32_t>(counters.OnTheWayToGround());
+  status.dropped = {{"rejected", counters.rejected},
+                    {"no free slot in the camera's process", counters.left_out},
+                    {"queue full", counters.publish_queue_full},
+                    {"publish failed", counters.publish_failed}};
   return status;
 }
 
@@ -142,10 +142,10 @@ std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeB
   return metadata;
 }
 
-std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
+std::string StatusLine(const EdgeStatus& status, const FrameCounters& counters, bool ground_present,
                        const std::optional<Feedback>& feedback, const std::string& ground_problem) {
-  const SensorAccount depth = account.Get(Sensor::kDepth);
-  const SensorAccount thermal = account.Get(Sensor::kThermal);
+  const SensorCounters depth = counters.Get(Sensor::kDepth);
+  const SensorCounters thermal = counters.Get(Sensor::kThermal);
   const std::string stamps = StampText(status.depth_camera, status.thermal_camera);
   return fmt::format(
       "ground: {} | depth {:.1f}/s{}  thermal {:.1f}/s{}  NUC {}  recorded {}  published {}  "
@@ -160,11 +160,11 @@ std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bo
       stamps.empty() ? "" : "  stamps ", stamps);
 }
 
-std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameAccount& account,
+std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameCounters& counters,
                                      bool ground_present, const std::optional<Feedback>& feedback,
                                      const std::vector<std::string>& problems) {
-  const SensorAccount depth = account.Get(Sensor::kDepth);
-  const SensorAccount thermal = account.Get(Sensor::kThermal);
+  const SensorCounters depth = counters.Get(Sensor::kDepth);
+  const SensorCounters thermal = counters.Get(Sensor::kThermal);
   std::vector<std::string> ground = {"ground: absent"};
   if (ground_present) ground = {"ground: no feedback yet"};
   if (ground_present && feedback) ground = FeedbackParts(*feedback);
@@ -185,12 +185,12 @@ std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameAccoun
   return parts;
 }
 
-std::string Summary(const FrameAccount& account, bool recording,
+std::string Summary(const FrameCounters& counters, bool recording,
                     const std::optional<Receipt>& receipt, const FeedbackLatency& feedback) {
   std::string text;
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
     const bool is_depth = sensor == Sensor::kDepth;
-    const SensorAccount counts = account.Get(sensor);
+    const SensorCounters counts = counters.Get(sensor);
     const std::string_view name = is_depth ? "depth  " : "thermal";
     if (recording) {
       text += fmt::format("{}  {}\n", name,

@@ -8,7 +8,7 @@
 
 #include "common/messages/messages.h"
 #include "edge/daemon/host_status.h"
-#include "edge/frame/frame_account.h"
+#include "edge/frame/frame_counters.h"
 #include "edge/pipeline/time_base.h"
 
 namespace isotherm {
@@ -24,9 +24,9 @@ class RateMeter {
   std::uint64_t last_count_ = 0;
 };
 
-/// The part of the status message that the account knows: frames and drops by reason on the way to
+/// The part of the status message that the counters know: frames and drops by reason on the way to
 /// the ground.
-StreamStatus ToStreamStatus(const SensorAccount& account, double rate_hz);
+StreamStatus ToStreamStatus(const SensorCounters& counters, double rate_hz);
 
 /// Free space as EdgeStatus has it.
 std::uint64_t ToReport(std::optional<std::uint64_t> disk_free_bytes);
@@ -49,19 +49,19 @@ std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeB
 
 /// One line for the operator's journal: what the ground says, or what is wrong with it, then rates,
 /// drops, NUC and clock.
-std::string StatusLine(const EdgeStatus& status, const FrameAccount& account, bool ground_present,
+std::string StatusLine(const EdgeStatus& status, const FrameCounters& counters, bool ground_present,
                        const std::optional<Feedback>& feedback,
                        const std::string& ground_problem = {});
 
 /// The same for a terminal that may be narrow (FitLine), the most important first: what the ground
 /// advises, what is wrong (`problems`, each in a few words), frames dropped, then the rest.
-std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameAccount& account,
+std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameCounters& counters,
                                      bool ground_present, const std::optional<Feedback>& feedback,
                                      const std::vector<std::string>& problems);
 
 /// Returns what became of every frame, and how soon the ground answered, printed at exit.
 /// `recording`: whether there was one.
-std::string Summary(const FrameAccount& account, bool recording,
+std::string Summary(const FrameCounters& counters, bool recording,
                     const std::optional<Receipt>& receipt, const FeedbackLatency& feedback);
 
 }  // namespace isotherm

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "edge/frame/frame_account.h"
+#include "edge/frame/frame_counters.h"
 
 namespace isotherm {
 namespace {
@@ -17,28 +17,28 @@ using testing::Not;
 class EdgeReportTest : public testing::Test {
  protected:
   void Count(Sensor sensor, FrameFate fate, std::uint64_t count) {
-    account_.Set(sensor, fate, count);
+    counters_.Set(sensor, fate, count);
   }
-  FrameAccount account_;
+  FrameCounters counters_;
 };
 
-TEST_F(EdgeReportTest, TheAccountClosesWhenEachFrameHasItsFate) {
+TEST_F(EdgeReportTest, TheCountersBalanceWhenEachFrameHasItsFate) {
   Count(Sensor::kDepth, FrameFate::kCaptured, 10);
   Count(Sensor::kDepth, FrameFate::kRejected, 1);
   Count(Sensor::kDepth, FrameFate::kRecorded, 6);
   Count(Sensor::kDepth, FrameFate::kRecordFailed, 3);
   Count(Sensor::kDepth, FrameFate::kPublished, 7);
   Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 1);
-  EXPECT_EQ(account_.Get(Sensor::kDepth).OnTheWayToDisk(), 0);
-  EXPECT_EQ(account_.Get(Sensor::kDepth).OnTheWayToGround(), 1);
+  EXPECT_EQ(counters_.Get(Sensor::kDepth).OnTheWayToDisk(), 0);
+  EXPECT_EQ(counters_.Get(Sensor::kDepth).OnTheWayToGround(), 1);
 }
 
-TEST_F(EdgeReportTest, SummaryIsTheAccountAsAnEquation) {
+TEST_F(EdgeReportTest, SummaryIsTheCountersAsAnEquation) {
   Count(Sensor::kDepth, FrameFate::kCaptured, 10);
   Count(Sensor::kDepth, FrameFate::kRecorded, 8);
   Count(Sensor::kDepth, FrameFate::kRecordQueueFull, 2);
   Count(Sensor::kDepth, FrameFate::kPublished, 10);
-  const std::string text = Summary(account_, true, std::nullopt, {});
+  const std::string text = Summary(counters_, true, std::nullopt, {});
   EXPECT_THAT(text, HasSubstr("captured 10 = recorded 8 + rejected 0 + queue full 2 + failed 0\n"));
   EXPECT_THAT(text,
               HasSubstr("captured 10 = published 10 + rejected 0 + queue full 0 + failed 0\n"));
@@ -51,10 +51,10 @@ TEST_F(EdgeReportTest, FramesThatTheCamerasProcessLeftOutAreCapturedAndDropped) 
   Count(Sensor::kDepth, FrameFate::kRecorded, 7);
   Count(Sensor::kDepth, FrameFate::kPublished, 7);
   Count(Sensor::kDepth, FrameFate::kLostInCamera, 4);
-  const SensorAccount depth = account_.Get(Sensor::kDepth);
+  const SensorCounters depth = counters_.Get(Sensor::kDepth);
   EXPECT_EQ(depth.OnTheWayToDisk(), 0);
   EXPECT_EQ(depth.OnTheWayToGround(), 0);
-  const std::string text = Summary(account_, true, std::nullopt, {});
+  const std::string text = Summary(counters_, true, std::nullopt, {});
   EXPECT_THAT(text, HasSubstr("captured 10 = recorded 7 + rejected 0 + queue full 0 + failed 0 + "
                               "no free slot in the camera's process 3\n"));
   EXPECT_THAT(text, HasSubstr("depth    lost in the camera or its library 4\n"));
@@ -68,33 +68,33 @@ TEST_F(EdgeReportTest, FramesThatTheCamerasProcessLeftOutAreCapturedAndDropped) 
 TEST_F(EdgeReportTest, SummarySaysWhatTheGroundHas) {
   Receipt receipt;
   receipt.depth = {.next = 10, .handled = 10, .received = 9};
-  EXPECT_THAT(Summary(account_, false, receipt, {}),
+  EXPECT_THAT(Summary(counters_, false, receipt, {}),
               HasSubstr("depth    ground received 9, missing 1"));
 }
 
 TEST_F(EdgeReportTest, SummarySaysHowSoonTheGroundAnswered) {
   EXPECT_THAT(
-      Summary(account_, false, std::nullopt, {.count = 12, .p50_s = 0.048, .p99_s = 0.0924}),
+      Summary(counters_, false, std::nullopt, {.count = 12, .p50_s = 0.048, .p99_s = 0.0924}),
       HasSubstr("feedback 12 messages, depth capture to arrival p50 48 ms, p99 92 ms\n"));
-  EXPECT_THAT(Summary(account_, false, std::nullopt, {}), HasSubstr("arrival unknown"));
+  EXPECT_THAT(Summary(counters_, false, std::nullopt, {}), HasSubstr("arrival unknown"));
 }
 
 TEST_F(EdgeReportTest, F08TheStatusLineShowsTheDutyCycleOfAStorm) {
   EdgeStatus status;
   status.nuc.state = NucState::kError;
   status.nuc.reason = "shutter closed for 7 s";
-  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+  EXPECT_THAT(StatusLine(status, counters_, true, std::nullopt),
               HasSubstr("NUC error (shutter closed for 7 s)  recorded"));
   status.nuc = {
-      .state = NucState::kIdle, .closings_per_minute = 9, .closed_share = 0.41, .storm = true};
-  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+      .state = NucState::kIdle, .closings_per_minute = 9, .closed_fraction = 0.41, .storm = true};
+  EXPECT_THAT(StatusLine(status, counters_, true, std::nullopt),
               HasSubstr("NUC idle, STORM: 9/min, 41 % closed"));
 }
 
-TEST_F(EdgeReportTest, AnAccountThatDoesNotCloseIsNotHidden) {
+TEST_F(EdgeReportTest, CountersThatDoNotBalanceAreNotHidden) {
   Count(Sensor::kThermal, FrameFate::kCaptured, 5);
   Count(Sensor::kThermal, FrameFate::kPublished, 4);
-  EXPECT_THAT(Summary(account_, false, std::nullopt, {}), HasSubstr("unaccounted 1"));
+  EXPECT_THAT(Summary(counters_, false, std::nullopt, {}), HasSubstr("unaccounted 1"));
 }
 
 TEST_F(EdgeReportTest, StreamStatusAddsUp) {
@@ -102,7 +102,7 @@ TEST_F(EdgeReportTest, StreamStatusAddsUp) {
   Count(Sensor::kDepth, FrameFate::kRejected, 2);
   Count(Sensor::kDepth, FrameFate::kPublishQueueFull, 3);
   Count(Sensor::kDepth, FrameFate::kPublished, 11);
-  const StreamStatus status = ToStreamStatus(account_.Get(Sensor::kDepth), 30.0);
+  const StreamStatus status = ToStreamStatus(counters_.Get(Sensor::kDepth), 30.0);
   std::uint64_t dropped = 0;
   for (const DropCount& drop : status.dropped) dropped += drop.frames;
   EXPECT_EQ(status.captured, status.published + dropped + status.queue_frames);
@@ -114,21 +114,21 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   feedback.model.good = 0.34F;
   feedback.covered_area_m2 = 0.5;
   feedback.advice = {Advice::kGoBackToRelocalise};
-  EXPECT_THAT(StatusLine({}, account_, true, feedback),
+  EXPECT_THAT(StatusLine({}, counters_, true, feedback),
               HasSubstr("ground: go back, LOST, all 34 % of 0.50 m2"));
   feedback.tracking_state = TrackingState::kDegraded;
   feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
-  EXPECT_THAT(StatusLine({}, account_, true, feedback),
+  EXPECT_THAT(StatusLine({}, counters_, true, feedback),
               HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
-  EXPECT_THAT(StatusLine({}, account_, false, feedback), HasSubstr("ground: absent"));
-  EXPECT_THAT(StatusLine({}, account_, true, feedback, "refuses this scan"),
+  EXPECT_THAT(StatusLine({}, counters_, false, feedback), HasSubstr("ground: absent"));
+  EXPECT_THAT(StatusLine({}, counters_, true, feedback, "refuses this scan"),
               HasSubstr("ground: refuses this scan |"));
-  EXPECT_THAT(StatusLine({}, account_, true, std::nullopt), HasSubstr("no feedback yet"));
+  EXPECT_THAT(StatusLine({}, counters_, true, std::nullopt), HasSubstr("no feedback yet"));
 }
 
 TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
   EdgeStatus status;
-  EXPECT_THAT(StatusLine(status, account_, true, std::nullopt),
+  EXPECT_THAT(StatusLine(status, counters_, true, std::nullopt),
               HasSubstr("clock not synchronised"));
   HostStatus host;
   host.clock = {
@@ -139,7 +139,7 @@ TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
   status.depth_camera.stamp_sigma_s = 0.00005;
   status.thermal_camera.unsynchronised_frames = 7;
   EXPECT_THAT(
-      StatusLine(status, account_, true, std::nullopt),
+      StatusLine(status, counters_, true, std::nullopt),
       HasSubstr("clock synchronised, off by about 0.10 ms, at most 1.2 ms, set 2 times by "
                 "+3.020 s in all  stamps +-0.050 ms depth, UNSYNCHRONISED frames 0 depth, 7 "
                 "thermal"));

@@ -1,4 +1,4 @@
-// What the edge does with feedback: its age, its words, its picture.
+// What the edge does with feedback: its age, its words, its image.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include "common/messages/feedback_text.h"
 #include "common/testing/temporary_directory.h"
-#include "edge/daemon/picture_file.h"
+#include "edge/daemon/replace_file.h"
 #include "edge/pipeline/feedback_monitor.h"
 
 namespace isotherm {
@@ -57,7 +57,7 @@ TEST(FeedbackMonitorTest, TimesAtAnotherPaceHaveNoAge) {
   EXPECT_TRUE(std::isnan(monitor.latency().p50_s));
 }
 
-Eigen::Quaterniond Turn(double deg, const Eigen::Vector3d& axis) {
+Eigen::Quaterniond Rotation(double deg, const Eigen::Vector3d& axis) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(deg * std::numbers::pi / 180.0, axis));
 }
 
@@ -67,9 +67,9 @@ TEST(FeedbackTextTest, MovesAreSaidInTheOperatorsWords) {
   EXPECT_EQ(MoveText(MakeTransform({-0.3, 0.1, -0.2}, Eigen::Quaterniond::Identity())),
             "0.30 m left, 0.10 m down, 0.20 m back");
   // About y (down), x (right) turns to the back: a positive angle looks to the right.
-  EXPECT_EQ(MoveText(MakeTransform({0, 0, 0}, Turn(30, Eigen::Vector3d::UnitY()))),
+  EXPECT_EQ(MoveText(MakeTransform({0, 0, 0}, Rotation(30, Eigen::Vector3d::UnitY()))),
             "turn 30 deg right");
-  EXPECT_EQ(MoveText(MakeTransform({0, -0.1, 0.01}, Turn(20, Eigen::Vector3d::UnitX()))),
+  EXPECT_EQ(MoveText(MakeTransform({0, -0.1, 0.01}, Rotation(20, Eigen::Vector3d::UnitX()))),
             "0.10 m up, turn 20 deg up");
 }
 
@@ -106,21 +106,21 @@ TEST(FeedbackTextTest, WhileLostTheLineSaysWhereTrackingWorked) {
             "-0.11) m looking (0.00 0.00 1.00)");
 }
 
-TEST(FeedbackNarratorTest, TellsChangesOfStateOnly) {
-  FeedbackNarrator narrator;
+TEST(FeedbackReporterTest, TellsChangesOfStateOnly) {
+  FeedbackReporter reporter;
   Feedback feedback;
   feedback.tracking_state = TrackingState::kTracked;
-  EXPECT_TRUE(narrator.Tell(feedback).has_value());
+  EXPECT_TRUE(reporter.Report(feedback).has_value());
   feedback.view.good = 0.7F;
   feedback.advice_reason = "other numbers";
-  EXPECT_FALSE(narrator.Tell(feedback).has_value());
+  EXPECT_FALSE(reporter.Report(feedback).has_value());
   feedback.advice = {Advice::kSlower};
-  EXPECT_THAT(narrator.Tell(feedback).value_or(""), HasSubstr("slower"));
-  EXPECT_FALSE(narrator.Tell(feedback).has_value());
+  EXPECT_THAT(reporter.Report(feedback).value_or(""), HasSubstr("slower"));
+  EXPECT_FALSE(reporter.Report(feedback).has_value());
   feedback.tracking_state = TrackingState::kLost;
-  EXPECT_THAT(narrator.Tell(feedback).value_or(""), HasSubstr("LOST"));
+  EXPECT_THAT(reporter.Report(feedback).value_or(""), HasSubstr("LOST"));
   feedback.done = true;
-  EXPECT_TRUE(narrator.Tell(feedback).has_value());
+  EXPECT_TRUE(reporter.Report(feedback).has_value());
 }
 
 std::string ReadAll(const std::filesystem::path& path) {
@@ -133,30 +133,30 @@ std::span<const std::uint8_t> Bytes(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-TEST(PictureFileTest, TheNewestReplacesTheOneBefore) {
+TEST(ImageFileTest, TheNewestReplacesTheOneBefore) {
   const testing::TemporaryDirectory folder;
   const auto path = folder.path() / "confidence.png";
-  ASSERT_TRUE(ReplaceFile(path, Bytes("first picture")).ok());
+  ASSERT_TRUE(ReplaceFile(path, Bytes("first image")).ok());
   ASSERT_TRUE(ReplaceFile(path, Bytes("second")).ok());
   EXPECT_EQ(ReadAll(path), "second");
   EXPECT_FALSE(std::filesystem::exists(path.string() + ".partial"));
 }
 
-TEST(PictureFileTest, F65ALinkInItsPlaceIsNotFollowed) {
+TEST(ImageFileTest, F65ALinkInItsPlaceIsNotFollowed) {
   const testing::TemporaryDirectory folder;
   const auto path = folder.path() / "confidence.png", victim = folder.path() / "victim";
   std::ofstream(victim) << "precious";
   std::filesystem::create_symlink(victim, path.string() + ".partial");
-  EXPECT_FALSE(ReplaceFile(path, Bytes("picture")).ok());
+  EXPECT_FALSE(ReplaceFile(path, Bytes("image")).ok());
   EXPECT_EQ(ReadAll(victim), "precious");
   std::filesystem::remove(path.string() + ".partial");
   std::filesystem::create_symlink(victim, path);
-  EXPECT_TRUE(ReplaceFile(path, Bytes("picture")).ok()) << "the link itself is replaced";
+  EXPECT_TRUE(ReplaceFile(path, Bytes("image")).ok()) << "the link itself is replaced";
   EXPECT_EQ(ReadAll(victim), "precious");
-  EXPECT_EQ(ReadAll(path), "picture");
+  EXPECT_EQ(ReadAll(path), "image");
 }
 
-TEST(PictureFileTest, WhatCannotBeWrittenLeavesTheOldOneAndIsSaid) {
+TEST(ImageFileTest, WhatCannotBeWrittenLeavesTheOldOneAndIsSaid) {
   const testing::TemporaryDirectory folder;
   const auto path = folder.path() / "confidence.png";
   ASSERT_TRUE(ReplaceFile(path, Bytes("first")).ok());

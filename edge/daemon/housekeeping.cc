@@ -5,7 +5,7 @@
 
 #include "common/base/log.h"
 #include "common/base/service.h"
-#include "edge/daemon/picture_file.h"
+#include "edge/daemon/replace_file.h"
 
 namespace isotherm {
 namespace {
@@ -18,14 +18,14 @@ constexpr Nanoseconds kNoFrames = std::chrono::seconds(10);
 }  // namespace
 
 Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-                           const FrameAccount& account, const CameraHealth& health,
-                           std::filesystem::path picture_file)
+                           const FrameCounters& counters, const CameraHealth& health,
+                           std::filesystem::path image_file)
     : clock_(clock),
       pipeline_(pipeline),
       publisher_(publisher),
-      account_(account),
+      counters_(counters),
       health_(health),
-      picture_file_(std::move(picture_file)),
+      image_file_(std::move(image_file)),
       terminal_(line_->is_terminal()),
       synchronised_(ReadKernelClock().synchronised),
       next_status_(clock.SteadyNow()),
@@ -45,14 +45,14 @@ void Housekeeping::Tick() {
   const bool ended = pipeline_.finished();
   const EdgeStatus before = std::exchange(status_, {});
   status_ = MakeStatus(ended ? ScanState::kEnded : ScanState::kScanning, now);
-  TellCameras(before);
-  TellClock();
+  LogCameras(before);
+  LogClock();
   const Status published = publisher_.Publish(status_);
   if (!published.ok()) {
     LOG(Edge, Debug) << "status not published: " << published.message();
   }
   ShowLine();
-  TellStatus();
+  ReportStatus();
   Log();
 }
 
@@ -65,8 +65,8 @@ void Housekeeping::PublishEnd() {
 }
 
 EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
-  const SensorAccount depth = account_.Get(Sensor::kDepth);
-  const SensorAccount thermal = account_.Get(Sensor::kThermal);
+  const SensorCounters depth = counters_.Get(Sensor::kDepth);
+  const SensorCounters thermal = counters_.Get(Sensor::kThermal);
   EdgeStatus status;
   status.time = clock_.Now();
   status.scan_state = scan_state;
@@ -86,7 +86,7 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   return status;
 }
 
-void Housekeeping::TellCameras(const EdgeStatus& before) const {
+void Housekeeping::LogCameras(const EdgeStatus& before) const {
   const auto tell = [](std::string_view name, const CameraReport& was, const CameraReport& is) {
     // A camera may have been lost and be back between two looks.
     if (is.state == CameraState::kNone || (was.state == is.state && was.failures == is.failures)) {
@@ -104,7 +104,7 @@ void Housekeeping::TellCameras(const EdgeStatus& before) const {
   tell("thermal", before.thermal_camera, status_.thermal_camera);
 }
 
-void Housekeeping::TellClock() {
+void Housekeeping::LogClock() {
   const bool synchronised = status_.clock.synchronised;
   if (std::exchange(synchronised_, synchronised) == synchronised) return;
   if (synchronised) {
@@ -119,14 +119,14 @@ void Housekeeping::ShowFeedback() {
   if (count == feedback_shown_) return;
   feedback_shown_ = count;
   const std::optional<Feedback> feedback = pipeline_.feedback().newest();
-  if (!picture_file_.empty() && !feedback->picture.empty()) {
-    const Status written = ReplaceFile(picture_file_, feedback->picture);
-    if (!written.ok() && !picture_fails_) {
-      LOG(Edge, Warning) << "no confidence picture: " << written.message();
+  if (!image_file_.empty() && !feedback->image.empty()) {
+    const Status written = ReplaceFile(image_file_, feedback->image);
+    if (!written.ok() && !image_fails_) {
+      LOG(Edge, Warning) << "no confidence image: " << written.message();
     }
-    picture_fails_ = !written.ok();
+    image_fails_ = !written.ok();
   }
-  const std::optional<std::string> news = narrator_.Tell(*feedback);
+  const std::optional<std::string> news = reporter_.Report(*feedback);
   ShowLine();
   if (!terminal_ && news) {
     LOG(Edge, Info) << "ground: " << *news;
@@ -135,7 +135,7 @@ void Housekeeping::ShowFeedback() {
 
 std::string Housekeeping::Line() const {
   const PublisherStats link = publisher_.stats();
-  return StatusLine(status_, account_, link.ground_present, pipeline_.feedback().newest(),
+  return StatusLine(status_, counters_, link.ground_present, pipeline_.feedback().newest(),
                     link.ground_problem);
 }
 
@@ -150,7 +150,7 @@ void Housekeeping::ShowLine() {
   if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
     problems.push_back(*stuck);
   line_->Show(
-      StatusParts(status_, account_, link.ground_present, pipeline_.feedback().newest(), problems),
+      StatusParts(status_, counters_, link.ground_present, pipeline_.feedback().newest(), problems),
       "  ");
 }
 
@@ -174,12 +174,12 @@ std::vector<std::string> Housekeeping::Problems() const {
   return problems;
 }
 
-void Housekeeping::TellStatus() {
+void Housekeeping::ReportStatus() {
   std::vector<std::string> problems = Problems();
-  if (problems == told_) return;
-  told_ = std::move(problems);
+  if (problems == reported_) return;
+  reported_ = std::move(problems);
   std::string text;
-  for (const std::string& problem : told_) text += (text.empty() ? "" : "; ") + problem;
+  for (const std::string& problem : reported_) text += (text.empty() ? "" : "; ") + problem;
   NotifyStatus(text.empty() ? "all is well again" : text);
 }
 
@@ -190,14 +190,14 @@ void Housekeeping::Log() {
   if (!terminal_) {
     LOG(Edge, Info) << line;
   }
-  if (told_.empty()) NotifyStatus(line);
+  if (reported_.empty()) NotifyStatus(line);
 }
 
 bool Housekeeping::GetsOn(SteadyTime now) {
   const auto sends = [&](Sensor sensor, Newest* newest) {
     const CameraState state = health_.Get(sensor).state;
     const bool is_due = state == CameraState::kWorking || state == CameraState::kBlind;
-    const std::uint64_t captured = account_.Get(sensor).captured;
+    const std::uint64_t captured = counters_.Get(sensor).captured;
     // A camera that is lost is looked for: that is progress. So is a source that has ended.
     if (std::exchange(newest->captured, captured) != captured || !is_due || pipeline_.finished())
       newest->at = now;

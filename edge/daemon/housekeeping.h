@@ -11,7 +11,7 @@
 #include "common/messages/feedback_text.h"
 #include "common/time/clock.h"
 #include "edge/daemon/edge_report.h"
-#include "edge/frame/frame_account.h"
+#include "edge/frame/frame_counters.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/pipeline/edge_pipeline.h"
 #include "edge/publisher/publisher.h"
@@ -22,10 +22,10 @@ namespace isotherm {
 /// status once a second, tells the operator and the service manager. Thread-bound.
 class Housekeeping {
  public:
-  /// All must outlive it. `picture_file`: where the confidence picture goes (empty: nowhere).
+  /// All must outlive it. `image_file`: where the confidence image goes (empty: nowhere).
   Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-               const FrameAccount& account, const CameraHealth& health,
-               std::filesystem::path picture_file);
+               const FrameCounters& counters, const CameraHealth& health,
+               std::filesystem::path image_file);
 
   /// Does what is due; call it often.
   void Tick();
@@ -34,29 +34,29 @@ class Housekeeping {
 
  private:
   EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
-  /// The newest feedback, if it was not shown yet: picture, status line or journal.
+  /// The newest feedback, if it was not shown yet: image, status line or journal.
   void ShowFeedback();
   std::string Line() const;
   void ShowLine();
   /// Returns what is wrong, each in a sentence that says what to do.
   std::vector<std::string> Problems() const;
   /// To the service manager, at once if something became wrong or right.
-  void TellStatus();
+  void ReportStatus();
   /// Whether the program makes progress, with or without cameras.
   bool GetsOn(SteadyTime now);
   /// Logs what became of the cameras since the last status.
-  void TellCameras(const EdgeStatus& before) const;
+  void LogCameras(const EdgeStatus& before) const;
   /// That synchronisation was lost or found; how it is at the start is told there.
-  void TellClock();
+  void LogClock();
   void Log();
   void FeedWatchdog(SteadyTime now);
 
   const Clock& clock_;
   EdgePipeline& pipeline_;
   Publisher& publisher_;
-  const FrameAccount& account_;
+  const FrameCounters& counters_;
   const CameraHealth& health_;
-  const std::filesystem::path picture_file_;
+  const std::filesystem::path image_file_;
   std::optional<TerminalLine> line_{std::in_place};  ///< Until the end.
   const bool terminal_;
   bool synchronised_;
@@ -72,12 +72,12 @@ class Housekeeping {
     SteadyTime at{};
   };
   Newest newest_depth_, newest_thermal_;
-  std::vector<std::string> told_;  ///< Problems, to the service manager.
+  std::vector<std::string> reported_;  ///< Problems, to the service manager.
   bool stuck_ = false;
   EdgeStatus status_;  ///< The last one published.
   std::uint64_t feedback_shown_ = 0;
-  FeedbackNarrator narrator_;
-  bool picture_fails_ = false;
+  FeedbackReporter reporter_;
+  bool image_fails_ = false;
 };
 
 }  // namespace isotherm

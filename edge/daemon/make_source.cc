@@ -18,8 +18,8 @@ namespace {
 std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source,
                                             const EdgeOptions& options,
                                             const SourceContext& context) {
-  const auto count_as = [&account = context.account](FrameFate fate) {
-    return [fate, &account](Sensor sensor) { account.Count(sensor, fate); };
+  const auto count_as = [&counters = context.counters](FrameFate fate) {
+    return [fate, &counters](Sensor sensor) { counters.Count(sensor, fate); };
   };
   auto supervised = std::make_unique<SupervisedSource>(
       std::move(source), options.frame_check(), context.clock, count_as(FrameFate::kCaptured),
@@ -28,7 +28,7 @@ std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source,
   return supervised;
 }
 
-void Tell(Sensor sensor, const std::string& problem, ToldProblems& told) {
+void Report(Sensor sensor, const std::string& problem, ToldProblems& told) {
   if (std::exchange(told[sensor], problem) == problem) return;
   LOG(Edge, Warning) << problem;
 }
@@ -46,22 +46,22 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
             ? MakeCameraProcess(sensor, source, context.clock, context.stop)
             : MakeCamera(sensor, source, context.clock);
     if (!camera) {
-      Tell(sensor, camera.error().message(), told);
+      Report(sensor, camera.error().message(), told);
       continue;
     }
     auto supervised = Supervise(std::move(*camera), options, context);
     supervised->OnWorks(
         [&health = context.health, sensor](bool works) { health.SetWorks(sensor, works); });
-    CountLosses(*supervised, context.account);
+    CountLosses(*supervised, context.counters);
     cameras.push_back({sensor, std::move(supervised)});
   }
   if (cameras.empty()) return Err(Unavailable("no camera can be used"));
   CameraPair::Queue queue;
   queue.capacity = static_cast<std::size_t>(options.capture_queue_frames());
   queue.policy = source.rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
-  queue.on_drop = [&account = context.account](Sensor sensor) {
-    account.Count(sensor, FrameFate::kRecordQueueFull);
-    account.Count(sensor, FrameFate::kPublishQueueFull);
+  queue.on_drop = [&counters = context.counters](Sensor sensor) {
+    counters.Count(sensor, FrameFate::kRecordQueueFull);
+    counters.Count(sensor, FrameFate::kPublishQueueFull);
   };
   return std::make_unique<CameraPair>(std::move(cameras), std::move(queue));
 }

@@ -9,7 +9,7 @@
 #include "common/base/status.h"
 #include "common/geometry/camera.h"
 #include "common/time/clock.h"
-#include "edge/frame/frame_account.h"
+#include "edge/frame/frame_counters.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/source/frame_source.h"
 
@@ -20,7 +20,7 @@ class EdgeOptions;
 /// Holds what a source is put together with. All must outlive it.
 struct SourceContext {
   const Clock& clock;
-  FrameAccount& account;
+  FrameCounters& counters;
   CameraHealth& health;
   /// A calibration that overrides the source's own: frames of other sizes are refused.
   const std::optional<Rig>& calibration;

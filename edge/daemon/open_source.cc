@@ -17,7 +17,7 @@ namespace {
 using Opened = Result<std::unique_ptr<FrameSource>>;
 
 /// How often a service that waits says that it is alive.
-constexpr Nanoseconds kTellInterval = std::chrono::milliseconds(500);
+constexpr Nanoseconds kReportInterval = std::chrono::milliseconds(500);
 /// A camera's process that does not open it is killed after half of this, and then tried again: an
 /// attempt that takes longer hangs in this process.
 constexpr Nanoseconds kLongestAttempt = std::chrono::seconds(30);
@@ -44,7 +44,7 @@ class Waiting {
     const FrameCheckOptions& pace = options_.frame_check();
     BackOff back_off(FromSeconds(pace.retry_min_s()), FromSeconds(pace.retry_max_s()));
     while (IsMissing(source) && !context_.stop.stop_requested()) {
-      Tell(source.error().message());
+      Report(source.error().message());
       Wait(back_off.Next());
       // A vendor's library may take its time; the service manager is told meanwhile.
       std::future<Opened> attempt = std::async(std::launch::async, [this] { return Try(); });
@@ -56,7 +56,7 @@ class Waiting {
 
  private:
   /// Once, and again if something else is the matter.
-  void Tell(const std::string& reason) {
+  void Report(const std::string& reason) {
     if (std::exchange(reason_, reason) == reason) return;
     LOG(Edge, Warning) << reason << "; waiting for it, nothing is recorded yet";
   }
@@ -66,13 +66,14 @@ class Waiting {
     const SteadyTime due = context_.clock.SteadyNow() + duration;
     while (context_.clock.SteadyNow() < due && !context_.stop.stop_requested()) {
       NotifyAlive();
-      Pause(context_.stop, std::min(kTellInterval, Nanoseconds(due - context_.clock.SteadyNow())));
+      Pause(context_.stop,
+            std::min(kReportInterval, Nanoseconds(due - context_.clock.SteadyNow())));
     }
   }
 
   void Await(std::future<Opened>& attempt) const {
     const SteadyTime begun = context_.clock.SteadyNow();
-    while (attempt.wait_for(kTellInterval) != std::future_status::ready) {
+    while (attempt.wait_for(kReportInterval) != std::future_status::ready) {
       if (context_.clock.SteadyNow() - begun > kLongestAttempt) {
         LOG(Edge, Error) << "the library of a camera has not come back from opening it for "
                          << ToSeconds(kLongestAttempt)

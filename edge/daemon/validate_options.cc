@@ -192,9 +192,9 @@ Status Validate(const EdgeOptions& options) {
   CheckSpool(options.spool(), problems);
   CheckLink(options.link(), problems);
   problems.Stage("display");
-  const std::string& picture = options.display().picture_file();
-  if (!picture.empty() && picture.back() == '/')
-    problems.Add("picture_file", fmt::format("is \"{}\", must name a file", picture));
+  const std::string& image = options.display().image_file();
+  if (!image.empty() && image.back() == '/')
+    problems.Add("image_file", fmt::format("is \"{}\", must name a file", image));
   return problems.ToStatus();
 }
 

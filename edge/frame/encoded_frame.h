@@ -17,9 +17,9 @@ struct EncodedFrame {
   /// The wall clock, when the frame came, minus the time line of capture times: steps so far. 0 if
   /// capture times were not on the wall clock in the first place.
   Nanoseconds wall_minus_time{0};
-  /// What came from outside since the frame before: it travels along, so that order and back
+  /// The odometry that came since the frame before: it travels along, so that order and back
   /// pressure are the same.
-  std::vector<OutsidePoseSample> outside_poses{};
+  std::vector<ExternalOdometrySample> external_odometry{};
   std::vector<RecordedLog> log{};  ///< What happened since then, for the recording.
 
   Sensor sensor() const {
@@ -27,7 +27,7 @@ struct EncodedFrame {
   }
 };
 
-/// A frame on its way to the codec: all of it but the picture is as it will be.
+/// A frame on its way to the codec: all of it but the image is as it will be.
 struct UncodedFrame {
   EncodedFrame frame;
   Image<std::uint16_t> pixels;

@@ -11,7 +11,7 @@ namespace isotherm {
 namespace {
 
 std::uint16_t CelsiusToCentikelvin(double celsius) {
-  const double centikelvin = (celsius + kCelsiusZeroKelvin) * kCentikelvinPerKelvin;
+  const double centikelvin = (celsius + kCelsiusZero_k) * kCentikelvinPerKelvin;
   return static_cast<std::uint16_t>(std::clamp(std::round(centikelvin), 1.0, 65534.0));
 }
 

@@ -72,7 +72,7 @@ CommandOutcome OutcomeOf(const Status& status) {
 NucControl::NucControl(const EdgeOptions& options, FrameSource& source)
     : source_(source),
       supervisor_(Resolved(options), RoleFor(options)),
-      pictures_(options.nuc()),
+      images_(options.nuc()),
       patience_(FromSeconds(options.nuc().answer_s())) {}
 
 NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
@@ -85,10 +85,10 @@ NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
   seen.housekeeping = housekeeping_ = frame.housekeeping;
   const bool known_closed = frame.shutter_closed ||
                             (frame.camera_nuc && frame.camera_nuc->state == NucState::kInProgress);
-  seen.picture = pictures_.Add(frame.pixels, time, known_closed);
+  seen.image = images_.Add(frame.pixels, time, known_closed);
   status_ = supervisor_.Update(seen);
   if (status_.order) Pass(*status_.order, time);
-  Tell();
+  LogNotices();
   return status_;
 }
 
@@ -110,7 +110,7 @@ void NucControl::TakeCameraAnswers() {
     }
     OnCameraAnswer(order, answer.status);
   }
-  Tell();
+  LogNotices();
 }
 
 void NucControl::CheckPatience(CaptureTime time) {
@@ -130,7 +130,7 @@ void NucControl::OnCameraAnswer(NucOrder order, const Status& answer) {
   }
 }
 
-void NucControl::Obey(const Command& command) {
+void NucControl::Execute(const Command& command) {
   Result<std::string> done = std::string();
   switch (command.kind) {
     case CommandKind::kTriggerNuc:
@@ -147,7 +147,7 @@ void NucControl::Obey(const Command& command) {
     default:
       done = Err(InvalidArgument("not a command about the NUC"));
   }
-  Tell();
+  LogNotices();
   Answer(command.number, done ? OkStatus() : done.error(), done ? *done : done.error().message());
 }
 
@@ -160,7 +160,7 @@ void NucControl::Answer(std::uint64_t number, const Status& status, std::string 
   answers_.push_back({number, OutcomeOf(status), std::move(text)});
 }
 
-void NucControl::Tell() {
+void NucControl::LogNotices() {
   for (NucNotice& notice : supervisor_.TakeNotices()) {
     if (IsLogged(notice.level)) WriteLog(notice.level, "Nuc", notice.text);
     log_.push_back({notice.time, LevelName(notice.level), "nuc: " + notice.text});
@@ -176,7 +176,7 @@ NucReport NucControl::Report() const {
   report.seconds_since = status_.seconds_since_nuc.value_or(kUnknown);
   report.closings_per_minute =
       static_cast<std::uint32_t>(supervisor_.shutter().closings_per_minute());
-  report.closed_share = supervisor_.shutter().closed_share();
+  report.closed_fraction = supervisor_.shutter().closed_fraction();
   report.storm = supervisor_.is_storm();
   report.warming_up = supervisor_.is_warming_up();
   report.fpa_celsius = static_cast<double>(housekeeping_.fpa_celsius);

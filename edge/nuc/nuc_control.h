@@ -8,8 +8,8 @@
 
 #include "common/messages/messages.h"
 #include "common/recording/recording.h"
+#include "edge/nuc/image_watch.h"
 #include "edge/nuc/nuc_supervisor.h"
-#include "edge/nuc/picture_watch.h"
 #include "edge/source/frame_source.h"
 
 namespace isotherm {
@@ -29,7 +29,7 @@ class NucControl {
 
   /// Takes a command about the NUC; the answer comes with TakeAnswers, at once or when the camera
   /// has answered.
-  void Obey(const Command& command);
+  void Execute(const Command& command);
   /// Takes what the camera has answered since the last call.
   void TakeCameraAnswers();
   /// Since the last call.
@@ -46,11 +46,11 @@ class NucControl {
   /// The camera is taken to refuse an order that it has not answered at `time`, in time.
   void CheckPatience(CaptureTime time);
   void Answer(std::uint64_t number, const Status& status, std::string text);
-  void Tell();
+  void LogNotices();
 
   FrameSource& source_;
   NucSupervisor supervisor_;
-  PictureWatch pictures_;
+  ImageWatch images_;
   NucStatus status_;
   ThermalHousekeeping housekeeping_;
   const Nanoseconds patience_;               ///< With the camera's answer.

@@ -41,7 +41,7 @@ class NucControlTest : public ::testing::Test {
     return found == answers_.end() ? std::nullopt : std::optional(*found);
   }
   void Trigger(std::uint64_t number) {
-    control_->Obey({.number = number, .kind = CommandKind::kTriggerNuc});
+    control_->Execute({.number = number, .kind = CommandKind::kTriggerNuc});
   }
   long Triggers() const {
     return std::ranges::count_if(camera_.controls, [](const CameraControl& control) {

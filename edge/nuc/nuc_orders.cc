@@ -96,7 +96,7 @@ void NucSupervisor::OnAnswer(NucOrder order, const Status& answer) {
   if (answer.ok()) {
     Note(LogLevel::kInfo, "correction ordered: " + ordered_for_);
     if (!still_open) return;
-    if (tells_) {
+    if (reports_shutter_) {
       waiting_since_ = now_;
     } else {
       commanded_until_ = now_ + FromSeconds(options_->commanded_duration_s());

@@ -109,7 +109,7 @@ TEST_F(NucSupervisorTest, F08AStormOfCorrectionsIsReportedWithItsDutyCycle) {
     ++closings;
   }
   EXPECT_EQ(closings, 7) << "more than six per minute";
-  EXPECT_NEAR(supervisor_->shutter().closed_share(), 0.5, 0.05);
+  EXPECT_NEAR(supervisor_->shutter().closed_fraction(), 0.5, 0.05);
   EXPECT_THAT(notices_, HasSubstr("storm of corrections: 7 corrections in the last minute"));
   EXPECT_FALSE(supervisor_->Request().has_value());
   const std::size_t orders = orders_.size();
@@ -124,7 +124,7 @@ TEST_F(NucSupervisorTest, F08AShutterThatStaysClosedIsAnErrorOnce) {
   Start();
   Frames(S::kSaysClosed, 60);
   EXPECT_EQ(last_.state, kError);
-  EXPECT_NEAR(supervisor_->shutter().closed_share(), 1.0, 1e-9);
+  EXPECT_NEAR(supervisor_->shutter().closed_fraction(), 1.0, 1e-9);
   EXPECT_EQ(notices_.find("does not end"), notices_.rfind("does not end"));
   EXPECT_NE(notices_.find("does not end"), std::string::npos);
 }

@@ -19,7 +19,8 @@ constexpr int kFrames = 4000;  // 100 s at 40 Hz.
 /// A camera whose shutter closes when it likes, or some frames after an order, or not at all.
 class WilfulCamera {
  public:
-  WilfulCamera(std::mt19937& random, bool tells) : random_(random), tells_(tells) {}
+  WilfulCamera(std::mt19937& random, bool reports_shutter)
+      : random_(random), reports_shutter_(reports_shutter) {}
 
   void Order() {
     if (Chance(0.7)) closes_in_ = Pick(0, 30);
@@ -36,7 +37,7 @@ class WilfulCamera {
     seen.shutter_closed = open_in_ > 0;
     housing_celsius_ += Chance(0.5) ? 0.002F : -0.001F;
     seen.housekeeping.housing_celsius = housing_celsius_;
-    if (tells_)
+    if (reports_shutter_)
       seen.camera = CameraNuc{seen.shutter_closed ? NucState::kInProgress : NucState::kIdle,
                               NucSource::kInBand, std::nullopt};
     return seen;
@@ -46,7 +47,7 @@ class WilfulCamera {
 
  private:
   std::mt19937& random_;
-  const bool tells_;
+  const bool reports_shutter_;
   int closes_in_ = -1;
   int open_in_ = 0;
   float housing_celsius_ = 30.0F;

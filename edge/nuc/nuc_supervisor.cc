@@ -26,7 +26,7 @@ NucPolicy PolicyOf(const NucOptions& options) {
   return NucPolicy::kAutomatic;
 }
 
-/// The driver compares pictures too, and knows how often the camera repeats them.
+/// The driver compares images too, and knows how often the camera repeats them.
 bool FoundFrozenByDriver(const NucObservation& seen) {
   return seen.shutter_closed && seen.camera && seen.camera->source == NucSource::kInferred;
 }
@@ -79,7 +79,7 @@ NucStatus NucSupervisor::Update(const NucObservation& seen) {
 }
 
 void NucSupervisor::Advance(const NucObservation& seen) {
-  tells_ = tells_ || seen.shutter_closed || seen.camera;
+  reports_shutter_ = reports_shutter_ || seen.shutter_closed || seen.camera;
   if (!first_frame_) {
     first_frame_ = now_ = frame_time_ = seen.time;
     reference_ = seen.housekeeping;
@@ -104,8 +104,8 @@ std::optional<NucSource> NucSupervisor::ClosedBy(const NucObservation& seen) con
   if (FoundFrozenByDriver(seen)) return NucSource::kInferred;
   if (seen.camera && seen.camera->state == NucState::kInProgress) return seen.camera->source;
   if (seen.shutter_closed) return NucSource::kInBand;
-  if (seen.picture.is_frozen) return NucSource::kInferred;
-  if (seen.picture.is_like_shutter && !tells_) return NucSource::kInferred;
+  if (seen.image.is_frozen) return NucSource::kInferred;
+  if (seen.image.is_like_shutter && !reports_shutter_) return NucSource::kInferred;
   if (commanded_until_ && now_ < *commanded_until_) return NucSource::kCommanded;
   return std::nullopt;
 }
@@ -122,7 +122,7 @@ void NucSupervisor::OnShutter(const NucObservation& seen) {
                                         ToString(shutter_.source())));
     }
   }
-  if (IsStuck(seen) && !std::exchange(told_stuck_, true)) {
+  if (IsStuck(seen) && !std::exchange(reported_stuck_, true)) {
     Note(LogLevel::kError,
          fmt::format("{} for {:.1f} s: no temperatures are taken, geometry goes on",
                      IsFrozen(seen)
@@ -131,7 +131,7 @@ void NucSupervisor::OnShutter(const NucObservation& seen) {
                      ToSeconds(shutter_.closed_for())));
   }
   if (!shutter_.just_opened()) return;
-  told_stuck_ = false;
+  reported_stuck_ = false;
   nuc_seen_ = true;
   requested_ = false;
   attempts_ = 0;
@@ -145,7 +145,7 @@ void NucSupervisor::OnShutter(const NucObservation& seen) {
 }
 
 bool NucSupervisor::IsFrozen(const NucObservation& seen) const {
-  const bool frozen = seen.picture.is_frozen || FoundFrozenByDriver(seen);
+  const bool frozen = seen.image.is_frozen || FoundFrozenByDriver(seen);
   return frozen && shutter_.source() == NucSource::kInferred;
 }
 
@@ -181,7 +181,7 @@ void NucSupervisor::FollowStorm() {
   Note(storm ? LogLevel::kWarning : LogLevel::kInfo,
        fmt::format("{}: {} corrections in the last minute, shutter closed for {:.0f} % of it{}",
                    storm ? "storm of corrections" : "storm is over", shutter_.closings_per_minute(),
-                   100.0 * shutter_.closed_share(),
+                   100.0 * shutter_.closed_fraction(),
                    storm ? "; geometry goes on, no correction is ordered" : ""));
 }
 
@@ -297,7 +297,7 @@ bool NucSupervisor::IsValid(const NucObservation& seen) const {
       return true;
     case NucState::kImminent:
       // Who is told late, or not at all, could take the shutter for the scene.
-      return seen.camera ? seen.camera->source == NucSource::kInBand : tells_;
+      return seen.camera ? seen.camera->source == NucSource::kInBand : reports_shutter_;
     default:
       return false;
   }

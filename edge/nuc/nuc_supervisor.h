@@ -10,7 +10,7 @@
 #include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/messages/messages.h"
-#include "edge/nuc/picture_watch.h"
+#include "edge/nuc/image_watch.h"
 #include "edge/nuc/shutter_log.h"
 #include "edge/nuc/warm_up_watch.h"
 
@@ -24,7 +24,7 @@ struct NucObservation {
   bool shutter_closed = false;        ///< The camera says so in the frame.
   std::optional<CameraNuc> camera{};  ///< What else the camera says; nullopt = nothing.
   ThermalHousekeeping housekeeping{};
-  PictureEvidence picture{};
+  ImageEvidence image{};
 };
 
 /// Says what the camera is to do.
@@ -56,7 +56,7 @@ struct NucNotice {
 ///   kImminent   --(not followed in time)--------------------------------> kDesired, and after
 ///                                                            max_attempts kBlocked
 ///   kBlocked    --(a new request)---------------------------------------> kDesired
-///   any         --(shutter closed: camera says so, order, pictures)-----> kInProgress
+///   any         --(shutter closed: camera says so, order, images)-----> kInProgress
 ///   kInProgress --(open)------------------------------------------------> kSettling
 ///   kInProgress --(closed for longer than max_duration_s)---------------> kError
 ///   kError      --(open)------------------------------------------------> kSettling
@@ -126,7 +126,7 @@ class NucSupervisor {
   bool IsValid(const NucObservation& seen) const;
   bool NeedsFirstNuc() const;
   bool WaitsForWarmUp() const;
-  /// By the pictures alone: the camera does not say that its shutter is closed.
+  /// By the images alone: the camera does not say that its shutter is closed.
   bool IsFrozen(const NucObservation& seen) const;
   /// Closed, or frozen, for longer than a correction takes.
   bool IsStuck(const NucObservation& seen) const;
@@ -144,15 +144,15 @@ class NucSupervisor {
   std::optional<CaptureTime> first_frame_;
   ShutterLog shutter_;
   WarmUpWatch warm_up_;
-  WarmUpWatch::State warm_up_state_ = WarmUpWatch::State::kNotJudged;
+  WarmUpWatch::State warm_up_state_ = WarmUpWatch::State::kNotAssessed;
   NucState state_ = NucState::kUnknown;
   std::string reason_;
   std::string due_;          ///< Why a NUC is wanted; empty = it is not.
   std::string ordered_for_;  ///< The same when it was ordered.
   bool storm_ = false;
-  bool told_stuck_ = false;
-  bool tells_ = false;           ///< The camera says when its shutter is closed.
-  bool cannot_trigger_ = false;  ///< The camera has said that it takes no such order.
+  bool reported_stuck_ = false;
+  bool reports_shutter_ = false;  ///< The camera says when its shutter is closed.
+  bool cannot_trigger_ = false;   ///< The camera has said that it takes no such order.
   bool nuc_seen_ = false;
   bool first_nuc_waived_ = false;  ///< It did not come; the scan goes on without.
   /// At the last NUC, or at the first frame.

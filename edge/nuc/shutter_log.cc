@@ -34,7 +34,7 @@ void ShutterLog::Update(CaptureTime time, std::optional<NucSource> closed_by) {
   }
 }
 
-double ShutterLog::closed_share() const {
+double ShutterLog::closed_fraction() const {
   if (!first_frame_) return 0.0;
   const CaptureTime start = std::max(*first_frame_, now_ - kWindow);
   if (now_ <= start) return closed_at_ ? 1.0 : 0.0;

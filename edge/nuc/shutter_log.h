@@ -26,8 +26,8 @@ class ShutterLog {
 
   /// Closings in the last minute.
   int closings_per_minute() const { return static_cast<int>(last_minute_.size()); }
-  /// Share of the last minute, or of the time since the first frame if that is shorter.
-  double closed_share() const;
+  /// Fraction of the last minute, or of the time since the first frame if that is shorter.
+  double closed_fraction() const;
   std::uint64_t closings() const { return closings_; }  ///< In all.
 
  private:

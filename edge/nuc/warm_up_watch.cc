@@ -25,7 +25,7 @@ WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeepi
                                                                 : housekeeping.housing_celsius;
   if (std::isfinite(celsius)) {
     left_ = Nanoseconds(0);
-    state_ = Judge(time, static_cast<double>(celsius));
+    state_ = Assess(time, static_cast<double>(celsius));
     return state_;
   }
   left_ = std::max(Nanoseconds(0), blind_ - (time - *start_));
@@ -33,13 +33,13 @@ WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeepi
   return state_;
 }
 
-WarmUpWatch::State WarmUpWatch::Judge(CaptureTime time, double celsius) {
+WarmUpWatch::State WarmUpWatch::Assess(CaptureTime time, double celsius) {
   if (!samples_.empty() && time - samples_.back().time < kSampleInterval) return state_;
   samples_.push_back({time, celsius});
   // The oldest sample lies a window back, or a little more.
   while (samples_.size() > 2 && time - samples_[1].time >= window_) samples_.pop_front();
   const Nanoseconds span = time - samples_.front().time;
-  if (span < window_ || span <= Nanoseconds(0)) return State::kNotJudged;
+  if (span < window_ || span <= Nanoseconds(0)) return State::kNotAssessed;
   rate_k_per_min_ = kSecondsPerMinute * (celsius - samples_.front().celsius) / ToSeconds(span);
   return std::abs(*rate_k_per_min_) <= limit_k_per_min_ ? State::kWarm : State::kCold;
 }

@@ -11,14 +11,14 @@ class NucOptions;
 
 /// Follows the warm-up of a thermal camera (thesis 3.2.3): it is warm when the temperature of its
 /// detector changes more slowly than an option says, measured over a time that is an option too. A
-/// camera that does not tell its detector's temperature is judged by its housing's; one that tells
-/// neither is warm so many seconds after the first frame. Once warm, it stays so: what changes
-/// later is drift. Thread-compatible.
+/// camera that does not tell its detector's temperature is assessed by its housing's; one that
+/// tells neither is warm so many seconds after the first frame. Once warm, it stays so: what
+/// changes later is drift. Thread-compatible.
 class WarmUpWatch {
  public:
   enum class State {
-    kNotJudged,  ///< Watched for too short a time.
-    kCold,       ///< Still changing, or the time is not over.
+    kNotAssessed,  ///< Watched for too short a time.
+    kCold,         ///< Still changing, or the time is not over.
     kWarm,
   };
 
@@ -37,7 +37,7 @@ class WarmUpWatch {
     CaptureTime time;
     double celsius;
   };
-  State Judge(CaptureTime time, double celsius);
+  State Assess(CaptureTime time, double celsius);
 
   const double limit_k_per_min_;
   const Nanoseconds window_;
@@ -46,7 +46,7 @@ class WarmUpWatch {
   std::deque<Sample> samples_;  ///< About one a second, over the window.
   std::optional<double> rate_k_per_min_;
   Nanoseconds left_{0};
-  State state_ = State::kNotJudged;
+  State state_ = State::kNotAssessed;
 };
 
 }  // namespace isotherm

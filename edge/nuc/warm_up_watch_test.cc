@@ -35,9 +35,9 @@ TEST_F(WarmUpWatchTest, IsWarmWhenTheDetectorChangesSlowlyEnough) {
   EXPECT_NEAR(warm_s, expected_s, 2.0) << "one sample a second";
 }
 
-TEST_F(WarmUpWatchTest, IsNotJudgedBeforeItsTime) {
-  EXPECT_EQ(Update(0, 35.0), State::kNotJudged);
-  EXPECT_EQ(Update(29, 35.0), State::kNotJudged);
+TEST_F(WarmUpWatchTest, IsNotAssessedBeforeItsTime) {
+  EXPECT_EQ(Update(0, 35.0), State::kNotAssessed);
+  EXPECT_EQ(Update(29, 35.0), State::kNotAssessed);
   EXPECT_EQ(Update(30, 35.0), State::kWarm);
 }
 
@@ -47,10 +47,10 @@ TEST_F(WarmUpWatchTest, CoolingIsNoEquilibriumEither) {
 }
 
 TEST_F(WarmUpWatchTest, WithoutTemperaturesTimeCounts) {
-  EXPECT_EQ(Update(0, kUnknownCelsius), State::kCold);
-  EXPECT_EQ(Update(179, kUnknownCelsius), State::kCold);
+  EXPECT_EQ(Update(0, kUnknown_celsius), State::kCold);
+  EXPECT_EQ(Update(179, kUnknown_celsius), State::kCold);
   EXPECT_NEAR(ToSeconds(watch_.left()), 1.0, 1e-6);
-  EXPECT_EQ(Update(180, kUnknownCelsius), State::kWarm);
+  EXPECT_EQ(Update(180, kUnknown_celsius), State::kWarm);
 }
 
 TEST_F(WarmUpWatchTest, OnceWarmItStaysSo) {

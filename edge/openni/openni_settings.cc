@@ -17,8 +17,8 @@ namespace {
 // The zero plane is described for the sensor's full width.
 constexpr double kZeroPlaneWidth_px = 1280.0;
 // Fields of view outside this range are not a camera's, radians.
-constexpr double kLeastFov_rad = 0.05;
-constexpr double kMostFov_rad = 2.9;
+constexpr double kMinFov_rad = 0.05;
+constexpr double kMaxFov_rad = 2.9;
 
 std::string_view UnitText(openni::PixelFormat format) {
   switch (format) {
@@ -96,7 +96,7 @@ std::string CloseRangeText(const openni::VideoStream& stream) {
 
 /// Focal length in pixels of `size` pixels that see `fov_rad`; nullopt for nonsense.
 std::optional<double> FocalLength(int size, double fov_rad) {
-  if (!(fov_rad > kLeastFov_rad && fov_rad < kMostFov_rad)) return std::nullopt;
+  if (!(fov_rad > kMinFov_rad && fov_rad < kMaxFov_rad)) return std::nullopt;
   return 0.5 * size / std::tan(0.5 * fov_rad);
 }
 

@@ -20,7 +20,7 @@ class CameraHealth {
  public:
   /// Frames come, or the camera failed.
   void SetWorks(Sensor sensor, bool works);
-  /// The picture shows (almost) nothing.
+  /// The image shows (almost) nothing.
   void SetBlind(Sensor sensor, bool blind) { At(sensor).blind = blind; }
   /// How long a frame took from its arrival to its capture time.
   void AddStamping(Sensor sensor, Nanoseconds latency);

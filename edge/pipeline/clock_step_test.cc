@@ -94,16 +94,16 @@ class ClockStepTest : public testing::Test {
     SupervisedSource source(
         std::make_unique<SteppedCamera>(clock_, std::move(steps), has_device_clock),
         options.frame_check(), clock_,
-        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kCaptured); },
-        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
+        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kCaptured); },
+        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
     ASSERT_TRUE(source.Open().ok());
     EdgePipeline pipeline(
         options, EdgeParts{.source = source,
                            .publisher = publisher_,
-                           .account = account_,
+                           .counters = counters_,
                            .health = health_,
                            .clock = clock_,
-                           .spool = MakeFakeSpool(recording_, options.spool(), clock_, account_),
+                           .spool = MakeFakeSpool(recording_, options.spool(), clock_, counters_),
                            .session = 1});
     pipeline.StartReceiving();
     pipeline.StartCapture();
@@ -128,7 +128,7 @@ class ClockStepTest : public testing::Test {
   SettableClock clock_{kStart};
   FakeRecording recording_;
   FakePublisher publisher_;
-  FrameAccount account_;
+  FrameCounters counters_;
   CameraHealth health_;
   std::uint64_t steps_ = 0;
   Nanoseconds total_{0};

@@ -39,8 +39,8 @@ bool SendsCounts(const FrameSource& source) {
                      [](const CameraDescription& camera) { return camera.counts_only; });
 }
 
-auto CountDropsAs(FrameFate fate, FrameAccount& account) {
-  return [fate, &account](const EncodedFramePtr& frame) { account.Count(frame->sensor(), fate); };
+auto CountDropsAs(FrameFate fate, FrameCounters& counters) {
+  return [fate, &counters](const EncodedFramePtr& frame) { counters.Count(frame->sensor(), fate); };
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ auto CountDropsAs(FrameFate fate, FrameAccount& account) {
 EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
     : source_(parts.source),
       publisher_(parts.publisher),
-      account_(parts.account),
+      counters_(parts.counters),
       health_(parts.health),
       clock_(parts.clock),
       spool_(std::move(parts.spool)),
@@ -65,9 +65,9 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       codec_queue_(kCodecQueueFrames, OverflowPolicy::kBlock),
       spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
       spool_queue_(spool_capacity_, PolicyFor(options),
-                   CountDropsAs(FrameFate::kRecordQueueFull, account_)),
+                   CountDropsAs(FrameFate::kRecordQueueFull, counters_)),
       publish_queue_(static_cast<std::size_t>(options.link().queue_frames()), PolicyFor(options),
-                     CountDropsAs(FrameFate::kPublishQueueFull, account_)) {}
+                     CountDropsAs(FrameFate::kPublishQueueFull, counters_)) {}
 
 EdgePipeline::~EdgePipeline() { static_cast<void>(Stop()); }
 
@@ -141,10 +141,10 @@ Status EdgePipeline::Stop() {
   if (capture_left_behind_) return recording_status_;  // It may still use what follows.
   ReportStamping("depth", depth_timestamper_.counts());
   ReportStamping("thermal", thermal_timestamper_.counts());
-  if (outside_poses_captured_ > 0) {
-    LOG(Edge, Info) << "poses from outside, captured=" << outside_poses_captured_
-                    << " published=" << outside_poses_published_
-                    << " not_published=" << outside_poses_captured_ - outside_poses_published_;
+  if (odometry_poses_captured_ > 0) {
+    LOG(Edge, Info) << "odometry poses, captured=" << odometry_poses_captured_
+                    << " published=" << odometry_poses_published_
+                    << " not_published=" << odometry_poses_captured_ - odometry_poses_published_;
   }
   return recording_status_;
 }
@@ -152,9 +152,9 @@ Status EdgePipeline::Stop() {
 bool EdgePipeline::finished() const {
   if (!source_ended_) return false;
   for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
-    const SensorAccount account = account_.Get(sensor);
-    if (account.OnTheWayToGround() != 0) return false;
-    if (spool_ && account.OnTheWayToDisk() != 0) return false;
+    const SensorCounters counters = counters_.Get(sensor);
+    if (counters.OnTheWayToGround() != 0) return false;
+    if (spool_ && counters.OnTheWayToDisk() != 0) return false;
   }
   return true;
 }
@@ -186,7 +186,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
     WatchClock();
     if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
-    if (OutsidePose* pose = std::get_if<OutsidePose>(&*item)) Keep(std::move(*pose));
+    if (ExternalOdometry* pose = std::get_if<ExternalOdometry>(&*item)) Keep(std::move(*pose));
   }
   source_.Close();
   while (std::optional<RawFrame> raw = source_.TakeUnread()) Process(std::move(*raw), stop);
@@ -197,7 +197,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
 }
 
 void EdgePipeline::ServeNucCommands() {
-  while (nuc_commands_.size() > 0) nuc_.Obey(*nuc_commands_.Pop({}));
+  while (nuc_commands_.size() > 0) nuc_.Execute(*nuc_commands_.Pop({}));
   nuc_.TakeCameraAnswers();
   for (CommandResult& answer : nuc_.TakeAnswers()) nuc_answers_.Push(std::move(answer), {});
 }
@@ -223,11 +223,11 @@ void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
   }
 }
 
-void EdgePipeline::Keep(OutsidePose pose) {
+void EdgePipeline::Keep(ExternalOdometry pose) {
   // Cameras that stopped must not make the buffer grow.
-  constexpr std::size_t kMost = 1024;
-  if (outside_poses_.size() == kMost) outside_poses_.erase(outside_poses_.begin());
-  outside_poses_.push_back({session_, outside_poses_captured_++, std::move(pose)});
+  constexpr std::size_t kMax = 1024;
+  if (external_odometry_.size() == kMax) external_odometry_.erase(external_odometry_.begin());
+  external_odometry_.push_back({session_, odometry_poses_captured_++, std::move(pose)});
 }
 
 void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
@@ -238,7 +238,7 @@ void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
   EncodedDepthFrame frame;
   frame.header = Header(raw, stamp);
   frame.depth_scale = raw.depth_scale;
-  HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
+  Forward({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
 }
 
 void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
@@ -254,7 +254,7 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   if (thermal_is_counts_) frame.image.encoding = Encoding::kCounts16;
   frame.housekeeping = raw.housekeeping;
   nuc_report_.Set(nuc_.Report());
-  HandOn({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
+  Forward({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
 }
 
 void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
@@ -267,14 +267,14 @@ FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const 
   return {session_, raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
 }
 
-void EdgePipeline::HandOn(UncodedFrame uncoded, const std::stop_token& stop) {
-  uncoded.frame.outside_poses = std::exchange(outside_poses_, {});
+void EdgePipeline::Forward(UncodedFrame uncoded, const std::stop_token& stop) {
+  uncoded.frame.external_odometry = std::exchange(external_odometry_, {});
   uncoded.frame.log = nuc_.TakeLog();
   if (time_base_ == TimeBase::kWallClock) uncoded.frame.wall_minus_time = step_watch_.total();
   const Sensor sensor = uncoded.frame.sensor();
   if (codec_queue_.Push(std::move(uncoded), stop)) return;
-  if (spool_) account_.Count(sensor, FrameFate::kRecordQueueFull);
-  account_.Count(sensor, FrameFate::kPublishQueueFull);
+  if (spool_) counters_.Count(sensor, FrameFate::kRecordQueueFull);
+  counters_.Count(sensor, FrameFate::kPublishQueueFull);
 }
 
 void EdgePipeline::Encode(const std::stop_token& stop) {
@@ -294,10 +294,10 @@ void EdgePipeline::Encode(const std::stop_token& stop) {
 void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
   const auto frame = std::make_shared<const EncodedFrame>(std::move(encoded));
   if (spool_ && !spool_queue_.Push(frame, stop)) {
-    account_.Count(frame->sensor(), FrameFate::kRecordQueueFull);
+    counters_.Count(frame->sensor(), FrameFate::kRecordQueueFull);
   }
   if (!publish_queue_.Push(frame, stop)) {
-    account_.Count(frame->sensor(), FrameFate::kPublishQueueFull);
+    counters_.Count(frame->sensor(), FrameFate::kPublishQueueFull);
   }
 }
 
@@ -323,9 +323,9 @@ void EdgePipeline::RecordFeedback() {
   }
 }
 
-void EdgePipeline::PublishOutsidePoses(const EncodedFrame& frame, const std::stop_token& stop) {
-  for (const OutsidePoseSample& sample : frame.outside_poses) {
-    if (publisher_.Publish(sample, stop).ok()) ++outside_poses_published_;
+void EdgePipeline::PublishExternalOdometry(const EncodedFrame& frame, const std::stop_token& stop) {
+  for (const ExternalOdometrySample& sample : frame.external_odometry) {
+    if (publisher_.Publish(sample, stop).ok()) ++odometry_poses_published_;
   }
 }
 
@@ -333,17 +333,17 @@ void EdgePipeline::Publish(const std::stop_token& stop) {
   while (const std::optional<EncodedFramePtr> frame = publish_queue_.Pop(stop)) {
     const ThreadProgress::Work step(publishing_, clock_.SteadyNow());
     // First, so that the ground has them when it tracks the frame.
-    PublishOutsidePoses(**frame, stop);
+    PublishExternalOdometry(**frame, stop);
     const Status published =
         std::visit([this, &stop](const auto& content) { return publisher_.Publish(content, stop); },
                    (*frame)->content);
-    account_.Count((*frame)->sensor(),
-                   published.ok() ? FrameFate::kPublished : FrameFate::kPublishFailed);
+    counters_.Count((*frame)->sensor(),
+                    published.ok() ? FrameFate::kPublished : FrameFate::kPublishFailed);
   }
 }
 
 void EdgePipeline::AnswerCommands() {
-  while (commands_.size() > 0) Obey(*commands_.Pop({}));
+  while (commands_.size() > 0) Execute(*commands_.Pop({}));
   while (nuc_answers_.size() > 0) Answer(*nuc_answers_.Pop({}));
   // Nobody serves these any more.
   while (source_ended_ && nuc_commands_.size() > 0) {
@@ -358,7 +358,7 @@ void EdgePipeline::Answer(const CommandResult& result) {
   }
 }
 
-void EdgePipeline::Obey(const Command& command) {
+void EdgePipeline::Execute(const Command& command) {
   switch (command.kind) {
     case CommandKind::kSetPublishPolicy:
       publisher_.SetPolicy(command.publish_policy);

@@ -19,7 +19,7 @@
 #include "common/time/step_watch.h"
 #include "common/time/thread_progress.h"
 #include "edge/frame/encoded_frame.h"
-#include "edge/frame/frame_account.h"
+#include "edge/frame/frame_counters.h"
 #include "edge/nuc/nuc_control.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/pipeline/feedback_monitor.h"
@@ -37,7 +37,7 @@ class EdgeOptions;
 struct EdgeParts {
   FrameSource& source;  ///< Opened; bad frames are already out (SupervisedSource).
   Publisher& publisher;
-  FrameAccount& account;
+  FrameCounters& counters;
   CameraHealth& health;
   const Clock& clock;
   std::unique_ptr<Spool> spool;  ///< Null: no recording.
@@ -100,11 +100,11 @@ class EdgePipeline {
   void WatchClock();
   CaptureTime TimeLineNow() const { return step_watch_.At(clock_.SteadyNow()); }
   /// Keeps the pose for the next frame to take along.
-  void Keep(OutsidePose pose);
-  void PublishOutsidePoses(const EncodedFrame& frame, const std::stop_token& stop);
+  void Keep(ExternalOdometry pose);
+  void PublishExternalOdometry(const EncodedFrame& frame, const std::stop_token& stop);
   void ProcessDepth(RawFrame raw, const std::stop_token& stop);
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
-  void HandOn(UncodedFrame uncoded, const std::stop_token& stop);
+  void Forward(UncodedFrame uncoded, const std::stop_token& stop);
   void Encode(const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
   /// How certain the stamp is, and how long it took from arrival to here.
@@ -115,12 +115,12 @@ class EdgePipeline {
   void Publish(const std::stop_token& stop);
   /// On the capture thread, which alone talks to the camera.
   void ServeNucCommands();
-  void Obey(const Command& command);
+  void Execute(const Command& command);
   void Answer(const CommandResult& result);
 
   FrameSource& source_;
   Publisher& publisher_;
-  FrameAccount& account_;
+  FrameCounters& counters_;
   CameraHealth& health_;
   const Clock& clock_;
   const std::unique_ptr<Spool> spool_;
@@ -137,9 +137,9 @@ class EdgePipeline {
   DepthEncoder depth_encoder_;
   ThermalEncoder thermal_encoder_;
 
-  std::vector<OutsidePoseSample> outside_poses_;  ///< Since the last frame.
-  std::uint64_t outside_poses_captured_ = 0;
-  std::uint64_t outside_poses_published_ = 0;
+  std::vector<ExternalOdometrySample> external_odometry_;  ///< Since the last frame.
+  std::uint64_t odometry_poses_captured_ = 0;
+  std::uint64_t odometry_poses_published_ = 0;
 
   std::atomic<bool> source_ended_{false};
   LatestValue<NucReport> nuc_report_;

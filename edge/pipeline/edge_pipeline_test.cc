@@ -29,17 +29,17 @@ class EdgePipelineTest : public testing::Test {
     camera_ = camera.get();
     source_ = std::make_unique<SupervisedSource>(
         std::move(camera), options_.frame_check(), clock_,
-        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kCaptured); },
-        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
+        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kCaptured); },
+        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
     ASSERT_TRUE(source_->Open().ok());
     std::unique_ptr<Spool> spool;
     if (record) {
-      spool = MakeFakeSpool(recording_, options_.spool(), clock_, account_, disk_room_);
+      spool = MakeFakeSpool(recording_, options_.spool(), clock_, counters_, disk_room_);
     }
     pipeline_ = std::make_unique<EdgePipeline>(
         options_, EdgeParts{.source = *source_,
                             .publisher = publisher_,
-                            .account = account_,
+                            .counters = counters_,
                             .health = health_,
                             .clock = clock_,
                             .spool = std::move(spool),
@@ -64,11 +64,11 @@ class EdgePipelineTest : public testing::Test {
     while (!pipeline_->finished()) std::this_thread::yield();
     return pipeline_->Stop();
   }
-  void ExpectClosedAccount() {
+  void ExpectBalancedCounters() {
     for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
-      const SensorAccount account = account_.Get(sensor);
-      EXPECT_EQ(account.OnTheWayToDisk(), 0);
-      EXPECT_EQ(account.OnTheWayToGround(), 0);
+      const SensorCounters counters = counters_.Get(sensor);
+      EXPECT_EQ(counters.OnTheWayToDisk(), 0);
+      EXPECT_EQ(counters.OnTheWayToGround(), 0);
     }
   }
 
@@ -78,7 +78,7 @@ class EdgePipelineTest : public testing::Test {
   FakeRecording recording_;
   std::uint64_t disk_room_ = UINT64_MAX;
   double rig_thermal_delay_s_ = 0.0;
-  FrameAccount account_;
+  FrameCounters counters_;
   CameraHealth health_;
   Status control_answer_ = FailedPrecondition("no shutter");
   bool counts_only_ = false;
@@ -101,7 +101,7 @@ TEST_F(EdgePipelineTest, FeedbackIsKeptAndRecordedWithTheScan) {
 TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
   Start("100*d 130*t 50*d");
   EXPECT_TRUE(RunToTheEnd().ok());
-  ExpectClosedAccount();
+  ExpectBalancedCounters();
   EXPECT_EQ(recording_.depth_frames.size(), 150U);
   EXPECT_EQ(recording_.thermal_frames.size(), 130U);
   EXPECT_TRUE(recording_.closed);
@@ -123,14 +123,14 @@ TEST_F(EdgePipelineTest, F39ACameraThatIsStuckCostsTheRecordingNothing) {
   EXPECT_EQ(recording_.thermal_frames.size(), 2U);
   EXPECT_TRUE(pipeline_->Stop().ok());
   EXPECT_EQ(publisher_.depth().size(), 3U);
-  ExpectClosedAccount();
+  ExpectBalancedCounters();
   camera_->Release();
 }
 
-TEST_F(EdgePipelineTest, PosesFromOutsideAreRecordedAndPublishedWithTheNextFrame) {
+TEST_F(EdgePipelineTest, OdometryPosesAreRecordedAndPublishedWithTheNextFrame) {
   Start("d 3*p t 2*p d 4*p");
   EXPECT_TRUE(RunToTheEnd().ok());
-  const std::vector<OutsidePoseSample> published = publisher_.outside_poses();
+  const std::vector<ExternalOdometrySample> published = publisher_.external_odometry();
   ASSERT_EQ(published.size(), 5U) << "those behind the last frame tell nothing of any";
   for (std::size_t i = 0; i < published.size(); ++i) {
     EXPECT_EQ(published[i].session, kSession);
@@ -138,7 +138,7 @@ TEST_F(EdgePipelineTest, PosesFromOutsideAreRecordedAndPublishedWithTheNextFrame
     EXPECT_EQ(published[i].pose.source, "fake");
   }
   EXPECT_EQ(published[4].pose.time, publisher_.depth().at(1).header.capture_time);
-  EXPECT_EQ(recording_.outside_poses.size(), 5U);
+  EXPECT_EQ(recording_.external_odometry.size(), 5U);
 }
 
 TEST_F(EdgePipelineTest, PixelsSurviveTheCodec) {
@@ -210,12 +210,12 @@ TEST_F(EdgePipelineTest, F09StampsStayIncreasingAcrossACounterReset) {
 TEST_F(EdgePipelineTest, F11GarbageIsRejectedCountedAndGoesNowhere) {
   Start("3*d 2*d:empty 4*d:size 3*d");
   EXPECT_TRUE(RunToTheEnd().ok());
-  ExpectClosedAccount();
-  const SensorAccount account = account_.Get(Sensor::kDepth);
-  EXPECT_EQ(account.captured, 12U);
-  EXPECT_EQ(account.rejected, 6U);
-  EXPECT_EQ(account.recorded, 6U);
-  EXPECT_EQ(account.published, 6U);
+  ExpectBalancedCounters();
+  const SensorCounters counters = counters_.Get(Sensor::kDepth);
+  EXPECT_EQ(counters.captured, 12U);
+  EXPECT_EQ(counters.rejected, 6U);
+  EXPECT_EQ(counters.recorded, 6U);
+  EXPECT_EQ(counters.published, 6U);
 }
 
 TEST_F(EdgePipelineTest, F12TemperaturesOutOfRangeLeaveAsNoValue) {
@@ -232,12 +232,12 @@ TEST_F(EdgePipelineTest, AFullDiskStopsTheRecordingOnly) {
   disk_room_ = 10;
   Start("60*d 60*t");
   EXPECT_EQ(RunToTheEnd().code(), StatusCode::kIoError);
-  ExpectClosedAccount();
+  ExpectBalancedCounters();
   EXPECT_EQ(publisher_.depth().size(), 60U);
   EXPECT_EQ(publisher_.thermal().size(), 60U);
   EXPECT_EQ(recording_.depth_frames.size() + recording_.thermal_frames.size(), 10U);
   EXPECT_EQ(
-      account_.Get(Sensor::kDepth).record_failed + account_.Get(Sensor::kThermal).record_failed,
+      counters_.Get(Sensor::kDepth).record_failed + counters_.Get(Sensor::kThermal).record_failed,
       110U);
 }
 
@@ -245,9 +245,9 @@ TEST_F(EdgePipelineTest, ABrokenLinkStopsThePublishingOnly) {
   publisher_.Break();
   Start("60*d");
   EXPECT_TRUE(RunToTheEnd().ok());
-  ExpectClosedAccount();
+  ExpectBalancedCounters();
   EXPECT_EQ(recording_.depth_frames.size(), 60U);
-  EXPECT_EQ(account_.Get(Sensor::kDepth).publish_failed, 60U);
+  EXPECT_EQ(counters_.Get(Sensor::kDepth).publish_failed, 60U);
 }
 
 TEST_F(EdgePipelineTest, LiveCaptureDoesNotWaitForASlowLink) {
@@ -258,14 +258,14 @@ TEST_F(EdgePipelineTest, LiveCaptureDoesNotWaitForASlowLink) {
   publisher_.Hold();
   Start("300*d");
   // The source must come to its end although nothing is taken from the link.
-  while (account_.Get(Sensor::kDepth).recorded < 300) std::this_thread::yield();
+  while (counters_.Get(Sensor::kDepth).recorded < 300) std::this_thread::yield();
   publisher_.Release();
   EXPECT_TRUE(RunToTheEnd().ok());
-  ExpectClosedAccount();
-  const SensorAccount account = account_.Get(Sensor::kDepth);
-  EXPECT_EQ(account.recorded, 300U);
-  EXPECT_GE(account.publish_queue_full, 300U - kQueue - 2U);
-  EXPECT_EQ(account.published + account.publish_queue_full, 300U);
+  ExpectBalancedCounters();
+  const SensorCounters counters = counters_.Get(Sensor::kDepth);
+  EXPECT_EQ(counters.recorded, 300U);
+  EXPECT_GE(counters.publish_queue_full, 300U - kQueue - 2U);
+  EXPECT_EQ(counters.published + counters.publish_queue_full, 300U);
   EXPECT_EQ(publisher_.depth().back().header.frame_number, 299U) << "the newest frames are kept";
 }
 
@@ -278,14 +278,14 @@ TEST_F(EdgePipelineTest, UnpacedPlaybackWaitsInsteadOfDropping) {
   EXPECT_EQ(publisher_.thermal().size(), 200U);
 }
 
-TEST_F(EdgePipelineTest, F38StopEmptiesTheQueuesAndClosesTheAccount) {
+TEST_F(EdgePipelineTest, F38StopEmptiesTheQueuesAndBalancesTheCounters) {
   publisher_.Hold();
   Start("100000*d");
-  while (account_.Get(Sensor::kDepth).captured < 20) std::this_thread::yield();
+  while (counters_.Get(Sensor::kDepth).captured < 20) std::this_thread::yield();
   EXPECT_TRUE(pipeline_->Stop().ok());
-  ExpectClosedAccount();
+  ExpectBalancedCounters();
   EXPECT_TRUE(recording_.closed);
-  EXPECT_LT(account_.Get(Sensor::kDepth).captured, 100'000U);
+  EXPECT_LT(counters_.Get(Sensor::kDepth).captured, 100'000U);
   EXPECT_TRUE(pipeline_->Stop().ok()) << "a second stop changes nothing";
 }
 
@@ -293,7 +293,7 @@ TEST_F(EdgePipelineTest, WithoutRecordingOnlyTheLinkCounts) {
   Start("10*d", false);
   EXPECT_TRUE(RunToTheEnd().ok());
   EXPECT_EQ(publisher_.depth().size(), 10U);
-  EXPECT_EQ(account_.Get(Sensor::kDepth).recorded, 0U);
+  EXPECT_EQ(counters_.Get(Sensor::kDepth).recorded, 0U);
 }
 
 TEST_F(EdgePipelineTest, EveryCommandIsAnswered) {
@@ -375,7 +375,7 @@ TEST_F(EdgePipelineTest, F07NucEventsAreRecorded) {
 }
 
 TEST_F(EdgePipelineTest, F05FrozenFramesAreNotFusedAndTheCameraIsOpenedAgain) {
-  // 2.5 s of the same picture; the fourth of it is known to be frozen.
+  // 2.5 s of the same image; the fourth of it is known to be frozen.
   Start("10*t 100*t:same 60*t");
   // The supervised source waits before it opens the camera again.
   while (!pipeline_->finished()) {

@@ -26,7 +26,7 @@ class GroundRegister {
     if (peer == 0) return;
     if (Ground* known = Find(peer)) {
       known->hello_writer = hello_writer;  // It was out of reach and is back.
-    } else if (grounds_.size() < kMost) {
+    } else if (grounds_.size() < kMax) {
       grounds_.push_back({hello_writer, peer, Follows::kNotSaid});
     }
   }
@@ -62,7 +62,7 @@ class GroundRegister {
   }
 
  private:
-  static constexpr std::size_t kMost = 64;  ///< Nobody has more; a flood of hellos ends here.
+  static constexpr std::size_t kMax = 64;  ///< Nobody has more; a flood of hellos ends here.
 
   Ground* Find(PeerHandle peer) {
     const auto found = std::ranges::find(grounds_, peer, &Ground::peer);

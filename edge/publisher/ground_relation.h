@@ -50,9 +50,9 @@ class GroundRelation {
   /// As Problem(), but only when it has changed since the last call.
   std::optional<std::string> News(SteadyTime now) {
     std::string problem = Problem(now);
-    if (problem == told_) return std::nullopt;
-    told_ = std::move(problem);
-    return told_;
+    if (problem == reported_) return std::nullopt;
+    reported_ = std::move(problem);
+    return reported_;
   }
 
  private:
@@ -65,7 +65,7 @@ class GroundRelation {
   std::optional<SteadyTime> other_at_;
   std::optional<SteadyTime> followed_at_;
   std::optional<SteadyTime> refused_at_;
-  std::string told_;
+  std::string reported_;
 };
 
 }  // namespace isotherm

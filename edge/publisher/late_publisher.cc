@@ -62,7 +62,7 @@ Status LatePublisher::Publish(const EncodedThermalFrame& frame, std::stop_token 
   return link() != nullptr ? link()->Publish(frame, std::move(stop)) : NoLink();
 }
 
-Status LatePublisher::Publish(const OutsidePoseSample& sample, std::stop_token stop) {
+Status LatePublisher::Publish(const ExternalOdometrySample& sample, std::stop_token stop) {
   return link() != nullptr ? link()->Publish(sample, std::move(stop)) : NoLink();
 }
 

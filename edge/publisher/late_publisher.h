@@ -30,7 +30,7 @@ class LatePublisher final : public Publisher {
   Status BeginSession(const RigDescription& rig) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override;
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override;
-  Status Publish(const OutsidePoseSample& sample, std::stop_token stop) override;
+  Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) override;
   Status Publish(EdgeStatus status) override;
   Status Answer(const CommandResult& result) override;
   bool Drain(Nanoseconds timeout) override;

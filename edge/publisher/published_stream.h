@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-/// Holds what was published of one stream in the present session, to judge what the ground says of
+/// Holds what was published of one stream in the present session, to assess what the ground says of
 /// it. Pure. Thread-compatible.
 class PublishedStream {
  public:

@@ -45,7 +45,7 @@ Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link i
 struct EdgeEndpoints {
   Writer<EncodedDepthFrame> depth;
   Writer<EncodedThermalFrame> thermal;
-  Writer<OutsidePoseSample> outside_pose;
+  Writer<ExternalOdometrySample> external_odometry;
   Writer<RigDescription> rig;
   Writer<EdgeStatus> status;
   Writer<CommandResult> result;
@@ -80,9 +80,9 @@ class DdsPublisher final : public Publisher {
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return PublishFrame(frame, &ends_.thermal, &thermal_, stop);
   }
-  Status Publish(const OutsidePoseSample& sample, std::stop_token stop) override {
+  Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) override {
     if (stop.stop_requested() && !HasTimeLeft()) return NoTimeLeft();
-    return ends_.outside_pose.Write(options_.edge_id, sample);
+    return ends_.external_odometry.Write(options_.edge_id, sample);
   }
   Status Publish(EdgeStatus status) override;
   Status Answer(const CommandResult& result) override {
@@ -121,10 +121,10 @@ class DdsPublisher final : public Publisher {
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
   /// Says once what the ground makes of this rig. With mutex_ held.
-  void TellRelation();
+  void LogRelation();
   /// Why what the ground says of this session cannot be. With mutex_ held.
-  std::optional<RefusalCause> Judge(const Receipt& receipt) const;
-  std::optional<RefusalCause> Judge(const Feedback& feedback, PeerHandle sender) const;
+  std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const;
+  std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const;
   std::optional<std::uint64_t> session() const {
     std::scoped_lock lock(mutex_);
     return session_;
@@ -175,7 +175,7 @@ class DdsPublisher final : public Publisher {
 Status DdsPublisher::Open(const Participant& participant) {
   ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.outside_pose.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(ends_.external_odometry.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.result.Open(participant));
@@ -241,7 +241,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   if (!from_ground) {
     cause = RefusalCause::kNotTheGround;
   } else if (session_ == receipt.session) {
-    cause = Judge(receipt);
+    cause = RefusalOf(receipt);
   }
   if (cause) {
     lock.unlock();
@@ -259,7 +259,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   changed_.notify_all();
 }
 
-std::optional<RefusalCause> DdsPublisher::Judge(const Receipt& receipt) const {
+std::optional<RefusalCause> DdsPublisher::RefusalOf(const Receipt& receipt) const {
   if (const auto cause = depth_.published.Check(receipt.depth)) return cause;
   return thermal_.published.Check(receipt.thermal);
 }
@@ -271,7 +271,7 @@ void DdsPublisher::OnFeedback(const Received<Feedback>& received,
   std::optional<RefusalCause> cause;
   {
     std::scoped_lock lock(mutex_);
-    cause = Judge(feedback, sender);
+    cause = RefusalOf(feedback, sender);
   }
   if (cause) {
     refusals_.Add(*cause,
@@ -282,7 +282,8 @@ void DdsPublisher::OnFeedback(const Received<Feedback>& received,
   }
 }
 
-std::optional<RefusalCause> DdsPublisher::Judge(const Feedback& feedback, PeerHandle sender) const {
+std::optional<RefusalCause> DdsPublisher::RefusalOf(const Feedback& feedback,
+                                                    PeerHandle sender) const {
   if (!grounds_.Knows(sender)) return RefusalCause::kNotTheGround;
   if (feedback.session != session_) return RefusalCause::kOtherSession;
   return depth_.published.Check(feedback);
@@ -296,14 +297,14 @@ void DdsPublisher::LookForGround() {
     if (is_gone) depth_.readers = thermal_.readers = 0;  // Who reads now may be its successor.
     return is_gone;
   });
-  TellRelation();
+  LogRelation();
   const bool present = !grounds_.empty();
   if (present == ground_present_) return;
   ground_present_ = present;
   LOG(Publisher, Info) << (present ? "ground station found" : "ground station lost");
 }
 
-void DdsPublisher::TellRelation() {
+void DdsPublisher::LogRelation() {
   const SteadyTime now = clock_.SteadyNow();
   const std::optional<std::string> news = relation_.News(now);
   if (!news) return;

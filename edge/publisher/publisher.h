@@ -84,7 +84,7 @@ class Publisher {
   virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
   /// Never waits for the ground: a pose that comes late is worth little. Once stop is requested, it
   /// has its part of the time that frames have.
-  virtual Status Publish(const OutsidePoseSample& sample, std::stop_token stop) = 0;
+  virtual Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) = 0;
   /// Writes the status; session, policy, the counts that the publisher knows and the echo of the
   /// ground's clock ping are filled in here.
   virtual Status Publish(EdgeStatus status) = 0;

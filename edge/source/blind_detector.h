@@ -10,8 +10,8 @@ namespace isotherm {
 class FrameCheckOptions;
 
 /// Decides whether the depth camera is blind: covered, or everything is too close or too far. It is
-/// when the share of pixels with a return stays below a limit for a while, and sees again with the
-/// first frame above it. Pure. Thread-compatible.
+/// when the fraction of pixels with a return stays below a limit for a while, and sees again with
+/// the first frame above it. Pure. Thread-compatible.
 class BlindDetector {
  public:
   explicit BlindDetector(const FrameCheckOptions& options);
@@ -25,7 +25,7 @@ class BlindDetector {
   std::optional<CaptureTime> dark_since_;
 };
 
-/// The share of pixels with a return, 0..1; 0 of an image without pixels.
+/// The fraction of pixels with a return, 0..1; 0 of an image without pixels.
 double ValidRatio(const Image<std::uint16_t>& depth_raw);
 
 }  // namespace isotherm

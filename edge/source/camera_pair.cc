@@ -105,9 +105,9 @@ CameraPair::Member* CameraPair::Thermal() const {
 std::optional<Status> CameraPair::Control(const CameraControl& control) {
   Member* const thermal = Thermal();
   if (thermal == nullptr) return FailedPrecondition("there is no thermal camera");
-  if (open_orders_ == kMostOrders) {
+  if (open_orders_ == kMaxOrders) {
     return Unavailable(
-        fmt::format("the thermal camera has not answered the last {} orders", kMostOrders));
+        fmt::format("the thermal camera has not answered the last {} orders", kMaxOrders));
   }
   ++open_orders_;
   thermal->orders.Push(control, {});

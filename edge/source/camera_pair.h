@@ -30,7 +30,7 @@ namespace isotherm {
 /// as any source; the cameras' threads are its own.
 class CameraPair final : public FrameSource {
  public:
-  static constexpr std::size_t kMostOrders = 8;
+  static constexpr std::size_t kMaxOrders = 8;
 
   struct Camera {
     Sensor sensor = Sensor::kDepth;
@@ -54,7 +54,7 @@ class CameraPair final : public FrameSource {
   void Close() override;
   std::optional<RawFrame> TakeUnread() override;
   /// For the thermal camera's thread, which passes it on within 0.1 s if the camera works. Refused
-  /// while kMostOrders have no answer.
+  /// while kMaxOrders have no answer.
   std::optional<Status> Control(const CameraControl& control) override;
   std::vector<ControlAnswer> TakeControlAnswers() override;
   /// Returns what the cameras said of themselves when they were opened at the start.
@@ -70,9 +70,9 @@ class CameraPair final : public FrameSource {
   };
   struct Member {
     Camera camera;
-    // Never full: no more than kMostOrders are under way.
-    BoundedQueue<CameraControl> orders{kMostOrders, OverflowPolicy::kBlock};
-    BoundedQueue<ControlAnswer> answers{kMostOrders, OverflowPolicy::kBlock};
+    // Never full: no more than kMaxOrders are under way.
+    BoundedQueue<CameraControl> orders{kMaxOrders, OverflowPolicy::kBlock};
+    BoundedQueue<ControlAnswer> answers{kMaxOrders, OverflowPolicy::kBlock};
     std::promise<Opened> opened;
     std::promise<bool> goes_on;      ///< Whether a camera that is missing is tried again.
     std::atomic<bool> ended{false};  ///< Its thread takes no orders any more.

@@ -286,7 +286,7 @@ TEST_F(CameraPairTest, AThreadThatHangsHoldsUpNeitherTheReaderNorTheOrders) {
   ASSERT_TRUE(pair_->Open().ok());
   ASSERT_TRUE(ReadFrames(Sensor::kThermal, 1));
   thermal_->blocks = true;
-  for (std::size_t i = 0; i < CameraPair::kMostOrders; ++i) {
+  for (std::size_t i = 0; i < CameraPair::kMaxOrders; ++i) {
     EXPECT_EQ(pair_->Control(TriggerNuc{}), std::nullopt);
   }
   const std::optional<Status> one_more = pair_->Control(TriggerNuc{});
@@ -294,7 +294,7 @@ TEST_F(CameraPairTest, AThreadThatHangsHoldsUpNeitherTheReaderNorTheOrders) {
   EXPECT_THAT(one_more->message(), HasSubstr("has not answered the last 8 orders"));
   EXPECT_TRUE(ReadFrames(Sensor::kDepth, 20));
   thermal_->blocks = false;
-  ReadAnswers(CameraPair::kMostOrders);
+  ReadAnswers(CameraPair::kMaxOrders);
   EXPECT_EQ(pair_->Control(TriggerNuc{}), std::nullopt) << "there is room again";
 }
 

@@ -12,7 +12,7 @@
 #include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
-#include "common/geometry/outside_pose.h"
+#include "common/geometry/external_odometry.h"
 
 namespace isotherm {
 
@@ -38,7 +38,7 @@ struct ControlAnswer {
   Status status;
 };
 
-using SourceItem = std::variant<RawFrame, OutsidePose, NothingYet, EndOfStream>;
+using SourceItem = std::variant<RawFrame, ExternalOdometry, NothingYet, EndOfStream>;
 
 /// A camera as it was found when it was opened: what was read back, not what was asked for.
 struct CameraDescription {
@@ -55,7 +55,7 @@ struct CameraDescription {
 };
 
 /// Delivers frames of one or more sensors as the device and the host gave them, and poses of the
-/// rig that something outside measured, on the edge's wall clock. Thread-bound: one thread opens,
+/// rig that external odometry measured, on the edge's wall clock. Thread-bound: one thread opens,
 /// reads and closes.
 class FrameSource {
  public:

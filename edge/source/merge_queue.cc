@@ -18,7 +18,7 @@ CaptureTime ArrivalOf(const SourceItem& item) {
 MergeQueue::MergeQueue(std::size_t cameras, std::size_t capacity, OverflowPolicy policy,
                        std::function<void(Sensor)> on_drop)
     : cameras_(cameras), capacity_(capacity), policy_(policy), on_drop_(std::move(on_drop)) {
-  CHECK(cameras > 0 && cameras <= kMostCameras && capacity > 0);
+  CHECK(cameras > 0 && cameras <= kMaxCameras && capacity > 0);
 }
 
 void MergeQueue::Push(std::size_t camera, SourceItem item, const std::stop_token& stop) {

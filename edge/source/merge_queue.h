@@ -19,7 +19,7 @@ namespace isotherm {
 /// queue the one that arrived first comes out first. Thread-safe.
 class MergeQueue {
  public:
-  static constexpr std::size_t kMostCameras = 2;
+  static constexpr std::size_t kMaxCameras = 2;
 
   /// `capacity` frames per camera. `on_drop` is called for each frame that makes room for a newer
   /// one, with the queue locked: it may count, no more.
@@ -49,7 +49,7 @@ class MergeQueue {
   const std::function<void(Sensor)> on_drop_;
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::array<Lane, kMostCameras> lanes_;
+  std::array<Lane, kMaxCameras> lanes_;
 };
 
 }  // namespace isotherm

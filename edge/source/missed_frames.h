@@ -8,7 +8,7 @@ namespace isotherm {
 /// How many frames a camera counted and did not deliver, from the counter that comes with each
 /// frame. The same rule for all cameras:
 ///
-/// - A counter that goes on by at most kMostMissed frames tells how many are missing. More cannot
+/// - A counter that goes on by at most kMaxMissed frames tells how many are missing. More cannot
 ///   be lost without a stall, which is found out by the clock.
 /// - Any other step is in doubt, and nothing is missing before that frame. If the next counter goes
 ///   on from where it was before, one value was damaged; if it goes on from the new one, the
@@ -17,7 +17,7 @@ namespace isotherm {
 /// Thread-compatible.
 class MissedFrames {
  public:
-  static constexpr std::uint64_t kMostMissed = 1000;
+  static constexpr std::uint64_t kMaxMissed = 1000;
 
   /// `step`: how much the counter grows from frame to frame, nominally; at least 1.
   explicit MissedFrames(std::uint64_t step) : step_(step) {}
@@ -52,7 +52,7 @@ class MissedFrames {
     // The step is the nominal one: now and then it is one less or more.
     const std::uint64_t grown = counter - *before;
     const std::uint64_t frames = grown / step_ + (grown % step_ > step_ / 2 ? 1 : 0);
-    if (frames > kMostMissed + 1) return std::nullopt;
+    if (frames > kMaxMissed + 1) return std::nullopt;
     return frames;
   }
   static std::uint64_t MissedOf(std::uint64_t frames, std::uint64_t delivered_between) {

@@ -105,7 +105,7 @@ Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
       continue;
     }
     if (thermal != nullptr) return Item(ToRawFrame(std::move(*thermal)));
-    if (auto* pose = std::get_if<OutsidePose>(&**item)) return Item(std::move(*pose));
+    if (auto* pose = std::get_if<ExternalOdometry>(&**item)) return Item(std::move(*pose));
     if (const auto* nuc = std::get_if<NucEvent>(&**item)) last_nuc_event_ = *nuc;
   }
 }
@@ -117,7 +117,7 @@ bool ReplaySource::IsInTime(const RecordedItem& item) const {
     time = depth->arrival.value_or(depth->frame.header.capture_time);
   } else if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
     time = thermal->arrival.value_or(thermal->frame.header.capture_time);
-  } else if (const auto* pose = std::get_if<OutsidePose>(&item)) {
+  } else if (const auto* pose = std::get_if<ExternalOdometry>(&item)) {
     time = pose->time;
   }
   return !time || !first_arrival_ ||
@@ -178,7 +178,7 @@ bool ReplaySource::StartNextLoop() {
 void ReplaySource::PlaceInTime(Item& item) {
   auto* frame = std::get_if<RawFrame>(&item);
   // A pose comes when it is true.
-  CaptureTime& arrival = frame ? frame->arrival_wall : std::get<OutsidePose>(item).time;
+  CaptureTime& arrival = frame ? frame->arrival_wall : std::get<ExternalOdometry>(item).time;
   if (!first_arrival_) {
     first_arrival_ = arrival;
     started_at_ = clock_.SteadyNow();
@@ -192,7 +192,7 @@ void ReplaySource::PlaceInTime(Item& item) {
 
 SteadyTime ReplaySource::DueTime(const Item& item) const {
   const auto* frame = std::get_if<RawFrame>(&item);
-  const CaptureTime arrival = frame ? frame->arrival_wall : std::get<OutsidePose>(item).time;
+  const CaptureTime arrival = frame ? frame->arrival_wall : std::get<ExternalOdometry>(item).time;
   const Nanoseconds since_start = arrival - rebase_offset_ - *first_arrival_;
   return started_at_ + FromSeconds(ToSeconds(since_start) / rate_);
 }

@@ -16,7 +16,7 @@ namespace isotherm {
 
 class SourceOptions;
 
-/// Plays a recording: the frames of both sensors and poses from outside, in the order of their
+/// Plays a recording: the frames of both sensors and odometry poses, in the order of their
 /// stamps in the file.
 ///
 /// Times: device ticks and arrival are those recorded, so that the Timestamper has the same work as
@@ -41,7 +41,7 @@ class ReplaySource final : public FrameSource {
   std::optional<Rig> rig() const override { return rig_; }
 
  private:
-  using Item = std::variant<RawFrame, OutsidePose>;
+  using Item = std::variant<RawFrame, ExternalOdometry>;
 
   Result<std::optional<Item>> NextItem();
   /// Whether the item belongs to the same scan as the first one, by its time.

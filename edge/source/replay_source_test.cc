@@ -106,10 +106,10 @@ TEST_F(ReplaySourceTest, F65TimesThatNoScanHasAreLeftOut) {
   EXPECT_EQ(ReadAll().size(), 6U) << "two of three frames, three times";
 }
 
-TEST_F(ReplaySourceTest, PosesFromOutsideComeBetweenFramesOnTheirTimeLine) {
+TEST_F(ReplaySourceTest, OdometryPosesComeBetweenFramesOnTheirTimeLine) {
   options_.set_rate(1);
   const auto write = [&](Nanoseconds time) {
-    OutsidePose pose;
+    ExternalOdometry pose;
     pose.source = "vio";
     pose.time = kRecordedStart + time;
     pose.translation_m.x() = ToSeconds(time);
@@ -126,7 +126,7 @@ TEST_F(ReplaySourceTest, PosesFromOutsideComeBetweenFramesOnTheirTimeLine) {
     ASSERT_TRUE(item.has_value());
     if (const auto* frame = std::get_if<RawFrame>(&*item))
       seen.emplace_back('f', frame->arrival_wall);
-    if (const auto* pose = std::get_if<OutsidePose>(&*item)) {
+    if (const auto* pose = std::get_if<ExternalOdometry>(&*item)) {
       EXPECT_EQ(pose->source, "vio");
       seen.emplace_back('p', pose->time);
     }

@@ -14,7 +14,7 @@ SimulatedShutter::~SimulatedShutter() = default;
 Status SimulatedShutter::Control(const CameraControl& control) {
   const ShutterOptions& shutter = options_->shutter();
   if (std::holds_alternative<TriggerNuc>(control)) {
-    ordered_ = shutter.obeys();
+    ordered_ = shutter.follows_orders();
     return OkStatus();
   }
   if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
@@ -30,7 +30,7 @@ void SimulatedShutter::Apply(RawFrame& frame) {
   const CaptureTime time = frame.arrival_wall;
   if (!scan_reference_celsius_) scan_reference_celsius_ = frame.housekeeping.housing_celsius;
   FollowOrder(time);
-  // The scan's own closings come first: their pictures are already there.
+  // The scan's own closings come first: their images are already there.
   closed_by_scan_ = frame.shutter_closed;
   const bool closed = closed_by_scan_ || opens_at_.has_value();
   if (was_closed_ && !closed) opened_at_ = time;
@@ -79,12 +79,12 @@ void SimulatedShutter::ShowShutter(RawFrame& frame) const {
         options_->thermal().netd_kelvin() *
         static_cast<double>(NormalNoise(NoiseStream(options_->seed(), 0, frame.frame_number), i));
     pixels[i] = static_cast<std::uint16_t>(
-        (celsius + noise_k + kCelsiusZeroKelvin) * kCentikelvinPerKelvin + 0.5);
+        (celsius + noise_k + kCelsiusZero_k) * kCentikelvinPerKelvin + 0.5);
   }
 }
 
 void SimulatedShutter::Say(RawFrame& frame, bool closed) {
-  if (!options_->shutter().tells()) {
+  if (!options_->shutter().reports_shutter()) {
     frame.shutter_closed = false;
     frame.camera_nuc.reset();
     return;

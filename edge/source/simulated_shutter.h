@@ -12,7 +12,7 @@ namespace isotherm {
 class SimulationOptions;
 
 /// The shutter of a simulated thermal camera, for a scan that was rendered beforehand: closes it
-/// when it is told to, by putting shutter pictures, or the last one again, into frames that go by.
+/// when it is told to, by putting shutter images, or the last one again, into frames that go by.
 /// A correction takes the error away that the housing's temperature had caused (thesis fig. 3.4b);
 /// the closings that are part of the rendered scan count as well.
 ///

@@ -33,7 +33,7 @@ class SimulatedShutterTest : public testing::Test {
     if (closed) scan_reference_celsius_ = housing_celsius;
     frame.housekeeping.housing_celsius = housing_celsius;
     const double error_k = 4.0 * static_cast<double>(housing_celsius - scan_reference_celsius_);
-    // The picture changes, as any does.
+    // The image changes, as any does.
     frame.pixels =
         Image<std::uint16_t>(8, 6, static_cast<std::uint16_t>(kTrue + 100.0 * error_k + 0.5));
     frame.pixels.At(0, 0) = static_cast<std::uint16_t>(29'000 + number_);
@@ -71,7 +71,7 @@ TEST_F(SimulatedShutterTest, ClosesAfterAnOrderForItsTimeAndSaysSo) {
   EXPECT_GT(frame.camera_nuc->seconds_since.value(), 0.4);
 }
 
-TEST_F(SimulatedShutterTest, AClosedCameraShowsTheLastPictureOrTheShutter) {
+TEST_F(SimulatedShutterTest, AClosedCameraShowsTheLastImageOrTheShutter) {
   Start();
   const RawFrame last = Frame(30.0F);
   ASSERT_TRUE(shutter_->Control(TriggerNuc{}).ok());
@@ -106,14 +106,14 @@ TEST_F(SimulatedShutterTest, ACorrectionTakesTheErrorOfTheHousingAway) {
 }
 
 TEST_F(SimulatedShutterTest, CanKeepSilent) {
-  options_.mutable_shutter()->set_tells(false);
+  options_.mutable_shutter()->set_reports_shutter(false);
   Start();
   EXPECT_FALSE(Frame(30.0F, true).shutter_closed);
   EXPECT_FALSE(Frame(30.0F).camera_nuc.has_value());
 }
 
 TEST_F(SimulatedShutterTest, CanIgnoreOrders) {
-  options_.mutable_shutter()->set_obeys(false);
+  options_.mutable_shutter()->set_follows_orders(false);
   Start();
   EXPECT_TRUE(shutter_->Control(TriggerNuc{}).ok());
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(Frame(30.0F).shutter_closed);

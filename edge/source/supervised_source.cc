@@ -90,7 +90,7 @@ Status SupervisedSource::CheckSame(const CameraDescription& camera) {
   return OkStatus();
 }
 
-void SupervisedSource::Tell(bool works) {
+void SupervisedSource::ReportState(bool works) {
   if (works_ == works) return;
   works_ = works;
   if (on_works_) on_works_(works);
@@ -104,7 +104,7 @@ Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
     ScheduleReopen(item.error());
     return NothingYet{};
   }
-  if (RawFrame* frame = std::get_if<RawFrame>(&*item)) return Judge(std::move(*frame));
+  if (RawFrame* frame = std::get_if<RawFrame>(&*item)) return Check(std::move(*frame));
   return item;
 }
 
@@ -144,7 +144,7 @@ void SupervisedSource::CountMissing(Sensor sensor, std::uint64_t number) {
   if (missing > explained && on_loss_) on_loss_(sensor, Loss::kInCamera, missing - explained);
 }
 
-SourceItem SupervisedSource::Judge(RawFrame frame) {
+SourceItem SupervisedSource::Check(RawFrame frame) {
   std::uint64_t& thrown_away = thrown_away_[static_cast<std::size_t>(frame.sensor)];
   if (idle_) {
     thrown_away = frame.frame_number + 1;
@@ -160,7 +160,7 @@ SourceItem SupervisedSource::Judge(RawFrame frame) {
     bad_in_a_row = 0;
     next_wait_ = retry_min_;
     failure_.clear();
-    Tell(true);
+    ReportState(true);
     frame.reopened = std::exchange(is_first_[static_cast<std::size_t>(frame.sensor)], false);
     return frame;
   }
@@ -182,7 +182,7 @@ void SupervisedSource::ScheduleReopen(const Status& reason) {
                        << ", doubling up to " << ToSeconds(retry_max_);
   }
   Close();
-  Tell(false);
+  ReportState(false);
   reopen_at_ = clock_.SteadyNow() + next_wait_;
   next_wait_ = std::min(2 * next_wait_, retry_max_);
   bad_in_a_row_ = {};

@@ -25,7 +25,7 @@ class FrameCheckOptions;
 ///
 /// A camera with another serial number than the calibration's or the first one's is not used: the
 /// calibration is not its own. Nor is one that sends counts where the scan began with temperatures,
-/// or the other way round. Reports each frame through `on_frame` before it is judged and each
+/// or the other way round. Reports each frame through `on_frame` before it is assessed and each
 /// refused one through `on_rejected`. Thread-bound.
 class SupervisedSource final : public FrameSource {
  public:
@@ -69,7 +69,7 @@ class SupervisedSource final : public FrameSource {
   std::uint64_t reopened() const { return reopened_; }
 
  private:
-  SourceItem Judge(RawFrame frame);
+  SourceItem Check(RawFrame frame);
   void CountLeftOut();
   /// Counts the numbers that are missing before this one.
   void CountMissing(Sensor sensor, std::uint64_t number);
@@ -79,7 +79,7 @@ class SupervisedSource final : public FrameSource {
   Status OpenSame();
   Status CheckSame(const CameraDescription& camera);
   Status CheckSerial(const CameraDescription& camera) const;
-  void Tell(bool works);
+  void ReportState(bool works);
 
   const std::unique_ptr<FrameSource> source_;
   const Clock& clock_;

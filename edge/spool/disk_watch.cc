@@ -14,7 +14,7 @@ constexpr double kBytesPerMb = 1e6;
 }  // namespace
 
 DiskWatch::DiskWatch(const SpoolOptions& options)
-    : most_reserve_bytes_(options.reserve_mb() * kBytesPerMb),
+    : max_reserve_bytes_(options.reserve_mb() * kBytesPerMb),
       reserve_s_(options.reserve_s()),
       warn_s_(options.warn_s()) {}
 
@@ -32,7 +32,7 @@ DiskLevel DiskWatch::Update(SteadyTime now, std::uint64_t free_bytes,
                             std::uint64_t recorded_bytes) {
   Measure(now, recorded_bytes);
   if (bytes_per_s_ <= 0.0) return level_;
-  reserve_bytes_ = std::min(most_reserve_bytes_, reserve_s_ * bytes_per_s_);
+  reserve_bytes_ = std::min(max_reserve_bytes_, reserve_s_ * bytes_per_s_);
   const double usable = static_cast<double>(free_bytes) - reserve_bytes_;
   left_s_ = std::max(usable, 0.0) / bytes_per_s_;
   const bool stays = level_ == DiskLevel::kReserve && usable < reserve_bytes_;

@@ -16,7 +16,7 @@ enum class DiskLevel : std::uint8_t {
   kReserve,  ///< Only the reserve is left.
 };
 
-/// Judges how long a recording can go on, by the space that is free and how fast the recording
+/// Assesses how long a recording can go on, by the space that is free and how fast the recording
 /// grows. The reserve is spool.reserve_mb, or what is recorded in spool.reserve_s if that is less.
 /// At kReserve it stays until twice the reserve is free. Thread-compatible.
 class DiskWatch {
@@ -33,7 +33,7 @@ class DiskWatch {
  private:
   void Measure(SteadyTime now, std::uint64_t recorded_bytes);
 
-  const double most_reserve_bytes_;
+  const double max_reserve_bytes_;
   const double reserve_s_;
   const double warn_s_;
   struct Mark {

@@ -56,7 +56,7 @@ void Spool::Add(const EncodedFrame& frame) {
   ++offered_[static_cast<std::size_t>(frame.sensor())];
   BeginFileWhenDue();
   if (IsRecording()) Note(WriteFrame(frame));
-  UpdateAccount();
+  UpdateCounters();
 }
 
 void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
@@ -68,7 +68,7 @@ void Spool::Tend(bool idle) {
   if (IsRecording()) NoteWorks();
   LookAtDisk();
   BeginFileWhenDue();
-  UpdateAccount();
+  UpdateCounters();
   UpdateStatus();
 }
 
@@ -123,7 +123,7 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
   const CaptureTime time =
       std::visit([](const auto& content) { return content.header.capture_time; }, frame.content);
   newest_ = std::max(newest_.value_or(time), time);
-  for (const OutsidePoseSample& sample : frame.outside_poses)
+  for (const ExternalOdometrySample& sample : frame.external_odometry)
     ISOTHERM_RETURN_IF_ERROR(writer.Write(sample.pose));
   for (const RecordedLog& log : frame.log)
     ISOTHERM_RETURN_IF_ERROR(writer.WriteLog(log.time, log.level, log.text));
@@ -168,7 +168,7 @@ Status Spool::CloseFile() {
 
 Status Spool::Close() {
   if (IsRecording()) Note(CloseFile());
-  UpdateAccount();
+  UpdateCounters();
   UpdateStatus();
   return first_error_;
 }
@@ -214,13 +214,13 @@ std::uint64_t Spool::NotRecorded() const {
   return offered_[0] + offered_[1] - recorded;
 }
 
-void Spool::UpdateAccount() {
+void Spool::UpdateCounters() {
   if (problem_.ok()) not_recorded_before_ = NotRecorded();
   const RecordingStats open = IsRecording() ? file_->writer->stats() : RecordingStats();
   const auto set = [this](Sensor sensor, std::uint64_t recorded) {
-    parts_.account.Set(sensor, FrameFate::kRecorded, recorded);
-    parts_.account.Set(sensor, FrameFate::kRecordFailed,
-                       offered_[static_cast<std::size_t>(sensor)] - recorded);
+    parts_.counters.Set(sensor, FrameFate::kRecorded, recorded);
+    parts_.counters.Set(sensor, FrameFate::kRecordFailed,
+                        offered_[static_cast<std::size_t>(sensor)] - recorded);
   };
   set(Sensor::kDepth, closed_.depth_frames + open.depth_frames);
   set(Sensor::kThermal, closed_.thermal_frames + open.thermal_frames);

@@ -17,7 +17,7 @@
 #include "common/time/back_off.h"
 #include "common/time/clock.h"
 #include "edge/frame/encoded_frame.h"
-#include "edge/frame/frame_account.h"
+#include "edge/frame/frame_counters.h"
 #include "edge/spool/disk_watch.h"
 
 namespace isotherm {
@@ -30,7 +30,7 @@ struct RecordingFile {
   std::unique_ptr<RecordingWriter> writer;
 };
 
-/// Holds what a spool is put together from. `clock` and `account` must outlive it.
+/// Holds what a spool is put together from. `clock` and `counters` must outlive it.
 struct SpoolParts {
   /// Begins the recording's next file, with all that stands at a file's beginning.
   std::function<Result<RecordingFile>()> next_file;
@@ -38,7 +38,7 @@ struct SpoolParts {
   std::function<Result<std::uint64_t>()> free_bytes;
   const SpoolOptions& options;
   const Clock& clock;
-  FrameAccount& account;
+  FrameCounters& counters;
 };
 
 /// How the recording is doing.
@@ -98,7 +98,7 @@ class Spool {
   void NoteWorks();
   /// The first error of closing it, or ok.
   Status CloseFile();
-  void UpdateAccount();
+  void UpdateCounters();
   void UpdateStatus();
   std::string Brief() const;
   std::uint64_t NotRecorded() const;

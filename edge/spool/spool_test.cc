@@ -34,8 +34,9 @@ class SpoolTest : public testing::Test {
  protected:
   void Start(std::uint64_t room = UINT64_MAX) {
     room_ = room;
-    spool_ = std::make_unique<Spool>(SpoolParts{
-        [this] { return NextFile(); }, [this] { return free_bytes_; }, options_, clock_, account_});
+    spool_ = std::make_unique<Spool>(SpoolParts{[this] { return NextFile(); },
+                                                [this] { return free_bytes_; }, options_, clock_,
+                                                counters_});
     spool_->Tend(false);
   }
   Result<RecordingFile> NextFile() {
@@ -51,7 +52,7 @@ class SpoolTest : public testing::Test {
     spool_->Tend(false);
   }
   FakeRecording& recording() { return files_.front(); }
-  SensorAccount depth() const { return account_.Get(Sensor::kDepth); }
+  SensorCounters depth() const { return counters_.Get(Sensor::kDepth); }
 
   SpoolOptions options_;
   FakeClock clock_;
@@ -60,7 +61,7 @@ class SpoolTest : public testing::Test {
   bool disk_works_ = true;
   int tries_ = 0;
   std::deque<FakeRecording> files_;
-  FrameAccount account_;
+  FrameCounters counters_;
   std::unique_ptr<Spool> spool_;
 };
 
@@ -71,8 +72,8 @@ TEST_F(SpoolTest, WritesAndCounts) {
   spool_->Add(Thermal({}, NucState::kIdle));
   EXPECT_TRUE(spool_->Close().ok());
   EXPECT_TRUE(recording().closed);
-  EXPECT_EQ(account_.Get(Sensor::kDepth).recorded, 2U);
-  EXPECT_EQ(account_.Get(Sensor::kThermal).recorded, 1U);
+  EXPECT_EQ(counters_.Get(Sensor::kDepth).recorded, 2U);
+  EXPECT_EQ(counters_.Get(Sensor::kThermal).recorded, 1U);
 }
 
 TEST_F(SpoolTest, AFullDiskIsCountedExactlyAndReportedAtTheEnd) {
@@ -81,8 +82,8 @@ TEST_F(SpoolTest, AFullDiskIsCountedExactlyAndReportedAtTheEnd) {
   for (std::uint64_t i = 0; i < 10; ++i) spool_->Add(Depth(i));
   EXPECT_EQ(spool_->Close().code(), StatusCode::kIoError);
   EXPECT_TRUE(recording().closed) << "what is good must stay readable";
-  EXPECT_EQ(account_.Get(Sensor::kDepth).recorded, 3U);
-  EXPECT_EQ(account_.Get(Sensor::kDepth).record_failed, 7U);
+  EXPECT_EQ(counters_.Get(Sensor::kDepth).recorded, 3U);
+  EXPECT_EQ(counters_.Get(Sensor::kDepth).record_failed, 7U);
   EXPECT_EQ(recording().writes_after_failure, 0) << "a full disk is not tried again for each frame";
 }
 
@@ -121,18 +122,18 @@ TEST_F(SpoolTest, AShutterEventIsRecordedWhenTheShutterOpens) {
   EXPECT_EQ(recording().nuc_events[0].source, NucSource::kInBand);
 }
 
-TEST_F(SpoolTest, FeedbackLiesAtTheTimeOfItsDepthFrameWithItsPicture) {
+TEST_F(SpoolTest, FeedbackLiesAtTheTimeOfItsDepthFrameWithItsImage) {
   Start();
   Feedback feedback;
   feedback.capture_time = CaptureTime{std::chrono::seconds(100)};
   spool_->Add(feedback, feedback.capture_time + milliseconds(70));
-  feedback.picture = {1, 2, 3};
+  feedback.image = {1, 2, 3};
   spool_->Add(feedback, feedback.capture_time + milliseconds(170));
   ASSERT_EQ(recording().messages.size(), 3U);
   EXPECT_EQ(recording().messages[0].first, "/feedback");
   EXPECT_EQ(recording().messages[0].second, feedback.capture_time);
   EXPECT_EQ(recording().messages[1].first, "/feedback");
-  EXPECT_EQ(recording().messages[2].first, "/feedback/picture");
+  EXPECT_EQ(recording().messages[2].first, "/feedback/image");
 }
 
 TEST_F(SpoolTest, F60FeedbackOnOlderFramesDoesNotGoBackInTheRecording) {

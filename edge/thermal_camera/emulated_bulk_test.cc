@@ -134,7 +134,7 @@ TEST_F(P1Test, SizeFollowsFromTheProductAndNothingElse) {
   EXPECT_EQ(camera->alternate(), 0);
 }
 
-TEST_F(P1Test, CorrectionIsInferredFromPicturesThatStandStill) {
+TEST_F(P1Test, CorrectionIsInferredFromImagesThatStandStill) {
   // On a busy computer 0.8 s may last longer.
   options_.set_stall_timeout_s(30.0);
   Plug<EmulatedP1>("5*f 20*f:nuc f");

@@ -119,10 +119,10 @@ TEST_F(EmulatedCameraTest, F05FrozenFramesAreMarkedWithinHalfASecondAndThenTheCa
   const std::vector<RawFrame> frames = ReadFrames(*source, 100);
   ASSERT_GT(frames.size(), 4U);
   for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(frames[i].shutter_closed, i >= 3);
-  // 2 s from the picture that stays, of which the first 0.46 s are taken for repeats.
+  // 2 s from the image that stays, of which the first 0.46 s are taken for repeats.
   EXPECT_LE(ToSeconds(frames[3].arrival_steady - frames[2].arrival_steady), 0.5);
   EXPECT_EQ(failure_.code(), StatusCode::kUnavailable);
-  EXPECT_THAT(failure_.message(), HasSubstr("the same picture"));
+  EXPECT_THAT(failure_.message(), HasSubstr("the same image"));
 }
 
 TEST_F(EmulatedCameraTest, F06RepeatedFramesAreCollapsed) {
@@ -167,7 +167,7 @@ TEST_F(EmulatedCameraTest, MissingEndOfFrameCostsNothing) {
   EXPECT_EQ(source->counts().incomplete, 0U);
 }
 
-TEST_F(EmulatedCameraTest, PicturesThatWereNotSentAreHoles) {
+TEST_F(EmulatedCameraTest, RenderingsThatWereNotSentAreHoles) {
   Plug<EmulatedLepton>("2*f f:skip f");
   const auto source = Open();
   const std::vector<RawFrame> frames = ReadFrames(*source, 4);

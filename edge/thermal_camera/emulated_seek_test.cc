@@ -201,7 +201,7 @@ TEST_F(EmulatedSeekTest, F05FrozenFramesAreMarkedAndThenTheCameraIsGivenUp) {
   EXPECT_FALSE(frames[3].shutter_closed);
   EXPECT_TRUE(frames[4].shutter_closed);
   EXPECT_EQ(frames[4].camera_nuc->source, NucSource::kInferred);
-  EXPECT_THAT(failure_.message(), HasSubstr("the same picture"));
+  EXPECT_THAT(failure_.message(), HasSubstr("the same image"));
 }
 
 TEST_F(EmulatedSeekTest, F04UnpluggedInMidFrameFailsAtOnceAndComesBack) {

@@ -25,7 +25,7 @@ Novelty FrameNovelty::Process(const RawThermalFrame& frame) {
   Novelty novelty;
   if (repeated) {
     ++repeats_;
-    novelty.kind = repeats_ > most_repeats_ ? Novelty::Kind::kFrozen : Novelty::Kind::kRepeat;
+    novelty.kind = repeats_ > max_repeats_ ? Novelty::Kind::kFrozen : Novelty::Kind::kRepeat;
     novelty.frozen_for = frame.first_packet.steady - first_seen_;
   } else {
     novelty.lost = LostBefore(frame);

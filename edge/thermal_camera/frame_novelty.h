@@ -12,20 +12,20 @@ namespace isotherm {
 struct Novelty {
   enum class Kind {
     kNew,
-    kRepeat,  ///< The same picture again, as the camera may do; nothing is lost without it.
-    kFrozen,  ///< The same picture for too often: the camera hangs, or corrects itself silently.
+    kRepeat,  ///< The same image again, as the camera may do; nothing is lost without it.
+    kFrozen,  ///< The same image for too often: the camera hangs, or corrects itself silently.
   };
   Kind kind = Kind::kNew;
-  std::uint64_t lost = 0;     ///< Pictures that the camera counted and we did not get.
-  Nanoseconds frozen_for{0};  ///< Since the picture came first.
+  std::uint64_t lost = 0;     ///< Images that the camera counted and we did not get.
+  Nanoseconds frozen_for{0};  ///< Since the image came first.
 };
 
-/// Tells new pictures from repeated and frozen ones, by the camera's counter and by the pixels: no
-/// two pictures of a working detector are bit for bit the same. Thread-compatible.
+/// Tells new images from repeated and frozen ones, by the camera's counter and by the pixels: no
+/// two images of a working detector are bit for bit the same. Thread-compatible.
 class FrameNovelty {
  public:
   /// `counter_step`, `native_repeats`: see ThermalCameraInfo.
-  FrameNovelty(int counter_step, int native_repeats) : most_repeats_(3 * native_repeats) {
+  FrameNovelty(int counter_step, int native_repeats) : max_repeats_(3 * native_repeats) {
     if (counter_step > 0) missed_.emplace(static_cast<std::uint64_t>(counter_step));
   }
 
@@ -34,7 +34,7 @@ class FrameNovelty {
  private:
   std::uint64_t LostBefore(const RawThermalFrame& frame);
 
-  const int most_repeats_;
+  const int max_repeats_;
   std::optional<MissedFrames> missed_;  ///< Absent: the camera does not count.
   std::optional<std::uint64_t> counter_;
   std::optional<std::uint64_t> hash_;

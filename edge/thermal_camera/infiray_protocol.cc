@@ -8,7 +8,7 @@ namespace isotherm {
 namespace {
 
 constexpr std::size_t kFrameBytes = std::size_t{4} * kP2ProWidth * kP2ProHeight;
-// The picture stands still for 0.8 s when the camera corrects itself.
+// The image stands still for 0.8 s when the camera corrects itself.
 constexpr Nanoseconds kCorrectionTime = std::chrono::milliseconds(1000);
 
 // Published programs disagree about the byte order of a command's length: the viewer of LeoDJ,

@@ -13,7 +13,7 @@
 
 namespace isotherm {
 
-/// InfiRay P2 Pro, Topdon TC001, Tiny1-C: 256x384 words, a picture for people on top, temperatures
+/// InfiRay P2 Pro, Topdon TC001, Tiny1-C: 256x384 words, an image for people on top, temperatures
 /// below (LeoDJ/P2Pro-Viewer, mbuesch/p2pro-rs, vendor headers of Tiny1-C).
 inline constexpr int kP2ProWidth = 256;
 inline constexpr int kP2ProHeight = 192;
@@ -23,7 +23,7 @@ inline constexpr PixelEncoding kInfirayEncoding{true, 1.0 / 64.0, 0.0};
 /// The lower half. kDataLoss if `bytes` has not the size of a frame.
 Result<Image<std::uint16_t>> ParseP2ProFrame(Bytes bytes);
 
-/// For some seconds after power-up every count is 0x8000: there is no picture yet.
+/// For some seconds after power-up every count is 0x8000: there is no image yet.
 bool IsP2ProColdStart(const Image<std::uint16_t>& counts);
 
 /// A vendor command of eight bytes: word, parameter, length of data.

@@ -18,8 +18,8 @@ struct Size {
   int height = 0;
 };
 constexpr Size kSizes[] = {{160, 120}, {80, 60}};  // Lepton 3.x and 2.x.
-// What leaves the camera: 26 Hz inside, of which export rules let every third picture out.
-constexpr double kRateHz = 8.7;
+// What leaves the camera: 26 Hz inside, of which export rules let every third image out.
+constexpr double kRate_hz = 8.7;
 constexpr int kCounterStep = 3;
 
 // Extension units of the firmware; GUIDs are plain text.
@@ -32,7 +32,7 @@ constexpr std::size_t kFfcModeBytes = 32;
 constexpr std::uint8_t kRunFfc = 17;
 
 float CelsiusOf(std::uint16_t centikelvin) {
-  return centikelvin == 0 ? kUnknownCelsius : CentikelvinToCelsius(centikelvin);
+  return centikelvin == 0 ? kUnknown_celsius : CentikelvinToCelsius(centikelvin);
 }
 
 std::string_view LeptonGainName(std::uint32_t mode) {
@@ -49,7 +49,7 @@ UvcMode ModeOf(const Size& size) {
 LeptonCamera::LeptonCamera(std::string bus_port, const Clock& clock) : clock_(clock) {
   info_.driver = kDriver;
   info_.bus_port = std::move(bus_port);
-  info_.rate_hz = kRateHz;
+  info_.rate_hz = kRate_hz;
   info_.counter_step = kCounterStep;
 }
 
@@ -76,7 +76,7 @@ Status LeptonCamera::StartBestMode() {
     return camera_->Start(ModeOf(size));
   }
   return FailedPrecondition(
-      fmt::format("the Lepton at {} offers no 16-bit pictures with telemetry; its firmware must be "
+      fmt::format("the Lepton at {} offers no 16-bit images with telemetry; its firmware must be "
                   "1.2.2 or later",
                   info_.bus_port));
 }

@@ -12,7 +12,7 @@ namespace isotherm {
 
 class UvcCamera;
 
-/// FLIR Lepton 2.x and 3.x on a PureThermal board (USB video class, 16-bit pictures with
+/// FLIR Lepton 2.x and 3.x on a PureThermal board (USB video class, 16-bit images with
 /// telemetry). Thread-bound.
 class LeptonCamera final : public ThermalCamera {
  public:

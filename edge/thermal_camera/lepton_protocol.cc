@@ -43,9 +43,9 @@ int LeptonTelemetryRows(int width) { return (kTelemetryWords + width - 1) / widt
 
 Result<LeptonFrame> ParseLeptonFrame(Bytes bytes, int width, int height) {
   const auto row_bytes = 2 * static_cast<std::size_t>(width);
-  const std::size_t picture_bytes = row_bytes * static_cast<std::size_t>(height);
+  const std::size_t image_bytes = row_bytes * static_cast<std::size_t>(height);
   const std::size_t expected =
-      picture_bytes + row_bytes * static_cast<std::size_t>(LeptonTelemetryRows(width));
+      image_bytes + row_bytes * static_cast<std::size_t>(LeptonTelemetryRows(width));
   if (bytes.size() != expected) {
     return Err(
         DataLoss(fmt::format("a Lepton frame of {} bytes instead of {}", bytes.size(), expected)));
@@ -55,7 +55,7 @@ Result<LeptonFrame> ParseLeptonFrame(Bytes bytes, int width, int height) {
   for (std::size_t i = 0; i < frame.counts.size(); ++i) {
     frame.counts.data()[i] = Le16(bytes, 2 * i);
   }
-  frame.telemetry = ParseTelemetry(bytes.subspan(picture_bytes));
+  frame.telemetry = ParseTelemetry(bytes.subspan(image_bytes));
   return frame;
 }
 

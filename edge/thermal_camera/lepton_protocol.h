@@ -10,7 +10,7 @@
 
 namespace isotherm {
 
-/// FLIR Lepton behind a PureThermal board: 16-bit pictures with three rows of telemetry below
+/// FLIR Lepton behind a PureThermal board: 16-bit images with three rows of telemetry below
 /// (Lepton Engineering Datasheet 500-0659-00-09; groupgets/purethermal1-firmware).
 struct LeptonTelemetry {
   std::uint32_t uptime_ms = 0;
@@ -25,13 +25,13 @@ struct LeptonTelemetry {
   bool fine_resolution = false;  ///< 0.01 K per count instead of 0.1 K.
 };
 
-/// Picture of `width` x `height` (160x120 or 80x60) followed by 240 words of telemetry.
+/// Image of `width` x `height` (160x120 or 80x60) followed by 240 words of telemetry.
 struct LeptonFrame {
   Image<std::uint16_t> counts;
   LeptonTelemetry telemetry;
 };
 
-/// Rows that the telemetry takes below a picture of this width.
+/// Rows that the telemetry takes below an image of this width.
 int LeptonTelemetryRows(int width);
 /// kDataLoss if `bytes` has not the size of such a frame.
 Result<LeptonFrame> ParseLeptonFrame(Bytes bytes, int width, int height);

@@ -27,8 +27,8 @@ static_assert(sizeof(Metadata) == 40 && offsetof(Metadata, flag_state) == 24);
 constexpr std::size_t kMetadataRoom = 128;
 
 // Celsius = (count - 1000) / 10.
-constexpr PixelEncoding kEncoding{true, 0.1, kCelsiusZeroKelvin - 100.0};
-constexpr int kMostPixels = 4096;  ///< Per side; more is no camera.
+constexpr PixelEncoding kEncoding{true, 0.1, kCelsiusZero_k - 100.0};
+constexpr int kMaxPixels = 4096;  ///< Per side; more is no camera.
 
 NucState StateOf(int flag) {
   switch (flag) {
@@ -139,7 +139,7 @@ Status OptrisCamera::Initialise() {
   }
   initialised_ = true;
   if (library_->get_size(&info_.width, &info_.height) != 0 || info_.width < 1 || info_.height < 1 ||
-      info_.width > kMostPixels || info_.height > kMostPixels) {
+      info_.width > kMaxPixels || info_.height > kMaxPixels) {
     return DataLoss(fmt::format("the Optris camera says {}x{} pixels", info_.width, info_.height));
   }
   // The ground applies emissivity and transmission.

@@ -28,13 +28,13 @@ constexpr std::uint16_t kLongDataIndex = 0x1D10;
 constexpr std::uint16_t kStatusIndex = 0x0200;
 
 // Measured by p2-viewer: after power-up the camera answers commands 2.9 s after streaming began,
-// and shows uncorrected pictures for up to 8.75 s.
+// and shows uncorrected images for up to 8.75 s.
 constexpr Nanoseconds kAnswersAfter = milliseconds(3000);
 constexpr Nanoseconds kSettledAfter = seconds(9);
 constexpr Nanoseconds kStartTime = seconds(6);
 constexpr Nanoseconds kAskEvery = milliseconds(200);
 constexpr Nanoseconds kTryAgainAfter = seconds(1);
-constexpr int kMostUnanswered = 5;
+constexpr int kMaxUnanswered = 5;
 // A command takes some milliseconds.
 constexpr int kStatusTries = 20;
 constexpr Nanoseconds kStatusWait = milliseconds(1);
@@ -116,9 +116,9 @@ void P2ProCamera::ConfigureWhenDue(SteadyTime now) {
   if (done.ok()) {
     configured_ = true;
     next_command_at_ = now;
-  } else if (++unanswered_ == kMostUnanswered) {
+  } else if (++unanswered_ == kMaxUnanswered) {
     LOG(Thermal, Warning) << "the P2 Pro takes no commands: emissivity is what it was set to, the "
-                             "shutter is inferred from the pictures: "
+                             "shutter is inferred from the images: "
                           << done.message();
   }
 }
@@ -136,7 +136,7 @@ void P2ProCamera::AskShutterWhenDue(SteadyTime now) {
   }
   shutter_.ForgetState();
   // What does not answer is asked ever more seldom.
-  if (++unanswered_ >= kMostUnanswered) next_command_at_ = now + unanswered_ * kTryAgainAfter;
+  if (++unanswered_ >= kMaxUnanswered) next_command_at_ = now + unanswered_ * kTryAgainAfter;
 }
 
 Status P2ProCamera::TriggerNuc() {

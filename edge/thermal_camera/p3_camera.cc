@@ -56,7 +56,7 @@ P3Camera::P3Camera(std::string bus_port, const P3Layout& layout, const Clock& cl
   info_.width = layout.width;
   info_.height = layout.height;
   info_.rate_hz = 25.0;
-  // Where the P1 keeps its metadata was never published: there, pictures are told apart by pixels.
+  // Where the P1 keeps its metadata was never published: there, images are told apart by pixels.
   info_.counter_step = layout.width == 256 ? 1 : 0;
   info_.start_time = kStartTime;
 }

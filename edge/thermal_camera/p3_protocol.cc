@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kFrameCounter = 64;
 constexpr std::size_t kZeroWhileCorrecting[] = {169, 170};
 
-constexpr std::size_t kMostFrames = 4;
+constexpr std::size_t kMaxFrames = 4;
 
 /// Nullopt if `bytes` does not begin with a marker.
 std::optional<UvcPayloadHeader> ParseMarker(Bytes bytes) {
@@ -41,9 +41,9 @@ Result<P3Frame> ParseP3Frame(Bytes data, const P3Layout& layout) {
         fmt::format("a P3 frame of {} bytes instead of {}", data.size(), layout.data_bytes())));
   }
   const std::size_t row_bytes = 2 * static_cast<std::size_t>(layout.width);
-  const std::size_t picture_bytes = row_bytes * static_cast<std::size_t>(layout.height);
-  const Bytes metadata = data.subspan(picture_bytes, 2 * row_bytes);
-  const Bytes thermal = data.subspan(picture_bytes + 2 * row_bytes);
+  const std::size_t image_bytes = row_bytes * static_cast<std::size_t>(layout.height);
+  const Bytes metadata = data.subspan(image_bytes, 2 * row_bytes);
+  const Bytes thermal = data.subspan(image_bytes + 2 * row_bytes);
   P3Frame frame;
   frame.counts.Resize(layout.width, layout.height);
   for (std::size_t i = 0; i < frame.counts.size(); ++i) {
@@ -90,7 +90,7 @@ void P3Assembler::Conclude() {
   if (frame_.received != data_bytes_) frame_.incomplete = true;
   const bool first = !std::exchange(seen_a_frame_, true);
   if (!(first && frame_.incomplete)) {
-    if (finished_.size() == kMostFrames) finished_.pop_front();
+    if (finished_.size() == kMaxFrames) finished_.pop_front();
     finished_.push_back(std::move(frame_));
   }
   frame_ = {};

@@ -23,14 +23,14 @@ constexpr std::uint8_t kIn = 0xC1;
 // What the vendor's program sends at the end.
 constexpr int kSleeps = 3;
 // The first frame after a start sometimes lacks its beginning (libseek-thermal, SeekCam.cpp).
-constexpr int kMostStarts = 3;
+constexpr int kMaxStarts = 3;
 constexpr Nanoseconds kStartTime = seconds(5);
 // Nine frames per second; a correction takes longer than a frame.
-constexpr double kRateHz = 9.0;
+constexpr double kRate_hz = 9.0;
 constexpr Nanoseconds kFrameTimeout = seconds(1);
 // Rests of a frame follow each other closely.
 constexpr Nanoseconds kSilence = milliseconds(20);
-constexpr int kMostDrained = 64;
+constexpr int kMaxDrained = 64;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ SeekCamera::SeekCamera(std::string bus_port, const SeekModel& model, const Clock
   info_.product = model.name;
   info_.width = model.width;
   info_.height = model.height;
-  info_.rate_hz = kRateHz;
+  info_.rate_hz = kRate_hz;
   info_.settings = "counts only";
   info_.counts_only = true;
   info_.counter_step = 1;
@@ -66,7 +66,7 @@ Status SeekCamera::Open() {
 
 Status SeekCamera::Begin() {
   ++starts_;
-  pictures_ = {};
+  images_ = {};
   counter_.Reset();
   next_counter_.reset();
   started_ = false;
@@ -116,7 +116,7 @@ Status SeekCamera::AskForFrame() {
 }
 
 Status SeekCamera::Drain() {
-  for (int i = 0; i < kMostDrained; ++i) {
+  for (int i = 0; i < kMaxDrained; ++i) {
     const auto rest = device_->BulkIn(kEndpoint, model_.read_bytes, kSilence);
     if (!rest) return rest.error();
     if (rest->empty()) break;
@@ -154,25 +154,25 @@ Result<std::optional<RawThermalFrame>> SeekCamera::Finish() {
   if (out_of_step_) return std::optional<RawThermalFrame>();
   next_counter_ = static_cast<std::uint16_t>(frame->counter + 1);
   const std::uint64_t counter = counter_.Process(frame->counter);
-  Result<std::optional<SeekPicture>> picture = pictures_.Process(std::move(*frame));
-  if (!picture) {
-    if (started_ || starts_ >= kMostStarts) return Err(picture.error());
-    LOG(Thermal, Info) << "thermal camera " << kDriver << ": " << picture.error().message()
+  Result<std::optional<SeekImage>> image = images_.Process(std::move(*frame));
+  if (!image) {
+    if (started_ || starts_ >= kMaxStarts) return Err(image.error());
+    LOG(Thermal, Info) << "thermal camera " << kDriver << ": " << image.error().message()
                        << "; starting it again";
     Status begun = Begin();
     if (!begun.ok()) return Err(std::move(begun));
     return std::optional<RawThermalFrame>();
   }
   started_ = true;
-  if (!*picture) {
+  if (!*image) {
     ++left_out_;
     return std::optional<RawThermalFrame>();
   }
   RawThermalFrame raw;
   raw.first_packet = assembler_.first_stamp();
-  raw.counts = std::move((*picture)->counts);
+  raw.counts = std::move((*image)->counts);
   raw.device_counter = counter - left_out_;
-  raw.shutter_closed = (*picture)->shutter_closed;
+  raw.shutter_closed = (*image)->shutter_closed;
   raw.nuc = CameraNuc{raw.shutter_closed ? NucState::kInProgress : NucState::kIdle,
                       NucSource::kInBand, std::nullopt};
   return std::optional(std::move(raw));
@@ -184,7 +184,7 @@ Result<std::optional<RawThermalFrame>> SeekCamera::GiveUp() {
   // Nothing at all came: silence, which is no frame.
   if (assembler_.is_empty()) return std::optional<RawThermalFrame>();
   if (!started_) {
-    if (starts_ >= kMostStarts) {
+    if (starts_ >= kMaxStarts) {
       return Err(DataLoss(fmt::format("the first frame is incomplete, bytes={} of {}",
                                       assembler_.bytes().size(), model_.frame_bytes())));
     }

@@ -50,14 +50,14 @@ class SeekCamera final : public ThermalCamera {
   ThermalCameraInfo info_;
   std::unique_ptr<UsbDevice> device_;
   SeekAssembler assembler_;
-  SeekPictureMaker pictures_;
+  SeekImageMaker images_;
   Unwrapper counter_{16};
   std::optional<std::uint16_t> next_counter_;
   std::optional<SteadyTime> asked_at_;  ///< Nullopt: no frame is under way.
   bool out_of_step_ = false;            ///< The camera may still send parts of an old frame.
   bool started_ = false;                ///< Its first frame has come.
   int starts_ = 0;                      ///< Since Open.
-  std::uint64_t left_out_ = 0;          ///< Frames that are no pictures; the camera counts them.
+  std::uint64_t left_out_ = 0;          ///< Frames that are no images; the camera counts them.
 };
 
 }  // namespace isotherm

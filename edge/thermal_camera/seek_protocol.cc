@@ -74,7 +74,7 @@ SeekFrameKind KindOf(std::uint16_t id) {
     case 1:
       return SeekFrameKind::kShutter;
     case 3:
-      return SeekFrameKind::kPicture;
+      return SeekFrameKind::kImage;
     case 4:
       return SeekFrameKind::kFirst;
     default:
@@ -221,7 +221,7 @@ void SeekDeadPixels::Fill(Image<std::uint16_t>& counts) const {
   }
 }
 
-Result<std::optional<SeekPicture>> SeekPictureMaker::Process(SeekRawFrame frame) {
+Result<std::optional<SeekImage>> SeekImageMaker::Process(SeekRawFrame frame) {
   const bool is_shutter = frame.kind == SeekFrameKind::kShutter;
   if (!dead_pixels_) {
     if (frame.kind != SeekFrameKind::kFirst) {
@@ -231,15 +231,15 @@ Result<std::optional<SeekPicture>> SeekPictureMaker::Process(SeekRawFrame frame)
     if (!found) return Err(found.error());
     dead_pixels_ = std::move(*found);
   }
-  const bool shows = is_shutter || frame.kind == SeekFrameKind::kPicture;
-  if (!shows || (!is_shutter && shutter_.empty())) return std::optional<SeekPicture>();
-  SeekPicture picture;
-  picture.counts = Against(frame.raw, shutter_.empty() ? frame.raw : shutter_);
-  picture.counter = frame.counter;
-  picture.shutter_closed = is_shutter;
-  dead_pixels_->Fill(picture.counts);
+  const bool shows = is_shutter || frame.kind == SeekFrameKind::kImage;
+  if (!shows || (!is_shutter && shutter_.empty())) return std::optional<SeekImage>();
+  SeekImage image;
+  image.counts = Against(frame.raw, shutter_.empty() ? frame.raw : shutter_);
+  image.counter = frame.counter;
+  image.shutter_closed = is_shutter;
+  dead_pixels_->Fill(image.counts);
   if (is_shutter) shutter_ = std::move(frame.raw);
-  return std::optional(std::move(picture));
+  return std::optional(std::move(image));
 }
 
 }  // namespace isotherm

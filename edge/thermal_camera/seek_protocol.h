@@ -13,12 +13,12 @@ namespace isotherm {
 
 /// A Seek camera as seen from its bytes (OpenThermal/libseek-thermal and its issues 17, 30 and 39).
 /// A frame is one block of little-endian words, row by row, with words that say what it is in the
-/// margin around the picture. It comes only when asked for.
+/// margin around the image. It comes only when asked for.
 struct SeekModel {
   std::string_view name;
   int raw_width = 0;  ///< As sent, margin included.
   int raw_height = 0;
-  int left = 0;  ///< Where the picture lies in it.
+  int left = 0;  ///< Where the image lies in it.
   int top = 0;
   int width = 0;
   int height = 0;
@@ -57,8 +57,8 @@ inline constexpr std::uint8_t kSeekReadChipId = 54;
 
 enum class SeekFrameKind : std::uint8_t {
   kFirst,    ///< After the start; detectors that do not work are dark in it.
-  kShutter,  ///< The closed shutter: what a picture is measured against.
-  kPicture,
+  kShutter,  ///< The closed shutter: what an image is measured against.
+  kImage,
   kOther,  ///< The camera's own business, or bytes out of step.
 };
 
@@ -112,7 +112,7 @@ class SeekDeadPixels {
   std::vector<Dead> dead_;  ///< In the order in which they can be filled.
 };
 
-struct SeekPicture {
+struct SeekImage {
   Image<std::uint16_t> counts;  ///< kSeekMiddle = as the shutter; 0 = no value.
   std::uint16_t counter = 0;
   bool shutter_closed = false;  ///< It shows the shutter, measured against the one before.
@@ -121,13 +121,13 @@ struct SeekPicture {
 /// Count of a pixel that is as warm as the shutter was.
 inline constexpr int kSeekMiddle = 0x4000;
 
-/// Turns frames into pictures: measured against the last frame of the shutter, dead detectors
+/// Turns frames into images: measured against the last frame of the shutter, dead detectors
 /// filled. Thread-compatible.
-class SeekPictureMaker {
+class SeekImageMaker {
  public:
-  /// Nothing for frames that are no pictures, and for pictures before the first frame of the
+  /// Nothing for frames that are no images, and for images before the first frame of the
   /// shutter. kDataLoss if the first frame was not one.
-  Result<std::optional<SeekPicture>> Process(SeekRawFrame frame);
+  Result<std::optional<SeekImage>> Process(SeekRawFrame frame);
 
  private:
   std::optional<SeekDeadPixels> dead_pixels_;

@@ -28,10 +28,10 @@ TEST(SeekProtocolTest, FramesAreWholeMultiplesOfReads) {
   EXPECT_EQ(kSeekCompactPro.frame_bytes(), 13U * 13'680U);
 }
 
-TEST(SeekProtocolTest, PictureOfACompactBeginsInTheSecondRow) {
+TEST(SeekProtocolTest, ImageOfACompactBeginsInTheSecondRow) {
   const auto frame = ParseSeekFrame(FrameOf(kSeekCompact, 3, 777), kSeekCompact);
   ASSERT_TRUE(frame.has_value()) << frame.error().message();
-  EXPECT_EQ(frame->kind, SeekFrameKind::kPicture);
+  EXPECT_EQ(frame->kind, SeekFrameKind::kImage);
   EXPECT_EQ(frame->counter, 777);
   EXPECT_EQ(frame->raw.width(), 207);
   EXPECT_EQ(frame->raw.height(), 154);
@@ -39,7 +39,7 @@ TEST(SeekProtocolTest, PictureOfACompactBeginsInTheSecondRow) {
   EXPECT_EQ(frame->raw.At(206, 153), 208 * 154 + 206);
 }
 
-TEST(SeekProtocolTest, PictureOfACompactProLiesWithinMargins) {
+TEST(SeekProtocolTest, ImageOfACompactProLiesWithinMargins) {
   const auto frame = ParseSeekFrame(FrameOf(kSeekCompactPro, 4, 1), kSeekCompactPro);
   ASSERT_TRUE(frame.has_value()) << frame.error().message();
   EXPECT_EQ(frame->kind, SeekFrameKind::kFirst);
@@ -128,7 +128,7 @@ TEST(SeekAssemblerTest, JoinsReadsOfAnySizeAndStampsTheFirst) {
 }
 
 /// 6 x 5 detectors that see 1000 counts, but for those that a test darkens.
-class SeekPictureMakerTest : public testing::Test {
+class SeekImageMakerTest : public testing::Test {
  protected:
   SeekRawFrame Frame(SeekFrameKind kind, std::uint16_t value) const {
     SeekRawFrame frame;
@@ -137,79 +137,79 @@ class SeekPictureMakerTest : public testing::Test {
     frame.raw = Image<std::uint16_t>(6, 5, value);
     return frame;
   }
-  std::optional<SeekPicture> Process(SeekRawFrame frame) {
-    const Result<std::optional<SeekPicture>> picture = maker_.Process(std::move(frame));
-    EXPECT_TRUE(picture.has_value()) << picture.error().message();
-    return picture ? *picture : std::nullopt;
+  std::optional<SeekImage> Process(SeekRawFrame frame) {
+    const Result<std::optional<SeekImage>> image = maker_.Process(std::move(frame));
+    EXPECT_TRUE(image.has_value()) << image.error().message();
+    return image ? *image : std::nullopt;
   }
-  SeekPictureMaker maker_;
+  SeekImageMaker maker_;
 };
 
-TEST_F(SeekPictureMakerTest, PicturesAreMeasuredAgainstTheLastFrameOfTheShutter) {
+TEST_F(SeekImageMakerTest, RenderingsAreMeasuredAgainstTheLastFrameOfTheShutter) {
   EXPECT_FALSE(Process(Frame(SeekFrameKind::kFirst, 1'000)).has_value());
   EXPECT_FALSE(Process(Frame(SeekFrameKind::kOther, 900)).has_value());
-  EXPECT_FALSE(Process(Frame(SeekFrameKind::kPicture, 900)).has_value());  // Against what?
+  EXPECT_FALSE(Process(Frame(SeekFrameKind::kImage, 900)).has_value());  // Against what?
   const auto shutter = Process(Frame(SeekFrameKind::kShutter, 800));
   ASSERT_TRUE(shutter.has_value());
   EXPECT_TRUE(shutter->shutter_closed);
   EXPECT_EQ(shutter->counts.At(2, 2), 0x4000);
-  SeekRawFrame warm = Frame(SeekFrameKind::kPicture, 800);
+  SeekRawFrame warm = Frame(SeekFrameKind::kImage, 800);
   warm.raw.At(3, 1) = 850;
   warm.raw.At(4, 1) = 790;
-  const auto picture = Process(std::move(warm));
-  ASSERT_TRUE(picture.has_value());
-  EXPECT_FALSE(picture->shutter_closed);
-  EXPECT_EQ(picture->counter, 42);
-  EXPECT_EQ(picture->counts.At(0, 0), 0x4000);
-  EXPECT_EQ(picture->counts.At(3, 1), 0x4000 + 50);
-  EXPECT_EQ(picture->counts.At(4, 1), 0x4000 - 10);
+  const auto image = Process(std::move(warm));
+  ASSERT_TRUE(image.has_value());
+  EXPECT_FALSE(image->shutter_closed);
+  EXPECT_EQ(image->counter, 42);
+  EXPECT_EQ(image->counts.At(0, 0), 0x4000);
+  EXPECT_EQ(image->counts.At(3, 1), 0x4000 + 50);
+  EXPECT_EQ(image->counts.At(4, 1), 0x4000 - 10);
   // The shutter has become warmer: shown against the one before, and used from now on.
   EXPECT_EQ(Process(Frame(SeekFrameKind::kShutter, 810))->counts.At(2, 2), 0x4000 + 10);
-  EXPECT_EQ(Process(Frame(SeekFrameKind::kPicture, 810))->counts.At(2, 2), 0x4000);
+  EXPECT_EQ(Process(Frame(SeekFrameKind::kImage, 810))->counts.At(2, 2), 0x4000);
 }
 
-TEST_F(SeekPictureMakerTest, CountsStayWithinSixteenBitsAndZeroIsNoValue) {
+TEST_F(SeekImageMakerTest, CountsStayWithinSixteenBitsAndZeroIsNoValue) {
   Process(Frame(SeekFrameKind::kFirst, 1'000));
   Process(Frame(SeekFrameKind::kShutter, 40'000));
-  EXPECT_EQ(Process(Frame(SeekFrameKind::kPicture, 100))->counts.At(0, 0), 1);
+  EXPECT_EQ(Process(Frame(SeekFrameKind::kImage, 100))->counts.At(0, 0), 1);
   Process(Frame(SeekFrameKind::kShutter, 100));
-  EXPECT_EQ(Process(Frame(SeekFrameKind::kPicture, 65'000))->counts.At(0, 0), 0xFFFF);
+  EXPECT_EQ(Process(Frame(SeekFrameKind::kImage, 65'000))->counts.At(0, 0), 0xFFFF);
 }
 
-TEST_F(SeekPictureMakerTest, DeadDetectorsShowTheMeanOfTheirNeighbours) {
+TEST_F(SeekImageMakerTest, DeadDetectorsShowTheMeanOfTheirNeighbours) {
   SeekRawFrame first = Frame(SeekFrameKind::kFirst, 1'000);
   first.raw.At(5, 0) = 1'030;  // The largest: 30 above the most frequent value, ...
   first.raw.At(2, 3) = 969;    // ... so that more than 30 below it is dead.
   first.raw.At(4, 3) = 970;
   Process(std::move(first));
   Process(Frame(SeekFrameKind::kShutter, 0));
-  SeekRawFrame picture = Frame(SeekFrameKind::kPicture, 5'000);
-  picture.raw.At(1, 3) = 10;
-  picture.raw.At(3, 3) = 20;
-  picture.raw.At(2, 2) = 30;
-  picture.raw.At(2, 4) = 40;
-  const auto counts = Process(std::move(picture))->counts;
+  SeekRawFrame image = Frame(SeekFrameKind::kImage, 5'000);
+  image.raw.At(1, 3) = 10;
+  image.raw.At(3, 3) = 20;
+  image.raw.At(2, 2) = 30;
+  image.raw.At(2, 4) = 40;
+  const auto counts = Process(std::move(image))->counts;
   EXPECT_EQ(counts.At(2, 3), 0x4000 + 25);
   EXPECT_EQ(counts.At(4, 3), 0x4000 + 5'000);
 }
 
-TEST_F(SeekPictureMakerTest, DeadDetectorsAmidOthersAreFilledFromTheOutside) {
+TEST_F(SeekImageMakerTest, DeadDetectorsAmidOthersAreFilledFromTheOutside) {
   SeekRawFrame first = Frame(SeekFrameKind::kFirst, 1'000);
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 3; ++x) first.raw.At(x, y) = 0;
   }
   Process(std::move(first));
   Process(Frame(SeekFrameKind::kShutter, 0));
-  SeekRawFrame picture = Frame(SeekFrameKind::kPicture, 100);
+  SeekRawFrame image = Frame(SeekFrameKind::kImage, 100);
   for (int y = 0; y < 3; ++y) {
-    for (int x = 0; x < 3; ++x) picture.raw.At(x, y) = 9'999;
+    for (int x = 0; x < 3; ++x) image.raw.At(x, y) = 9'999;
   }
-  const auto counts = Process(std::move(picture))->counts;
+  const auto counts = Process(std::move(image))->counts;
   for (const std::uint16_t count : counts.pixels()) EXPECT_EQ(count, 0x4000 + 100);
 }
 
-TEST_F(SeekPictureMakerTest, WithoutAFirstFrameThereAreNoPictures) {
-  const auto refused = maker_.Process(Frame(SeekFrameKind::kPicture, 900));
+TEST_F(SeekImageMakerTest, WithoutAFirstFrameThereAreNoImages) {
+  const auto refused = maker_.Process(Frame(SeekFrameKind::kImage, 900));
   ASSERT_FALSE(refused.has_value());
   EXPECT_EQ(refused.error().code(), StatusCode::kDataLoss);
   // Mostly dark: that is not what the camera's first frame looks like.

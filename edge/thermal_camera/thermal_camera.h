@@ -29,7 +29,7 @@ struct RawThermalFrame {
   PixelEncoding encoding;
   HostStamp first_packet;                   ///< When the frame's first byte reached us.
   std::optional<DeviceTicks> device_ticks;  ///< Camera clock, unwrapped; nullopt = it has none.
-  /// The camera's count of pictures, unwrapped. Repeated = the same picture again.
+  /// The camera's count of images, unwrapped. Repeated = the same image again.
   std::optional<std::uint64_t> device_counter;
   std::optional<CameraNuc> nuc;  ///< Nullopt = the camera says nothing.
   bool shutter_closed = false;   ///< By the camera's word.
@@ -55,11 +55,11 @@ struct ThermalCameraInfo {
   std::string settings;  ///< What it was set to or found at, for people: "gain low".
   /// It measures no temperatures: no frame is radiometric.
   bool counts_only = false;
-  /// How much the device counter grows from picture to picture; 0 = there is no counter, and
-  /// pictures are told apart by their pixels.
+  /// How much the device counter grows from image to image; 0 = there is no counter, and
+  /// images are told apart by their pixels.
   int counter_step = 0;
-  int native_repeats = 1;     ///< How often each picture is sent: 1 = once.
-  Nanoseconds start_time{0};  ///< From Open until the first picture must be there.
+  int native_repeats = 1;     ///< How often each image is sent: 1 = once.
+  Nanoseconds start_time{0};  ///< From Open until the first image must be there.
 };
 
 /// One thermal camera: how its bytes come and what they mean. Thread-bound.

@@ -102,14 +102,14 @@ Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
   if (!raw) return Err(raw.error());
   if (*raw) {
     last_frame_at_ = clock_.SteadyNow();
-    return Judge(std::move(**raw));
+    return Check(std::move(**raw));
   }
   const Nanoseconds silence = clock_.SteadyNow() - last_frame_at_;
   if (ToSeconds(silence) < options_->stall_timeout_s()) return NothingYet{};
   return Err(Hangs("sends nothing", silence));
 }
 
-Result<SourceItem> ThermalCameraSource::Judge(RawThermalFrame raw) {
+Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
   if (raw.incomplete) {
     ++counts_.incomplete;
     ++incomplete_since_;
@@ -139,12 +139,12 @@ Result<SourceItem> ThermalCameraSource::Judge(RawThermalFrame raw) {
   }
   const bool frozen = novelty.kind == Novelty::Kind::kFrozen && !IsCorrecting(raw);
   if (frozen && ToSeconds(novelty.frozen_for) >= options_->stall_timeout_s()) {
-    return Err(Hangs("sends the same picture", novelty.frozen_for));
+    return Err(Hangs("sends the same image", novelty.frozen_for));
   }
   if (frozen) {
     ++counts_.frozen;
     if (!frozen_) {
-      LOG(Thermal, Warning) << name_ << ": the picture is frozen, number=" << next_frame_number_;
+      LOG(Thermal, Warning) << name_ << ": the image is frozen, number=" << next_frame_number_;
     }
     // A camera that would say so is not correcting itself: something is wrong.
     const bool would_say = raw.nuc && raw.nuc->source == NucSource::kInBand;

@@ -33,11 +33,11 @@ struct ThermalCameraCounts {
 /// Frames of one thermal camera in centi-kelvin; in counts if it measures no temperatures and the
 /// options do not say what counts mean (CameraDescription::counts_only).
 ///
-/// - Repeated pictures are left out; they are no loss.
-/// - Frozen pictures count as taken behind a closed shutter; when they last, the camera is taken
+/// - Repeated images are left out; they are no loss.
+/// - Frozen images count as taken behind a closed shutter; when they last, the camera is taken
 ///   for hung, as it is when nothing comes at all: Read fails, so that it is opened again.
 /// - Incomplete frames come without pixels, so that whoever checks frames refuses and counts them.
-/// - Frame numbers have holes where the camera counted pictures that never came.
+/// - Frame numbers have holes where the camera counted images that never came.
 /// - After it was opened once, a camera with another serial number is refused.
 ///
 /// Thread-bound.
@@ -63,7 +63,7 @@ class ThermalCameraSource final : public FrameSource {
   const ThermalCameraCounts& counts() const { return counts_; }
 
  private:
-  Result<SourceItem> Judge(RawThermalFrame raw);
+  Result<SourceItem> Check(RawThermalFrame raw);
   RawFrame Convert(const RawThermalFrame& raw);
   /// `what` and how long it has lasted, as a failure.
   Status Hangs(const std::string& what, Nanoseconds duration) const;

@@ -214,10 +214,10 @@ TEST_F(ThermalCameraSourceTest, F05FrozenFramesAreNotGoodAndThenTheCameraIsReope
   while (std::holds_alternative<RawFrame>(Read(*source))) ++frames;
   EXPECT_EQ(frames, 16);  // From 0.4 to 1.9 s.
   EXPECT_EQ(failure_.code(), StatusCode::kUnavailable);
-  EXPECT_THAT(failure_.message(), HasSubstr("the same picture"));
+  EXPECT_THAT(failure_.message(), HasSubstr("the same image"));
 }
 
-TEST_F(ThermalCameraSourceTest, FrozenPictureOfASilentCameraIsACorrection) {
+TEST_F(ThermalCameraSourceTest, FrozenImageOfASilentCameraIsACorrection) {
   script_.info.counter_step = 0;
   for (int i = 0; i < 5; ++i) {
     RawThermalFrame frame = MakeFrame(1, 0);

@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 
 // Transfers that fail one after the other before the stream is given up.
-constexpr int kMostErrorsInARow = 16;
+constexpr int kMaxErrorsInARow = 16;
 // The kernel gives cancelled transfers back within a bus interval or two.
 constexpr milliseconds kLongestStop{500};
 constexpr milliseconds kStopTry{10};
@@ -102,7 +102,7 @@ void LibusbStream::OnDone(libusb_transfer* done) {
     return Fail(State::kFailed, "the endpoint is halted");
   } else {
     sink_({{}, {clock_.Now(), clock_.SteadyNow()}, true});
-    if (++errors_in_a_row_ >= kMostErrorsInARow) {
+    if (++errors_in_a_row_ >= kMaxErrorsInARow) {
       return Fail(State::kFailed, fmt::format("{} transfers failed in a row", errors_in_a_row_));
     }
   }

@@ -102,11 +102,11 @@ TEST(UsbDescriptorsTest, EveryTruncationIsRefused) {
 
 /// No more came out than went in, and nothing that was not there.
 void ExpectFromInput(const UsbConfiguration& configuration, const Data& data) {
-  std::size_t least_bytes = 9;
+  std::size_t min_bytes = 9;
   for (const UsbInterface& interface : configuration.interfaces) {
     ASSERT_FALSE(interface.alternates.empty());
     for (const UsbAlternate& alternate : interface.alternates) {
-      least_bytes += 9 + 7 * alternate.endpoints.size() + alternate.class_specific.size();
+      min_bytes += 9 + 7 * alternate.endpoints.size() + alternate.class_specific.size();
       for (const UsbEndpoint& endpoint : alternate.endpoints) {
         EXPECT_LE(endpoint.packet_bytes, 4 * 2047);
         EXPECT_GE(endpoint.packet_bytes, 0);
@@ -120,13 +120,13 @@ void ExpectFromInput(const UsbConfiguration& configuration, const Data& data) {
       }
     }
   }
-  EXPECT_LE(least_bytes, data.size());
+  EXPECT_LE(min_bytes, data.size());
 }
 
 void ExpectFromInput(const UvcFunction& function, const Data& data) {
-  std::size_t least_bytes = 20 * function.units.size();
-  for (const UvcFormat& format : function.formats) least_bytes += 22 + 26 * format.frames.size();
-  EXPECT_LE(least_bytes, data.size());
+  std::size_t min_bytes = 20 * function.units.size();
+  for (const UvcFormat& format : function.formats) min_bytes += 22 + 26 * format.frames.size();
+  EXPECT_LE(min_bytes, data.size());
   EXPECT_LE(7 * function.alternates.size(), data.size());
 }
 

@@ -27,7 +27,7 @@ constexpr Nanoseconds kTransferTime = milliseconds(8);
 // Of a bulk transfer: small, so that the first bytes of a frame are dated soon.
 constexpr std::size_t kBulkTransferBytes = 16'384;
 // The longest header is 255 bytes.
-constexpr std::size_t kMostHeaderBytes = 256;
+constexpr std::size_t kMaxHeaderBytes = 256;
 // Small cameras answer requests one after the other, and refuse what comes too soon.
 constexpr int kTries = 4;
 constexpr Nanoseconds kRetryWait = milliseconds(10);
@@ -80,7 +80,7 @@ Status UvcCamera::ClaimControl() {
 Status UvcCamera::Start(const UvcMode& mode) {
   const UvcFormat* format = FindFormat(mode);
   if (format == nullptr) {
-    return NotFound(fmt::format("the camera at {} offers no {}x{} pictures of format \"{}\"",
+    return NotFound(fmt::format("the camera at {} offers no {}x{} images of format \"{}\"",
                                 device_->info().bus_port, mode.width, mode.height,
                                 mode.four_characters));
   }
@@ -99,7 +99,7 @@ Status UvcCamera::Start(const UvcMode& mode) {
   const UsbStreamPlan plan = PlanFor(*alternate);
   joiner_.reset();
   if (plan.endpoint.kind == UsbTransferKind::kBulk) {
-    joiner_.emplace(static_cast<std::size_t>(plan.transfer_bytes), MostPayloadBytes());
+    joiner_.emplace(static_cast<std::size_t>(plan.transfer_bytes), MaxPayloadBytes());
     bulk_endpoint_ = plan.endpoint.address;
   }
   return device_->StartStream(plan, [this](const UsbPacket& packet) { Take(packet); });
@@ -114,9 +114,9 @@ void UvcCamera::Take(const UsbPacket& packet) {
   }
 }
 
-std::size_t UvcCamera::MostPayloadBytes() const {
+std::size_t UvcCamera::MaxPayloadBytes() const {
   // A payload belongs to one frame, whatever the camera asks for.
-  const std::size_t most = frame_bytes_ + kMostHeaderBytes;
+  const std::size_t most = frame_bytes_ + kMaxHeaderBytes;
   return payload_bytes_ == 0 ? most : std::min<std::size_t>(payload_bytes_, most);
 }
 
@@ -178,7 +178,7 @@ UsbStreamPlan UvcCamera::PlanFor(const UvcAlternate& alternate) const {
   // Whole packets, since the camera may fill its last one.
   const auto packet = static_cast<std::size_t>(alternate.endpoint.packet_bytes);
   const std::size_t packets =
-      (std::min(MostPayloadBytes(), kBulkTransferBytes) + packet - 1) / packet;
+      (std::min(MaxPayloadBytes(), kBulkTransferBytes) + packet - 1) / packet;
   plan.transfer_bytes = static_cast<int>(packets * packet);
   return plan;
 }

@@ -13,7 +13,7 @@
 
 namespace isotherm {
 
-/// Which of a camera's pictures to stream.
+/// Which of a camera's images to stream.
 struct UvcMode {
   std::string_view four_characters;  ///< Beginning of the format's GUID, e.g. "Y16 ".
   int width = 0;
@@ -54,7 +54,7 @@ class UvcCamera {
   Status Negotiate(const UvcFormat& format, const UvcFrameSize& frame);
   Result<UvcAlternate> ChooseAlternate() const;
   UsbStreamPlan PlanFor(const UvcAlternate& alternate) const;
-  std::size_t MostPayloadBytes() const;
+  std::size_t MaxPayloadBytes() const;
   void Take(const UsbPacket& packet);
 
   const std::unique_ptr<UsbDevice> device_;

@@ -34,7 +34,7 @@ bool UvcBulkJoiner::Add(Bytes transfer, const HostStamp& stamp) {
   }
   received_ += transfer.size();
   if (!skipping_) payload_.insert(payload_.end(), transfer.begin(), transfer.end());
-  const bool ends = transfer.size() < transfer_bytes_ || received_ >= most_payload_bytes_;
+  const bool ends = transfer.size() < transfer_bytes_ || received_ >= max_payload_bytes_;
   if (!ends) return false;
   received_ = 0;
   return !std::exchange(skipping_, false) && !payload_.empty();
@@ -42,7 +42,7 @@ bool UvcBulkJoiner::Add(Bytes transfer, const HostStamp& stamp) {
 
 void UvcBulkJoiner::NoteLost() {
   received_ += transfer_bytes_;
-  skipping_ = received_ < most_payload_bytes_;
+  skipping_ = received_ < max_payload_bytes_;
   if (!skipping_) received_ = 0;
 }
 
@@ -100,7 +100,7 @@ void UvcAssembler::Finish() {
   in_frame_ = false;
   if (frame_.received != frame_bytes_) frame_.incomplete = true;
   if (!std::exchange(seen_a_frame_, true) && frame_.incomplete) return;
-  if (finished_.size() == kMostFrames) {
+  if (finished_.size() == kMaxFrames) {
     finished_.pop_front();
     ++dropped_frames_;
   }

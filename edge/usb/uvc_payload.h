@@ -44,9 +44,9 @@ struct UvcFrame {
 /// a transfer are put together. Thread-compatible.
 class UvcBulkJoiner {
  public:
-  /// `transfer_bytes`: what a full transfer has; `most_payload_bytes`: as agreed with the camera.
-  UvcBulkJoiner(std::size_t transfer_bytes, std::size_t most_payload_bytes)
-      : transfer_bytes_(transfer_bytes), most_payload_bytes_(most_payload_bytes) {}
+  /// `transfer_bytes`: what a full transfer has; `max_payload_bytes`: as agreed with the camera.
+  UvcBulkJoiner(std::size_t transfer_bytes, std::size_t max_payload_bytes)
+      : transfer_bytes_(transfer_bytes), max_payload_bytes_(max_payload_bytes) {}
 
   /// Takes a transfer; true if it completes a payload.
   bool Add(Bytes transfer, const HostStamp& stamp);
@@ -60,7 +60,7 @@ class UvcBulkJoiner {
 
  private:
   const std::size_t transfer_bytes_;
-  const std::size_t most_payload_bytes_;
+  const std::size_t max_payload_bytes_;
   std::vector<std::uint8_t> payload_;
   HostStamp first_stamp_;
   std::size_t received_ = 0;  ///< Bytes of the payload under way.
@@ -77,14 +77,14 @@ class UvcAssembler {
   void AddPayload(Bytes payload, const HostStamp& stamp);
   /// The bus lost a packet: the frame it belongs to cannot be whole.
   void NoteLostPacket();
-  /// The next finished frame. At most `kMostFrames` wait; older ones are dropped and counted.
+  /// The next finished frame. At most `kMaxFrames` wait; older ones are dropped and counted.
   std::optional<UvcFrame> Pop();
   bool has_frame() const { return !finished_.empty(); }
 
   std::uint64_t bad_payloads() const { return bad_payloads_; }
   std::uint64_t dropped_frames() const { return dropped_frames_; }
 
-  static constexpr std::size_t kMostFrames = 4;
+  static constexpr std::size_t kMaxFrames = 4;
 
  private:
   void Begin(const UvcPayloadHeader& header);

@@ -204,7 +204,7 @@ TEST(UvcAssemblerStartTest, HalfAFrameAtTheStartIsLeftOut) {
 }
 
 TEST_F(UvcAssemblerTest, WaitingFramesAreBounded) {
-  for (std::uint8_t i = 0; i < UvcAssembler::kMostFrames + 2; ++i) {
+  for (std::uint8_t i = 0; i < UvcAssembler::kMaxFrames + 2; ++i) {
     Add(static_cast<std::uint8_t>(i % 2 == 0 ? kId | kEnd : kEnd), {i, i, i, i});
   }
   EXPECT_EQ(assembler_.dropped_frames(), 2U);

@@ -15,26 +15,26 @@ namespace {
 
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-/// How much a tracker drifts over a sub-map, and how well a view is recognised in another one. Only
+/// How much a tracker drifts over a sub-map, and how well a view is verified in another one. Only
 /// their ratio matters to how a mismatch is spread.
-constexpr double kDriftM = 0.003;
-constexpr double kDriftRad = 0.004;
-constexpr double kRecognisedM = 0.0003;
-constexpr double kRecognisedRad = 0.0005;
+constexpr double kDrift_m = 0.003;
+constexpr double kDrift_rad = 0.004;
+constexpr double kVerified_m = 0.0003;
+constexpr double kVerified_rad = 0.0005;
 
 /// A view looks at much the same as one that is nearer than this.
-constexpr double kNearViewM = 0.3;
-constexpr double kNearViewRad = 30.0 * kRadPerDeg;
+constexpr double kNearView_m = 0.3;
+constexpr double kNearView_rad = 30.0 * kRadPerDeg;
 
 }  // namespace
 
 Status Validate(const SubMapOptions& o) {
-  if (!(o.max_turn_deg() >= 0.0 && o.max_turn_deg() <= 180.0 && o.max_travel_m() >= 0.0 &&
+  if (!(o.max_rotation_deg() >= 0.0 && o.max_rotation_deg() <= 180.0 && o.max_travel_m() >= 0.0 &&
         o.start_after_lost_s() >= 0.0)) {
     return InvalidArgument(fmt::format(
-        "submaps: max_turn_deg must be 0..180 degrees, max_travel_m and start_after_lost_s not "
+        "submaps: max_rotation_deg must be 0..180 degrees, max_travel_m and start_after_lost_s not "
         "negative, got {}, {} m and {} s",
-        o.max_turn_deg(), o.max_travel_m(), o.start_after_lost_s()));
+        o.max_rotation_deg(), o.max_travel_m(), o.start_after_lost_s()));
   }
   if (o.max_maps() < 1 || o.max_maps() > 1000)
     return InvalidArgument(fmt::format("submaps.max_maps must be 1..1000, got {}", o.max_maps()));
@@ -73,8 +73,8 @@ std::int32_t Atlas::BlocksLeft() const {
 bool Atlas::IsFar(int index, const RigidTransform& T_map_depth) const {
   const SubMapOptions& limits = options_.submaps();
   return std::ranges::all_of(map(index).anchors, [&](const RigidTransform& anchor) {
-    return (limits.max_turn_deg() > 0.0 &&
-            RotationAngle(anchor, T_map_depth) > limits.max_turn_deg() * kRadPerDeg) ||
+    return (limits.max_rotation_deg() > 0.0 &&
+            RotationAngle(anchor, T_map_depth) > limits.max_rotation_deg() * kRadPerDeg) ||
            (limits.max_travel_m() > 0.0 &&
             TranslationDistance(anchor, T_map_depth) > limits.max_travel_m());
   });
@@ -87,9 +87,9 @@ bool Atlas::Split(const RigidTransform& T_map_depth, std::span<const std::int32_
   map->T_world_map = active().T_world_map;
   map->joined = active().joined;
   map->anchors = {T_map_depth};
-  map->relocaliser->Remember(T_map_depth);
+  map->relocaliser->Add(T_map_depth);
   const SubMap& from = active();
-  if (!map->thermal->Back(static_cast<std::int32_t>(blocks_in_view.size()))) return false;
+  if (!map->thermal->Commit(static_cast<std::int32_t>(blocks_in_view.size()))) return false;
   for (const std::int32_t block : blocks_in_view) {
     const std::int32_t copy = map->tsdf->FindOrAllocate(from.tsdf->block_coordinates(block));
     if (copy == TsdfVolume::kNoBlock) return false;
@@ -98,7 +98,7 @@ bool Atlas::Split(const RigidTransform& T_map_depth, std::span<const std::int32_
     map->tsdf->set_may_end_rays(copy, from.tsdf->may_end_rays(block));
   }
   maps_.push_back(std::move(map));
-  links_.push_back({before, size() - 1, T_map_depth, T_map_depth, kDriftM, kDriftRad});
+  links_.push_back({before, size() - 1, T_map_depth, T_map_depth, kDrift_m, kDrift_rad});
   Activate(size() - 1);
   return true;
 }
@@ -112,8 +112,8 @@ bool Atlas::BeginElsewhere() {
 
 void Atlas::Activate(int index) {
   CHECK(index >= 0 && index < size());
-  active().tsdf->GiveBack(0, active().tsdf->block_count());
-  active().thermal->GiveBack(0, active().tsdf->block_count());
+  active().tsdf->Decommit(0, active().tsdf->block_count());
+  active().thermal->Decommit(0, active().tsdf->block_count());
   active_ = index;
   active().tsdf->LimitBlocks(active().tsdf->block_count() + BlocksLeft());
 }
@@ -136,14 +136,14 @@ bool Atlas::IsLinked(int a, int b) const {
 }
 
 bool Atlas::IsNearView(int index, const RigidTransform& T_map_depth) const {
-  return std::ranges::any_of(map(index).relocaliser->library().poses(),
+  return std::ranges::any_of(map(index).relocaliser->keyframes().poses(),
                              [&](const RigidTransform& view) {
-                               return TranslationDistance(view, T_map_depth) < kNearViewM &&
-                                      RotationAngle(view, T_map_depth) < kNearViewRad;
+                               return TranslationDistance(view, T_map_depth) < kNearView_m &&
+                                      RotationAngle(view, T_map_depth) < kNearView_rad;
                              });
 }
 
-std::vector<int> Atlas::ToRecognise(const RigidTransform& T_map_depth) const {
+std::vector<int> Atlas::ToVerify(const RigidTransform& T_map_depth) const {
   std::vector<int> candidates;
   for (int i = 0; i < size(); ++i) {
     if (i == active_ || IsLinked(i, active_)) continue;
@@ -155,7 +155,7 @@ std::vector<int> Atlas::ToRecognise(const RigidTransform& T_map_depth) const {
 
 void Atlas::Link(int other, const RigidTransform& T_active_depth,
                  const RigidTransform& T_other_depth) {
-  const MapLink link{active_, other, T_active_depth, T_other_depth, kRecognisedM, kRecognisedRad};
+  const MapLink link{active_, other, T_active_depth, T_other_depth, kVerified_m, kVerified_rad};
   std::vector<RigidTransform> T_world_map;
   for (const auto& map : maps_) T_world_map.push_back(map->T_world_map);
   if (active().joined && map(other).joined) {
@@ -181,7 +181,7 @@ void Atlas::Link(int other, const RigidTransform& T_active_depth,
       a.joined = b.joined = grows = true;
     }
   }
-  SpreadMismatch(links_, T_world_map);
+  OptimisePoseGraph(links_, T_world_map);
   for (int i = 0; i < size(); ++i) maps_[i]->T_world_map = T_world_map[i];
 }
 
@@ -196,8 +196,8 @@ bool Atlas::Merge(double max_weight, ThreadPool& pool,
     has_room = MergeVolume({*map.tsdf, *map.thermal, map.T_world_map},
                            static_cast<float>(max_weight), pool, *world.tsdf, *world.thermal) &&
                has_room;
-    for (const RigidTransform& pose : map.relocaliser->library().poses())
-      world.relocaliser->Remember(map.T_world_map * pose);
+    for (const RigidTransform& pose : map.relocaliser->keyframes().poses())
+      world.relocaliser->Add(map.T_world_map * pose);
     world.integrated += map.integrated;
     maps_[i].reset();
     // From here on the map's place is empty; it is taken out below.

@@ -29,7 +29,7 @@ struct DriftReport {
 /// All sub-maps of a scan. One of them is active: the rig is tracked against it and fused into it.
 /// A new one is begun as the scan gets far from where the active one was begun, and takes over what
 /// is in view; or when the rig was lost for long, and then it is not joined yet. When a view is
-/// recognised in two sub-maps, they are linked, and what does not fit is spread over all links.
+/// verified in two sub-maps, they are linked, and what does not fit is spread over all links.
 /// All share the scan volume's grid, each in its own coordinates. Thread-bound.
 class Atlas {
  public:
@@ -55,7 +55,7 @@ class Atlas {
 
   /// Sub-maps which may show what is seen from a pose in the active one: not linked with it yet,
   /// and scanned from nearby. For one that is not joined: all others.
-  std::vector<int> ToRecognise(const RigidTransform& T_map_depth) const;
+  std::vector<int> ToVerify(const RigidTransform& T_map_depth) const;
   bool IsLinked(int a, int b) const;
   /// One of the views from which sub-map `index` was scanned is near a pose in its coordinates.
   bool IsNearView(int index, const RigidTransform& T_map_depth) const;
@@ -65,12 +65,12 @@ class Atlas {
   /// A pose and its covariance in `world`; nullopt while their sub-map is not joined.
   std::optional<WorldPose> ToWorld(const MapPose& pose) const;
 
-  /// The same view was recognised in the active sub-map and in another one: closes the loop.
+  /// The same view was verified in the active sub-map and in another one: closes the loop.
   void Link(int other, const RigidTransform& T_active_depth, const RigidTransform& T_other_depth);
   const DriftReport& drift() const { return drift_; }
 
   /// Puts all joined sub-maps into the first one, which becomes the active one. The others, which
-  /// were never joined, stay apart. `progress` gets a share 0..1. False if there was no room for
+  /// were never joined, stay apart. `progress` gets a fraction 0..1. False if there was no room for
   /// all temperatures.
   bool Merge(double max_weight, ThreadPool& pool, const std::function<void(double)>& progress);
 

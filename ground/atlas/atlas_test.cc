@@ -15,7 +15,7 @@ using testing::SphereDistance;
 
 const Eigen::Vector3d kCentre(0.08, 0.08, 0.08);
 
-RigidTransform Turned(double angle_deg, const Eigen::Vector3d& translation = {0, 0, 0}) {
+RigidTransform Rotated(double angle_deg, const Eigen::Vector3d& translation = {0, 0, 0}) {
   return MakeTransform(translation, Eigen::Quaterniond(Eigen::AngleAxisd(
                                         angle_deg * M_PI / 180.0, Eigen::Vector3d::UnitY())));
 }
@@ -23,8 +23,8 @@ RigidTransform Turned(double angle_deg, const Eigen::Vector3d& translation = {0,
 class AtlasTest : public ::testing::Test {
  protected:
   AtlasTest() {
-    options_.mutable_tsdf()->set_truncation_distance_m(testing::kTruncationM);
-    options_.mutable_submaps()->set_max_turn_deg(60.0);
+    options_.mutable_tsdf()->set_truncation_distance_m(testing::kTruncation_m);
+    options_.mutable_submaps()->set_max_rotation_deg(60.0);
     options_.mutable_submaps()->set_max_travel_m(1.0);
   }
   Atlas Make() const {
@@ -46,21 +46,21 @@ class AtlasTest : public ::testing::Test {
 
 TEST_F(AtlasTest, ASubMapEndsFarFromAllItsAnchors) {
   Atlas atlas = Make();
-  atlas.active().anchors = {Turned(0.0)};
-  EXPECT_FALSE(atlas.IsFar(0, Turned(59.0)));
-  EXPECT_TRUE(atlas.IsFar(0, Turned(61.0)));
-  EXPECT_FALSE(atlas.IsFar(0, Turned(0.0, {0.99, 0, 0})));
-  EXPECT_TRUE(atlas.IsFar(0, Turned(0.0, {1.01, 0, 0})));
-  atlas.active().anchors.push_back(Turned(100.0));
-  EXPECT_FALSE(atlas.IsFar(0, Turned(61.0)));
+  atlas.active().anchors = {Rotated(0.0)};
+  EXPECT_FALSE(atlas.IsFar(0, Rotated(59.0)));
+  EXPECT_TRUE(atlas.IsFar(0, Rotated(61.0)));
+  EXPECT_FALSE(atlas.IsFar(0, Rotated(0.0, {0.99, 0, 0})));
+  EXPECT_TRUE(atlas.IsFar(0, Rotated(0.0, {1.01, 0, 0})));
+  atlas.active().anchors.push_back(Rotated(100.0));
+  EXPECT_FALSE(atlas.IsFar(0, Rotated(61.0)));
 }
 
 TEST_F(AtlasTest, ZeroTurnsALimitOff) {
-  options_.mutable_submaps()->set_max_turn_deg(0.0);
+  options_.mutable_submaps()->set_max_rotation_deg(0.0);
   options_.mutable_submaps()->set_max_travel_m(0.0);
   Atlas atlas = Make();
-  atlas.active().anchors = {Turned(0.0)};
-  EXPECT_FALSE(atlas.IsFar(0, Turned(179.0, {100.0, 0, 0})));
+  atlas.active().anchors = {Rotated(0.0)};
+  EXPECT_FALSE(atlas.IsFar(0, Rotated(179.0, {100.0, 0, 0})));
 }
 
 TEST_F(AtlasTest, ASplitTakesOverWhatIsInView) {
@@ -70,7 +70,7 @@ TEST_F(AtlasTest, ASplitTakesOverWhatIsInView) {
   before.thermal->voxels(1)[7] =
       ThermalVoxel::Make(40.0F, ConditionClass::kGood, ConditionClass::kGood);
   const std::vector<std::int32_t> in_view = {1, 3};
-  ASSERT_TRUE(atlas.Split(Turned(60.0), in_view));
+  ASSERT_TRUE(atlas.Split(Rotated(60.0), in_view));
   EXPECT_EQ(atlas.active_index(), 1);
   EXPECT_TRUE(atlas.active().joined);
   EXPECT_TRUE(atlas.IsLinked(0, 1));
@@ -93,7 +93,7 @@ TEST_F(AtlasTest, AllSubMapsShareOneMemoryLimit) {
   Fill(atlas.active(), kCentre);
   ASSERT_EQ(atlas.active().tsdf->block_count(), 30);
   ASSERT_GT(atlas.active().tsdf->refused_blocks(), 0U);
-  EXPECT_FALSE(atlas.Split(Turned(60.0), AllBlocks(atlas.active())));
+  EXPECT_FALSE(atlas.Split(Rotated(60.0), AllBlocks(atlas.active())));
   EXPECT_EQ(atlas.size(), 1);
 }
 
@@ -102,15 +102,15 @@ TEST_F(AtlasTest, NoMoreSubMapsThanTheOptionAllows) {
   Atlas atlas = Make();
   EXPECT_TRUE(atlas.BeginElsewhere());
   EXPECT_FALSE(atlas.BeginElsewhere());
-  EXPECT_FALSE(atlas.Split(Turned(60.0), {}));
+  EXPECT_FALSE(atlas.Split(Rotated(60.0), {}));
   EXPECT_EQ(atlas.active_index(), 1);
 }
 
 TEST_F(AtlasTest, AClosureIsMeasuredAndSpread) {
   Atlas atlas = Make();
-  for (int i = 1; i <= 3; ++i) ASSERT_TRUE(atlas.Split(Turned(60.0 * i), {}));
-  const RigidTransform drifted = Turned(180.0, {0.012, 0.0, 0.0});
-  atlas.Link(0, drifted, Turned(180.0));
+  for (int i = 1; i <= 3; ++i) ASSERT_TRUE(atlas.Split(Rotated(60.0 * i), {}));
+  const RigidTransform drifted = Rotated(180.0, {0.012, 0.0, 0.0});
+  atlas.Link(0, drifted, Rotated(180.0));
   EXPECT_EQ(atlas.drift().closures, 1U);
   EXPECT_NEAR(atlas.drift().last_gap_m, 0.012, 1e-9);
   // The last sub-map has followed nearly all of the gap, the others by parts.
@@ -122,13 +122,13 @@ TEST_F(AtlasTest, AClosureIsMeasuredAndSpread) {
 TEST_F(AtlasTest, WhatWasBegunElsewhereIsJoinedByOneLinkAndMerged) {
   Atlas atlas = Make();
   Fill(atlas.active(), kCentre);
-  const RigidTransform T_world_map = Turned(0.0, {0.02, 0.0, 0.0});
+  const RigidTransform T_world_map = Rotated(0.0, {0.02, 0.0, 0.0});
   ASSERT_TRUE(atlas.BeginElsewhere());
   EXPECT_FALSE(atlas.active().joined);
-  EXPECT_FALSE(atlas.PoseIn(0, Turned(0.0)).has_value());
+  EXPECT_FALSE(atlas.PoseIn(0, Rotated(0.0)).has_value());
   Fill(atlas.active(), T_world_map.inverse() * kCentre);
-  const RigidTransform T_map_depth = Turned(10.0, {0.1, 0.2, -0.3});
-  EXPECT_EQ(atlas.ToRecognise(T_map_depth), std::vector<int>{0});
+  const RigidTransform T_map_depth = Rotated(10.0, {0.1, 0.2, -0.3});
+  EXPECT_EQ(atlas.ToVerify(T_map_depth), std::vector<int>{0});
   atlas.Link(0, T_map_depth, T_world_map * T_map_depth);
   EXPECT_TRUE(atlas.active().joined);
   EXPECT_EQ(atlas.drift().closures, 0U);  // There was nothing to miss.

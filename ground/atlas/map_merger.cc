@@ -34,14 +34,14 @@ std::optional<Sample> SampleDistance(const TsdfVolume& volume, const Eigen::Vect
   float weight = std::numeric_limits<float>::max();
   for (int corner = 0; corner < 8; ++corner) {
     const GridIndex step(corner & 1, (corner >> 1) & 1, corner >> 2);
-    double share = 1.0;
+    double part = 1.0;
     for (int axis = 0; axis < 3; ++axis)
-      share *= step[axis] == 1 ? fraction[axis] : 1.0 - fraction[axis];
+      part *= step[axis] == 1 ? fraction[axis] : 1.0 - fraction[axis];
     constexpr double kNothing = 1e-6;  // On a voxel's centre but for rounding.
-    if (share < kNothing) continue;
+    if (part < kNothing) continue;
     const TsdfVoxel neighbour = volume.VoxelAt(low + step);
     if (!neighbour.observed()) return std::nullopt;
-    tsdf += share * neighbour.tsdf();
+    tsdf += part * neighbour.tsdf();
     weight = std::min(weight, neighbour.weight());
   }
   return Sample{static_cast<float>(tsdf), weight};
@@ -126,7 +126,7 @@ bool MergeVolume(const PlacedVolume& source, float max_weight, ThreadPool& pool,
                  ThermalVolume& thermal) {
   CHECK(source.tsdf.grid().voxel_size_m == tsdf.grid().voxel_size_m);
   const std::vector<std::int32_t> reached = AllocateReached(source, tsdf);
-  const bool has_room = thermal.Back(tsdf.block_count());
+  const bool has_room = thermal.Commit(tsdf.block_count());
   constexpr int kBlocksPerTask = 16;
   const int count = static_cast<int>(reached.size());
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {

@@ -10,7 +10,7 @@ namespace isotherm {
 namespace {
 
 using testing::FillVolume;
-using testing::kTruncationM;
+using testing::kTruncation_m;
 using testing::SmallGrid;
 using testing::SphereDistance;
 
@@ -19,7 +19,7 @@ const Eigen::Vector3d kCentre(0.08, 0.08, 0.08);
 
 struct Volumes {
   explicit Volumes(std::int32_t max_blocks = 125)
-      : tsdf(SmallGrid(), kTruncationM, max_blocks), thermal(max_blocks) {}
+      : tsdf(SmallGrid(), kTruncation_m, max_blocks), thermal(max_blocks) {}
   TsdfVolume tsdf;
   ThermalVolume thermal;
 };
@@ -62,7 +62,7 @@ TEST_F(MapMergerTest, AMovedMapKeepsItsShape) {
       {0.0123, -0.0051, 0.0087},
       Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Eigen::Vector3d(1, 2, 3).normalized())));
   Merge(T_target_source);
-  constexpr double kCurvatureM = 0.004 * 0.004 / (2.0 * 0.03);
+  constexpr double kCurvature_m = 0.004 * 0.004 / (2.0 * 0.03);
   int compared = 0;
   for (std::int32_t block = 0; block < target_.tsdf.block_count(); ++block) {
     for (int i = 0; i < kBlockVoxels; ++i) {
@@ -70,8 +70,8 @@ TEST_F(MapMergerTest, AMovedMapKeepsItsShape) {
       if (!voxel.observed()) continue;
       const Eigen::Vector3d p =
           target_.tsdf.grid().VoxelCentre(testing::VoxelOfBlock(target_.tsdf, block, i));
-      EXPECT_NEAR(voxel.tsdf() * kTruncationM, SphereDistance(p, T_target_source * kCentre),
-                  kCurvatureM);
+      EXPECT_NEAR(voxel.tsdf() * kTruncation_m, SphereDistance(p, T_target_source * kCentre),
+                  kCurvature_m);
       ++compared;
     }
   }
@@ -86,7 +86,7 @@ TEST_F(MapMergerTest, DistancesAreAveragedByTheirWeights) {
   FillVolume(target_.tsdf, plane(0.084), 1.0F);
   Merge(RigidTransform::Identity());
   const TsdfVoxel voxel = target_.tsdf.VoxelAt({20, 20, 20});  // Centre at z = 0.082.
-  EXPECT_NEAR(voxel.tsdf() * kTruncationM, (3.0 * -0.002 + 1.0 * 0.002) / 4.0, 1e-6);
+  EXPECT_NEAR(voxel.tsdf() * kTruncation_m, (3.0 * -0.002 + 1.0 * 0.002) / 4.0, 1e-6);
   EXPECT_FLOAT_EQ(voxel.weight(), 4.0F);
 }
 

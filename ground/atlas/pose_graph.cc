@@ -64,7 +64,7 @@ RigidTransform Mismatch(const MapLink& link, const RigidTransform& T_world_a,
   return (T_world_a * link.T_a_depth).inverse() * (T_world_b * link.T_b_depth);
 }
 
-void SpreadMismatch(std::span<const MapLink> links, std::vector<RigidTransform>& T_world_map) {
+void OptimisePoseGraph(std::span<const MapLink> links, std::vector<RigidTransform>& T_world_map) {
   if (T_world_map.empty()) return;
   const std::vector<int> place = MovingMaps(links, T_world_map.size());
   Eigen::Index unknowns = 0;

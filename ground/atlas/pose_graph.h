@@ -25,6 +25,6 @@ RigidTransform Mismatch(const MapLink& link, const RigidTransform& T_world_a,
 /// Moves sub-maps so that all links are met as well as their uncertainties allow (least squares,
 /// Gauss-Newton on rigid motions; Grisetti et al., A tutorial on graph-based SLAM, 2010). The first
 /// sub-map stays where it is, and so do all that no chain of links connects with it.
-void SpreadMismatch(std::span<const MapLink> links, std::vector<RigidTransform>& T_world_map);
+void OptimisePoseGraph(std::span<const MapLink> links, std::vector<RigidTransform>& T_world_map);
 
 }  // namespace isotherm

@@ -26,7 +26,7 @@ TEST(PoseGraphTest, MapsThatAgreeStayWhereTheyAre) {
   const std::vector<MapLink> links = {Handover(0, 1, Pose(0.3, 0, 0, 0.5)),
                                       Handover(1, 2, Pose(0.6, 0, 0.1, 1.0))};
   std::vector<RigidTransform> maps(3, RigidTransform::Identity());
-  SpreadMismatch(links, maps);
+  OptimisePoseGraph(links, maps);
   for (const RigidTransform& map : maps) ExpectNear(map, RigidTransform::Identity(), kPrecise);
 }
 
@@ -35,7 +35,7 @@ TEST(PoseGraphTest, AnUnknownPlaceFollowsFromOneLink) {
   const RigidTransform T_map_depth = Pose(0.1, 0.2, 0.3, -0.7);
   std::vector<RigidTransform> maps(2, RigidTransform::Identity());
   const std::vector<MapLink> links = {{0, 1, T_world_map * T_map_depth, T_map_depth, 0.001, 0.001}};
-  SpreadMismatch(links, maps);
+  OptimisePoseGraph(links, maps);
   ExpectNear(maps[0], RigidTransform::Identity(), kPrecise);
   ExpectNear(maps[1], T_world_map, kPrecise);
 }
@@ -53,7 +53,7 @@ TEST(PoseGraphTest, AGapIsSharedEqually) {
   closure.sigma_rad = 1e-5;
   links.push_back(closure);
   std::vector<RigidTransform> maps(4, RigidTransform::Identity());
-  SpreadMismatch(links, maps);
+  OptimisePoseGraph(links, maps);
   for (int i = 0; i < 4; ++i) {
     EXPECT_LT((maps[i].translation() + gap * i / 4.0).norm(), kPrecise) << i;
   }
@@ -75,11 +75,11 @@ TEST(PoseGraphTest, ACertainClosureTakesAlmostAllOfTheGap) {
   const RigidTransform drifted = Pose(0.012, -0.004, 0.007, 0.01);
   const MapLink closure = {kMaps - 1, 0, drifted, truth, 0.0003, 0.0005};
   links.push_back(closure);
-  SpreadMismatch(links, maps);
+  OptimisePoseGraph(links, maps);
   const RigidTransform left = Mismatch(closure, maps[kMaps - 1], maps[0]);
-  constexpr double kShareLeft = 0.05;
-  EXPECT_LT(left.translation().norm(), kShareLeft * drifted.translation().norm());
-  // Each hand-over takes its share: none is torn open by more than twice the mean.
+  constexpr double kFractionLeft = 0.05;
+  EXPECT_LT(left.translation().norm(), kFractionLeft * drifted.translation().norm());
+  // Each hand-over takes its part: none is torn open by more than twice the mean.
   for (const MapLink& link : std::span(links).first(kMaps - 1)) {
     EXPECT_LT(Mismatch(link, maps[link.a], maps[link.b]).translation().norm(),
               2.0 * drifted.translation().norm() / (kMaps - 1));
@@ -93,7 +93,7 @@ TEST(PoseGraphTest, MapsWithoutAChainOfLinksStay) {
   const std::vector<MapLink> links = {
       {0, 1, Pose(0.1, 0, 0), RigidTransform::Identity(), 0.001, 0.001},
       {2, 3, Pose(0.1, 0, 0), RigidTransform::Identity(), 0.001, 0.001}};
-  SpreadMismatch(links, maps);
+  OptimisePoseGraph(links, maps);
   ExpectNear(maps[1], Pose(0.1, 0, 0), kPrecise);
   ExpectNear(maps[2], somewhere, 1e-15);
   ExpectNear(maps[3], somewhere, 1e-15);

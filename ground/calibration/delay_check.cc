@@ -17,13 +17,13 @@ namespace {
 
 constexpr double kSigmas = 3.0;
 // A frame that is dated less certainly says little.
-constexpr double kMostStampSigma_s = 0.003;
-constexpr double kVisibilityShare = 0.4;
+constexpr double kMaxStampSigma_s = 0.003;
+constexpr double kVisibilityFraction = 0.4;
 // Fewer than a calibration takes, for the operator waits.
-constexpr std::size_t kMostPoints = 12'000, kCoarsePoints = 2000, kFinePoints = kMostPoints;
+constexpr std::size_t kMaxPoints = 12'000, kCoarsePoints = 2000, kFinePoints = kMaxPoints;
 constexpr int kResamplings = 100;
 
-/// How fast the picture moves, pixels per second, by the last two poses.
+/// How fast the image moves, pixels per second, by the last two poses.
 double SpeedNow(const GroundPipeline& pipeline, const CameraModel& camera) {
   const std::optional<StampedMapPose> before = pipeline.tracker().motion().before_last();
   const std::optional<StampedMapPose> now = pipeline.tracker().motion().last();
@@ -65,8 +65,8 @@ std::string_view ToString(DelayVerdict verdict) {
   switch (verdict) {
     case DelayVerdict::kOff:
       return "off";
-    case DelayVerdict::kNotJudged:
-      return "could not be judged";
+    case DelayVerdict::kNotAssessed:
+      return "could not be assessed";
     case DelayVerdict::kAgrees:
       return "agrees";
     case DelayVerdict::kMoved:
@@ -75,7 +75,7 @@ std::string_view ToString(DelayVerdict verdict) {
   return "?";
 }
 
-DelayVerdict Judge(const DelayEstimate& off_by, double max_shift_s) {
+DelayVerdict Assess(const DelayEstimate& off_by, double max_shift_s) {
   const double shift_s = std::abs(off_by.delay_s);
   return shift_s > std::max(max_shift_s, kSigmas * off_by.sigma_s) ? DelayVerdict::kMoved
                                                                    : DelayVerdict::kAgrees;
@@ -106,7 +106,7 @@ DelayCheck::DelayCheck(const DelayCheckOptions& options, const Rig& rig,
 
 void DelayCheck::Add(const ThermalFramePtr& frame, const GroundPipeline& pipeline) {
   if (!options_.enabled() || !rig_.thermal || !frame->valid ||
-      ToSeconds(frame->header.capture_sigma) > kMostStampSigma_s)
+      ToSeconds(frame->header.capture_sigma) > kMaxStampSigma_s)
     return;
   if (frame->centikelvin.width() != rig_.thermal->width ||
       frame->centikelvin.height() != rig_.thermal->height)
@@ -124,12 +124,12 @@ DelayReport DelayCheck::Finish(GroundPipeline& pipeline,
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   report.elapsed_s = elapsed.count();
   if (!estimate) {
-    report.verdict = DelayVerdict::kNotJudged;
+    report.verdict = DelayVerdict::kNotAssessed;
     report.reason = estimate.error().message();
     return report;
   }
   report.off_by = *estimate;
-  report.verdict = Judge(*estimate, options_.max_shift_s());
+  report.verdict = Assess(*estimate, options_.max_shift_s());
   if (report.verdict == DelayVerdict::kMoved) {
     LOG(Calibrate, Warning) << "the delay between depth and thermal camera has changed: "
                             << Describe(report);
@@ -153,10 +153,10 @@ Result<DelayEstimate> DelayCheck::Estimate(GroundPipeline& pipeline,
     views.frames.push_back({frame->header.capture_time, {frame, &frame->centikelvin}, {}});
   }
   const Status surface =
-      AddSurface(pipeline.tsdf(), kMostPoints, options.search.range_s, pipeline.pool(), views,
-                 PartOf(progress, 0.0, kVisibilityShare));
+      AddSurface(pipeline.tsdf(), kMaxPoints, options.search.range_s, pipeline.pool(), views,
+                 PartOf(progress, 0.0, kVisibilityFraction));
   if (!surface.ok()) return Err(surface);
-  return FindDelay(views, options, pipeline.pool(), PartOf(progress, kVisibilityShare, 1.0));
+  return FindDelay(views, options, pipeline.pool(), PartOf(progress, kVisibilityFraction, 1.0));
 }
 
 }  // namespace isotherm

@@ -19,8 +19,8 @@ Status Validate(const DelayCheckOptions& options);
 
 /// Whether the constant delay between depth and thermal camera is still what was calibrated.
 enum class DelayVerdict : std::uint8_t {
-  kOff,        ///< Not to be checked.
-  kNotJudged,  ///< The scan cannot tell.
+  kOff,          ///< Not to be checked.
+  kNotAssessed,  ///< The scan cannot tell.
   kAgrees,
   kMoved,
 };
@@ -36,7 +36,7 @@ struct DelayReport {
 };
 
 /// Moved: by more than `max_shift_s` and more than three standard deviations.
-DelayVerdict Judge(const DelayEstimate& off_by, double max_shift_s);
+DelayVerdict Assess(const DelayEstimate& off_by, double max_shift_s);
 
 /// A line for the user, without its end.
 std::string Describe(const DelayReport& report);
@@ -51,8 +51,8 @@ class DelayCheck {
   /// After each thermal frame that the pipeline got. Keeps a reference to some of them.
   void Add(const ThermalFramePtr& frame, const GroundPipeline& pipeline);
 
-  /// After the pipeline's Finish. Logs a warning if the delay has moved. `progress` gets the share
-  /// done, 0..1.
+  /// After the pipeline's Finish. Logs a warning if the delay has moved. `progress` gets the
+  /// fraction done, 0..1.
   DelayReport Finish(GroundPipeline& pipeline, const std::function<void(double)>& progress) const;
 
  private:

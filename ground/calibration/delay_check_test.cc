@@ -129,17 +129,17 @@ TEST_F(DelayCheckTest, WhatAnEdgeAddedIsNotClaimed) {
               AllOf(HasSubstr("stamps are off by -"), ::testing::Not(HasSubstr("calibrated +"))));
 }
 
-TEST_F(DelayCheckTest, AFewFramesDoNotJudge) {
+TEST_F(DelayCheckTest, AFewFramesDoNotDecide) {
   const std::vector<std::shared_ptr<ThermalFrame>> all = frames_;
   frames_.resize(60);  // Three seconds.
   const DelayReport report = Check(0.02, 0.0);
   frames_ = all;
-  EXPECT_EQ(report.verdict, DelayVerdict::kNotJudged);
+  EXPECT_EQ(report.verdict, DelayVerdict::kNotAssessed);
   EXPECT_FALSE(report.off_by);
   EXPECT_THAT(report.reason, HasSubstr("scan for longer"));
 }
 
-TEST_F(DelayCheckTest, ASceneWithoutThermalContrastIsNotJudged) {
+TEST_F(DelayCheckTest, ASceneWithoutThermalContrastIsNotAssessed) {
   const std::vector<std::shared_ptr<ThermalFrame>> all = frames_;
   for (std::shared_ptr<ThermalFrame>& frame : frames_) {
     frame = std::make_shared<ThermalFrame>(*frame);
@@ -150,7 +150,7 @@ TEST_F(DelayCheckTest, ASceneWithoutThermalContrastIsNotJudged) {
   }
   const DelayReport report = Check(0.02, 0.0);
   frames_ = all;
-  EXPECT_EQ(report.verdict, DelayVerdict::kNotJudged);
+  EXPECT_EQ(report.verdict, DelayVerdict::kNotAssessed);
   EXPECT_THAT(report.reason, HasSubstr("thermal contrast"));
 }
 
@@ -162,7 +162,7 @@ TEST_F(DelayCheckTest, FramesWithoutACertainStampAreNotUsed) {
   }
   const DelayReport report = Check(0.02, 0.0);
   frames_ = all;
-  EXPECT_EQ(report.verdict, DelayVerdict::kNotJudged);
+  EXPECT_EQ(report.verdict, DelayVerdict::kNotAssessed);
   EXPECT_THAT(report.reason, HasSubstr("0 thermal frames"));
 }
 
@@ -186,18 +186,18 @@ TEST_F(DelayCheckTest, ABoundedNumberOfFramesIsKept) {
   EXPECT_LE(kept, 50);
 }
 
-TEST(DelayJudgementTest, MovedIsWhatIsBothLargeAndCertain) {
-  const auto judge = [](double off_s, double sigma_s) {
-    return Judge({.delay_s = off_s, .sigma_s = sigma_s}, 0.003);
+TEST(DelayAssessmentTest, MovedIsWhatIsBothLargeAndCertain) {
+  const auto assess = [](double off_s, double sigma_s) {
+    return Assess({.delay_s = off_s, .sigma_s = sigma_s}, 0.003);
   };
-  EXPECT_EQ(judge(0.0029, 0.0001), DelayVerdict::kAgrees) << "too small to matter";
-  EXPECT_EQ(judge(0.0031, 0.0001), DelayVerdict::kMoved);
-  EXPECT_EQ(judge(-0.0031, 0.0001), DelayVerdict::kMoved);
-  EXPECT_EQ(judge(0.0055, 0.0019), DelayVerdict::kAgrees) << "within three sigma";
-  EXPECT_EQ(judge(0.0060, 0.0019), DelayVerdict::kMoved);
+  EXPECT_EQ(assess(0.0029, 0.0001), DelayVerdict::kAgrees) << "too small to matter";
+  EXPECT_EQ(assess(0.0031, 0.0001), DelayVerdict::kMoved);
+  EXPECT_EQ(assess(-0.0031, 0.0001), DelayVerdict::kMoved);
+  EXPECT_EQ(assess(0.0055, 0.0019), DelayVerdict::kAgrees) << "within three sigma";
+  EXPECT_EQ(assess(0.0060, 0.0019), DelayVerdict::kMoved);
 }
 
-TEST(DelayJudgementTest, OptionsAreChecked) {
+TEST(DelayAssessmentTest, OptionsAreChecked) {
   EXPECT_TRUE(Validate(DelayCheckOptions()).ok());
   DelayCheckOptions options;
   options.set_max_shift_s(0.0);

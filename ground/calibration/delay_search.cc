@@ -13,8 +13,8 @@ namespace isotherm {
 namespace {
 
 // Of the scan, for a spread between them to mean something.
-constexpr int kLeastParts = 5;
-constexpr double kCoarseShare = 0.4, kAgainShare = 0.5;
+constexpr int kMinParts = 5;
+constexpr double kCoarseFraction = 0.4, kAgainFraction = 0.5;
 // To each side of the first minimum, when samples are weighed for it.
 constexpr int kAgainSteps = 4;
 constexpr int kWeighings = 2;
@@ -107,7 +107,7 @@ Status CheckEstimate(const DelayEstimate& estimate, const DelaySearchOptions& op
     return OkStatus();
   return FailedPrecondition(fmt::format(
       "the delay cannot be told: about {:.1f} ms, but uncertain by {:.1f} ms (allowed {:.1f} ms), "
-      "and the pictures disagree {:.2f} times as much {:.0f} ms away (needed {:.2f}); move the rig "
+      "and the images disagree {:.2f} times as much {:.0f} ms away (needed {:.2f}); move the rig "
       "back and forth faster, in front of something with more thermal contrast",
       1e3 * estimate.delay_s, 1e3 * estimate.sigma_s, 1e3 * options.max_sigma_s, estimate.contrast,
       1e3 * options.fine_steps * options.fine_step_s, options.min_contrast));
@@ -118,39 +118,39 @@ Status CheckEstimate(const DelayEstimate& estimate, const DelaySearchOptions& op
 Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, const WeighAt& weigh_at,
                                   int parts, const DelaySearchOptions& options,
                                   const std::function<void(double)>& progress) {
-  const auto share = [&](double from, double to) {
+  const auto fraction = [&](double from, double to) {
     return [&progress, from, to](double done) {
       if (progress) progress(from + (to - from) * done);
     };
   };
-  if (parts < kLeastParts) {
+  if (parts < kMinParts) {
     return Err(FailedPrecondition(
         fmt::format("{} parts of the scan show the surface to the thermal camera while the rig's "
                     "motion is known, {} are needed: scan for longer",
-                    parts, kLeastParts)));
+                    parts, kMinParts)));
   }
   const std::vector<PartWeights> resamplings = Resample(parts, options);
   const std::vector<PartWeights> whole(1, resamplings.front());
   const auto coarse_steps = static_cast<int>(std::lround(options.range_s / options.coarse_step_s));
   const Grid coarse = Evaluate(disagreement, 0.0, options.coarse_step_s, coarse_steps, false, whole,
-                               share(0.0, kCoarseShare));
+                               fraction(0.0, kCoarseFraction));
   std::optional<double> near = Minimum(coarse, 0);
   for (int round = 0; near && round < kWeighings; ++round) {
     weigh_at(*near);
     const Grid around = Evaluate(disagreement, *near, options.coarse_step_s, kAgainSteps, false,
-                                 whole, share(kCoarseShare, kAgainShare));
+                                 whole, fraction(kCoarseFraction, kAgainFraction));
     near = Minimum(around, 0);
   }
   const double reach_s = options.fine_steps * options.fine_step_s;
   if (!near || std::abs(*near) + reach_s > options.range_s) {
-    return Err(FailedPrecondition(fmt::format(
-        "no delay within {:.0f} ms makes the thermal pictures agree: there is too little "
-        "motion back and forth, too little thermal contrast, or the delay is larger "
-        "(--range)",
-        1e3 * (options.range_s - reach_s))));
+    return Err(FailedPrecondition(
+        fmt::format("no delay within {:.0f} ms makes the thermal images agree: there is too little "
+                    "motion back and forth, too little thermal contrast, or the delay is larger "
+                    "(--range)",
+                    1e3 * (options.range_s - reach_s))));
   }
   const Grid fine = Evaluate(disagreement, *near, options.fine_step_s, options.fine_steps, true,
-                             resamplings, share(kAgainShare, 1.0));
+                             resamplings, fraction(kAgainFraction, 1.0));
   const std::optional<double> minimum = Minimum(fine, 0);
   const std::vector<double> curve = fine.Curve(0);
   const double least = *std::min_element(curve.begin(), curve.end());

@@ -11,8 +11,8 @@ namespace isotherm {
 /// How often each part of a scan counts. All ones is the scan as it is.
 using PartWeights = std::vector<double>;
 
-/// How much the thermal pictures disagree at one delay in seconds, by resampling of the scan's
-/// parts. Every delay must judge the same samples. `fine`: as exactly as possible, otherwise fast.
+/// How much the thermal images disagree at one delay in seconds, by resampling of the scan's
+/// parts. Every delay must assess the same samples. `fine`: as exactly as possible, otherwise fast.
 using DisagreementOf = std::function<std::vector<double>(
     double delay_s, bool fine, const std::vector<PartWeights>& resamplings)>;
 
@@ -26,7 +26,7 @@ struct DelaySearchOptions {
   double fine_step_s = 0.003;
   int fine_steps = 5;          ///< To each side of the coarse minimum.
   double max_sigma_s = 0.002;  ///< An estimate less certain than this is none.
-  /// By this factor at least, pictures must disagree more at the ends of the fine steps than at the
+  /// By this factor at least, images must disagree more at the ends of the fine steps than at the
   /// minimum.
   double min_contrast = 1.02;
   int resamplings = 200;
@@ -40,10 +40,10 @@ struct DelayEstimate {
   int parts = 0;          ///< Parts of the scan that were resampled.
 };
 
-/// The delay at which thermal pictures disagree least: on a grid, then on a fine grid around its
+/// The delay at which thermal images disagree least: on a grid, then on a fine grid around its
 /// minimum, there by a parabola. Resampling the `parts` of the scan (bootstrap) gives the
 /// uncertainty. Fails if the parts are too few, if the minimum lies at the end of the range, is too
-/// flat or too uncertain, and says what the scan lacks. Deterministic. `progress` gets the share
+/// flat or too uncertain, and says what the scan lacks. Deterministic. `progress` gets the fraction
 /// done, 0..1.
 Result<DelayEstimate> SearchDelay(const DisagreementOf& disagreement, const WeighAt& weigh_at,
                                   int parts, const DelaySearchOptions& options,

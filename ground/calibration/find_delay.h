@@ -16,9 +16,9 @@ struct FindDelayOptions {
   std::size_t fine_points = 30'000;  ///< For the result and its uncertainty.
 };
 
-/// The delay, to be added to the stamps, at which the thermal pictures of a scan agree about the
+/// The delay, to be added to the stamps, at which the thermal images of a scan agree about the
 /// surface. Its sigma holds, beside the spread of parts of the scan, what poses lag. Fails and says
-/// what the scan lacks. Deterministic. `progress` gets the share done, 0..1.
+/// what the scan lacks. Deterministic. `progress` gets the fraction done, 0..1.
 Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& options,
                                 ThreadPool& pool, const std::function<void(double)>& progress);
 

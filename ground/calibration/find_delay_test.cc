@@ -48,7 +48,7 @@ Image<std::uint16_t> Render(double time_s, const Disturbances& disturbances) {
   const RigidTransform T_world_thermal = PoseAt(time_s);
   const std::uint64_t stream =
       NoiseStream(disturbances.seed, 1, std::bit_cast<std::uint64_t>(time_s));
-  Image<std::uint16_t> picture(kWidth, kHeight);
+  Image<std::uint16_t> image(kWidth, kHeight);
   for (int v = 0; v < kHeight; ++v) {
     for (int u = 0; u < kWidth; ++u) {
       const Eigen::Vector3d ray =
@@ -59,10 +59,10 @@ Image<std::uint16_t> Render(double time_s, const Disturbances& disturbances) {
       const double noise_k = disturbances.pixel_noise_k *
                              NormalNoise(stream, static_cast<std::uint64_t>(v * kWidth + u));
       const double celsius = Celsius(p.x(), p.y()) + noise_k;
-      picture.At(u, v) = static_cast<std::uint16_t>(std::lround(100.0 * (celsius + 273.15)));
+      image.At(u, v) = static_cast<std::uint16_t>(std::lround(100.0 * (celsius + 273.15)));
     }
   }
-  return picture;
+  return image;
 }
 
 /// All that a scan of 10 s offers whose thermal stamps need `delay_s` to be added.
@@ -89,7 +89,7 @@ ScanViews SwingInFrontOfAWall(double delay_s, const Disturbances& disturbances =
         {kStart + FromSeconds(stamp_s),
          std::make_shared<const Image<std::uint16_t>>(Render(time_s, disturbances)),
          {}});
-    // All points stay in the picture. Poses are known for all delays that are tried.
+    // All points stay in the image. Poses are known for all delays that are tried.
     if (stamp_s < 0.2 || stamp_s > 9.75) continue;
     for (std::uint32_t point = 0; point < views.points.size(); ++point)
       views.frames.back().visible.push_back(point);
@@ -120,10 +120,10 @@ TEST(FindDelayTest, WithoutThermalContrastNothingIsFound) {
   ScanViews views = SwingInFrontOfAWall(0.01);
   std::uint64_t counter = 0;
   for (StampedThermal& frame : views.frames) {
-    Image<std::uint16_t> picture = *frame.centikelvin;
-    for (std::uint16_t& pixel : picture.pixels())
+    Image<std::uint16_t> image = *frame.centikelvin;
+    for (std::uint16_t& pixel : image.pixels())
       pixel = static_cast<std::uint16_t>(31'300.0F + 4.0F * NormalNoise(9, counter++));
-    frame.centikelvin = std::make_shared<const Image<std::uint16_t>>(std::move(picture));
+    frame.centikelvin = std::make_shared<const Image<std::uint16_t>>(std::move(image));
   }
   const Result<DelayEstimate> found = Find(views);
   ASSERT_FALSE(found.has_value());

@@ -13,8 +13,8 @@ namespace isotherm {
 namespace {
 
 // Surfaces more oblique than this (cosine) are left out: emissivity changes with the angle there.
-constexpr double kLeastCosine = 0.7;
-// The surface is cast with pixels this many times as large as the picture's, and a point must be
+constexpr double kMinCosine = 0.7;
+// The surface is cast with pixels this many times as large as the image's, and a point must be
 // on it in the pixels around too: so far it is from what hides it, and from its own silhouette.
 constexpr int kHalvings = 2;
 // Slope of the most oblique surface times half the diagonal of three such pixels, in focal lengths
@@ -22,7 +22,7 @@ constexpr int kHalvings = 2;
 constexpr double kNeighbourhood_px = 2.2;
 constexpr double kSurfaceNoise_m = 0.005;
 constexpr double kBorder_px = 4.0;
-constexpr float kLeastWeight = 2.0F;
+constexpr float kMinWeight = 2.0F;
 constexpr std::size_t kPointViews = 60;
 // Poses closer in time than this show the same.
 constexpr double kPoseSpacing_s = 0.045;
@@ -40,8 +40,8 @@ class PoseViewer {
         tsdf_(tsdf),
         pool_(pool),
         ideal_(views.thermal_camera.WithoutDistortion().Downscaled(kHalvings)),
-        tolerance_per_m_(kNeighbourhood_px / ideal_.fx *
-                         std::sqrt(1.0 - kLeastCosine * kLeastCosine) / kLeastCosine) {
+        tolerance_per_m_(kNeighbourhood_px / ideal_.fx * std::sqrt(1.0 - kMinCosine * kMinCosine) /
+                         kMinCosine) {
     const CameraModel& camera = views.thermal_camera;
     for (const double u : {0.0, camera.width - 1.0}) {
       for (const double v : {0.0, camera.height - 1.0})
@@ -52,7 +52,7 @@ class PoseViewer {
   PoseView See(const StampedPose& pose) {
     const RigidTransform T_world_thermal = pose.T_world_depth * views_.T_thermal_depth.inverse();
     const RigidTransform T_thermal_world = T_world_thermal.inverse();
-    raycaster_.Cast(tsdf_, ideal_, T_world_thermal, kLeastWeight, pool_, maps_);
+    raycaster_.Cast(tsdf_, ideal_, T_world_thermal, kMinWeight, pool_, maps_);
     MakeDepths(T_thermal_world);
     PoseView view{pose.time, std::vector<std::uint8_t>(views_.points.size(), 0)};
     constexpr int kPointsPerTask = 1024;
@@ -82,7 +82,7 @@ class PoseViewer {
     const Eigen::Vector3d p_thermal = T_thermal_world * point.p_world;
     if (p_thermal.z() < 0.05) return false;
     const Eigen::Vector3d n_thermal = T_thermal_world.linear() * point.n_world;
-    if (-n_thermal.dot(p_thermal) < kLeastCosine * p_thermal.norm()) return false;
+    if (-n_thermal.dot(p_thermal) < kMinCosine * p_thermal.norm()) return false;
     const Eigen::Vector2d normalized = p_thermal.head<2>() / p_thermal.z();
     // Further out distortion folds back.
     if (normalized.norm() > max_normalized_) return false;
@@ -163,8 +163,8 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
     const StampedThermal& frame = views.frames[view * views.frames.size() / count];
     const auto T_world_depth = InterpolatePose(views.trajectory, frame.time);
     if (!T_world_depth) continue;
-    raycaster.Cast(tsdf, camera, *T_world_depth * views.T_thermal_depth.inverse(), kLeastWeight,
-                   pool, maps);
+    raycaster.Cast(tsdf, camera, *T_world_depth * views.T_thermal_depth.inverse(), kMinWeight, pool,
+                   maps);
     const std::uint64_t stream = NoiseStream(1, 0x706f696e7473, view);
     for (std::uint64_t i = 0; i < most / count; ++i) {
       const auto x = static_cast<int>(UniformNoise(stream, 2 * i) * maps.width());

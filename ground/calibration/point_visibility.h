@@ -17,9 +17,9 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
                                      std::size_t most, ThreadPool& pool);
 
 /// Fills StampedThermal::visible: the points that the thermal camera sees from all poses of the
-/// trajectory within `range_s` of the picture's stamp, clear of silhouettes and not too obliquely.
+/// trajectory within `range_s` of the image's stamp, clear of silhouettes and not too obliquely.
 /// The surface of `tsdf` (in the trajectory's `world`) decides, cast from poses a few hundredths of
-/// a second apart. `progress` gets the share done, 0..1.
+/// a second apart. `progress` gets the fraction done, 0..1.
 void FindVisiblePoints(const TsdfVolume& tsdf, double range_s, ThreadPool& pool, ScanViews& views,
                        const std::function<void(double)>& progress);
 

@@ -18,14 +18,14 @@
 namespace isotherm {
 namespace {
 
-constexpr std::size_t kMostFrames = 1200;
-constexpr std::size_t kMostPoints = 30'000;
-constexpr std::size_t kLeastPoints = 500;
-constexpr std::size_t kLeastFrames = 40;
-constexpr double kReadShare = 0.8;
-constexpr double kLeastTracked = 0.5;
+constexpr std::size_t kMaxFrames = 1200;
+constexpr std::size_t kMaxPoints = 30'000;
+constexpr std::size_t kMinPoints = 500;
+constexpr std::size_t kMinFrames = 40;
+constexpr double kReadFraction = 0.8;
+constexpr double kMinTracked = 0.5;
 // Slower than this, a millisecond is lost in the noise of all pixels together.
-constexpr double kLeastMotion_px_s = 4.0;
+constexpr double kMinMotion_px_s = 4.0;
 
 std::uint64_t Count(const RecordingInfo& info, const std::string& topic) {
   const auto found = info.messages_by_topic.find(topic);
@@ -35,9 +35,9 @@ std::uint64_t Count(const RecordingInfo& info, const std::string& topic) {
 Status CheckContents(const RecordingInfo& info, const Rig& rig) {
   if (Count(info, "/depth") == 0)
     return FailedPrecondition("the recording has no depth frames, so its motion is not known");
-  if (Count(info, "/thermal") < kLeastFrames) {
+  if (Count(info, "/thermal") < kMinFrames) {
     return FailedPrecondition(fmt::format("the recording has {} thermal frames, {} are needed",
-                                          Count(info, "/thermal"), kLeastFrames));
+                                          Count(info, "/thermal"), kMinFrames));
   }
   if (!rig.depth) return FailedPrecondition("the calibration has no depth camera");
   return CheckThermalFusion(rig);
@@ -50,7 +50,7 @@ class Reader {
       : reader_(reader),
         pipeline_(pipeline),
         rig_(rig),
-        stride_(1 + Count(reader.info(), "/thermal") / kMostFrames) {}
+        stride_(1 + Count(reader.info(), "/thermal") / kMaxFrames) {}
 
   void Run(const std::function<void(double)>& progress) {
     std::uint64_t total = 0, read = 0;
@@ -104,7 +104,7 @@ class Reader {
 
 Status CheckTracked(const PipelineCounts& counts) {
   const auto tracked = static_cast<double>(counts.depth_tracked + counts.depth_repeated);
-  if (tracked >= kLeastTracked * static_cast<double>(counts.depth_in)) return OkStatus();
+  if (tracked >= kMinTracked * static_cast<double>(counts.depth_in)) return OkStatus();
   return FailedPrecondition(
       fmt::format("only {} of {} depth frames could be tracked, so the motion is not known "
                   "(options as for `isotherm reconstruct`: --config, --set)",
@@ -113,7 +113,7 @@ Status CheckTracked(const PipelineCounts& counts) {
 
 }  // namespace
 
-double PictureSpeed(const ScanViews& views) {
+double ImageSpeed(const ScanViews& views) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const TexturePoint& point : views.points)
     middle += point.p_world / static_cast<double>(views.points.size());
@@ -150,24 +150,24 @@ std::optional<double> AppliedDelay(const RecordingInfo& info) {
   return 0.0;
 }
 
-Status AddSurface(const TsdfVolume& tsdf, std::size_t most_points, double range_s, ThreadPool& pool,
+Status AddSurface(const TsdfVolume& tsdf, std::size_t max_points, double range_s, ThreadPool& pool,
                   ScanViews& views, const std::function<void(double)>& progress) {
-  if (views.frames.size() < kLeastFrames) {
-    return FailedPrecondition(fmt::format("{} thermal frames are valid, {} are needed",
-                                          views.frames.size(), kLeastFrames));
+  if (views.frames.size() < kMinFrames) {
+    return FailedPrecondition(
+        fmt::format("{} thermal frames are valid, {} are needed", views.frames.size(), kMinFrames));
   }
-  views.points = DrawPoints(tsdf, views, most_points, pool);
-  if (views.points.size() < kLeastPoints) {
+  views.points = DrawPoints(tsdf, views, max_points, pool);
+  if (views.points.size() < kMinPoints) {
     return FailedPrecondition(
         fmt::format("the thermal camera sees {} points of the surface, {} are needed",
-                    views.points.size(), kLeastPoints));
+                    views.points.size(), kMinPoints));
   }
-  const double speed_px_s = PictureSpeed(views);
-  if (speed_px_s < kLeastMotion_px_s) {
+  const double speed_px_s = ImageSpeed(views);
+  if (speed_px_s < kMinMotion_px_s) {
     return FailedPrecondition(
-        fmt::format("the rig hardly moves: the surface goes through the thermal picture at {:.1f} "
+        fmt::format("the rig hardly moves: the surface goes through the thermal image at {:.1f} "
                     "pixels a second, {:.0f} are needed; move it back and forth",
-                    speed_px_s, kLeastMotion_px_s));
+                    speed_px_s, kMinMotion_px_s));
   }
   FindVisiblePoints(tsdf, range_s, pool, views, progress);
   return OkStatus();
@@ -189,7 +189,7 @@ Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
   if (!pipeline) return Err(pipeline.error());
 
   Reader frames(**reader, **pipeline, *rig);
-  frames.Run(PartOf(progress, 0.0, kReadShare));
+  frames.Run(PartOf(progress, 0.0, kReadFraction));
   ScanForCalibration scan{{}, *rig, AppliedDelay((*reader)->info())};
   scan.views.thermal_camera = *rig->thermal;
   scan.views.T_thermal_depth = *rig->T_thermal_depth;
@@ -197,8 +197,8 @@ Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
   scan.views.frames = frames.TakeFrames();
   Status fit = CheckTracked((*pipeline)->counts());
   if (fit.ok()) {
-    fit = AddSurface((*pipeline)->tsdf(), kMostPoints, range_s, (*pipeline)->pool(), scan.views,
-                     PartOf(progress, kReadShare, 1.0));
+    fit = AddSurface((*pipeline)->tsdf(), kMaxPoints, range_s, (*pipeline)->pool(), scan.views,
+                     PartOf(progress, kReadFraction, 1.0));
   }
   if (!fit.ok()) return Err(fit.WithContext(recording.string()));
   if (progress) progress(1.0);

@@ -14,15 +14,15 @@ namespace isotherm {
 class GroundOptions;
 struct RecordingInfo;
 
-/// Adds up to `most_points` points of the surface of `tsdf` (in the trajectory's `world`) to
+/// Adds up to `max_points` points of the surface of `tsdf` (in the trajectory's `world`) to
 /// thermal frames and a trajectory, and which of them the frames show at all delays in [-range_s,
-/// range_s]. Fails with what is missing: frames, surface, motion. `progress` gets the share done,
-/// 0..1.
-Status AddSurface(const TsdfVolume& tsdf, std::size_t most_points, double range_s, ThreadPool& pool,
+/// range_s]. Fails with what is missing: frames, surface, motion. `progress` gets the fraction
+/// done, 0..1.
+Status AddSurface(const TsdfVolume& tsdf, std::size_t max_points, double range_s, ThreadPool& pool,
                   ScanViews& views, const std::function<void(double)>& progress);
 
-/// RMS speed of the surface's middle in the thermal picture, pixels per second.
-double PictureSpeed(const ScanViews& views);
+/// RMS speed of the surface's middle in the thermal image, pixels per second.
+double ImageSpeed(const ScanViews& views);
 
 /// The delay that a recording's thermal stamps contain already: that of the edge that made it, in
 /// seconds; 0 for other recordings; nullopt if it was made by the ground, which is not told.
@@ -36,8 +36,8 @@ struct ScanForCalibration {
 
 /// Tracks the depth camera through a recording and takes a sample of the surface and of the valid
 /// thermal frames, and which points they show at all delays in [-range_s, range_s]. Fails with what
-/// is missing: calibration, depth, thermal frames, poses, motion. `progress` gets the share done,
-/// 0..1.
+/// is missing: calibration, depth, thermal frames, poses, motion. `progress` gets the fraction
+/// done, 0..1.
 Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
                                     const GroundOptions& options, double range_s,
                                     const std::function<void(double)>& progress);

@@ -14,27 +14,26 @@ namespace {
 constexpr double kLongestGap_s = 0.15;
 constexpr double kNoise_k = 0.1;
 constexpr double kMisalignment_px = 0.5;
-constexpr double kLeastFrames = 8.0;
-constexpr double kMostParts = 40.0;
+constexpr double kMinFrames = 8.0;
+constexpr double kMaxParts = 40.0;
 
 struct Sample {
   double celsius = 0.0;
   double gradient_k_px = 0.0;
 };
 
-/// Bilinear value and central differences; nullopt where the picture has no value.
-std::optional<Sample> SampleAt(const Image<std::uint16_t>& picture, double u, double v) {
+/// Bilinear value and central differences; nullopt where the image has no value.
+std::optional<Sample> SampleAt(const Image<std::uint16_t>& image, double u, double v) {
   const int x = static_cast<int>(u), y = static_cast<int>(v);
-  if (u < 1.0 || v < 1.0 || x + 2 >= picture.width() || y + 2 >= picture.height())
-    return std::nullopt;
+  if (u < 1.0 || v < 1.0 || x + 2 >= image.width() || y + 2 >= image.height()) return std::nullopt;
   const double a = u - x, b = v - y;
-  const double v00 = picture.At(x, y), v10 = picture.At(x + 1, y);
-  const double v01 = picture.At(x, y + 1), v11 = picture.At(x + 1, y + 1);
+  const double v00 = image.At(x, y), v10 = image.At(x + 1, y);
+  const double v01 = image.At(x, y + 1), v11 = image.At(x + 1, y + 1);
   if (v00 == 0.0 || v10 == 0.0 || v01 == 0.0 || v11 == 0.0) return std::nullopt;
   const double top = v00 + a * (v10 - v00), bottom = v01 + a * (v11 - v01);
   const double dx = (1.0 - b) * (v10 - v00) + b * (v11 - v01);
   const double dy = bottom - top;
-  return Sample{(top + b * (bottom - top)) / kCentikelvinPerKelvin - kCelsiusZeroKelvin,
+  return Sample{(top + b * (bottom - top)) / kCentikelvinPerKelvin - kCelsiusZero_k,
                 std::hypot(dx, dy) / kCentikelvinPerKelvin};
 }
 
@@ -63,7 +62,7 @@ void TextureConsistency::MakeParts(double part_s) {
   if (views_.frames.empty()) return;
   const CaptureTime start = views_.frames.front().time;
   const double length_s =
-      std::max(part_s, ToSeconds(views_.frames.back().time - start) / kMostParts);
+      std::max(part_s, ToSeconds(views_.frames.back().time - start) / kMaxParts);
   for (std::size_t i = 0; i < views_.frames.size(); ++i) {
     if (views_.frames[i].visible.empty()) continue;
     const auto part = static_cast<std::size_t>(ToSeconds(views_.frames[i].time - start) / length_s);
@@ -85,7 +84,7 @@ void TextureConsistency::WeighAt(double delay_s) {
       sum.value += part[i].value;
       sum.gradient += part[i].gradient;
     }
-    if (sum.count < kLeastFrames) continue;
+    if (sum.count < kMinFrames) continue;
     means_celsius_[i] = sum.value / sum.count;
     const double misaligned_k = kMisalignment_px * sum.gradient / sum.count;
     weights_[i] = 1.0 / (kNoise_k * kNoise_k + misaligned_k * misaligned_k);
@@ -107,7 +106,7 @@ std::vector<double> TextureConsistency::Measure(double delay_s, std::size_t poin
         value += times[part] * parts[part][i].value;
         squares += times[part] * parts[part][i].squares;
       }
-      if (count < kLeastFrames) continue;
+      if (count < kMinFrames) continue;
       total += weights_[i] * std::max(0.0, squares - value * value / count);
       freedom += weights_[i] > 0.0 ? count - 1.0 : 0.0;
     }

@@ -21,7 +21,7 @@ struct TexturePoint {
   Eigen::Vector3d n_world = Eigen::Vector3d::Zero();  ///< Unit, towards the observer.
 };
 
-/// A thermal picture with its stamp as the recording has it.
+/// A thermal image with its stamp as the recording has it.
 struct StampedThermal {
   CaptureTime time;
   std::shared_ptr<const Image<std::uint16_t>> centikelvin;  ///< As ThermalFrame::centikelvin.
@@ -43,7 +43,7 @@ struct ScanViews {
 std::optional<RigidTransform> InterpolatePose(const std::vector<StampedPose>& trajectory,
                                               CaptureTime time);
 
-/// Projects thermal pictures onto the surface at poses that a delay puts them at, and measures how
+/// Projects thermal images onto the surface at poses that a delay puts them at, and measures how
 /// much they disagree about each point: its variance over the scan, relative to what noise and half
 /// a pixel of misalignment would give there, so that hot edges do not outweigh everything else.
 /// Samples and their weights are the same for all delays. Thread-compatible.

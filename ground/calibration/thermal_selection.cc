@@ -6,7 +6,9 @@
 
 namespace isotherm {
 
-ThermalSelection::ThermalSelection(std::size_t most) : most_(most) { CHECK(most >= 2); }
+ThermalSelection::ThermalSelection(std::size_t max_frames) : max_frames_(max_frames) {
+  CHECK(max_frames >= 2);
+}
 
 void ThermalSelection::Add(ThermalFramePtr frame, double speed) {
   if (in_bucket_ < stride_ && !kept_.empty()) {
@@ -14,10 +16,10 @@ void ThermalSelection::Add(ThermalFramePtr frame, double speed) {
     if (speed > kept_.back().speed) kept_.back() = {std::move(frame), speed};
     return;
   }
-  if (kept_.size() == most_) {
+  if (kept_.size() == max_frames_) {
     Halve();
     // An odd last one stands for half of what it could.
-    if (most_ % 2 != 0) {
+    if (max_frames_ % 2 != 0) {
       in_bucket_ = stride_ / 2;
       Add(std::move(frame), speed);
       return;

@@ -13,9 +13,9 @@ namespace isotherm {
 class ThermalSelection {
  public:
   /// `most` >= 2.
-  explicit ThermalSelection(std::size_t most);
+  explicit ThermalSelection(std::size_t max_frames);
 
-  /// In order of capture time. `speed`: of the picture, in any unit, the same for all.
+  /// In order of capture time. `speed`: of the image, in any unit, the same for all.
   void Add(ThermalFramePtr frame, double speed);
 
   /// By time; not more than `most`.
@@ -30,7 +30,7 @@ class ThermalSelection {
   /// Keeps the faster one of each two neighbours.
   void Halve();
 
-  const std::size_t most_;
+  const std::size_t max_frames_;
   std::size_t stride_ = 1;     ///< Frames that each of the kept ones stands for.
   std::size_t in_bucket_ = 0;  ///< Frames that the last one stands for so far.
   std::vector<Kept> kept_;

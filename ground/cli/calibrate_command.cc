@@ -24,7 +24,7 @@ namespace {
 
 constexpr const char* kFooter =
     R"(Finds thermal_delay_s, which is added to thermal stamps so that they mean the same moment as depth
-stamps. The depth camera is tracked through the recording; then thermal pictures are projected onto the
+stamps. The depth camera is tracked through the recording; then thermal images are projected onto the
 surface at the poses that a delay puts them at, and the delay is sought at which they agree. The recording
 should show a surface with clear thermal contrast for 10 s or more while the rig is moved back and forth.
 Parts of the scan are resampled to say how certain the result is; nothing is written if it is not, or
@@ -40,7 +40,7 @@ Examples:
   isotherm calibrate time scan.mcap --rig rig.textproto --apply
   isotherm calibrate time scan.mcap --rig rig.textproto --output rig_new.textproto)";
 
-constexpr double kReadShare = 0.8;
+constexpr double kReadFraction = 0.8;
 
 struct Arguments {
   std::string recording, rig, output, config;
@@ -130,10 +130,10 @@ void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, const 
       "{} parts of the scan)\n",
       change.after_s, 1e3 * change.after_s, 1e3 * estimate.sigma_s, estimate.parts);
   fmt::print(
-      "pictures disagree {:.1f} times as much 15 ms away; {} thermal frames, {} surface "
+      "images disagree {:.1f} times as much 15 ms away; {} thermal frames, {} surface "
       "points, {:.0f} px/s\n",
       estimate.contrast, scan.views.frames.size(), scan.views.points.size(),
-      PictureSpeed(scan.views));
+      ImageSpeed(scan.views));
   if (scan.applied_delay_s.value_or(0.0) != 0.0) {
     fmt::print("of it, {:+.1f} ms were in the recording's stamps already\n",
                1e3 * *scan.applied_delay_s);
@@ -153,18 +153,18 @@ int Run(const Arguments& arguments) {
     rig = std::move(*loaded);
   }
   std::optional<ProgressBar> bar;
-  const auto progress = [&bar](double share) {
+  const auto progress = [&bar](double fraction) {
     if (!bar) bar.emplace("calibrating", 0, "");
-    bar->Update(share);
+    bar->Update(fraction);
   };
   const Result<ScanForCalibration> scan =
       ReadScan(arguments.recording, options, arguments.find.search.range_s,
-               [&](double share) { progress(kReadShare * share); });
+               [&](double fraction) { progress(kReadFraction * fraction); });
   if (!scan) return Fail(scan.error());
   ThreadPool pool(ChosenThreads(arguments.threads));
-  const Result<DelayEstimate> estimate =
-      FindDelay(scan->views, arguments.find, pool,
-                [&](double share) { progress(kReadShare + (1.0 - kReadShare) * share); });
+  const Result<DelayEstimate> estimate = FindDelay(
+      scan->views, arguments.find, pool,
+      [&](double fraction) { progress(kReadFraction + (1.0 - kReadFraction) * fraction); });
   if (estimate && bar) bar->Finish();
   bar.reset();
   if (!estimate) return Fail(estimate.error().WithContext(arguments.recording));
@@ -173,7 +173,7 @@ int Run(const Arguments& arguments) {
   Print(*scan, *estimate, *change);
   DelayEstimate moved_by = *estimate;
   moved_by.delay_s = change->after_s - change->before_s;
-  if (Judge(moved_by, options.delay_check().max_shift_s()) != DelayVerdict::kMoved) {
+  if (Assess(moved_by, options.delay_check().max_shift_s()) != DelayVerdict::kMoved) {
     fmt::print(
         "agrees with the calibration (within {:g} ms or its uncertainty): nothing to write\n",
         1e3 * options.delay_check().max_shift_s());

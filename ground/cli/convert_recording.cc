@@ -21,10 +21,12 @@ namespace {
 
 namespace rec = recording;
 
-constexpr std::array<std::string_view, 12> kOwnTopics = {
-    rec::kDepthTopic,       rec::kThermalTopic, rec::kRigTopic,         rec::kDepthInfoTopic,
-    rec::kThermalInfoTopic, rec::kNucTopic,     rec::kClockTopic,       rec::kGroundtruthTopic,
-    rec::kTrajectoryTopic,  rec::kLogTopic,     rec::kOutsidePoseTopic, rec::kThermalPoseTopic};
+constexpr std::array<std::string_view, 13> kOwnTopics = {
+    rec::kDepthTopic,      rec::kThermalTopic,          rec::kRigTopic,
+    rec::kDepthInfoTopic,  rec::kThermalInfoTopic,      rec::kNucTopic,
+    rec::kClockTopic,      rec::kGroundtruthTopic,      rec::kTrajectoryTopic,
+    rec::kLogTopic,        rec::kExternalOdometryTopic, rec::kOldOdometryTopic,
+    rec::kThermalPoseTopic};
 
 /// A message that the reader of recordings does not know (feedback, status), as it is in the file.
 struct OtherMessage {
@@ -76,7 +78,7 @@ CaptureTime TimeOf(const RecordedItem& item) {
     }
     CaptureTime operator()(const NucEvent& event) const { return event.start; }
     CaptureTime operator()(const RecordedPose& pose) const { return pose.pose.time; }
-    CaptureTime operator()(const OutsidePose& pose) const { return pose.time; }
+    CaptureTime operator()(const ExternalOdometry& pose) const { return pose.time; }
     CaptureTime operator()(const RecordedLog& log) const { return log.time; }
     CaptureTime operator()(const ClockStep& step) const { return step.time; }
   };
@@ -215,7 +217,7 @@ class Converter {
   }
   Status WriteItem(const NucEvent& event) { return writer_.Write(event); }
   Status WriteItem(const ClockStep& step) { return writer_.Write(step); }
-  Status WriteItem(const OutsidePose& pose) { return writer_.Write(pose); }
+  Status WriteItem(const ExternalOdometry& pose) { return writer_.Write(pose); }
   Status WriteItem(const RecordedLog& log) {
     return writer_.WriteLog(log.time, log.level, log.text);
   }

@@ -133,7 +133,7 @@ std::uint64_t Messages(const RecordingInfo& info, const std::string& topic) {
   return found == info.messages_by_topic.end() ? 0 : found->second;
 }
 
-Status CountFrames(const fs::path& recording, std::uint64_t DemoAccount::*count,
+Status CountFrames(const fs::path& recording, std::uint64_t DemoCounters::*count,
                    DemoReport& report) {
   const auto reader = RecordingReader::Open(recording);
   if (!reader) return reader.error();
@@ -203,9 +203,9 @@ Result<DemoReport> RunDemo(const DemoRequest& request, std::stop_token stop) {
   DemoReport report;
   report.simulated_recording = *recording;
   Status status = Scan(request, *recording, stop);
-  if (status.ok()) status = CountFrames(*recording, &DemoAccount::simulated, report);
+  if (status.ok()) status = CountFrames(*recording, &DemoCounters::simulated, report);
   if (status.ok())
-    status = CountFrames(request.output / kRecordingName, &DemoAccount::arrived, report);
+    status = CountFrames(request.output / kRecordingName, &DemoCounters::arrived, report);
   if (status.ok()) status = CompareWithTruth(request, *simulation, report);
   if (!status.ok()) return Err(std::move(status));
   return report;

@@ -20,14 +20,14 @@ struct DemoRequest {
 };
 
 /// Frames of one sensor on their way through the link.
-struct DemoAccount {
+struct DemoCounters {
   std::uint64_t simulated = 0;
   std::uint64_t arrived = 0;  ///< In the ground's recording.
 };
 
 struct DemoReport {
   std::filesystem::path simulated_recording;
-  DemoAccount depth, thermal;
+  DemoCounters depth, thermal;
   EvaluationReport evaluation;
 };
 

@@ -59,7 +59,7 @@ int Run(const Arguments& arguments) {
   }
   std::optional<ProgressBar> progress;
   if (request.surface) progress.emplace("comparing", 0, "");  // With poses alone it takes no time.
-  request.progress = [&progress](double share) { progress->Update(share); };
+  request.progress = [&progress](double fraction) { progress->Update(fraction); };
   const Result<EvaluationReport> report = Evaluate(request);
   if (!report) return Fail(report.error());
   if (progress) progress->Finish();

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kFooter =
     R"(Experiments repeat the thesis's figures on analytic scenes, whose truth is known, with the real
 pipeline and simulated cameras. Each prints a table and what is required and measured; with -o it
-writes NAME.csv, NAME.json and pictures (NAME_*.png). The exit status is 1 if a requirement is not
+writes NAME.csv, NAME.json and renderings (NAME_*.png). The exit status is 1 if a requirement is not
 met.
 
 Examples:
@@ -77,7 +77,7 @@ int Run(const Arguments& arguments) {
     if (Status status = WriteExperiment(*experiment, *report, arguments.output); !status.ok())
       return Fail(status);
   }
-  if (!arguments.output.empty()) fmt::print("pictures and tables are in {}\n", arguments.output);
+  if (!arguments.output.empty()) fmt::print("renderings and tables are in {}\n", arguments.output);
   return all_met ? 0 : kExitNotMet;
 }
 
@@ -88,7 +88,7 @@ void AddExperimentCommand(CLI::App& app, CommandBody& body) {
       app.add_subcommand("experiment", "Shows what the method does where the truth is known");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("name", arguments->names, "Experiments to run");
-  command->add_option("-o,--output", arguments->output, "Folder for pictures and tables");
+  command->add_option("-o,--output", arguments->output, "Folder for renderings and tables");
   command->add_flag("--list", arguments->list, "Say which there are");
   command->add_flag("--all", arguments->all, "Run all of them");
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");

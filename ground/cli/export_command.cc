@@ -92,7 +92,7 @@ int Run(const Arguments& arguments) {
   ProgressBar progress("exporting", 0, "");
   const Result<ResultSummary> summary =
       ExportModel(*model, options, interpretation, arguments.output,
-                  [&](std::string_view, double share) { progress.Update(share); });
+                  [&](std::string_view, double fraction) { progress.Update(fraction); });
   if (!summary) return Fail(summary.error());
   progress.Finish();
   PrintSummary(interpretation, *summary, arguments.output);

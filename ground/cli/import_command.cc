@@ -23,12 +23,12 @@ temperatures that cannot be right are recorded as they are, with a warning and e
 
 Examples:
   isotherm import --from tum ~/scans/door -o door.mcap
-  isotherm import --from tum ~/scans/door --outside-poses vio.txt -o door.mcap
+  isotherm import --from tum ~/scans/door --external-odometry vio.txt -o door.mcap
   isotherm import ~/scans/door -o view.mcap --encoding viewable    for Foxglove and Lichtblick)";
 
 struct Arguments {
   std::string format = "tum";
-  std::string folder, output, thermal_list, rig, outside_poses;
+  std::string folder, output, thermal_list, rig, external_odometry;
   int storage = static_cast<int>(ImageStorage::kCompact);
   bool force = false;
   bool skip_bad = false;
@@ -40,7 +40,7 @@ void Print(const ImportSummary& summary, const std::string& output) {
   if (summary.thermal_frames_in_nuc > 0)
     fmt::print(" ({} with the shutter closed)", summary.thermal_frames_in_nuc);
   if (summary.groundtruth_poses > 0) fmt::print(", {} true poses", summary.groundtruth_poses);
-  if (summary.outside_poses > 0) fmt::print(", {} poses from outside", summary.outside_poses);
+  if (summary.external_odometry > 0) fmt::print(", {} odometry poses", summary.external_odometry);
   fmt::print("; {:.1f} MB", 1e-6 * static_cast<double>(summary.recording_bytes));
   if (summary.image_bytes > 0) {
     fmt::print(", {:.1f} % of the raw images", 100.0 *
@@ -60,7 +60,8 @@ int Run(const Arguments& arguments) {
   request.dataset.folder = arguments.folder;
   if (!arguments.thermal_list.empty()) request.dataset.thermal_list = arguments.thermal_list;
   if (!arguments.rig.empty()) request.dataset.rig = arguments.rig;
-  if (!arguments.outside_poses.empty()) request.dataset.outside_poses = arguments.outside_poses;
+  if (!arguments.external_odometry.empty())
+    request.dataset.external_odometry = arguments.external_odometry;
   request.recording = arguments.output;
   request.storage = static_cast<ImageStorage>(arguments.storage);
   request.overwrite = arguments.force;
@@ -94,8 +95,8 @@ void AddImportCommand(CLI::App& app, CommandBody& body) {
                       "Another list of thermal stamps than thermal.txt");
   command->add_option("--rig", arguments->rig,
                       "Another calibration than the folder's rig.textproto");
-  command->add_option("--outside-poses", arguments->outside_poses,
-                      "Poses that something outside measured (visual-inertial odometry, motion "
+  command->add_option("--external-odometry", arguments->external_odometry,
+                      "Poses that external odometry measured (visual-inertial odometry, motion "
                       "capture), TUM format, on the clock of the lists");
   command
       ->add_option("--encoding", arguments->storage,

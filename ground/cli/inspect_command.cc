@@ -9,7 +9,7 @@
 #include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
 #include "ground/cli/command.h"
-#include "ground/cli/frame_picture.h"
+#include "ground/cli/frame_rendering.h"
 #include "ground/cli/recording_report.h"
 
 namespace isotherm {
@@ -62,12 +62,12 @@ void AddInspectCommand(CLI::App& app, CommandBody& body) {
   auto arguments = std::make_shared<Arguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   command->add_flag("--json", arguments->json, "Machine-readable output");
-  command->add_option("--render", arguments->render, "Draw frame N (from 0) as a picture instead");
+  command->add_option("--render", arguments->render, "Draw frame N (from 0) as an image instead");
   command
       ->add_option("--stream", arguments->stream,
                    "Stream to draw: depth or thermal (default, if there is one)")
       ->check(CLI::IsMember({"depth", "thermal"}));
-  command->add_option("-o,--output", arguments->output, "Picture to write (.png)");
+  command->add_option("-o,--output", arguments->output, "Image to write (.png)");
   command->footer(kFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }

@@ -27,7 +27,7 @@ constexpr const char* kFooter =
   isotherm inspect scan.mcap                        what is in it
   isotherm convert scan.mcap -o view.mcap           the same for Foxglove and Lichtblick
   isotherm reconstruct scan.mcap -o out             the 3D thermogram: out/cloud.ply, out/mesh.ply, ...
-  isotherm render out -o door.png                   pictures of it, from anywhere
+  isotherm render out -o door.png                   images of it, from anywhere
   isotherm evaluate out --groundtruth poses.txt     how far it is from the truth
   isotherm limits --material paint --tolerance 2%   from where a surface can be measured
 `isotherm COMMAND --help` explains each of them.

@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kFooter =
     R"(Angles: the emissivity of a smooth surface over the emission angle follows from its refractive index
 (Fresnel), and from it the error of a temperature that is interpreted with the emissivity along the
-normal. The tolerated error is a share of the radiance (2%) or a temperature (1.5K). Below the least
+normal. The tolerated error is a fraction of the radiance (2%) or a temperature (1.5K). Below the least
 angle the surface mirrors the operator; there is one only where that matters.
 
 Distances: sharp within the depth of field (focal length, f-number, focus, pitch; or --near and
@@ -55,11 +55,11 @@ struct Arguments {
 
 Status ReadTolerances(const Arguments& arguments, AngleRequest& request) {
   // With the default a dielectric's classes come near the options' defaults of 40 and 60 degrees.
-  constexpr double kGoodShare = 0.25;
+  constexpr double kGoodFraction = 0.25;
   const auto acceptable = ParseTolerance(arguments.tolerance, "--tolerance");
   if (!acceptable) return acceptable.error();
   request.acceptable = request.good = *acceptable;
-  request.good.value *= kGoodShare;
+  request.good.value *= kGoodFraction;
   if (arguments.good_tolerance.empty()) return OkStatus();
   const auto good = ParseTolerance(arguments.good_tolerance, "--good-tolerance");
   if (!good) return good.error();
@@ -105,9 +105,9 @@ Result<SpectralBand> ReadBand(const Arguments& arguments) {
 }
 
 Status CheckCelsius(double celsius, const char* option) {
-  if (celsius >= kMinRadiometricCelsius && celsius <= kMaxRadiometricCelsius) return OkStatus();
+  if (celsius >= kMinRadiometric_celsius && celsius <= kMaxRadiometric_celsius) return OkStatus();
   return InvalidArgument(fmt::format("{} must be {} to {} °C, got {}", option,
-                                     kMinRadiometricCelsius, kMaxRadiometricCelsius, celsius));
+                                     kMinRadiometric_celsius, kMaxRadiometric_celsius, celsius));
 }
 
 Result<AngleRequest> ReadAngleRequest(const Arguments& arguments, const SpectralBand& band) {

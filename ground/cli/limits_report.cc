@@ -30,10 +30,10 @@ double WithoutNegativeZero(double value) { return std::abs(value) < 0.005 ? 0.0 
 }  // namespace
 
 std::string ListMaterials(const SpectralBand& band) {
-  constexpr double kTypicalCelsius = 50.0;
+  constexpr double kTypical_celsius = 50.0;
   std::string text = fmt::format("{:<20}{:>6}  {:<26}{}\n", "material", "eps", "source", "what");
   for (const OpticalMaterial& material : OpticalMaterials()) {
-    const BandEmissivity emissivity(material.index, band, kTypicalCelsius);
+    const BandEmissivity emissivity(material.index, band, kTypical_celsius);
     text += fmt::format("{:<20}{:>6.3f}  {:<26}{}\n", material.name, emissivity.At(0.0),
                         material.source, material.description);
   }
@@ -45,12 +45,12 @@ std::string ListMaterials(const SpectralBand& band) {
 }
 
 std::string DescribeCurve(const AngleRequest& request, const EmissionCurve& curve) {
-  constexpr int kStepDeg = 5;
+  constexpr int kStep_deg = 5;
   std::string text = fmt::format(
       "{}, {:g}-{:g} um, object {:g} °C, reflected {:g} °C\n\n", request.name, request.band.min_um,
       request.band.max_um, request.conditions.object_celsius, request.conditions.reflected_celsius);
   text += "angle  emissivity   change     error\n";
-  for (int degrees = 0; degrees < 90; degrees += kStepDeg) {
+  for (int degrees = 0; degrees < 90; degrees += kStep_deg) {
     const EmissionError error = curve.At(degrees * kDegree);
     text +=
         fmt::format("{:>4}°  {:>10.3f}  {:>+6.2f} %  {:>+6.2f} K\n", degrees, error.emissivity,
@@ -75,14 +75,14 @@ std::string DescribeLimits(const AngleRequest& request, const AngleLimits& limit
 }
 
 std::string DescribeFootprints(double ifov_rad, const std::vector<double>& distances_m) {
-  constexpr double kAnglesDeg[] = {0.0, 30.0, 45.0, 60.0};
+  constexpr double kAngles_deg[] = {0.0, 30.0, 45.0, 60.0};
   std::string text =
       fmt::format("\na pixel sees {:.2f} mrad; on a surface, mm\ndistance", ifov_rad * 1e3);
-  for (const double degrees : kAnglesDeg) text += fmt::format("  at {:>2g}°", degrees);
+  for (const double degrees : kAngles_deg) text += fmt::format("  at {:>2g}°", degrees);
   text += "\n";
   for (const double distance_m : distances_m) {
     text += fmt::format("{:>6.3f} m", distance_m);
-    for (const double degrees : kAnglesDeg) {
+    for (const double degrees : kAngles_deg) {
       text += fmt::format("{:>8.2f}",
                           FootprintOfPixel(ifov_rad, distance_m, degrees * kDegree).along_m * 1e3);
     }
@@ -92,20 +92,21 @@ std::string DescribeFootprints(double ifov_rad, const std::vector<double>& dista
 }
 
 std::string DescribeOptions(const LimitOptions& limits) {
-  constexpr double kStepDeg = 0.1;
-  constexpr double kStepM = 0.001;
+  constexpr double kStep_deg = 0.1;
+  constexpr double kStep_m = 0.001;
   std::string set, config;
   const auto add = [&](const char* field, double value, int digits) {
     set += fmt::format("{}--set thermal.{}={:.{}f}", set.empty() ? "" : " ", field, value, digits);
     config += fmt::format("  {}: {:.{}f}\n", field, value, digits);
   };
-  if (limits.distance_min_m) add("distance_min_m", RoundUp(*limits.distance_min_m, kStepM), 3);
-  if (limits.distance_good_m) add("distance_good_m", RoundDown(*limits.distance_good_m, kStepM), 3);
-  if (limits.distance_max_m) add("distance_max_m", RoundDown(*limits.distance_max_m, kStepM), 3);
+  if (limits.distance_min_m) add("distance_min_m", RoundUp(*limits.distance_min_m, kStep_m), 3);
+  if (limits.distance_good_m)
+    add("distance_good_m", RoundDown(*limits.distance_good_m, kStep_m), 3);
+  if (limits.distance_max_m) add("distance_max_m", RoundDown(*limits.distance_max_m, kStep_m), 3);
   if (limits.angle) {
-    add("angle_min_deg", RoundUp(limits.angle->min_rad / kDegree, kStepDeg), 1);
-    add("angle_good_deg", RoundDown(limits.angle->good_rad / kDegree, kStepDeg), 1);
-    add("angle_max_deg", RoundDown(limits.angle->max_rad / kDegree, kStepDeg), 1);
+    add("angle_min_deg", RoundUp(limits.angle->min_rad / kDegree, kStep_deg), 1);
+    add("angle_good_deg", RoundDown(limits.angle->good_rad / kDegree, kStep_deg), 1);
+    add("angle_max_deg", RoundDown(limits.angle->max_rad / kDegree, kStep_deg), 1);
   }
   if (set.empty()) return {};
   return fmt::format("\non the command line\n  {}\nin the configuration file\nthermal {{\n{}}}\n",

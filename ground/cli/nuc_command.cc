@@ -17,7 +17,7 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kFooter =
-    R"(A correction (NUC): the camera looks at its closed shutter and takes its own warmth out of the picture. Meanwhile, and
+    R"(A correction (NUC): the camera looks at its closed shutter and takes its own warmth out of the image. Meanwhile, and
 half a second after, no temperatures are taken; geometry goes on.
 
 Talks to a running isotherm-edge, beside isotherm-ground or without it. Without an order it shows the state. With one, the
@@ -25,7 +25,7 @@ answer is the camera's own: done, or refused with its reason. Exit status: 0 don
 names the rigs that are), 64 several rigs and no --edge-id.
 
 States: idle (all is well), desired (due, and put off), imminent (ordered), in progress (shutter closed), settling,
-blocked (the camera does not follow), error (shutter stays closed, or frozen pictures), unknown (first one still to come).
+blocked (the camera does not follow), error (shutter stays closed, or frozen images), unknown (first one still to come).
 
 Examples:
   isotherm nuc                       state, age, temperatures of the camera
@@ -63,8 +63,8 @@ std::string StatusText(const std::string& edge_id, const NucReport& nuc) {
                                                    : "none seen yet");
   text += fmt::format(
       "{:<14}corrections {}, shutter closed for {}{}\n", "last minute", nuc.closings_per_minute,
-      std::isfinite(nuc.closed_share) ? fmt::format("{:.1f} %", 100.0 * nuc.closed_share)
-                                      : "an unknown share",
+      std::isfinite(nuc.closed_fraction) ? fmt::format("{:.1f} %", 100.0 * nuc.closed_fraction)
+                                         : "an unknown fraction",
       nuc.storm ? " (storm)" : "");
   text += fmt::format("{:<14}{}\n", "policy", ToString(nuc.policy));
   text += fmt::format("{:<14}detector {}, housing {}{}\n", "camera", CelsiusText(nuc.fpa_celsius),

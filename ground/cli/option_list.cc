@@ -101,7 +101,7 @@ std::vector<std::string> Groups(const pb::Descriptor& type) {
   return names;
 }
 
-/// The message behind "tracker.outside".
+/// The message behind "tracker.external_odometry".
 Result<const pb::Descriptor*> FindStage(const pb::Descriptor& program, std::string_view stage) {
   const pb::Descriptor* type = &program;
   while (!stage.empty()) {

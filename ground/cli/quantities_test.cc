@@ -19,10 +19,10 @@ TEST(QuantitiesTest, LengthsNeedAUnit) {
   }
 }
 
-TEST(QuantitiesTest, TolerancesAreSharesOrKelvin) {
-  const auto share = ParseTolerance("2%", "--t");
-  EXPECT_DOUBLE_EQ(share->value, 0.02);
-  EXPECT_FALSE(share->in_kelvin);
+TEST(QuantitiesTest, TolerancesAreFractionsOrKelvin) {
+  const auto fraction = ParseTolerance("2%", "--t");
+  EXPECT_DOUBLE_EQ(fraction->value, 0.02);
+  EXPECT_FALSE(fraction->in_kelvin);
   const auto kelvin = ParseTolerance("1.5 K", "--t");
   EXPECT_DOUBLE_EQ(kelvin->value, 1.5);
   EXPECT_TRUE(kelvin->in_kelvin);

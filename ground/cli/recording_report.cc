@@ -61,7 +61,7 @@ void AppendStream(std::string_view name, const StreamSummary& stream, std::strin
                       1e-6 * static_cast<double>(stream.raw_bytes));
   text += fmt::format("{}{} missing", kIndent, stream.missing);
   if (stream.holes > 0) text += fmt::format(" in {} holes", stream.holes);
-  text += fmt::format(", {} duplicate, {} out of order, {} repeat the picture before\n",
+  text += fmt::format(", {} duplicate, {} out of order, {} repeat the image before\n",
                       stream.duplicates, stream.out_of_order, stream.repeats);
   if (stream.gaps == 0) {
     text += fmt::format("{}no time gaps\n", kIndent);
@@ -200,8 +200,8 @@ void AppendLog(const RecordingSummary& summary, std::string& text) {
 void AppendOther(const RecordingReport& report, std::string& text) {
   for (const auto& [stream, count] : report.summary.poses)
     text += fmt::format("{:<14}{} poses\n", Printable(stream), count);
-  for (const auto& [source, count] : report.summary.outside_poses)
-    text += fmt::format("{:<14}{} poses of \"{}\"\n", "outside", count, Printable(source));
+  for (const auto& [source, count] : report.summary.external_odometry)
+    text += fmt::format("{:<14}{} poses of \"{}\"\n", "odometry", count, Printable(source));
   for (const auto& [topic, count] : report.info.messages_by_topic) {
     text += fmt::format("{:<22}{} messages\n", Printable(topic), count);
   }
@@ -394,8 +394,8 @@ Json ToJson(const RecordingReport& report) {
     json["clock"]["steps"].push_back(std::move(item));
   }
   for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
-  for (const auto& [source, count] : report.summary.outside_poses)
-    json["outside_poses"][source] = count;
+  for (const auto& [source, count] : report.summary.external_odometry)
+    json["external_odometry"][source] = count;
   for (const RecordedLog& log : report.summary.log) {
     Json line;
     line["time"] = FormatStamp(log.time);

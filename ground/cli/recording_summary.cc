@@ -74,7 +74,7 @@ void RecordingSummarizer::AddFrame(const FrameHeader& header, const EncodedImage
   stream.raw_bytes +=
       2 * static_cast<std::uint64_t>(image.width) * static_cast<std::uint64_t>(image.height);
   stream.payload_bytes += image.payload.size();
-  // Our codes are deterministic: equal pictures have equal codes.
+  // Our codes are deterministic: equal images have equal codes.
   const std::size_t hash = std::hash<std::string_view>()(
       {reinterpret_cast<const char*>(image.payload.data()), image.payload.size()});
   if (stamps.last_encoding == image.encoding && stamps.last_hash == hash) ++stream.repeats;
@@ -113,15 +113,15 @@ void RecordingSummarizer::Add(const RecordedItem& item) {
     if (summary_.nuc_events.size() < RecordingSummary::kMaxKinds)
       summary_.nuc_events.push_back(*event);
   } else if (const auto* step = std::get_if<ClockStep>(&item)) {
-    if (summary_.clock_steps.size() < RecordingSummary::kMostLog)
+    if (summary_.clock_steps.size() < RecordingSummary::kMaxLog)
       summary_.clock_steps.push_back(*step);
   } else if (const auto* pose = std::get_if<RecordedPose>(&item)) {
     ++summary_.poses[pose->stream];
-  } else if (const auto* outside = std::get_if<OutsidePose>(&item)) {
-    if (summary_.outside_poses.size() < RecordingSummary::kMaxKinds)
-      ++summary_.outside_poses[outside->source.substr(0, RecordingSummary::kMaxLogBytes)];
+  } else if (const auto* odometry = std::get_if<ExternalOdometry>(&item)) {
+    if (summary_.external_odometry.size() < RecordingSummary::kMaxKinds)
+      ++summary_.external_odometry[odometry->source.substr(0, RecordingSummary::kMaxLogBytes)];
   } else if (const auto* log = std::get_if<RecordedLog>(&item)) {
-    if (summary_.log.size() < RecordingSummary::kMostLog) {
+    if (summary_.log.size() < RecordingSummary::kMaxLog) {
       summary_.log.push_back(*log);
       summary_.log.back().text.resize(std::min(log->text.size(), RecordingSummary::kMaxLogBytes));
     } else {

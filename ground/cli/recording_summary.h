@@ -28,7 +28,7 @@ struct StreamSummary {
   std::uint64_t gaps = 0;          ///< Times of more than 1.5 periods without a frame.
   double longest_gap_s = 0.0;
   CaptureTime longest_gap_at{};  ///< The frame before it.
-  std::uint64_t repeats = 0;     ///< Pictures equal bit for bit to the one before.
+  std::uint64_t repeats = 0;     ///< Images equal bit for bit to the one before.
   double sigma_s = 0.0;          ///< Median uncertainty of the capture time; 0 = not estimated.
 
   double rate_hz() const { return period_s > 0.0 ? 1.0 / period_s : 0.0; }
@@ -44,15 +44,15 @@ struct RecordingSummary {
   StreamSummary depth;
   StreamSummary thermal;
   std::uint64_t valid_thermal = 0;
-  std::map<std::string, std::uint64_t> nuc_states;     ///< Thermal frames by state.
-  std::vector<NucRun> nuc_runs;                        ///< Shutter closed, from the frames.
-  std::vector<NucEvent> nuc_events;                    ///< As recorded.
-  std::vector<ClockStep> clock_steps;                  ///< The first kMostLog.
-  std::map<std::string, std::uint64_t> poses;          ///< By stream: groundtruth, trajectory.
-  std::map<std::string, std::uint64_t> outside_poses;  ///< By source.
-  std::vector<RecordedLog> log;                        ///< What happened; the first kMostLog.
+  std::map<std::string, std::uint64_t> nuc_states;         ///< Thermal frames by state.
+  std::vector<NucRun> nuc_runs;                            ///< Shutter closed, from the frames.
+  std::vector<NucEvent> nuc_events;                        ///< As recorded.
+  std::vector<ClockStep> clock_steps;                      ///< The first kMaxLog.
+  std::map<std::string, std::uint64_t> poses;              ///< By stream: groundtruth, trajectory.
+  std::map<std::string, std::uint64_t> external_odometry;  ///< By source.
+  std::vector<RecordedLog> log;                            ///< What happened; the first kMaxLog.
   std::uint64_t log_left_out = 0;
-  static constexpr std::size_t kMostLog = 200;
+  static constexpr std::size_t kMaxLog = 200;
   /// Longer lines are cut; more sources, sizes and sessions are not told apart.
   static constexpr std::size_t kMaxLogBytes = 4096;
   static constexpr std::size_t kMaxKinds = 1000;
@@ -88,7 +88,7 @@ class RecordingSummarizer {
   bool in_nuc_ = false;
 };
 
-/// Reads all of a recording that can be read, and shows `plausibility` what it judges by.
+/// Reads all of a recording that can be read, and shows `plausibility` what it assesses by.
 RecordingSummary Summarize(RecordingReader& reader, PlausibilityCheck& plausibility);
 
 std::string EncodingName(Encoding encoding);

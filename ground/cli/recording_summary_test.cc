@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "ground/cli/frame_picture.h"
+#include "ground/cli/frame_rendering.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/recording_report.h"
 #include "ground/cli/truth.h"
@@ -103,10 +103,10 @@ TEST(RecordingSummaryTest, ShutterRunsAreFoundFromTheFrames) {
 }
 
 TEST(RecordingSummaryTest, WhatHappenedIsListedUpToALimit) {
-  std::vector<RecordedItem> items(RecordingSummary::kMostLog + 7,
+  std::vector<RecordedItem> items(RecordingSummary::kMaxLog + 7,
                                   RecordedLog{Time(5), "warning", "nuc: storm"});
   const RecordingSummary summary = Summarized(items);
-  ASSERT_EQ(summary.log.size(), RecordingSummary::kMostLog);
+  ASSERT_EQ(summary.log.size(), RecordingSummary::kMaxLog);
   EXPECT_EQ(summary.log[0].text, "nuc: storm");
   EXPECT_EQ(summary.log_left_out, 7U);
 }
@@ -140,26 +140,26 @@ TEST(ParseNumbersTest, TakesSpacesAndCommas) {
   EXPECT_FALSE(ParseNumbers("", {1}, "--volume"));
 }
 
-TEST(FramePictureTest, HotIsRedAndColdIsBlueBesideALegend) {
+TEST(FrameRenderingTest, HotIsRedAndColdIsBlueBesideALegend) {
   Image<std::uint16_t> centikelvin(64, 48, 30000);
   for (int y = 0; y < 48; ++y) {
     for (int x = 32; x < 64; ++x) centikelvin.At(x, y) = 31000;
   }
   centikelvin.At(0, 0) = 0;
-  const RgbImage picture = ThermalPicture(centikelvin);
-  EXPECT_GT(picture.width(), 64);
-  const int top = (picture.height() - 48) / 2;
-  const Rgb8 cold = picture.At(10, top + 20);
-  const Rgb8 hot = picture.At(50, top + 20);
+  const RgbImage rendering = ThermalRendering(centikelvin);
+  EXPECT_GT(rendering.width(), 64);
+  const int top = (rendering.height() - 48) / 2;
+  const Rgb8 cold = rendering.At(10, top + 20);
+  const Rgb8 hot = rendering.At(50, top + 20);
   EXPECT_GT(cold.b, cold.r);
   EXPECT_GT(hot.r, hot.b);
-  const Rgb8 none = picture.At(0, top);
+  const Rgb8 none = rendering.At(0, top);
   EXPECT_TRUE(none.r == none.g && none.g == none.b);
 }
 
-TEST(FramePictureTest, AFrameWithoutAnyValueIsDrawnToo) {
-  EXPECT_GT(ThermalPicture(Image<std::uint16_t>(8, 8, 0)).width(), 8);
-  EXPECT_GT(DepthPicture(Image<std::uint16_t>(8, 8, 65535), 1000.0).width(), 8);
+TEST(FrameRenderingTest, AFrameWithoutAnyValueIsDrawnToo) {
+  EXPECT_GT(ThermalRendering(Image<std::uint16_t>(8, 8, 0)).width(), 8);
+  EXPECT_GT(DepthRendering(Image<std::uint16_t>(8, 8, 65535), 1000.0).width(), 8);
 }
 
 TEST(RecordingReportTest, F15StepsOfTheClockAreShown) {

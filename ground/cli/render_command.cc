@@ -10,7 +10,7 @@
 #include "common/config/text_proto.h"
 #include "common/geometry/pose_text.h"
 #include "ground/cli/command.h"
-#include "ground/cli/model_pictures.h"
+#include "ground/cli/model_renderings.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/result_folder.h"
 #include "ground/cli/simulation_files.h"
@@ -24,9 +24,9 @@ namespace {
 
 constexpr const char* kFooter =
     R"(MODEL is a model.iso, or a result folder of `isotherm reconstruct` with one in it; of a folder, the
-limits of classes are those that it was made with. Without a view, the picture shows the whole model
+limits of classes are those that it was made with. Without a view, the rendering shows the whole model
 from where it was scanned. Places and poses are in `world`, in metres; a pose is T_world_camera,
-x right, y down, z forward. All pictures of one call have the same colours for the same temperature.
+x right, y down, z forward. All renderings of one call have the same colours for the same temperature.
 
 Layers: thermal       apparent temperature: palette, isotherms, bands
         distance      class of the measurement distance
@@ -41,7 +41,7 @@ Scales: min-max, 1-sigma, 3-sigma, percentile (2 to 98 %), 5..95% or, for fixed 
 
 Examples:
   isotherm render out -o door.png
-  isotherm render out -o pictures --layer all
+  isotherm render out -o renderings --layer all
   isotherm render out -o door.png --palette inferno --scale 20..200 --isotherms "60, 100#00ff00"
   isotherm render out -o hot.png --bands "150.." --unit fahrenheit
   isotherm render out -o side.png --view-from "0.6 -0.2 -0.8" --look-at "0 0 0"
@@ -159,7 +159,7 @@ Result<CameraModel> Camera(const Arguments& arguments) {
     return Err(InvalidArgument(fmt::format("--fov must be {} to {} degrees, got {}", kNarrowest_deg,
                                            kWidest_deg, arguments.fov_deg)));
   }
-  return PictureCamera(width, height, arguments.fov_deg);
+  return RenderingCamera(width, height, arguments.fov_deg);
 }
 
 Result<Eigen::Vector3d> Place(const std::string& text, const char* option,
@@ -254,7 +254,7 @@ void PrintSummary(const Views& views, const GroundOptions& options,
   } else {
     fmt::print("scale    none: the model has no temperatures\n");
   }
-  fmt::print("pictures {}", files.front().string());
+  fmt::print("renderings {}", files.front().string());
   if (files.size() > 1) fmt::print(" ... {} ({})", files.back().filename().string(), files.size());
   fmt::print("\n");
 }
@@ -280,14 +280,14 @@ int Run(const Arguments& arguments) {
   }
   const auto views = ChooseViews(arguments, *model, surface.points_m, *camera);
   if (!views) return Fail(views.error());
-  const PictureRequest request{*layers, views->T_world_camera, *camera, arguments.output};
-  if (const Status status = PreparePictures(request); !status.ok()) return Fail(status);
+  const RenderingRequest request{*layers, views->T_world_camera, *camera, arguments.output};
+  if (const Status status = PrepareRenderings(request); !status.ok()) return Fail(status);
   const auto scale = ChooseScale(options.renderer(), surface.celsius);
-  const std::vector<std::filesystem::path> files = PictureFiles(request);
+  const std::vector<std::filesystem::path> files = RenderingFiles(request);
   std::optional<ProgressBar> progress;
-  if (files.size() > 1) progress.emplace("rendering", files.size(), "pictures");
-  const auto empty = WritePictures(*model, options, scale, request, pool, [&](double share) {
-    if (progress) progress->Update(share);
+  if (files.size() > 1) progress.emplace("rendering", files.size(), "renderings");
+  const auto empty = WriteRenderings(*model, options, scale, request, pool, [&](double fraction) {
+    if (progress) progress->Update(fraction);
   });
   if (empty && progress) progress->Finish();
   progress.reset();
@@ -312,7 +312,7 @@ void AddViewOptions(CLI::App& command, Arguments& arguments) {
   command.add_option("--look-at", arguments.at, "What it looks at; default: the model's centre")
       ->needs(from);
   command.add_option("--up", arguments.up,
-                     "Direction that is up in the picture, \"x y z\"; default: as in the scan");
+                     "Direction that is up in the rendering, \"x y z\"; default: as in the scan");
   CLI::Option* orbit =
       command.add_option("--orbit", arguments.orbit, "That many views around the model")
           ->check(CLI::Range(1, 999))
@@ -335,10 +335,10 @@ void AddViewOptions(CLI::App& command, Arguments& arguments) {
 }  // namespace
 
 void AddRenderCommand(CLI::App& app, CommandBody& body) {
-  CLI::App* command = app.add_subcommand("render", "Makes pictures of a saved model");
+  CLI::App* command = app.add_subcommand("render", "Makes renderings of a saved model");
   auto arguments = std::make_shared<Arguments>();
   command->add_option("model", arguments->model, "Model (model.iso) or result folder")->required();
-  command->add_option("-o,--output", arguments->output, "Picture (.png), or folder for several")
+  command->add_option("-o,--output", arguments->output, "Rendering (.png), or folder for several")
       ->required();
   command->add_option("--layer", arguments->layers, "What to show: layers, or all")
       ->delimiter(',')

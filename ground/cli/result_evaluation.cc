@@ -86,17 +86,17 @@ Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) 
   if (request.volume_box) KeepInside(*request.volume_box, *points);
   if (points->positions_m.empty())
     return InvalidArgument("no true surface lies inside the volume box");
-  const auto report_share = [&request](double share) {
-    if (request.progress) request.progress(share);
+  const auto report_fraction = [&request](double fraction) {
+    if (request.progress) request.progress(fraction);
   };
-  report_share(0.1);
+  report_fraction(0.1);
   const TrueSurface truth(std::move(*points));
   const std::vector<Eigen::Vector3f> positions =
       Transformed(report.trajectory.T_truth_world, cloud->positions_m);
   report.cloud_points = positions.size();
-  report_share(0.2);
+  report_fraction(0.2);
   report.surface = EvaluateSurface(positions, truth, {});
-  report_share(0.7);
+  report_fraction(0.7);
   if (!request.emissivity) return OkStatus();
   TemperatureEvaluationOptions options;
   options.emissivity = *request.emissivity;
@@ -123,7 +123,7 @@ std::string Line(std::string_view name, const TemperatureErrors& errors) {
   return fmt::format(
       "  {:<26}{} points  median {:.3f}  95 % {:.3f} K  beyond 5 K {:.2f} %  mean {:+.3f} K\n",
       name, errors.magnitude.count, errors.magnitude.median, errors.magnitude.p95,
-      100.0 * errors.gross_share, errors.mean);
+      100.0 * errors.gross_fraction, errors.mean);
 }
 
 Json StatisticsJson(const ErrorStatistics& s) {
@@ -142,7 +142,7 @@ Json TemperatureJson(const TemperatureErrors& errors) {
   json["median_kelvin"] = errors.magnitude.median;
   json["p95_kelvin"] = errors.magnitude.p95;
   json["mean_kelvin"] = errors.mean;
-  json["share_beyond_5_kelvin"] = errors.gross_share;
+  json["fraction_beyond_5_k"] = errors.gross_fraction;
   return json;
 }
 

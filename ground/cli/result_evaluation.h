@@ -28,8 +28,8 @@ struct EvaluationRequest {
   double tolerance_ms = 1.0;
   /// True surface outside this box (truth's world) does not count.
   std::optional<Eigen::AlignedBox3f> volume_box;
-  /// Called between the steps with the share done, 0..1.
-  std::function<void(double share)> progress{};
+  /// Called between the steps with the fraction done, 0..1.
+  std::function<void(double fraction)> progress{};
 };
 
 struct EvaluationReport {

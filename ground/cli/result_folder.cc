@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/config/renamed_options.h"
 #include "common/config/text_proto.h"
 #include "common/dataset/text_lines.h"
 #include "common/dataset/trajectory.h"
@@ -46,9 +47,10 @@ std::optional<GroundOptions> ConfigurationOf(const fs::path& folder) {
   if (found == stats.end()) return std::nullopt;
   GroundOptions options;
   // Before version 0.2 it was text format in a string.
-  const Status parsed = found->is_string()
-                            ? ParseTextProto(found->get<std::string>(), "stats.json", options)
-                            : FromJson(*found, "stats.json", options);
+  const Status parsed =
+      found->is_string()
+          ? ParseTextProto(WithPresentNames(found->get<std::string>()), "stats.json", options)
+          : FromJson(*found, "stats.json", options);
   if (!parsed.ok()) return std::nullopt;
   return options;
 }

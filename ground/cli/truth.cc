@@ -77,7 +77,7 @@ Result<std::vector<CaptureTime>> RepeatedDepthFrames(const std::filesystem::path
     const auto* depth = std::get_if<RecordedDepth>(&item);
     if (depth == nullptr) return true;
     const EncodedImage& image = depth->frame.image;
-    // Our codes are deterministic: equal pictures have equal codes.
+    // Our codes are deterministic: equal images have equal codes.
     if (image.encoding == last.encoding && image.payload == last.payload) {
       repeats.push_back(depth->frame.header.capture_time);
     }

@@ -19,7 +19,7 @@ Result<RigidTransform> PoseAt(const std::vector<StampedPose>& poses, CaptureTime
 /// Capture time of the first depth frame.
 Result<CaptureTime> FirstDepthTime(const std::filesystem::path& recording);
 
-/// Capture times of depth frames whose picture is bit for bit that of the frame before.
+/// Capture times of depth frames whose image is bit for bit that of the frame before.
 Result<std::vector<CaptureTime>> RepeatedDepthFrames(const std::filesystem::path& recording);
 
 }  // namespace isotherm

@@ -14,8 +14,8 @@ ErrorStatistics Summarize(std::vector<double> magnitudes) {
     return result;
   }
   std::sort(magnitudes.begin(), magnitudes.end());
-  const auto rank = [&](double share) {
-    const double position = std::ceil(share * static_cast<double>(magnitudes.size()));
+  const auto rank = [&](double fraction) {
+    const double position = std::ceil(fraction * static_cast<double>(magnitudes.size()));
     return magnitudes[static_cast<std::size_t>(std::max(position, 1.0)) - 1];
   };
   double squares = 0.0;

@@ -63,7 +63,7 @@ class SimulatedTransport {
 
   double Delay(double time_s) {
     double delay_s = Baseline();
-    if (Uniform() < scenario_.impulse_share) delay_s += scenario_.impulse_max_s * Uniform();
+    if (Uniform() < scenario_.impulse_fraction) delay_s += scenario_.impulse_max_s * Uniform();
     if (scenario_.burst_period_s > 0.0) {
       const double since_s =
           std::fmod(time_s + 0.5 * scenario_.burst_period_s, scenario_.burst_period_s);
@@ -152,9 +152,9 @@ std::vector<Residual> Residuals(const StampingScenario& scenario, StampingMethod
   return residuals;
 }
 
-double Quantile(std::vector<double> values, double share) {
+double Quantile(std::vector<double> values, double fraction) {
   CHECK(!values.empty());
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  const auto rank = static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

@@ -23,7 +23,7 @@ struct StampingScenario {
   std::string_view name;
   JitterShape shape = JitterShape::kGamma;
   double jitter_s = 0.001;  ///< Scale of gamma or exponential, sigma of normal.
-  double impulse_share = 0.02;
+  double impulse_fraction = 0.02;
   double impulse_max_s = 0.040;
   double burst_period_s = 0.0;  ///< 0 = no bursts. The first begins half a period after the start.
   double burst_length_s = 0.0;
@@ -61,7 +61,7 @@ struct StampingResidual {
   double rms_s = 0.0;
   double p99_s = 0.0;  ///< 99th percentile of the absolute value.
   double worst_s = 0.0;
-  double within_sigma = 0.0;    ///< Share of stamps whose residual is within their sigma, ...
+  double within_sigma = 0.0;    ///< Fraction of stamps whose residual is within their sigma, ...
   double within_3_sigma = 0.0;  ///< ... and within three.
   std::uint64_t stamps = 0;
 };

@@ -20,7 +20,7 @@ struct SurfaceErrors {
   RigidTransform fit = RigidTransform::Identity();  ///< That motion, in the truth's world.
   std::size_t surface_points = 0;                   ///< True points that count for completeness.
   double completeness =
-      0.0;  ///< Share of them with a point of the cloud nearby, first poses equal.
+      0.0;  ///< Fraction of them with a point of the cloud nearby, first poses equal.
   double fitted_completeness = 0.0;
 };
 

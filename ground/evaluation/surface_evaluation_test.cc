@@ -174,9 +174,9 @@ TEST(TemperatureEvaluationTest, KnownOffsetComesBackInItsClass) {
   EXPECT_NEAR(report->good.all.mean, 0.5, kInterpolation_kelvin);
   EXPECT_NEAR(report->acceptable.all.magnitude.median, 0.5, kInterpolation_kelvin);
   EXPECT_NEAR(report->bad.all.magnitude.median, 10.0, kInterpolation_kelvin);
-  EXPECT_EQ(report->good.all.gross_share, 0.0);
-  EXPECT_EQ(report->bad.all.gross_share, 1.0);
-  EXPECT_NEAR(report->any.all.gross_share, 200.0 / 2900.0, 1e-9);
+  EXPECT_EQ(report->good.all.gross_fraction, 0.0);
+  EXPECT_EQ(report->bad.all.gross_fraction, 1.0);
+  EXPECT_NEAR(report->any.all.gross_fraction, 200.0 / 2900.0, 1e-9);
 }
 
 TEST(TemperatureEvaluationTest, WrongEmissivityShowsUpAsABias) {

@@ -44,8 +44,8 @@ TemperatureErrors Describe(std::vector<double> errors, double gross_kelvin) {
   }
   const auto count = static_cast<double>(errors.size());
   result.mean = errors.empty() ? std::numeric_limits<double>::quiet_NaN() : sum / count;
-  result.gross_share = errors.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                      : static_cast<double>(gross) / count;
+  result.gross_fraction = errors.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                         : static_cast<double>(gross) / count;
   result.magnitude = Summarize(std::move(errors));
   return result;
 }
@@ -70,10 +70,10 @@ Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
     return InvalidArgument(
         fmt::format("emissivity must be above 0 and at most 1, got {}", options.emissivity));
   }
-  if (!(options.ambient_celsius >= kMinRadiometricCelsius &&
-        options.ambient_celsius <= kMaxRadiometricCelsius)) {
+  if (!(options.ambient_celsius >= kMinRadiometric_celsius &&
+        options.ambient_celsius <= kMaxRadiometric_celsius)) {
     return InvalidArgument(fmt::format("ambient temperature must be {}..{} degrees Celsius, got {}",
-                                       kMinRadiometricCelsius, kMaxRadiometricCelsius,
+                                       kMinRadiometric_celsius, kMaxRadiometric_celsius,
                                        options.ambient_celsius));
   }
   if (truth.points().celsius.empty()) {

@@ -25,8 +25,8 @@ struct TemperatureEvaluationOptions {
 /// Errors of one class of points: measured minus expected apparent temperature, kelvin.
 struct TemperatureErrors {
   ErrorStatistics magnitude;
-  double mean = 0.0;         ///< With sign: a bias.
-  double gross_share = 0.0;  ///< Share above TemperatureEvaluationOptions::gross_kelvin.
+  double mean = 0.0;            ///< With sign: a bias.
+  double gross_fraction = 0.0;  ///< Fraction above TemperatureEvaluationOptions::gross_kelvin.
 };
 
 struct ClassErrors {

@@ -28,7 +28,7 @@ class ThermalCoverageTest : public ::testing::Test {
   ThermalCoverage Evaluate(const WellSeenLimits& limits = {}) const {
     return EvaluateThermalCoverage(*truth_, camera_, poses_, limits, assigned_, 0.003F);
   }
-  double Share(std::size_t count) const {
+  double Fraction(std::size_t count) const {
     return static_cast<double>(count) / static_cast<double>(truth_->points().positions_m.size());
   }
 
@@ -42,16 +42,16 @@ constexpr double kEdges = 0.02;  // Half a pixel along silhouettes, of 0.3 m.
 
 TEST_F(ThermalCoverageTest, WhatAForegroundHidesDoesNotCount) {
   // The plate hides 0.12 m of the wall's 0.3 m; both together are 0.4 m wide.
-  EXPECT_NEAR(Share(Evaluate().well_seen), 0.28 / 0.4, kEdges);
+  EXPECT_NEAR(Fraction(Evaluate().well_seen), 0.28 / 0.4, kEdges);
   EXPECT_EQ(Evaluate().covered, 0U);
   poses_.push_back(MakeTransform(
       {0.5, 0.0, 0.2}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.9, Eigen::Vector3d::UnitY()))));
-  EXPECT_GT(Share(Evaluate().well_seen), 0.85) << "another pose sees behind it";
+  EXPECT_GT(Fraction(Evaluate().well_seen), 0.85) << "another pose sees behind it";
 }
 
 TEST_F(ThermalCoverageTest, DistanceAndAngleLimitWhatCounts) {
-  EXPECT_NEAR(Share(Evaluate({.max_distance_m = 0.55}).well_seen), 0.1 / 0.4, kEdges);
-  EXPECT_NEAR(Share(Evaluate({.min_distance_m = 0.55}).well_seen), 0.18 / 0.4, kEdges);
+  EXPECT_NEAR(Fraction(Evaluate({.max_distance_m = 0.55}).well_seen), 0.1 / 0.4, kEdges);
+  EXPECT_NEAR(Fraction(Evaluate({.min_distance_m = 0.55}).well_seen), 0.18 / 0.4, kEdges);
   EXPECT_LT(Evaluate({.max_angle_deg = 5.0}).well_seen, Evaluate().well_seen / 2);
 }
 
@@ -60,7 +60,7 @@ TEST_F(ThermalCoverageTest, CoveredIsWhatHasAnAssignedPointNearBy) {
     if (p.z() < 0.55F) assigned_.push_back(p + Eigen::Vector3f(0.001F, 0.0F, 0.001F));
   }
   const ThermalCoverage coverage = Evaluate();
-  EXPECT_NEAR(Share(coverage.covered), 0.1 / 0.4, kEdges);
+  EXPECT_NEAR(Fraction(coverage.covered), 0.1 / 0.4, kEdges);
 }
 
 }  // namespace

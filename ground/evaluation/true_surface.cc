@@ -44,8 +44,8 @@ float TrueSurface::CelsiusAt(const Eigen::Vector3f& p, std::uint32_t nearest) co
   double weights = 0.0;
   index_.ForEachWithin(p, radius, [&](const PointIndex::Neighbour& neighbour) {
     if (points_.primitive[neighbour.index] != primitive) return;
-    const double share = neighbour.distance_m / radius;
-    const double weight = (1.0 - share * share) * (1.0 - share * share);
+    const double fraction = neighbour.distance_m / radius;
+    const double weight = (1.0 - fraction * fraction) * (1.0 - fraction * fraction);
     sum += weight * points_.celsius[neighbour.index];
     weights += weight;
   });

@@ -13,17 +13,17 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 5.0;
+constexpr double kDuration_s = 5.0;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kLastAngleDeg = 75.0;
-constexpr double kDiscCelsius = 100.0, kSurroundCelsius = 23.0;
+constexpr double kLastAngle_deg = 75.0;
+constexpr double kDisc_celsius = 100.0, kSurround_celsius = 23.0;
 constexpr double kDiscEmissivity = 0.95, kDiscIndex = 1.5;  // Paint.
 constexpr double kDiscRadius = 0.076;
 const Eigen::Vector3d kDisc(0.48, 0.52, 0.50);  ///< Middle of the calibrator's disc.
 
 /// A calibrator's disc of one temperature in its panel, on a table in a corner.
 StagedScene Calibrator() {
-  SceneBuilder scene(kSurroundCelsius);
+  SceneBuilder scene(kSurround_celsius);
   scene.UseMaterial({0.96, kDiscIndex, 0.0, false});
   scene.Box("wall", {0.02, 0.02, 0.84}, {0.94, 0.94, 0.90}).temperature = Uniform(24.0);
   scene.Box("side wall", {0.02, 0.02, 0.10}, {0.08, 0.94, 0.84}).temperature = Uniform(24.0);
@@ -37,12 +37,12 @@ StagedScene Calibrator() {
       Uniform(55.0);
   scene.UseMaterial({kDiscEmissivity, kDiscIndex, 0.0, false});
   scene.Cylinder("disc", kDisc + 0.006 * forward, kDisc, kDiscRadius).temperature =
-      Uniform(kDiscCelsius);
+      Uniform(kDisc_celsius);
   ScanPath path;
   path.target_x_m = {kDisc.x()};
   path.target_y_m = {kDisc.y()};
   path.target_z_m = {kDisc.z()};
-  path.azimuth_rad = FromTo(0.0, kLastAngleDeg * kRadPerDeg, kDurationS - 0.4);
+  path.azimuth_rad = FromTo(0.0, kLastAngle_deg * kRadPerDeg, kDuration_s - 0.4);
   path.distance_m = {0.50};
   return {scene.Build("calibrator in a corner"), path, {}};
 }
@@ -76,7 +76,7 @@ struct DiscErrors {
 /// angles.
 DiscErrors MeasureDisc(const PlayedScan& played, const GroundPipeline& pipeline, ThreadPool& pool) {
   // Nearer to its border, a thermal pixel and its blur receive radiation from the rim as well.
-  constexpr double kBorderM = 0.004;
+  constexpr double kBorder_m = 0.004;
   const SimulatedScan& scan = *played.scan;
   DiscErrors errors;
   for (const CheckedPoint& point :
@@ -84,12 +84,12 @@ DiscErrors MeasureDisc(const PlayedScan& played, const GroundPipeline& pipeline,
     if (scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)].name != "disc")
       continue;
     const Eigen::Vector3d offset = point.truth.p_world - kDisc;
-    if (!point.measured() || std::hypot(offset.x(), offset.y()) > kDiscRadius - kBorderM) continue;
+    if (!point.measured() || std::hypot(offset.x(), offset.y()) > kDiscRadius - kBorder_m) continue;
     const auto celsius =
-        TrueCelsius(scan.band(), point.point.celsius, kDiscEmissivity, kSurroundCelsius);
+        TrueCelsius(scan.band(), point.point.celsius, kDiscEmissivity, kSurround_celsius);
     if (!celsius) continue;
-    errors.mean_kelvin += *celsius - kDiscCelsius;
-    errors.largest_kelvin = std::max(errors.largest_kelvin, std::abs(*celsius - kDiscCelsius));
+    errors.mean_kelvin += *celsius - kDisc_celsius;
+    errors.largest_kelvin = std::max(errors.largest_kelvin, std::abs(*celsius - kDisc_celsius));
     ++errors.points;
   }
   errors.mean_kelvin /= std::max(1, errors.points);
@@ -105,13 +105,13 @@ double DielectricReflectivity(double angle_rad, double n) {
   return 0.5 * (s * s + p * p);
 }
 
-/// Largest difference between the emissivity that simulated thermal pictures of the disc show and
+/// Largest difference between the emissivity that simulated thermal renderings of the disc show and
 /// Fresnel's, over the sweep.
 double CompareWithFresnel(const SimulatedScan& scan) {
   SimulatedScan::Scratch scratch;
   double largest = 0.0;
-  const double hot = scan.band().RadianceFromCelsius(kDiscCelsius);
-  const double surround = scan.band().RadianceFromCelsius(kSurroundCelsius);
+  const double hot = scan.band().RadianceFromCelsius(kDisc_celsius);
+  const double surround = scan.band().RadianceFromCelsius(kSurround_celsius);
   const Eigen::Vector3d front = kDisc - Eigen::Vector3d(0.0, 0.0, 0.006);
   for (std::size_t number = 0; number < scan.thermal_times().size(); number += 10) {
     const RigidTransform T_world_thermal =
@@ -135,25 +135,25 @@ double CompareWithFresnel(const SimulatedScan& scan) {
 }  // namespace
 
 Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool) {
-  const auto played = Play(ExperimentCameras(kDurationS), Calibrator(),
+  const auto played = Play(ExperimentCameras(kDuration_s), Calibrator(),
                            {WithAngleLimits(false), WithAngleLimits(true)}, pool);
   if (!played) return Err(played.error());
   ExperimentReport report;
   report.table.rows_are = "method";
   report.table.columns = {"points on the disc", "mean error [K]", "largest error [K]"};
-  const Renderer renderer(FixedScale(kSurroundCelsius, kDiscCelsius), ThermalOptions());
+  const Renderer renderer(FixedScale(kSurround_celsius, kDisc_celsius), ThermalOptions());
   const CaptureTime middle = played->scan->depth_times()[played->scan->depth_times().size() / 2]
                                  .exposure;  // At about 40 degrees, as in the thesis.
   constexpr const char* kLabels[] = {"not validated", "validated"};
-  constexpr const char* kPictures[] = {"not_validated", "validated"};
+  constexpr const char* kRenderings[] = {"not_validated", "validated"};
   for (std::size_t i = 0; i < 2; ++i) {
     const GroundPipeline& pipeline = *played->pipelines[i];
     const DiscErrors errors = MeasureDisc(*played, pipeline, pool);
     report.table.rows.push_back(
         {kLabels[i],
          {static_cast<double>(errors.points), errors.mean_kelvin, errors.largest_kelvin}});
-    report.pictures.push_back(
-        {kPictures[i], renderer.Thermal(LookAtModel(pipeline, *played->scan, middle, pool))});
+    report.renderings.push_back(
+        {kRenderings[i], renderer.Thermal(LookAtModel(pipeline, *played->scan, middle, pool))});
   }
   // Noise of single pixels (0.04 K) is 0.0006 of the difference in radiance.
   report.requirements = {{"largest error of the disc, validated", report.table.rows[1].values[2],

@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 3.0;
+constexpr double kDuration_s = 3.0;
 
 /// Boards at several distances and slants.
 StagedScene SlantedBoards() {
@@ -52,8 +52,8 @@ std::vector<std::size_t> FramesWithPoses(const SimulatedScan& scan) {
 std::optional<TrueClasses> ClassesAt(const SimulatedScan& scan,
                                      const std::vector<std::size_t>& frames,
                                      const ThermalOptions& limits, const SurfacePoint& point) {
-  constexpr double kBorderM = 0.006;
-  constexpr double kAboveM = 0.008;  // The surface around is met from this high above the plane.
+  constexpr double kBorder_m = 0.006;
+  constexpr double kAbove_m = 0.008;  // The surface around is met from this high above the plane.
   const auto classes = ExpectClasses(TrueConditions(scan, frames, point), limits);
   if (!classes) return std::nullopt;
   const Eigen::Vector3d right = point.n_world.unitOrthogonal();
@@ -61,8 +61,8 @@ std::optional<TrueClasses> ClassesAt(const SimulatedScan& scan,
   for (const Eigen::Vector3d& side :
        {right, Eigen::Vector3d(-right), down, Eigen::Vector3d(-down)}) {
     const auto around = scan.scene().Intersect(
-        point.p_world + kBorderM * side + kAboveM * point.n_world, -point.n_world);
-    if (!around || around->distance > 2.0 * kAboveM) return std::nullopt;
+        point.p_world + kBorder_m * side + kAbove_m * point.n_world, -point.n_world);
+    if (!around || around->distance > 2.0 * kAbove_m) return std::nullopt;
     if (ExpectClasses(TrueConditions(scan, frames, around->point), limits) != classes)
       return std::nullopt;
   }
@@ -109,7 +109,7 @@ Agreement Compare(const PlayedScan& played, const ThermalOptions& limits, Thread
 
 Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool) {
   const GroundOptions options;
-  const auto played = Play(ExperimentCameras(kDurationS), SlantedBoards(), {options}, pool);
+  const auto played = Play(ExperimentCameras(kDuration_s), SlantedBoards(), {options}, pool);
   if (!played) return Err(played.error());
   const Agreement agreement = Compare(*played, options.thermal(), pool);
   ExperimentReport report;
@@ -132,9 +132,9 @@ Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool) {
   const GroundPipeline& pipeline = *played->pipelines.front();
   const ViewMaps view = LookAtModel(pipeline.tsdf(), pipeline.thermal(), *played->scan->rig().depth,
                                     pipeline.trajectory().back().T_world_depth, pool);
-  report.pictures = {{"thermal", renderer.Thermal(view)},
-                     {"distance", renderer.Distance(view)},
-                     {"angle", renderer.Angle(view)}};
+  report.renderings = {{"thermal", renderer.Thermal(view)},
+                       {"distance", renderer.Distance(view)},
+                       {"angle", renderer.Angle(view)}};
   return report;
 }
 

@@ -15,11 +15,11 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 4.0;
-constexpr double kCloseUpS = 0.8;  ///< Until then the rig has hardly moved away.
-constexpr double kHotCelsius = 80.0, kColdCelsius = 40.0;
+constexpr double kDuration_s = 4.0;
+constexpr double kCloseUp_s = 0.8;  ///< Until then the rig has hardly moved away.
+constexpr double kHot_celsius = 80.0, kCold_celsius = 40.0;
 constexpr double kPanelZ = 0.60;
-constexpr std::array kBarWidthsM = {0.002, 0.003, 0.004};
+constexpr std::array kBarWidths_m = {0.002, 0.003, 0.004};
 constexpr int kPeriods = 5;
 
 /// A resolution target in a panel: groups of hot and cold bars, flush, so that only the camera's
@@ -30,17 +30,17 @@ StagedScene ResolutionTarget() {
   scene.Box("wall", {0.02, 0.02, 0.84}, {0.94, 0.94, 0.90}).temperature = Uniform(24.0);
   scene.Box("table", {0.02, 0.70, 0.20}, {0.94, 0.76, 0.84}).temperature = Uniform(24.0);
   scene.Box("panel", {0.36, 0.34, kPanelZ + 0.002}, {0.60, 0.70, 0.74}).temperature =
-      Uniform(kColdCelsius);
+      Uniform(kCold_celsius);
   scene.Cylinder("knob", {0.40, 0.66, kPanelZ - 0.03}, {0.40, 0.66, kPanelZ + 0.002}, 0.02)
-      .temperature = Uniform(kColdCelsius);
+      .temperature = Uniform(kCold_celsius);
   scene.RotatedBox("carton", {0.22, 0.62, 0.68}, {0.14, 0.16, 0.14}, {0, 30, 0}).temperature =
       Uniform(24.0);
   double x = 0.42;
-  for (const double width : kBarWidthsM) {
+  for (const double width : kBarWidths_m) {
     for (int bar = 0; bar < 2 * kPeriods; ++bar, x += width) {
       const bool hot = bar % 2 == 0;
       scene.Box(hot ? "hot bar" : "cold bar", {x, 0.47, kPanelZ}, {x + width, 0.57, kPanelZ + 0.01})
-          .temperature = Uniform(hot ? kHotCelsius : kColdCelsius);
+          .temperature = Uniform(hot ? kHot_celsius : kCold_celsius);
     }
     x += 0.010;
   }
@@ -48,32 +48,32 @@ StagedScene ResolutionTarget() {
   path.target_x_m = {0.48, 0.005, 1.5};
   path.target_y_m = {0.52, 0.005, 1.1};
   path.target_z_m = {kPanelZ};
-  path.distance_m = FromTo(0.40, 0.90, kDurationS);
+  path.distance_m = FromTo(0.40, 0.90, kDuration_s);
   return {scene.Build("resolution target"), path, {}};
 }
 
-/// Difference between the middles of hot and of cold bars, as a share of the true one, by group.
-using Contrasts = std::array<double, kBarWidthsM.size()>;
+/// Difference between the middles of hot and of cold bars, as a fraction of the true one, by group.
+using Contrasts = std::array<double, kBarWidths_m.size()>;
 
 Contrasts MeasureContrasts(const SimulatedScan& scan, const GroundPipeline& pipeline,
                            ThreadPool& pool) {
-  constexpr double kMiddleShare = 0.15;  // Of a bar's width, to either side of its middle.
+  constexpr double kMiddleFraction = 0.15;  // Of a bar's width, to either side of its middle.
   struct Sum {
     double celsius = 0.0;
     int count = 0;
     double Mean() const { return count == 0 ? std::nan("") : celsius / count; }
   };
-  std::array<std::array<Sum, 2>, kBarWidthsM.size()> sums;
+  std::array<std::array<Sum, 2>, kBarWidths_m.size()> sums;
   for (const CheckedPoint& point :
        CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool)) {
     const Primitive& part =
         scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)];
     if (!part.name.ends_with("bar") || !point.measured()) continue;
     const Eigen::Vector3d p = part.T_world_primitive.inverse() * point.truth.p_world;
-    if (std::abs(p.x()) > 2.0 * kMiddleShare * part.size.x()) continue;
+    if (std::abs(p.x()) > 2.0 * kMiddleFraction * part.size.x()) continue;
     if (std::abs(p.y()) > 0.8 * part.size.y()) continue;
-    for (std::size_t group = 0; group < kBarWidthsM.size(); ++group) {
-      if (std::abs(2.0 * part.size.x() - kBarWidthsM[group]) > 1e-4) continue;
+    for (std::size_t group = 0; group < kBarWidths_m.size(); ++group) {
+      if (std::abs(2.0 * part.size.x() - kBarWidths_m[group]) > 1e-4) continue;
       Sum& sum = sums[group][part.name == "hot bar" ? 1 : 0];
       sum.celsius += static_cast<double>(point.point.celsius);
       ++sum.count;
@@ -82,13 +82,13 @@ Contrasts MeasureContrasts(const SimulatedScan& scan, const GroundPipeline& pipe
   Contrasts contrasts;
   for (std::size_t group = 0; group < contrasts.size(); ++group) {
     contrasts[group] =
-        (sums[group][1].Mean() - sums[group][0].Mean()) / (kHotCelsius - kColdCelsius);
+        (sums[group][1].Mean() - sums[group][0].Mean()) / (kHot_celsius - kCold_celsius);
   }
   return contrasts;
 }
 
-RgbImage Picture(const SimulatedScan& scan, const GroundPipeline& pipeline, ThreadPool& pool) {
-  return Renderer(FixedScale(23.0, kHotCelsius), ThermalOptions())
+RgbImage Rendering(const SimulatedScan& scan, const GroundPipeline& pipeline, ThreadPool& pool) {
+  return Renderer(FixedScale(23.0, kHot_celsius), ThermalOptions())
       .Thermal(LookAtModel(pipeline, scan, scan.depth_times().front().exposure, pool));
 }
 
@@ -115,16 +115,16 @@ ExperimentReport Describe(const Contrasts& close_up, const Contrasts& not_valida
   report.table.columns = {"close-up [contrast]", "retreat, not validated [contrast]",
                           "retreat, validated [contrast]", "kept, not validated [%]",
                           "kept, validated [%]"};
-  double least_kept = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < kBarWidthsM.size(); ++i) {
+  double min_kept = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < kBarWidths_m.size(); ++i) {
     const double kept_without = 100.0 * not_validated[i] / close_up[i];
     const double kept = 100.0 * validated[i] / close_up[i];
-    least_kept = std::isnan(kept) ? kept : std::min(least_kept, kept);
+    min_kept = std::isnan(kept) ? kept : std::min(min_kept, kept);
     report.table.rows.push_back(
-        {fmt::format("{:.0f} mm", 1000.0 * kBarWidthsM[i]),
+        {fmt::format("{:.0f} mm", 1000.0 * kBarWidths_m[i]),
          {close_up[i], not_validated[i], validated[i], kept_without, kept}});
   }
-  report.requirements = {{"contrast kept of the close-up, validated", least_kept,
+  report.requirements = {{"contrast kept of the close-up, validated", min_kept,
                           Requirement::Sense::kAtLeast, 98.0, "%"}};
   return report;
 }
@@ -132,14 +132,14 @@ ExperimentReport Describe(const Contrasts& close_up, const Contrasts& not_valida
 }  // namespace
 
 Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
-  const auto scan = SimulatedScan::Create(ExperimentCameras(kDurationS), ResolutionTarget());
+  const auto scan = SimulatedScan::Create(ExperimentCameras(kDuration_s), ResolutionTarget());
   if (!scan) return Err(scan.error());
   const auto with = StartPipeline(FineModel(true), **scan, pool);
   const auto without = StartPipeline(FineModel(false), **scan, pool);
   if (!with) return Err(with.error());
   if (!without) return Err(without.error());
   const CaptureTime close_up_until =
-      (*scan)->depth_times().front().exposure + FromSeconds(kCloseUpS);
+      (*scan)->depth_times().front().exposure + FromSeconds(kCloseUp_s);
   std::optional<Contrasts> close_up;
   PlayScan(**scan, pool,
            {[&](const DepthFrame& frame) {
@@ -160,8 +160,8 @@ Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
   if (!close_up) return Err(Internal("the scan was over before the close-up"));
   ExperimentReport report = Describe(*close_up, MeasureContrasts(**scan, **without, pool),
                                      MeasureContrasts(**scan, **with, pool));
-  report.pictures = {{"not_validated", Picture(**scan, **without, pool)},
-                     {"validated", Picture(**scan, **with, pool)}};
+  report.renderings = {{"not_validated", Rendering(**scan, **without, pool)},
+                       {"validated", Rendering(**scan, **with, pool)}};
   return report;
 }
 

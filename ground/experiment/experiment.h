@@ -36,16 +36,16 @@ struct ExperimentTable {
   std::vector<Row> rows;
 };
 
-struct ExperimentPicture {
+struct ExperimentRendering {
   std::string name;  ///< Part of the file's name.
-  RgbImage picture;
+  RgbImage rendering;
 };
 
 /// Holds what an experiment showed.
 struct ExperimentReport {
   ExperimentTable table;
   std::vector<Requirement> requirements;
-  std::vector<ExperimentPicture> pictures;
+  std::vector<ExperimentRendering> renderings;
 
   bool AllMet() const;
 };

@@ -129,10 +129,10 @@ Status WriteExperiment(const Experiment& experiment, const ExperimentReport& rep
   const std::string name(experiment.name);
   ISOTHERM_RETURN_IF_ERROR(WriteFile(dir / (name + ".csv"), ToCsv(report.table)));
   ISOTHERM_RETURN_IF_ERROR(WriteFile(dir / (name + ".json"), JsonText(ToJson(experiment, report))));
-  for (const ExperimentPicture& picture : report.pictures) {
-    const Result<std::vector<std::uint8_t>> png = EncodePng(picture.picture);
+  for (const ExperimentRendering& rendering : report.renderings) {
+    const Result<std::vector<std::uint8_t>> png = EncodePng(rendering.rendering);
     if (!png) return png.error();
-    ISOTHERM_RETURN_IF_ERROR(WriteFile(dir / fmt::format("{}_{}.png", name, picture.name),
+    ISOTHERM_RETURN_IF_ERROR(WriteFile(dir / fmt::format("{}_{}.png", name, rendering.name),
                                        std::as_bytes(std::span(*png))));
   }
   return OkStatus();

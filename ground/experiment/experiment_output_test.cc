@@ -21,7 +21,7 @@ ExperimentReport SampleReport() {
   report.table = {"method", {"points", "wrong, of all [%]"}, {{"none", {1200.0, 3.25}}}};
   report.table.rows.push_back({"the \"best\"", {1200.0, std::nan("")}});
   report.requirements = {{"wrong", 0.05, Requirement::Sense::kAtMost, 0.1, "%"}};
-  report.pictures = {{"none", RgbImage(4, 3, Rgb8{1, 2, 3})}};
+  report.renderings = {{"none", RgbImage(4, 3, Rgb8{1, 2, 3})}};
   return report;
 }
 
@@ -57,7 +57,7 @@ TEST(ExperimentOutputTest, CsvQuotesWhatNeedsItAndLeavesNaNEmpty) {
             "method,points,\"wrong, of all [%]\"\nnone,1200,3.25\n\"the \"\"best\"\"\",1200,\n");
 }
 
-TEST(ExperimentOutputTest, WritesTableRequirementsAndPictures) {
+TEST(ExperimentOutputTest, WritesTableRequirementsAndRenderings) {
   const testing::TemporaryDirectory directory;
   const std::filesystem::path dir = directory.path() / "new" / "folder";
   ASSERT_TRUE(WriteExperiment(kExperiment, SampleReport(), dir).ok());

@@ -54,10 +54,10 @@ ThermalFramePtr ToThermalFrame(RawFrame raw, CaptureTime time, const SimulatedSc
 }  // namespace
 
 SimulationOptions ExperimentCameras(double duration_s) {
-  constexpr double kThermalHz = 20.0;
+  constexpr double kThermal_hz = 20.0;
   SimulationOptions options;
   options.set_duration_s(duration_s);
-  options.mutable_thermal()->set_rate_hz(kThermalHz);
+  options.mutable_thermal()->set_rate_hz(kThermal_hz);
   options.mutable_shutter()->set_interval_s(0.0);
   return options;
 }

@@ -4,7 +4,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 3.5;
+constexpr double kDuration_s = 3.5;
 
 /// A hot plate in front of a wall. The rig passes it to the right and comes closer, so that the
 /// plate leaves the depth camera's view over the left border while the thermal camera, which is
@@ -20,17 +20,17 @@ StagedScene PlateBeforeWall() {
       Uniform(24.0);
   scene.Box("plate", {0.20, 0.24, 0.36}, {0.36, 0.44, 0.37}).temperature = Uniform(80.0);
   ScanPath path;
-  path.target_x_m = FromTo(0.32, 0.64, kDurationS);
+  path.target_x_m = FromTo(0.32, 0.64, kDuration_s);
   path.target_y_m = {0.48};
   path.target_z_m = {0.74};
-  path.distance_m = FromTo(0.82, 0.70, kDurationS);
+  path.distance_m = FromTo(0.82, 0.70, kDuration_s);
   return {scene.Build("plate before wall"), path, {}};
 }
 
 }  // namespace
 
 Result<ExperimentReport> RunForegroundExperiment(ThreadPool& pool) {
-  return CompareParallaxFilters({PlateBeforeWall(), kDurationS, 0.2, 0.2}, pool);
+  return CompareParallaxFilters({PlateBeforeWall(), kDuration_s, 0.2, 0.2}, pool);
 }
 
 }  // namespace isotherm

@@ -14,7 +14,7 @@ namespace {
 
 struct Method {
   const char* label;
-  const char* picture;
+  const char* rendering;
   const ThermalVolume* thermal;
 };
 
@@ -27,8 +27,8 @@ RendererOptions ScaleOf(const Scene& scene) {
   return FixedScale(low, high);
 }
 
-/// Share of points with a temperature among those that truly were seen under acceptable conditions,
-/// percent: the filter must not win by leaving surfaces without temperatures.
+/// Fraction of points with a temperature among those that truly were seen under acceptable
+/// conditions, percent: the filter must not win by leaving surfaces without temperatures.
 double CoveragePercent(const SimulatedScan& scan, const std::vector<CheckedPoint>& points,
                        const ThermalOptions& limits) {
   constexpr std::size_t kEvery = 20;
@@ -70,9 +70,9 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
          {static_cast<double>(check.points), static_cast<double>(check.assigned),
           static_cast<double>(check.too_warm), static_cast<double>(check.too_cold),
           check.WrongPercent()}});
-    report.pictures.push_back(
-        {method.picture, renderer.Thermal(LookAtModel(pipeline.tsdf(), *method.thermal,
-                                                      *scan.rig().depth, T_world_depth, pool))});
+    report.renderings.push_back(
+        {method.rendering, renderer.Thermal(LookAtModel(pipeline.tsdf(), *method.thermal,
+                                                        *scan.rig().depth, T_world_depth, pool))});
   }
   const auto wrong_percent = [&](std::size_t row) { return report.table.rows[row].values.back(); };
   report.requirements = {

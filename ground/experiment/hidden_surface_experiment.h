@@ -11,7 +11,7 @@ struct HiddenSurfaceSetup {
   StagedScene staged;
   double duration_s;
   double max_wrong_percent;  ///< With visibility from the thermal camera.
-  /// Least share of wrong points that algorithm 4 leaves, if it must fail; 0 = it may do well.
+  /// Least fraction of wrong points that algorithm 4 leaves, if it must fail; 0 = it may do well.
   double algorithm4_wrong_percent;
 };
 

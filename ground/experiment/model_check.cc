@@ -10,11 +10,11 @@ namespace isotherm {
 namespace {
 
 std::optional<SurfacePoint> TruthAt(const Scene& scene, const CloudPoint& point) {
-  constexpr double kReachM = 0.006;
+  constexpr double kReach_m = 0.006;
   const Eigen::Vector3d n_world = point.normal.cast<double>();
-  const Eigen::Vector3d above = point.position_m.cast<double>() + kReachM * n_world;
+  const Eigen::Vector3d above = point.position_m.cast<double>() + kReach_m * n_world;
   const auto hit = scene.Intersect(above, -n_world);
-  if (!hit || hit->distance > 2.0 * kReachM) return std::nullopt;
+  if (!hit || hit->distance > 2.0 * kReach_m) return std::nullopt;
   return hit->point;
 }
 
@@ -51,8 +51,8 @@ AssignmentCheck CheckAssignment(const std::vector<CheckedPoint>& points) {
   for (const CheckedPoint& point : points) {
     if (!point.measured()) continue;
     ++check.assigned;
-    if (point.ErrorKelvin() > AssignmentCheck::kWrongKelvin) ++check.too_warm;
-    if (point.ErrorKelvin() < -AssignmentCheck::kWrongKelvin) ++check.too_cold;
+    if (point.ErrorKelvin() > AssignmentCheck::kWrong_k) ++check.too_warm;
+    if (point.ErrorKelvin() < -AssignmentCheck::kWrong_k) ++check.too_cold;
   }
   return check;
 }

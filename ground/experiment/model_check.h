@@ -36,10 +36,10 @@ std::vector<CheckedPoint> CheckModel(const Scene& scene, const BandRadiance& ban
 struct AssignmentCheck {
   std::size_t points = 0;
   std::size_t assigned = 0;
-  std::size_t too_warm = 0;  ///< How many of those are too warm by more than kWrongKelvin.
+  std::size_t too_warm = 0;  ///< How many of those are too warm by more than kWrong_k.
   std::size_t too_cold = 0;
 
-  static constexpr double kWrongKelvin = 5.0;
+  static constexpr double kWrong_k = 5.0;
   std::size_t wrong() const { return too_warm + too_cold; }
   double WrongPercent() const;
 };
@@ -66,7 +66,7 @@ ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
 ViewMaps LookAtModel(const GroundPipeline& pipeline, const SimulatedScan& scan, CaptureTime time,
                      ThreadPool& pool);
 
-/// Pictures of temperatures with the same colours whatever they show.
+/// Images of temperatures with the same colours whatever they show.
 RendererOptions FixedScale(double low_celsius, double high_celsius);
 
 }  // namespace isotherm

@@ -9,13 +9,13 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 3.2;
-constexpr double kColdCelsius = 30.0, kHotCelsius = 60.0;
-constexpr double kFirstBarM = 0.02, kBarM = 0.016, kWallM = 0.80;
+constexpr double kDuration_s = 3.2;
+constexpr double kCold_celsius = 30.0, kHot_celsius = 60.0;
+constexpr double kFirstBar_m = 0.02, kBar_m = 0.016, kWall_m = 0.80;
 /// That of the simulated detector, and what the pipeline is told.
-constexpr double kTimeConstantS = 0.010;
+constexpr double kTimeConstant_s = 0.010;
 /// No smear is too much.
-constexpr double kAnySmearPx = 1e6;
+constexpr double kAnySmear_px = 1e6;
 
 /// A wall of hot and cold bars, flush, which the rig sweeps along at up to 0.8 m/s, resting for a
 /// moment at either end. Black bodies, so that a temperature is wrong only by motion and blur.
@@ -23,28 +23,28 @@ StagedScene SweepAlongBars() {
   SceneBuilder scene(23.0);
   scene.UseMaterial({1.0, 1.0, 0.0, false});
   bool hot = false;
-  for (double x = kFirstBarM; x < 0.94; x += kBarM, hot = !hot) {
-    scene.Box(hot ? "hot bar" : "cold bar", {x, 0.02, kWallM}, {x + kBarM, 0.76, kWallM + 0.05})
-        .temperature = Uniform(hot ? kHotCelsius : kColdCelsius);
+  for (double x = kFirstBar_m; x < 0.94; x += kBar_m, hot = !hot) {
+    scene.Box(hot ? "hot bar" : "cold bar", {x, 0.02, kWall_m}, {x + kBar_m, 0.76, kWall_m + 0.05})
+        .temperature = Uniform(hot ? kHot_celsius : kCold_celsius);
   }
   // What the tracker holds on to.
-  scene.Box("sill", {0.02, 0.76, 0.62}, {0.94, 0.82, 0.86}).temperature = Uniform(kColdCelsius);
+  scene.Box("sill", {0.02, 0.76, 0.62}, {0.94, 0.82, 0.86}).temperature = Uniform(kCold_celsius);
   scene.RotatedBox("carton", {0.24, 0.68, 0.70}, {0.12, 0.14, 0.10}, {0, 30, 0}).temperature =
-      Uniform(kColdCelsius);
-  scene.Sphere("knob", {0.66, 0.70, 0.72}, 0.06).temperature = Uniform(kColdCelsius);
+      Uniform(kCold_celsius);
+  scene.Sphere("knob", {0.66, 0.70, 0.72}, 0.06).temperature = Uniform(kCold_celsius);
   scene.RotatedBox("box", {0.48, 0.71, 0.70}, {0.08, 0.10, 0.08}, {0, 15, 0}).temperature =
-      Uniform(kColdCelsius);
+      Uniform(kCold_celsius);
   ScanPath path;
   path.target_x_m = {0.48, 0.16, 1.25};
   path.target_y_m = {0.52};
-  path.target_z_m = {kWallM};
+  path.target_z_m = {kWall_m};
   path.distance_m = {0.52};
   return {scene.Build("sweep along bars"), path, {}};
 }
 
 SimulationOptions CamerasWithInertia() {
-  SimulationOptions options = ExperimentCameras(kDurationS);
-  options.mutable_thermal()->set_time_constant_s(kTimeConstantS);
+  SimulationOptions options = ExperimentCameras(kDuration_s);
+  options.mutable_thermal()->set_time_constant_s(kTimeConstant_s);
   return options;
 }
 
@@ -52,21 +52,21 @@ GroundOptions WithSmearLimits(bool limited) {
   GroundOptions options;
   // The simulated depth camera has no shutter of rows: faster motion is good enough here.
   options.mutable_tsdf()->set_max_step_m(0.04);
-  options.mutable_thermal()->set_time_constant_s(kTimeConstantS);
+  options.mutable_thermal()->set_time_constant_s(kTimeConstant_s);
   if (!limited) {
-    options.mutable_thermal()->set_smear_good_px(kAnySmearPx);
-    options.mutable_thermal()->set_smear_max_px(kAnySmearPx);
+    options.mutable_thermal()->set_smear_good_px(kAnySmear_px);
+    options.mutable_thermal()->set_smear_max_px(kAnySmear_px);
   }
   return options;
 }
 
 /// Nearer to the border between two bars, a voxel and a thermal pixel show both: that is a matter
 /// of resolution (the distance experiment), not of motion.
-constexpr double kBorderM = 0.004;
+constexpr double kBorder_m = 0.004;
 
 bool IsAtBorder(const CheckedPoint& point) {
-  const double bars = (point.truth.p_world.x() - kFirstBarM) / kBarM;
-  return std::abs(bars - std::round(bars)) * kBarM < kBorderM;
+  const double bars = (point.truth.p_world.x() - kFirstBar_m) / kBar_m;
+  return std::abs(bars - std::round(bars)) * kBar_m < kBorder_m;
 }
 
 ExperimentTable::Row DescribeModel(const char* label, const PlayedScan& played,
@@ -104,16 +104,16 @@ Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool) {
   report.table.rows_are = "smeared pixels";
   report.table.columns = {"points",           "assigned",         "smeared pixels left out",
                           "median error [K]", "99.9 % error [K]", "largest error [K]"};
-  RendererOptions renderer_options = FixedScale(kColdCelsius, kHotCelsius);
+  RendererOptions renderer_options = FixedScale(kCold_celsius, kHot_celsius);
   renderer_options.set_shading(false);
   const Renderer renderer(renderer_options, ThermalOptions());
   constexpr const char* kLabels[] = {"believed", "left out"};
-  constexpr const char* kPictures[] = {"believed", "left_out"};
+  constexpr const char* kRenderings[] = {"believed", "left_out"};
   for (std::size_t i = 0; i < 2; ++i) {
     const GroundPipeline& pipeline = *played->pipelines[i];
     report.table.rows.push_back(DescribeModel(kLabels[i], *played, pipeline, pool));
-    report.pictures.push_back(
-        {kPictures[i],
+    report.renderings.push_back(
+        {kRenderings[i],
          renderer.Thermal(LookAtModel(pipeline, *played->scan,
                                       played->scan->depth_times().front().exposure, pool))});
   }

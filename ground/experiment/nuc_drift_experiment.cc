@@ -10,15 +10,15 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 6.0;
+constexpr double kDuration_s = 6.0;
 /// Fig. 3.4b: a housing that becomes 5 K warmer makes an error of 20 K. The minutes that this takes
 /// are pressed into the scan's seconds, and the correction's 0.4 s with them.
-constexpr double kWarmUpK = 5.0;
+constexpr double kWarmUp_k = 5.0;
 constexpr double kErrorPerKelvin = 4.0;
-constexpr double kTimeConstantS = 3.0;
-constexpr double kShutterClosedS = 0.06;
+constexpr double kTimeConstant_s = 3.0;
+constexpr double kShutterClosed_s = 0.06;
 /// The housing may drift by so much: 0.8 K of error.
-constexpr double kAllowedDriftK = 0.2;
+constexpr double kAllowedDrift_k = 0.2;
 
 StagedScene WarmCorner() {
   return CornerScene("warm corner",
@@ -28,15 +28,15 @@ StagedScene WarmCorner() {
 enum class Camera { kWithoutDrift, kNeverCorrected, kCorrectedByDrift };
 
 SimulationOptions CameraWith(Camera camera) {
-  SimulationOptions options = ExperimentCameras(kDurationS);
+  SimulationOptions options = ExperimentCameras(kDuration_s);
   if (camera == Camera::kWithoutDrift) return options;
   ThermalDriftOptions& drift = *options.mutable_drift();
-  drift.set_warm_up_k(kWarmUpK);
-  drift.set_time_constant_s(kTimeConstantS);
+  drift.set_warm_up_k(kWarmUp_k);
+  drift.set_time_constant_s(kTimeConstant_s);
   drift.set_error_per_kelvin(kErrorPerKelvin);
   if (camera == Camera::kNeverCorrected) return options;
-  options.mutable_shutter()->set_drift_k(kAllowedDriftK);
-  options.mutable_shutter()->set_duration_s(kShutterClosedS);
+  options.mutable_shutter()->set_drift_k(kAllowedDrift_k);
+  options.mutable_shutter()->set_duration_s(kShutterClosed_s);
   return options;
 }
 
@@ -67,7 +67,7 @@ Outcome Measure(const PlayedScan& played, ThreadPool& pool) {
   return outcome;
 }
 
-RgbImage Picture(const PlayedScan& played, ThreadPool& pool) {
+RgbImage Rendering(const PlayedScan& played, ThreadPool& pool) {
   return Renderer(FixedScale(25.0, 70.0), ThermalOptions())
       .Thermal(LookAtModel(*played.pipelines.front(), *played.scan,
                            played.scan->depth_times().back().exposure, pool));
@@ -83,7 +83,7 @@ Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool) {
   struct Case {
     Camera camera;
     const char* label;
-    const char* picture;
+    const char* rendering;
   };
   std::vector<Outcome> all;
   for (const Case& each : {Case{Camera::kWithoutDrift, "no drift", "no_drift"},
@@ -97,7 +97,7 @@ Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool) {
         {each.label,
          {static_cast<double>(good.measured), good.within_1k_percent, good.median_k, good.p95_k,
           good.largest_k, outcome.corrections, outcome.left_out_percent}});
-    report.pictures.push_back({each.picture, Picture(*played, pool)});
+    report.renderings.push_back({each.rendering, Rendering(*played, pool)});
   }
   const ErrorSummary& never = all[1].good;
   const ErrorSummary& corrected = all[2].good;

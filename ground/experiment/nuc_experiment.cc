@@ -7,10 +7,10 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 4.9;
-constexpr double kShutterCelsius = 60.0;
+constexpr double kDuration_s = 4.9;
+constexpr double kShutter_celsius = 60.0;
 /// Nothing in the scene is warmer than 30 °C: what is warmer than this was read off the shutter.
-constexpr double kFromShutterCelsius = 45.0;
+constexpr double kFromShutter_celsius = 45.0;
 
 StagedScene CoolCorner() {
   return CornerScene("cool corner",
@@ -19,14 +19,14 @@ StagedScene CoolCorner() {
 
 /// Three closings of 0.4, 0.7 and 1.0 s.
 SimulationOptions CamerasWithShutter() {
-  SimulationOptions options = ExperimentCameras(kDurationS);
+  SimulationOptions options = ExperimentCameras(kDuration_s);
   ShutterOptions& shutter = *options.mutable_shutter();
   shutter.set_first_s(0.8);
   shutter.set_interval_s(1.4);
   shutter.set_duration_s(0.4);
   shutter.set_duration_step_s(0.3);
   shutter.set_appearance(ShutterOptions::SHUTTER);
-  shutter.set_shutter_celsius(kShutterCelsius);
+  shutter.set_shutter_celsius(kShutter_celsius);
   return options;
 }
 
@@ -40,7 +40,7 @@ VoxelCount CountVoxels(const GroundPipeline& pipeline) {
   for (std::int32_t block = 0; block < pipeline.tsdf().block_count(); ++block) {
     for (const ThermalVoxel& voxel : pipeline.thermal().voxels(block)) {
       count.measured += voxel.measured() ? 1.0 : 0.0;
-      count.from_shutter += voxel.celsius() > kFromShutterCelsius ? 1.0 : 0.0;
+      count.from_shutter += voxel.celsius() > kFromShutter_celsius ? 1.0 : 0.0;
     }
   }
   return count;
@@ -118,12 +118,12 @@ Result<ExperimentReport> RunNucExperiment(ThreadPool& pool) {
   report.requirements.push_back({"NUC events in mid-scan",
                                  static_cast<double>((*scan)->nuc_events().size()),
                                  Requirement::Sense::kAtLeast, 3.0, ""});
-  const Renderer renderer(FixedScale(20.0, kShutterCelsius), ThermalOptions());
-  const auto picture = [&](const GroundPipeline& pipeline) {
+  const Renderer renderer(FixedScale(20.0, kShutter_celsius), ThermalOptions());
+  const auto rendering = [&](const GroundPipeline& pipeline) {
     return renderer.Thermal(
         LookAtModel(pipeline, **scan, (*scan)->depth_times().back().exposure, pool));
   };
-  report.pictures = {{"believed", picture(**ignored)}, {"left_out", picture(**respected)}};
+  report.renderings = {{"believed", rendering(**ignored)}, {"left_out", rendering(**respected)}};
   return report;
 }
 

@@ -9,9 +9,9 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 5.0;
+constexpr double kDuration_s = 5.0;
 constexpr const char* kPatch = "polished patch";
-constexpr double kShowsPipeCelsius = 80.0;
+constexpr double kShowsPipe_celsius = 80.0;
 
 /// A painted door with a polished patch that mirrors a hot pipe in front of it. The rig goes around
 /// the patch, and the pipe's image wanders over all of it.
@@ -33,7 +33,7 @@ StagedScene DoorWithPolishedPatch() {
   path.target_x_m = {0.49};
   path.target_y_m = {0.48};
   path.target_z_m = {0.74};
-  path.azimuth_rad = FromTo(0.02, 0.72, kDurationS - 0.4);
+  path.azimuth_rad = FromTo(0.02, 0.72, kDuration_s - 0.4);
   path.elevation_rad = {0.05, 0.04, 2.0};
   path.distance_m = {0.56};
   return {scene.Build("door with a polished patch"), path, {}};
@@ -45,11 +45,11 @@ bool IsOnPatch(const Scene& scene, const CheckedPoint& point) {
 
 /// The disagreement layer as a test for "this surface reflects".
 struct Detection {
-  double reflecting = 0.0;  ///< Points of the patch that were judged.
+  double reflecting = 0.0;  ///< Points of the patch that were assessed.
   double found = 0.0;       ///< Those called bad.
   double false_alarms = 0.0;
   double others = 0.0;
-  double shows_pipe = 0.0;  ///< Points of the patch, judged or not, with the pipe's temperature.
+  double shows_pipe = 0.0;  ///< Points of the patch, assessed or not, with the pipe's temperature.
 
   double PrecisionPercent() const { return Percent(found, found + false_alarms); }
   double RecallPercent() const { return Percent(found, reflecting); }
@@ -62,7 +62,7 @@ Detection Detect(const Scene& scene, const std::vector<CheckedPoint>& points) {
   Detection detection;
   for (const CheckedPoint& point : points) {
     const bool reflects = IsOnPatch(scene, point);
-    if (reflects && point.measured() && point.point.celsius > kShowsPipeCelsius)
+    if (reflects && point.measured() && point.point.celsius > kShowsPipe_celsius)
       detection.shows_pipe += 1.0;
     const auto disagreement = static_cast<ConditionClass>(point.point.disagreement_class);
     if (disagreement == ConditionClass::kUnchecked) continue;
@@ -84,18 +84,18 @@ ExperimentTable::Row DescribeDetection(const char* label, const Detection& detec
 Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
   GroundOptions lowest;
   lowest.mutable_thermal()->set_policy(LOWEST_GOOD);
-  const auto played =
-      Play(ExperimentCameras(kDurationS), DoorWithPolishedPatch(), {GroundOptions(), lowest}, pool);
+  const auto played = Play(ExperimentCameras(kDuration_s), DoorWithPolishedPatch(),
+                           {GroundOptions(), lowest}, pool);
   if (!played) return Err(played.error());
   const SimulatedScan& scan = *played->scan;
   ExperimentReport report;
   report.table.rows_are = "temperature kept";
-  report.table.columns = {"patch points judged",           "found",         "other points judged",
+  report.table.columns = {"patch points assessed",         "found",         "other points assessed",
                           "falsely called reflecting",     "precision [%]", "recall [%]",
                           "patch points warmer than 80 °C"};
   const Renderer renderer(FixedScale(23.0, 130.0), ThermalOptions());
   constexpr const char* kLabels[] = {"best conditions", "lowest of the good"};
-  constexpr const char* kPictures[] = {"best_conditions", "lowest"};
+  constexpr const char* kRenderings[] = {"best_conditions", "lowest"};
   Detection best_conditions;
   for (std::size_t i = 0; i < 2; ++i) {
     const GroundPipeline& pipeline = *played->pipelines[i];
@@ -104,10 +104,10 @@ Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
                CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool));
     report.table.rows.push_back(DescribeDetection(kLabels[i], detection));
     const ViewMaps view = LookAtModel(pipeline, scan, scan.depth_times().back().exposure, pool);
-    report.pictures.push_back({kPictures[i], renderer.Thermal(view)});
+    report.renderings.push_back({kRenderings[i], renderer.Thermal(view)});
     if (i > 0) continue;
     best_conditions = detection;
-    report.pictures.push_back({"disagreement", renderer.Disagreement(view)});
+    report.renderings.push_back({"disagreement", renderer.Disagreement(view)});
   }
   using Sense = Requirement::Sense;
   report.requirements = {
@@ -115,7 +115,7 @@ Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
        90.0, "%"},
       {"recall of the disagreement layer", best_conditions.RecallPercent(), Sense::kAtLeast, 90.0,
        "%"},
-      {"patch points judged", best_conditions.reflecting, Sense::kAtLeast, 1000.0, ""}};
+      {"patch points assessed", best_conditions.reflecting, Sense::kAtLeast, 1000.0, ""}};
   return report;
 }
 

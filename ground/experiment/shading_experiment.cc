@@ -11,12 +11,12 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDurationS = 1.6;
+constexpr double kDuration_s = 1.6;
 
 RendererOptions ScaleFor(double hot_celsius, bool shading) {
   RendererOptions options = FixedScale(20.0, hot_celsius);
   options.set_shading(shading);
-  options.set_legend(false);  // The picture's pixels are the view's.
+  options.set_legend(false);  // The rendering's pixels are the view's.
   return options;
 }
 
@@ -40,7 +40,7 @@ std::optional<TruePixel> TruthAt(const Scene& scene, const CameraModel& camera,
                    hit->distance};
 }
 
-/// Edges between faces of one temperature that differ in slant, and how many of them a picture
+/// Edges between faces of one temperature that differ in slant, and how many of them a rendering
 /// shows.
 struct EdgeCount {
   double edges = 0.0;
@@ -51,30 +51,30 @@ EdgeCount CountEdges(const Scene& scene, const CameraModel& camera,
                      const RigidTransform& T_world_depth, const ViewMaps& view, double range_kelvin,
                      const RgbImage& flat, const RgbImage& shaded) {
   // Beside an edge to a steep face there are no temperatures: three voxels on either side.
-  constexpr int kAcrossPx = 18;
+  constexpr int kAcross_px = 18;
   constexpr double kOneTemperature = 0.02;  // Of the range.
   constexpr double kSlantCosine = 0.2;
-  constexpr double kTouchingM = 0.02;
+  constexpr double kTouching_m = 0.02;
   constexpr double kVisible = 10.0;  // Steps of brightness.
   EdgeCount count;
   const auto compare = [&](int x, int y, int other_x, int other_y) {
     if (std::isnan(view.celsius.At(x, y)) || std::isnan(view.celsius.At(other_x, other_y))) return;
     const auto a = TruthAt(scene, camera, T_world_depth, x, y);
     const auto b = TruthAt(scene, camera, T_world_depth, other_x, other_y);
-    if (!a || !b || std::abs(a->z_m - b->z_m) > kTouchingM) return;
+    if (!a || !b || std::abs(a->z_m - b->z_m) > kTouching_m) return;
     if (std::abs(a->celsius - b->celsius) > kOneTemperature * range_kelvin) return;
     if (std::abs(a->cosine - b->cosine) < kSlantCosine) return;
     count.edges += 1.0;
-    const auto is_visible = [&](const RgbImage& picture) {
-      return std::abs(Luma(picture.At(x, y)) - Luma(picture.At(other_x, other_y))) >= kVisible;
+    const auto is_visible = [&](const RgbImage& rendering) {
+      return std::abs(Luma(rendering.At(x, y)) - Luma(rendering.At(other_x, other_y))) >= kVisible;
     };
     count.visible_flat += is_visible(flat) ? 1.0 : 0.0;
     count.visible_shaded += is_visible(shaded) ? 1.0 : 0.0;
   };
-  for (int y = 0; y + kAcrossPx < camera.height; ++y) {
-    for (int x = 0; x + kAcrossPx < camera.width; ++x) {
-      compare(x, y, x + kAcrossPx, y);
-      compare(x, y, x, y + kAcrossPx);
+  for (int y = 0; y + kAcross_px < camera.height; ++y) {
+    for (int x = 0; x + kAcross_px < camera.width; ++x) {
+      compare(x, y, x + kAcross_px, y);
+      compare(x, y, x, y + kAcross_px);
     }
   }
   return count;
@@ -85,7 +85,7 @@ Status AddRange(const char* name, double hot_celsius, ThreadPool& pool, Experime
   scene_options.set_scene(CALIBRATOR);
   scene_options.set_hot_celsius(hot_celsius);
   const auto played =
-      Play(ExperimentCameras(kDurationS), MakeScene(scene_options), {GroundOptions()}, pool);
+      Play(ExperimentCameras(kDuration_s), MakeScene(scene_options), {GroundOptions()}, pool);
   if (!played) return played.error();
   const GroundPipeline& pipeline = *played->pipelines.front();
   const CameraModel& camera = *played->scan->rig().depth;
@@ -105,8 +105,8 @@ Status AddRange(const char* name, double hot_celsius, ThreadPool& pool, Experime
                                  shaded_percent, Requirement::Sense::kAtLeast, 85.0, "%"});
   report.requirements.push_back({fmt::format("edges visible without shading, {} range", name),
                                  flat_percent, Requirement::Sense::kAtMost, 20.0, "%"});
-  report.pictures.push_back({fmt::format("{}_flat", name), flat});
-  report.pictures.push_back({fmt::format("{}_shaded", name), shaded});
+  report.renderings.push_back({fmt::format("{}_flat", name), flat});
+  report.renderings.push_back({fmt::format("{}_shaded", name), shaded});
   return OkStatus();
 }
 

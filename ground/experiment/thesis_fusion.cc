@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// The pixel that a point falls on; nullopt outside the picture.
+/// The pixel that a point falls on; nullopt outside the image.
 std::optional<Eigen::Vector2i> PixelOf(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
   const auto pixel = Project(camera, p_camera);
   if (!pixel) return std::nullopt;
@@ -22,13 +22,13 @@ std::optional<Eigen::Vector2i> PixelOf(const CameraModel& camera, const Eigen::V
   return nearest;
 }
 
-float Bilinear(const Image<float>& picture, const Eigen::Vector2d& pixel) {
+float Bilinear(const Image<float>& image, const Eigen::Vector2d& pixel) {
   const auto x = static_cast<int>(std::floor(pixel.x()));
   const auto y = static_cast<int>(std::floor(pixel.y()));
-  if (x < 0 || y < 0 || x + 1 >= picture.width() || y + 1 >= picture.height()) return kNan;
+  if (x < 0 || y < 0 || x + 1 >= image.width() || y + 1 >= image.height()) return kNan;
   const auto fx = static_cast<float>(pixel.x() - x), fy = static_cast<float>(pixel.y() - y);
-  const float above = (1.0F - fx) * picture.At(x, y) + fx * picture.At(x + 1, y);
-  const float below = (1.0F - fx) * picture.At(x, y + 1) + fx * picture.At(x + 1, y + 1);
+  const float above = (1.0F - fx) * image.At(x, y) + fx * image.At(x + 1, y);
+  const float below = (1.0F - fx) * image.At(x, y + 1) + fx * image.At(x + 1, y + 1);
   return (1.0F - fy) * above + fy * below;
 }
 

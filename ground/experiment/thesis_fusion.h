@@ -55,7 +55,7 @@ class ThesisFuser {
   ThermalRectifier rectifier_;
   Raycaster raycaster_;
   SurfaceMaps maps_;
-  Image<float> celsius_;    ///< The rectified thermal picture.
+  Image<float> celsius_;    ///< The rectified thermal image.
   Image<float> nearest_m_;  ///< Per thermal pixel, distance of the nearest vertex.
   Image<Vertex> vertices_;  ///< Per depth pixel.
 };

@@ -40,7 +40,7 @@ class ThesisFuserTest : public ::testing::Test {
   }
 
   /// Closed form: the ball where the line of sight passes its centre within the radius.
-  ThermalFrame Picture() const {
+  ThermalFrame TakeFrame() const {
     ThermalFrame frame;
     frame.valid = true;
     const CameraModel& camera = *rig_.thermal;
@@ -64,7 +64,7 @@ class ThesisFuserTest : public ::testing::Test {
   };
   Outcome Fuse(ParallaxFilter filter) {
     ThesisFuser(ThermalOptions(), rig_, 0.0F, filter)
-        .Fuse(Picture(), T_world_thermal_, T_world_depth_, *tsdf_, pool_, *thermal_);
+        .Fuse(TakeFrame(), T_world_thermal_, T_world_depth_, *tsdf_, pool_, *thermal_);
     Outcome outcome;
     for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
       testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),

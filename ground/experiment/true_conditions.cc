@@ -16,8 +16,8 @@ bool IsHidden(const Scene& scene, const Vector3d& viewer, const Vector3d& p, dou
   return hit && (1.0 - hit->distance) * to_point.norm() > tolerance_m;
 }
 
-bool IsInPicture(const CameraModel& camera, const RigidTransform& T_world_camera,
-                 const Vector3d& p_world, double margin_px) {
+bool IsInImage(const CameraModel& camera, const RigidTransform& T_world_camera,
+               const Vector3d& p_world, double margin_px) {
   const auto pixel = Project(camera, T_world_camera.inverse() * p_world);
   return pixel && pixel->x() >= margin_px && pixel->y() >= margin_px &&
          pixel->x() <= camera.width - 1 - margin_px && pixel->y() <= camera.height - 1 - margin_px;
@@ -30,13 +30,13 @@ double AngleDeg(const Vector3d& viewer, const SurfacePoint& point) {
 
 /// How many of the lines of sight to the point and to four places around it are hidden.
 int CountHidden(const Scene& scene, const Vector3d& viewer, const SurfacePoint& point) {
-  constexpr double kAroundM = 0.006;     // Some thermal pixels.
-  constexpr double kToleranceM = 0.015;  // A surface at 60 degrees comes this much nearer there.
+  constexpr double kAround_m = 0.006;     // Some thermal pixels.
+  constexpr double kTolerance_m = 0.015;  // A surface at 60 degrees comes this much nearer there.
   const Vector3d ray = (point.p_world - viewer).normalized();
   const Vector3d right = ray.unitOrthogonal(), down = ray.cross(right);
   int hidden = IsHidden(scene, viewer, point.p_world, 0.003) ? 1 : 0;
   for (const Vector3d& side : {right, Vector3d(-right), down, Vector3d(-down)})
-    hidden += IsHidden(scene, viewer, point.p_world + kAroundM * side, kToleranceM) ? 1 : 0;
+    hidden += IsHidden(scene, viewer, point.p_world + kAround_m * side, kTolerance_m) ? 1 : 0;
   return hidden;
 }
 
@@ -78,8 +78,8 @@ std::optional<TrueClasses> Best(const std::vector<TrueCondition>& conditions,
 std::vector<TrueCondition> TrueConditions(const SimulatedScan& scan,
                                           const std::vector<std::size_t>& frames,
                                           const SurfacePoint& point) {
-  constexpr double kMarginPx = 6.0;
-  constexpr double kSteepForDepthDeg = 62.0;  // Returns become rare at 70.
+  constexpr double kMargin_px = 6.0;
+  constexpr double kSteepForDepth_deg = 62.0;  // Returns become rare at 70.
   constexpr int kFramesUntilModelled = 3;
   std::vector<TrueCondition> conditions;
   int seen_in_a_row = 0;
@@ -91,17 +91,17 @@ std::vector<TrueCondition> TrueConditions(const SimulatedScan& scan,
     TrueCondition& condition = conditions.emplace_back();
     condition.distance_m = (point.p_world - viewer).norm();
     condition.angle_deg = AngleDeg(viewer, point);
-    if (condition.angle_deg > 90.0 + kMarginPx ||
-        !IsInPicture(*scan.rig().thermal, T_world_thermal, point.p_world, -kMarginPx)) {
+    if (condition.angle_deg > 90.0 + kMargin_px ||
+        !IsInImage(*scan.rig().thermal, T_world_thermal, point.p_world, -kMargin_px)) {
       seen_in_a_row = 0;
       continue;
     }
     const int hidden = CountHidden(scan.scene(), viewer, point);
     condition.maybe_seen = hidden < 5;
     const bool seen = hidden == 0 &&
-                      IsInPicture(*scan.rig().thermal, T_world_thermal, point.p_world, kMarginPx) &&
-                      IsInPicture(*scan.rig().depth, T_world_depth, point.p_world, kMarginPx) &&
-                      AngleDeg(T_world_depth.translation(), point) < kSteepForDepthDeg &&
+                      IsInImage(*scan.rig().thermal, T_world_thermal, point.p_world, kMargin_px) &&
+                      IsInImage(*scan.rig().depth, T_world_depth, point.p_world, kMargin_px) &&
+                      AngleDeg(T_world_depth.translation(), point) < kSteepForDepth_deg &&
                       CountHidden(scan.scene(), T_world_depth.translation(), point) == 0;
     seen_in_a_row = seen ? seen_in_a_row + 1 : 0;
     condition.surely_seen = seen_in_a_row >= kFramesUntilModelled;
@@ -111,11 +111,11 @@ std::vector<TrueCondition> TrueConditions(const SimulatedScan& scan,
 
 std::optional<TrueClasses> ExpectClasses(const std::vector<TrueCondition>& conditions,
                                          const ThermalOptions& limits) {
-  constexpr double kDistanceM = 0.01, kAngleDeg = 5.0;
+  constexpr double kDistance_m = 0.01, kAngle_deg = 5.0;
   const auto expected = Best(conditions, limits, {0.0, 0.0, true});
   if (!expected) return std::nullopt;
-  for (const double distance_m : {-kDistanceM, kDistanceM}) {
-    for (const double angle_deg : {-kAngleDeg, kAngleDeg}) {
+  for (const double distance_m : {-kDistance_m, kDistance_m}) {
+    for (const double angle_deg : {-kAngle_deg, kAngle_deg}) {
       for (const bool only_sure : {false, true}) {
         if (Best(conditions, limits, {distance_m, angle_deg, only_sure}) != expected)
           return std::nullopt;

@@ -21,10 +21,10 @@ std::string FindProblem(const InterpretedPart& part, const std::string& prefix) 
     return fmt::format("{}emissivity must be above 0 and at most 1, got {}", prefix,
                        part.emissivity);
   }
-  if (!(part.reflected_celsius >= kMinRadiometricCelsius &&
-        part.reflected_celsius <= kMaxRadiometricCelsius)) {
+  if (!(part.reflected_celsius >= kMinRadiometric_celsius &&
+        part.reflected_celsius <= kMaxRadiometric_celsius)) {
     return fmt::format("{}reflected_celsius must be {} to {} °C, got {}", prefix,
-                       kMinRadiometricCelsius, kMaxRadiometricCelsius, part.reflected_celsius);
+                       kMinRadiometric_celsius, kMaxRadiometric_celsius, part.reflected_celsius);
   }
   return {};
 }
@@ -131,7 +131,7 @@ float Interpretation::ObjectCelsius(std::size_t part, float apparent_celsius) co
 
 std::vector<PartReport> Interpretation::Apply(Surface& surface) const {
   std::vector<PartReport> reports(parts_.size());
-  const double lowest_radiance = band_.RadianceFromCelsius(kMinRadiometricCelsius);
+  const double lowest_radiance = band_.RadianceFromCelsius(kMinRadiometric_celsius);
   for (CloudPoint& point : surface.points) {
     const std::size_t part = PartAt(point.position_m);
     PartReport& report = reports[part];
@@ -195,7 +195,7 @@ std::vector<std::string> Interpretation::Errors(const std::vector<PartReport>& r
           cold ? "more would be reflected than was measured; raise emissivity or lower "
                  "reflected_celsius"
                : fmt::format("they would be hotter than {} °C; raise emissivity",
-                             kMaxRadiometricCelsius)));
+                             kMaxRadiometric_celsius)));
     }
   }
   return sentences;

@@ -14,7 +14,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double kTableKelvin = 2e-3;  // Twice BandRadiance's interpolation error.
+constexpr double kTable_k = 2e-3;  // Twice BandRadiance's interpolation error.
 
 class InterpretationTest : public ::testing::Test {
  protected:
@@ -57,8 +57,7 @@ TEST_F(InterpretationTest, GivesBackTheTemperatureThatLooksLikeThat) {
   const BandRadiance band;
   for (const double object : {-30.0, 24.0, 100.0, 900.0}) {
     const double apparent = ApparentCelsius(band, object, 0.85, 23.0);
-    EXPECT_NEAR(interpretation.ObjectCelsius(0, static_cast<float>(apparent)), object,
-                kTableKelvin);
+    EXPECT_NEAR(interpretation.ObjectCelsius(0, static_cast<float>(apparent)), object, kTable_k);
   }
   EXPECT_TRUE(std::isnan(interpretation.ObjectCelsius(0, NAN)));
 }
@@ -69,7 +68,7 @@ TEST_F(InterpretationTest, OtherBandsGiveOtherTemperatures) {
   options_.set_band_max_um(5.0);
   const BandRadiance mid_wave({3.0, 5.0});
   const float celsius = Make().ObjectCelsius(0, 200.0F);
-  EXPECT_NEAR(ApparentCelsius(mid_wave, celsius, 0.85, 23.0), 200.0, kTableKelvin);
+  EXPECT_NEAR(ApparentCelsius(mid_wave, celsius, 0.85, 23.0), 200.0, kTable_k);
   EXPECT_GT(std::abs(celsius - long_wave), 1.0);
 }
 
@@ -103,8 +102,8 @@ TEST_F(InterpretationTest, PointsKeepWhatWasMeasured) {
   const std::vector<PartReport> reports = interpretation.Apply(surface);
   const BandRadiance band;
   EXPECT_EQ(surface.points[1].apparent_celsius, 80.0F);
-  EXPECT_NEAR(surface.points[0].celsius, TrueCelsius(band, 80.0, 0.85, 23.0).value(), kTableKelvin);
-  EXPECT_NEAR(surface.points[1].celsius, TrueCelsius(band, 80.0, 0.5, 25.0).value(), kTableKelvin);
+  EXPECT_NEAR(surface.points[0].celsius, TrueCelsius(band, 80.0, 0.85, 23.0).value(), kTable_k);
+  EXPECT_NEAR(surface.points[1].celsius, TrueCelsius(band, 80.0, 0.5, 25.0).value(), kTable_k);
   EXPECT_TRUE(std::isnan(surface.points[2].celsius));
   EXPECT_EQ(reports[0].points, 1U);
   EXPECT_EQ(reports[1].points, 2U);
@@ -184,7 +183,7 @@ TEST_F(InterpretationTest, EmissivityOneChangesNothing) {
   EXPECT_FALSE(Make().changes_nothing());
 }
 
-TEST_F(InterpretationTest, PicturesShowTheSameAsThePoints) {
+TEST_F(InterpretationTest, RenderingsShowTheSameAsThePoints) {
   AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
   const Interpretation interpretation = Make();
   SurfaceMaps maps;

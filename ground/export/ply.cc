@@ -96,7 +96,7 @@ void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& reco
   for (const float value : point.position_m) records.Add(value);
   for (const float value : point.normal) records.Add(value);
   const bool measured = !std::isnan(point.celsius) && style.scale.has_value();
-  records.Add(measured ? style.colours.At(style.scale->Share(static_cast<double>(point.celsius)))
+  records.Add(measured ? style.colours.At(style.scale->Fraction(static_cast<double>(point.celsius)))
                        : kNeverMeasuredPoint);
   records.Add(point.celsius);
   records.Add(point.distance_class);

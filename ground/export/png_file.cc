@@ -8,8 +8,8 @@
 
 namespace isotherm {
 
-Status WritePng(const RgbImage& picture, const std::filesystem::path& path) {
-  const Result<std::vector<std::uint8_t>> png = EncodePng(picture);
+Status WritePng(const RgbImage& rendering, const std::filesystem::path& path) {
+  const Result<std::vector<std::uint8_t>> png = EncodePng(rendering);
   if (!png) return png.error().WithContext(path.string());
   return WriteFile(path, std::as_bytes(std::span(*png)));
 }

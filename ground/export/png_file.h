@@ -7,7 +7,7 @@
 
 namespace isotherm {
 
-/// Writes a picture as PNG; the file appears only when it is complete. Messages name it.
-Status WritePng(const RgbImage& picture, const std::filesystem::path& path);
+/// Writes a rendering as PNG; the file appears only when it is complete. Messages name it.
+Status WritePng(const RgbImage& rendering, const std::filesystem::path& path);
 
 }  // namespace isotherm

@@ -56,7 +56,7 @@ ResultSummary SummarizeSurface(const Surface& surface, const RendererOptions& op
 }
 
 Json SurfaceStats(const ResultSummary& summary) {
-  const auto share = [&](std::size_t part) {
+  const auto fraction = [&](std::size_t part) {
     return summary.points == 0
                ? Json()
                : Json(static_cast<double>(part) / static_cast<double>(summary.points));
@@ -64,8 +64,8 @@ Json SurfaceStats(const ResultSummary& summary) {
   Json stats;
   stats["points"] = summary.points;
   stats["triangles"] = summary.triangles;
-  stats["measured_share"] = share(summary.measured_points);
-  stats["good_share"] = share(summary.good_points);
+  stats["measured_fraction"] = fraction(summary.measured_points);
+  stats["good_fraction"] = fraction(summary.good_points);
   if (summary.temperatures.count > 0) {
     stats["min_celsius"] = summary.temperatures.min_celsius;
     stats["mean_celsius"] = summary.temperatures.mean_celsius;
@@ -98,8 +98,8 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
       inputs.interpretation->Apply(*inputs.view, contours->celsius);
   }
   for (const RenderLayer layer : AllLayers()) {
-    const RgbImage picture = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);
-    failure.Add(WritePng(picture, folder / fmt::format("{}.png", LayerName(layer))));
+    const RgbImage rendering = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);
+    failure.Add(WritePng(rendering, folder / fmt::format("{}.png", LayerName(layer))));
   }
 }
 
@@ -124,7 +124,7 @@ bool IsResultName(const std::string& name) {
   return std::ranges::count(kNames, name) > 0;
 }
 
-/// Calls `use` for each file of a result, and of its pictures those that the results draw.
+/// Calls `use` for each file of a result, and of its renderings those that the results draw.
 void ForEachResult(const fs::path& dir, const std::function<void(const fs::path&)>& use) {
   std::error_code error;
   for (fs::directory_iterator entry(dir, error), end; !error && entry != end;
@@ -132,18 +132,18 @@ void ForEachResult(const fs::path& dir, const std::function<void(const fs::path&
     if (IsResultName(entry->path().filename().string())) use(entry->path());
   }
   for (const RenderLayer layer : AllLayers()) {
-    const fs::path picture = dir / "renders" / fmt::format("{}.png", LayerName(layer));
-    if (fs::exists(picture, error)) use(picture);
+    const fs::path rendering = dir / "renders" / fmt::format("{}.png", LayerName(layer));
+    if (fs::exists(rendering, error)) use(rendering);
   }
 }
 
 }  // namespace
 
 Status Validate(const ExportOptions& options) {
-  constexpr double kMost = 1000.0;  // As tsdf.max_weight.
-  if (!(options.min_weight() > 0.0 && options.min_weight() <= kMost)) {
+  constexpr double kMax = 1000.0;  // As tsdf.max_weight.
+  if (!(options.min_weight() > 0.0 && options.min_weight() <= kMax)) {
     return InvalidArgument(fmt::format("export.min_weight is {}, must be above 0 and at most {}",
-                                       options.min_weight(), kMost));
+                                       options.min_weight(), kMax));
   }
   return OkStatus();
 }
@@ -182,8 +182,8 @@ void RemoveOtherResults(const fs::path& dir, const std::set<std::string>& writte
 
 Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& dir,
                                    ThreadPool& threads, const ResultProgress& progress) {
-  const auto announce = [&](std::string_view what, double share) {
-    if (progress) progress(what, share);
+  const auto announce = [&](std::string_view what, double fraction) {
+    if (progress) progress(what, fraction);
   };
   const ExportOptions& options = inputs.export_options;
   FirstFailure failure;
@@ -216,7 +216,7 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
       announce("mesh.ply", 0.65);
       failure.Add(WriteMeshPly(surface, style, dir / "mesh.ply"));
     }
-  }  // Pictures need the memory that the surface took.
+  }  // Renderings need the memory that the surface took.
   if (options.renders() && inputs.view != nullptr) {
     announce("renders", 0.9);
     WriteRenders(inputs, summary.scale, dir / "renders", threads, failure);

@@ -46,7 +46,7 @@ struct ResultInputs {
   const TsdfVolume& tsdf;
   const ThermalVolume& thermal;
   std::optional<std::span<const StampedPose>> trajectory;  ///< nullopt: no trajectory.txt.
-  /// What the model looks like from `viewer_world`, ray-cast, in `world`; nullptr: no pictures.
+  /// What the model looks like from `viewer_world`, ray-cast, in `world`; nullptr: no renderings.
   const SurfaceMaps* view = nullptr;
   Eigen::Vector3d viewer_world = Eigen::Vector3d::Zero();
   const RendererOptions& renderer_options;
@@ -69,8 +69,8 @@ struct ResultSummary {
   std::vector<PartReport> interpretation;  ///< One per part; may be empty.
 };
 
-/// Called before each step with what is about to be written and the share done, 0..1.
-using ResultProgress = std::function<void(std::string_view what, double share)>;
+/// Called before each step with what is about to be written and the fraction done, 0..1.
+using ResultProgress = std::function<void(std::string_view what, double fraction)>;
 
 /// Writes trajectory.txt, renders/*.png, stats.json, cloud.ply and mesh.ply into `dir` (which must
 /// exist), small and irreplaceable ones first. Colours use one scale, derived from the whole

@@ -186,8 +186,8 @@ TEST_F(ResultsTest, StatsKeepTheCallersValuesAndAddTheSurface) {
   ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
   ASSERT_TRUE(Write(folder_.path()));
   const std::string stats = ReadAll(folder_.path() / "stats.json");
-  for (const char* text :
-       {"\"depth\": 3", "\"software\": \"Isotherm ", "\"points\": 1024", "\"measured_share\": 1"}) {
+  for (const char* text : {"\"depth\": 3", "\"software\": \"Isotherm ", "\"points\": 1024",
+                           "\"measured_fraction\": 1"}) {
     EXPECT_NE(stats.find(text), std::string::npos) << text << " in " << stats;
   }
 }
@@ -217,7 +217,7 @@ TEST_F(ResultsTest, InterpretedResultsKeepWhatWasMeasured) {
   EXPECT_EQ(cloud.size() - cloud.find("end_header\n") - 11, summary->points * kPointBytes);
 }
 
-TEST_F(ResultsTest, PicturesAreInterpretedToo) {
+TEST_F(ResultsTest, RenderingsAreInterpretedToo) {
   renderer_.set_legend(false);
   ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
   renderer_.set_scale(FIXED);
@@ -239,9 +239,9 @@ TEST_F(ResultsTest, ProgressRisesToOne) {
   ASSERT_TRUE(PrepareOutputDir(folder_.path()).ok());
   double last = -1.0;
   ThreadPool pool(1);
-  ASSERT_TRUE(WriteResults(Inputs(), folder_.path(), pool, [&](std::string_view, double share) {
-    EXPECT_GE(share, last);
-    last = share;
+  ASSERT_TRUE(WriteResults(Inputs(), folder_.path(), pool, [&](std::string_view, double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
   }));
   EXPECT_EQ(last, 1.0);
 }

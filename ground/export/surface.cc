@@ -23,8 +23,8 @@ constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
 // A block's voxels and the first layer of its upper neighbours.
 constexpr int kSide = kBlockSide + 1;
-// Crossings keep this share of an edge's length from its ends, so that no triangle has zero area.
-// At 2 mm voxels it moves a point by at most 10 um.
+// Crossings keep this fraction of an edge's length from its ends, so that no triangle has zero
+// area. At 2 mm voxels it moves a point by at most 10 um.
 constexpr float kEndMargin = 0.005F;
 
 /// Distances of a block and one more layer, x fastest; NaN where the weight is too small.
@@ -208,7 +208,7 @@ class Extractor {
     point.position_m = p_world.cast<float>();
     point.normal = normal;
     const auto [voxel, conditions] = MeasurementAt(tsdf_, thermal_, p_world);
-    if (!voxel.judged()) return point;
+    if (!voxel.assessed()) return point;
     // Beside edges, the nearest voxel may be another face's.
     if (!conditions.empty() && !BelongsToFace(conditions, normal, 0.0F)) return point;
     point.celsius = voxel.celsius();

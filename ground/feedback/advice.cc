@@ -7,20 +7,21 @@
 namespace isotherm {
 namespace {
 
-// A view with less surface than the first, as a share of the picture, shows too little to judge; it
-// does again from the second on.
+// A view with less surface than the first, as a fraction of the image, shows too little to assess;
+// it does again from the second on.
 constexpr double kTooLittleSurface = 0.02;
 constexpr double kEnoughSurface = 0.04;
 // Of the fastest motion that the model follows, what ends "slower".
 constexpr double kSlowEnough = 0.8;
-// The stop criterion is given up when the share falls so far below it: new surface came into view.
+// The stop criterion is given up when the fraction falls so far below it: new surface came into
+// view.
 constexpr double kDoneSlack = 0.03;
 // A hindrance takes the place of another one that is still due when it is so much larger.
 constexpr double kClearlyLarger = 1.3;
 
-double Percent(double share) { return 100.0 * share; }
+double Percent(double fraction) { return 100.0 * fraction; }
 
-double Share(AdviceKind kind, const CoverageSummary& view) {
+double Fraction(AdviceKind kind, const CoverageSummary& view) {
   switch (kind) {
     case AdviceKind::kCloser:
       return view.too_far;
@@ -35,11 +36,11 @@ double Share(AdviceKind kind, const CoverageSummary& view) {
   }
 }
 
-/// Share of the fastest motion that the model follows, 0 without a limit.
+/// Fraction of the fastest motion that the model follows, 0 without a limit.
 double Hurry(const ScanSituation& s) {
   const auto ratio = [](double value, double limit) { return limit > 0.0 ? value / limit : 0.0; };
   return std::max(ratio(s.speed_m_s, s.max_speed_m_s),
-                  ratio(s.turn_rate_deg_s, s.max_turn_rate_deg_s));
+                  ratio(s.rotation_rate_deg_s, s.max_rotation_rate_deg_s));
 }
 
 constexpr AdviceKind kHindrances[] = {AdviceKind::kCloser, AdviceKind::kFarther,
@@ -57,15 +58,16 @@ bool IsAlarm(AdviceKind kind) {
 }  // namespace
 
 Status Validate(const FeedbackOptions& o) {
-  if (!(o.done_share() > 0.0 && o.done_share() <= 1.0)) {
-    return InvalidArgument(fmt::format(
-        "feedback.done_share must be above 0 and at most 1 (a share), got {}", o.done_share()));
-  }
-  if (!(o.withdraw_share() >= 0.0 && o.withdraw_share() <= o.advise_share() &&
-        o.advise_share() <= 1.0)) {
+  if (!(o.done_fraction() > 0.0 && o.done_fraction() <= 1.0)) {
     return InvalidArgument(
-        fmt::format("feedback: need 0 <= withdraw_share <= advise_share <= 1, got {} and {}",
-                    o.withdraw_share(), o.advise_share()));
+        fmt::format("feedback.done_fraction must be above 0 and at most 1 (a fraction), got {}",
+                    o.done_fraction()));
+  }
+  if (!(o.withdraw_fraction() >= 0.0 && o.withdraw_fraction() <= o.advise_fraction() &&
+        o.advise_fraction() <= 1.0)) {
+    return InvalidArgument(
+        fmt::format("feedback: need 0 <= withdraw_fraction <= advise_fraction <= 1, got {} and {}",
+                    o.withdraw_fraction(), o.advise_fraction()));
   }
   if (!(o.settle_s() >= 0.0 && o.settle_s() <= 10.0 && o.show_s() >= 0.0 && o.show_s() <= 10.0)) {
     return InvalidArgument(
@@ -85,10 +87,10 @@ Status Validate(const FeedbackOptions& o) {
     return InvalidArgument(
         fmt::format("feedback.min_gain_m2 must be positive, got {} m2", o.min_gain_m2()));
   }
-  if (o.picture_width_px() != 0 && (o.picture_width_px() < 40 || o.picture_width_px() > 640)) {
+  if (o.image_width_px() != 0 && (o.image_width_px() < 40 || o.image_width_px() > 640)) {
     return InvalidArgument(
-        fmt::format("feedback.picture_width_px must be 0 (no picture) or 40..640 pixels, got {}",
-                    o.picture_width_px()));
+        fmt::format("feedback.image_width_px must be 0 (no image) or 40..640 pixels, got {}",
+                    o.image_width_px()));
   }
   return OkStatus();
 }
@@ -109,12 +111,12 @@ void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSitu
   }
   Due(AdviceKind::kHoldForNuc) = s.nuc_running;
   if (s.model_good) {
-    Trigger(AdviceKind::kDone, *s.model_good, options_.done_share(),
-            options_.done_share() - kDoneSlack);
+    Trigger(AdviceKind::kDone, *s.model_good, options_.done_fraction(),
+            options_.done_fraction() - kDoneSlack);
   }
   if (!s.tracking_lost) Trigger(AdviceKind::kSlower, Hurry(s), 1.0, kSlowEnough);
   for (const AdviceKind kind : kHindrances) {
-    Trigger(kind, Share(kind, view), options_.advise_share(), options_.withdraw_share());
+    Trigger(kind, Fraction(kind, view), options_.advise_fraction(), options_.withdraw_fraction());
   }
 }
 
@@ -125,12 +127,12 @@ AdviceKind OperatorAdviser::MostUrgent(const CoverageSummary& view) const {
     if (is_due(kind)) return kind;
   }
   AdviceKind most = AdviceKind::kNone;
-  double most_share = 0.0;
+  double max_fraction = 0.0;
   for (const AdviceKind kind : kHindrances) {
-    const double share = Share(kind, view) * (kind == said_ ? kClearlyLarger : 1.0);
-    if (!is_due(kind) || share <= most_share) continue;
+    const double fraction = Fraction(kind, view) * (kind == said_ ? kClearlyLarger : 1.0);
+    if (!is_due(kind) || fraction <= max_fraction) continue;
     most = kind;
-    most_share = share;
+    max_fraction = fraction;
   }
   return most;
 }
@@ -168,14 +170,14 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
       return "the thermal camera is correcting itself: hold still";
     case AdviceKind::kDone:
       return fmt::format("{:.0f} % of the surface is measured well, {:.0f} % were asked for",
-                         Percent(s.model_good.value_or(0.0)), Percent(options_.done_share()));
+                         Percent(s.model_good.value_or(0.0)), Percent(options_.done_fraction()));
     case AdviceKind::kSlower:
       if (s.max_speed_m_s > 0.0 && s.speed_m_s / s.max_speed_m_s >= Hurry(s)) {
         return fmt::format("{:.2f} m/s, the model follows up to {:.2f} m/s", s.speed_m_s,
                            s.max_speed_m_s);
       }
       return fmt::format("turning at {:.0f} deg/s, the model follows up to {:.0f} deg/s",
-                         s.turn_rate_deg_s, s.max_turn_rate_deg_s);
+                         s.rotation_rate_deg_s, s.max_rotation_rate_deg_s);
     case AdviceKind::kCloser:
       return fmt::format("{:.0f} % of the surface is farther than {:.2f} m", Percent(view.too_far),
                          limits_.distance_good_m());
@@ -191,7 +193,7 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
     case AdviceKind::kNone:
       break;
   }
-  if (view.good < options_.done_share()) return "";
+  if (view.good < options_.done_fraction()) return "";
   return fmt::format("{:.0f} % in view is measured well: go on", Percent(view.good));
 }
 

@@ -30,10 +30,10 @@ struct ScanSituation {
   bool tracking_lost = false;
   bool nuc_running = false;  ///< Shutter about to close, closed or settling.
   double speed_m_s = 0.0;    ///< Speed of the depth camera.
-  double turn_rate_deg_s = 0.0;
+  double rotation_rate_deg_s = 0.0;
   double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.
-  double max_turn_rate_deg_s = 0.0;
-  /// Share of the whole surface that is measured well; nullopt while that is not yet known.
+  double max_rotation_rate_deg_s = 0.0;
+  /// Fraction of the whole surface that is measured well; nullopt while that is not yet known.
   std::optional<double> model_good;
 };
 

@@ -24,7 +24,7 @@ class AdviceTest : public ::testing::Test {
     view_.surface = 0.8;
     view_.never_measured = 1.0;
     situation_.max_speed_m_s = 0.3;
-    situation_.max_turn_rate_deg_s = 18.0;
+    situation_.max_rotation_rate_deg_s = 18.0;
   }
 
   OperatorAdvice Next() {
@@ -102,7 +102,7 @@ TEST_F(AdviceTest, WhatMakesTheRestPointlessComesFirst) {
 }
 
 TEST_F(AdviceTest, TurningTooFastIsTooFast) {
-  situation_.turn_rate_deg_s = 30.0;
+  situation_.rotation_rate_deg_s = 30.0;
   EXPECT_EQ(Settled().kind, AdviceKind::kSlower);
   EXPECT_EQ(Settled().reason, "turning at 30 deg/s, the model follows up to 18 deg/s");
 }
@@ -119,16 +119,16 @@ TEST_F(AdviceTest, AViewThatIsMeasuredWellSendsOn) {
   EXPECT_EQ(Settled().reason, "92 % in view is measured well: go on");
 }
 
-TEST_F(AdviceTest, TheScanIsDoneFromTheAskedShareOnAndNotBefore) {
-  situation_.model_good = options_.done_share() - 0.001;
+TEST_F(AdviceTest, TheScanIsDoneFromTheAskedFractionOnAndNotBefore) {
+  situation_.model_good = options_.done_fraction() - 0.001;
   EXPECT_NE(Settled().kind, AdviceKind::kDone);
   EXPECT_FALSE(adviser_.done());
-  situation_.model_good = options_.done_share();
+  situation_.model_good = options_.done_fraction();
   EXPECT_EQ(Settled().kind, AdviceKind::kDone);
   EXPECT_TRUE(adviser_.done());
-  situation_.model_good = options_.done_share() - 0.02;  // A little more surface came into view.
+  situation_.model_good = options_.done_fraction() - 0.02;  // A little more surface came into view.
   EXPECT_EQ(Settled().kind, AdviceKind::kDone);
-  situation_.model_good = options_.done_share() - 0.04;
+  situation_.model_good = options_.done_fraction() - 0.04;
   EXPECT_NE(Settled().kind, AdviceKind::kDone);
   EXPECT_FALSE(adviser_.done());
 }
@@ -143,11 +143,11 @@ TEST_F(AdviceTest, NoiseAroundAThresholdDoesNotFlicker) {
   std::cout << "seed " << kSeed << "\n";
   std::minstd_rand random(kSeed);
   // Within the two thresholds half of the time, beyond each of them a quarter.
-  std::uniform_real_distribution<double> share(0.5 * (0.10 + 0.15) - 0.05,
-                                               0.5 * (0.10 + 0.15) + 0.05);
+  std::uniform_real_distribution<double> fraction(0.5 * (0.10 + 0.15) - 0.05,
+                                                  0.5 * (0.10 + 0.15) + 0.05);
   std::vector<AdviceKind> raw;
   const std::vector<AdviceKind> said = Messages(600, [&] {  // One minute.
-    view_.too_far = share(random);
+    view_.too_far = fraction(random);
     raw.push_back(view_.too_far > 0.125 ? AdviceKind::kCloser : AdviceKind::kNone);
   });
   EXPECT_GT(Changes(raw), 200) << "the sequence is meant to be hard";
@@ -171,7 +171,7 @@ TEST_F(AdviceTest, SmallNoiseAroundAThresholdChangesNothing) {
   std::minstd_rand random(kSeed);
   std::uniform_real_distribution<double> noise(-0.02, 0.02);
   const std::vector<AdviceKind> closer =
-      Messages(600, [&] { view_.too_far = options_.advise_share() + noise(random); });
+      Messages(600, [&] { view_.too_far = options_.advise_fraction() + noise(random); });
   EXPECT_LE(Changes(closer), 1);
   EXPECT_EQ(closer.back(), AdviceKind::kCloser);
   view_.too_far = 0.0;
@@ -216,13 +216,15 @@ TEST(FeedbackOptionsTest, WhatMakesNoSenseIsSaid) {
     set(options);
     return Validate(options).message();
   };
-  EXPECT_THAT(message([](auto& o) { o.set_done_share(1.5); }), HasSubstr("feedback.done_share"));
-  EXPECT_THAT(message([](auto& o) { o.set_withdraw_share(0.5); }), HasSubstr("withdraw_share"));
+  EXPECT_THAT(message([](auto& o) { o.set_done_fraction(1.5); }),
+              HasSubstr("feedback.done_fraction"));
+  EXPECT_THAT(message([](auto& o) { o.set_withdraw_fraction(0.5); }),
+              HasSubstr("withdraw_fraction"));
   EXPECT_THAT(message([](auto& o) { o.set_settle_s(-1); }), HasSubstr("settle_s"));
   EXPECT_THAT(message([](auto& o) { o.set_blocks_per_message(0); }), HasSubstr("blocks"));
   EXPECT_THAT(message([](auto& o) { o.set_views_per_message(-1); }), HasSubstr("views"));
   EXPECT_THAT(message([](auto& o) { o.set_min_gain_m2(0); }), HasSubstr("min_gain_m2"));
-  EXPECT_THAT(message([](auto& o) { o.set_picture_width_px(10); }), HasSubstr("picture_width_px"));
+  EXPECT_THAT(message([](auto& o) { o.set_image_width_px(10); }), HasSubstr("image_width_px"));
 }
 
 }  // namespace

@@ -32,10 +32,10 @@ CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& li
   }
   if (counts.surface == 0.0) return {};
   const double pixels = static_cast<double>(view.celsius.size());
-  for (double* share :
+  for (double* fraction :
        {&counts.good, &counts.acceptable, &counts.bad, &counts.never_measured, &counts.too_near,
         &counts.too_far, &counts.too_oblique, &counts.too_frontal}) {
-    *share /= counts.surface;
+    *fraction /= counts.surface;
   }
   counts.surface /= pixels;
   return counts;

@@ -7,9 +7,9 @@ namespace isotherm {
 class ThermalOptions;
 
 /// How well the surface in a view has been measured so far, and how well it could be measured from
-/// where the view is taken now. Shares are of the pixels with a surface and 0 if there are none.
+/// where the view is taken now. Fractions are of the pixels with a surface and 0 if there are none.
 struct CoverageSummary {
-  double surface = 0.0;  ///< Pixels with a surface, share of the picture.
+  double surface = 0.0;  ///< Pixels with a surface, fraction of the image.
   // What is stored (MeasurementQuality). The four add up to 1 if there is a surface.
   double good = 0.0;
   double acceptable = 0.0;

@@ -37,7 +37,7 @@ void Measure(ViewMaps& view, int x, std::uint8_t distance, std::uint8_t angle) {
   view.angle_class.At(x, 0) = angle;
 }
 
-TEST(CoverageTest, SharesAreOfTheSurfaceAndAddUpToOne) {
+TEST(CoverageTest, FractionsAreOfTheSurfaceAndAddUpToOne) {
   ViewMaps view = Row(8, 2, 0.5, 20.0);
   Measure(view, 0, kGood, kGood);
   Measure(view, 1, kGood, kGood);

@@ -160,7 +160,7 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
       if (!crosses[a]) continue;
       const bool nearer = std::abs(distance) <= std::abs(distance + gradient[axis]);
       ThermalVoxel voxel = pairs.Thermal(nearer ? here : next[a]);
-      if (!voxel.judged()) voxel = pairs.Thermal(nearer ? next[a] : here);
+      if (!voxel.assessed()) voxel = pairs.Thermal(nearer ? next[a] : here);
       const MeasurementQuality quality = QualityOf(voxel);
       surface.areas.Add(quality, area_m2);
       if (quality == MeasurementQuality::kGood) continue;

@@ -10,7 +10,7 @@ namespace isotherm {
 /// How well a voxel was measured, as QualityAt() says of a pixel. "Measured well" is kGood
 /// everywhere in this folder.
 inline MeasurementQuality QualityOf(ThermalVoxel voxel) {
-  if (!voxel.judged()) return MeasurementQuality::kNever;
+  if (!voxel.assessed()) return MeasurementQuality::kNever;
   MeasurementQuality worst = MeasurementQuality::kGood;
   for (const ConditionClass c :
        {voxel.distance_class(), voxel.angle_class(), voxel.motion_class()}) {

@@ -21,7 +21,7 @@ Result<LoadedModel> LoadModel(const std::filesystem::path& path, GroundOptions& 
   model.tsdf = std::make_unique<TsdfVolume>(*grid, options.tsdf().truncation_distance_m(),
                                             max_blocks, spill_dir);
   model.thermal = std::make_unique<ThermalVolume>(max_blocks, spill_dir);
-  if (!model.thermal->Back(std::min(max_blocks, (*file)->block_count())))
+  if (!model.thermal->Commit(std::min(max_blocks, (*file)->block_count())))
     return Err(ResourceExhausted("no room for the model in volume.spill_dir"));
   if (Status status = (*file)->ReadBlocks(*model.tsdf, *model.thermal); !status.ok())
     return Err(status);

@@ -131,7 +131,7 @@ void PackBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, std::int32_
 Status SaveModel(const std::filesystem::path& path, const TsdfVolume& tsdf,
                  const ThermalVolume& thermal, const Rig& rig,
                  std::span<const RigidTransform> known_poses,
-                 const std::function<void(double share)>& progress) {
+                 const std::function<void(double fraction)>& progress) {
   const VoxelGrid& grid = tsdf.grid();
   ModelHeader header;
   header.set_software("Isotherm");

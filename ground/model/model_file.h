@@ -14,11 +14,11 @@
 namespace isotherm {
 
 /// Writes everything that is needed to go on with a scan later (docs/model-format.md). The file
-/// appears only when it is complete. `progress` hears after each part which share is written.
+/// appears only when it is complete. `progress` hears after each part which fraction is written.
 Status SaveModel(const std::filesystem::path& path, const TsdfVolume& tsdf,
                  const ThermalVolume& thermal, const Rig& rig,
                  std::span<const RigidTransform> known_poses,
-                 const std::function<void(double share)>& progress = {});
+                 const std::function<void(double fraction)>& progress = {});
 
 /// A model file that was opened and whose head was checked. Thread-compatible.
 class ModelFile {

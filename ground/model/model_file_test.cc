@@ -85,16 +85,16 @@ class ModelFileTest : public ::testing::Test {
 };
 
 TEST_F(ModelFileTest, WhoSavesHearsAfterEachPartThatItGoesOn) {
-  std::vector<double> shares;
-  ASSERT_TRUE(SaveModel(Path(), *tsdf_, *thermal_, rig_, poses_, [&](double share) {
-                shares.push_back(share);
+  std::vector<double> fractions;
+  ASSERT_TRUE(SaveModel(Path(), *tsdf_, *thermal_, rig_, poses_, [&](double fraction) {
+                fractions.push_back(fraction);
               }).ok());
   constexpr int kBlocksPerPart = 256;
   const int parts = (tsdf_->block_count() + kBlocksPerPart - 1) / kBlocksPerPart;
   ASSERT_GT(parts, 1);
-  ASSERT_EQ(shares.size(), static_cast<std::size_t>(parts));
-  EXPECT_TRUE(std::ranges::is_sorted(shares));
-  EXPECT_EQ(shares.back(), 1.0);
+  ASSERT_EQ(fractions.size(), static_cast<std::size_t>(parts));
+  EXPECT_TRUE(std::ranges::is_sorted(fractions));
+  EXPECT_EQ(fractions.back(), 1.0);
 }
 
 TEST_F(ModelFileTest, GivesBackEveryVoxelAndPose) {

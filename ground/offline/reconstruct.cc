@@ -20,9 +20,9 @@
 namespace isotherm {
 namespace {
 
-/// Share of the progress that the frames take; the rest is writing results.
-constexpr double kFramesShare = 0.85;
-constexpr double kMergeShare = 0.05, kDelayShare = 0.05;
+/// Fraction of the progress that the frames take; the rest is writing results.
+constexpr double kFramesFraction = 0.85;
+constexpr double kMergeFraction = 0.05, kDelayFraction = 0.05;
 
 /// In the frames' stamps when they have reached the pipeline; nullopt if that is not known.
 std::optional<double> CalibratedDelay(const RecordingInfo& info, const Rig& rig) {
@@ -61,17 +61,18 @@ class InlineDriver {
       Report();
     }
     while (const auto frame = assembler_.Flush()) Process(*frame);
-    pipeline_.Finish([this](double share) {
+    pipeline_.Finish([this](double fraction) {
       if (request_.progress)
-        request_.progress(kFramesShare + kMergeShare * share, "putting sub-maps together");
+        request_.progress(kFramesFraction + kMergeFraction * fraction, "putting sub-maps together");
     });
     return OkStatus();
   }
 
   DelayReport CheckDelay() {
-    return delay_check_.Finish(pipeline_, [this](double share) {
+    return delay_check_.Finish(pipeline_, [this](double fraction) {
       if (request_.progress)
-        request_.progress(kFramesShare + kMergeShare + kDelayShare * share, "checking the delay");
+        request_.progress(kFramesFraction + kMergeFraction + kDelayFraction * fraction,
+                          "checking the delay");
     });
   }
 
@@ -114,7 +115,7 @@ class InlineDriver {
   void Take(const NucEvent& /*event*/) {}  // Each frame carries its NUC state.
   void Take(const RecordedPose& /*pose*/) {}
   void Take(const RecordedLog& /*log*/) {}
-  void Take(const OutsidePose& pose) { pipeline_.ProcessOutsidePose(pose); }
+  void Take(const ExternalOdometry& pose) { pipeline_.ProcessExternalOdometry(pose); }
 
   bool Unpack(Result<Image<std::uint16_t>> decoded, const char* stream, const FrameHeader& header,
               Image<std::uint16_t>& image) {
@@ -140,8 +141,8 @@ class InlineDriver {
 
   void Report() const {
     if (!request_.progress || total_ == 0) return;
-    const double share = std::min(1.0, static_cast<double>(read_) / static_cast<double>(total_));
-    request_.progress(kFramesShare * share, "reconstructing");
+    const double fraction = std::min(1.0, static_cast<double>(read_) / static_cast<double>(total_));
+    request_.progress(kFramesFraction * fraction, "reconstructing");
   }
 
   const ReconstructRequest& request_;
@@ -163,7 +164,7 @@ Status CheckHasDepth(const RecordingInfo& info, const std::filesystem::path& pat
   if (depth != info.messages_by_topic.end() && depth->second > 0) return OkStatus();
   return FailedPrecondition(
       fmt::format("{}: the recording has no depth frames, so there is no surface to reconstruct "
-                  "(`isotherm inspect --render` shows thermal frames as pictures)",
+                  "(`isotherm inspect --render` shows thermal frames as images)",
                   path.string()));
 }
 
@@ -225,9 +226,9 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   stats["source"]["undecodable_frames"] = driver.undecodable();
   stats["source"]["out_of_order_frames"] = driver.out_of_order();
   stats["elapsed_s"] = elapsed.count();
-  const auto progress = [&](std::string_view what, double share) {
-    constexpr double kBefore = kFramesShare + kMergeShare + kDelayShare;
-    if (request.progress) request.progress(kBefore + (1.0 - kBefore) * share, what);
+  const auto progress = [&](std::string_view what, double fraction) {
+    constexpr double kBefore = kFramesFraction + kMergeFraction + kDelayFraction;
+    if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);
   };
   Result<WrittenScan> written = WriteScan(**pipeline, options, delay, driver.FindDoubts(),
                                           std::move(stats), request.output_dir, progress);

@@ -24,7 +24,7 @@ struct ReconstructRequest {
   std::filesystem::path model;
   /// Instead of the calibration in the recording.
   std::optional<Rig> rig;
-  /// Called now and then with the share done (0..1) and what is being done.
+  /// Called now and then with the fraction done (0..1) and what is being done.
   std::function<void(double fraction, std::string_view text)> progress;
 };
 

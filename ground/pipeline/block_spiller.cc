@@ -10,7 +10,7 @@ constexpr std::uint64_t kFramesKept = 15;
 constexpr std::uint64_t kFramesBetweenTrims = 10;
 
 /// 64 blocks of both volumes are 256 kB: at most 4 MB are read ahead at a time.
-constexpr int kMostFetchedParts = 16;
+constexpr int kMaxFetchedParts = 16;
 
 }  // namespace
 
@@ -38,8 +38,8 @@ void BlockSpiller::Trim(const TsdfVolume& tsdf, const ThermalVolume& thermal) {
   for (const std::size_t i : old) {
     if (resident_blocks() <= max_resident_) break;
     const auto first = static_cast<std::int32_t>(i) * kBlocksPerPart;
-    tsdf.GiveBack(first, kBlocksPerPart);
-    thermal.GiveBack(first, kBlocksPerPart);
+    tsdf.Decommit(first, kBlocksPerPart);
+    thermal.Decommit(first, kBlocksPerPart);
     parts_[i].resident = false;
     parts_[i].fetched = false;
     --resident_parts_;
@@ -49,7 +49,7 @@ void BlockSpiller::Trim(const TsdfVolume& tsdf, const ThermalVolume& thermal) {
 
 void BlockSpiller::Expect(std::span<const std::int32_t> blocks, const TsdfVolume& tsdf,
                           const ThermalVolume& thermal) {
-  int left = kMostFetchedParts;
+  int left = kMaxFetchedParts;
   for (const std::int32_t block : blocks) {
     const auto i = static_cast<std::size_t>(block / kBlocksPerPart);
     if (i >= parts_.size() || parts_[i].resident || parts_[i].fetched) continue;

@@ -133,7 +133,7 @@ TEST_F(BlockSpillerTest, OnlyWhatWasGivenBackIsReadAheadAndOnce) {
 
 TEST_F(BlockSpillerTest, ValuesOutliveBeingGivenBack) {
   spiller_.emplace(0);
-  ASSERT_TRUE(thermal_.Back(kPart));
+  ASSERT_TRUE(thermal_.Commit(kPart));
   for (std::int32_t i = 0; i < kPart; ++i) {
     const std::int32_t block = tsdf_.FindOrAllocate({i % 8, i / 8, 0});
     ASSERT_EQ(block, i);

@@ -77,11 +77,11 @@ Status GroundPipeline::Continue(const ModelFile& model) {
   SubMap& map = atlas_.active();
   CHECK(map.tsdf->block_count() == 0);
   if (Status status = model.CheckRig(rig_); !status.ok()) return status;
-  if (!map.thermal->Back(std::min(map.tsdf->max_blocks(), model.block_count())))
+  if (!map.thermal->Commit(std::min(map.tsdf->max_blocks(), model.block_count())))
     return ResourceExhausted("no room for the model in volume.spill_dir");
   if (Status status = model.ReadBlocks(*map.tsdf, *map.thermal); !status.ok()) return status;
   if (map.tsdf->block_count() == 0) return OkStatus();
-  for (const RigidTransform& pose : model.known_poses()) map.relocaliser->Remember(pose);
+  for (const RigidTransform& pose : model.known_poses()) map.relocaliser->Add(pose);
   map.anchors = model.known_poses();
   tracker_.BeginLost();
   gate_.EndBootstrap();
@@ -90,9 +90,9 @@ Status GroundPipeline::Continue(const ModelFile& model) {
 }
 
 Status GroundPipeline::Save(const std::filesystem::path& path, int index,
-                            const std::function<void(double share)>& progress) const {
+                            const std::function<void(double fraction)>& progress) const {
   const SubMap& map = atlas_.map(index);
-  return SaveModel(path, *map.tsdf, *map.thermal, rig_, map.relocaliser->library().poses(),
+  return SaveModel(path, *map.tsdf, *map.thermal, rig_, map.relocaliser->keyframes().poses(),
                    progress);
 }
 
@@ -174,7 +174,7 @@ bool GroundPipeline::Integrate(const PreparedDepth& depth, const RigidTransform&
   const StageTimer timer(stage_stats_["integrate"]);
   SubMap& map = atlas_.active();
   integrator_.Integrate(depth, T_map_depth, pool_, *map.tsdf);
-  has_room_ = map.thermal->Back(map.tsdf->block_count());
+  has_room_ = map.thermal->Commit(map.tsdf->block_count());
   ++map.integrated;
   if (map.anchors.empty()) map.anchors.push_back(T_map_depth);
   spiller_.Touch(integrator_.updated_blocks());
@@ -257,8 +257,8 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   ++counts_.depth_tracked;
   if (report.tracking.verdict() == Verdict::kDegraded) ++counts_.depth_degraded;
   const std::optional<StampedMapPose> before = tracker_.motion().before_last();
-  const bool skips =
-      effort_ == Effort::kEverySecond && !std::exchange(integrate_next_, !integrate_next_);
+  const bool skips = load_shedding_ == LoadShedding::kEverySecond &&
+                     !std::exchange(integrate_next_, !integrate_next_);
   if (skips) ++counts_.depth_behind;
   report.integrated =
       !skips &&
@@ -269,7 +269,7 @@ DepthReport GroundPipeline::TrackAndIntegrate(const DepthFrame& frame) {
   unconfirmed_.clear();
   AddToTrajectory({time, T_map_depth});
   if (report.integrated && report.tracking.verdict() == Verdict::kTracked) {
-    atlas_.active().relocaliser->Remember(T_map_depth);
+    atlas_.active().relocaliser->Add(T_map_depth);
     KeepSubMaps(*depth, T_map_depth);
   }
   // The tracker has followed if another sub-map is active now.
@@ -307,9 +307,9 @@ void GroundPipeline::FuseThermal() {
       .now = *tracker_.motion().last(),
       .surface_sigma_rad = uncertainty().surface_sigma_m() / uncertainty().mean_depth_m(),
       .tsdf = tsdf(),
-      .refusal = effort_ != Effort::kAll ? "behind"
-                 : has_room_             ? nullptr
-                                         : "disk_full"};
+      .refusal = load_shedding_ != LoadShedding::kNone ? "behind"
+                 : has_room_                           ? nullptr
+                                                       : "disk_full"};
   thermal_stage_->FuseUpTo(depth, *atlas_.active().thermal, pool_);
 }
 

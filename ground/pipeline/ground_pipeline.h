@@ -28,10 +28,10 @@
 
 namespace isotherm {
 
-/// How much of the work a pipeline does. What it leaves out costs quality where the next frames do
+/// The work that a pipeline leaves out under load. It costs quality where the next frames do
 /// not see the same again.
-enum class Effort : std::uint8_t {
-  kAll,
+enum class LoadShedding : std::uint8_t {
+  kNone,
   kNoThermal,    ///< Thermal frames are left out ("behind").
   kEverySecond,  ///< And only every second depth frame is integrated; all are tracked.
 };
@@ -39,8 +39,7 @@ enum class Effort : std::uint8_t {
 struct DepthReport {
   bool tracked = false;
   bool unconfirmed = false;  ///< Has a pose that is not believed yet; counts as not tracked.
-  bool repeated =
-      false;  ///< The same picture as before: it says nothing new, and nothing was done.
+  bool repeated = false;  ///< The same image as before: it says nothing new, and nothing was done.
   bool integrated = false;
   TrackingResult
       tracking;  ///< In the coordinates of the sub-map that the frame was tracked against.
@@ -69,18 +68,18 @@ class GroundPipeline {
   Status Save(const std::filesystem::path& path) const { return Save(path, 0); }
   /// The same of a sub-map that was never joined, 1 <= index < atlas().size() after Finish.
   Status Save(const std::filesystem::path& path, int index,
-              const std::function<void(double share)>& progress = {}) const;
+              const std::function<void(double fraction)>& progress = {}) const;
 
   DepthReport ProcessDepth(const DepthFrame& frame);
   /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).
   void ProcessThermal(ThermalFramePtr frame);
-  /// Where a source outside says that the rig was. In order of capture time, ideally before the
+  /// Where an odometry source says that the rig was. In order of capture time, ideally before the
   /// first depth frame that is not older; late ones help the frames to come.
-  void ProcessOutsidePose(const OutsidePose& pose) { tracker_.AddOutsidePose(pose); }
+  void ProcessExternalOdometry(const ExternalOdometry& pose) { tracker_.AddExternalOdometry(pose); }
   /// For the frames to come, until said otherwise.
-  void set_effort(Effort effort) { effort_ = effort; }
+  void set_load_shedding(LoadShedding load_shedding) { load_shedding_ = load_shedding; }
   /// Thermal frames still waiting are counted as left out, and sub-maps become one model, but for
-  /// those that were never joined. `progress` gets a share 0..1.
+  /// those that were never joined. `progress` gets a fraction 0..1.
   void Finish(const std::function<void(double)>& progress = {});
 
   /// The volume of the active sub-map, in its coordinates; the whole model in `world` after Finish.
@@ -166,8 +165,8 @@ class GroundPipeline {
   std::optional<CaptureTime> lost_since_;
   int searched_ = 0;                         ///< The sub-map a lost rig is looked for in.
   std::vector<StampedMapPose> unconfirmed_;  ///< Found again; part of the trajectory once believed.
-  Image<std::uint16_t> last_raw_;            ///< Picture of the last depth frame.
-  Effort effort_ = Effort::kAll;
+  Image<std::uint16_t> last_raw_;            ///< Image of the last depth frame.
+  LoadShedding load_shedding_ = LoadShedding::kNone;
   bool integrate_next_ = true;  ///< With kEverySecond.
   PipelineCounts counts_;
   std::map<std::string, StageStats> stage_stats_;

@@ -43,10 +43,10 @@ class GroundPipelineTest : public ::testing::Test {
   }
 
   static RigidTransform TruePose(int i) {
-    const double turn = 0.3 * i * std::numbers::pi / 180.0;
-    return testing::FirstPose() *
-           MakeTransform({kStep * i, 0.5 * kStep * i, 0.0},
-                         Eigen::Quaterniond(Eigen::AngleAxisd(-turn, Eigen::Vector3d::UnitY())));
+    const double orientation = 0.3 * i * std::numbers::pi / 180.0;
+    return testing::FirstPose() * MakeTransform({kStep * i, 0.5 * kStep * i, 0.0},
+                                                Eigen::Quaterniond(Eigen::AngleAxisd(
+                                                    -orientation, Eigen::Vector3d::UnitY())));
   }
   static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
 
@@ -360,14 +360,14 @@ TEST_F(GroundPipelineTest, F71AVolumeThatIsNoneOrTooLargeIsRefusedWithTheReason)
 
 TEST_F(GroundPipelineTest, WithoutTimeForThermalItIsLeftOutAndCounted) {
   Depth(0);
-  pipeline_->set_effort(Effort::kNoThermal);
+  pipeline_->set_load_shedding(LoadShedding::kNoThermal);
   Thermal(0.5);
   Depth(1);
   EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
   EXPECT_EQ(LeftOut("behind"), 1U);
   EXPECT_EQ(pipeline_->counts().depth_integrated, 2U);
   EXPECT_EQ(pipeline_->counts().depth_behind, 0U);
-  pipeline_->set_effort(Effort::kAll);
+  pipeline_->set_load_shedding(LoadShedding::kNone);
   Thermal(1.5);
   Depth(2);
   EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
@@ -378,7 +378,7 @@ TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
   constexpr double kMaxError = 0.002;  // Metres: half a voxel.
   constexpr int kFrames = 8;
   Depth(0);
-  pipeline_->set_effort(Effort::kEverySecond);
+  pipeline_->set_load_shedding(LoadShedding::kEverySecond);
   for (int i = 1; i <= kFrames; ++i) {
     Thermal(i - 0.5);
     const DepthReport report = Depth(i);
@@ -391,7 +391,7 @@ TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
   EXPECT_EQ(counts.depth_integrated, 1U + kFrames / 2);
   EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
   EXPECT_EQ(LeftOut("behind"), 0U + kFrames);
-  pipeline_->set_effort(Effort::kAll);
+  pipeline_->set_load_shedding(LoadShedding::kNone);
   for (int i = kFrames + 1; i <= kFrames + 3; ++i) {
     Thermal(i - 0.5);
     EXPECT_TRUE(Depth(i).integrated) << i;

@@ -13,10 +13,10 @@ namespace {
 constexpr std::uint64_t kLookEvery = 10;
 
 /// Two sightings in a row must place the sub-maps alike, at the camera.
-constexpr double kAgreeM = 0.01;
-constexpr double kAgreeRad = 0.01;
+constexpr double kAgree_m = 0.01;
+constexpr double kAgree_rad = 0.01;
 
-/// The share of a frame's pixels behind which a sub-map must have a surface to go on in it.
+/// The fraction of a frame's pixels behind which a sub-map must have a surface to go on in it.
 constexpr double kShowsView = 0.8;
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
@@ -26,12 +26,12 @@ constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 LoopCloser::LoopCloser(const GroundOptions& options, Atlas& atlas, RigTracker& tracker)
     : options_(options), atlas_(atlas), tracker_(tracker) {}
 
-std::optional<RigidTransform> LoopCloser::RecogniseIn(int other, const PreparedDepth& depth,
-                                                      const RigidTransform& T_map_depth,
-                                                      ThreadPool& pool) {
+std::optional<RigidTransform> LoopCloser::VerifyIn(int other, const PreparedDepth& depth,
+                                                   const RigidTransform& T_map_depth,
+                                                   ThreadPool& pool) {
   const SubMap& map = atlas_.map(other);
   if (const auto guess = atlas_.PoseIn(other, T_map_depth)) {
-    const TrackingResult result = tracker_.Recognise(depth, *guess, map, pool);
+    const TrackingResult result = tracker_.Verify(depth, *guess, map, pool);
     if (result.tracked()) return result.T_map_depth;
   }
   // Its place is not known, or the rig has drifted further than the tracker can pull it back.
@@ -39,21 +39,21 @@ std::optional<RigidTransform> LoopCloser::RecogniseIn(int other, const PreparedD
   const auto guess = map.relocaliser->Find(
       depth, *map.tsdf, static_cast<float>(options_.raycast().min_weight()), pool);
   if (!guess) return std::nullopt;
-  const TrackingResult result = tracker_.Recognise(depth, *guess, map, pool);
+  const TrackingResult result = tracker_.Verify(depth, *guess, map, pool);
   if (!result.tracked()) return std::nullopt;
   return result.T_map_depth;
 }
 
 bool LoopCloser::LookForKnownGround(const PreparedDepth& depth, const RigidTransform& T_map_depth,
                                     ThreadPool& pool) {
-  const std::vector<int> candidates = atlas_.ToRecognise(T_map_depth);
+  const std::vector<int> candidates = atlas_.ToVerify(T_map_depth);
   if (candidates.empty()) return false;
   // What was seen last time is looked at again, to be believed; else they take turns.
   const bool has_sighting = sighting_ && sighting_->active == atlas_.active_index() &&
                             !atlas_.IsLinked(sighting_->active, sighting_->other);
   const int other =
       has_sighting ? sighting_->other : candidates[next_candidate_++ % candidates.size()];
-  const auto pose = RecogniseIn(other, depth, T_map_depth, pool);
+  const auto pose = VerifyIn(other, depth, T_map_depth, pool);
   if (!pose) {
     sighting_.reset();
     return false;
@@ -61,8 +61,8 @@ bool LoopCloser::LookForKnownGround(const PreparedDepth& depth, const RigidTrans
   const RigidTransform T_other_active = *pose * T_map_depth.inverse();
   const bool agrees =
       has_sighting &&
-      TranslationDistance(sighting_->T_other_active * T_map_depth, *pose) < kAgreeM &&
-      RotationAngle(sighting_->T_other_active * T_map_depth, *pose) < kAgreeRad;
+      TranslationDistance(sighting_->T_other_active * T_map_depth, *pose) < kAgree_m &&
+      RotationAngle(sighting_->T_other_active * T_map_depth, *pose) < kAgree_rad;
   sighting_ = Sighting{atlas_.active_index(), other, T_other_active};
   if (!agrees) return false;
   sighting_.reset();
@@ -88,7 +88,7 @@ bool LoopCloser::GoBack(const PreparedDepth& depth, const RigidTransform& T_map_
     if (other == atlas_.active_index() || !atlas_.IsLinked(other, atlas_.active_index())) continue;
     const auto guess = atlas_.PoseIn(other, T_map_depth);
     if (!guess || atlas_.IsFar(other, *guess) || !atlas_.IsNearView(other, *guess)) continue;
-    const TrackingResult result = tracker_.Recognise(depth, *guess, atlas_.map(other), pool);
+    const TrackingResult result = tracker_.Verify(depth, *guess, atlas_.map(other), pool);
     if (!result.tracked() || result.overlap_ratio < kShowsView) continue;
     tracker_.Rebase(result.T_map_depth * T_map_depth.inverse());
     atlas_.Activate(other);
@@ -107,8 +107,8 @@ LoopCloser::Change LoopCloser::Update(const PreparedDepth& depth, const RigidTra
   change.switched = GoBack(depth, T_map_depth, pool);
   if (change.switched) return change;
   change.switched = atlas_.Split(T_map_depth, blocks_in_view);
-  if (!change.switched && !told_full_) {
-    told_full_ = true;
+  if (!change.switched && !reported_full_) {
+    reported_full_ = true;
     LOG(Ground, Warning) << "no sub-map can be begun (submaps.max_maps or memory is reached): the "
                             "scan goes on in the last one, with more drift";
   }

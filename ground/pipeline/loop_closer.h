@@ -39,8 +39,8 @@ class LoopCloser {
 
   bool LookForKnownGround(const PreparedDepth& depth, const RigidTransform& T_map_depth,
                           ThreadPool& pool);
-  std::optional<RigidTransform> RecogniseIn(int other, const PreparedDepth& depth,
-                                            const RigidTransform& T_map_depth, ThreadPool& pool);
+  std::optional<RigidTransform> VerifyIn(int other, const PreparedDepth& depth,
+                                         const RigidTransform& T_map_depth, ThreadPool& pool);
   /// Goes back to a linked sub-map that shows what is in view.
   bool GoBack(const PreparedDepth& depth, const RigidTransform& T_map_depth, ThreadPool& pool);
 
@@ -50,7 +50,7 @@ class LoopCloser {
   std::uint64_t frames_ = 0;
   std::size_t next_candidate_ = 0;
   std::optional<Sighting> sighting_;
-  bool told_full_ = false;
+  bool reported_full_ = false;
 };
 
 }  // namespace isotherm

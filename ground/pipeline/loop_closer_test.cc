@@ -26,14 +26,14 @@ class LoopCloserTest : public testing::SubMapTest {
     tracker_ = std::make_unique<RigTracker>(options_, camera_);
     closer_ = std::make_unique<LoopCloser>(options_, *atlas_, *tracker_);
     Fill(atlas_->active(), BallInCorner);
-    atlas_->active().relocaliser->Remember(FirstPose());
+    atlas_->active().relocaliser->Add(FirstPose());
     atlas_->active().anchors = {FirstPose()};
   }
   void BeginElsewhere() {
     ASSERT_TRUE(atlas_->BeginElsewhere());
     const RigidTransform& T_world_map = kWorldFromMap;
     Fill(atlas_->active(), [&](const auto& p) { return BallInCorner(T_world_map * p); });
-    atlas_->active().relocaliser->Remember(InMap(FirstPose()));
+    atlas_->active().relocaliser->Add(InMap(FirstPose()));
     atlas_->active().anchors = {InMap(FirstPose())};
   }
   static RigidTransform InMap(const RigidTransform& T_world_depth) {

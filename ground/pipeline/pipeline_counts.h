@@ -11,7 +11,7 @@ namespace isotherm {
 /// Holds what the pipeline did with the frames it was given: in = sum of the outcomes.
 struct PipelineCounts {
   std::uint64_t depth_in = 0;
-  std::uint64_t depth_repeated = 0;  ///< The picture of the frame before again.
+  std::uint64_t depth_repeated = 0;  ///< The image of the frame before again.
   std::uint64_t depth_tracked = 0;
   std::uint64_t depth_degraded = 0;     ///< Some of the tracked ones.
   std::uint64_t depth_unconfirmed = 0;  ///< Found again, but not yet believed.

@@ -4,15 +4,15 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "ground/tracker/thermal_cue.h"
+#include "ground/tracker/thermal_alignment.h"
 
 namespace isotherm {
 namespace {
 
 /// A frame is on the wrong surface, whatever the limits say, ...
 constexpr double kUnusualResidual = 4.0;   ///< ... with this many times the usual residual
-constexpr double kLeastUnusualM = 0.002;   ///< (but at least this), ...
-constexpr double kUnusualAgreement = 0.5;  ///< ... or with this share of the usual agreement.
+constexpr double kMinUnusual_m = 0.002;    ///< (but at least this), ...
+constexpr double kUnusualAgreement = 0.5;  ///< ... or with this fraction of the usual agreement.
 
 /// What is believed after having been lost must be nearly as good as usual.
 constexpr double kConvincingResidual = 2.5;
@@ -30,7 +30,7 @@ RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_ca
       relocaliser_options_(options.relocaliser()),
       min_weight_(static_cast<float>(options.raycast().min_weight())),
       tracker_(options.tracker()),
-      outside_(options.tracker().outside()) {
+      odometry_(options.tracker().external_odometry()) {
   view_.camera = depth_camera.Downscaled(options.raycast().halvings());
   candidate_.camera = view_.camera;
 }
@@ -39,13 +39,13 @@ RigTracker::~RigTracker() = default;
 
 void RigTracker::UseThermal(const CameraModel& thermal_camera,
                             const RigidTransform& T_thermal_depth) {
-  cue_ =
-      std::make_unique<ThermalCue>(thermal_camera, T_thermal_depth,
-                                   options_.thermal_min_gradient_k_m(), options_.prior_sigma_m_s());
+  alignment_ = std::make_unique<ThermalAlignment>(thermal_camera, T_thermal_depth,
+                                                  options_.thermal_min_gradient_k_m(),
+                                                  options_.prior_sigma_m_s());
 }
 
 void RigTracker::AddThermal(ThermalFramePtr frame) {
-  if (cue_) cue_->Add(std::move(frame));
+  if (alignment_) alignment_->Add(std::move(frame));
 }
 
 TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
@@ -57,7 +57,7 @@ TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
   state_ = State::kFollowing;
   if (first.tracked()) {
     motion_.Add({time, pose});
-    outside_.Note(first, time, uncertainty_.covariance(), /*used=*/false);
+    odometry_.Note(first, time, uncertainty_.covariance(), /*used=*/false);
     Trust(first, time);
   }
   return first;
@@ -78,9 +78,9 @@ PriorError RigTracker::InertialError(CaptureTime time, double mean_depth_m) cons
 TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
                                   const TsdfVolume& volume, ThreadPool& pool) {
   const auto track = [&](IcpTracker::Start start) {
-    if (cue_ && state_ == State::kFollowing) {
-      cue_->Begin(motion_.last(), time, start.guess);
-      start.cue = cue_.get();
+    if (alignment_ && state_ == State::kFollowing) {
+      alignment_->Begin(motion_.last(), time, start.guess);
+      start.alignment = alignment_.get();
     }
     TrackingResult result = tracker_.Track(depth, view_, volume.grid(), start, pool);
     if (result.tracked()) result.lost = FindAnomaly(result);
@@ -88,29 +88,29 @@ TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
   };
   const IcpTracker::Start inertial = Predict(time);
   const Matrix6& known = uncertainty_.covariance();
-  std::optional<OutsidePrior::Prediction> outside;
+  std::optional<OdometryPrior::Prediction> odometry;
   if (const auto last = motion_.last())
-    outside = outside_.Predict(*last, time, inertial.guess,
-                               InertialError(time, uncertainty_.mean_depth_m()));
-  if (outside) {
-    const TrackingResult result = track({outside->T_map_depth, outside->T_map_depth});
+    odometry = odometry_.Predict(*last, time, inertial.guess,
+                                 InertialError(time, uncertainty_.mean_depth_m()));
+  if (odometry) {
+    const TrackingResult result = track({odometry->T_map_depth, odometry->T_map_depth});
     // If the camera sees nothing, another start would not help.
     if (result.lost == LostReason::kTooFewPixels) return result;
-    if (result.tracked() && !outside_.Contradicts(result, time, known)) {
-      outside_.Note(result, time, known, /*used=*/true);
-      outside_error_ = outside->error;
+    if (result.tracked() && !odometry_.Contradicts(result, time, known)) {
+      odometry_.Note(result, time, known, /*used=*/true);
+      odometry_error_ = odometry->error;
       return result;
     }
   }
   const TrackingResult result = track(inertial);
-  if (result.tracked()) outside_.Note(result, time, known, /*used=*/false);
+  if (result.tracked()) odometry_.Note(result, time, known, /*used=*/false);
   return result;
 }
 
 double RigTracker::ResidualLimit(const TrackingResult& result, double times_usual) const {
   // A depth camera's noise grows with the square of the depth.
   const double depth_m = result.motion.mean_depth_m;
-  return std::max(times_usual * usual_.residual_per_m * depth_m * depth_m, kLeastUnusualM);
+  return std::max(times_usual * usual_.residual_per_m * depth_m * depth_m, kMinUnusual_m);
 }
 
 LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
@@ -132,8 +132,8 @@ bool RigTracker::IsConvincing(const TrackingResult& result) const {
           result.residual_m <= ResidualLimit(result, kConvincingResidual));
 }
 
-TrackingResult RigTracker::Recognise(const PreparedDepth& depth, const RigidTransform& T_map_depth,
-                                     const SubMap& map, ThreadPool& pool) {
+TrackingResult RigTracker::Verify(const PreparedDepth& depth, const RigidTransform& T_map_depth,
+                                  const SubMap& map, ThreadPool& pool) {
   CastView(T_map_depth, *map.tsdf, pool, candidate_);
   TrackingResult result =
       tracker_.Track(depth, candidate_, map.tsdf->grid(), {T_map_depth, T_map_depth}, pool);
@@ -158,7 +158,7 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const SubMap& 
   result.lost = LostReason::kNotFound;
   const auto pose = searched.relocaliser->Find(depth, *searched.tsdf, min_weight_, pool);
   if (!pose) return result;
-  const TrackingResult found = Recognise(depth, *pose, searched, pool);
+  const TrackingResult found = Verify(depth, *pose, searched, pool);
   if (!found.tracked()) return result;
   found_elsewhere_ = &searched != &here;
   return found;
@@ -168,12 +168,12 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
                                  const SubMap& searched, ThreadPool& pool) {
   TrackingResult result;
   found_elsewhere_ = false;
-  outside_error_.reset();
+  odometry_error_.reset();
   if (state_ == State::kLost) {
     result = LookAround(depth, here, searched, pool);
     if (!result.tracked()) return result;
     if (found_elsewhere_) Forget();
-    outside_.Note(result, time, uncertainty_.covariance(), /*used=*/false);
+    odometry_.Note(result, time, uncertainty_.covariance(), /*used=*/false);
     state_ = State::kConfirming;
     to_confirm_ = relocaliser_options_.confirming_frames();
   } else {
@@ -190,9 +190,9 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
     state_ = State::kLost;
     lost_frames_ = 0;
     motion_.Clear();
-    outside_.Reset();
+    odometry_.Reset();
     speed_is_known_ = false;
-    if (cue_) cue_->Forget();
+    if (alignment_) alignment_->Forget();
     return result;
   }
   motion_.Add({time, result.T_map_depth});
@@ -206,34 +206,35 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
 
 void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
   uncertainty_.Update(result,
-                      outside_error_.value_or(InertialError(time, result.motion.mean_depth_m)));
+                      odometry_error_.value_or(InertialError(time, result.motion.mean_depth_m)));
   trusted_pose_ = result.T_map_depth;
   trusted_time_ = time;
   has_trusted_pose_ = true;
-  if (cue_) cue_->End(motion_.before_last(), *motion_.last(), uncertainty_.surface_sigma_m());
+  if (alignment_)
+    alignment_->End(motion_.before_last(), *motion_.last(), uncertainty_.surface_sigma_m());
   if (result.iterations == 0) return;  // Not tracked against anything.
   if (motion_.before_last() && result.verdict() == Verdict::kTracked) speed_is_known_ = true;
-  constexpr double kNewShare = 0.1;
-  const double share = std::max(kNewShare, 1.0 / (1.0 + usual_.frames));
+  constexpr double kNewFraction = 0.1;
+  const double fraction = std::max(kNewFraction, 1.0 / (1.0 + usual_.frames));
   const double depth_m = result.motion.mean_depth_m;
   usual_.residual_per_m +=
-      share * (result.residual_m / (depth_m * depth_m) - usual_.residual_per_m);
-  usual_.agreement += share * (result.agreement - usual_.agreement);
+      fraction * (result.residual_m / (depth_m * depth_m) - usual_.residual_per_m);
+  usual_.agreement += fraction * (result.agreement - usual_.agreement);
   ++usual_.frames;
 }
 
 void RigTracker::Forget() {
   motion_.Clear();
-  outside_.Reset();
-  if (cue_) cue_->Forget();
+  odometry_.Reset();
+  if (alignment_) alignment_->Forget();
   has_trusted_pose_ = false;
   speed_is_known_ = false;
 }
 
 void RigTracker::Rebase(const RigidTransform& T_new_old) {
   motion_.Transform(T_new_old);
-  outside_.Transform(T_new_old);
-  if (cue_) cue_->Forget();
+  odometry_.Transform(T_new_old);
+  if (alignment_) alignment_->Forget();
   trusted_pose_ = T_new_old * trusted_pose_;
   view_.T_map_depth = T_new_old * view_.T_map_depth;
   uncertainty_.Rotate(T_new_old.linear());

@@ -10,7 +10,7 @@
 #include "ground/options/ground_options.pb.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tracker/motion_history.h"
-#include "ground/tracker/outside_prior.h"
+#include "ground/tracker/odometry_prior.h"
 #include "ground/tracker/pose_uncertainty.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_volume.h"
@@ -36,9 +36,9 @@ class RigTracker {
   /// A valid thermal frame of the camera's size, before the first depth frame after it.
   void AddThermal(ThermalFramePtr frame);
 
-  /// Takes what a source outside says about the rig's motion, in order of capture time, ideally
+  /// Takes what a source says about the rig's motion, in order of capture time, ideally
   /// before the first depth frame that is not older.
-  void AddOutsidePose(const OutsidePose& pose) { outside_.Add(pose); }
+  void AddExternalOdometry(const ExternalOdometry& pose) { odometry_.Add(pose); }
 
   /// The first frame of a sub-map: its pose is given, and nothing is tracked against yet.
   TrackingResult Begin(const PreparedDepth& depth, CaptureTime time, const RigidTransform& pose);
@@ -57,8 +57,8 @@ class RigTracker {
 
   /// Whether a frame fits a sub-map near `T_map_depth` as well as frames usually do; the result is
   /// not tracked if not. Changes nothing.
-  TrackingResult Recognise(const PreparedDepth& depth, const RigidTransform& T_map_depth,
-                           const SubMap& map, ThreadPool& pool);
+  TrackingResult Verify(const PreparedDepth& depth, const RigidTransform& T_map_depth,
+                        const SubMap& map, ThreadPool& pool);
 
   /// After each tracked frame, with what it changed: the model from its pose, to track against.
   /// `is_young`: the model is little more than one frame's noise.
@@ -73,7 +73,7 @@ class RigTracker {
   const ModelView& view() const { return view_; }
   const MotionHistory& motion() const { return motion_; }
   const PoseUncertainty& uncertainty() const { return uncertainty_; }
-  const OutsidePrior& outside() const { return outside_; }
+  const OdometryPrior& external_odometry() const { return odometry_; }
 
  private:
   /// How frames usually look: a frame that differs is not on the right surface.
@@ -84,7 +84,7 @@ class RigTracker {
   };
 
   IcpTracker::Start Predict(CaptureTime time) const;
-  /// Tracks the frame after one that was tracked: from where a source outside says that the rig is,
+  /// Tracks the frame after one that was tracked: from where a source says that the rig is,
   /// or else, and if that does not fit, from constant velocity.
   TrackingResult Follow(const PreparedDepth& depth, CaptureTime time, const TsdfVolume& volume,
                         ThreadPool& pool);
@@ -107,13 +107,13 @@ class RigTracker {
   const RelocaliserOptions relocaliser_options_;
   const float min_weight_;
   IcpTracker tracker_;
-  std::unique_ptr<ThermalCue> cue_;
+  std::unique_ptr<ThermalAlignment> alignment_;
   Raycaster raycaster_;
   ModelView view_;
   ModelView candidate_;  ///< The model from a pose where the rig may be.
   MotionHistory motion_;
-  OutsidePrior outside_;
-  std::optional<PriorError> outside_error_;  ///< If the newest frame started from outside poses.
+  OdometryPrior odometry_;
+  std::optional<PriorError> odometry_error_;  ///< If the newest frame started from odometry poses.
   PoseUncertainty uncertainty_;
   Usual usual_;
   State state_ = State::kFollowing;

@@ -22,7 +22,7 @@ class RigTrackerTest : public testing::SubMapTest {
 
   RigTrackerTest() {
     Fill(here_, BallInCorner);
-    here_.relocaliser->Remember(FirstPose());
+    here_.relocaliser->Add(FirstPose());
     tracker_ = std::make_unique<RigTracker>(options_, camera_);
   }
 
@@ -107,7 +107,7 @@ TEST_F(RigTrackerTest, ASmoothViewIsNotBelievedAfterALossButFollowedBefore) {
   const auto wall = [](const Eigen::Vector3d& p) { return 0.5 - p.z(); };
   here_ = MakeSubMap();
   Fill(here_, wall);
-  here_.relocaliser->Remember(FirstPose());
+  here_.relocaliser->Add(FirstPose());
   ASSERT_TRUE(tracker_->Begin(Prepare(wall, TruePose(0)), Time(0), TruePose(0)).tracked());
   LookFrom(TruePose(0));
   const TrackingResult before = Track(Prepare(wall, TruePose(1)), 1);
@@ -122,10 +122,11 @@ TEST_F(RigTrackerTest, WhileLostItIsFoundInAnotherSubMapInThatOnesCoordinates) {
   SubMap other = MakeSubMap();
   Fill(other, [&](const Eigen::Vector3d& p) { return BallInCorner(p - shift); });
   const RigidTransform T_other_here = MakeTransform(shift, Eigen::Quaterniond::Identity());
-  other.relocaliser->Remember(T_other_here * FirstPose());
+  other.relocaliser->Add(T_other_here * FirstPose());
   SubMap empty = MakeSubMap();
   tracker_->BeginLost();
   TrackingResult result;
+  result.lost = LostReason::kNotFound;
   for (int i = 1; i < 10 && !result.tracked(); ++i) {
     result = tracker_->Track(Prepare(BallInCorner, TruePose(i)), Time(i), empty, other, pool_);
     EXPECT_EQ(tracker_->found_elsewhere(), result.tracked()) << i;
@@ -142,11 +143,11 @@ TEST_F(RigTrackerTest, RecognisingChangesNothing) {
   const RigidTransform last = tracker_->motion().last()->T_map_depth;
   const RigidTransform view = tracker_->view().T_map_depth;
   const PreparedDepth& depth = Prepare(BallInCorner, TruePose(4));
-  const TrackingResult result = tracker_->Recognise(depth, TruePose(3), here_, pool_);
+  const TrackingResult result = tracker_->Verify(depth, TruePose(3), here_, pool_);
   ASSERT_TRUE(result.tracked());
   EXPECT_LT(TranslationDistance(result.T_map_depth, TruePose(4)), kMaxError);
   EXPECT_FALSE(
-      tracker_->Recognise(Prepare(Wavy, TruePose(4)), TruePose(3), MakeSubMap(), pool_).tracked())
+      tracker_->Verify(Prepare(Wavy, TruePose(4)), TruePose(3), MakeSubMap(), pool_).tracked())
       << "an empty sub-map shows nothing";
   EXPECT_EQ(tracker_->motion().last()->T_map_depth.matrix(), last.matrix());
   EXPECT_EQ(tracker_->view().T_map_depth.matrix(), view.matrix());

@@ -35,7 +35,7 @@ class ThermalStageTest : public ::testing::Test {
     tsdf_ = std::make_unique<TsdfVolume>(grid, 0.016, max_blocks);
     testing::FillVolume(*tsdf_, testing::BallInCorner);
     thermal_ = std::make_unique<ThermalVolume>(max_blocks);
-    EXPECT_TRUE(thermal_->Back(tsdf_->block_count()));
+    EXPECT_TRUE(thermal_->Commit(tsdf_->block_count()));
     view_.camera = rig_.depth->Downscaled(1);
     view_.T_map_depth = testing::FirstPose();
     Raycaster().Cast(*tsdf_, view_.camera, view_.T_map_depth, 0.0F, pool_, view_.maps);

@@ -80,7 +80,7 @@ class Relocaliser::Refinement {
           AccumulateIcp(depth_.maps[kPyramidLevels - 1], pose, view, volume_.grid(), limits, pool_);
       constexpr std::int64_t kFewest = 200;
       if (sums.inliers < kFewest) return {};
-      const auto twist = MotionSpace().SolveObserved(sums.H, sums.g);
+      const auto twist = Observability().SolveObserved(sums.H, sums.g);
       if (!twist || !twist->allFinite()) return {};
       ApplyTwist(*twist, pose);
       fit = {pose, sums.agreement(), sums.overlap_ratio()};
@@ -99,20 +99,20 @@ class Relocaliser::Refinement {
 };
 
 Relocaliser::Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera)
-    : options_(options), camera_(depth_camera), library_(depth_camera, options.max_views()) {}
+    : options_(options), camera_(depth_camera), keyframes_(depth_camera, options.max_views()) {}
 
 std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
                                                 const TsdfVolume& volume, float min_weight,
                                                 ThreadPool& pool) {
   if (!knows_model_) {
     constexpr std::size_t kMaxPoints = 3000;
-    library_.SetCloud(MakeSurfaceCloud(volume, kMaxPoints, pool));
+    keyframes_.SetCloud(MakeSurfaceCloud(volume, kMaxPoints, pool));
     knows_model_ = true;
   }
   Refinement refinement(*this, depth, volume, min_weight, pool);
   Refinement::Fit best;
   for (const PoseGuess& guess :
-       library_.Guess(MakeThumbnail(depth.depth_m), options_.guesses_per_frame(), pool)) {
+       keyframes_.Guess(MakeThumbnail(depth.depth_m), options_.guesses_per_frame(), pool)) {
     const Refinement::Fit fit = refinement.Run(kFirstStage, guess.T_map_depth);
     if (fit.score() > best.score()) best = fit;
   }

@@ -4,7 +4,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/relocaliser/view_library.h"
+#include "ground/relocaliser/keyframe_database.h"
 #include "ground/tracker/icp_tracker.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_volume.h"
@@ -15,14 +15,14 @@ Status Validate(const RelocaliserOptions& options);
 
 /// Finds the camera in a model after tracking was lost: guesses from the views that were tracked,
 /// each refined against the model at low resolution. What it finds is a candidate, for the tracker
-/// to judge at full resolution. Thread-compatible.
+/// to assess at full resolution. Thread-compatible.
 class Relocaliser {
  public:
   Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera);
 
   /// A pose that was tracked well, and fused: the model has changed since it was looked through.
-  void Remember(const RigidTransform& T_map_depth) {
-    library_.Add(T_map_depth);
+  void Add(const RigidTransform& T_map_depth) {
+    keyframes_.Add(T_map_depth);
     knows_model_ = false;
   }
 
@@ -32,15 +32,15 @@ class Relocaliser {
   std::optional<RigidTransform> Find(const PreparedDepth& depth, const TsdfVolume& volume,
                                      float min_weight, ThreadPool& pool);
 
-  const ViewLibrary& library() const { return library_; }
+  const KeyframeDatabase& keyframes() const { return keyframes_; }
 
  private:
   class Refinement;
 
   const RelocaliserOptions options_;
   const CameraModel camera_;
-  ViewLibrary library_;
-  bool knows_model_ = false;  ///< The library has a cloud of the model as it is.
+  KeyframeDatabase keyframes_;
+  bool knows_model_ = false;  ///< The keyframe database has a cloud of the model as it is.
   Raycaster raycaster_;
   ModelView view_;
 };

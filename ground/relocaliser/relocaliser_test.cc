@@ -38,10 +38,10 @@ TsdfVolume MakeVolume() {
 
 /// The first pose, moved in its own coordinates.
 RigidTransform Moved(const Eigen::Vector3d& translation_m, double yaw_deg, double pitch_deg) {
-  const Eigen::Quaterniond turn =
+  const Eigen::Quaterniond orientation =
       Eigen::AngleAxisd(yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *
       Eigen::AngleAxisd(pitch_deg * kRadPerDeg, Eigen::Vector3d::UnitX());
-  return testing::FirstPose() * MakeTransform(translation_m, turn);
+  return testing::FirstPose() * MakeTransform(translation_m, orientation);
 }
 
 Thumbnail Constant(float depth_m) {
@@ -64,7 +64,7 @@ TEST(DisagreementTest, GrowsWithTheDifferenceUpToEightCentimetres) {
   EXPECT_EQ(Disagreement(Constant(0.50F), Constant(2.00F)), 1.0F);
 }
 
-TEST(DisagreementTest, WhatOnlyThePictureSeesCountsHalf) {
+TEST(DisagreementTest, WhatOnlyTheImageSeesCountsHalf) {
   Thumbnail half = Constant(0.5F);
   for (std::size_t i = 0; i < half.depth_m.size() / 2; ++i) half.depth_m[i] = 0.0F;
   EXPECT_FLOAT_EQ(Disagreement(Constant(0.5F), half), 0.25F);
@@ -148,8 +148,8 @@ TEST_F(MakeSurfaceCloudTest, WhatIsHardlyObservedIsNoSurface) {
 class BallInCornerTest : public ::testing::Test {
  protected:
   BallInCornerTest() { testing::FillVolume(volume_, testing::BallInCorner); }
-  const PreparedDepth& Picture(const RigidTransform& pose,
-                               const testing::SignedDistance& scene = testing::BallInCorner) {
+  const PreparedDepth& Prepared(const RigidTransform& pose,
+                                const testing::SignedDistance& scene = testing::BallInCorner) {
     return preprocessor_.Process(testing::RenderDepth(scene, camera_, pose), pool_);
   }
 
@@ -159,36 +159,36 @@ class BallInCornerTest : public ::testing::Test {
   DepthPreprocessor preprocessor_{PreprocessorOptions(), camera_};
 };
 
-class ViewLibraryTest : public BallInCornerTest {
+class KeyframeDatabaseTest : public BallInCornerTest {
  protected:
   static constexpr int kMaxViews = 5;
-  ViewLibrary library_{camera_, kMaxViews};
+  KeyframeDatabase keyframes_{camera_, kMaxViews};
 };
 
-TEST_F(ViewLibraryTest, GuessesNothingWithoutPosesACloudOrAPicture) {
-  const Thumbnail picture = MakeThumbnail(Picture(testing::FirstPose()).depth_m);
+TEST_F(KeyframeDatabaseTest, GuessesNothingWithoutPosesACloudOrAnImage) {
+  const Thumbnail image = MakeThumbnail(Prepared(testing::FirstPose()).depth_m);
   const auto cloud = MakeSurfaceCloud(volume_, 3000, pool_);
-  library_.SetCloud(cloud);
-  EXPECT_TRUE(library_.Guess(picture, 3, pool_).empty()) << "no poses";
-  library_.Add(testing::FirstPose());
-  EXPECT_FALSE(library_.Guess(picture, 3, pool_).empty());
-  EXPECT_TRUE(library_.Guess(Thumbnail(), 3, pool_).empty()) << "no picture";
-  library_.SetCloud({});
-  EXPECT_TRUE(library_.Guess(picture, 3, pool_).empty()) << "no cloud";
+  keyframes_.SetCloud(cloud);
+  EXPECT_TRUE(keyframes_.Guess(image, 3, pool_).empty()) << "no poses";
+  keyframes_.Add(testing::FirstPose());
+  EXPECT_FALSE(keyframes_.Guess(image, 3, pool_).empty());
+  EXPECT_TRUE(keyframes_.Guess(Thumbnail(), 3, pool_).empty()) << "no image";
+  keyframes_.SetCloud({});
+  EXPECT_TRUE(keyframes_.Guess(image, 3, pool_).empty()) << "no cloud";
 }
 
-TEST_F(ViewLibraryTest, FindsTheKnownPoseAPictureWasTakenFrom) {
-  constexpr double kMaxError = 0.04;  // Metres: of a picture of 20 x 15 cells.
+TEST_F(KeyframeDatabaseTest, FindsTheKnownPoseAnImageWasTakenFrom) {
+  constexpr double kMaxError = 0.04;  // Metres: of an image of 20 x 15 cells.
   constexpr double kMaxAngle = 6.0 * kRadPerDeg;
   // All that they see is in the model.
   const std::vector<RigidTransform> known = {Moved({0.0, 0.0, 0.12}, 0.0, 0.0),
                                              Moved({0.10, 0.0, 0.14}, -10.0, 0.0),
                                              Moved({-0.05, -0.03, 0.15}, 15.0, -8.0)};
-  for (const RigidTransform& pose : known) library_.Add(pose);
-  library_.SetCloud(MakeSurfaceCloud(volume_, 3000, pool_));
+  for (const RigidTransform& pose : known) keyframes_.Add(pose);
+  keyframes_.SetCloud(MakeSurfaceCloud(volume_, 3000, pool_));
   for (const RigidTransform& truth : known) {
-    const Thumbnail picture = MakeThumbnail(Picture(truth).depth_m);
-    const auto guesses = library_.Guess(picture, 3, pool_);
+    const Thumbnail image = MakeThumbnail(Prepared(truth).depth_m);
+    const auto guesses = keyframes_.Guess(image, 3, pool_);
     ASSERT_FALSE(guesses.empty());
     EXPECT_LT(TranslationDistance(guesses[0].T_map_depth, truth), kMaxError);
     EXPECT_LT(RotationAngle(guesses[0].T_map_depth, truth), kMaxAngle);
@@ -196,12 +196,12 @@ TEST_F(ViewLibraryTest, FindsTheKnownPoseAPictureWasTakenFrom) {
   }
 }
 
-TEST_F(ViewLibraryTest, GuessesAreFewBestFirstAndApart) {
-  for (int i = 0; i < kMaxViews; ++i) library_.Add(Moved({0.07 * i - 0.14, 0.0, 0.0}, 0.0, 0.0));
-  library_.SetCloud(MakeSurfaceCloud(volume_, 3000, pool_));
-  const Thumbnail picture = MakeThumbnail(Picture(testing::FirstPose()).depth_m);
-  EXPECT_EQ(library_.Guess(picture, 1, pool_).size(), 1U);
-  const auto guesses = library_.Guess(picture, 4, pool_);
+TEST_F(KeyframeDatabaseTest, GuessesAreFewBestFirstAndApart) {
+  for (int i = 0; i < kMaxViews; ++i) keyframes_.Add(Moved({0.07 * i - 0.14, 0.0, 0.0}, 0.0, 0.0));
+  keyframes_.SetCloud(MakeSurfaceCloud(volume_, 3000, pool_));
+  const Thumbnail image = MakeThumbnail(Prepared(testing::FirstPose()).depth_m);
+  EXPECT_EQ(keyframes_.Guess(image, 1, pool_).size(), 1U);
+  const auto guesses = keyframes_.Guess(image, 4, pool_);
   ASSERT_GE(guesses.size(), 2U);
   ASSERT_LE(guesses.size(), 4U);
   for (std::size_t i = 1; i < guesses.size(); ++i) {
@@ -214,17 +214,17 @@ TEST_F(ViewLibraryTest, GuessesAreFewBestFirstAndApart) {
   }
 }
 
-TEST_F(ViewLibraryTest, KeepsNewViewsOnlyAndNotTooMany) {
-  library_.Add(testing::FirstPose());
-  library_.Add(Moved({0.05, 0.0, 0.0}, 0.0, 0.0));
-  library_.Add(Moved({0.0, 0.0, 0.0}, 9.0, 0.0));
-  EXPECT_EQ(library_.poses().size(), 1U);
-  library_.Add(Moved({0.07, 0.0, 0.0}, 0.0, 0.0));
-  library_.Add(Moved({0.0, 0.0, 0.0}, 11.0, 0.0));
-  EXPECT_EQ(library_.poses().size(), 3U);
-  for (int i = 0; i < 20; ++i) library_.Add(Moved({0.0, 0.0, -1.0 * i}, 0.0, 0.0));
-  EXPECT_EQ(library_.poses().size(), static_cast<std::size_t>(kMaxViews));
-  EXPECT_EQ(library_.poses().front().matrix(), testing::FirstPose().matrix());
+TEST_F(KeyframeDatabaseTest, KeepsNewViewsOnlyAndNotTooMany) {
+  keyframes_.Add(testing::FirstPose());
+  keyframes_.Add(Moved({0.05, 0.0, 0.0}, 0.0, 0.0));
+  keyframes_.Add(Moved({0.0, 0.0, 0.0}, 9.0, 0.0));
+  EXPECT_EQ(keyframes_.poses().size(), 1U);
+  keyframes_.Add(Moved({0.07, 0.0, 0.0}, 0.0, 0.0));
+  keyframes_.Add(Moved({0.0, 0.0, 0.0}, 11.0, 0.0));
+  EXPECT_EQ(keyframes_.poses().size(), 3U);
+  for (int i = 0; i < 20; ++i) keyframes_.Add(Moved({0.0, 0.0, -1.0 * i}, 0.0, 0.0));
+  EXPECT_EQ(keyframes_.poses().size(), static_cast<std::size_t>(kMaxViews));
+  EXPECT_EQ(keyframes_.poses().front().matrix(), testing::FirstPose().matrix());
 }
 
 TEST(RelocaliserOptionsTest, BoundariesAreNamed) {
@@ -287,11 +287,11 @@ class RelocaliserTest : public BallInCornerTest {
 TEST_F(RelocaliserTest, FindsAPoseBesideAKnownOne) {
   constexpr double kMaxError = 0.002;  // Metres, for the tracker to go on from.
   constexpr double kMaxAngle = 0.5 * kRadPerDeg;
-  relocaliser_.Remember(testing::FirstPose());
+  relocaliser_.Add(testing::FirstPose());
   for (const RigidTransform& truth :
        {Moved({0.03, -0.02, 0.02}, 4.0, -3.0), Moved({-0.04, 0.01, -0.03}, -5.0, 2.0),
         Moved({0.01, 0.04, 0.0}, 0.0, 5.0)}) {
-    const auto found = Find(Picture(truth));
+    const auto found = Find(Prepared(truth));
     ASSERT_TRUE(found.has_value());
     EXPECT_LT(TranslationDistance(*found, truth), kMaxError);
     EXPECT_LT(RotationAngle(*found, truth), kMaxAngle);
@@ -299,24 +299,24 @@ TEST_F(RelocaliserTest, FindsAPoseBesideAKnownOne) {
 }
 
 TEST_F(RelocaliserTest, FindsNothingBeforeItKnowsAView) {
-  const PreparedDepth& depth = Picture(testing::FirstPose());
+  const PreparedDepth& depth = Prepared(testing::FirstPose());
   EXPECT_FALSE(Find(depth).has_value());
-  relocaliser_.Remember(testing::FirstPose());
+  relocaliser_.Add(testing::FirstPose());
   EXPECT_TRUE(Find(depth).has_value());
 }
 
 TEST_F(RelocaliserTest, FindsNothingInAnotherScene) {
-  relocaliser_.Remember(testing::FirstPose());
+  relocaliser_.Add(testing::FirstPose());
   const auto balls = [](const Eigen::Vector3d& p) {
     return std::min((p - Eigen::Vector3d(0.2, 0.3, 0.3)).norm() - 0.05,
                     (p - Eigen::Vector3d(0.4, 0.2, 0.5)).norm() - 0.08);
   };
-  EXPECT_FALSE(Find(Picture(testing::FirstPose(), balls)).has_value());
+  EXPECT_FALSE(Find(Prepared(testing::FirstPose(), balls)).has_value());
 }
 
 TEST_F(RelocaliserTest, FindsNothingOfAModelThatIsTooLight) {
-  relocaliser_.Remember(testing::FirstPose());
-  const PreparedDepth& depth = Picture(testing::FirstPose());
+  relocaliser_.Add(testing::FirstPose());
+  const PreparedDepth& depth = Prepared(testing::FirstPose());
   EXPECT_TRUE(relocaliser_.Find(depth, volume_, 9.0F, pool_).has_value());
   EXPECT_FALSE(relocaliser_.Find(depth, volume_, 11.0F, pool_).has_value());
 }

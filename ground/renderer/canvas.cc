@@ -17,12 +17,12 @@ constexpr double kStrokePerHeight = 0.125;
 double Cover(double distance_px) { return std::clamp(0.5 - distance_px, 0.0, 1.0); }
 
 /// Mixes as much of `colour` into the pixel, if there is one.
-void Blend(int x, int y, Rgb8 colour, double cover, RgbImage& picture) {
-  if (!(cover > 0.0) || !picture.Contains(x, y)) return;
+void Blend(int x, int y, Rgb8 colour, double cover, RgbImage& rendering) {
+  if (!(cover > 0.0) || !rendering.Contains(x, y)) return;
   const auto mix = [cover](std::uint8_t from, std::uint8_t to) {
     return static_cast<std::uint8_t>(std::lround(from + cover * (to - from)));
   };
-  Rgb8& pixel = picture.At(x, y);
+  Rgb8& pixel = rendering.At(x, y);
   pixel = {mix(pixel.r, colour.r), mix(pixel.g, colour.g), mix(pixel.b, colour.b)};
 }
 
@@ -56,9 +56,9 @@ void Stroke(const StrokeLine& line, double half_width_px, Image<float>& mask) {
 }  // namespace
 
 void Canvas::FillRectangle(int x, int y, int width, int height, Rgb8 colour) {
-  for (int v = std::max(y, 0); v < std::min(y + height, picture_.height()); ++v) {
-    for (int u = std::max(x, 0); u < std::min(x + width, picture_.width()); ++u) {
-      picture_.At(u, v) = colour;
+  for (int v = std::max(y, 0); v < std::min(y + height, rendering_.height()); ++v) {
+    for (int u = std::max(x, 0); u < std::min(x + width, rendering_.width()); ++u) {
+      rendering_.At(u, v) = colour;
     }
   }
 }
@@ -76,8 +76,8 @@ void Canvas::FillTriangle(double x0, double y0, double x1, double y1, double x2,
   const double winding = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0) > 0.0 ? 1.0 : -1.0;
   const int left = std::max(Floor(std::min({x0, x1, x2})) - 1, 0);
   const int top = std::max(Floor(std::min({y0, y1, y2})) - 1, 0);
-  const int right = std::min(Ceil(std::max({x0, x1, x2})) + 1, picture_.width());
-  const int bottom = std::min(Ceil(std::max({y0, y1, y2})) + 1, picture_.height());
+  const int right = std::min(Ceil(std::max({x0, x1, x2})) + 1, rendering_.width());
+  const int bottom = std::min(Ceil(std::max({y0, y1, y2})) + 1, rendering_.height());
   for (int v = top; v < bottom; ++v) {
     for (int u = left; u < right; ++u) {
       double cover = 1.0;
@@ -86,7 +86,7 @@ void Canvas::FillTriangle(double x0, double y0, double x1, double y1, double x2,
         const double cross = dy * (u + 0.5 - side.x0) - dx * (v + 0.5 - side.y0);
         cover = std::min(cover, Cover(winding * cross / std::hypot(dx, dy)));
       }
-      Blend(u, v, colour, cover, picture_);
+      Blend(u, v, colour, cover, rendering_);
     }
   }
 }
@@ -110,7 +110,7 @@ void Canvas::Text(double x, double y_middle, std::string_view text, double heigh
   }
   for (int v = 0; v < mask.height(); ++v) {
     for (int u = 0; u < mask.width(); ++u)
-      Blend(corner_x + u, corner_y + v, colour, mask.At(u, v), picture_);
+      Blend(corner_x + u, corner_y + v, colour, mask.At(u, v), rendering_);
   }
 }
 

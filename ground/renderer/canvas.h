@@ -8,13 +8,13 @@ namespace isotherm {
 
 enum class TextAlign { kLeft, kCentre, kRight };
 
-/// Draws text and shapes into a picture, anti-aliased. Coordinates are pixels, x right, y down;
-/// everything is clipped to the picture. Text is UTF-8, of which ASCII and the degree sign are
+/// Draws text and shapes into a rendering, anti-aliased. Coordinates are pixels, x right, y down;
+/// everything is clipped to the rendering. Text is UTF-8, of which ASCII and the degree sign are
 /// drawn. Thread-compatible.
 class Canvas {
  public:
-  /// `picture` must outlive the canvas.
-  explicit Canvas(RgbImage& picture) : picture_(picture) {}
+  /// `rendering` must outlive the canvas.
+  explicit Canvas(RgbImage& rendering) : rendering_(rendering) {}
 
   void FillRectangle(int x, int y, int width, int height, Rgb8 colour);
   /// One pixel wide, inside the rectangle.
@@ -26,7 +26,7 @@ class Canvas {
             TextAlign align = TextAlign::kLeft);
 
  private:
-  RgbImage& picture_;
+  RgbImage& rendering_;
 };
 
 /// Width of `text` as Canvas::Text draws it, pixels.

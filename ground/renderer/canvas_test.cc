@@ -20,10 +20,10 @@ constexpr double kBlur_px = 2.0;
 /// Height of a capital letter of OpenCV's simplex font at scale 1, pixels.
 constexpr double kCapitalOfOpenCv_px = 21.0;
 
-cv::Mat Channel(const RgbImage& picture) {
-  cv::Mat grey(picture.height(), picture.width(), CV_8U);
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) grey.at<std::uint8_t>(y, x) = picture.At(x, y).r;
+cv::Mat Channel(const RgbImage& rendering) {
+  cv::Mat grey(rendering.height(), rendering.width(), CV_8U);
+  for (int y = 0; y < rendering.height(); ++y) {
+    for (int x = 0; x < rendering.width(); ++x) grey.at<std::uint8_t>(y, x) = rendering.At(x, y).r;
   }
   return grey;
 }
@@ -46,9 +46,9 @@ cv::Mat Comparable(const cv::Mat& grey) {
 }
 
 cv::Mat Ours(char letter) {
-  RgbImage picture(kSide, kSide);
-  Canvas(picture).Text(30, kSide / 2.0, std::string(1, letter), kLetter_px, kWhite);
-  return Comparable(Channel(picture));
+  RgbImage rendering(kSide, kSide);
+  Canvas(rendering).Text(30, kSide / 2.0, std::string(1, letter), kLetter_px, kWhite);
+  return Comparable(Channel(rendering));
 }
 
 cv::Mat OfOpenCv(char letter) {
@@ -80,9 +80,9 @@ TEST(CanvasTest, EachLetterIsNearestToOpenCvsSameLetter) {
 
 TEST(CanvasTest, ALetterIsAsHighAndAsHeavyAsAskedFor) {
   for (const double height : {9.0, 24.0, 60.0}) {
-    RgbImage picture(200, 200);
-    Canvas(picture).Text(40, 100, "H", height, kWhite);
-    const cv::Mat grey = Channel(picture);
+    RgbImage rendering(200, 200);
+    Canvas(rendering).Text(40, 100, "H", height, kWhite);
+    const cv::Mat grey = Channel(rendering);
     // The strokes' round ends stand over by half a stroke.
     EXPECT_NEAR(cv::boundingRect(grey > 127).height, 1.125 * height, 1.5) << height;
     // Two stems and a bar of 13/18, less where they meet.
@@ -98,9 +98,9 @@ TEST(CanvasTest, TextStandsWhereItsWidthAndAlignmentSay) {
   for (const auto& [align, left] :
        {std::pair{TextAlign::kLeft, 150.0}, std::pair{TextAlign::kCentre, 150.0 - width / 2},
         std::pair{TextAlign::kRight, 150.0 - width}}) {
-    RgbImage picture(300, 60);
-    Canvas(picture).Text(150, 30, text, 20.0, kWhite, align);
-    const cv::Rect box = cv::boundingRect(Channel(picture));
+    RgbImage rendering(300, 60);
+    Canvas(rendering).Text(150, 30, text, 20.0, kWhite, align);
+    const cv::Rect box = cv::boundingRect(Channel(rendering));
     EXPECT_GE(box.x, left - 1.0);
     EXPECT_LE(box.x + box.width, left + width + 1.0);
     EXPECT_GT(box.width, 0.8 * width);
@@ -108,9 +108,9 @@ TEST(CanvasTest, TextStandsWhereItsWidthAndAlignmentSay) {
   EXPECT_DOUBLE_EQ(TextWidth("ab", 20.0), TextWidth("a", 20.0) + TextWidth("b", 20.0));
 }
 
-TEST(CanvasTest, OutsideOfThePictureNothingIsDrawnAndUnknownLettersAreQuestionMarks) {
-  RgbImage picture(20, 10);
-  Canvas canvas(picture);
+TEST(CanvasTest, OutsideOfTheImageNothingIsDrawnAndUnknownLettersAreQuestionMarks) {
+  RgbImage rendering(20, 10);
+  Canvas canvas(rendering);
   canvas.Text(-15, 0, "clipped on each side", 14, kWhite, TextAlign::kCentre);
   canvas.Text(1000, 1000, "far away", 14, kWhite);
   canvas.FillTriangle(-5, -5, 50, 5, 3, 40, kWhite);
@@ -123,15 +123,15 @@ TEST(CanvasTest, ATriangleIsOpenCvsTriangle) {
                                     {{10.0, 8.0}, {35.0, 50.0}, {61.0, 8.0}},
                                     {{20.0, 20.0}, {20.0, 44.0}, {50.0, 32.0}}};
   for (const auto& [a, b, c] : corners) {
-    RgbImage picture(72, 60);
-    Canvas(picture).FillTriangle(a.x, a.y, b.x, b.y, c.x, c.y, kWhite);
+    RgbImage rendering(72, 60);
+    Canvas(rendering).FillTriangle(a.x, a.y, b.x, b.y, c.x, c.y, kWhite);
     cv::Mat large = cv::Mat::zeros(60 * kFactor, 72 * kFactor, CV_8U);
     const std::vector<cv::Point> points = {a * kFactor, b * kFactor, c * kFactor};
     cv::fillConvexPoly(large, points, cv::Scalar(255));
     cv::Mat expected;
     cv::resize(large, expected, {72, 60}, 0, 0, cv::INTER_AREA);
     cv::Mat difference;
-    cv::absdiff(Channel(picture), expected, difference);
+    cv::absdiff(Channel(rendering), expected, difference);
     EXPECT_LT(cv::mean(difference)[0], 0.6);
     double worst = 0.0;
     cv::minMaxLoc(difference, nullptr, &worst);

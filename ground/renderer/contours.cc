@@ -97,8 +97,8 @@ float FitAt(const Image<float>& celsius, const SurfaceMaps& maps, const Window& 
       right_side += weight * (value - centre) * basis;
     }
   }
-  constexpr double kLeastDeterminant = 1e-6;
-  if (!(normal_matrix.determinant() > kLeastDeterminant)) return celsius.At(x, y);
+  constexpr double kMinDeterminant = 1e-6;
+  if (!(normal_matrix.determinant() > kMinDeterminant)) return celsius.At(x, y);
   return static_cast<float>(centre + normal_matrix.ldlt().solve(right_side).x());
 }
 
@@ -195,9 +195,9 @@ Image<float> IsothermCover(const ContourField& field, double celsius, double wid
     for (int y = static_cast<int>(std::ceil(low.y())); y <= std::floor(high.y()); ++y) {
       for (int x = static_cast<int>(std::ceil(low.x())); x <= std::floor(high.x()); ++x) {
         if (!cover.Contains(x, y)) continue;
-        const double share =
+        const double fraction =
             std::clamp(reach - DistanceTo(segment, {x, y}), 0.0, std::min(1.0, width_px));
-        cover.At(x, y) = std::max(cover.At(x, y), static_cast<float>(share));
+        cover.At(x, y) = std::max(cover.At(x, y), static_cast<float>(fraction));
       }
     }
   }

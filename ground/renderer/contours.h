@@ -27,7 +27,7 @@ struct ContourField {
 ContourField SampleContours(const SurfaceMaps& maps, const TsdfVolume& tsdf,
                             const ThermalVolume& thermal, double smoothing_px, ThreadPool& threads);
 
-/// Share of each pixel that a line `width_px` wide at `celsius` covers, 0..1. The line's place
+/// Fraction of each pixel that a line `width_px` wide at `celsius` covers, 0..1. The line's place
 /// between pixel centres is interpolated (marching squares); there is none between surfaces that
 /// are not joined.
 Image<float> IsothermCover(const ContourField& field, double celsius, double width_px);

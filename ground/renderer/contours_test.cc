@@ -71,10 +71,10 @@ RigidTransform Frontal() {
 
 /// Turned about y by 40 degrees, looking at the plane's middle.
 RigidTransform Oblique() {
-  const Eigen::Quaterniond turn(
+  const Eigen::Quaterniond rotation(
       Eigen::AngleAxisd(40.0 * std::numbers::pi / 180.0, Eigen::Vector3d::UnitY()));
-  return MakeTransform(Eigen::Vector3d(0.128, 0.128, 0.12) - turn * Eigen::Vector3d(0, 0, 0.3),
-                       turn);
+  return MakeTransform(Eigen::Vector3d(0.128, 0.128, 0.12) - rotation * Eigen::Vector3d(0, 0, 0.3),
+                       rotation);
 }
 
 /// Centre of the cover in a row, pixels; NaN without one.
@@ -97,7 +97,7 @@ TEST_F(ContoursTest, LineIsWhereTheGradientSaysToATenthOfAPixel) {
       for (int y = 20; y < 100; ++y) {
         const double centre = CentreInRow(cover, y);
         ASSERT_FALSE(std::isnan(centre)) << celsius << " " << y;
-        // The place on the plane that this picture point shows has the line's temperature.
+        // The place on the plane that this rendering point shows has the line's temperature.
         const Eigen::Vector3d ray =
             T_world_camera.linear() *
             Eigen::Vector3d((centre - camera_.cx) / camera_.fx, (y - camera_.cy) / camera_.fy, 1.0);
@@ -176,14 +176,14 @@ TEST_F(ContoursTest, NoLineAlongTheEdgeOfAnObjectInFront) {
       MakeTransform({0.1, 0.128, -0.3}, Eigen::Quaterniond::Identity());
   Raycaster().Cast(tsdf, camera_, T_world_camera, 1.0F, pool_, maps);
   const ContourField field = SampleContours(maps, tsdf, thermal, 1.5, pool_);
-  // Both are in the picture.
+  // Both are in the rendering.
   EXPECT_NEAR(field.celsius.At(30, 60), 90.0F, 0.1F);
   EXPECT_NEAR(field.celsius.At(150, 60), 30.0F, 0.1F);
   const Image<float> cover = IsothermCover(field, 60.0, kWidth_px);
   EXPECT_TRUE(std::ranges::all_of(cover.pixels(), [](float c) { return c == 0.0F; }));
 }
 
-TEST_F(ContoursTest, PictureHasTheLineInItsColour) {
+TEST_F(ContoursTest, ImageHasTheLineInItsColour) {
   FillGradient({500.0, 0.0});
   RendererOptions options;
   options.set_legend(false);
@@ -197,15 +197,15 @@ TEST_F(ContoursTest, PictureHasTheLineInItsColour) {
   ViewMaps view;
   SampleView(maps, Frontal().translation(), tsdf_, thermal_, pool_, view);
   const ContourField field = Sample(maps, 1.5);
-  const RgbImage picture = renderer.Thermal(view, renderer.ScaleFor(view), &field);
+  const RgbImage rendering = renderer.Thermal(view, renderer.ScaleFor(view), &field);
   const RgbImage without = renderer.Thermal(view, renderer.ScaleFor(view));
   // 60 °C lies between the columns 79 and 80.
-  EXPECT_EQ(picture.At(79, 60), (Rgb8{0, 255, 0}));
-  EXPECT_EQ(picture.At(80, 60), (Rgb8{0, 255, 0}));
-  EXPECT_EQ(picture.At(70, 60), without.At(70, 60));
+  EXPECT_EQ(rendering.At(79, 60), (Rgb8{0, 255, 0}));
+  EXPECT_EQ(rendering.At(80, 60), (Rgb8{0, 255, 0}));
+  EXPECT_EQ(rendering.At(70, 60), without.At(70, 60));
   // The casing on both sides is darker than the palette.
-  EXPECT_LT(picture.At(77, 60).r, without.At(77, 60).r);
-  EXPECT_LT(picture.At(82, 60).r, without.At(82, 60).r);
+  EXPECT_LT(rendering.At(77, 60).r, without.At(77, 60).r);
+  EXPECT_LT(rendering.At(82, 60).r, without.At(82, 60).r);
 }
 
 }  // namespace

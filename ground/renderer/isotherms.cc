@@ -11,8 +11,8 @@ namespace isotherm {
 namespace {
 
 // As many as a legend has room for.
-constexpr std::size_t kMostLines = 32;
-constexpr std::size_t kMostBands = 8;
+constexpr std::size_t kMaxLines = 32;
+constexpr std::size_t kMaxBands = 8;
 constexpr Rgb8 kLineColour{255, 255, 255};
 
 /// One entry of a list, and the colour behind it.
@@ -95,7 +95,7 @@ Result<TemperatureBand> ParseBand(const Entry& entry) {
 }  // namespace
 
 Result<std::vector<IsothermLine>> ParseIsotherms(std::string_view text) {
-  const Result<std::vector<Entry>> entries = SplitList(text, kMostLines);
+  const Result<std::vector<Entry>> entries = SplitList(text, kMaxLines);
   if (!entries) return Err(entries.error());
   std::vector<IsothermLine> lines;
   for (const Entry& entry : *entries) {
@@ -107,7 +107,7 @@ Result<std::vector<IsothermLine>> ParseIsotherms(std::string_view text) {
 }
 
 Result<std::vector<TemperatureBand>> ParseBands(std::string_view text) {
-  const Result<std::vector<Entry>> entries = SplitList(text, kMostBands);
+  const Result<std::vector<Entry>> entries = SplitList(text, kMaxBands);
   if (!entries) return Err(entries.error());
   std::vector<TemperatureBand> bands;
   for (const Entry& entry : *entries) {

@@ -7,7 +7,7 @@
 
 namespace isotherm {
 
-/// Says what a picture shows on the surface of the model.
+/// Says what a rendering shows on the surface of the model.
 enum class RenderLayer : std::uint8_t {
   kThermal,       ///< Palette colour of the apparent temperature (algorithm 7).
   kDistance,      ///< Class of the measurement distance (algorithm 8).

@@ -15,29 +15,29 @@ namespace {
 constexpr Rgb8 kText{232, 234, 238};
 constexpr Rgb8 kDimText{158, 164, 174};
 constexpr Rgb8 kOutline{110, 116, 126};
-// Sizes at a picture height of 480 pixels; they grow with the picture, but never below what can be
-// read.
+// Sizes at a rendering height of 480 pixels; they grow with the rendering, but never below what can
+// be read.
 constexpr double kReferenceHeight = 480.0;
-constexpr double kLetterPx = 9.0;
-constexpr double kPanelPx = 156.0;
-constexpr double kLeastHeight = 240.0;
-constexpr double kRowPx = 18.0;
+constexpr double kLetter_px = 9.0;
+constexpr double kPanel_px = 156.0;
+constexpr double kMinHeight = 240.0;
+constexpr double kRow_px = 18.0;
 
-/// A picture with room for a panel, and the panel's measures in pixels.
+/// A rendering with room for a panel, and the panel's measures in pixels.
 struct Panel {
   /// At least `height_px` high at the reference height.
-  explicit Panel(const RgbImage& picture, double height_px = kLeastHeight)
-      : factor(std::clamp(picture.height() / kReferenceHeight, 0.9, 4.0)),
-        left(picture.width()),
-        image(picture.width() + Px(kPanelPx), std::max(picture.height(), Px(height_px)),
+  explicit Panel(const RgbImage& rendering, double height_px = kMinHeight)
+      : factor(std::clamp(rendering.height() / kReferenceHeight, 0.9, 4.0)),
+        left(rendering.width()),
+        image(rendering.width() + Px(kPanel_px), std::max(rendering.height(), Px(height_px)),
               kBackground) {
-    const int top = (image.height() - picture.height()) / 2;
-    for (int y = 0; y < picture.height(); ++y) {
-      std::ranges::copy(picture.Row(y), image.Row(top + y).begin());
+    const int top = (image.height() - rendering.height()) / 2;
+    for (int y = 0; y < rendering.height(); ++y) {
+      std::ranges::copy(rendering.Row(y), image.Row(top + y).begin());
     }
   }
   int Px(double reference_px) const { return static_cast<int>(std::lround(reference_px * factor)); }
-  double letter() const { return kLetterPx * factor; }
+  double letter() const { return kLetter_px * factor; }
   /// Letter height at which `text` from `x` on stays inside the panel, at most `wanted`.
   double Fitting(const std::string& text, double x, double wanted) const {
     const double room = image.width() - Px(8) - x;
@@ -64,9 +64,9 @@ void DrawMarks(Panel& panel, Canvas& canvas, const ScaleLegend& legend, int top,
   const int width = panel.Px(22);
   const int thick = std::max(panel.Px(1), 1);
   for (const ScaleMark& mark : legend.marks) {
-    const double share = legend.scale->Share(mark.value);
-    if (!(share >= 0.0 && share <= 1.0)) continue;
-    const int y = static_cast<int>(std::lround(bottom - share * (bottom - top))) - thick / 2;
+    const double fraction = legend.scale->Fraction(mark.value);
+    if (!(fraction >= 0.0 && fraction <= 1.0)) continue;
+    const int y = static_cast<int>(std::lround(bottom - fraction * (bottom - top))) - thick / 2;
     canvas.FillRectangle(x, y - 1, width, thick + 2, kOutline);
     canvas.FillRectangle(x, y, width, thick, mark.colour);
   }
@@ -78,10 +78,10 @@ void DrawScaleBar(Panel& panel, Canvas& canvas, const ScaleLegend& legend,
   const int x = panel.left + panel.Px(18);
   const int width = panel.Px(22);
   for (int y = top; y < bottom; ++y) {
-    const double share = (bottom - 0.5 - y) / (bottom - top);
+    const double fraction = (bottom - 0.5 - y) / (bottom - top);
     canvas.FillRectangle(
         x, y, width, 1,
-        colour(scale.min_celsius + share * (scale.max_celsius - scale.min_celsius)));
+        colour(scale.min_celsius + fraction * (scale.max_celsius - scale.min_celsius)));
   }
   canvas.Frame(x - 1, top - 1, width + 2, bottom - top + 2, kOutline);
   const double tip = panel.Px(11);
@@ -120,16 +120,17 @@ void DrawNeverMeasuredKey(Panel& panel, Canvas& canvas, int y_middle) {
 }  // namespace
 
 Rgb8 NeverMeasuredColour(int x, int y, double cos_view) {
-  constexpr int kLineDistancePx = 7;
-  const bool line = (x + y) % kLineDistancePx == 0;
+  constexpr int kLineDistance_px = 7;
+  const bool line = (x + y) % kLineDistance_px == 0;
   const double brightness = std::clamp(0.35 + 0.65 * cos_view, 0.0, 1.0);
   const auto value = static_cast<std::uint8_t>(std::lround((line ? 132.0 : 92.0) * brightness));
   return {value, value, value};
 }
 
-RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const ValueColour& colour) {
+RgbImage WithLegend(const RgbImage& rendering, const ScaleLegend& legend,
+                    const ValueColour& colour) {
   const auto lines = static_cast<double>(legend.rows.size() + legend.notes.size());
-  Panel panel(picture, kLeastHeight + kRowPx * lines);
+  Panel panel(rendering, kMinHeight + kRow_px * lines);
   Canvas canvas(panel.image);
   const int left = panel.left + panel.Px(16);
   const int below_title = DrawTitle(panel, canvas, legend.title);
@@ -138,7 +139,7 @@ RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const Va
   int bottom = panel.image.height() - panel.Px(22);
   for (auto note = legend.notes.rbegin(); note != legend.notes.rend(); ++note) {
     canvas.Text(left, bottom, *note, panel.Fitting(*note, left, panel.letter() * 0.9), kText);
-    bottom -= panel.Px(kRowPx);
+    bottom -= panel.Px(kRow_px);
   }
   if (legend.never_measured) {
     DrawNeverMeasuredKey(panel, canvas, bottom);
@@ -151,7 +152,7 @@ RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const Va
     canvas.Frame(left + panel.Px(3), bottom - side / 2, side, side, kOutline);
     canvas.Text(text_x, bottom, row->name, panel.Fitting(row->name, text_x, panel.letter() * 0.95),
                 kDimText);
-    bottom -= panel.Px(kRowPx);
+    bottom -= panel.Px(kRow_px);
   }
   if (legend.scale) {
     canvas.Text(left, bottom, legend.rule, panel.letter() * 0.9, kDimText);
@@ -160,8 +161,8 @@ RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const Va
   return std::move(panel.image);
 }
 
-RgbImage WithLegend(const RgbImage& picture, const ClassLegend& legend) {
-  Panel panel(picture);
+RgbImage WithLegend(const RgbImage& rendering, const ClassLegend& legend) {
+  Panel panel(rendering);
   Canvas canvas(panel.image);
   const int x = panel.left + panel.Px(18);
   const int side = panel.Px(14);
@@ -171,7 +172,7 @@ RgbImage WithLegend(const RgbImage& picture, const ClassLegend& legend) {
     canvas.Frame(x - 1, y - side / 2 - 1, side + 2, side + 2, kOutline);
     const double text_x = x + panel.Px(22);
     canvas.Text(text_x, y, row.name, panel.letter(), kText);
-    for (const std::string& line : {row.detail, row.share}) {
+    for (const std::string& line : {row.detail, row.fraction}) {
       if (line.empty()) continue;
       y += panel.Px(17);
       canvas.Text(text_x, y, line, panel.Fitting(line, text_x, panel.letter() * 0.9), kDimText);

@@ -17,9 +17,9 @@ inline constexpr Rgb8 kBackground{38, 42, 50};
 /// One row of the panel beside a class layer.
 struct LegendRow {
   Rgb8 colour;
-  std::string name;    ///< E.g. "good".
-  std::string detail;  ///< E.g. "0.30-0.60 m"; may be empty.
-  std::string share;   ///< E.g. "62 %"; may be empty.
+  std::string name;      ///< E.g. "good".
+  std::string detail;    ///< E.g. "0.30-0.60 m"; may be empty.
+  std::string fraction;  ///< E.g. "62 %"; may be empty.
 };
 
 /// A line across the bar of a scale.
@@ -28,7 +28,7 @@ struct ScaleMark {
   Rgb8 colour;
 };
 
-/// Holds what the panel beside a picture of values says.
+/// Holds what the panel beside a rendering of values says.
 struct ScaleLegend {
   std::string title;                      ///< E.g. "apparent temperature"; spaces break lines.
   std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured, no bar is drawn.
@@ -40,7 +40,7 @@ struct ScaleLegend {
   std::vector<std::string> notes;         ///< Lines at the very bottom.
 };
 
-/// The colour that a value has in the picture.
+/// The colour that a value has in the rendering.
 using ValueColour = std::function<Rgb8(double value)>;
 
 struct ClassLegend {
@@ -48,11 +48,12 @@ struct ClassLegend {
   std::vector<LegendRow> rows;
 };
 
-/// `picture` with a panel to its right; higher than `picture` if the panel needs it.
-RgbImage WithLegend(const RgbImage& picture, const ScaleLegend& legend, const ValueColour& colour);
-RgbImage WithLegend(const RgbImage& picture, const ClassLegend& legend);
+/// `rendering` with a panel to its right; higher than `rendering` if the panel needs it.
+RgbImage WithLegend(const RgbImage& rendering, const ScaleLegend& legend,
+                    const ValueColour& colour);
+RgbImage WithLegend(const RgbImage& rendering, const ClassLegend& legend);
 
-/// Surface without a temperature in thermal pictures: dim grey, brightness by `cos_view`, with
+/// Surface without a temperature in thermal renderings: dim grey, brightness by `cos_view`, with
 /// diagonal lines, so that it looks neither like background nor like a temperature.
 Rgb8 NeverMeasuredColour(int x, int y, double cos_view);
 

@@ -50,7 +50,7 @@ Msh MshFromRgb(const Rgb8& rgb) {
   return {m, std::acos(lab.x() / m), std::atan2(lab.z(), lab.y())};
 }
 
-/// A share of full intensity as 8 bits, cut off outside [0, 1].
+/// A fraction of full intensity as 8 bits, cut off outside [0, 1].
 std::uint8_t Channel(double value) {
   return static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(value, 0.0, 1.0)));
 }
@@ -94,23 +94,25 @@ constexpr InfernoEntry kInferno[] = {
 
 }  // namespace
 
-Rgb8 CoolwarmColour(double share) {
+Rgb8 CoolwarmColour(double fraction) {
   // The two ends are further apart in hue than pi/3, so the path leads through a near-white middle.
   const Msh cool = MshFromRgb({59, 76, 192});
   const Msh warm = MshFromRgb({180, 4, 38});
   const double middle_m = std::max({cool.m, warm.m, kMiddleMagnitude});
-  const bool lower = share < 0.5;
+  const bool lower = fraction < 0.5;
   const Msh& end = lower ? cool : warm;
   const Msh middle{middle_m, 0.0, AdjustedHue(end, middle_m)};
-  const double from_end = lower ? 2.0 * share : 2.0 - 2.0 * share;
+  const double from_end = lower ? 2.0 * fraction : 2.0 - 2.0 * fraction;
   const auto mix = [from_end](double a, double b) { return a + from_end * (b - a); };
   return RgbFromMsh({mix(end.m, middle.m), mix(end.s, middle.s), mix(end.h, middle.h)});
 }
 
-Rgb8 GreyColour(double share) { return {Channel(share), Channel(share), Channel(share)}; }
+Rgb8 GreyColour(double fraction) {
+  return {Channel(fraction), Channel(fraction), Channel(fraction)};
+}
 
-Rgb8 IronColour(double share) {
-  const double x = std::clamp(share, 0.0, 1.0);
+Rgb8 IronColour(double fraction) {
+  const double x = std::clamp(fraction, 0.0, 1.0);
   const double blue = x < 0.25   ? 4.0 * x
                       : x < 0.42 ? 1.0
                       : x < 0.92 ? 1.84 - 2.0 * x
@@ -118,14 +120,14 @@ Rgb8 IronColour(double share) {
   return {Channel(x / 0.32 - 0.78125), Channel(2.0 * x - 0.84), Channel(blue)};
 }
 
-Rgb8 RainbowColour(double share) {
-  const double x = std::clamp(share, 0.0, 1.0);
+Rgb8 RainbowColour(double fraction) {
+  const double x = std::clamp(fraction, 0.0, 1.0);
   return {Channel(std::abs(2.0 * x - 0.5)), Channel(std::sin(std::numbers::pi * x)),
           Channel(std::cos(std::numbers::pi / 2.0 * x))};
 }
 
-Rgb8 InfernoColour(double share) {
-  const double entry = 255.0 * std::clamp(share, 0.0, 1.0);
+Rgb8 InfernoColour(double fraction) {
+  const double entry = 255.0 * std::clamp(fraction, 0.0, 1.0);
   const auto* next = std::ranges::lower_bound(kInferno, entry, {}, &InfernoEntry::entry);
   if (next == std::begin(kInferno)) return next->colour;
   const InfernoEntry& before = *(next - 1);
@@ -137,20 +139,20 @@ Rgb8 InfernoColour(double share) {
           mix(before.colour.b, next->colour.b)};
 }
 
-Rgb8 PaletteColour(Palette palette, double share) {
+Rgb8 PaletteColour(Palette palette, double fraction) {
   switch (palette) {
     case COOLWARM:
-      return CoolwarmColour(share);
+      return CoolwarmColour(fraction);
     case GREY:
-      return GreyColour(share);
+      return GreyColour(fraction);
     case IRON:
-      return IronColour(share);
+      return IronColour(fraction);
     case RAINBOW:
-      return RainbowColour(share);
+      return RainbowColour(fraction);
     case INFERNO:
-      return InfernoColour(share);
+      return InfernoColour(fraction);
   }
-  return GreyColour(share);
+  return GreyColour(fraction);
 }
 
 std::string PaletteName(Palette palette) {
@@ -174,11 +176,11 @@ ColourTable::ColourTable(const RendererOptions& options) {
   }
 }
 
-Rgb8 ColourTable::At(double share) const {
+Rgb8 ColourTable::At(double fraction) const {
   const double last = static_cast<double>(colours_.size() - 1);
   // The negated comparison also sends NaN to the first entry instead of out of the table.
-  if (!(share > 0.0)) return colours_.front();
-  return colours_[static_cast<std::size_t>(std::min(share, 1.0) * last + 0.5)];
+  if (!(fraction > 0.0)) return colours_.front();
+  return colours_[static_cast<std::size_t>(std::min(fraction, 1.0) * last + 0.5)];
 }
 
 }  // namespace isotherm

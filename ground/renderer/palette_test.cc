@@ -11,7 +11,7 @@ namespace isotherm {
 namespace {
 
 struct Anchor {
-  double share;
+  double fraction;
   int r, g, b;
 };
 
@@ -29,14 +29,14 @@ constexpr int kRounding = 1;  // 8-bit steps: the published table was rounded af
 
 TEST(CoolwarmTest, AgreesWithThePublishedTable) {
   for (const Anchor& anchor : kPublished) {
-    const Rgb8 colour = CoolwarmColour(anchor.share);
-    EXPECT_NEAR(colour.r, anchor.r, kRounding) << anchor.share;
-    EXPECT_NEAR(colour.g, anchor.g, kRounding) << anchor.share;
-    EXPECT_NEAR(colour.b, anchor.b, kRounding) << anchor.share;
+    const Rgb8 colour = CoolwarmColour(anchor.fraction);
+    EXPECT_NEAR(colour.r, anchor.r, kRounding) << anchor.fraction;
+    EXPECT_NEAR(colour.g, anchor.g, kRounding) << anchor.fraction;
+    EXPECT_NEAR(colour.b, anchor.b, kRounding) << anchor.fraction;
   }
 }
 
-// Entries of matplotlib's table (256 colours) between those that ours has: share = entry / 255.
+// Entries of matplotlib's table (256 colours) between those that ours has: fraction = entry / 255.
 constexpr Anchor kPublishedInferno[] = {
     {7 / 255.0, 3, 2, 16},       {37 / 255.0, 41, 11, 85},     {52 / 255.0, 67, 10, 104},
     {82 / 255.0, 116, 26, 110},  {128 / 255.0, 188, 55, 84},   {142 / 255.0, 207, 68, 70},
@@ -47,10 +47,10 @@ constexpr int kInterpolation = 3;  // 8-bit steps, as promised beside InfernoCol
 
 TEST(InfernoTest, AgreesWithThePublishedTableBetweenItsOwnEntries) {
   for (const Anchor& anchor : kPublishedInferno) {
-    const Rgb8 colour = InfernoColour(anchor.share);
-    EXPECT_NEAR(colour.r, anchor.r, kInterpolation) << anchor.share;
-    EXPECT_NEAR(colour.g, anchor.g, kInterpolation) << anchor.share;
-    EXPECT_NEAR(colour.b, anchor.b, kInterpolation) << anchor.share;
+    const Rgb8 colour = InfernoColour(anchor.fraction);
+    EXPECT_NEAR(colour.r, anchor.r, kInterpolation) << anchor.fraction;
+    EXPECT_NEAR(colour.g, anchor.g, kInterpolation) << anchor.fraction;
+    EXPECT_NEAR(colour.b, anchor.b, kInterpolation) << anchor.fraction;
   }
   EXPECT_EQ(InfernoColour(0.0), (Rgb8{0, 0, 4}));
   EXPECT_EQ(InfernoColour(1.0), (Rgb8{252, 255, 164}));

@@ -6,13 +6,13 @@
 
 namespace isotherm {
 
-Result<std::vector<std::uint8_t>> EncodePng(const RgbImage& picture) {
-  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(picture.data());
-  return EncodePng(PngPixels{.width = picture.width(),
-                             .height = picture.height(),
+Result<std::vector<std::uint8_t>> EncodePng(const RgbImage& image) {
+  const auto* const bytes = reinterpret_cast<const std::uint8_t*>(image.data());
+  return EncodePng(PngPixels{.width = image.width(),
+                             .height = image.height(),
                              .channels = 3,
                              .bits = 8,
-                             .bytes = {bytes, picture.size() * sizeof(Rgb8)}});
+                             .bytes = {bytes, image.size() * sizeof(Rgb8)}});
 }
 
 }  // namespace isotherm

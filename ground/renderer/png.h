@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// The picture as a PNG file in memory.
-Result<std::vector<std::uint8_t>> EncodePng(const RgbImage& picture);
+/// The image as a PNG file in memory.
+Result<std::vector<std::uint8_t>> EncodePng(const RgbImage& image);
 
 }  // namespace isotherm

@@ -23,7 +23,7 @@ constexpr Rgb8 kMeasuredAcceptablyColour{120, 140, 150};
 constexpr Rgb8 kOnlyBadlyColour{255, 150, 0};
 constexpr Rgb8 kMissingColour{255, 0, 200};
 // A dark edge of this width on both sides keeps isotherms visible on light colours.
-constexpr double kCasingPx = 1.0;
+constexpr double kCasing_px = 1.0;
 constexpr Rgb8 kCasingColour{16, 18, 22};
 constexpr double kCasingOpacity = 0.6;
 
@@ -35,9 +35,9 @@ Rgb8 Shaded(Rgb8 colour, double brightness) {
   return {scaled(colour.r), scaled(colour.g), scaled(colour.b)};
 }
 
-Rgb8 Mixed(Rgb8 from, Rgb8 to, double share) {
-  const auto mix = [share](std::uint8_t a, std::uint8_t b) {
-    return static_cast<std::uint8_t>(std::lround(a + share * (b - a)));
+Rgb8 Mixed(Rgb8 from, Rgb8 to, double fraction) {
+  const auto mix = [fraction](std::uint8_t a, std::uint8_t b) {
+    return static_cast<std::uint8_t>(std::lround(a + fraction * (b - a)));
   };
   return {mix(from.r, to.r), mix(from.g, to.g), mix(from.b, to.b)};
 }
@@ -65,19 +65,19 @@ Rgb8 ClassColour(std::uint8_t condition) {
 /// Calls `colour(x, y)` for each pixel with a surface.
 template <typename Function>
 RgbImage DrawSurface(const ViewMaps& view, const Function& colour) {
-  RgbImage picture(view.width(), view.height(), kBackground);
+  RgbImage rendering(view.width(), view.height(), kBackground);
   for (int y = 0; y < view.height(); ++y) {
     for (int x = 0; x < view.width(); ++x) {
-      if (view.HasSurface(x, y)) picture.At(x, y) = colour(x, y);
+      if (view.HasSurface(x, y)) rendering.At(x, y) = colour(x, y);
     }
   }
-  return picture;
+  return rendering;
 }
 
-/// Fills in the legend's shares by counting the rows' colours among those that `colour(x, y)`
+/// Fills in the legend's fractions by counting the rows' colours among those that `colour(x, y)`
 /// gives.
 template <typename Function>
-void CountShares(const ViewMaps& view, const Function& colour, ClassLegend& legend) {
+void CountFractions(const ViewMaps& view, const Function& colour, ClassLegend& legend) {
   std::vector<std::size_t> counts(legend.rows.size(), 0);
   std::size_t all = 0;
   for (int y = 0; y < view.height(); ++y) {
@@ -91,16 +91,16 @@ void CountShares(const ViewMaps& view, const Function& colour, ClassLegend& lege
     }
   }
   for (std::size_t i = 0; i < counts.size() && all > 0; ++i) {
-    legend.rows[i].share = fmt::format(
+    legend.rows[i].fraction = fmt::format(
         "{:.0f} % of view", 100.0 * static_cast<double>(counts[i]) / static_cast<double>(all));
   }
 }
 
-void DrawLine(const Image<float>& cover, Rgb8 colour, double opacity, RgbImage& picture) {
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 0; x < picture.width(); ++x) {
-      const double share = opacity * static_cast<double>(cover.At(x, y));
-      if (share > 0.0) picture.At(x, y) = Mixed(picture.At(x, y), colour, share);
+void DrawLine(const Image<float>& cover, Rgb8 colour, double opacity, RgbImage& rendering) {
+  for (int y = 0; y < rendering.height(); ++y) {
+    for (int x = 0; x < rendering.width(); ++x) {
+      const double fraction = opacity * static_cast<double>(cover.At(x, y));
+      if (fraction > 0.0) rendering.At(x, y) = Mixed(rendering.At(x, y), colour, fraction);
     }
   }
 }
@@ -203,7 +203,7 @@ RgbImage Renderer::Draw(RenderLayer layer, const ViewMaps& view,
 }
 
 Rgb8 Renderer::ColourOf(double celsius, const TemperatureScale& scale) const {
-  const Rgb8 colour = colours_.At(scale.Share(celsius));
+  const Rgb8 colour = colours_.At(scale.Fraction(celsius));
   bool highlights = false;
   for (const TemperatureBand& band : bands_) {
     if (band.Contains(celsius)) return band.colour.value_or(colour);
@@ -242,7 +242,7 @@ ScaleLegend Renderer::ThermalLegend(const std::optional<TemperatureScale>& scale
 RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<TemperatureScale>& scale,
                            const ContourField* contours) const {
   const bool shading = options_.shading();
-  RgbImage picture = DrawSurface(view, [&](int x, int y) {
+  RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     const double cos_view = shading ? view.cos_view.At(x, y) : 1.0;
     const double celsius = view.celsius.At(x, y);
     if (std::isnan(celsius) || !scale) return NeverMeasuredColour(x, y, cos_view);
@@ -251,15 +251,15 @@ RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<Temperature
   if (contours != nullptr) {
     for (const IsothermLine& line : lines_) {
       const double width = options_.isotherm_width_px();
-      DrawLine(IsothermCover(*contours, line.celsius, width + 2.0 * kCasingPx), kCasingColour,
-               kCasingOpacity, picture);
-      DrawLine(IsothermCover(*contours, line.celsius, width), line.colour, 1.0, picture);
+      DrawLine(IsothermCover(*contours, line.celsius, width + 2.0 * kCasing_px), kCasingColour,
+               kCasingOpacity, rendering);
+      DrawLine(IsothermCover(*contours, line.celsius, width), line.colour, 1.0, rendering);
     }
   }
-  if (!options_.legend()) return picture;
+  if (!options_.legend()) return rendering;
   ScaleLegend legend = ThermalLegend(scale, contours != nullptr);
   legend.title = view.celsius_meaning;
-  return WithLegend(picture, legend, [&](double celsius) { return ColourOf(celsius, *scale); });
+  return WithLegend(rendering, legend, [&](double celsius) { return ColourOf(celsius, *scale); });
 }
 
 RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& classes,
@@ -269,13 +269,13 @@ RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& clas
     const bool unchecked = condition == kNeverMeasured && !std::isnan(view.celsius.At(x, y));
     return unchecked ? kUncheckedColour : ClassColour(condition);
   };
-  const RgbImage picture = DrawSurface(view, [&](int x, int y) {
+  const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     return Shaded(colour(x, y), options_.shading() ? view.cos_view.At(x, y) : 1.0);
   });
-  if (!options_.legend()) return picture;
+  if (!options_.legend()) return rendering;
   ClassLegend counted = legend;
-  CountShares(view, colour, counted);
-  return WithLegend(picture, counted);
+  CountFractions(view, colour, counted);
+  return WithLegend(rendering, counted);
 }
 
 RgbImage Renderer::Distance(const ViewMaps& view) const {
@@ -316,20 +316,20 @@ RgbImage Renderer::NucAge(const ViewMaps& view) const {
   const TemperatureStatistics ages = Summarize(view.nuc_age_s.pixels());
   const double longest_s = std::max(ages.max_celsius, kShortest_s);
   const auto colour = [longest_s](double age_s) { return InfernoColour(1.0 - age_s / longest_s); };
-  const RgbImage picture = DrawSurface(view, [&](int x, int y) {
+  const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     const double cos_view = options_.shading() ? view.cos_view.At(x, y) : 1.0;
     const double age_s = view.nuc_age_s.At(x, y);
     if (!std::isnan(age_s)) return Shaded(colour(age_s), cos_view);
     return std::isnan(view.celsius.At(x, y)) ? NeverMeasuredColour(x, y, cos_view)
                                              : Shaded(kUncheckedColour, cos_view);
   });
-  if (!options_.legend()) return picture;
+  if (!options_.legend()) return rendering;
   ScaleLegend legend;
   legend.title = "age since NUC";
   if (ages.count > 0) legend.scale = TemperatureScale{0.0, longest_s};
   legend.unit.name = "s";
   legend.rows = {{kUncheckedColour, "not known", "", ""}};
-  return WithLegend(picture, legend, colour);
+  return WithLegend(rendering, legend, colour);
 }
 
 RgbImage Renderer::Coverage(const ViewMaps& view) const {
@@ -341,12 +341,12 @@ RgbImage Renderer::Coverage(const ViewMaps& view) const {
   const auto colour = [&](int x, int y) {
     return legend.rows[static_cast<std::size_t>(QualityAt(view, x, y))].colour;
   };
-  const RgbImage picture = DrawSurface(view, [&](int x, int y) {
+  const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     return Shaded(colour(x, y), options_.shading() ? view.cos_view.At(x, y) : 1.0);
   });
-  if (!options_.legend()) return picture;
-  CountShares(view, colour, legend);
-  return WithLegend(picture, legend);
+  if (!options_.legend()) return rendering;
+  CountFractions(view, colour, legend);
+  return WithLegend(rendering, legend);
 }
 
 RgbImage Renderer::Geometry(const ViewMaps& view) const {

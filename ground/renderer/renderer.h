@@ -33,7 +33,7 @@ class Renderer {
   /// `options` are valid; `thermal` supplies the limits that the class layers' legends state.
   Renderer(const RendererOptions& options, const ThermalOptions& thermal);
 
-  /// The scale for `view` alone; pass a scale of your own to keep several pictures comparable.
+  /// The scale for `view` alone; pass a scale of your own to keep several renderings comparable.
   std::optional<TemperatureScale> ScaleFor(const ViewMaps& view) const;
 
   /// Whether the thermal layer needs a ContourField, for isotherm lines.

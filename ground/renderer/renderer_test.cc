@@ -51,9 +51,9 @@ TEST(RendererTest, ColourIsThePaletteTimesTheCosine) {
   view.cos_view.At(0, 0) = static_cast<float>(std::cos(std::numbers::pi / 3.0));
   view.celsius.At(1, 0) = 100.0F;
   view.cos_view.At(1, 0) = 1.0F;
-  const RgbImage picture = MakeRenderer(FixedScale(false)).Thermal(view);
-  EXPECT_EQ(picture.At(0, 0), (Rgb8{111, 111, 111}));  // 221 cos 60 deg = 110.5.
-  EXPECT_EQ(picture.At(1, 0), (Rgb8{180, 4, 38}));
+  const RgbImage rendering = MakeRenderer(FixedScale(false)).Thermal(view);
+  EXPECT_EQ(rendering.At(0, 0), (Rgb8{111, 111, 111}));  // 221 cos 60 deg = 110.5.
+  EXPECT_EQ(rendering.At(1, 0), (Rgb8{180, 4, 38}));
 }
 
 TEST(RendererTest, WithoutShadingTheAngleDoesNotMatter) {
@@ -70,12 +70,12 @@ TEST(RendererTest, NeverMeasuredSurfaceLooksLikeNeitherBackgroundNorTemperature)
   for (int y = 0; y < 20; ++y) {
     for (int x = 10; x < 20; ++x) view.cos_view.At(x, y) = 0.8F;
   }
-  const RgbImage picture = MakeRenderer(FixedScale(false)).Thermal(view);
+  const RgbImage rendering = MakeRenderer(FixedScale(false)).Thermal(view);
   std::set<std::tuple<int, int, int>> surface;
   for (int y = 0; y < 20; ++y) {
-    EXPECT_EQ(picture.At(0, y), kBackground);
+    EXPECT_EQ(rendering.At(0, y), kBackground);
     for (int x = 10; x < 20; ++x) {
-      const Rgb8& pixel = picture.At(x, y);
+      const Rgb8& pixel = rendering.At(x, y);
       EXPECT_NE(pixel, kBackground);
       surface.insert({pixel.r, pixel.g, pixel.b});
     }
@@ -150,13 +150,13 @@ TEST(RendererTest, CoverageShowsWhatIsMissing) {
   EXPECT_EQ(QualityAt(view, 2, 0), MeasurementQuality::kBad);
   EXPECT_EQ(QualityAt(view, 3, 0), MeasurementQuality::kAcceptable);
   EXPECT_EQ(QualityAt(view, 4, 0), MeasurementQuality::kNever);
-  const RgbImage picture = MakeRenderer(FixedScale(false)).Coverage(view);
-  EXPECT_EQ(picture.At(2, 0), (Rgb8{255, 150, 0}));
-  EXPECT_EQ(picture.At(4, 0), (Rgb8{255, 0, 200}));
-  EXPECT_EQ(picture.At(1, 0), picture.At(3, 0));
-  EXPECT_EQ(picture.At(5, 0), kBackground);
+  const RgbImage rendering = MakeRenderer(FixedScale(false)).Coverage(view);
+  EXPECT_EQ(rendering.At(2, 0), (Rgb8{255, 150, 0}));
+  EXPECT_EQ(rendering.At(4, 0), (Rgb8{255, 0, 200}));
+  EXPECT_EQ(rendering.At(1, 0), rendering.At(3, 0));
+  EXPECT_EQ(rendering.At(5, 0), kBackground);
   for (const int x : {0, 1}) {  // Recedes: no hue to speak of.
-    EXPECT_LE(picture.At(x, 0).b - picture.At(x, 0).r, 30);
+    EXPECT_LE(rendering.At(x, 0).b - rendering.At(x, 0).r, 30);
   }
 }
 
@@ -169,12 +169,12 @@ TEST(RendererTest, AgeGoesFromLightToDark) {
     view.celsius.At(x, 0) = x == 4 ? NAN : 40.0F;
     view.nuc_age_s.At(x, 0) = ages_s[x];
   }
-  const RgbImage picture = MakeRenderer(FixedScale(false)).NucAge(view);
-  EXPECT_EQ(picture.At(0, 0), InfernoColour(1.0));
-  EXPECT_EQ(picture.At(1, 0), InfernoColour(0.5));
-  EXPECT_EQ(picture.At(2, 0), InfernoColour(0.0));
-  EXPECT_EQ(picture.At(3, 0), (Rgb8{96, 84, 128}));
-  EXPECT_EQ(picture.At(4, 0), NeverMeasuredColour(4, 0, 1.0));
+  const RgbImage rendering = MakeRenderer(FixedScale(false)).NucAge(view);
+  EXPECT_EQ(rendering.At(0, 0), InfernoColour(1.0));
+  EXPECT_EQ(rendering.At(1, 0), InfernoColour(0.5));
+  EXPECT_EQ(rendering.At(2, 0), InfernoColour(0.0));
+  EXPECT_EQ(rendering.At(3, 0), (Rgb8{96, 84, 128}));
+  EXPECT_EQ(rendering.At(4, 0), NeverMeasuredColour(4, 0, 1.0));
   EXPECT_GT(MakeRenderer(FixedScale(true)).NucAge(view).width(), 5);
 }
 
@@ -187,8 +187,8 @@ TEST(RendererTest, EveryLayerCanBeDrawnByItsName) {
   for (const RenderLayer layer : AllLayers()) {
     names.insert(LayerName(layer));
     EXPECT_EQ(LayerFromName(LayerName(layer)), layer);
-    const RgbImage picture = renderer.Draw(layer, view, std::nullopt);
-    EXPECT_NE(picture.At(4, 4), kBackground) << LayerName(layer);
+    const RgbImage rendering = renderer.Draw(layer, view, std::nullopt);
+    EXPECT_NE(rendering.At(4, 4), kBackground) << LayerName(layer);
   }
   EXPECT_EQ(names.size(), AllLayers().size());
   EXPECT_FALSE(LayerFromName("heat"));
@@ -216,7 +216,7 @@ TEST(RendererTest, BandsPaintOrTakeColourFromTheRest) {
   EXPECT_NE(plain.At(0, 0).r, plain.At(0, 0).b);
 }
 
-/// Whether the panel to the right of column `left` looks different in two pictures, per row.
+/// Whether the panel to the right of column `left` looks different in two renderings, per row.
 std::size_t DifferingPixels(const RgbImage& a, const RgbImage& b, int left) {
   std::size_t count = 0;
   for (int y = 0; y < a.height(); ++y) {
@@ -254,22 +254,22 @@ TEST(RendererTest, GeometryIsGreyAndShaded) {
   ViewMaps view = EmptyView(2, 1);
   view.cos_view.At(0, 0) = 0.5F;
   view.cos_view.At(1, 0) = 1.0F;
-  const RgbImage picture = MakeRenderer(FixedScale(true)).Geometry(view);
-  EXPECT_NEAR(picture.At(1, 0).r, 2 * picture.At(0, 0).r, 1);
-  EXPECT_EQ(picture.width(), 2);
+  const RgbImage rendering = MakeRenderer(FixedScale(true)).Geometry(view);
+  EXPECT_NEAR(rendering.At(1, 0).r, 2 * rendering.At(0, 0).r, 1);
+  EXPECT_EQ(rendering.width(), 2);
 }
 
 TEST(RendererTest, LegendShowsTheWholePaletteBesideTheView) {
   ViewMaps view = EmptyView(64, 480);
   view.celsius.At(3, 4) = 60.0F;
   view.cos_view.At(3, 4) = 1.0F;
-  const RgbImage picture = MakeRenderer(FixedScale(true)).Thermal(view);
-  ASSERT_GT(picture.width(), 64);
-  EXPECT_EQ(picture.At(3, 4), (Rgb8{221, 221, 221}));
+  const RgbImage rendering = MakeRenderer(FixedScale(true)).Thermal(view);
+  ASSERT_GT(rendering.width(), 64);
+  EXPECT_EQ(rendering.At(3, 4), (Rgb8{221, 221, 221}));
   bool cold = false, middle = false, hot = false, text = false;
-  for (int y = 0; y < picture.height(); ++y) {
-    for (int x = 64; x < picture.width(); ++x) {
-      const Rgb8& pixel = picture.At(x, y);
+  for (int y = 0; y < rendering.height(); ++y) {
+    for (int x = 64; x < rendering.width(); ++x) {
+      const Rgb8& pixel = rendering.At(x, y);
       // The ends of the bar are half a pixel inside the scale.
       cold = cold || (std::abs(pixel.r - 59) <= 1 && std::abs(pixel.b - 192) <= 1);
       middle = middle || (std::abs(pixel.r - 221) <= 1 && std::abs(pixel.b - 221) <= 1);
@@ -352,7 +352,7 @@ TEST(SampleViewTest, ReadsTemperatureClassesAngleAndDistanceFromTheModel) {
   EXPECT_FALSE(view.HasSurface(3, 0));
 }
 
-TEST(EncodePngTest, WritesThePngSignatureAndRefusesAnEmptyPicture) {
+TEST(EncodePngTest, WritesThePngSignatureAndRefusesAnEmptyRendering) {
   const auto png = EncodePng(RgbImage(4, 3, {10, 20, 30}));
   ASSERT_TRUE(png);
   const std::uint8_t signature[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};

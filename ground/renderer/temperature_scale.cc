@@ -15,7 +15,7 @@ namespace isotherm {
 namespace {
 
 // Two camera temperature steps of a fine camera (0.05 K): a narrower scale would only show noise.
-constexpr double kNarrowestKelvin = 0.1;
+constexpr double kNarrowest_k = 0.1;
 
 }  // namespace
 
@@ -73,7 +73,7 @@ std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
       scale.min_celsius = std::max(scale.min_celsius, statistics.mean_celsius - reach);
       scale.max_celsius = std::min(scale.max_celsius, statistics.mean_celsius + reach);
     }
-    const double missing = kNarrowestKelvin - (scale.max_celsius - scale.min_celsius);
+    const double missing = kNarrowest_k - (scale.max_celsius - scale.min_celsius);
     if (missing > 0.0) {
       scale.min_celsius -= missing / 2.0;
       scale.max_celsius += missing / 2.0;

@@ -30,7 +30,7 @@ struct TemperatureScale {
   bool values_above = false;
 
   /// 0 at the first colour, 1 at the last, not limited.
-  double Share(double celsius) const {
+  double Fraction(double celsius) const {
     return (celsius - min_celsius) / (max_celsius - min_celsius);
   }
 };

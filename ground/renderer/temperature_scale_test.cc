@@ -49,7 +49,7 @@ TEST(TemperatureScaleTest, MinMaxSpansTheExtremes) {
   EXPECT_EQ(scale->min_celsius, 1.0);
   EXPECT_EQ(scale->max_celsius, 101.0);
   EXPECT_FALSE(scale->values_below || scale->values_above);
-  EXPECT_NEAR(scale->Share(26.0), 0.25, kExact);
+  EXPECT_NEAR(scale->Fraction(26.0), 0.25, kExact);
 }
 
 TEST(TemperatureScaleTest, OneSigmaReachesOneSigma) {
@@ -85,7 +85,7 @@ TEST(TemperatureScaleTest, IsNothingYetWithoutTemperatures) {
 TEST(TemperatureScaleTest, UniformTemperatureIsInTheMiddle) {
   const auto scale = ChooseScale(Options(MIN_MAX), std::vector<float>(5, 40.0F));
   ASSERT_TRUE(scale);
-  EXPECT_NEAR(scale->Share(40.0), 0.5, kExact);
+  EXPECT_NEAR(scale->Fraction(40.0), 0.5, kExact);
   EXPECT_NEAR(scale->max_celsius - scale->min_celsius, 0.1, kExact);
 }
 

@@ -27,7 +27,7 @@ void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
   view.cos_view.At(x, y) = static_cast<float>(std::min(cosine, 1.0));
   view.distance_m.At(x, y) = static_cast<float>(distance_m);
   const ThermalVoxel voxel = ThermalVoxelAt(tsdf, thermal, p_world);
-  if (!voxel.judged()) return;
+  if (!voxel.assessed()) return;
   view.celsius.At(x, y) = voxel.celsius();
   view.distance_class.At(x, y) = static_cast<std::uint8_t>(voxel.distance_class());
   view.angle_class.At(x, y) = static_cast<std::uint8_t>(voxel.angle_class());

@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-// Of the picture that the model fills at most, so that it does not touch the edges.
+// Of the rendering that the model fills at most, so that it does not touch the edges.
 constexpr double kFill = 0.94;
 // Mean of the unit vectors towards the cameras: 1 = all on one spot, 0 = all around. Below it, a
 // scan went around its object (a half circle gives 0.64).
@@ -20,8 +20,8 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 /// Any unit vector across `axis`, the nearest to `wish`.
 Eigen::Vector3d Across(const Eigen::Vector3d& axis, const Eigen::Vector3d& wish) {
   const Eigen::Vector3d across = wish - wish.dot(axis) * axis;
-  constexpr double kLeast = 1e-6;
-  return across.norm() > kLeast ? across.normalized() : axis.unitOrthogonal();
+  constexpr double kMin = 1e-6;
+  return across.norm() > kMin ? across.normalized() : axis.unitOrthogonal();
 }
 
 /// R_world_camera: optical axis and up given; x right, y down, z forward.
@@ -33,7 +33,7 @@ Eigen::Matrix3d Orientation(const Eigen::Vector3d& forward, const Eigen::Vector3
   return R_world_camera;
 }
 
-/// Half of the picture at distance 1, with its margin.
+/// Half of the rendering at distance 1, with its margin.
 Eigen::Vector2d HalfExtent(const CameraModel& camera) {
   return {kFill * camera.width / 2.0 / camera.fx, kFill * camera.height / 2.0 / camera.fy};
 }
@@ -68,7 +68,7 @@ RigidTransform Pose(const Eigen::Matrix3d& R_world_camera, const Eigen::Vector3d
 
 }  // namespace
 
-CameraModel PictureCamera(int width, int height, double fov_deg) {
+CameraModel RenderingCamera(int width, int height, double fov_deg) {
   CameraModel camera;
   camera.width = width;
   camera.height = height;
@@ -81,10 +81,10 @@ CameraModel PictureCamera(int width, int height, double fov_deg) {
 std::optional<RigidTransform> LookAt(const Eigen::Vector3d& from_world,
                                      const Eigen::Vector3d& at_world,
                                      const Eigen::Vector3d& up_world) {
-  constexpr double kLeast = 1e-6;  // Of a distance in metres, and of a sine.
+  constexpr double kMin = 1e-6;  // Of a distance in metres, and of a sine.
   const Eigen::Vector3d forward = at_world - from_world;
-  if (!(forward.norm() > kLeast) ||
-      !(forward.normalized().cross(up_world.normalized()).norm() > kLeast)) {
+  if (!(forward.norm() > kMin) ||
+      !(forward.normalized().cross(up_world.normalized()).norm() > kMin)) {
     return std::nullopt;
   }
   return Pose(Orientation(forward, up_world), from_world);
@@ -145,9 +145,9 @@ std::vector<RigidTransform> Orbit(std::span<const Eigen::Vector3f> points_world,
   std::vector<RigidTransform> views;
   double back_m = 0.0;
   for (int i = 0; i < options.count; ++i) {
-    const Eigen::AngleAxisd turn((first + step * i) * kRadiansPerDegree, up);
+    const Eigen::AngleAxisd rotation((first + step * i) * kRadiansPerDegree, up);
     const Eigen::Vector3d to_viewer =
-        std::cos(elevation) * (turn * ahead) + std::sin(elevation) * up;
+        std::cos(elevation) * (rotation * ahead) + std::sin(elevation) * up;
     views.push_back(Pose(Orientation(-to_viewer, up), aspect.centre_world));
     // Nobody stands aside: a centre that stays in the middle does not jump from view to view.
     const LeastBack back =

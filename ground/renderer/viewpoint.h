@@ -9,10 +9,10 @@
 
 namespace isotherm {
 
-/// A camera without distortion whose picture spans `fov_deg` degrees from left to right.
-CameraModel PictureCamera(int width, int height, double fov_deg);
+/// A camera without distortion whose rendering spans `fov_deg` degrees from left to right.
+CameraModel RenderingCamera(int width, int height, double fov_deg);
 
-/// T_world_camera of a camera at `from_world` with `at_world` in the middle of its picture and
+/// T_world_camera of a camera at `from_world` with `at_world` in the middle of its rendering and
 /// `up_world` pointing up in it. nullopt if the two places are one, or the line between them runs
 /// along `up_world`.
 std::optional<RigidTransform> LookAt(const Eigen::Vector3d& from_world,
@@ -23,7 +23,7 @@ std::optional<RigidTransform> LookAt(const Eigen::Vector3d& from_world,
 struct ModelAspect {
   Eigen::Vector3d centre_world;     ///< Centre of the box around its points, metres.
   Eigen::Vector3d to_viewer_world;  ///< Unit: from the centre to where it was seen from.
-  Eigen::Vector3d up_world;         ///< Unit: upwards in most of the scan's pictures.
+  Eigen::Vector3d up_world;         ///< Unit: upwards in most of the scan's renderings.
   bool one_sided = true;            ///< Whether it was looked at from one side only.
 };
 
@@ -32,7 +32,7 @@ struct ModelAspect {
 ModelAspect AspectOf(std::span<const Eigen::Vector3f> points_world,
                      std::span<const RigidTransform> T_world_camera);
 
-/// T_world_camera that looks along -`to_viewer_world` and has all points in the picture, as large
+/// T_world_camera that looks along -`to_viewer_world` and has all points in the rendering, as large
 /// as they fit.
 RigidTransform FrameAll(std::span<const Eigen::Vector3f> points_world,
                         const Eigen::Vector3d& to_viewer_world, const Eigen::Vector3d& up_world,
@@ -45,7 +45,7 @@ struct OrbitOptions {
 };
 
 /// Views around the model's `up` axis, from left to right, all at the same distance, from which all
-/// points are in all pictures.
+/// points are in all renderings.
 std::vector<RigidTransform> Orbit(std::span<const Eigen::Vector3f> points_world,
                                   const ModelAspect& aspect, const CameraModel& camera,
                                   const OrbitOptions& options);

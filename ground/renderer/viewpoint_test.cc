@@ -20,8 +20,8 @@ std::vector<Eigen::Vector3f> BoxCorners(const Eigen::Vector3f& low, const Eigen:
   return corners;
 }
 
-/// Largest distance of a point from the picture's middle, as a share of the way to its edge, per
-/// axis; infinite if one is behind the camera.
+/// Largest distance of a point from the rendering's middle, as a fraction of the way to its edge,
+/// per axis; infinite if one is behind the camera.
 Eigen::Vector2d Reach(const std::vector<Eigen::Vector3f>& points, const CameraModel& camera,
                       const RigidTransform& T_world_camera) {
   Eigen::Vector2d reach = Eigen::Vector2d::Zero();
@@ -35,15 +35,15 @@ Eigen::Vector2d Reach(const std::vector<Eigen::Vector3f>& points, const CameraMo
   return reach;
 }
 
-TEST(PictureCameraTest, SpansTheAngle) {
-  const CameraModel camera = PictureCamera(800, 600, 90.0);
+TEST(RenderingCameraTest, SpansTheAngle) {
+  const CameraModel camera = RenderingCamera(800, 600, 90.0);
   EXPECT_NEAR(camera.fx, 400.0, kExact);
   EXPECT_NEAR(camera.fy, 400.0, kExact);
-  EXPECT_TRUE(Validate(camera, "picture").ok());
+  EXPECT_TRUE(Validate(camera, "rendering").ok());
 }
 
 TEST(LookAtTest, PutsThePlaceInTheMiddleAndUpIsUp) {
-  const CameraModel camera = PictureCamera(800, 600, 60.0);
+  const CameraModel camera = RenderingCamera(800, 600, 60.0);
   const Eigen::Vector3d from(1.0, -2.0, 0.5), at(0.2, 0.3, 0.1);
   const auto T_world_camera = LookAt(from, at, Eigen::Vector3d::UnitZ());
   ASSERT_TRUE(T_world_camera);
@@ -62,7 +62,7 @@ TEST(LookAtTest, PutsThePlaceInTheMiddleAndUpIsUp) {
 
 TEST(FrameAllTest, ModelTouchesTheMarginInOneDirectionAndIsInsideInTheOther) {
   const auto points = BoxCorners({0.1F, 0.2F, 0.3F}, {0.9F, 0.5F, 0.5F});
-  const CameraModel camera = PictureCamera(640, 480, 60.0);
+  const CameraModel camera = RenderingCamera(640, 480, 60.0);
   for (const Eigen::Vector3d& to_viewer :
        {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(0.5, -0.3, -0.8).normalized(),
         Eigen::Vector3d(1, 0, 0)}) {
@@ -70,7 +70,7 @@ TEST(FrameAllTest, ModelTouchesTheMarginInOneDirectionAndIsInsideInTheOther) {
         FrameAll(points, to_viewer, -Eigen::Vector3d::UnitY(), camera);
     EXPECT_NEAR(T_world_camera.linear().col(2).dot(to_viewer), -1.0, kExact);
     const Eigen::Vector2d reach = Reach(points, camera, T_world_camera);
-    // 94 % of the picture, give or take half a pixel: (width - 1) / 2 is its middle.
+    // 94 % of the rendering, give or take half a pixel: (width - 1) / 2 is its middle.
     EXPECT_NEAR(reach.maxCoeff(), 0.94, 1.0 / 480.0);
   }
 }
@@ -92,8 +92,8 @@ TEST(AspectTest, ScanAllAroundHasNoSide) {
   const auto points = BoxCorners({-0.1F, -0.1F, -0.1F}, {0.1F, 0.1F, 0.1F});
   std::vector<RigidTransform> poses;
   for (int i = 0; i < 12; ++i) {
-    const Eigen::AngleAxisd turn(i * std::numbers::pi / 6.0, Eigen::Vector3d::UnitY());
-    poses.push_back(RigidTransform(turn) *
+    const Eigen::AngleAxisd rotation(i * std::numbers::pi / 6.0, Eigen::Vector3d::UnitY());
+    poses.push_back(RigidTransform(rotation) *
                     MakeTransform({0, 0, -0.6}, Eigen::Quaterniond::Identity()));
   }
   const ModelAspect aspect = AspectOf(points, poses);
@@ -112,7 +112,7 @@ TEST(AspectTest, WithoutPosesTheFirstCameraIsAssumed) {
 void ExpectOrbit(const Eigen::Vector3f& size_m, double arc_deg) {
   SCOPED_TRACE(arc_deg);
   const auto points = BoxCorners(Eigen::Vector3f::Zero(), size_m);
-  const CameraModel camera = PictureCamera(640, 480, 50.0);
+  const CameraModel camera = RenderingCamera(640, 480, 50.0);
   const ModelAspect aspect = AspectOf(points, {});
   const auto views = Orbit(points, aspect, camera, {9, arc_deg, 20.0});
   ASSERT_EQ(views.size(), 9U);

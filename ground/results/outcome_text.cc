@@ -16,10 +16,10 @@ constexpr std::array<Explanation, 7> kLost = {{
     {"too_few_pixels",
      "too few pixels between preprocessor.min_depth_m and max_depth_m; stay within the depth "
      "camera's range"},
-    {"too_few_inliers", "too little of the picture fits the model; move more slowly"},
-    {"residual", "the picture lies too far off the model; did something move?"},
+    {"too_few_inliers", "too little of the image fits the model; move more slowly"},
+    {"residual", "the image lies too far off the model; did something move?"},
     {"step", "the rig would have jumped; move more slowly"},
-    {"singular", "the picture does not tell the motion (a bare plane?); keep edges in view"},
+    {"singular", "the image does not tell the motion (a bare plane?); keep edges in view"},
     {"not_found",
      "looked for the place and did not find it; go back to what was scanned, or scan a larger "
      "volume "

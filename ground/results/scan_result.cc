@@ -77,36 +77,37 @@ std::optional<SigmaFigures> Figures(const std::vector<PoseSigma>& sigmas) {
   return SigmaFigures{Figures(std::move(translations_mm)), Figures(std::move(rotations_deg))};
 }
 
-/// Returns what poses from outside were and did.
-Json DescribeOutside(const OutsidePrior& outside) {
+/// Returns what odometry poses were and did.
+Json DescribeOdometry(const OdometryPrior& odometry) {
   Json json;
-  const OutsideStreamCounts& samples = outside.stream().counts();
-  json["source"] = outside.stream().source();
+  const OdometryStreamCounts& samples = odometry.stream().counts();
+  json["source"] = odometry.stream().source();
   json["in"] = samples.in;
   json["accepted"] = samples.accepted;
   for (const auto& [reason, count] : samples.refused) json["refused_by_reason"][reason] = count;
   json["gaps"] = samples.gaps;
   json["restarts"] = samples.restarts;
   Json& frames = json["depth_frames"];
-  frames["used"] = outside.counts().used;
-  frames["missing"] = outside.counts().missing;
-  frames["contradicted"] = outside.counts().contradicted;
-  frames["distrusted"] = outside.counts().distrusted;
+  frames["used"] = odometry.counts().used;
+  frames["missing"] = odometry.counts().missing;
+  frames["contradicted"] = odometry.counts().contradicted;
+  frames["distrusted"] = odometry.counts().distrusted;
   return json;
 }
 
 /// The same in a line, or nothing.
-std::string DescribeOutsideInWords(const OutsidePrior& outside) {
-  const OutsideStreamCounts& samples = outside.stream().counts();
+std::string DescribeOdometryInWords(const OdometryPrior& odometry) {
+  const OdometryStreamCounts& samples = odometry.stream().counts();
   if (samples.in == 0) return {};
   std::string text = fmt::format(
-      "outside  {} poses of \"{}\"{}{}; {} depth frames started from them", samples.in,
-      outside.stream().source(),
-      samples.refused.empty() ? "" : ", refused: ", List(samples.refused), outside.counts().used);
-  if (outside.counts().missing > 0) text += fmt::format(", {} had none", outside.counts().missing);
-  if (outside.counts().contradicted > 0) {
+      "odometry {} poses of \"{}\"{}{}; {} depth frames started from them", samples.in,
+      odometry.stream().source(),
+      samples.refused.empty() ? "" : ", refused: ", List(samples.refused), odometry.counts().used);
+  if (odometry.counts().missing > 0)
+    text += fmt::format(", {} had none", odometry.counts().missing);
+  if (odometry.counts().contradicted > 0) {
     text += fmt::format(", {} contradicted them ({} more distrusted them)",
-                        outside.counts().contradicted, outside.counts().distrusted);
+                        odometry.counts().contradicted, odometry.counts().distrusted);
   }
   return text + "\n";
 }
@@ -201,7 +202,7 @@ std::string DescribeSubMaps(const Atlas& atlas) {
 /// model.iso, and one more for each sub-map that was never joined.
 Status SaveModels(const GroundPipeline& pipeline, const GroundOptions& options,
                   const std::filesystem::path& dir,
-                  const std::function<void(std::string_view what, double share)>& progress) {
+                  const std::function<void(std::string_view what, double fraction)>& progress) {
   if (!options.export_().model()) return OkStatus();
   Status first;
   for (int i = 0; i < pipeline.atlas().size(); ++i) {
@@ -238,8 +239,8 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
       json["pose_sigma"]["rotation_deg"][name] = sigma->rotation_deg[i];
     }
   }
-  if (pipeline.tracker().outside().stream().counts().in > 0)
-    json["outside_poses"] = DescribeOutside(pipeline.tracker().outside());
+  if (pipeline.tracker().external_odometry().stream().counts().in > 0)
+    json["external_odometry"] = DescribeOdometry(pipeline.tracker().external_odometry());
   Json& thermal = json["frames"]["thermal"];
   thermal["in"] = counts.thermal_in;
   thermal["fused"] = counts.thermal_fused;
@@ -288,7 +289,7 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
 Result<WrittenScan> WriteScan(
     GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
     Json stats, const std::filesystem::path& dir,
-    const std::function<void(std::string_view what, double share)>& progress) {
+    const std::function<void(std::string_view what, double fraction)>& progress) {
   stats["delay_check"] = DescribeDelay(delay);
   const bool has_view = pipeline.view().maps.width() > 0;
   const SurfaceMaps view = has_view ? pipeline.CastFullView() : SurfaceMaps();
@@ -330,21 +331,21 @@ Result<WrittenScan> WriteScan(
         sigma->rotation_deg[2]);
   }
   text += DescribeSubMaps(pipeline.atlas());
-  text += DescribeOutsideInWords(pipeline.tracker().outside());
+  text += DescribeOdometryInWords(pipeline.tracker().external_odometry());
   text += fmt::format("thermal  {} frames: {} fused\n", counts.thermal_in, counts.thermal_fused);
   text += DescribeReasons(counts.thermal_left_out, "not used", ExplainLeftOut);
   if (!pipeline.thermal_status().ok())
     text += fmt::format("         {}\n", pipeline.thermal_status().message());
   if (counts.thermal_in > 0 && delay.verdict != DelayVerdict::kOff)
     text += fmt::format("delay    {}\n", Describe(delay));
-  const auto share = [&](std::size_t part) {
+  const auto fraction = [&](std::size_t part) {
     return summary->points == 0
                ? 0.0
                : 100.0 * static_cast<double>(part) / static_cast<double>(summary->points);
   };
   text += fmt::format(
       "surface  {} points, {:.1f} % with a temperature, {:.1f} % measured well; {} triangles\n",
-      summary->points, share(summary->measured_points), share(summary->good_points),
+      summary->points, fraction(summary->measured_points), fraction(summary->good_points),
       summary->triangles);
   if (summary->measured_points > 0) {
     text += fmt::format("         {:.1f} to {:.1f} °C, mean {:.1f} °C ({} temperature)\n",

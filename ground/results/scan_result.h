@@ -31,6 +31,6 @@ struct WrittenScan {
 Result<WrittenScan> WriteScan(
     GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
     Json stats, const std::filesystem::path& dir,
-    const std::function<void(std::string_view what, double share)>& progress);
+    const std::function<void(std::string_view what, double fraction)>& progress);
 
 }  // namespace isotherm

@@ -13,7 +13,7 @@ std::uint64_t SessionOf(const Item& item) {
   if (const auto* depth = std::get_if<ReceivedDepth>(&item)) return depth->frame->header.session;
   if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
     return thermal->frame->header.session;
-  if (const auto* sample = std::get_if<OutsidePoseSample>(&item)) return sample->session;
+  if (const auto* sample = std::get_if<ExternalOdometrySample>(&item)) return sample->session;
   return 0;
 }
 
@@ -23,14 +23,14 @@ void Distributor::OnRig(const RigDescription& rig) {
   if (rig.session == session_ || over_) return;
   if (session_ && single_scan_) {  // The edge was started anew: the one scan is over.
     over_ = true;
-    SessionAccount end;
+    SessionCounters end;
     end.session = *session_;
     SendMark(end);
     return;
   }
   start_ = {.rig = rig,
             .folder = SessionFolder(options_, single_scan_, rig.session, clock_.Now()),
-            .recording = std::make_shared<RecordingLedger>()};
+            .recording = std::make_shared<RecordingTracker>()};
   session_ = rig.session;
   recording_behind_ = false;
   board_.recording.Set(start_.recording);
@@ -59,10 +59,10 @@ void Distributor::OnFrame(Item item) {
   early_.push_back(std::move(item));
 }
 
-void Distributor::OnSessionEnd(const SessionAccount& account) {
-  if (account.session != session_ || over_) return;
+void Distributor::OnSessionEnd(const SessionCounters& counters) {
+  if (counters.session != session_ || over_) return;
   over_ = single_scan_;
-  SendMark(account);
+  SendMark(counters);
 }
 
 void Distributor::Send(Item item) {
@@ -103,10 +103,10 @@ void Distributor::Record(const Item& item) {
     recording_.Offer(item, {}, stop_);
     return;
   }
-  TellRecording(taken);
+  LogRecording(taken);
 }
 
-void Distributor::TellRecording(bool taken) {
+void Distributor::LogRecording(bool taken) {
   if (taken != recording_behind_) return;
   recording_behind_ = !taken;
   if (recording_behind_) {

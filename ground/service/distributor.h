@@ -39,9 +39,9 @@ class Distributor {
 
   void OnRig(const RigDescription& rig);
   void OnFrame(Item item);
-  void OnClock(const ClockAccount& clock) { recording_.Offer(clock, {}, stop_); }
+  void OnClock(const SessionClock& clock) { recording_.Offer(clock, {}, stop_); }
   void OnLate(Item item) { Record(std::move(item)); }
-  void OnSessionEnd(const SessionAccount& account);
+  void OnSessionEnd(const SessionCounters& counters);
 
  private:
   /// To both consumers.
@@ -50,7 +50,7 @@ class Distributor {
   void SendMark(const Item& mark);
   void Reconstruct(Item item);
   void Record(const Item& item);
-  void TellRecording(bool taken);
+  void LogRecording(bool taken);
 
   const GroundOptions& options_;
   const bool single_scan_;

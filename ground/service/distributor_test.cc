@@ -31,9 +31,9 @@ class DistributorTest : public ::testing::Test {
     distributor_->OnRig(rig);
   }
   void End(std::uint64_t session = kSession) {
-    SessionAccount account;
-    account.session = session;
-    distributor_->OnSessionEnd(account);
+    SessionCounters counters;
+    counters.session = session;
+    distributor_->OnSessionEnd(counters);
   }
   static ReceivedDepth Frame(std::uint64_t number, std::uint64_t session = kSession) {
     auto frame = std::make_shared<DepthFrame>();
@@ -51,7 +51,7 @@ class DistributorTest : public ::testing::Test {
   static std::string Name(const Item& item) {
     if (const auto* start = std::get_if<SessionStart>(&item))
       return "S" + std::to_string(start->rig.session);
-    if (const auto* end = std::get_if<SessionAccount>(&item))
+    if (const auto* end = std::get_if<SessionCounters>(&item))
       return "E" + std::to_string(end->session);
     if (const auto* depth = std::get_if<ReceivedDepth>(&item))
       return std::to_string(depth->encoded->header.frame_number);
@@ -185,8 +185,8 @@ TEST_F(DistributorTest, F42WhatTheDiskDoesNotTakeIsCountedAndStillReconstructed)
   const std::vector<Item> items = Reconstructed();
   EXPECT_EQ(Names(items), "S7 0 1 2 3");
   const std::size_t kept = Recorded().size() - 1;  // Without the beginning.
-  const RecordingAccount account = std::get<SessionStart>(items[0]).recording->Get();
-  EXPECT_EQ(account.depth_left_out[static_cast<std::size_t>(NotRecorded::kDiskTooSlow)], 4 - kept);
+  const RecordingProgress counters = std::get<SessionStart>(items[0]).recording->Get();
+  EXPECT_EQ(counters.depth_left_out[static_cast<std::size_t>(NotRecorded::kDiskTooSlow)], 4 - kept);
   EXPECT_LT(kept, 4U);
   End();
   EXPECT_EQ(Names(Recorded()), "E7") << "an end is never left out";

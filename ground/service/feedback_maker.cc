@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <vector>
 
-#include "ground/feedback/confidence_picture.h"
+#include "ground/feedback/confidence_image.h"
 
 namespace isotherm {
 namespace {
 
-/// Coverage of the view is judged by so many pixels per row at least, whatever the picture's size.
-constexpr int kLeastColumns = 160;
+/// Coverage of the view is assessed by so many pixels per row at least, whatever the image's size.
+constexpr int kMinColumns = 160;
 
 /// Once parts of the model are on the disk, only blocks within this distance of the rig are
 /// counted.
@@ -41,20 +41,20 @@ std::vector<Advice> ToWire(AdviceKind kind) {
   return {};
 }
 
-CoverageShares ToShares(const CoverageSummary& view) {
+CoverageFractions ToFractions(const CoverageSummary& view) {
   if (view.surface == 0.0) return {};
   return {static_cast<float>(view.good), static_cast<float>(view.acceptable),
           static_cast<float>(view.bad), static_cast<float>(view.never_measured)};
 }
 
-CoverageShares ToShares(const SurfaceAreas& areas) {
+CoverageFractions ToFractions(const SurfaceAreas& areas) {
   const double total = areas.total_m2();
   if (!(total > 0.0)) return {};
-  const auto share = [total](double area) {
+  const auto fraction = [total](double area) {
     return static_cast<float>(std::clamp(area / total, 0.0, 1.0));
   };
-  return {share(areas.good_m2), share(areas.acceptable_m2), share(areas.bad_m2),
-          share(areas.never_m2)};
+  return {fraction(areas.good_m2), fraction(areas.acceptable_m2), fraction(areas.bad_m2),
+          fraction(areas.never_m2)};
 }
 
 TrackingState StateOf(const DepthReport& report) {
@@ -91,7 +91,7 @@ std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
 std::optional<RigidTransform> LastKnownPose(const GroundPipeline& pipeline) {
   if (!pipeline.trajectory().empty()) return pipeline.trajectory().back().T_world_depth;
   const Atlas& atlas = pipeline.atlas();
-  const std::vector<RigidTransform>& known = atlas.active().relocaliser->library().poses();
+  const std::vector<RigidTransform>& known = atlas.active().relocaliser->keyframes().poses();
   if (known.empty()) return std::nullopt;
   return InWorld(atlas, atlas.active_index(), known.back());
 }
@@ -133,7 +133,7 @@ CoverageSummary FeedbackMaker::LookAtView(GroundPipeline& pipeline) {
   const ModelView& model = pipeline.view();
   view_.Resize(0, 0);
   if (model.maps.width() == 0) return {};
-  const int columns = std::max(kLeastColumns, options_.feedback().picture_width_px());
+  const int columns = std::max(kMinColumns, options_.feedback().image_width_px());
   Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
   // Distances and angles are limits of the thermal camera.
   SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
@@ -146,10 +146,10 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   situation.tracking_lost = !moment.report.tracked;
   situation.nuc_running = moment.nuc_running;
   situation.speed_m_s = moment.speed_m_s;
-  situation.turn_rate_deg_s = moment.turn_rate_deg_s;
+  situation.rotation_rate_deg_s = moment.rotation_rate_deg_s;
   if (moment.frame_interval_s > 0.0) {
     situation.max_speed_m_s = options_.tsdf().max_step_m() / moment.frame_interval_s;
-    situation.max_turn_rate_deg_s = options_.tsdf().max_step_deg() / moment.frame_interval_s;
+    situation.max_rotation_rate_deg_s = options_.tsdf().max_step_deg() / moment.frame_interval_s;
   }
   const bool complete = !coverages_.empty() && std::ranges::all_of(coverages_, [](const auto& c) {
     return c.second.complete();
@@ -186,17 +186,18 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipel
     feedback.pose_covariance = pose->covariance;
   }
   const CoverageSummary view = LookAtView(pipeline);
-  feedback.view = ToShares(view);
-  feedback.model = ToShares(areas());
+  feedback.view = ToFractions(view);
+  feedback.model = ToFractions(areas());
   feedback.covered_area_m2 = std::max(0.0, areas().total_m2());
   OperatorAdvice advice = adviser_.Update(moment.header.capture_time, view, Situation(moment));
   feedback.advice = ToWire(advice.kind);
   feedback.advice_reason = std::move(advice.reason);
   feedback.done = adviser_.done();
   AddNextPose(moment.report, pipeline, feedback);
-  if (options_.feedback().picture_width_px() > 0 && view_.width() > 0) {
-    feedback.picture = EncodeWithin(
-        DrawConfidence(view_, feedback.tracking_state == TrackingState::kLost), kMaxPictureBytes);
+  if (options_.feedback().image_width_px() > 0 && view_.width() > 0) {
+    feedback.image =
+        EncodeWithin(DrawConfidence(view_, feedback.tracking_state == TrackingState::kLost),
+                     kMaxConfidenceImageBytes);
   }
   return feedback;
 }

@@ -19,7 +19,7 @@ struct FeedbackMoment {
   bool nuc_running = false;
   /// How the rig moved since the message before, and the time between two frames.
   double speed_m_s = 0.0;
-  double turn_rate_deg_s = 0.0;
+  double rotation_rate_deg_s = 0.0;
   double frame_interval_s = 0.0;
 };
 
@@ -57,7 +57,7 @@ class FeedbackMaker {
   std::map<int, ModelCoverage> coverages_;  ///< By sub-map.
   int planned_map_ = 0;                     ///< The sub-map in whose coordinates views are planned.
   std::optional<ViewPlanner> planner_;      ///< Not without a calibrated thermal camera.
-  SurfaceMaps maps_;                        ///< Every so manieth pixel of the model's view.
+  SurfaceMaps maps_;                        ///< Every n-th pixel of the model's view.
   ViewMaps view_;
   std::uint64_t messages_ = 0;
 };

@@ -39,8 +39,8 @@ class FeedbackMakerTest : public ::testing::Test {
     options_.mutable_tsdf()->set_min_step_m(0.0);  // Each frame counts for the loop closer.
     options_.mutable_tsdf()->set_min_step_deg(0.0);
     options_.mutable_submaps()->set_start_after_lost_s(0.1);
-    options_.mutable_submaps()->set_max_turn_deg(0.0);
-    options_.mutable_feedback()->set_picture_width_px(0);
+    options_.mutable_submaps()->set_max_rotation_deg(0.0);
+    options_.mutable_feedback()->set_image_width_px(0);
     options_.set_threads(2);
     Start();
   }
@@ -123,8 +123,8 @@ TEST_F(FeedbackMakerTest, InARotatedSubMapPoseAndUncertaintyAreBothInWorld) {
   ASSERT_NEAR(R_world_map(1, 0), 1.0, 0.01) << "the sub-map's x axis is world's y axis";
 
   ASSERT_TRUE(feedback.T_world_depth && feedback.pose_covariance);
-  constexpr double kVoxelM = 0.004;
-  EXPECT_LT(TranslationDistance(*feedback.T_world_depth, last_true_), kVoxelM);
+  constexpr double kVoxel_m = 0.004;
+  EXPECT_LT(TranslationDistance(*feedback.T_world_depth, last_true_), kVoxel_m);
   EXPECT_LT(RotationAngle(*feedback.T_world_depth, last_true_), 1.0 * kRadPerDeg);
   EXPECT_TRUE(IsCovariance(*feedback.pose_covariance));
   EXPECT_GT(sigma(feedback, 1), kClearly * sigma(feedback, 0)) << "y is the less certain one still";

@@ -21,7 +21,7 @@
 #include "ground/service/recording_loop.h"
 #include "ground/service/result_writer.h"
 #include "ground/service/scan_board.h"
-#include "ground/service/status_teller.h"
+#include "ground/service/status_reporter.h"
 #include "ground/service/worker.h"
 #include "ground/subscriber/subscriber.h"
 
@@ -105,7 +105,7 @@ class GroundService {
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Subscriber> subscriber_;
   SteadyTime next_feed_{};
-  std::optional<std::string> told_problem_;
+  std::optional<std::string> reported_problem_;
 };
 
 SubscriberOptions GroundService::LinkOptions() const {
@@ -124,10 +124,10 @@ SubscriberHandlers GroundService::Handlers() {
   handlers.thermal = [&to](ReceivedThermal thermal) { to.OnFrame(std::move(thermal)); };
   handlers.late_depth = [&to](ReceivedDepth depth) { to.OnLate(std::move(depth)); };
   handlers.late_thermal = [&to](ReceivedThermal thermal) { to.OnLate(std::move(thermal)); };
-  handlers.outside_pose = [&to](const OutsidePoseSample& pose) { to.OnFrame(pose); };
+  handlers.external_odometry = [&to](const ExternalOdometrySample& pose) { to.OnFrame(pose); };
   handlers.rig = [&to](const RigDescription& rig) { to.OnRig(rig); };
-  handlers.clock = [&to](const ClockAccount& account) { to.OnClock(account); };
-  handlers.session_end = [&to](const SessionAccount& account) { to.OnSessionEnd(account); };
+  handlers.clock = [&to](const SessionClock& clock) { to.OnClock(clock); };
+  handlers.session_end = [&to](const SessionCounters& counters) { to.OnSessionEnd(counters); };
   handlers.status = [this](const EdgeStatus& status) { board_.edge.Set(status); };
   handlers.turn = [this] { health_.receive.Busy(clock_.SteadyNow()); };
   return handlers;
@@ -149,8 +149,8 @@ int GroundService::Run() {
   const auto written = [this] {
     if (mode_.single_scan) signal_.Request();
   };
-  const auto account = [this](std::uint64_t session) { return subscriber_->account(session); };
-  ResultWriter results(options_, clock_, account, board_, health_.results, written);
+  const auto counters = [this](std::uint64_t session) { return subscriber_->counters(session); };
+  ResultWriter results(options_, clock_, counters, board_, health_.results, written);
   RecordingLoop recording(options_, clock_, board_, health_.recording);
   ReconstructionLoop reconstruction(options_, clock_, *subscriber_, to_recording_, results, board_,
                                     health_.reconstruction);
@@ -191,26 +191,26 @@ int GroundService::Run() {
 
 void GroundService::GuardUntilStopped() {
   constexpr Nanoseconds kTick = 200ms;
-  StatusTeller status(clock_);
+  StatusReporter status(clock_);
   std::mutex mutex;
   std::condition_variable_any wake;
   std::unique_lock lock(mutex);
   const std::stop_token stop = signal_.token();
   while (!wake.wait_for(lock, stop, kTick, [&] { return stop.stop_requested(); })) {
     FeedWatchdog();
-    status.Tell(Situation());
+    status.Report(Situation());
   }
 }
 
 void GroundService::FeedWatchdog() {
   const SteadyTime now = clock_.SteadyNow();
   const std::optional<std::string> problem = health_.Problem(now);
-  if (problem && !told_problem_) {
+  if (problem && !reported_problem_) {
     LOG(Ground, Error) << *problem << "; the service manager is not told any more that all is well";
-  } else if (!problem && told_problem_) {
+  } else if (!problem && reported_problem_) {
     LOG(Ground, Info) << "all goes on again";
   }
-  told_problem_ = problem;
+  reported_problem_ = problem;
   if (problem || now < next_feed_) return;
   constexpr std::chrono::microseconds kUnwatched = 1s;
   next_feed_ = now + WatchdogInterval().value_or(kUnwatched);
@@ -226,8 +226,8 @@ GroundSituation GroundService::Situation() const {
                             .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
                             .scans_being_written = board_.scans_being_written,
                             .scans_given_up = board_.scans_given_up,
-                            .problem = told_problem_};
-  if (const auto ledger = board_.recording.Get()) situation.recording = (*ledger)->Get();
+                            .problem = reported_problem_};
+  if (const auto tracker = board_.recording.Get()) situation.recording = (*tracker)->Get();
   return situation;
 }
 
@@ -253,9 +253,9 @@ std::string GroundService::StuckText(GroundThread stuck) const {
     case GroundThread::kRecording:
       break;
   }
-  const auto ledger = board_.recording.Get();
+  const auto tracker = board_.recording.Get();
   return "the disk is stuck: the recording is not complete, file=" +
-         (ledger ? (*ledger)->Get().path.string() : "?");
+         (tracker ? (*tracker)->Get().path.string() : "?");
 }
 
 void GroundService::LeaveBehind(GroundThread stuck) {

@@ -5,16 +5,16 @@
 namespace isotherm {
 
 std::optional<std::string> Health::Problem(SteadyTime now) const {
-  struct Judged {
+  struct Assessed {
     const char* what;
     const ThreadProgress& thread;
     Nanoseconds limit;
   };
   for (const auto& [what, thread, limit] :
-       {Judged{"reception", receive, kFrameLimit},
-        Judged{"the reconstruction", reconstruction, kFrameLimit},
-        Judged{"the recording (is the disk stuck?)", recording, disk_limit_},
-        Judged{"writing results (is the disk stuck?)", results, disk_limit_}}) {
+       {Assessed{"reception", receive, kFrameLimit},
+        Assessed{"the reconstruction", reconstruction, kFrameLimit},
+        Assessed{"the recording (is the disk stuck?)", recording, disk_limit_},
+        Assessed{"writing results (is the disk stuck?)", results, disk_limit_}}) {
     const Nanoseconds at_it = thread.AtItFor(now);
     if (at_it > limit)
       return fmt::format("{} has not gone on for {:.0f} s", what, ToSeconds(at_it));

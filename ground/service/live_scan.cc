@@ -64,13 +64,13 @@ void LiveScan::Add(const ReceivedThermal& thermal) {
   while (const auto frame = assembler_.Pop()) Process(*frame);
 }
 
-void LiveScan::Add(const OutsidePoseSample& sample) {
-  ++outside_poses_received_;
-  next_outside_pose_ = std::max(next_outside_pose_, sample.number + 1);
-  pipeline_->ProcessOutsidePose(sample.pose);
+void LiveScan::Add(const ExternalOdometrySample& sample) {
+  ++odometry_poses_received_;
+  next_odometry_pose_ = std::max(next_odometry_pose_, sample.number + 1);
+  pipeline_->ProcessExternalOdometry(sample.pose);
 }
 
-void LiveScan::FinishFrames(const std::function<void(double share)>& progress) {
+void LiveScan::FinishFrames(const std::function<void(double fraction)>& progress) {
   while (const auto frame = assembler_.Flush()) Process(*frame);
   pipeline_->Finish(progress);
 }
@@ -87,37 +87,37 @@ DelayReport LiveScan::CheckDelay(const std::function<void()>& progress) {
   constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   const SteadyTime start = clock_.SteadyNow();
   bool told = false;
-  return delay_check_.Finish(*pipeline_, [&](double share) {
+  return delay_check_.Finish(*pipeline_, [&](double fraction) {
     if (progress) progress();
     if (told || clock_.SteadyNow() - start < kSilence) return;
     told = true;
     LOG(Ground, Info) << fmt::format("checking the delay of the thermal camera, {:.0f} % done",
-                                     100.0 * share);
+                                     100.0 * fraction);
   });
 }
 
-void LiveScan::NoteTurn(const void* frame) {
+void LiveScan::NoteQueueTime(const void* frame) {
   const auto arrival = arrivals_.extract(frame);
   constexpr double kMsPerNs = 1e-6;
   if (arrival) {
     waiting_.Add(kMsPerNs * static_cast<double>((clock_.Now() - arrival.mapped()).count()));
   }
   // Frames that the assembler refused never have a turn.
-  constexpr std::size_t kMostHeld = 1024;
-  if (arrivals_.size() > kMostHeld) arrivals_.clear();
+  constexpr std::size_t kMaxHeld = 1024;
+  if (arrivals_.size() > kMaxHeld) arrivals_.clear();
 }
 
 void LiveScan::KeepUp(Nanoseconds queued) {
   // The rest is for the other stream's next frame.
-  constexpr double kThermalShare = 0.4;
-  constexpr double kIntegrationShare = 0.7;
-  const double share = ToSeconds(queued) / options_.live().max_wait_s();
-  is_behind_ = share > kThermalShare;
-  pipeline_->set_effort(share > kIntegrationShare ? Effort::kEverySecond
-                        : share > kThermalShare   ? Effort::kNoThermal
-                                                  : Effort::kAll);
-  if (share <= kIntegrationShare || told_behind_) return;
-  told_behind_ = true;
+  constexpr double kThermalFraction = 0.4;
+  constexpr double kIntegrationFraction = 0.7;
+  const double fraction = ToSeconds(queued) / options_.live().max_wait_s();
+  is_behind_ = fraction > kThermalFraction;
+  pipeline_->set_load_shedding(fraction > kIntegrationFraction ? LoadShedding::kEverySecond
+                               : fraction > kThermalFraction   ? LoadShedding::kNoThermal
+                                                               : LoadShedding::kNone);
+  if (fraction <= kIntegrationFraction || reported_behind_) return;
+  reported_behind_ = true;
   LOG(Ground, Warning) << fmt::format(
       "a frame waited {:.0f} ms for its turn: work is left out to keep up (frames left out as "
       "\"behind\" in stats.json; the recording has all)",
@@ -126,13 +126,13 @@ void LiveScan::KeepUp(Nanoseconds queued) {
 
 void LiveScan::Process(const Assembler::Frame& frame) {
   if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
-    NoteTurn(thermal->get());
+    NoteQueueTime(thermal->get());
     pipeline_->ProcessThermal(*thermal);
     delay_check_.Add(*thermal, *pipeline_);
     return;
   }
   const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
-  NoteTurn(&depth);
+  NoteQueueTime(&depth);
   const DepthReport report = pipeline_->ProcessDepth(depth);
   if (report.repeated) return;  // Says nothing new.
   const CaptureTime time = depth.header.capture_time;
@@ -155,12 +155,12 @@ void LiveScan::NoteMotion(const DepthReport& report, CaptureTime time) {
   ++frames_;
   if (report.tracked) {
     path_m_ += report.tracking.step_m;
-    turned_rad_ += report.tracking.step_rad;
+    rotated_rad_ += report.tracking.step_rad;
   }
   const double elapsed_s = ToSeconds(time - *motion_since_);
   if (elapsed_s <= 0.0) return;
   moment_.speed_m_s = path_m_ / elapsed_s;
-  moment_.turn_rate_deg_s = turned_rad_ * kDegPerRad / elapsed_s;
+  moment_.rotation_rate_deg_s = rotated_rad_ * kDegPerRad / elapsed_s;
   moment_.frame_interval_s = elapsed_s / frames_;
 }
 
@@ -172,22 +172,22 @@ std::optional<Feedback> LiveScan::TakeFeedback() {
   making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
   motion_since_ = moment_.header.capture_time;
   path_m_ = 0.0;
-  turned_rad_ = 0.0;
+  rotated_rad_ = 0.0;
   frames_ = 0;
-  TellWhenDone();
+  LogWhenDone();
   return feedback;
 }
 
-void LiveScan::TellWhenDone() {
-  if (feedback_.done() == told_done_) return;
-  told_done_ = feedback_.done();
+void LiveScan::LogWhenDone() {
+  if (feedback_.done() == reported_done_) return;
+  reported_done_ = feedback_.done();
   const SurfaceAreas areas = feedback_.areas();
   LOG(Ground, Info) << fmt::format(
       "{}: {:.1f} % of {:.3f} m2 of surface are measured well, {:.1f} % are asked for "
-      "(feedback.done_share)",
-      told_done_ ? "the scan is done" : "the scan is not done any more: there is more surface",
+      "(feedback.done_fraction)",
+      reported_done_ ? "the scan is done" : "the scan is not done any more: there is more surface",
       100.0 * areas.good_m2 / areas.total_m2(), areas.total_m2(),
-      100.0 * options_.feedback().done_share());
+      100.0 * options_.feedback().done_fraction());
 }
 
 void LiveScan::ThinkAhead() {

@@ -40,9 +40,9 @@ class LiveScan {
   void Add(const ReceivedDepth& depth);
   void Add(const ReceivedThermal& thermal);
   /// Not held back: frames wait for each other, so poses are there before them.
-  void Add(const OutsidePoseSample& sample);
+  void Add(const ExternalOdometrySample& sample);
   /// Processes what the assembler still holds back.
-  void FinishFrames(const std::function<void(double share)>& progress = {});
+  void FinishFrames(const std::function<void(double fraction)>& progress = {});
   /// After that: whether the delay that the edge added to thermal stamps is right.
   DelayReport CheckDelay(const std::function<void()>& progress = {});
 
@@ -62,10 +62,10 @@ class LiveScan {
   /// Returns what was left out to keep up.
   BehindCounts behind() const;
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }
-  std::uint64_t outside_poses_received() const { return outside_poses_received_; }
+  std::uint64_t odometry_poses_received() const { return odometry_poses_received_; }
   /// Numbers below the highest received that did not come.
-  std::uint64_t outside_poses_missing() const {
-    return next_outside_pose_ - std::min(next_outside_pose_, outside_poses_received_);
+  std::uint64_t odometry_poses_missing() const {
+    return next_odometry_pose_ - std::min(next_odometry_pose_, odometry_poses_received_);
   }
   GroundPipeline& pipeline() { return *pipeline_; }
   const Rig& rig() const { return rig_; }
@@ -74,12 +74,12 @@ class LiveScan {
   LiveScan(const Clock& clock, const GroundOptions& options, const RigDescription& rig,
            std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
-  void NoteTurn(const void* frame);
+  void NoteQueueTime(const void* frame);
   /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
   void KeepUp(Nanoseconds queued);
   /// Sums up what the rig did since the last feedback.
   void NoteMotion(const DepthReport& report, CaptureTime time);
-  void TellWhenDone();
+  void LogWhenDone();
 
   const Clock& clock_;
   const GroundOptions options_;
@@ -96,16 +96,16 @@ class LiveScan {
   std::optional<CaptureTime>
       motion_since_;  ///< Time of the last frame before those summed up here.
   double path_m_ = 0.0;
-  double turned_rad_ = 0.0;
+  double rotated_rad_ = 0.0;
   int frames_ = 0;
   bool is_behind_ = false;
-  bool told_done_ = false;
-  std::uint64_t outside_poses_received_ = 0;
-  std::uint64_t next_outside_pose_ = 0;
+  bool reported_done_ = false;
+  std::uint64_t odometry_poses_received_ = 0;
+  std::uint64_t next_odometry_pose_ = 0;
   std::map<const void*, CaptureTime> arrivals_;  ///< When the frames in the assembler arrived.
   StageStats waiting_;
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
-  bool told_behind_ = false;
+  bool reported_behind_ = false;
 };
 
 }  // namespace isotherm

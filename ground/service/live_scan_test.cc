@@ -145,7 +145,7 @@ TEST_F(LiveScanTest, WhatWaitsForTheOtherStreamIsNotBehind) {
   EXPECT_GT(scan_->waiting().Percentile(100), 2000.0);
 }
 
-TEST_F(LiveScanTest, APictureThatComesTwiceIsNotALoss) {
+TEST_F(LiveScanTest, AnImageThatComesTwiceIsNotALoss) {
   options_.mutable_live()->set_feedback_hz(30.0);
   Start();
   Run(0, 3, 10ms);
@@ -205,8 +205,8 @@ TEST_F(LiveScanTest, FeedbackSaysHowWellViewAndModelAreMeasured) {
   ASSERT_TRUE(feedback.has_value());
   EXPECT_EQ(feedback->session, rig_.session);
   EXPECT_EQ(feedback->tracking_state, TrackingState::kTracked);
-  const auto sum = [](const CoverageShares& shares) {
-    return shares.good + shares.acceptable + shares.bad + shares.never_measured;
+  const auto sum = [](const CoverageFractions& fractions) {
+    return fractions.good + fractions.acceptable + fractions.bad + fractions.never_measured;
   };
   EXPECT_NEAR(sum(feedback->view), 1.0, 1e-5);
   EXPECT_NEAR(sum(feedback->model), 1.0, 1e-5);
@@ -216,8 +216,8 @@ TEST_F(LiveScanTest, FeedbackSaysHowWellViewAndModelAreMeasured) {
   EXPECT_GT(feedback->view.acceptable, 0.2);
   EXPECT_GT(feedback->covered_area_m2, 0.1);
   EXPECT_LT(feedback->covered_area_m2, 0.6);
-  ASSERT_FALSE(feedback->picture.empty());
-  EXPECT_LE(feedback->picture.size(), kMaxPictureBytes);
+  ASSERT_FALSE(feedback->image.empty());
+  EXPECT_LE(feedback->image.size(), kMaxConfidenceImageBytes);
   EXPECT_EQ(JsonText(scan_->DescribeFeedback()).find("\"messages\": 0"), std::string::npos);
 }
 
@@ -241,7 +241,7 @@ TEST_F(LiveScanTest, TheNextViewIsGivenInWorldAndFromTheRig) {
 
 TEST_F(LiveScanTest, EnoughOfTheSurfaceMeasuredWellIsDone) {
   options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
-  options_.mutable_feedback()->set_done_share(0.01);
+  options_.mutable_feedback()->set_done_fraction(0.01);
   options_.mutable_feedback()->set_settle_s(0.0);
   Start();
   std::optional<Feedback> feedback;

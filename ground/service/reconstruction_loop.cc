@@ -6,14 +6,14 @@
 
 #include "common/base/log.h"
 #include "common/frame/plausibility.h"
-#include "ground/service/status_teller.h"
+#include "ground/service/status_reporter.h"
 
 namespace isotherm {
 namespace {
 
 /// What the results of a model take per block of 512 voxels, about: model.iso, cloud and mesh.
 constexpr std::uint64_t kResultBytesPerBlock = 6'000;
-/// Pictures, trajectory, statistics.
+/// Images, trajectory, statistics.
 constexpr std::uint64_t kResultBytesAtLeast = 4U << 20;
 
 }  // namespace
@@ -37,7 +37,7 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
   End();
   start_ = start;
   started_ = true;
-  TellAboutCameras(start.rig);
+  LogCameras(start.rig);
   Result<std::unique_ptr<LiveScan>> scan = LiveScan::Create(clock_, options_, start.rig);
   if (!scan) {
     LOG(Ground, Error) << "session " << start.rig.session
@@ -54,12 +54,12 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
   }
 }
 
-void ReconstructionLoop::Handle(const SessionAccount& account) {
-  LOG(Ground, Info) << "scan ended, session=" << account.session;
+void ReconstructionLoop::Handle(const SessionCounters& counters) {
+  LOG(Ground, Info) << "scan ended, session=" << counters.session;
   End();
 }
 
-void ReconstructionLoop::Handle(const OutsidePoseSample& sample) {
+void ReconstructionLoop::Handle(const ExternalOdometrySample& sample) {
   if (scan_) scan_->Add(sample);
 }
 

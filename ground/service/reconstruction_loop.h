@@ -38,12 +38,12 @@ class ReconstructionLoop {
 
  private:
   void Handle(const SessionStart& start);
-  void Handle(const SessionAccount& account);
-  void Handle(const OutsidePoseSample& sample);
+  void Handle(const SessionCounters& counters);
+  void Handle(const ExternalOdometrySample& sample);
   void Handle(const ReceivedDepth& frame);
   void Handle(const ReceivedThermal& frame);
   void Handle(const Feedback& /*feedback*/) {}   // Comes from here.
-  void Handle(const ClockAccount& /*clock*/) {}  // For the recording.
+  void Handle(const SessionClock& /*clock*/) {}  // For the recording.
   template <typename Frame>
   void HandleFrame(const Frame& frame);
   void SendFeedback(const Feedback& feedback);

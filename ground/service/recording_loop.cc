@@ -52,7 +52,7 @@ void RecordingLoop::Handle(const SessionStart& start) {
     LOG(Ground, Error) << "this scan's folder cannot be used: " << prepared.message();
   }
   if (!options_.live().record()) return;
-  start_.recording->Update([&](auto& account) { account.path = start.folder / "scan.mcap"; });
+  start_.recording->Update([&](auto& progress) { progress.path = start.folder / "scan.mcap"; });
   opened_ = clock_.SteadyNow();
   next_look_ = opened_;
   if (HasRoom()) Open();
@@ -78,7 +78,7 @@ void RecordingLoop::HandleFrame(const Frame& frame, Sensor sensor) {
     if (nearly_full_) {
       start_.recording->CountLeftOut(sensor, NotRecorded::kDiskNearlyFull);
     } else {
-      start_.recording->Update([](auto& account) { ++account.stats.failed; });
+      start_.recording->Update([](auto& progress) { ++progress.stats.failed; });
     }
     return;
   }
@@ -92,11 +92,11 @@ void RecordingLoop::Handle(const Feedback& feedback) {
   if (recorder_ && feedback.session == start_.rig.session) recorder_->Write(feedback);
 }
 
-void RecordingLoop::Handle(const ClockAccount& clock) {
+void RecordingLoop::Handle(const SessionClock& clock) {
   if (recorder_ && clock.session == start_.rig.session) recorder_->Write(clock);
 }
 
-void RecordingLoop::Handle(const OutsidePoseSample& sample) {
+void RecordingLoop::Handle(const ExternalOdometrySample& sample) {
   if (recorder_) recorder_->Write(sample);
 }
 
@@ -116,12 +116,12 @@ bool RecordingLoop::HasRoom() {
   if (error) return true;  // Writing will say what is wrong.
   const std::uint64_t reserve = ReserveBytes(space.capacity);
   const double elapsed_s = ToSeconds(now - opened_);
-  start_.recording->Update([&](auto& account) {
-    account.free_bytes = space.available;
-    account.reserve_bytes = reserve;
+  start_.recording->Update([&](auto& progress) {
+    progress.free_bytes = space.available;
+    progress.reserve_bytes = reserve;
     constexpr double kTooShort_s = 3.0;
     if (elapsed_s > kTooShort_s)
-      account.bytes_per_s = static_cast<double>(account.stats.bytes) / elapsed_s;
+      progress.bytes_per_s = static_cast<double>(progress.stats.bytes) / elapsed_s;
   });
   nearly_full_ = space.available <= reserve;
   if (!nearly_full_) return true;
@@ -142,16 +142,16 @@ void RecordingLoop::StopForReserve() {
 
 void RecordingLoop::Fail(const Status& status) {
   status_ = status;
-  start_.recording->Update([&](auto& account) {
-    if (account.status.ok()) account.status = status;
+  start_.recording->Update([&](auto& progress) {
+    if (progress.status.ok()) progress.status = status;
   });
 }
 
 void RecordingLoop::Enter() {
   const RecordingStats stats = recorder_->stats();
-  start_.recording->Update([&](auto& account) {
-    account.stats = stats;
-    if (account.status.ok()) account.status = recorder_->status();
+  start_.recording->Update([&](auto& progress) {
+    progress.stats = stats;
+    if (progress.status.ok()) progress.status = recorder_->status();
   });
 }
 
@@ -161,7 +161,7 @@ void RecordingLoop::End() {
     Enter();
     recorder_.reset();
   }
-  if (start_.recording) start_.recording->Update([](auto& account) { account.closed = true; });
+  if (start_.recording) start_.recording->Update([](auto& progress) { progress.closed = true; });
   start_.recording.reset();
 }
 

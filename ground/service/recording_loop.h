@@ -30,10 +30,10 @@ class RecordingLoop {
 
  private:
   void Handle(const SessionStart& start);
-  void Handle(const SessionAccount& /*account*/) { End(); }
+  void Handle(const SessionCounters& /*counters*/) { End(); }
   void Handle(const Feedback& feedback);
-  void Handle(const ClockAccount& clock);
-  void Handle(const OutsidePoseSample& sample);
+  void Handle(const SessionClock& clock);
+  void Handle(const ExternalOdometrySample& sample);
   void Handle(const ReceivedDepth& frame) { HandleFrame(frame, Sensor::kDepth); }
   void Handle(const ReceivedThermal& frame) { HandleFrame(frame, Sensor::kThermal); }
   template <typename Frame>
@@ -44,7 +44,7 @@ class RecordingLoop {
   std::uint64_t ReserveBytes(std::uint64_t capacity) const;
   void StopForReserve();
   void Fail(const Status& status);
-  /// Enters what was written so far into the account.
+  /// Enters what was written so far into the recording's progress.
   void Enter();
   void End();
 

@@ -12,7 +12,7 @@ std::size_t Bytes(const Item& item) {
     return depth->encoded->image.payload.size();
   if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
     return thermal->encoded->image.payload.size();
-  if (const auto* feedback = std::get_if<Feedback>(&item)) return feedback->picture.size();
+  if (const auto* feedback = std::get_if<Feedback>(&item)) return feedback->image.size();
   return 0;
 }
 

@@ -55,11 +55,11 @@ TEST(RecordingQueueTest, BoundedByBytesButOneFrameAlwaysFits) {
 TEST(RecordingQueueTest, BeginningsAndEndsAreAlwaysTaken) {
   RecordingQueue queue({.items = 1, .bytes = 1});
   EXPECT_TRUE(queue.Offer(Frame(0), kNow, {}));
-  queue.Push(SessionAccount());
+  queue.Push(SessionCounters());
   EXPECT_EQ(Next(queue), 0U);
   std::optional<Item> item;
   ASSERT_EQ(queue.Pop(kNow, {}, item), RecordingQueue::Outcome::kItem);
-  EXPECT_TRUE(std::holds_alternative<SessionAccount>(*item));
+  EXPECT_TRUE(std::holds_alternative<SessionCounters>(*item));
 }
 
 TEST(RecordingQueueTest, AProducerWithPatienceWaitsForRoom) {

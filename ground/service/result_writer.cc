@@ -11,7 +11,7 @@
 #include "common/base/log.h"
 #include "ground/export/results.h"
 #include "ground/results/scan_result.h"
-#include "ground/service/link_account.h"
+#include "ground/service/link_counters.h"
 
 namespace isotherm {
 namespace {
@@ -23,21 +23,21 @@ namespace fs = std::filesystem;
 /// The recording's end is written at the same time. A disk that takes longer is slow or stuck.
 constexpr Nanoseconds kClosingPatience = 1s;
 
-Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionAccount& account,
-                 const RecordingAccount& recording, std::uint64_t unprocessed) {
+Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCounters& counters,
+                 const RecordingProgress& recording, std::uint64_t unprocessed) {
   Json stats = DescribeScan(scan.pipeline(), options, scan.rig());
   Json& link = stats["link"];
-  link["session"] = account.session;
-  link["closed"] = account.closed;
-  link["final"] = account.ended;
+  link["session"] = counters.session;
+  link["closed"] = counters.closed;
+  link["final"] = counters.ended;
   link["not_processed_at_stop"] = unprocessed;
   link["waiting"] = DescribeStage(scan.waiting());
   link["out_of_order_frames"] = scan.out_of_order();
-  if (scan.outside_poses_received() > 0) {
-    link["outside_poses"]["received"] = scan.outside_poses_received();
-    link["outside_poses"]["missing"] = scan.outside_poses_missing();
+  if (scan.odometry_poses_received() > 0) {
+    link["external_odometry"]["received"] = scan.odometry_poses_received();
+    link["external_odometry"]["missing"] = scan.odometry_poses_missing();
   }
-  DescribeAccount(account, recording, link);
+  DescribeCounters(counters, recording, link);
   stats["feedback"] = scan.DescribeFeedback();
   return stats;
 }
@@ -53,7 +53,7 @@ fs::path SecondFolder(const fs::path& folder) {
 
 /// Returns what to do next, for whoever holds the rig.
 std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
-                           const RecordingAccount& recording) {
+                           const RecordingProgress& recording) {
   std::string text;
   if (const BehindCounts behind = scan.behind(); behind.thermal_frames > 0) {
     text += fmt::format(
@@ -66,12 +66,12 @@ std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
   const auto percent = [&](double area_m2) { return 100.0 * area_m2 / areas.total_m2(); };
   text += fmt::format("next     measured well: {:.0f} % of {:.2f} m2", percent(areas.good_m2),
                       areas.total_m2());
-  if (areas.good_m2 >= options.feedback().done_share() * areas.total_m2())
+  if (areas.good_m2 >= options.feedback().done_fraction() * areas.total_m2())
     return text + ", as was asked for: the scan is done\n";
   return text + fmt::format(
                     ", {:.0f} % are asked for: go on with the {:.0f} % that were never measured "
                     "and the {:.0f} % from a bad distance or angle\n",
-                    100.0 * options.feedback().done_share(), percent(areas.never_m2),
+                    100.0 * options.feedback().done_fraction(), percent(areas.never_m2),
                     percent(areas.bad_m2));
 }
 
@@ -140,9 +140,9 @@ void ResultWriter::Write(EndedScan ended) {
   scan.FinishFrames([&](double) { go_on(); });
   const DelayReport delay = scan.CheckDelay([&] { go_on(); });
   go_on();
-  const RecordingAccount recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
-  const SessionAccount account = account_(scan.session());
-  const Json stats = DescribeEnd(scan, options_, account, recording, ended.unprocessed);
+  const RecordingProgress recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
+  const SessionCounters counters = counters_(scan.session());
+  const Json stats = DescribeEnd(scan, options_, counters, recording, ended.unprocessed);
   const Result<std::string> text = WriteSomewhere(scan, delay, stats, ended.start.folder);
   if (!text) {
     status_ = text.error();
@@ -150,7 +150,7 @@ void ResultWriter::Write(EndedScan ended) {
     return;
   }
   const std::string summary =
-      *text + AccountText(account, recording) + ConclusionText(scan, options_, recording);
+      *text + CountersText(counters, recording) + ConclusionText(scan, options_, recording);
   std::fputs(summary.c_str(), stdout);
   std::fflush(stdout);
 }

@@ -14,7 +14,7 @@
 #include "ground/service/live_scan.h"
 #include "ground/service/scan_board.h"
 #include "ground/service/session_item.h"
-#include "ground/subscriber/session_account.h"
+#include "ground/subscriber/session_counters.h"
 
 namespace isotherm {
 
@@ -33,13 +33,13 @@ struct EndedScan {
 class ResultWriter {
  public:
   /// What is known of a session's frames by now.
-  using AccountSource = std::function<SessionAccount(std::uint64_t session)>;
+  using CountersSource = std::function<SessionCounters(std::uint64_t session)>;
   /// `written` is called after each scan, whatever became of its results.
-  ResultWriter(const GroundOptions& options, const Clock& clock, AccountSource account,
+  ResultWriter(const GroundOptions& options, const Clock& clock, CountersSource counters,
                ScanBoard& board, ThreadProgress& progress, std::function<void()> written)
       : options_(options),
         clock_(clock),
-        account_(std::move(account)),
+        counters_(std::move(counters)),
         board_(board),
         progress_(progress),
         written_(std::move(written)) {}
@@ -68,7 +68,7 @@ class ResultWriter {
 
   const GroundOptions& options_;
   const Clock& clock_;
-  const AccountSource account_;
+  const CountersSource counters_;
   ScanBoard& board_;
   ThreadProgress& progress_;
   const std::function<void()> written_;

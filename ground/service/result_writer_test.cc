@@ -47,10 +47,10 @@ class ResultWriterTest : public ::testing::Test {
     ended.start.rig.waits_for_ground = replay;
     ended.start.rig.rig.depth = CameraModel{64, 48, 57.0, 57.0, 32.0, 24.0};
     ended.start.folder = Folder(session);
-    ended.start.recording = std::make_shared<RecordingLedger>();
-    ended.start.recording->Update([&](RecordingAccount& account) {
-      account.path = Folder(session) / "scan.mcap";
-      account.closed = true;
+    ended.start.recording = std::make_shared<RecordingTracker>();
+    ended.start.recording->Update([&](RecordingProgress& counters) {
+      counters.path = Folder(session) / "scan.mcap";
+      counters.closed = true;
     });
     ended.scan = LiveScan::Create(clock_, options_, ended.start.rig).value();
     return ended;
@@ -85,9 +85,9 @@ class ResultWriterTest : public ::testing::Test {
                        [this](std::uint64_t session) {
                          if (session == 1) reached_.set_value();
                          go_on_.wait();
-                         SessionAccount account;
-                         account.session = session;
-                         return account;
+                         SessionCounters counters;
+                         counters.session = session;
+                         return counters;
                        },
                        board_,
                        progress_,

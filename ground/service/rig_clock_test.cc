@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "common/testing/temporary_directory.h"
-#include "ground/service/link_account.h"
+#include "ground/service/link_counters.h"
 #include "ground/service/scan_recorder.h"
-#include "ground/service/status_teller.h"
+#include "ground/service/status_reporter.h"
 
 namespace isotherm {
 namespace {
@@ -20,8 +20,8 @@ using ::testing::HasSubstr;
 
 constexpr CaptureTime kTime{seconds(1'700'000'000)};
 
-ClockAccount MakeClock() {
-  ClockAccount clock;
+SessionClock MakeClock() {
+  SessionClock clock;
   clock.session = 1;
   clock.time = kTime;
   clock.rig = {.synchronised = true, .estimated_error_s = 0.0001, .max_error_s = 0.002};
@@ -35,10 +35,10 @@ ClockAccount MakeClock() {
 }
 
 TEST(RigClockTest, F18StatsHaveAllOfItWithUnits) {
-  SessionAccount account;
-  account.clock = MakeClock();
+  SessionCounters counters;
+  counters.clock = MakeClock();
   Json link;
-  DescribeAccount(account, {}, link);
+  DescribeCounters(counters, {}, link);
   EXPECT_THAT(
       JsonText(link),
       AllOf(HasSubstr("\"synchronised\": true"), HasSubstr("\"estimated_error_ms\": 0.1"),
@@ -51,22 +51,22 @@ TEST(RigClockTest, F18SummaryAndStatusShowTheAlarm) {
   GroundSituation situation;
   SubscriberStats& stats = situation.link;
   stats.edge_present = true;
-  stats.account.session = 1;
+  stats.counters.session = 1;
   EXPECT_THAT(StatusText(situation), HasSubstr("rig's clock: unknown"));
-  stats.account.clock = MakeClock();
+  stats.counters.clock = MakeClock();
   EXPECT_THAT(StatusText(situation),
               AllOf(HasSubstr("scanning | CLOCK ALARM | "),
                     HasSubstr("CLOCK ALARM: synchronised, off by about 0.10 ms, at most 2.0 ms, "
                               "125.0 ms ahead of ours (+-0.5 ms); stamps +-0.050 ms depth")));
-  EXPECT_THAT(AccountText(stats.account, {}), HasSubstr("clock    of the rig: CLOCK ALARM"));
+  EXPECT_THAT(CountersText(stats.counters, {}), HasSubstr("clock    of the rig: CLOCK ALARM"));
 }
 
 class ClockRecordTest : public ::testing::Test {
  protected:
-  void Record(const std::vector<ClockAccount>& clocks) {
+  void Record(const std::vector<SessionClock>& clocks) {
     const std::filesystem::path path = folder_.path() / "scan.mcap";
     auto recorder = std::move(*ScanRecorder::Create(path, GroundOptions()));
-    for (const ClockAccount& clock : clocks) recorder->Write(clock);
+    for (const SessionClock& clock : clocks) recorder->Write(clock);
     ASSERT_TRUE(recorder->Close().ok());
     reader_ = std::move(*RecordingReader::Open(path));
   }
@@ -86,10 +86,10 @@ class ClockRecordTest : public ::testing::Test {
 };
 
 TEST_F(ClockRecordTest, F17OnceUnsynchronisedIsUnsynchronised) {
-  ClockAccount clock;
+  SessionClock clock;
   clock.time = kTime;
   clock.unsynchronised = true;
-  ClockAccount later = MakeClock();
+  SessionClock later = MakeClock();
   later.unsynchronised = true;
   Record({clock, later});
   EXPECT_EQ(Metadata().at("synchronised"), "no");
@@ -98,12 +98,12 @@ TEST_F(ClockRecordTest, F17OnceUnsynchronisedIsUnsynchronised) {
 }
 
 TEST_F(ClockRecordTest, F15EachStepIsAnEventOnTheTimeLineOfTheFrames) {
-  ClockAccount clock = MakeClock();
-  ClockAccount stepped = clock;
+  SessionClock clock = MakeClock();
+  SessionClock stepped = clock;
   stepped.rig.steps = 1;
   stepped.rig.step_sum_s = -3.0;
   stepped.time = kTime + seconds(1) - seconds(3);  // The rig's clock went back.
-  ClockAccount again = stepped;
+  SessionClock again = stepped;
   again.time += seconds(1);
   Record({clock, stepped, again});
   EXPECT_EQ(Metadata().at("synchronised"), "yes");
@@ -115,19 +115,19 @@ TEST_F(ClockRecordTest, F15EachStepIsAnEventOnTheTimeLineOfTheFrames) {
   EXPECT_EQ(steps[0].wall_minus_time, -seconds(3));
 }
 
-TEST(StatusTellerTest, TellsEveryTenSecondsWhileAScanRuns) {
+TEST(StatusReporterTest, TellsEveryTenSecondsWhileAScanRuns) {
   FakeClock clock(kTime);
-  StatusTeller teller(clock);
+  StatusReporter reporter(clock);
   GroundSituation situation;
-  situation.link.account.session = 1;
+  situation.link.counters.session = 1;
   ::testing::internal::CaptureStderr();
   for (int i = 0; i < 21; ++i) {
-    teller.Tell(situation);
+    reporter.Report(situation);
     clock.Advance(milliseconds(1000));
   }
-  situation.link.account.closed = true;
+  situation.link.counters.closed = true;
   for (int i = 0; i < 21; ++i) {
-    teller.Tell(situation);
+    reporter.Report(situation);
     clock.Advance(milliseconds(1000));
   }
   const std::string told = ::testing::internal::GetCapturedStderr();

@@ -6,7 +6,7 @@
 
 #include "common/concurrency/latest_value.h"
 #include "common/messages/messages.h"
-#include "ground/service/recording_ledger.h"
+#include "ground/service/recording_tracker.h"
 
 namespace isotherm {
 
@@ -23,7 +23,7 @@ struct ScanBoard {
   LatestValue<Feedback> feedback;
   LatestValue<EdgeStatus> edge;
   LatestValue<BehindCounts> behind;
-  LatestValue<std::shared_ptr<RecordingLedger>> recording;
+  LatestValue<std::shared_ptr<RecordingTracker>> recording;
   /// What the results of the model so far would take.
   std::atomic<std::uint64_t> result_bytes{0};
   std::atomic<int> scans_being_written{0};  ///< Ended ones whose results are not there yet.

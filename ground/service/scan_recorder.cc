@@ -63,18 +63,20 @@ void ScanRecorder::Write(const Feedback& feedback) {
   Note(WriteFeedback(feedback, std::nullopt, *writer_));
 }
 
-void ScanRecorder::Write(const OutsidePoseSample& sample) { Note(writer_->Write(sample.pose)); }
+void ScanRecorder::Write(const ExternalOdometrySample& sample) {
+  Note(writer_->Write(sample.pose));
+}
 
-void ScanRecorder::Write(const ClockAccount& clock) {
-  const ClockAccount before = std::exchange(clock_, clock).value_or(ClockAccount());
+void ScanRecorder::Write(const SessionClock& clock) {
+  const SessionClock before = std::exchange(clock_, clock).value_or(SessionClock());
   const double step_s = clock.rig.step_sum_s - before.rig.step_sum_s;
   if (step_s != 0.0) {
     const Nanoseconds total = FromSeconds(clock.rig.step_sum_s);
     Note(writer_->Write(ClockStep{clock.time - total, FromSeconds(step_s), total}));
   }
-  const auto kind = [](const ClockAccount& account) {
-    return std::tuple(account.rig.synchronised, account.unsynchronised, account.rig.steps,
-                      account.alarm, account.offset.has_value());
+  const auto kind = [](const SessionClock& counters) {
+    return std::tuple(counters.rig.synchronised, counters.unsynchronised, counters.rig.steps,
+                      counters.alarm, counters.offset.has_value());
   };
   if (kind(clock) != kind(before)) WriteClockMetadata();
 }

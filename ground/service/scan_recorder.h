@@ -10,7 +10,7 @@
 #include "common/recording/recording.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/subscriber/received_frame.h"
-#include "ground/subscriber/session_account.h"
+#include "ground/subscriber/session_counters.h"
 
 namespace isotherm {
 
@@ -26,10 +26,10 @@ class ScanRecorder {
   void Write(const ReceivedDepth& depth);
   void Write(const ReceivedThermal& thermal);
   void Write(const Feedback& feedback);
-  void Write(const OutsidePoseSample& sample);
+  void Write(const ExternalOdometrySample& sample);
   /// Keeps what is known of the rig's clock, and writes what changed in kind: synchronisation,
   /// steps, alarm.
-  void Write(const ClockAccount& clock);
+  void Write(const SessionClock& clock);
   /// Hands what was written so far to the operating system.
   void Flush() { Note(writer_->Flush()); }
   /// Writes index and footer. The first error of the recording, or ok. Idempotent.
@@ -46,7 +46,7 @@ class ScanRecorder {
 
   std::unique_ptr<RecordingWriter> writer_;
   Status first_error_;
-  std::optional<ClockAccount> clock_;  ///< The newest.
+  std::optional<SessionClock> clock_;  ///< The newest.
 };
 
 }  // namespace isotherm

@@ -6,21 +6,21 @@
 
 #include "common/concurrency/bounded_queue.h"
 #include "common/messages/messages.h"
-#include "ground/service/recording_ledger.h"
+#include "ground/service/recording_tracker.h"
 #include "ground/subscriber/received_frame.h"
-#include "ground/subscriber/session_account.h"
+#include "ground/subscriber/session_counters.h"
 
 namespace isotherm {
 
-/// A new session: both consumers get the same folder and the account of what is recorded.
+/// A new session: both consumers get the same folder and the counters of what is recorded.
 struct SessionStart {
   RigDescription rig;
   std::filesystem::path folder;
-  std::shared_ptr<RecordingLedger> recording;
+  std::shared_ptr<RecordingTracker> recording;
 };
 
-using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, OutsidePoseSample,
-                          SessionAccount, Feedback, ClockAccount>;
+using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, ExternalOdometrySample,
+                          SessionCounters, Feedback, SessionClock>;
 using ItemQueue = BoundedQueue<Item>;
 
 inline bool IsFrame(const Item& item) {

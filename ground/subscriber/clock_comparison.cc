@@ -6,7 +6,7 @@
 namespace isotherm {
 
 std::uint64_t ClockComparison::Ping(SteadyTime now) {
-  if (pinged_.size() == kMostPings) pinged_.pop_front();
+  if (pinged_.size() == kMaxPings) pinged_.pop_front();
   pinged_.push_back(now);
   return next_ping_++;
 }

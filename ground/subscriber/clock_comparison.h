@@ -63,7 +63,7 @@ class ClockComparison {
   static double Uncertainty(const Sample& sample, SteadyTime now);
   static bool Contradict(const Sample& older, const Sample& newer);
 
-  static constexpr std::size_t kMostPings = 512;  ///< Ten seconds at forty receipts a second.
+  static constexpr std::size_t kMaxPings = 512;  ///< Ten seconds at forty receipts a second.
   std::uint64_t next_ping_;
   std::deque<SteadyTime> pinged_;  ///< The newest last.
   std::deque<Sample> samples_;

@@ -15,45 +15,45 @@ constexpr double kMsPerS = 1e3;
 
 void ClockWatch::Update(const EdgeStatus& status, const std::optional<ClockOffset>& offset,
                         const KernelClock& own, SteadyTime now) {
-  const bool is_first = !seen_ || account_.session != status.session;
+  const bool is_first = !seen_ || session_clock_.session != status.session;
   if (is_first) {
     seen_ = true;
     // The difference and the alarm are about the clocks, not about the session.
-    ClockAccount next;
+    SessionClock next;
     next.session = status.session;
-    next.offset = account_.offset;
-    next.alarm = account_.alarm;
-    next.alarms = account_.alarm ? 1 : 0;
-    account_ = next;
+    next.offset = session_clock_.offset;
+    next.alarm = session_clock_.alarm;
+    next.alarms = session_clock_.alarm ? 1 : 0;
+    session_clock_ = next;
   }
-  const ClockReport before = account_.rig;
-  account_.rig = status.clock;
-  account_.time = status.time;
-  account_.unsynchronised = account_.unsynchronised || !status.clock.synchronised;
-  account_.depth_camera = status.depth_camera;
-  account_.thermal_camera = status.thermal_camera;
-  Tell(before, is_first);
-  Judge(offset);
-  TellAlarm(own, now);
+  const ClockReport before = session_clock_.rig;
+  session_clock_.rig = status.clock;
+  session_clock_.time = status.time;
+  session_clock_.unsynchronised = session_clock_.unsynchronised || !status.clock.synchronised;
+  session_clock_.depth_camera = status.depth_camera;
+  session_clock_.thermal_camera = status.thermal_camera;
+  Log(before, is_first);
+  Assess(offset);
+  LogAlarm(own, now);
 }
 
-void ClockWatch::Judge(const std::optional<ClockOffset>& offset) {
+void ClockWatch::Assess(const std::optional<ClockOffset>& offset) {
   if (!offset) return;
-  account_.offset = offset;
+  session_clock_.offset = offset;
   const double certain_s = std::max(0.0, std::abs(offset->offset_s) - offset->uncertainty_s);
-  account_.largest_offset_s = std::fmax(account_.largest_offset_s, certain_s);
+  session_clock_.largest_offset_s = std::fmax(session_clock_.largest_offset_s, certain_s);
   if (max_offset_ == Nanoseconds(0)) return;
   const double max_s = ToSeconds(max_offset_);
-  if (!account_.alarm && certain_s > max_s) {
-    account_.alarm = true;
-    ++account_.alarms;
+  if (!session_clock_.alarm && certain_s > max_s) {
+    session_clock_.alarm = true;
+    ++session_clock_.alarms;
   } else if (std::abs(offset->offset_s) <= max_s) {
-    account_.alarm = false;
+    session_clock_.alarm = false;
   }
 }
 
-void ClockWatch::Tell(const ClockReport& before, bool is_first) {
-  const ClockReport& rig = account_.rig;
+void ClockWatch::Log(const ClockReport& before, bool is_first) {
+  const ClockReport& rig = session_clock_.rig;
   if (!rig.synchronised && (is_first || before.synchronised)) {
     LOG(Subscriber, Warning) << "the rig's clock is not synchronised: its capture times are right "
                                 "among themselves, but not as UTC; see to chrony on the rig "
@@ -71,25 +71,25 @@ void ClockWatch::Tell(const ClockReport& before, bool is_first) {
   }
 }
 
-void ClockWatch::TellAlarm(const KernelClock& own, SteadyTime now) {
-  if (!account_.alarm) {
-    if (!told_) return;
-    told_ = false;
+void ClockWatch::LogAlarm(const KernelClock& own, SteadyTime now) {
+  if (!session_clock_.alarm) {
+    if (!reported_) return;
+    reported_ = false;
     LOG(Subscriber, Info) << "the rig's clock agrees with ours again: "
-                          << OffsetText(*account_.offset);
+                          << OffsetText(*session_clock_.offset);
     return;
   }
-  if (told_at_ && now - *told_at_ < kRepeat) return;
-  told_ = true;
-  told_at_ = now;
+  if (reported_at_ && now - *reported_at_ < kRepeat) return;
+  reported_ = true;
+  reported_at_ = now;
   LOG(Subscriber, Warning) << fmt::format(
       "CLOCK ALARM: the rig's clock is {}; {:.0f} ms are allowed (live.max_clock_offset_s). The "
       "rig says "
       "that it is {}; ours is {}. One of them follows a wrong time server, or none: look at "
       "chronyc "
       "sources on both (docs/timing.md)",
-      OffsetText(*account_.offset), kMsPerS * ToSeconds(max_offset_), ToText(account_.rig),
-      ToText(ToReport(own)));
+      OffsetText(*session_clock_.offset), kMsPerS * ToSeconds(max_offset_),
+      ToText(session_clock_.rig), ToText(ToReport(own)));
 }
 
 std::string OffsetText(const ClockOffset& offset) {
@@ -102,13 +102,13 @@ std::string OffsetText(const ClockOffset& offset) {
   return fmt::format("{:.3f} s {} ours (+-{:.3f} s)", size_s, side, offset.uncertainty_s);
 }
 
-std::string ClockText(const ClockAccount& account) {
-  std::string text = account.alarm ? "CLOCK ALARM: " : "";
-  text += ToText(account.rig);
-  if (account.rig.synchronised && account.unsynchronised) text += " (not all the time)";
+std::string ClockText(const SessionClock& clock) {
+  std::string text = clock.alarm ? "CLOCK ALARM: " : "";
+  text += ToText(clock.rig);
+  if (clock.rig.synchronised && clock.unsynchronised) text += " (not all the time)";
   text += ", ";
-  text += account.offset ? OffsetText(*account.offset) : "not compared with ours yet";
-  const std::string stamps = StampText(account.depth_camera, account.thermal_camera);
+  text += clock.offset ? OffsetText(*clock.offset) : "not compared with ours yet";
+  const std::string stamps = StampText(clock.depth_camera, clock.thermal_camera);
   return stamps.empty() ? text : text + "; stamps " + stamps;
 }
 

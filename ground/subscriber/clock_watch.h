@@ -7,7 +7,7 @@
 #include "common/messages/messages.h"
 #include "common/time/kernel_clock.h"
 #include "common/time/time_types.h"
-#include "ground/subscriber/session_account.h"
+#include "ground/subscriber/session_counters.h"
 
 namespace isotherm {
 
@@ -24,25 +24,25 @@ class ClockWatch {
   void Update(const EdgeStatus& status, const std::optional<ClockOffset>& offset,
               const KernelClock& own, SteadyTime now);
   /// The clock in the session of the newest status.
-  const ClockAccount& account() const { return account_; }
+  const SessionClock& clock() const { return session_clock_; }
 
   static constexpr Nanoseconds kRepeat = std::chrono::minutes(1);
 
  private:
-  void Judge(const std::optional<ClockOffset>& offset);
-  void Tell(const ClockReport& before, bool is_first);
-  void TellAlarm(const KernelClock& own, SteadyTime now);
+  void Assess(const std::optional<ClockOffset>& offset);
+  void Log(const ClockReport& before, bool is_first);
+  void LogAlarm(const KernelClock& own, SteadyTime now);
 
   Nanoseconds max_offset_;
   bool seen_ = false;  ///< A status.
-  ClockAccount account_;
-  std::optional<SteadyTime> told_at_;  ///< The alarm.
-  bool told_ = false;                  ///< That it is on.
+  SessionClock session_clock_;
+  std::optional<SteadyTime> reported_at_;  ///< The alarm.
+  bool reported_ = false;                  ///< That it is on.
 };
 
 /// "0.3 ms ahead of ours (+-0.4 ms)", "80.1 ms behind ours (+-0.4 ms)".
 std::string OffsetText(const ClockOffset& offset);
 /// One line: synchronisation, steps, difference to ours, alarm, stamps.
-std::string ClockText(const ClockAccount& account);
+std::string ClockText(const SessionClock& clock);
 
 }  // namespace isotherm

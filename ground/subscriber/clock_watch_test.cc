@@ -29,7 +29,7 @@ class ClockWatchTest : public testing::Test {
     now_ += seconds(1);
     watch_.Update(status_, offset, kOwn, now_);
   }
-  const ClockAccount& account() const { return watch_.account(); }
+  const SessionClock& clock() const { return watch_.clock(); }
 
   ClockWatch watch_{kAllowed};
   EdgeStatus status_;
@@ -38,28 +38,28 @@ class ClockWatchTest : public testing::Test {
 
 TEST_F(ClockWatchTest, F18ADifferenceThatIsCertainIsAnAlarm) {
   Update(ClockOffset{-0.051, 0.0005});
-  EXPECT_TRUE(account().alarm);
-  EXPECT_EQ(account().alarms, 1U);
-  EXPECT_NEAR(account().largest_offset_s, 0.0505, 1e-9);
-  EXPECT_THAT(ClockText(account()), HasSubstr("CLOCK ALARM"));
-  EXPECT_THAT(ClockText(account()), HasSubstr("51.0 ms behind ours (+-0.5 ms)"));
+  EXPECT_TRUE(clock().alarm);
+  EXPECT_EQ(clock().alarms, 1U);
+  EXPECT_NEAR(clock().largest_offset_s, 0.0505, 1e-9);
+  EXPECT_THAT(ClockText(clock()), HasSubstr("CLOCK ALARM"));
+  EXPECT_THAT(ClockText(clock()), HasSubstr("51.0 ms behind ours (+-0.5 ms)"));
 }
 
 TEST_F(ClockWatchTest, F18ASlowLinkAloneIsNoAlarm) {
   for (int i = 0; i < 100; ++i) Update(ClockOffset{0.19, 0.2});
-  EXPECT_FALSE(account().alarm);
-  EXPECT_EQ(account().alarms, 0U);
-  EXPECT_EQ(account().largest_offset_s, 0.0) << "nothing is certain";
+  EXPECT_FALSE(clock().alarm);
+  EXPECT_EQ(clock().alarms, 0U);
+  EXPECT_EQ(clock().largest_offset_s, 0.0) << "nothing is certain";
 }
 
 TEST_F(ClockWatchTest, F18TheAlarmEndsWhenTheClockIsRightAgain) {
   Update(ClockOffset{0.2, 0.001});
   Update(ClockOffset{0.060, 0.020});
-  EXPECT_TRUE(account().alarm) << "less certain, but not better";
+  EXPECT_TRUE(clock().alarm) << "less certain, but not better";
   Update(ClockOffset{0.010, 0.001});
-  EXPECT_FALSE(account().alarm);
-  EXPECT_EQ(account().alarms, 1U);
-  EXPECT_NEAR(account().largest_offset_s, 0.199, 1e-9) << "of the whole session";
+  EXPECT_FALSE(clock().alarm);
+  EXPECT_EQ(clock().alarms, 1U);
+  EXPECT_NEAR(clock().largest_offset_s, 0.199, 1e-9) << "of the whole session";
 }
 
 TEST_F(ClockWatchTest, F18TheAlarmIsToldAtMostOnceAMinute) {
@@ -74,24 +74,24 @@ TEST_F(ClockWatchTest, F18TheAlarmIsToldAtMostOnceAMinute) {
   EXPECT_EQ(lines, 1U) << told;
   EXPECT_THAT(told, HasSubstr("live.max_clock_offset_s"));
   EXPECT_THAT(told, HasSubstr("agrees with ours again"));
-  EXPECT_EQ(account().alarms, 30U) << "counted all the same";
+  EXPECT_EQ(clock().alarms, 30U) << "counted all the same";
 }
 
 TEST_F(ClockWatchTest, F18NoAlarmIfNoneIsWanted) {
   watch_ = ClockWatch(Nanoseconds(0));
   Update(ClockOffset{3600.0, 0.001});
-  EXPECT_FALSE(account().alarm);
-  EXPECT_NEAR(account().largest_offset_s, 3600.0, 0.01);
+  EXPECT_FALSE(clock().alarm);
+  EXPECT_NEAR(clock().largest_offset_s, 3600.0, 0.01);
 }
 
 TEST_F(ClockWatchTest, AnAlarmOutlivesItsSession) {
   Update(ClockOffset{0.2, 0.001});
   status_.session = 8;
   Update(std::nullopt);
-  EXPECT_EQ(account().session, 8U);
-  EXPECT_TRUE(account().alarm);
-  EXPECT_EQ(account().alarms, 1U);
-  EXPECT_TRUE(std::isnan(account().largest_offset_s));
+  EXPECT_EQ(clock().session, 8U);
+  EXPECT_TRUE(clock().alarm);
+  EXPECT_EQ(clock().alarms, 1U);
+  EXPECT_TRUE(std::isnan(clock().largest_offset_s));
 }
 
 TEST_F(ClockWatchTest, F17AnUnsynchronisedRigIsToldAndRemembered) {
@@ -102,11 +102,11 @@ TEST_F(ClockWatchTest, F17AnUnsynchronisedRigIsToldAndRemembered) {
   const std::string told = testing::internal::GetCapturedStderr();
   EXPECT_EQ(told.find("not synchronised"), told.rfind("not synchronised")) << "once";
   EXPECT_THAT(told, HasSubstr("docs/timing.md"));
-  EXPECT_THAT(ClockText(account()), HasSubstr("not synchronised"));
+  EXPECT_THAT(ClockText(clock()), HasSubstr("not synchronised"));
   status_.clock.synchronised = true;
   Update(std::nullopt);
-  EXPECT_TRUE(account().unsynchronised);
-  EXPECT_THAT(ClockText(account()), HasSubstr("synchronised (not all the time)"));
+  EXPECT_TRUE(clock().unsynchronised);
+  EXPECT_THAT(ClockText(clock()), HasSubstr("synchronised (not all the time)"));
 }
 
 TEST_F(ClockWatchTest, F15AStepIsToldOnce) {
@@ -119,18 +119,18 @@ TEST_F(ClockWatchTest, F15AStepIsToldOnce) {
   const std::string told = testing::internal::GetCapturedStderr();
   EXPECT_THAT(told, HasSubstr("set by -3.000 s"));
   EXPECT_EQ(told.find("set by"), told.rfind("set by")) << told;
-  EXPECT_THAT(ClockText(account()), HasSubstr("set 1 time by -3.000 s in all"));
+  EXPECT_THAT(ClockText(clock()), HasSubstr("set 1 time by -3.000 s in all"));
 }
 
 TEST_F(ClockWatchTest, StampsAreShownWithTheirUncertainty) {
   status_.depth_camera.stamp_sigma_s = 0.00005;
   status_.thermal_camera.stamp_sigma_s = 0.00012;
   Update(std::nullopt);
-  EXPECT_THAT(ClockText(account()), HasSubstr("stamps +-0.050 ms depth, +-0.120 ms thermal"));
-  EXPECT_THAT(ClockText(account()), Not(HasSubstr("UNSYNCHRONISED frames")));
+  EXPECT_THAT(ClockText(clock()), HasSubstr("stamps +-0.050 ms depth, +-0.120 ms thermal"));
+  EXPECT_THAT(ClockText(clock()), Not(HasSubstr("UNSYNCHRONISED frames")));
   status_.thermal_camera.unsynchronised_frames = 4;
   Update(std::nullopt);
-  EXPECT_THAT(ClockText(account()), HasSubstr("UNSYNCHRONISED frames 0 depth, 4 thermal"));
+  EXPECT_THAT(ClockText(clock()), HasSubstr("UNSYNCHRONISED frames 0 depth, 4 thermal"));
 }
 
 /// Rig and ground with a link between them: row F18 as a whole.
@@ -149,7 +149,7 @@ class F18Test : public testing::Test {
       const SteadyTime now(elapsed_);
       comparison_.Add(echo, now);
       watch_.Update(status, comparison_.Offset({Wall(), now}), kOwn, now);
-      if (watch_.account().alarm) return i;
+      if (watch_.clock().alarm) return i;
     }
     return std::nullopt;
   }

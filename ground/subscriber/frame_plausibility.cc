@@ -18,7 +18,7 @@ std::optional<RefusalCause> CheckFollows(const FrameMark& before, const FrameMar
       advance > std::max(waited, explained * kMaxFramePeriod) + kMaxJitter) {
     return RefusalCause::kImplausibleTime;
   }
-  const double possible = kMaxFrameRateHz * ToSeconds(advance);
+  const double possible = kMaxFrameRate_hz * ToSeconds(advance);
   if (static_cast<double>(numbers) > static_cast<double>(kFreeNumbers) + possible) {
     return RefusalCause::kImpossibleNumber;
   }

@@ -18,7 +18,7 @@ struct FrameMark {
 /// A camera that delivers gives a frame at least so often.
 inline constexpr Nanoseconds kMaxFramePeriod = std::chrono::seconds(1);
 /// Frames of a camera per second, more than any has.
-inline constexpr double kMaxFrameRateHz = 200.0;
+inline constexpr double kMaxFrameRate_hz = 200.0;
 /// Numbers that may be missing whatever the times say.
 inline constexpr std::uint64_t kFreeNumbers = 64;
 /// How much sooner than the frame before a frame may arrive.

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "common/time/time_types.h"
-#include "ground/subscriber/frame_ledger.h"
+#include "ground/subscriber/receipt_tracker.h"
 
 namespace isotherm {
 
@@ -31,7 +31,7 @@ class FrameSequencer {
 
   /// Returns what would become of `number`.
   Verdict Check(std::uint64_t number) const {
-    if (!ledger_.IsNew(number)) return Verdict::kDuplicate;
+    if (!receipts_.IsNew(number)) return Verdict::kDuplicate;
     if (number < handled_) return Verdict::kLate;
     return Verdict::kInOrder;
   }
@@ -39,7 +39,7 @@ class FrameSequencer {
   /// Takes `item` if the verdict is kInOrder; leaves it to the caller otherwise.
   Verdict Add(std::uint64_t number, T&& item, SteadyTime now) {
     const Verdict verdict = Check(number);
-    if (verdict == Verdict::kInOrder || verdict == Verdict::kLate) ledger_.Add(number);
+    if (verdict == Verdict::kInOrder || verdict == Verdict::kLate) receipts_.Add(number);
     if (verdict == Verdict::kInOrder) waiting_.emplace(number, Waiting{std::move(item), now});
     return verdict;
   }
@@ -69,7 +69,7 @@ class FrameSequencer {
   }
   /// All numbers below are delivered or given up.
   std::uint64_t handled() const { return handled_; }
-  const FrameLedger& ledger() const { return ledger_; }
+  const ReceiptTracker& receipts() const { return receipts_; }
 
  private:
   struct Waiting {
@@ -86,7 +86,7 @@ class FrameSequencer {
   }
 
   const Nanoseconds window_;
-  FrameLedger ledger_;
+  ReceiptTracker receipts_;
   std::map<std::uint64_t, Waiting> waiting_;
   std::uint64_t handled_ = 0;
 };

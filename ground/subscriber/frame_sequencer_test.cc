@@ -50,7 +50,7 @@ TEST_F(FrameSequencerTest, F20DuplicateIsDroppedWhetherItWaitsOrHasPassed) {
   EXPECT_EQ(Add(0), Verdict::kDuplicate);
   EXPECT_EQ(Add(2), Verdict::kInOrder);
   EXPECT_EQ(Add(2), Verdict::kDuplicate);
-  EXPECT_EQ(sequencer_.ledger().received(), 2U);
+  EXPECT_EQ(sequencer_.receipts().received(), 2U);
 }
 
 TEST_F(FrameSequencerTest, F21FramesOutOfOrderAreSortedWithinTheWindow) {
@@ -72,15 +72,16 @@ TEST_F(FrameSequencerTest, F21AfterTheWindowTheMissingFrameIsLate) {
   EXPECT_THAT(TakeAll(), ElementsAre(2));
   EXPECT_EQ(Add(1), Verdict::kLate);
   EXPECT_THAT(TakeAll(), IsEmpty());
-  EXPECT_EQ(sequencer_.ledger().missing(), 0U);  // Late, but here.
+  EXPECT_EQ(sequencer_.receipts().missing(), 0U);  // Late, but here.
   EXPECT_EQ(Add(1), Verdict::kDuplicate);
 }
 
 TEST_F(FrameSequencerTest, F19LostFramesAreCountedAndNamed) {
   for (const std::uint64_t number : {0, 1, 4, 5, 9}) Add(number);
-  EXPECT_EQ(sequencer_.ledger().missing(), 5U);
-  EXPECT_THAT(sequencer_.ledger().NewestHoles(10), ElementsAre(FrameRange{2, 3}, FrameRange{6, 8}));
-  EXPECT_THAT(sequencer_.ledger().NewestHoles(1), ElementsAre(FrameRange{6, 8}));
+  EXPECT_EQ(sequencer_.receipts().missing(), 5U);
+  EXPECT_THAT(sequencer_.receipts().NewestHoles(10),
+              ElementsAre(FrameRange{2, 3}, FrameRange{6, 8}));
+  EXPECT_THAT(sequencer_.receipts().NewestHoles(1), ElementsAre(FrameRange{6, 8}));
 }
 
 TEST_F(FrameSequencerTest, WaitingFramesAreBounded) {
@@ -133,37 +134,37 @@ TEST_F(FrameSequencerTest, AnyMixtureIsDeliveredInOrderOnceAndAddsUp) {
 
   EXPECT_TRUE(std::ranges::is_sorted(delivered, std::less_equal<>{}));  // Strictly ascending.
   EXPECT_EQ(delivered.size() + late, distinct.size());
-  const FrameLedger& ledger = sequencer_.ledger();
-  EXPECT_EQ(ledger.received(), distinct.size());
-  EXPECT_EQ(ledger.received() + ledger.missing(), ledger.next());
+  const ReceiptTracker& receipts = sequencer_.receipts();
+  EXPECT_EQ(receipts.received(), distinct.size());
+  EXPECT_EQ(receipts.received() + receipts.missing(), receipts.next());
   std::uint64_t in_holes = 0;
-  for (const FrameRange& hole : ledger.NewestHoles(5000)) {
+  for (const FrameRange& hole : receipts.NewestHoles(5000)) {
     in_holes += hole.last - hole.first + 1;
     EXPECT_FALSE(distinct.contains(hole.first));
     EXPECT_FALSE(distinct.contains(hole.last));
   }
-  EXPECT_EQ(in_holes, ledger.missing());
+  EXPECT_EQ(in_holes, receipts.missing());
 }
 
-TEST(FrameLedgerTest, HolesAreFilledFromBothEndsAndFromTheMiddle) {
-  FrameLedger ledger;
-  ledger.Add(0);
-  ledger.Add(10);
-  for (const std::uint64_t number : {1, 9, 5}) EXPECT_TRUE(ledger.Add(number));
-  EXPECT_THAT(ledger.NewestHoles(9), ElementsAre(FrameRange{2, 4}, FrameRange{6, 8}));
-  for (const std::uint64_t number : {2, 3, 4, 6, 7, 8}) EXPECT_TRUE(ledger.Add(number));
-  EXPECT_EQ(ledger.missing(), 0U);
-  EXPECT_THAT(ledger.NewestHoles(9), IsEmpty());
+TEST(ReceiptTrackerTest, HolesAreFilledFromBothEndsAndFromTheMiddle) {
+  ReceiptTracker receipts;
+  receipts.Add(0);
+  receipts.Add(10);
+  for (const std::uint64_t number : {1, 9, 5}) EXPECT_TRUE(receipts.Add(number));
+  EXPECT_THAT(receipts.NewestHoles(9), ElementsAre(FrameRange{2, 4}, FrameRange{6, 8}));
+  for (const std::uint64_t number : {2, 3, 4, 6, 7, 8}) EXPECT_TRUE(receipts.Add(number));
+  EXPECT_EQ(receipts.missing(), 0U);
+  EXPECT_THAT(receipts.NewestHoles(9), IsEmpty());
 }
 
-TEST(FrameLedgerTest, TheOldestHoleIsGivenUpWhenThereAreTooMany) {
-  FrameLedger ledger(3);
-  for (std::uint64_t number = 1; number <= 9; number += 2) ledger.Add(number);
-  EXPECT_THAT(ledger.NewestHoles(9),
+TEST(ReceiptTrackerTest, TheOldestHoleIsGivenUpWhenThereAreTooMany) {
+  ReceiptTracker receipts(3);
+  for (std::uint64_t number = 1; number <= 9; number += 2) receipts.Add(number);
+  EXPECT_THAT(receipts.NewestHoles(9),
               ElementsAre(FrameRange{4, 4}, FrameRange{6, 6}, FrameRange{8, 8}));
-  EXPECT_FALSE(ledger.Add(0));
-  EXPECT_EQ(ledger.received() + ledger.missing(), ledger.next());
-  EXPECT_EQ(ledger.missing(), 5U);
+  EXPECT_FALSE(receipts.Add(0));
+  EXPECT_EQ(receipts.received() + receipts.missing(), receipts.next());
+  EXPECT_EQ(receipts.missing(), 5U);
 }
 
 TEST(FrameStreamTest, ANewSessionStartsFromZeroAndTheOldOneStaysOver) {

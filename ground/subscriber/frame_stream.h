@@ -70,8 +70,8 @@ class FrameStream {
   /// The tally of the current session.
   StreamTally tally() const {
     StreamTally tally = tally_;
-    tally.next = sequencer_->ledger().next();
-    tally.received = sequencer_->ledger().received();
+    tally.next = sequencer_->receipts().next();
+    tally.received = sequencer_->receipts().received();
     return tally;
   }
   /// The tally of `session`, as far as it is remembered (the current one and the one before).
@@ -84,11 +84,11 @@ class FrameStream {
   }
   StreamReceipt receipt(std::uint64_t session) const {
     if (!started_ || session != tally_.session) return {};
-    const FrameLedger& ledger = sequencer_->ledger();
-    return {.next = ledger.next(),
+    const ReceiptTracker& receipts = sequencer_->receipts();
+    return {.next = receipts.next(),
             .handled = sequencer_->handled(),
-            .received = ledger.received(),
-            .holes = ledger.NewestHoles(kMaxHoles)};
+            .received = receipts.received(),
+            .holes = receipts.NewestHoles(kMaxHoles)};
   }
 
  private:

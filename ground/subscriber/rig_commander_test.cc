@@ -50,13 +50,13 @@ class FakeRig {
         wait_set.Wait(20ms);
         commands.Take([&](Received<Command>&& received) {
           if (received.edge_id != edge_id_) return;
-          ++obeyed_;
+          ++executed_;
           EXPECT_TRUE(results_.Write(edge_id_, {received.message.number, outcome, text}).ok());
         });
       }
     });
   }
-  int obeyed() const { return obeyed_; }
+  int obeyed() const { return executed_; }
 
  private:
   const std::string edge_id_;
@@ -64,7 +64,7 @@ class FakeRig {
   std::unique_ptr<Participant> participant_;
   Writer<EdgeStatus> statuses_;
   Writer<CommandResult> results_;
-  std::atomic<int> obeyed_{0};
+  std::atomic<int> executed_{0};
   std::jthread thread_;
 };
 

@@ -31,7 +31,7 @@ std::uint64_t SessionOf(const RigSample& sample) {
     std::uint64_t operator()(const CommandResult& /*result*/) { return 0; }
     std::uint64_t operator()(const RigDescription& rig) { return rig.session; }
     std::uint64_t operator()(const EdgeStatus& status) { return status.session; }
-    std::uint64_t operator()(const OutsidePoseSample& pose) { return pose.session; }
+    std::uint64_t operator()(const ExternalOdometrySample& pose) { return pose.session; }
   };
   return std::visit(Visitor(), sample.content);
 }

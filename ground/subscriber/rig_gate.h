@@ -19,7 +19,7 @@ namespace isotherm {
 
 /// A sample that says it is of the rig that is followed.
 struct RigSample {
-  std::variant<RigDescription, EdgeStatus, OutsidePoseSample, CommandResult, EncodedDepthFrame,
+  std::variant<RigDescription, EdgeStatus, ExternalOdometrySample, CommandResult, EncodedDepthFrame,
                EncodedThermalFrame>
       content;
   CaptureTime arrival{};  ///< Ground wall clock.
@@ -57,7 +57,7 @@ class RigGate {
 
   /// A sample of `peer` has arrived.
   void Add(PeerHandle peer, RigSample&& sample, SteadyTime now);
-  /// The account of `session` is closed: nothing of it will come.
+  /// `session` is closed: nothing of it will come.
   void OnClosed(std::uint64_t session);
   /// Decides what time decides. To be called several times in a second.
   void Update(SteadyTime now, const IsPresent& is_present);

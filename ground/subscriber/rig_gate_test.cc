@@ -173,7 +173,7 @@ TEST_F(RigGateTest, AfterAnOutageTheFirstOneThatIsHeardIsNotTheOwner) {
   EXPECT_EQ(gate_.owner(), kFirst);
 }
 
-TEST_F(RigGateTest, TheNextEdgeFollowsAtOnceWhenTheAccountIsClosed) {
+TEST_F(RigGateTest, TheNextEdgeFollowsAtOnceWhenTheSessionIsClosed) {
   Add(kFirst, Rig(1));
   Add(kFirst, StatusOf(1, ScanState::kEnded));
   Add(kSecond, Rig(2));

@@ -44,14 +44,14 @@ std::string OtherRigsText(const std::string& followed, const std::vector<std::st
                      others.size() == 1 ? others.front() : "NAME");
 }
 
-bool OtherRigsTeller::Update(bool only_others, SteadyTime now) {
+bool OtherRigsNotice::Update(bool only_others, SteadyTime now) {
   if (only_others != only_others_) {
     only_others_ = only_others;
     since_ = now;
-    told_ = false;
+    reported_ = false;
   }
-  if (!only_others || told_ || now < since_ + kPatience) return false;
-  told_ = true;
+  if (!only_others || reported_ || now < since_ + kPatience) return false;
+  reported_ = true;
   return true;
 }
 

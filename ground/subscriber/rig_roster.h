@@ -40,7 +40,7 @@ std::string OtherRigsText(const std::string& followed, const std::vector<std::st
 
 /// Decides when that is said: once each time it becomes so, and not while the rigs are still
 /// appearing. Thread-compatible.
-class OtherRigsTeller {
+class OtherRigsNotice {
  public:
   static constexpr Nanoseconds kPatience = std::chrono::seconds(2);
 
@@ -48,7 +48,7 @@ class OtherRigsTeller {
   bool Update(bool only_others, SteadyTime now);
 
  private:
-  bool told_ = false;
+  bool reported_ = false;
   SteadyTime since_{};
   bool only_others_ = false;
 };

@@ -39,16 +39,16 @@ TEST(OtherRigsTest, SaysWhatToType) {
 }
 
 TEST(OtherRigsTest, IsToldOncePerChangeAndNotWhileRigsAppear) {
-  OtherRigsTeller teller;
+  OtherRigsNotice notice;
   SteadyTime now{1h};
-  EXPECT_FALSE(teller.Update(true, now));
-  EXPECT_FALSE(teller.Update(false, now += 1s)) << "the right one came a little later";
-  EXPECT_FALSE(teller.Update(true, now += 1s));
-  EXPECT_TRUE(teller.Update(true, now += OtherRigsTeller::kPatience));
-  EXPECT_FALSE(teller.Update(true, now += 1h));
-  EXPECT_FALSE(teller.Update(false, now));
-  EXPECT_FALSE(teller.Update(true, now));
-  EXPECT_TRUE(teller.Update(true, now + OtherRigsTeller::kPatience));
+  EXPECT_FALSE(notice.Update(true, now));
+  EXPECT_FALSE(notice.Update(false, now += 1s)) << "the right one came a little later";
+  EXPECT_FALSE(notice.Update(true, now += 1s));
+  EXPECT_TRUE(notice.Update(true, now += OtherRigsNotice::kPatience));
+  EXPECT_FALSE(notice.Update(true, now += 1h));
+  EXPECT_FALSE(notice.Update(false, now));
+  EXPECT_FALSE(notice.Update(true, now));
+  EXPECT_TRUE(notice.Update(true, now + OtherRigsNotice::kPatience));
 }
 
 }  // namespace

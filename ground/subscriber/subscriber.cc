@@ -17,11 +17,11 @@
 #include "common/transport/wait_set.h"
 #include "ground/subscriber/clock_comparison.h"
 #include "ground/subscriber/clock_watch.h"
-#include "ground/subscriber/frame_lane.h"
 #include "ground/subscriber/peer_table.h"
 #include "ground/subscriber/rig_gate.h"
 #include "ground/subscriber/rig_roster.h"
-#include "ground/subscriber/session_book.h"
+#include "ground/subscriber/session_tracker.h"
+#include "ground/subscriber/stream_receiver.h"
 
 namespace isotherm {
 namespace {
@@ -45,7 +45,7 @@ std::string HostName() {
 struct GroundEndpoints {
   Reader<EncodedDepthFrame> depth;
   Reader<EncodedThermalFrame> thermal;
-  Reader<OutsidePoseSample> outside_poses;
+  Reader<ExternalOdometrySample> external_odometry;
   Reader<RigDescription> rig;
   Reader<EdgeStatus> status;
   Reader<CommandResult> results;
@@ -67,7 +67,7 @@ class DdsSubscriber final : public Subscriber {
   Status Publish(const Feedback& feedback) override;
   Result<std::uint64_t> Send(Command command) override;
   SubscriberStats stats() const override;
-  SessionAccount account(std::uint64_t session) const override;
+  SessionCounters counters(std::uint64_t session) const override;
   const RefusalCounter& refusals() const override { return refusals_; }
 
  private:
@@ -80,15 +80,15 @@ class DdsSubscriber final : public Subscriber {
   /// Does what is due: deliveries, receipts, closed sessions, statistics.
   void Housekeep();
   void CloseSessions(SteadyTime now);
-  /// Keeps the accounts of the newest session and of the one before, as they are now.
-  void KeepAccounts();
+  /// Keeps the counters of the newest session and of the one before, as they are now.
+  void KeepCounters();
   void SendReceipt(SteadyTime now);
   Nanoseconds TimeToNextDuty(SteadyTime now) const;
   void OnPeer(const Received<Hello>& peer);
   // What the gate lets through.
   void On(const RigDescription& rig, CaptureTime arrival);
   void On(const EdgeStatus& status, CaptureTime arrival);
-  void On(const OutsidePoseSample& sample, CaptureTime arrival);
+  void On(const ExternalOdometrySample& sample, CaptureTime arrival);
   void On(const CommandResult& result, CaptureTime arrival);
   void On(EncodedDepthFrame&& frame, CaptureTime arrival) {
     OnFrame(std::move(frame), &depth_, arrival);
@@ -97,12 +97,12 @@ class DdsSubscriber final : public Subscriber {
     OnFrame(std::move(frame), &thermal_, arrival);
   }
   template <typename Item>
-  void OnFrame(typename FrameLane<Item>::Encoded&& frame, FrameLane<Item>* lane,
+  void OnFrame(typename StreamReceiver<Item>::Encoded&& frame, StreamReceiver<Item>* receiver,
                CaptureTime arrival);
   void Refuse(const RigSample& sample, RefusalCause cause);
   /// Who is there, who is the rig, and who only says so.
   void LookAround(SteadyTime now);
-  void TellRivals(SteadyTime now);
+  void AnswerRivals(SteadyTime now);
   void TellOverflow(SteadyTime now);
   std::string followed() const;  ///< Empty before there is one.
   /// True for the rig that is followed; without a choice that is the first one seen.
@@ -120,18 +120,18 @@ class DdsSubscriber final : public Subscriber {
   GroundEndpoints ends_;
 
   // Of the thread in Run().
-  FrameLane<ReceivedDepth> depth_;
-  FrameLane<ReceivedThermal> thermal_;
+  StreamReceiver<ReceivedDepth> depth_;
+  StreamReceiver<ReceivedThermal> thermal_;
   PeerTable peers_;
   RigGate gate_;
   RigRoster roster_;
-  OtherRigsTeller other_rigs_;
+  OtherRigsNotice other_rigs_;
   std::vector<RigGate::Rival> rivals_;
   SteadyTime look_due_{};
   SteadyTime rivals_due_{};
   std::uint64_t told_overflow_ = 0;
   LineLimiter overflow_limiter_;
-  SessionBook book_;
+  SessionTracker sessions_;
   std::uint64_t described_session_ = 0;  ///< Session of the newest description of the rig.
   ClockComparison clock_comparison_;
   ClockWatch clock_watch_;
@@ -142,7 +142,7 @@ class DdsSubscriber final : public Subscriber {
   std::string edge_id_;
   std::uint64_t next_command_;
   SubscriberStats stats_;
-  std::deque<SessionAccount> accounts_;  ///< Oldest first; at most kMaxAccounts.
+  std::deque<SessionCounters> counters_;  ///< Oldest first; at most kMaxSessions.
 };
 
 DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& options,
@@ -162,7 +162,7 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
                        std::move(sample.content));
           },
           [this](const RigSample& sample, RefusalCause cause) { Refuse(sample, cause); }),
-      book_(options.end_grace),
+      sessions_(options.end_grace),
       clock_comparison_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))),
       clock_watch_(options.max_clock_offset),
       edge_id_(options.edge_id),
@@ -172,7 +172,7 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
 Status DdsSubscriber::Open(const Participant& participant) {
   ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant, &depth_refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant, &thermal_refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.outside_poses.Open(participant, &refusals_));
+  ISOTHERM_RETURN_IF_ERROR(ends_.external_odometry.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant, &refusals_));
   ISOTHERM_RETURN_IF_ERROR(ends_.results.Open(participant, &refusals_));
@@ -184,7 +184,7 @@ Status DdsSubscriber::Open(const Participant& participant) {
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Open(participant));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.depth));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.thermal));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.outside_poses));
+  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.external_odometry));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.rig));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.status));
   ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.results));
@@ -216,7 +216,7 @@ bool DdsSubscriber::TakeTurn() {
 int DdsSubscriber::TakeMessages() {
   const int taken = ends_.peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
   return taken + TakeSamples(&ends_.rig, kMessagesPerTurn) +
-         TakeSamples(&ends_.outside_poses, kMessagesPerTurn) +
+         TakeSamples(&ends_.external_odometry, kMessagesPerTurn) +
          TakeSamples(&ends_.status, kMessagesPerTurn) +
          TakeSamples(&ends_.results, kMessagesPerTurn);
 }
@@ -244,8 +244,8 @@ void DdsSubscriber::On(const RigDescription& rig, CaptureTime /*arrival*/) {
   if (handlers_.rig) handlers_.rig(rig);
 }
 
-void DdsSubscriber::On(const OutsidePoseSample& sample, CaptureTime /*arrival*/) {
-  if (handlers_.outside_pose) handlers_.outside_pose(sample);
+void DdsSubscriber::On(const ExternalOdometrySample& sample, CaptureTime /*arrival*/) {
+  if (handlers_.external_odometry) handlers_.external_odometry(sample);
 }
 
 void DdsSubscriber::On(const CommandResult& result, CaptureTime /*arrival*/) {
@@ -256,21 +256,21 @@ void DdsSubscriber::On(const EdgeStatus& status, CaptureTime /*arrival*/) {
   const ClockReading now = ReadClocks(clock_);
   if (status.clock_echo) clock_comparison_.Add(*status.clock_echo, now.steady);
   clock_watch_.Update(status, clock_comparison_.Offset(now), ReadKernelClock(), now.steady);
-  book_.OnStatus(status, now.steady);
-  book_.SetClock(clock_watch_.account());
+  sessions_.OnStatus(status, now.steady);
+  sessions_.SetClock(clock_watch_.clock());
   if (handlers_.status) handlers_.status(status);
-  if (handlers_.clock) handlers_.clock(clock_watch_.account());
+  if (handlers_.clock) handlers_.clock(clock_watch_.clock());
 }
 
 template <typename Item>
-void DdsSubscriber::OnFrame(typename FrameLane<Item>::Encoded&& frame, FrameLane<Item>* lane,
-                            CaptureTime arrival) {
+void DdsSubscriber::OnFrame(typename StreamReceiver<Item>::Encoded&& frame,
+                            StreamReceiver<Item>* receiver, CaptureTime arrival) {
   const SteadyTime now = clock_.SteadyNow();
   const std::uint64_t session = frame.header.session;
-  if (!lane->Add(std::move(frame), arrival, now)) return;
-  book_.OnFrame(session, now);
+  if (!receiver->Add(std::move(frame), arrival, now)) return;
+  sessions_.OnFrame(session, now);
   ++frames_since_receipt_;
-  lane->DeliverDue(now);
+  receiver->DeliverDue(now);
 }
 
 void DdsSubscriber::Refuse(const RigSample& sample, RefusalCause cause) {
@@ -318,9 +318,9 @@ void DdsSubscriber::Housekeep() {
   if (now >= receipt_due_ || frames_since_receipt_ >= kFramesPerReceipt) SendReceipt(now);
   CloseSessions(now);
   if (now >= look_due_) LookAround(now);
-  KeepAccounts();
+  KeepCounters();
   std::scoped_lock lock(mutex_);
-  stats_.account = accounts_.empty() ? SessionAccount() : accounts_.back();
+  stats_.counters = counters_.empty() ? SessionCounters() : counters_.back();
   stats_.refusals = refusals_.counts();
   stats_.refused = refusals_.total();
 }
@@ -330,7 +330,7 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   const auto is_present = [this](PeerHandle peer) { return peers_.IsPresent(peer); };
   gate_.Update(now, is_present);
   roster_.Update(is_present);
-  TellRivals(now);
+  AnswerRivals(now);
   TellOverflow(now);
   const std::string edge_id = followed();
   // That writers live is known within their lease of a second; who they are, for ten.
@@ -351,7 +351,7 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   LOG(Subscriber, Info) << (present ? "rig found" : "rig lost");
 }
 
-void DdsSubscriber::TellRivals(SteadyTime now) {
+void DdsSubscriber::AnswerRivals(SteadyTime now) {
   const std::vector<RigGate::Rival> before = std::exchange(rivals_, gate_.rivals());
   const auto has = [](const std::vector<RigGate::Rival>& rivals, PeerHandle peer) {
     return std::ranges::find(rivals, peer, &RigGate::Rival::peer) != rivals.end();
@@ -399,41 +399,41 @@ std::string DdsSubscriber::followed() const {
   return edge_id_;
 }
 
-void DdsSubscriber::KeepAccounts() {
-  constexpr std::size_t kMaxAccounts = 8;
-  const std::vector<std::uint64_t> sessions = book_.sessions();
-  // The streams know no more than two; the accounts of older ones are as they were.
+void DdsSubscriber::KeepCounters() {
+  constexpr std::size_t kMaxSessions = 8;
+  const std::vector<std::uint64_t> sessions = sessions_.sessions();
+  // The streams know no more than two; the counters of older ones are as they were.
   const std::size_t first = sessions.size() - std::min<std::size_t>(sessions.size(), 2);
   std::scoped_lock lock(mutex_);
   for (std::size_t i = first; i < sessions.size(); ++i) {
     const std::uint64_t session = sessions[i];
-    SessionAccount account = book_.Account(depth_.tally(session), thermal_.tally(session));
-    const auto kept = std::ranges::find(accounts_, session, &SessionAccount::session);
+    SessionCounters counters = sessions_.Counters(depth_.tally(session), thermal_.tally(session));
+    const auto kept = std::ranges::find(counters_, session, &SessionCounters::session);
     const bool newest = i + 1 == sessions.size();
     // Samples are refused before it is known whose they are.
-    account.refused_samples =
-        newest || kept == accounts_.end() ? refusals_.total() : kept->refused_samples;
-    if (kept != accounts_.end()) {
-      *kept = account;
+    counters.refused_samples =
+        newest || kept == counters_.end() ? refusals_.total() : kept->refused_samples;
+    if (kept != counters_.end()) {
+      *kept = counters;
       continue;
     }
-    if (accounts_.size() == kMaxAccounts) accounts_.pop_front();
-    accounts_.push_back(account);
+    if (counters_.size() == kMaxSessions) counters_.pop_front();
+    counters_.push_back(counters);
   }
 }
 
 void DdsSubscriber::CloseSessions(SteadyTime now) {
-  while (const auto session = book_.oldest_open()) {
-    auto account = book_.TryClose(depth_.tally(*session), thermal_.tally(*session), now);
-    if (!account) return;
-    account->refused_samples = refusals_.total();
+  while (const auto session = sessions_.oldest_open()) {
+    auto counters = sessions_.TryClose(depth_.tally(*session), thermal_.tally(*session), now);
+    if (!counters) return;
+    counters->refused_samples = refusals_.total();
     gate_.OnClosed(*session);
     // Complete, but perhaps waiting for numbers that were never published.
     depth_.DeliverAll();
     thermal_.DeliverAll();
     SendReceipt(now);
-    KeepAccounts();
-    if (handlers_.session_end) handlers_.session_end(*account);
+    KeepCounters();
+    if (handlers_.session_end) handlers_.session_end(*counters);
   }
 }
 
@@ -444,7 +444,7 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
   const std::string edge_id = followed();
   if (edge_id.empty()) return;
   Receipt receipt;  // Without a session it says only which rig this ground follows.
-  if (const auto session = book_.newest()) {
+  if (const auto session = sessions_.newest()) {
     receipt.session = *session;
     receipt.depth = depth_.stream().receipt(*session);
     receipt.thermal = thermal_.stream().receipt(*session);
@@ -460,7 +460,7 @@ Nanoseconds DdsSubscriber::TimeToNextDuty(SteadyTime now) const {
   SteadyTime next = now + kIdleInterval;
   next = std::min(next, receipt_due_);
   for (const auto& deadline :
-       {depth_.stream().deadline(), thermal_.stream().deadline(), book_.deadline()}) {
+       {depth_.stream().deadline(), thermal_.stream().deadline(), sessions_.deadline()}) {
     if (deadline) next = std::min(next, *deadline);
   }
   return std::max(Nanoseconds(0), Nanoseconds(next - now));
@@ -488,11 +488,11 @@ SubscriberStats DdsSubscriber::stats() const {
   return stats_;
 }
 
-SessionAccount DdsSubscriber::account(std::uint64_t session) const {
+SessionCounters DdsSubscriber::counters(std::uint64_t session) const {
   std::scoped_lock lock(mutex_);
-  const auto kept = std::ranges::find(accounts_, session, &SessionAccount::session);
-  if (kept != accounts_.end()) return *kept;
-  SessionAccount unknown;
+  const auto kept = std::ranges::find(counters_, session, &SessionCounters::session);
+  if (kept != counters_.end()) return *kept;
+  SessionCounters unknown;
   unknown.session = session;
   return unknown;
 }

@@ -14,7 +14,7 @@
 #include "common/transport/participant.h"
 #include "common/transport/refusal.h"
 #include "ground/subscriber/received_frame.h"
-#include "ground/subscriber/session_account.h"
+#include "ground/subscriber/session_counters.h"
 
 namespace isotherm {
 
@@ -45,19 +45,19 @@ struct SubscriberHandlers {
   std::function<void(ReceivedDepth)> late_depth;
   std::function<void(ReceivedThermal)> late_thermal;
   /// As they come: numbers may be missing.
-  std::function<void(const OutsidePoseSample&)> outside_pose;
+  std::function<void(const ExternalOdometrySample&)> external_odometry;
   std::function<void(const RigDescription&)> rig;
   std::function<void(const EdgeStatus&)> status;
-  std::function<void(const ClockAccount&)> clock;  ///< After each status.
+  std::function<void(const SessionClock&)> clock;  ///< After each status.
   std::function<void(const CommandResult&)> command_result;
   /// Again and again, at least every 100 ms: reception goes on.
   std::function<void()> turn;
-  /// Once per session, when its account is closed: the edge ended it and all is here or given up.
-  std::function<void(const SessionAccount&)> session_end;
+  /// Once per session, when it is closed: the edge ended it and all is here or given up.
+  std::function<void(const SessionCounters&)> session_end;
 };
 
 struct SubscriberStats {
-  SessionAccount account;        ///< The newest session's.
+  SessionCounters counters;      ///< The newest session's.
   std::uint64_t refused = 0;     ///< All causes.
   RefusalCounts refusals{};      ///< Samples of all topics since the start, by cause.
   std::uint64_t other_edge = 0;  ///< Samples of rigs that are not followed.
@@ -87,9 +87,9 @@ class Subscriber {
   virtual Result<std::uint64_t> Send(Command command) = 0;
 
   virtual SubscriberStats stats() const = 0;
-  /// The newest account of one of the last sessions, also of one that never ended; only the number
+  /// The newest counters of one of the last sessions, also of one that never ended; only the number
   /// is set if it was not seen.
-  virtual SessionAccount account(std::uint64_t session) const = 0;
+  virtual SessionCounters counters(std::uint64_t session) const = 0;
   virtual const RefusalCounter& refusals() const = 0;
 };
 

@@ -51,7 +51,7 @@ class DepthPreprocessor {
 void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
                      ThreadPool& pool, Image<float>& filtered_m);
 
-/// Difference in depth between neighbouring pixels, as a share of the depth, on a surface whose
+/// Difference in depth between neighbouring pixels, as a fraction of the depth, on a surface whose
 /// normal is turned away from the line of sight by `angle_deg`.
 float StepPerPixel(const CameraModel& camera, double angle_deg);
 

@@ -19,14 +19,14 @@ using testing::Random;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr double kSinglePrecision = 1e-6;
-constexpr int kMostPixels = 5 * testing::kMostLanes;
+constexpr int kMaxPixels = 5 * testing::kMaxLanes;
 
 /// A row to write to, with a canary behind it.
 class Output {
  public:
   explicit Output(int width)
       : width_(static_cast<std::size_t>(width)),
-        values_(width_ + testing::kMostLanes, static_cast<float>(testing::kCanary)) {}
+        values_(width_ + testing::kMaxLanes, static_cast<float>(testing::kCanary)) {}
   std::span<float> row() { return std::span(values_).first(width_); }
   float operator[](int x) const { return values_[static_cast<std::size_t>(x)]; }
   bool CanaryLives() const {
@@ -85,7 +85,7 @@ class BilateralRowTest : public ::testing::Test {
 TEST_F(BilateralRowTest, MatchesTheScalarReferenceForAnyWidth) {
   testing::ForEachInstructionSet([&] {
     compared_ = 0;
-    for (int width = 0; width <= kMostPixels && !HasFatalFailure(); ++width) {
+    for (int width = 0; width <= kMaxPixels && !HasFatalFailure(); ++width) {
       for (int round = 0; round < 3 && !HasFatalFailure(); ++round) {
         Rearrange(width);
         CompareRow();
@@ -111,7 +111,7 @@ TEST_F(BilateralRowTest, NoReturnNeverCounts) {
 TEST(MetresRowTest, MatchesTheScalarReferenceForAnyWidth) {
   Random random;
   testing::ForEachInstructionSet([&] {
-    for (int width = 0; width <= kMostPixels; ++width) {
+    for (int width = 0; width <= kMaxPixels; ++width) {
       std::vector<std::uint16_t> raw(static_cast<std::size_t>(width));
       for (std::uint16_t& value : raw) {
         value = static_cast<std::uint16_t>(random.Integer(0, 65535));
@@ -152,7 +152,7 @@ TEST(MetresRowTest, AScaleThatIsNoneGivesNoDepth) {
 TEST(HalfRowTest, MatchesTheScalarReferenceForAnyWidth) {
   Random random;
   testing::ForEachInstructionSet([&] {
-    for (int width = 0; width <= kMostPixels; ++width) {
+    for (int width = 0; width <= kMaxPixels; ++width) {
       std::vector<float> rows[2];
       for (std::vector<float>& row : rows) {
         row.resize(static_cast<std::size_t>(2 * width));

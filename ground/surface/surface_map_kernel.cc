@@ -11,7 +11,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace isotherm::HWY_NAMESPACE {
 
-/// Largest difference of the steps to either side of a pixel on one surface, as a share of both
+/// Largest difference of the steps to either side of a pixel on one surface, as a fraction of both
 /// together; 1 would be a step on one side only.
 constexpr float kMaxBend = 0.3F;
 

@@ -64,7 +64,7 @@ class SurfaceMapRowTest : public ::testing::Test {
     bool any = false;
     for (int x = 0; x < width; ++x) any = any || !std::isnan(maps_.vz.At(x, y));
     // Images narrower than a vector have no surface at all.
-    if (!any && width - 2 * args_.reach < testing::kMostLanes) return;
+    if (!any && width - 2 * args_.reach < testing::kMaxLanes) return;
     for (int x = 0; x < width && !HasFatalFailure(); ++x) {
       SCOPED_TRACE(::testing::Message() << "pixel " << x << ", " << y << " of " << width);
       ComparePixel(x, y);
@@ -97,7 +97,7 @@ class SurfaceMapRowTest : public ::testing::Test {
 TEST_F(SurfaceMapRowTest, MatchesTheScalarReferenceForAnyWidth) {
   testing::ForEachInstructionSet([&] {
     with_normal_ = 0;
-    for (int width = 1; width <= 5 * testing::kMostLanes; ++width) {
+    for (int width = 1; width <= 5 * testing::kMaxLanes; ++width) {
       Rearrange(width, random_.Integer(1, 12));
       for (int y = 0; y < maps_.height() && !HasFatalFailure(); ++y) CompareRow(y);
     }

@@ -1,9 +1,15 @@
 #include "ground/surface/voxel_grid.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <limits>
 
 #include "ground/options/ground_options.pb.h"
@@ -13,11 +19,11 @@ namespace {
 
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
-/// The block table may take this share of the memory limit; the rest is for voxels.
-constexpr double kTableShare = 0.25;
+/// The block table may take this fraction of the memory limit; the rest is for voxels.
+constexpr double kTableFraction = 0.25;
 
 /// Entries of the table are numbered with 31 bits.
-constexpr double kMostTableBytes =
+constexpr double kMaxTableBytes =
     sizeof(std::int32_t) * static_cast<double>(std::numeric_limits<std::int32_t>::max());
 
 Eigen::Vector3d BlocksAlongAxes(const VolumeOptions& o, double voxel_size_m) {
@@ -37,12 +43,12 @@ double TableBytes(const Eigen::Vector3d& blocks) {
 /// About the smallest voxels with which the table fits.
 double FittingVoxel(const VolumeOptions& o, double allowed_bytes) {
   constexpr double kRounding = 1.001;  // When printed with four digits.
-  constexpr double kMostGrowth = 1e6;
+  constexpr double kMaxGrowth = 1e6;
   double voxel_m = o.voxel_size_m();
   while (std::isfinite(voxel_m)) {
     const double table_bytes = TableBytes(BlocksAlongAxes(o, voxel_m));
     if (table_bytes <= allowed_bytes) break;
-    voxel_m *= std::clamp(std::cbrt(table_bytes / allowed_bytes), kRounding, kMostGrowth);
+    voxel_m *= std::clamp(std::cbrt(table_bytes / allowed_bytes), kRounding, kMaxGrowth);
   }
   return voxel_m * kRounding;
 }
@@ -62,6 +68,18 @@ std::string DescribeBytes(double bytes) {
 std::string DescribeSize(const VolumeOptions& o) {
   return fmt::format("{} x {} x {} m with {} m voxels", o.size_x_m(), o.size_y_m(), o.size_z_m(),
                      o.voxel_size_m());
+}
+
+/// Says whether the folder can take the files of the volumes' memory; empty is fine.
+Status CheckSpillDir(const std::filesystem::path& dir) {
+  if (dir.empty()) return OkStatus();
+  const int file = open(dir.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
+  if (file < 0) {
+    return IoError(fmt::format("volume.spill_dir: no file can be made in {}: {}", dir.string(),
+                               std::strerror(errno)));
+  }
+  close(file);
+  return OkStatus();
 }
 
 }  // namespace
@@ -90,7 +108,7 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
   const Eigen::Vector3d blocks = BlocksAlongAxes(o, o.voxel_size_m());
   const double table_bytes = TableBytes(blocks);
   const double allowed_bytes =
-      std::min(static_cast<double>(o.max_memory_bytes()) * kTableShare, kMostTableBytes);
+      std::min(static_cast<double>(o.max_memory_bytes()) * kTableFraction, kMaxTableBytes);
   if (!(table_bytes <= allowed_bytes)) {
     return Err(ResourceExhausted(fmt::format(
         "a volume of {} needs {} for its block table alone, {} are allowed "

@@ -9,10 +9,10 @@ CameraMotion MotionBetween(const RigidTransform& T_map_before, const RigidTransf
   CameraMotion motion;
   if (!(interval_s > 0.0)) return motion;
   const RigidTransform T_before_after = T_map_before.inverse() * T_map_after;
-  const Eigen::AngleAxisd turn(T_before_after.linear());
-  motion.rate_rad_s = turn.angle() / interval_s * turn.axis();
+  const Eigen::AngleAxisd rotation(T_before_after.linear());
+  motion.rate_rad_s = rotation.angle() / interval_s * rotation.axis();
   // The axes turn by the way: those in the middle are the fairest for the whole interval.
-  const Eigen::AngleAxisd half(-0.5 * turn.angle(), turn.axis());
+  const Eigen::AngleAxisd half(-0.5 * rotation.angle(), rotation.axis());
   motion.velocity_m_s = half * T_before_after.translation() / interval_s;
   return motion;
 }

@@ -20,7 +20,7 @@ CameraMotion MotionBetween(const RigidTransform& T_map_before, const RigidTransf
 CameraMotion MotionOf(const CameraMotion& motion, const RigidTransform& T_other_camera);
 
 /// Speed at which a resting point at normalised image coordinates `xy` and depth `z_m` goes through
-/// the picture, per second in normalised coordinates: with p = (x, y, 1), its velocity is
+/// the image, per second in normalised coordinates: with p = (x, y, 1), its velocity is
 /// -v - w x (z p), and the image follows the projection's derivative.
 Eigen::Vector2d ImageVelocity(const CameraMotion& motion, const Eigen::Vector2d& xy, double z_m);
 

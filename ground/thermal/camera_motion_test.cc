@@ -29,13 +29,13 @@ const RigidTransform kStart =
 TEST(CameraMotionTest, ThePosesOfAnEvenMotionGiveItBack) {
   const CameraMotion found =
       MotionBetween(kStart, Moved(kStart, kMotion, kInterval_s), kInterval_s);
-  constexpr double kCurvature = 1e-4;  // Second order in the turn, about 0.02 rad.
+  constexpr double kCurvature = 1e-4;  // Second order in the rotation, about 0.02 rad.
   EXPECT_LT((found.velocity_m_s - kMotion.velocity_m_s).norm(), kCurvature);
   EXPECT_LT((found.rate_rad_s - kMotion.rate_rad_s).norm(), kCurvature);
   EXPECT_EQ(MotionBetween(kStart, kStart, 0.0).velocity_m_s.norm(), 0.0);
 }
 
-TEST(CameraMotionTest, APointGoesThroughThePictureAsItsProjectionsDo) {
+TEST(CameraMotionTest, APointGoesThroughTheImageAsItsProjectionsDo) {
   for (const double z : {0.3, 0.5, 2.0}) {
     for (const Eigen::Vector2d& xy :
          {Eigen::Vector2d(0, 0), Eigen::Vector2d(0.4, -0.3), Eigen::Vector2d(-0.5, 0.2)}) {

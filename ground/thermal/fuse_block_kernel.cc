@@ -89,7 +89,7 @@ HWY_INLINE VI TemperatureCode(const RecordVectors& record, const ImagePlace& pla
                                hn::Mul(slope_v, hn::Sub(place.v, place.row)));
   const VF celsius =
       hn::MulAdd(change, hn::Set(d, 1.0F / ThermalPixel::kSlopeScale), record.word[1]);
-  const VF code = hn::MulAdd(hn::Sub(celsius, hn::Set(d, ThermalLayout::kMinCelsius)),
+  const VF code = hn::MulAdd(hn::Sub(celsius, hn::Set(d, ThermalLayout::kMin_celsius)),
                              hn::Set(d, ThermalLayout::kStepsPerKelvin), one);
   return hn::NearestInt(hn::Min(hn::Max(code, one), hn::Set(d, ThermalLayout::kMaxCode)));
 }
@@ -138,7 +138,7 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
         hn::And(hn::And(hn::RebindMask(d, near), hn::Gt(p.z, zero)),
                 hn::And(hn::And(hn::Ge(place.column, zero), hn::Lt(place.column, width)),
                         hn::And(hn::Ge(place.row, zero), hn::Lt(place.row, height))));
-    // Exact in single precision: pictures have far less than 2^24 pixels.
+    // Exact in single precision: images have far less than 2^24 pixels.
     const VI pixel = hn::ConvertTo(di, hn::MulAdd(place.row, width, place.column));
     hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, nowhere), di, pixels);
     const RecordVectors record = GatherRecords(a.pixels, pixels);

@@ -27,7 +27,7 @@ class FuseBlockTest : public ::testing::Test {
   static constexpr std::array kMotionCodes = {0, 2 << 12, 3 << 12};
 
   /// A camera of any size before a bumpy wall half a metre away, of which a part is not seen.
-  void RearrangePicture(int width, int height) {
+  void RearrangeImage(int width, int height) {
     pixels_.assign(static_cast<std::size_t>(width * height) + 1, ThermalPixel{});
     for (std::size_t i = 0; i + 1 < pixels_.size(); ++i) {
       if (random_.Chance(0.1)) continue;
@@ -159,11 +159,11 @@ class FuseBlockTest : public ::testing::Test {
   std::int64_t good_not_taken_ = 0;
 };
 
-TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyPictureAndPose) {
+TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyImageAndPose) {
   testing::ForEachInstructionSet([&] {
     assigned_ = kept_ = good_not_taken_ = 0;
     for (int width = 1; width <= 70; ++width) {
-      RearrangePicture(width, random_.Integer(1, 50));
+      RearrangeImage(width, random_.Integer(1, 50));
       for (int round = 0; round < 6 && !HasFatalFailure(); ++round) {
         RearrangeBlock();
         CompareBlock();
@@ -177,7 +177,7 @@ TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyPictureAndPose) {
 
 TEST_F(FuseBlockTest, LeavesTheBlockAloneAtAPositionThatIsNone) {
   testing::ForEachInstructionSet([&] {
-    RearrangePicture(64, 48);
+    RearrangeImage(64, 48);
     for (const float bad :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
           -std::numeric_limits<float>::infinity(), 1e30F}) {
@@ -194,9 +194,9 @@ TEST_F(FuseBlockTest, LeavesTheBlockAloneAtAPositionThatIsNone) {
   });
 }
 
-TEST_F(FuseBlockTest, APictureThatShowsNothingChangesNothing) {
+TEST_F(FuseBlockTest, AnImageThatShowsNothingChangesNothing) {
   testing::ForEachInstructionSet([&] {
-    RearrangePicture(64, 48);
+    RearrangeImage(64, 48);
     std::fill(pixels_.begin(), pixels_.end(), ThermalPixel{});
     RearrangeBlock();
     const Words before = thermal_;

@@ -32,7 +32,7 @@ MeasurementRecorder::MeasurementRecorder(const ThermalOptions& options,
   frame_.epoch = nuc.epoch;
   frame_.age = ConditionRecord::kNoAge;
   if (!nuc.seconds_since || !(*nuc.seconds_since >= 0.0)) return;
-  const double steps = std::round(*nuc.seconds_since / double{ConditionRecord::kAgeStepS});
+  const double steps = std::round(*nuc.seconds_since / double{ConditionRecord::kAgeStep_s});
   frame_.age = static_cast<std::uint32_t>(std::min(steps, double{ConditionRecord::kNoAge})) &
                ConditionRecord::kNoAge;
 }
@@ -70,7 +70,7 @@ void MeasurementRecorder::Record(const BlockMeasurements& measured, const Eigen:
       record.direction = direction;
       record.cosine = static_cast<std::uint8_t>(measured.flags[i] >> ThermalPixel::kCosineShift);
       const auto steps =
-          static_cast<std::uint32_t>(distance_m / ConditionRecord::kDistanceStepM + 0.5F);
+          static_cast<std::uint32_t>(distance_m / ConditionRecord::kDistanceStep_m + 0.5F);
       record.distance =
           std::clamp(steps, 1U, ConditionRecord::kMaxDistance) & ConditionRecord::kMaxDistance;
     }

@@ -6,21 +6,21 @@
 namespace isotherm {
 namespace {
 
-/// Side of the thermal tiles that are judged as one, pixels.
+/// Side of the thermal tiles that are assessed as one, pixels.
 constexpr int kTile = 8;
-/// Points that are looked at on a line of sight, even in inverse depth down to this share of the
+/// Points that are looked at on a line of sight, even in inverse depth down to this fraction of the
 /// near range.
 constexpr int kSteps = 10;
-constexpr double kNearestShare = 0.2;
+constexpr double kNearestFraction = 0.2;
 /// Pixels of a square that must show known surface, and those of them (of all pixels, where
 /// nothing is known) that may have a return.
-constexpr double kKnownShare = 0.9;
-constexpr double kReturnShare = 0.1;
+constexpr double kKnownFraction = 0.9;
+constexpr double kReturnFraction = 0.1;
 /// Pixels of a square that have a return where there certainly is a surface.
-constexpr double kSurfaceShare = 0.5;
+constexpr double kSurfaceFraction = 0.5;
 /// Between projector and camera of PrimeSense's cameras, with some reserve: beside the edge of
 /// something near, what lies behind is in the projector's shadow.
-constexpr double kProjectorBaselineM = 0.08;
+constexpr double kProjectorBaseline_m = 0.08;
 
 int Tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
 
@@ -51,10 +51,10 @@ NearHoles::Square NearHoles::Look(int column, int row, const Image<float>& depth
   }
   const int looked_at = (hole_side_ + 1) / 2;
   const double pixels = looked_at * looked_at;
-  if (known >= kKnownShare * pixels && known_returns <= kReturnShare * known)
+  if (known >= kKnownFraction * pixels && known_returns <= kReturnFraction * known)
     return {Kind::kHole, 0.0F};
-  if (returns <= kReturnShare * pixels) return {Kind::kEmpty, 0.0F};
-  if (returns < kSurfaceShare * pixels) return {Kind::kNeither, 0.0F};
+  if (returns <= kReturnFraction * pixels) return {Kind::kEmpty, 0.0F};
+  if (returns < kSurfaceFraction * pixels) return {Kind::kNeither, 0.0F};
   return {Kind::kSurface, sum_m / static_cast<float>(returns)};
 }
 
@@ -66,14 +66,14 @@ bool NearHoles::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model,
     for (int column = 0; column < squares_.width(); ++column)
       squares_.At(column, row) = Look(column, row, depth_m, model);
   }
-  for (int row = 0; row < squares_.height(); ++row) JudgeRow(row, model_fx);
-  for (int column = 0; column < squares_.width(); ++column) JudgeColumn(column);
+  for (int row = 0; row < squares_.height(); ++row) AssessRow(row, model_fx);
+  for (int column = 0; column < squares_.width(); ++column) AssessColumn(column);
   return std::ranges::count(squares_.pixels(), Kind::kHole, &Square::kind) > 0;
 }
 
-template <typename At, typename Judge>
-void NearHoles::ForEmptyRuns(int count, const At& at, const Judge& judge) {
-  // Depth of the surface next to a run, 0 = the picture's border or nothing certain.
+template <typename At, typename Assess>
+void NearHoles::ForEmptyRuns(int count, const At& at, const Assess& assess) {
+  // Depth of the surface next to a run, 0 = the image's border or nothing certain.
   const auto beside_m = [&](int i, int step) {
     while (i >= 0 && i < count && at(i).kind == Kind::kNeither) i += step;
     return i >= 0 && i < count ? at(i).depth_m : 0.0F;
@@ -81,15 +81,15 @@ void NearHoles::ForEmptyRuns(int count, const At& at, const Judge& judge) {
   for (int first = 0, end = 0; first < count; first = end + 1) {
     end = first;
     while (end < count && at(end).is_empty()) ++end;
-    if (end > first) judge(first, end, beside_m(first - 1, -1), beside_m(end, 1));
+    if (end > first) assess(first, end, beside_m(first - 1, -1), beside_m(end, 1));
   }
 }
 
-void NearHoles::JudgeRow(int row, double model_fx) {
+void NearHoles::AssessRow(int row, double model_fx) {
   const auto at = [&](int i) -> Square& { return squares_.At(i, row); };
   ForEmptyRuns(squares_.width(), at, [&](int first, int end, float left_m, float right_m) {
     const auto inverse = [](float z_m) { return z_m > 0.0F ? 1.0F / z_m : 0.0F; };
-    const double shadow_px = kProjectorBaselineM * model_fx *
+    const double shadow_px = kProjectorBaseline_m * model_fx *
                              static_cast<double>(std::abs(inverse(left_m) - inverse(right_m)));
     const int width_px = (end - first) * hole_side_;
     const bool is_shadow = width_px <= shadow_px + 2 * hole_side_ && shadow_px > hole_side_;
@@ -99,7 +99,7 @@ void NearHoles::JudgeRow(int row, double model_fx) {
   });
 }
 
-void NearHoles::JudgeColumn(int column) {
+void NearHoles::AssessColumn(int column) {
   const auto at = [&](int i) -> Square& { return squares_.At(column, i); };
   ForEmptyRuns(squares_.height(), at, [&](int first, int end, float above_m, float below_m) {
     if (!(above_m > 0.0F && below_m > 0.0F)) return;
@@ -109,8 +109,8 @@ void NearHoles::JudgeColumn(int column) {
 
 bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal) const {
   for (int i = 0; i < kSteps; ++i) {
-    const double share = 1.0 + i * (1.0 / kNearestShare - 1.0) / (kSteps - 1);
-    const double z_m = near_range_m_ / share;
+    const double fraction = 1.0 + i * (1.0 / kNearestFraction - 1.0) / (kSteps - 1);
+    const double z_m = near_range_m_ / fraction;
     const Eigen::Vector3d p =
         T_depth_thermal_ * (z_m * Eigen::Vector3d(xy_thermal.x(), xy_thermal.y(), 1.0));
     if (!(p.z() > 0.0 && p.z() <= near_range_m_)) continue;

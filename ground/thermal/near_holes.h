@@ -16,7 +16,7 @@ namespace isotherm {
 /// hole_px pixels in which the depth image has (almost) nothing, although the model has a surface
 /// there, or although there are surfaces to the left and right or above and below. Thermal pixels
 /// whose line of sight crosses the space before a hole, up to the near range, are left out. Small
-/// holes (edges, dark spots) do not count, nor does an emptiness that reaches the picture's border
+/// holes (edges, dark spots) do not count, nor does an emptiness that reaches the image's border
 /// on two sides, nor what can be the projector's shadow beside something near; so what comes near
 /// there before a place never scanned is not noticed. Thread-compatible.
 class NearHoles {
@@ -29,7 +29,7 @@ class NearHoles {
   void Update(const Image<float>& depth_m, const SurfaceMaps& model,
               const CameraModel& model_camera);
 
-  /// Where the thermal camera was when the frame to be judged was captured, seen from the depth
+  /// Where the thermal camera was when the frame to be assessed was captured, seen from the depth
   /// camera of the last Update.
   void Aim(const RigidTransform& T_depth_thermal);
 
@@ -50,12 +50,13 @@ class NearHoles {
     bool is_empty() const { return kind == Kind::kEmpty || kind == Kind::kHole; }
   };
   Square Look(int column, int row, const Image<float>& depth_m, const SurfaceMaps& model) const;
-  /// Calls `judge(first, end, depth before, depth behind)` for each run of empty squares of a line.
-  template <typename At, typename Judge>
-  static void ForEmptyRuns(int count, const At& at, const Judge& judge);
+  /// Calls `assess(first, end, depth before, depth behind)` for each run of empty squares of a
+  /// line.
+  template <typename At, typename Assess>
+  static void ForEmptyRuns(int count, const At& at, const Assess& assess);
   /// Runs no longer than the projector's shadow are no holes, others between surfaces are.
-  void JudgeRow(int row, double model_fx);
-  void JudgeColumn(int column);
+  void AssessRow(int row, double model_fx);
+  void AssessColumn(int column);
   bool FindHoles(const Image<float>& depth_m, const SurfaceMaps& model, double model_fx);
   bool CrossesHole(const Eigen::Vector2d& xy_thermal) const;
 
@@ -66,7 +67,7 @@ class NearHoles {
   CameraModel model_camera_;
   int hole_side_ = 0;             ///< Side of a square, pixels of the model's view.
   Image<Square> squares_;         ///< The squares of the model's view.
-  Image<std::uint8_t> left_out_;  ///< Per tile of the thermal picture.
+  Image<std::uint8_t> left_out_;  ///< Per tile of the thermal image.
   bool has_holes_ = false;
   bool any_ = false;  ///< Whether any thermal pixel is left out.
 };

@@ -18,22 +18,22 @@ class NearHolesTest : public ::testing::Test {
     model_.Resize(320, 240);
     model_.vx.Fill(0.0F);
   }
-  /// Pixels that are left out of the whole thermal picture.
+  /// Pixels that are left out of the whole thermal image.
   std::int64_t LeftOut() {
     NearHoles holes(options_, thermal_camera_);
     holes.Update(depth_m_, model_, depth_camera_);
     holes.Aim(T_thermal_depth_.inverse());
     std::int64_t count = 0;
-    picture_.assign(static_cast<std::size_t>(160 * 120), ThermalPixel{});
+    image_.assign(static_cast<std::size_t>(160 * 120), ThermalPixel{});
     for (int y = 0; y < 120; ++y) {
-      const std::span<ThermalPixel> row(picture_.data() + 160 * y, 160);
+      const std::span<ThermalPixel> row(image_.data() + 160 * y, 160);
       for (ThermalPixel& pixel : row) pixel.flags = ThermalPixel::kAssignable;
       count += holes.LeaveOut(y, row);
     }
     return count;
   }
   bool IsLeftOut(int x, int y) const {
-    return (picture_[static_cast<std::size_t>(160 * y + x)].flags & ThermalPixel::kAssignable) == 0;
+    return (image_[static_cast<std::size_t>(160 * y + x)].flags & ThermalPixel::kAssignable) == 0;
   }
   void MakeHole(int x0, int y0, int side) {
     for (int y = y0; y < y0 + side; ++y) {
@@ -47,7 +47,7 @@ class NearHolesTest : public ::testing::Test {
       MakeTransform({-0.05, 0.0, 0.0}, Eigen::Quaterniond::Identity());
   Image<float> depth_m_;
   SurfaceMaps model_;
-  std::vector<ThermalPixel> picture_;
+  std::vector<ThermalPixel> image_;
 };
 
 TEST_F(NearHolesTest, ALensCapBeforePartOfTheDepthCameraLeavesOutWhatItMayHide) {

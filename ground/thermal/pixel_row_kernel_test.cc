@@ -25,7 +25,7 @@ constexpr double kSinglePrecision = 2e-6;  ///< Relative error of a sum of a few
 
 /// For `width` pixels, and memory behind them for a whole vector.
 std::vector<float> Row(int width, float value) {
-  return std::vector<float>(static_cast<std::size_t>(width + testing::kMostLanes), value);
+  return std::vector<float>(static_cast<std::size_t>(width + testing::kMaxLanes), value);
 }
 
 class MakePixelRowTest : public ::testing::Test {
@@ -75,14 +75,14 @@ class MakePixelRowTest : public ::testing::Test {
   }
   void Aim() {
     const auto uniform = [&] { return random_.Uniform(-1.0F, 1.0F); };
-    const auto turn = [&] {
+    const auto rotation = [&] {
       return Eigen::Quaternionf(1.0F, 0.1F * uniform(), 0.1F * uniform(), 0.1F * uniform())
           .normalized()
           .toRotationMatrix();
     };
-    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = turn();
+    const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = rotation();
     std::copy_n(R.data(), 9, args_.R_depth);
-    const Eigen::Matrix3f z = turn();
+    const Eigen::Matrix3f z = rotation();
     for (int i = 0; i < 3; ++i) {
       args_.z_axis[i] = z(i, 2);
       args_.t_depth[i] = 0.05F * uniform();
@@ -188,7 +188,7 @@ TEST_F(MakePixelRowTest, MatchesTheScalarReferenceForAnyWidth) {
   testing::ForEachInstructionSet([&] {
     counts_ = {};
     assignable_ = 0;
-    for (int width = 0; width <= 5 * testing::kMostLanes; ++width) {
+    for (int width = 0; width <= 5 * testing::kMaxLanes; ++width) {
       for (int round = 0; round < 5 && !HasFatalFailure(); ++round) {
         FillRow(width);
         CompareRow();

@@ -48,7 +48,7 @@ float SightLines::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const
   for (int i = 0; i < kSteps; ++i) {
     const float z_thermal = 1.0F / (nearest - static_cast<float>(i) * step);
     const Eigen::Vector3f p = z_thermal * ray + t_depth_thermal_;
-    // What reaches the picture's border goes on beyond it.
+    // What reaches the image's border goes on beyond it.
     if (!(p.z() > 0.0F)) continue;
     const float inverse_z = 1.0F / p.z();
     const float u = std::clamp(fx * p.x() * inverse_z + cx + 0.5F, 0.0F, last_u);

@@ -12,10 +12,10 @@
 namespace isotherm {
 
 /// What hides a surface from the thermal camera need not be in the model: a face that the
-/// depth camera sees only edge-on, or a part of a thing that is outside its picture. So a thermal
+/// depth camera sees only edge-on, or a part of a thing that is outside its image. So a thermal
 /// pixel is assigned only if no part of its line of sight, from the near range to the surface, lies
 /// behind what the depth camera sees of the model (as in space carving, Kutulakos and Seitz 2000).
-/// What reaches its picture's border is taken to go on beyond. Thread-compatible.
+/// What reaches its image's border is taken to go on beyond. Thread-compatible.
 class SightLines {
  public:
   /// `thermal_camera` without distortion.
@@ -26,7 +26,7 @@ class SightLines {
   void Update(const SurfaceMaps& model, const CameraModel& model_camera,
               const RigidTransform& T_map_depth);
 
-  /// Where the thermal camera was when the frame to be judged was captured, seen from the depth
+  /// Where the thermal camera was when the frame to be assessed was captured, seen from the depth
   /// camera of the last Update. Both move while they wait for each other.
   void Aim(const RigidTransform& T_depth_thermal);
 

@@ -9,7 +9,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kWallM = 0.60, kScreenM = 0.45;
+constexpr double kWall_m = 0.60, kScreen_m = 0.45;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A wall, and before its left half a thin screen, as the depth camera sees them; the thermal
@@ -19,7 +19,7 @@ class SightLinesTest : public ::testing::Test {
   SightLinesTest() {
     depth_camera_ = CameraModel{320, 240, 290.0, 290.0, 159.5, 119.5};
     thermal_camera_ = CameraModel{160, 120, 150.0, 150.0, 79.5, 59.5};
-    SetModel([](double x) { return x < 0.0 ? kScreenM : kWallM; });
+    SetModel([](double x) { return x < 0.0 ? kScreen_m : kWall_m; });
   }
   /// `z_of(x)`: depth that the depth camera sees along its normalised x.
   template <typename Depth>
@@ -42,49 +42,49 @@ class SightLinesTest : public ::testing::Test {
     ThermalPixel pixel{};
     pixel.depth_m = static_cast<float>(depth_m);
     pixel.flags = ThermalPixel::kSeen | ThermalPixel::kAssignable;
-    picture_.assign(160 * 120, pixel);
+    image_.assign(160 * 120, pixel);
     SightLines lines(options_, thermal_camera_);
     lines.Update(model_, depth_camera_, T_map_depth_);
     lines.Aim(T_depth_thermal_);
     std::int64_t count = 0;
     for (int y = 0; y < 120; y += 8)
-      count += lines.LeaveOut(
-          y, std::span(picture_).subspan(160 * static_cast<std::size_t>(y), 160 * 8));
+      count +=
+          lines.LeaveOut(y, std::span(image_).subspan(160 * static_cast<std::size_t>(y), 160 * 8));
     return count;
   }
   bool IsLeftOut(int u, int v) const {
-    const ThermalPixel& pixel = picture_[static_cast<std::size_t>(160 * v + u)];
+    const ThermalPixel& pixel = image_[static_cast<std::size_t>(160 * v + u)];
     EXPECT_NE(pixel.flags & ThermalPixel::kSeen, 0);
     return (pixel.flags & ThermalPixel::kAssignable) == 0;
   }
 
-  static constexpr double kBesideM = 0.06;
+  static constexpr double kBeside_m = 0.06;
   ThermalOptions options_;
   CameraModel depth_camera_, thermal_camera_;
   RigidTransform T_depth_thermal_ =
-      MakeTransform({-kBesideM, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+      MakeTransform({-kBeside_m, 0.0, 0.0}, Eigen::Quaterniond::Identity());
   RigidTransform T_map_depth_ = MakeTransform(
       {0.3, -0.2, 0.1},
       Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1.0, 2.0, 3.0).normalized())));
   SurfaceMaps model_;
-  std::vector<ThermalPixel> picture_;
+  std::vector<ThermalPixel> image_;
 };
 
 /// A line of sight to the wall is proven unless one of its points more than the tolerance behind
 /// the screen lies at x < 0, where the screen hides it from the depth camera.
 TEST_F(SightLinesTest, WhatPassesBehindSomethingIsLeftOut) {
-  EXPECT_GT(LeaveOut(kWallM), 1000);
+  EXPECT_GT(LeaveOut(kWall_m), 1000);
   int proven = 0, hidden = 0;
   for (int v = 0; v < 120; ++v) {
     for (int u = 0; u < 160; ++u) {
       const double slope = (u - thermal_camera_.cx) / thermal_camera_.fx;
-      const auto x_at = [&](double z) { return slope * z - kBesideM; };
-      const double behind = kScreenM + options_.parallax_tolerance_m();
+      const auto x_at = [&](double z) { return slope * z - kBeside_m; };
+      const double behind = kScreen_m + options_.parallax_tolerance_m();
       const double leftmost =
-          std::min(x_at(behind), x_at(kWallM - options_.parallax_tolerance_m()));
+          std::min(x_at(behind), x_at(kWall_m - options_.parallax_tolerance_m()));
       // Four pixels share a line, and points on it are 3 cm apart.
-      constexpr double kUncertainM = 0.015;
-      if (std::abs(leftmost) < kUncertainM) continue;
+      constexpr double kUncertain_m = 0.015;
+      if (std::abs(leftmost) < kUncertain_m) continue;
       ASSERT_EQ(IsLeftOut(u, v), leftmost < 0.0) << u << " " << v;
       ++(leftmost < 0.0 ? hidden : proven);
     }
@@ -96,7 +96,7 @@ TEST_F(SightLinesTest, WhatPassesBehindSomethingIsLeftOut) {
 /// As after a sweep: the thermal camera was where the depth camera is now.
 TEST_F(SightLinesTest, TheCameraIsWhereItWasWhenTheFrameWasCaptured) {
   T_depth_thermal_ = RigidTransform::Identity();
-  EXPECT_GT(LeaveOut(kWallM), 0) << "behind the screen itself";
+  EXPECT_GT(LeaveOut(kWall_m), 0) << "behind the screen itself";
   for (int v = 0; v < 120; ++v) {
     for (int u = 0; u < 160; ++u) {
       if (std::abs(u - thermal_camera_.cx) < 6.0) continue;  // A tile and a half.
@@ -106,28 +106,28 @@ TEST_F(SightLinesTest, TheCameraIsWhereItWasWhenTheFrameWasCaptured) {
 }
 
 TEST_F(SightLinesTest, WhatIsSeenFirstIsNeverLeftOut) {
-  EXPECT_EQ(LeaveOut(kScreenM), 0);
-  SetModel([](double) { return kWallM; });
-  EXPECT_EQ(LeaveOut(kWallM), 0);
+  EXPECT_EQ(LeaveOut(kScreen_m), 0);
+  SetModel([](double) { return kWall_m; });
+  EXPECT_EQ(LeaveOut(kWall_m), 0);
 }
 
-TEST_F(SightLinesTest, WhatReachesThePicturesBorderGoesOnBeyondIt) {
+TEST_F(SightLinesTest, WhatReachesTheImagesBorderGoesOnBeyondIt) {
   // Only the leftmost twenty columns show the screen.
-  SetModel([](double x) { return x < -0.48 ? kScreenM : kWallM; });
-  EXPECT_GT(LeaveOut(kWallM), 0);
-  // At the screen's depth this line of sight is 0.59 to the left, and the picture ends at 0.55.
+  SetModel([](double x) { return x < -0.48 ? kScreen_m : kWall_m; });
+  EXPECT_GT(LeaveOut(kWall_m), 0);
+  // At the screen's depth this line of sight is 0.59 to the left, and the image ends at 0.55.
   EXPECT_TRUE(IsLeftOut(12, 60));
   EXPECT_FALSE(IsLeftOut(80, 60));
 }
 
 TEST_F(SightLinesTest, WhereTheDepthCameraSeesNothingNothingIsInTheWay) {
   SetModel([](double) { return kNan; });
-  EXPECT_EQ(LeaveOut(kWallM), 0);
+  EXPECT_EQ(LeaveOut(kWall_m), 0);
 }
 
 TEST_F(SightLinesTest, ANearRangeOfZeroTurnsItOff) {
   options_.set_near_range_m(0.0);
-  EXPECT_EQ(LeaveOut(kWallM), 0);
+  EXPECT_EQ(LeaveOut(kWall_m), 0);
 }
 
 }  // namespace

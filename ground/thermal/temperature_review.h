@@ -13,8 +13,8 @@ namespace isotherm {
 /// then had the same direction, and this one faces the camera at no more than an angle.
 bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal, float min_cosine);
 
-/// Judges kept temperatures again by the surface as it is known now. A measurement's angle was
-/// judged by what the surface looked like then; of many noisy judgements the kindest wins
+/// Assesses kept temperatures again by the surface as it is known now. A measurement's angle was
+/// assessed by what the surface looked like then; of many noisy assessments the kindest wins
 /// (algorithm 6), so that steep faces and edges keep values that never were good. A temperature is
 /// dropped if its voxel's surface turns out to have been seen at a bad angle, or turned away from
 /// the surface that was seen: it belongs to another face. The final review also drops what lies

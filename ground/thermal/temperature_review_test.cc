@@ -11,25 +11,26 @@
 namespace isotherm {
 namespace {
 
-constexpr double kVoxelM = 0.004;
-constexpr double kFrontM = 0.30;  ///< z of the box's face towards the camera, which looks along +z.
-constexpr double kHalfSideM = 0.10;  ///< Half the side of the box around (0.32, 0.32).
+constexpr double kVoxel_m = 0.004;
+constexpr double kFront_m =
+    0.30;  ///< z of the box's face towards the camera, which looks along +z.
+constexpr double kHalfSide_m = 0.10;  ///< Half the side of the box around (0.32, 0.32).
 
 double Box(const Eigen::Vector3d& p) {
-  const Eigen::Vector3d outside(std::abs(p.x() - 0.32) - kHalfSideM,
-                                std::abs(p.y() - 0.32) - kHalfSideM, kFrontM - p.z());
+  const Eigen::Vector3d outside(std::abs(p.x() - 0.32) - kHalfSide_m,
+                                std::abs(p.y() - 0.32) - kHalfSide_m, kFront_m - p.z());
   return outside.cwiseMax(0.0).norm() + std::min(0.0, outside.maxCoeff());
 }
 
 /// A box whose front face has temperatures measured from `degrees` beside its normal, towards +x.
 class EdgeReviewTest : public ::testing::Test {
  protected:
-  EdgeReviewTest() : tsdf_(MakeGrid(), 4.0 * kVoxelM, 8000), thermal_(8000) {
+  EdgeReviewTest() : tsdf_(MakeGrid(), 4.0 * kVoxel_m, 8000), thermal_(8000) {
     testing::FillVolume(tsdf_, Box);
   }
   /// How far from the front face's border.
   static double InsideM(const Eigen::Vector3d& p) {
-    return kHalfSideM - std::max(std::abs(p.x() - 0.32), std::abs(p.y() - 0.32));
+    return kHalfSide_m - std::max(std::abs(p.x() - 0.32), std::abs(p.y() - 0.32));
   }
   static VoxelGrid MakeGrid() {
     VolumeOptions volume;
@@ -37,7 +38,7 @@ class EdgeReviewTest : public ::testing::Test {
                      &VolumeOptions::set_size_z_m}) {
       (volume.*set)(0.64);
     }
-    volume.set_voxel_size_m(kVoxelM);
+    volume.set_voxel_size_m(kVoxel_m);
     return MakeVoxelGrid(volume).value();
   }
   template <typename Visit>
@@ -48,7 +49,7 @@ class EdgeReviewTest : public ::testing::Test {
                               i / (kBlockSide * kBlockSide));
         const Eigen::Vector3d p =
             tsdf_.grid().VoxelCentre(tsdf_.block_coordinates(block) * kBlockSide + local);
-        if (std::abs(p.z() - kFrontM) > 0.6 * kVoxelM || InsideM(p) < 0.0) continue;
+        if (std::abs(p.z() - kFront_m) > 0.6 * kVoxel_m || InsideM(p) < 0.0) continue;
         visit(block, i, p);
       }
     }
@@ -86,7 +87,7 @@ TEST_F(EdgeReviewTest, BesideASteepFaceTheFinalReviewDropsAndNoOther) {
   Measure(0.0);  // All four side faces are seen at 90 degrees.
   ReviewAll(/*is_final=*/false);
   ForFrontVoxels([&](std::int32_t block, int i, const Eigen::Vector3d& p) {
-    if (InsideM(p) > kVoxelM) {
+    if (InsideM(p) > kVoxel_m) {
       ASSERT_TRUE(IsMeasured(block, i)) << p.transpose();
     }
   });
@@ -96,10 +97,10 @@ TEST_F(EdgeReviewTest, BesideASteepFaceTheFinalReviewDropsAndNoOther) {
     const double inside_m = InsideM(p);
     // Two voxels from within the box, less from outside, where distances go around the edge; a
     // gradient reaches one further.
-    if (p.z() > kFrontM && inside_m < 2.0 * kVoxelM) {
+    if (p.z() > kFront_m && inside_m < 2.0 * kVoxel_m) {
       ASSERT_FALSE(IsMeasured(block, i)) << p.transpose();
       ++dropped;
-    } else if (inside_m > 3.5 * kVoxelM) {
+    } else if (inside_m > 3.5 * kVoxel_m) {
       ASSERT_TRUE(IsMeasured(block, i)) << p.transpose();
       ++kept;
     }
@@ -114,7 +115,7 @@ TEST_F(EdgeReviewTest, AnEdgeBetweenFacesThatWereBothSeenWellStays) {
   int beside_seen = 0, beside_hidden = 0;
   ForFrontVoxels([&](std::int32_t block, int i, const Eigen::Vector3d& p) {
     const bool is_second_row =
-        p.z() > kFrontM && InsideM(p) > kVoxelM && InsideM(p) < 2.0 * kVoxelM;
+        p.z() > kFront_m && InsideM(p) > kVoxel_m && InsideM(p) < 2.0 * kVoxel_m;
     if (!is_second_row || std::abs(p.y() - 0.32) > 0.05) return;
     if (p.x() > 0.32) {
       ASSERT_TRUE(IsMeasured(block, i)) << p.transpose();

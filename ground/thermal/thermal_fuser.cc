@@ -33,7 +33,7 @@ CameraModel EverySecondPixel(CameraModel camera) {
 
 /// A temperature is known where its pixel is to about half a pixel: interpolation between pixels
 /// and what a lens spreads.
-constexpr double kPixelUncertaintyPx = 0.5;
+constexpr double kPixelUncertainty_px = 0.5;
 /// A block in view is reviewed once in so many frames.
 constexpr std::uint32_t kFramesBetweenReviews = 16;
 /// Stands for no limit; its square is finite.
@@ -139,7 +139,7 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
   };
   args.max_footprint_m = or_none(options_.max_footprint_m());
   args.max_error_k = or_none(options_.max_gradient_error_k());
-  args.uncertainty_px = static_cast<float>(std::max(kPixelUncertaintyPx, capture.registration_px));
+  args.uncertainty_px = static_cast<float>(std::max(kPixelUncertainty_px, capture.registration_px));
   args.fx = static_cast<float>(camera.fx);
   args.fy = static_cast<float>(camera.fy);
   args.cx = static_cast<float>(camera.cx);

@@ -38,10 +38,10 @@ struct FusionReport {
   FusionReport& operator+=(const FusionReport& other);
 };
 
-/// Holds what is known about a thermal frame beside its picture and pose.
+/// Holds what is known about a thermal frame beside its image and pose.
 struct CaptureConditions {
   CameraMotion motion;                ///< Motion of the thermal camera.
-  double registration_px = 0.0;       ///< Standard deviation of the pose in its picture.
+  double registration_px = 0.0;       ///< Standard deviation of the pose in its image.
   const NearHoles* holes = nullptr;   ///< Where something unseen may be in the way.
   const SightLines* sight = nullptr;  ///< What the depth camera looks through.
   NucAge nuc;

@@ -39,10 +39,10 @@ void ResampleRow(const ResampleRowArgs& a, float* out) {
     const MI inside = hn::Gt(source, hn::Set(di, -1));
     const VI upper = hn::IfThenElseZero(inside, source);
     const VI lower = hn::Add(upper, hn::Set(di, a.stride));
-    const VF p00 = hn::GatherIndex(d, a.picture, upper);
-    const VF p10 = hn::GatherIndex(d, a.picture + 1, upper);
-    const VF p01 = hn::GatherIndex(d, a.picture, lower);
-    const VF p11 = hn::GatherIndex(d, a.picture + 1, lower);
+    const VF p00 = hn::GatherIndex(d, a.image, upper);
+    const VF p10 = hn::GatherIndex(d, a.image + 1, upper);
+    const VF p01 = hn::GatherIndex(d, a.image, lower);
+    const VF p11 = hn::GatherIndex(d, a.image + 1, lower);
     const VF above = hn::MulAdd(fx, hn::Sub(p10, p00), p00);
     const VF below = hn::MulAdd(fx, hn::Sub(p11, p01), p01);
     const VF value = hn::IfThenElse(hn::RebindMask(d, inside),
@@ -79,7 +79,7 @@ HWY_INLINE VI Classify(MF good, MF acceptable) {
       hn::IfThenElseZero(hn::RebindMask(di, acceptable), hn::Set(di, kAcceptable)));
 }
 
-/// Square of the way that the surface goes in the picture while a row is smeared, pixels: the
+/// Square of the way that the surface goes in the image while a row is smeared, pixels: the
 /// derivative of the projection of a resting point (camera_motion.h).
 HWY_INLINE VF SmearSquared(const PixelRowArgs& a, int first, VF depth) {
   const VF x = hn::Mul(hn::Sub(hn::ConvertTo(d, hn::Iota(di, first)), hn::Set(d, a.cx)),
@@ -193,7 +193,7 @@ HWY_INLINE VI Flag(MF condition, std::int32_t bit) {
   return hn::IfThenElseZero(hn::RebindMask(di, condition), hn::Set(di, bit));
 }
 
-// Judges a row of the ideal thermal image against the model as the thermal camera sees it: what
+// Assesses a row of the ideal thermal image against the model as the thermal camera sees it: what
 // each pixel shows of the surface, and whether its temperature may be assigned. Not if the depth
 // camera does not see the surface (kSeen), if something nearer lies within the margin around
 // (algorithm 5: occluded), if motion smears it, or if the temperature is too steep for how well the

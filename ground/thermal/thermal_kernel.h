@@ -34,9 +34,9 @@ static_assert(((ThermalPixel::kSeen | ThermalPixel::kAssignable) &
                ~static_cast<std::int32_t>(ThermalLayout::kDisagreementMask)) == 0,
               "flags must leave the classes alone");
 
-/// Bilinear look-up of one row of a picture.
+/// Bilinear look-up of one row of an image.
 struct ResampleRowArgs {
-  const float* picture;  ///< Whole picture, NaN = no value.
+  const float* image;  ///< Whole image, NaN = no value.
   std::int32_t stride;
   const std::int32_t* source;  ///< Index of the upper left of four pixels, -1 = outside.
   const float* fraction_x;
@@ -49,7 +49,7 @@ void ResampleRow(const ResampleRowArgs& args, float* out);
 void DistanceRow(const float* vx, const float* vy, const float* vz, const float* position,
                  std::int32_t width, float* distance_m);
 
-/// One row of the thermal picture beside the model as the thermal camera sees it.
+/// One row of the thermal image beside the model as the thermal camera sees it.
 struct PixelRowArgs {
   // The model's vertices and normals in `map`, NaN = no surface.
   const float* vx;

@@ -22,7 +22,7 @@ constexpr double kSinglePrecision = 2e-6;  ///< Relative error of a sum of a few
 
 /// For `width` pixels, and memory behind them for a whole vector.
 std::vector<float> Row(int width, float value) {
-  return std::vector<float>(static_cast<std::size_t>(width + testing::kMostLanes), value);
+  return std::vector<float>(static_cast<std::size_t>(width + testing::kMaxLanes), value);
 }
 
 std::vector<float> Output(int width) { return Row(width, static_cast<float>(testing::kCanary)); }
@@ -38,15 +38,15 @@ TEST(ResampleRowTest, MatchesTheScalarReferenceForAnyWidth) {
   constexpr int kWidth = 37;
   constexpr int kHeight = 5;
   Random random;
-  Image<float> picture(kWidth, kHeight);
-  for (float& value : picture.pixels()) {
+  Image<float> image(kWidth, kHeight);
+  for (float& value : image.pixels()) {
     value = random.Uniform(-100.0F, 500.0F);
     if (random.Chance(0.05)) value = random.Chance(0.8) ? kNan : kInfinity;
   }
   testing::ForEachInstructionSet([&] {
     int values = 0;
-    for (int width = 0; width <= 5 * testing::kMostLanes; ++width) {
-      std::vector<std::int32_t> source(static_cast<std::size_t>(width + testing::kMostLanes), -1);
+    for (int width = 0; width <= 5 * testing::kMaxLanes; ++width) {
+      std::vector<std::int32_t> source(static_cast<std::size_t>(width + testing::kMaxLanes), -1);
       std::vector<float> fx = Row(width, 0.0F);
       std::vector<float> fy = Row(width, 0.0F);
       for (std::size_t x = 0; x < source.size(); ++x) {
@@ -56,8 +56,7 @@ TEST(ResampleRowTest, MatchesTheScalarReferenceForAnyWidth) {
         fy[x] = random.Chance(0.1) ? 0.0F : random.Uniform(0.0F, 1.0F);
       }
       std::vector<float> out = Output(width);
-      const ResampleRowArgs args{picture.data(), kWidth,    source.data(),
-                                 fx.data(),      fy.data(), width};
+      const ResampleRowArgs args{image.data(), kWidth, source.data(), fx.data(), fy.data(), width};
       ResampleRow(args, out.data());
       ASSERT_NO_FATAL_FAILURE(ExpectCanary(out, width));
       for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
@@ -76,7 +75,7 @@ TEST(DistanceRowTest, MatchesTheScalarReferenceForAnyWidth) {
   constexpr double kHuge = 1e18;  // Squares beyond this may overflow.
   Random random;
   testing::ForEachInstructionSet([&] {
-    for (int width = 0; width <= 5 * testing::kMostLanes; ++width) {
+    for (int width = 0; width <= 5 * testing::kMaxLanes; ++width) {
       std::vector<float> planes[3];
       float position[3];
       for (int axis = 0; axis < 3; ++axis) {

@@ -26,7 +26,7 @@ std::uint16_t UpperHalf(float value) {
 
 float ConditionRecord::age_s() const {
   return age == kNoAge ? std::numeric_limits<float>::quiet_NaN()
-                       : kAgeStepS * static_cast<float>(age);
+                       : kAgeStep_s * static_cast<float>(age);
 }
 
 void DisagreementRecord::Add(std::uint16_t code, int count) {
@@ -39,22 +39,22 @@ void DisagreementRecord::Add(std::uint16_t code, int count) {
   highest = std::max(highest, code);
   const float n = static_cast<float>(std::min(count, kMemory));
   const float off = static_cast<float>(code) - static_cast<float>(mean);
-  const float share = 1.0F / (n + 1.0F);
+  const float fraction = 1.0F / (n + 1.0F);
   // Welford's update; once the memory is full, each new square replaces an average old one.
   const float kept = count < kMemory ? ToFloat(squares) : ToFloat(squares) * (1.0F - 1.0F / n);
-  squares = UpperHalf(kept + off * off * n * share);
+  squares = UpperHalf(kept + off * off * n * fraction);
   // Between the old mean and the code, so never outside 16 bits.
-  mean = static_cast<std::uint16_t>(static_cast<float>(mean) + off * share + 0.5F);
+  mean = static_cast<std::uint16_t>(static_cast<float>(mean) + off * fraction + 0.5F);
 }
 
 float DisagreementRecord::range_k() const {
-  return ThermalVoxel::kStepKelvin * static_cast<float>(highest - lowest);
+  return ThermalVoxel::kStep_k * static_cast<float>(highest - lowest);
 }
 
 float DisagreementRecord::spread_k(int count) const {
   if (count < 2) return 0.0F;
   const float n = static_cast<float>(std::min(count, kMemory));
-  return ThermalVoxel::kStepKelvin * std::sqrt(ToFloat(squares) / (n - 1.0F));
+  return ThermalVoxel::kStep_k * std::sqrt(ToFloat(squares) / (n - 1.0F));
 }
 
 namespace {

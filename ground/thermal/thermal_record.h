@@ -7,8 +7,8 @@ namespace isotherm {
 
 /// The conditions under which the temperature of a voxel was measured, in 8 bytes.
 struct ConditionRecord {
-  static constexpr float kDistanceStepM = 5e-4F;
-  static constexpr float kAgeStepS = 0.25F;
+  static constexpr float kDistanceStep_m = 5e-4F;
+  static constexpr float kAgeStep_s = 0.25F;
   static constexpr std::uint32_t kMaxDistance = (1U << 14) - 1;
   static constexpr std::uint32_t kNoAge = (1U << 12) - 1;
   static constexpr std::uint32_t kMaxGoodCount = (1U << 6) - 1;
@@ -22,7 +22,7 @@ struct ConditionRecord {
   std::uint32_t good_count : 6 = 0;
 
   bool empty() const { return distance == 0; }
-  float distance_m() const { return kDistanceStepM * static_cast<float>(distance); }
+  float distance_m() const { return kDistanceStep_m * static_cast<float>(distance); }
   float cosine_seen() const { return static_cast<float>(cosine) / 255.0F; }
   /// Seconds since the NUC; NaN = not known.
   float age_s() const;

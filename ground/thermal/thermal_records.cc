@@ -45,9 +45,9 @@ RecordRow& ThermalRecords::Row(std::int32_t block, int row) {
   return RowAt(entry);
 }
 
-bool ThermalRecords::Back(std::int32_t blocks) {
-  return index_.Back(static_cast<std::size_t>(blocks) * kIndexBytes) &&
-         pages_.Back(MaxPages(blocks) * kPageBytes);
+bool ThermalRecords::Commit(std::int32_t blocks) {
+  return index_.Commit(static_cast<std::size_t>(blocks) * kIndexBytes) &&
+         pages_.Commit(MaxPages(blocks) * kPageBytes);
 }
 
 template <typename Visit>
@@ -61,9 +61,9 @@ void ThermalRecords::ForPages(std::int32_t first_block, std::int32_t count,
   }
 }
 
-void ThermalRecords::GiveBack(std::int32_t first_block, std::int32_t count) const {
+void ThermalRecords::Decommit(std::int32_t first_block, std::int32_t count) const {
   ForPages(first_block, count,
-           [&](std::uint32_t page) { pages_.GiveBack(page * kPageBytes, kPageBytes); });
+           [&](std::uint32_t page) { pages_.Decommit(page * kPageBytes, kPageBytes); });
 }
 
 void ThermalRecords::Fetch(std::int32_t first_block, std::int32_t count) const {

@@ -31,8 +31,8 @@ class ThermalRecords {
   RecordRow& Row(std::int32_t block, int row);
 
   /// To be called before rows of blocks up to this number are made. False if the disk is full.
-  bool Back(std::int32_t blocks);
-  void GiveBack(std::int32_t first_block, std::int32_t count) const;
+  bool Commit(std::int32_t blocks);
+  void Decommit(std::int32_t first_block, std::int32_t count) const;
   /// Has rows that were given back read in the background.
   void Fetch(std::int32_t first_block, std::int32_t count) const;
   /// Bytes of all rows, in memory or spilled.

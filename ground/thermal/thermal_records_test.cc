@@ -41,9 +41,9 @@ TEST(DisagreementRecordTest, KeepsExtremesExactlyAndTheSpreadNearly) {
     }
     EXPECT_EQ(record.lowest, lowest);
     EXPECT_EQ(record.highest, highest);
-    EXPECT_EQ(record.range_k(), ThermalVoxel::kStepKelvin * static_cast<float>(highest - lowest));
+    EXPECT_EQ(record.range_k(), ThermalVoxel::kStep_k * static_cast<float>(highest - lowest));
     // Of 63 remembered values: their own spread varies by a tenth.
-    const double truth_k = sigma_codes * static_cast<double>(ThermalVoxel::kStepKelvin);
+    const double truth_k = sigma_codes * static_cast<double>(ThermalVoxel::kStep_k);
     EXPECT_NEAR(record.spread_k(63), truth_k, 0.35 * truth_k);
   }
   EXPECT_EQ(DisagreementRecord().spread_k(1), 0.0F);
@@ -73,9 +73,9 @@ TEST(ThermalRecordsTest, RowsExistOnlyWhereTheyWereWritten) {
 TEST(ThermalRecordsTest, ComeBackFromTheSpillFile) {
   const testing::TemporaryDirectory folder;
   ThermalRecords records(256, folder.path());
-  ASSERT_TRUE(records.Back(256));
+  ASSERT_TRUE(records.Commit(256));
   for (int row = 0; row < 64; ++row) records.Row(70, row).conditions[row % 8].direction = 700;
-  records.GiveBack(64, 64);
+  records.Decommit(64, 64);
   for (int row = 0; row < 64; ++row)
     EXPECT_EQ(records.Row(70, row).conditions[row % 8].direction, 700);
 }

@@ -11,9 +11,9 @@ namespace isotherm {
 namespace {
 
 /// OpenCV's map is in single precision, and neighbouring pixels differ by up to 20 K.
-constexpr double kToleranceK = 2e-3;
+constexpr double kTolerance_k = 2e-3;
 /// Nearer than this to the border of the image, rounding decides whether there is a value.
-constexpr double kNearBorderPx = 1e-3;
+constexpr double kNearBorder_px = 1e-3;
 
 CameraModel DistortedCamera(double k1, double k2, double k3) {
   CameraModel camera;
@@ -64,7 +64,7 @@ void CompareWithOpencv(const CameraModel& camera, int least_outside) {
       const double x = truth.x(v, u);
       const double y = truth.y(v, u);
       const auto near_border = [](double c, int size) {
-        return std::abs(c) < kNearBorderPx || std::abs(c - (size - 1)) < kNearBorderPx;
+        return std::abs(c) < kNearBorder_px || std::abs(c - (size - 1)) < kNearBorder_px;
       };
       if (near_border(x, camera.width) || near_border(y, camera.height)) continue;
       const double expected = Look(centikelvin, x, y);
@@ -74,7 +74,7 @@ void CompareWithOpencv(const CameraModel& camera, int least_outside) {
         ++outside;
         continue;
       }
-      ASSERT_NEAR(found, expected, kToleranceK) << "pixel " << u << ", " << v;
+      ASSERT_NEAR(found, expected, kTolerance_k) << "pixel " << u << ", " << v;
       ++compared;
     }
   }

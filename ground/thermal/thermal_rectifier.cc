@@ -38,22 +38,22 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, int apro
                                Image<float>& celsius) {
   const int width = ideal_.width;
   const int height = ideal_.height;
-  picture_.Resize(width, height);
+  image_.Resize(width, height);
   if (celsius.width() != width + 2 * apron || celsius.height() != height + 2 * apron)
     celsius = Image<float>(width + 2 * apron, height + 2 * apron, kNan);
   const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
   pool.ParallelFor(tasks, [&](int task) {
     const auto begin = static_cast<std::size_t>(task * kRowsPerTask * width);
     const auto end =
-        std::min(picture_.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
+        std::min(image_.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint16_t raw = centikelvin.data()[i];
-      picture_.data()[i] = raw == 0 ? kNan : static_cast<float>(raw) * 0.01F - 273.15F;
+      image_.data()[i] = raw == 0 ? kNan : static_cast<float>(raw) * 0.01F - 273.15F;
     }
   });
   pool.ParallelFor(tasks, [&](int task) {
     for (int v = task * kRowsPerTask; v < std::min(height, (task + 1) * kRowsPerTask); ++v) {
-      ResampleRow({picture_.data(), width, source_.Row(v).data(), fraction_x_.Row(v).data(),
+      ResampleRow({image_.data(), width, source_.Row(v).data(), fraction_x_.Row(v).data(),
                    fraction_y_.Row(v).data(), width},
                   celsius.Row(v + apron).data() + apron);
     }

@@ -9,7 +9,7 @@
 namespace isotherm {
 
 /// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the
-/// picture or where the frame has no value. Bilinear. Keeps scratch memory. Thread-compatible.
+/// image or where the frame has no value. Bilinear. Keeps scratch memory. Thread-compatible.
 class ThermalRectifier {
  public:
   explicit ThermalRectifier(const CameraModel& camera);
@@ -22,7 +22,7 @@ class ThermalRectifier {
   CameraModel ideal_;
   Image<std::int32_t> source_;  ///< Upper left of the four source pixels, -1 = outside.
   Image<float> fraction_x_, fraction_y_;
-  Image<float> picture_;  ///< The frame in °C.
+  Image<float> image_;  ///< The frame in °C.
 };
 
 }  // namespace isotherm

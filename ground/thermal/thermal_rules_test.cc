@@ -39,7 +39,7 @@ TEST_F(ThermalRulesTest, ASweepIsGoodAcceptableOrLeftOutByItsSmear) {
   const auto motion_on_wall = [&](double speed_m_s) {
     FuseFrame(options_, Even(20.0), Sweeping(speed_m_s));
     ConditionClass seen = kUnchecked;
-    ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+    ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
       if (OnWall(p)) seen = voxel.motion_class();
     });
     return seen;
@@ -58,7 +58,7 @@ TEST_F(ThermalRulesTest, RowsReadOneAfterTheOtherAreShiftedTheMoreTheFartherFrom
   FuseFrame(options_, Even(20.0), Sweeping(1.0));
   int near_middle = 0;
   int far = 0;
-  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+  ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
     if (!OnWall(p)) return;
     const double row =
         std::abs(thermal_camera_.fy * (p.y() - T_map_thermal_.translation().y()) / 0.6);
@@ -77,7 +77,7 @@ TEST_F(ThermalRulesTest, BesideASteepStepOfTemperatureNothingIsAssigned) {
       frame.centikelvin.At(u, v) = Raw(60.0);
   }
   EXPECT_GT(FuseFrame(options_, frame).steep, 100);
-  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
+  ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
     if (!voxel.measured()) return;
     const double off =
         std::min(std::abs(voxel.celsius() - 20.0F), std::abs(voxel.celsius() - 60.0F));
@@ -96,18 +96,18 @@ TEST_F(ThermalRulesTest, BadConditionsLeaveTheirClassesAndNoTemperature) {
   options_.set_distance_good_m(0.35);
   options_.set_distance_max_m(0.5);
   EXPECT_GT(FuseFrame(options_, Even(20.0)).considered, 1'000);
-  int judged = 0;
-  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+  int assessed = 0;
+  ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
     if (!OnWall(p)) return;
-    ++judged;
+    ++assessed;
     EXPECT_FALSE(voxel.measured());
     EXPECT_EQ(voxel.distance_class(), kBad);
     EXPECT_TRUE(std::isnan(voxel.celsius()));
   });
-  EXPECT_GT(judged, 1'000);
+  EXPECT_GT(assessed, 1'000);
   options_.set_keep_bad(true);
   FuseFrame(options_, Even(20.0));
-  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
+  ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
     EXPECT_NEAR(voxel.celsius(), 20.0, 0.02);
   });
 }
@@ -131,7 +131,7 @@ TEST_F(ThermalRulesTest, EachTemperatureKnowsItsDistanceAngleAndNuc) {
       EXPECT_LT((direction - to_camera.normalized()).norm(), kBlockAngle);
       EXPECT_NEAR(at.conditions.cosine_seen(), -to_camera.z() / to_camera.norm(), 0.02);
       EXPECT_EQ(at.conditions.epoch, 7);
-      EXPECT_NEAR(at.conditions.age_s(), 12.4, 0.5 * ConditionRecord::kAgeStepS);
+      EXPECT_NEAR(at.conditions.age_s(), 12.4, 0.5 * ConditionRecord::kAgeStep_s);
     }
   }
   EXPECT_GT(checked, 100);
@@ -144,7 +144,7 @@ TEST_F(ThermalRulesTest, WithoutRecordsTemperaturesAreTheSame) {
 }
 
 TEST_F(ThermalRulesTest, AReflectionThatMovesDisagreesAndTheLowestCanBeKept) {
-  // Half of the picture shows the same 20 °C always, the other at times 8 K more.
+  // Half of the image shows the same 20 °C always, the other at times 8 K more.
   options_.set_distance_good_m(0.8);
   for (const bool lowest : {false, true}) {
     thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks());
@@ -158,7 +158,7 @@ TEST_F(ThermalRulesTest, AReflectionThatMovesDisagreesAndTheLowestCanBeKept) {
     }
     int in_reflection = 0;
     int elsewhere = 0;
-    ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+    ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
       if (!OnWall(p) || voxel.angle_class() != kGood || !voxel.measured()) return;
       const Eigen::Vector3d p_thermal = T_map_thermal_.inverse() * p;
       const double u = thermal_camera_.fx * p_thermal.x() / p_thermal.z() + thermal_camera_.cx;
@@ -193,7 +193,7 @@ TEST_F(ThermalRulesTest, WhatTurnsOutToBelongToAnotherFaceIsDropped) {
   const TemperatureReview review(options_);
   const std::int32_t block =
       tsdf_->Find((tsdf_->grid().ToVoxel(p).array().round().cast<int>() / kBlockSide).matrix());
-  EXPECT_EQ(review.Review(block, *tsdf_, *thermal_), 0) << "what was judged right stays";
+  EXPECT_EQ(review.Review(block, *tsdf_, *thermal_), 0) << "what was assessed right stays";
   // As if the camera had stood far to the side when the surface looked like facing it.
   int records = 0;
   for (int row = 0; row < ThermalRecords::kRowsPerBlock; ++row) {
@@ -263,7 +263,7 @@ TEST(DepthOfFieldTest, ALensOfZerosIsNotKnown) {
 TEST_F(ThermalRulesTest, APixelThatCoversTooMuchIsTooFar) {
   options_.set_max_footprint_m(0.003);  // 0.6 m / 186 px is 3.2 mm.
   FuseFrame(options_, Even(20.0));
-  ForEachJudged([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
+  ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
     if (!OnWall(p)) return;
     ASSERT_EQ(voxel.distance_class(), kBad);
   });

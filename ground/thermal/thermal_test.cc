@@ -16,7 +16,7 @@ TEST(ThermalVoxelTest, KeepsTemperatureToHalfAStepAndBothClasses) {
   for (float celsius = -100.0F; celsius < 1500.0F; celsius += 7.3F) {
     const ThermalVoxel voxel = ThermalVoxel::Make(celsius, kAcceptable, kGood);
     ASSERT_TRUE(voxel.measured());
-    ASSERT_NEAR(voxel.celsius(), celsius, 0.5F * ThermalVoxel::kStepKelvin + 1e-4F);
+    ASSERT_NEAR(voxel.celsius(), celsius, 0.5F * ThermalVoxel::kStep_k + 1e-4F);
     ASSERT_EQ(voxel.distance_class(), kAcceptable);
     ASSERT_EQ(voxel.angle_class(), kGood);
   }
@@ -125,14 +125,14 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
   camera.p1 = 0.001;
   // A temperature that is linear in the distorted pixel survives bilinear interpolation exactly.
   const auto raw = [](double u, double v) { return 29'000.0 + 10.0 * u + 7.0 * v; };
-  Image<std::uint16_t> picture(camera.width, camera.height);
+  Image<std::uint16_t> image(camera.width, camera.height);
   for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u) picture.At(u, v) = static_cast<std::uint16_t>(raw(u, v));
+    for (int u = 0; u < camera.width; ++u) image.At(u, v) = static_cast<std::uint16_t>(raw(u, v));
   }
   ThreadPool pool(1);
   Image<float> celsius;
   constexpr int kApron = 2;
-  ThermalRectifier(camera).Rectify(picture, kApron, pool, celsius);
+  ThermalRectifier(camera).Rectify(image, kApron, pool, celsius);
   EXPECT_TRUE(std::isnan(celsius.At(1, 71)));
   for (const Eigen::Vector2d& ideal :
        {Eigen::Vector2d(95, 71), Eigen::Vector2d(50, 40), Eigen::Vector2d(150, 110)}) {
@@ -142,8 +142,8 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
         celsius.At(static_cast<int>(ideal.x()) + kApron, static_cast<int>(ideal.y()) + kApron),
         CentikelvinToCelsius(raw(source.x(), source.y())), 0.001);
   }
-  picture.At(95, 71) = 0;
-  ThermalRectifier(camera).Rectify(picture, kApron, pool, celsius);
+  image.At(95, 71) = 0;
+  ThermalRectifier(camera).Rectify(image, kApron, pool, celsius);
   EXPECT_TRUE(std::isnan(celsius.At(95 + kApron, 71 + kApron)))
       << "a pixel without value stays without value";
 }
@@ -156,9 +156,9 @@ TEST_F(ThermalFuserTest, ParallaxFilterKeepsTheBallsTemperatureOffTheWall) {
 
 TEST_F(ThermalFuserTest, Figures73And74AForegroundThatLeftTheDepthCamerasViewStillHides) {
   // Turned away, the depth camera sees the wall beside the ball only.
-  constexpr double kTurn = 0.42;
-  T_map_depth_ = MakeTransform(
-      {0.32, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-kTurn, Eigen::Vector3d::UnitY())));
+  constexpr double kRotation_rad = 0.42;
+  T_map_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(
+                                                      -kRotation_rad, Eigen::Vector3d::UnitY())));
   // From the right, the thermal camera sees the ball before that part of the wall.
   T_map_thermal_ = MakeTransform(
       {0.52, 0.32, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.45, Eigen::Vector3d::UnitY())));
@@ -199,7 +199,7 @@ TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
 }
 
 TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
-  ThermalFrame frame = Picture(T_map_thermal_);
+  ThermalFrame frame = TakeFrame(T_map_thermal_);
   frame.centikelvin.Fill(0);
   const FusionReport report =
       ThermalFuser(ThermalOptions(), thermal_camera_, 0.0F)
@@ -209,7 +209,7 @@ TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
 }
 
 TEST_F(ThermalFuserTest, APoseThatIsNoneIsTheCallersFault) {
-  const ThermalFrame frame = Picture(T_map_thermal_);
+  const ThermalFrame frame = TakeFrame(T_map_thermal_);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300}) {
     for (const bool of_thermal : {false, true}) {
       RigidTransform T_map_thermal = T_map_thermal_;

@@ -7,7 +7,7 @@ namespace isotherm {
 
 ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, ConditionClass angle,
                                 ConditionClass motion, ConditionClass disagreement) {
-  const float code = std::clamp(1.0F + std::round((celsius - kMinCelsius) / kStepKelvin), 1.0F,
+  const float code = std::clamp(1.0F + std::round((celsius - kMin_celsius) / kStep_k), 1.0F,
                                 ThermalLayout::kMaxCode);
   ThermalVoxel voxel;
   voxel.bits = static_cast<std::uint32_t>(code) << ThermalLayout::kCodeShift |
@@ -22,9 +22,9 @@ ThermalVolume::ThermalVolume(std::int32_t max_blocks, const std::filesystem::pat
   if (with_records) records_ = std::make_unique<ThermalRecords>(max_blocks, spill_dir);
 }
 
-bool ThermalVolume::Back(std::int32_t blocks) {
-  return arena_.Back(static_cast<std::size_t>(blocks) * kBlockVoxels * sizeof(ThermalVoxel)) &&
-         (!records_ || records_->Back(blocks));
+bool ThermalVolume::Commit(std::int32_t blocks) {
+  return arena_.Commit(static_cast<std::size_t>(blocks) * kBlockVoxels * sizeof(ThermalVoxel)) &&
+         (!records_ || records_->Commit(blocks));
 }
 
 namespace {
@@ -51,7 +51,7 @@ VoxelPlace PlaceFor(const TsdfVolume& tsdf, const ThermalVolume& thermal,
   const Eigen::Vector3d p_voxel = tsdf.grid().ToVoxel(p_map);
   const GridIndex centre = p_voxel.array().round().cast<int>();
   const VoxelPlace own = PlaceOf(tsdf, centre);
-  if (VoxelAt(thermal, own).judged()) return own;
+  if (VoxelAt(thermal, own).assessed()) return own;
   VoxelPlace nearest = own;
   double nearest_squared = std::numeric_limits<double>::infinity();
   for (int z = -1; z <= 1; ++z) {

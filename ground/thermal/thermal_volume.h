@@ -14,8 +14,8 @@ namespace isotherm {
 /// One thermal voxel in 32 bits (ThermalLayout): a temperature and the classes of the conditions
 /// under which it was measured.
 struct ThermalVoxel {
-  static constexpr float kMinCelsius = ThermalLayout::kMinCelsius;
-  static constexpr float kStepKelvin = ThermalLayout::kStepKelvin;
+  static constexpr float kMin_celsius = ThermalLayout::kMin_celsius;
+  static constexpr float kStep_k = ThermalLayout::kStep_k;
 
   std::uint32_t bits = 0;
 
@@ -24,11 +24,11 @@ struct ThermalVoxel {
                            ConditionClass disagreement = ConditionClass::kUnchecked);
   bool measured() const { return ThermalLayout::Code(bits) != 0; }
   /// Measured, or tried under bad conditions: the classes say which (temperature code 0).
-  bool judged() const { return bits != 0; }
+  bool assessed() const { return bits != 0; }
   /// °C; NaN = never measured.
   float celsius() const {
     const std::uint32_t code = ThermalLayout::Code(bits);
-    return code == 0 ? NAN : kMinCelsius + kStepKelvin * static_cast<float>(code - 1);
+    return code == 0 ? NAN : kMin_celsius + kStep_k * static_cast<float>(code - 1);
   }
   ConditionClass distance_class() const {
     return static_cast<ConditionClass>(bits >> ThermalLayout::kDistanceShift &
@@ -38,7 +38,7 @@ struct ThermalVoxel {
     return static_cast<ConditionClass>(bits >> ThermalLayout::kAngleShift &
                                        ThermalLayout::kClassMask);
   }
-  /// How much the picture was smeared when the temperature was measured.
+  /// How much the image was smeared when the temperature was measured.
   ConditionClass motion_class() const {
     return ThermalLayout::Decode(bits >> ThermalLayout::kMotionShift);
   }
@@ -63,14 +63,14 @@ class ThermalVolume {
                          bool with_records = true);
 
   /// To be called before blocks up to this number are written. False if the disk is full.
-  bool Back(std::int32_t blocks);
+  bool Commit(std::int32_t blocks);
   /// Gives the memory of blocks back until they are touched again; does nothing without a spill
   /// folder.
-  void GiveBack(std::int32_t first_block, std::int32_t count) const {
+  void Decommit(std::int32_t first_block, std::int32_t count) const {
     constexpr std::size_t kBlockBytes = kBlockVoxels * sizeof(ThermalVoxel);
-    arena_.GiveBack(static_cast<std::size_t>(first_block) * kBlockBytes,
+    arena_.Decommit(static_cast<std::size_t>(first_block) * kBlockBytes,
                     static_cast<std::size_t>(count) * kBlockBytes);
-    if (records_) records_->GiveBack(first_block, count);
+    if (records_) records_->Decommit(first_block, count);
   }
 
   /// Has blocks that were given back read in the background.

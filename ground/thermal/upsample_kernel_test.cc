@@ -98,7 +98,7 @@ class UpsampleRowTest : public ::testing::Test {
 TEST_F(UpsampleRowTest, MatchesTheScalarReferenceForAnyWidth) {
   testing::ForEachInstructionSet([&] {
     with_ = without_ = far_ = 0;
-    for (int width = 1; width <= 5 * testing::kMostLanes; ++width) {
+    for (int width = 1; width <= 5 * testing::kMaxLanes; ++width) {
       Fill(width, random_.Integer(1, 6), random_.Chance(0.5) ? 0.1 : 0.6);
       for (int y = 0; y < fine_.height() && !HasFatalFailure(); ++y) CompareRow(y);
     }

@@ -39,8 +39,8 @@ struct ThermalLayout {
   /// The classes of one measurement; disagreement is of many.
   static constexpr std::uint32_t kConditionMask = kMotionMask | kDistanceMask | kAngleMask;
 
-  static constexpr float kMinCelsius = -100.0F;
-  static constexpr float kStepKelvin = 0.025F;
+  static constexpr float kMin_celsius = -100.0F;
+  static constexpr float kStep_k = 0.025F;
   static constexpr float kStepsPerKelvin = 40.0F;
   static constexpr std::uint32_t kCodeMask = 0xFFFFU;  ///< Mask of the code after its shift.
   static constexpr float kMaxCode = 65535.0F;
@@ -70,7 +70,7 @@ static_assert((ThermalLayout::kConditionMask | ThermalLayout::kDisagreementMask)
 static_assert((ThermalLayout::kConditionMask & ThermalLayout::kDisagreementMask) == 0);
 static_assert(ThermalLayout::kConditionMask == 0xF0FFU);
 static_assert(static_cast<float>(ThermalLayout::kCodeMask) == ThermalLayout::kMaxCode);
-static_assert(1.0F / ThermalLayout::kStepKelvin == ThermalLayout::kStepsPerKelvin);
+static_assert(1.0F / ThermalLayout::kStep_k == ThermalLayout::kStepsPerKelvin);
 
 /// Good in motion, distance and angle.
 inline constexpr std::uint32_t kAllGood =

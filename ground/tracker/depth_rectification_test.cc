@@ -9,7 +9,7 @@ namespace isotherm {
 namespace {
 
 /// Nearer than this to the border of two pixels, single precision decides which is the nearest.
-constexpr float kNearBorderPx = 1e-3F;
+constexpr float kNearBorder_px = 1e-3F;
 
 CameraModel DistortedCamera() {
   CameraModel camera;
@@ -49,7 +49,7 @@ TEST(DepthRectificationTest, EachPixelShowsTheDepthThatOpencvFindsThere) {
       const float x = truth.x(v, u);
       const float y = truth.y(v, u);
       const auto near_border = [](float c) {
-        return std::abs(c + 0.5F - std::round(c + 0.5F)) < kNearBorderPx;
+        return std::abs(c + 0.5F - std::round(c + 0.5F)) < kNearBorder_px;
       };
       if (near_border(x) || near_border(y)) continue;
       const int column = static_cast<int>(std::lround(x));

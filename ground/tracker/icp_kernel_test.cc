@@ -33,8 +33,8 @@ class AccumulateIcpRowsTest : public ::testing::Test {
     const int model_width = random_.Integer(1, 90);
     const int model_height = random_.Integer(1, 40);
     args_ = {};
-    const RowMajor R = Turn(0.02F);
-    const RowMajor R_map = Turn(1.0F);
+    const RowMajor R = Rotation(0.02F);
+    const RowMajor R_map = Rotation(1.0F);
     const Eigen::Vector3f t_map(Uniform(), Uniform(), Uniform());
     const Eigen::Vector3f t = 0.005F * Eigen::Vector3f(Uniform(), Uniform(), Uniform());
     // The model's camera is the world's turned and moved by what leads from the current one.
@@ -123,7 +123,7 @@ class AccumulateIcpRowsTest : public ::testing::Test {
   }
 
   float Uniform() { return random_.Uniform(-1.0F, 1.0F); }
-  RowMajor Turn(float most) {
+  RowMajor Rotation(float most) {
     return Eigen::Quaternionf(1.0F, most * Uniform(), most * Uniform(), most * Uniform())
         .normalized()
         .toRotationMatrix();
@@ -139,7 +139,7 @@ class AccumulateIcpRowsTest : public ::testing::Test {
 TEST_F(AccumulateIcpRowsTest, MatchesTheScalarReferenceForAnyWidth) {
   testing::ForEachInstructionSet([&] {
     inliers_ = outliers_ = 0;
-    for (int width = 1; width <= 5 * testing::kMostLanes && !HasFatalFailure(); ++width) {
+    for (int width = 1; width <= 5 * testing::kMaxLanes && !HasFatalFailure(); ++width) {
       Rearrange(width, random_.Integer(1, 12));
       SCOPED_TRACE(::testing::Message() << width << " x " << current_.height() << " pixels");
       Compare(0, current_.height());

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "ground/tracker/icp_kernel.h"
-#include "ground/tracker/outside_stream.h"
-#include "ground/tracker/thermal_cue.h"
+#include "ground/tracker/odometry_stream.h"
+#include "ground/tracker/thermal_alignment.h"
 
 namespace isotherm {
 namespace {
@@ -46,25 +46,26 @@ constexpr double kPixelsPerSample = 25.0;
 /// Along the observed axes, from the residual and the normal equations of the last iteration.
 Matrix6 ObservedCovariance(const IcpSums& sums, const TrackingResult& result) {
   const double weight = sums.H.topLeftCorner<3, 3>().trace();  // Normals have length 1.
-  if (!(weight > 0.0) || result.motion.free_axes == 6) return Matrix6::Zero();
+  if (!(weight > 0.0) || result.motion.unobservable_axes == 6) return Matrix6::Zero();
   const double samples = static_cast<double>(sums.inliers) / kPixelsPerSample;
-  const MotionSpace& motion = result.motion;
+  const Observability& motion = result.motion;
   const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis =
-      motion.scale.asDiagonal() * motion.axes.rightCols(6 - motion.free_axes);
+      motion.scale.asDiagonal() * motion.axes.rightCols(6 - motion.unobservable_axes);
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6, 6> information =
       basis.transpose() * sums.H * basis / weight;
   return basis * information.inverse() * basis.transpose() *
          (result.residual_m * result.residual_m / samples);
 }
 
-/// Free axes that temperatures observe are free no more.
+/// Axes that temperatures observe are unobservable no more.
 void Adopt(const ThermalFit& fit, TrackingResult& result) {
-  MotionSpace& motion = result.motion;
+  Observability& motion = result.motion;
   const Matrix6 before = motion.axes;
-  motion.axes.leftCols(motion.free_axes) = before.leftCols(motion.free_axes) * fit.turn;
-  motion.free_axes -= fit.observed;
+  motion.axes.leftCols(motion.unobservable_axes) =
+      before.leftCols(motion.unobservable_axes) * fit.rotation;
+  motion.unobservable_axes -= fit.observed;
   for (int i = 0; i < fit.observed; ++i) {
-    const Vector6 twist = motion.scale.cwiseProduct(motion.axes.col(motion.free_axes + i));
+    const Vector6 twist = motion.scale.cwiseProduct(motion.axes.col(motion.unobservable_axes + i));
     result.covariance += fit.variance_m2(i) * twist * twist.transpose();
   }
 }
@@ -72,10 +73,10 @@ void Adopt(const ThermalFit& fit, TrackingResult& result) {
 }  // namespace
 
 Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to) {
-  const Eigen::AngleAxisd turn(
+  const Eigen::AngleAxisd rotation(
       Eigen::Quaterniond(to.linear() * from.linear().transpose()).normalized());
   Vector6 twist;
-  twist << to.translation() - from.translation(), turn.angle() * turn.axis();
+  twist << to.translation() - from.translation(), rotation.angle() * rotation.axis();
   return twist;
 }
 
@@ -135,7 +136,7 @@ Status Validate(const TrackerOptions& o) {
         "tracker.thermal_min_gradient_k_m must be above 0 and at most 10000 K/m, got {}",
         o.thermal_min_gradient_k_m()));
   }
-  return Validate(o.outside());
+  return Validate(o.external_odometry());
 }
 
 IcpSums& IcpSums::operator+=(const IcpSums& other) {
@@ -193,11 +194,13 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
       static_cast<float>(options_.max_distance_m()),
       static_cast<float>(std::cos(options_.max_normal_angle_deg() * kRadPerDeg))};
   // The normals of a young model are rough, and quantised as the frame's are.
-  result.motion = MeasureMotionSpace(depth.maps[kPyramidLevels - 1], start.guess, model, limits,
-                                     (model.is_young ? 2.0 : 1.0) * options_.min_observed());
+  result.motion = MeasureObservability(depth.maps[kPyramidLevels - 1], start.guess, model, limits,
+                                       (model.is_young ? 2.0 : 1.0) * options_.min_observed());
   if (!result.motion.fully_observed()) {
-    ApplyTwist(result.motion.FreePart(TwistBetween(start.guess, start.prior)), result.T_map_depth);
-    if (start.cue != nullptr) start.cue->Align(result.motion, model.maps, result.T_map_depth);
+    ApplyTwist(result.motion.UnobservablePart(TwistBetween(start.guess, start.prior)),
+               result.T_map_depth);
+    if (start.alignment != nullptr)
+      start.alignment->Align(result.motion, model.maps, result.T_map_depth);
   }
   IcpSums last;
   const std::array<int, kPyramidLevels> iterations = {
@@ -229,19 +232,19 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   result.T_map_depth.linear() =
       Eigen::Quaterniond(result.T_map_depth.linear()).normalized().toRotationMatrix();
   result.covariance = ObservedCovariance(last, result);
-  if (start.cue != nullptr && !result.motion.fully_observed()) {
+  if (start.alignment != nullptr && !result.motion.fully_observed()) {
     // Once more, where the geometry has put it.
-    const auto fit = start.cue->Align(result.motion, model.maps, result.T_map_depth);
+    const auto fit = start.alignment->Align(result.motion, model.maps, result.T_map_depth);
     if (fit) Adopt(*fit, result);
   }
   result.step_m = TranslationDistance(model.T_map_depth, result.T_map_depth);
   result.step_rad = RotationAngle(model.T_map_depth, result.T_map_depth);
   // The normals of a young model are too rough to reject correspondences fairly.
-  constexpr double kYoungShare = 1.0 / 3.0;
-  return Judge(result, options_.min_inlier_ratio() * (model.is_young ? kYoungShare : 1.0));
+  constexpr double kYoungFraction = 1.0 / 3.0;
+  return Assess(result, options_.min_inlier_ratio() * (model.is_young ? kYoungFraction : 1.0));
 }
 
-TrackingResult IcpTracker::Judge(TrackingResult result, double min_inlier_ratio) const {
+TrackingResult IcpTracker::Assess(TrackingResult result, double min_inlier_ratio) const {
   if (!result.T_map_depth.matrix().allFinite()) {
     result.lost = LostReason::kSingular;
   } else if (result.inlier_ratio < min_inlier_ratio) {

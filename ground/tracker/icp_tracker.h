@@ -9,11 +9,11 @@
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/surface/voxel_grid.h"
-#include "ground/tracker/motion_space.h"
+#include "ground/tracker/observability.h"
 
 namespace isotherm {
 
-class ThermalCue;
+class ThermalAlignment;
 
 /// Why a frame could not be tracked.
 enum class LostReason {
@@ -58,7 +58,7 @@ struct TrackingResult {
   double step_m = 0.0;         ///< Motion since the model view's pose.
   double step_rad = 0.0;
   int iterations = 0;
-  MotionSpace motion;  ///< What of the motion was measured.
+  Observability motion;  ///< What of the motion was measured.
   /// How uncertain T_map_depth is, as a twist (translation, rotation about the camera's position)
   /// in `map`, m and rad; what this frame measured, so nothing along axes that are not observed
   /// (PoseUncertainty).
@@ -79,21 +79,22 @@ class IcpTracker {
  public:
   explicit IcpTracker(const TrackerOptions& options) : options_(options) {}
 
-  /// Where the search starts, and what holds the directions that the geometry leaves free.
+  /// Where the search starts, and what holds the directions that the geometry cannot measure.
   struct Start {
     RigidTransform guess;
     RigidTransform prior;
-    ThermalCue* cue = nullptr;  ///< Goes before the prior where it observes something.
+    ThermalAlignment* alignment = nullptr;  ///< Goes before the prior where it observes something.
   };
 
   /// Finds T_map_depth of `depth` near the guess. Residuals are weighted by the sensor's depth
   /// noise (variance grows with the fourth power of the depth). In directions along which the view
-  /// slides on itself (a plane, a cylinder), the pose is the cue's or else the prior's.
+  /// slides on itself (a plane, a cylinder), the pose is the thermal alignment's or else the
+  /// prior's.
   TrackingResult Track(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
                        const Start& start, ThreadPool& pool) const;
 
  private:
-  TrackingResult Judge(TrackingResult result, double min_inlier_ratio) const;
+  TrackingResult Assess(TrackingResult result, double min_inlier_ratio) const;
 
   const TrackerOptions options_;
 };
@@ -108,13 +109,13 @@ struct IcpSums {
   std::int64_t candidates = 0;  ///< Valid pixels inside the volume, ...
   std::int64_t overlap = 0;     ///< ... of which the model has a surface in the same direction.
 
-  double inlier_ratio() const { return Share(inliers, candidates); }
-  double overlap_ratio() const { return Share(overlap, candidates); }
-  double agreement() const { return Share(inliers, overlap); }
+  double inlier_ratio() const { return Fraction(inliers, candidates); }
+  double overlap_ratio() const { return Fraction(overlap, candidates); }
+  double agreement() const { return Fraction(inliers, overlap); }
   IcpSums& operator+=(const IcpSums& other);
 
  private:
-  static double Share(std::int64_t part, std::int64_t whole) {
+  static double Fraction(std::int64_t part, std::int64_t whole) {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
   }
 };

@@ -42,9 +42,9 @@ std::optional<RigidTransform> MotionHistory::Extrapolate(const StampedMapPose& f
   if (!(span_s > 0.0 && ahead_s >= 0.0 && ahead_s <= kMaxFramesAhead * frame_s))
     return std::nullopt;
   // The motion over the span, in the rig's own coordinates, goes on from the newest pose.
-  const double share = ahead_s / span_s;
+  const double fraction = ahead_s / span_s;
   const RigidTransform motion = from.T_map_depth.inverse() * to.T_map_depth;
-  return to.T_map_depth * Interpolate(RigidTransform::Identity(), motion, share);
+  return to.T_map_depth * Interpolate(RigidTransform::Identity(), motion, fraction);
 }
 
 }  // namespace isotherm

@@ -17,16 +17,16 @@ class MotionHistoryTest : public ::testing::Test {
  protected:
   static constexpr milliseconds kFrame{33};
   static CaptureTime At(int frame) { return CaptureTime(std::chrono::hours(1) + frame * kFrame); }
-  static RigidTransform Turned(double angle_rad, const Eigen::Vector3d& p_map) {
+  static RigidTransform Rotated(double angle_rad, const Eigen::Vector3d& p_map) {
     const Eigen::Vector3d axis = Eigen::Vector3d(0.4, 1.0, -0.3).normalized();
     return MakeTransform(p_map, Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, axis)));
   }
   static RigidTransform Sliding(double frame) {
-    return Turned(0.7,
-                  Eigen::Vector3d(1.0, -2.0, 0.5) + frame * Eigen::Vector3d(0.01, 0.002, -0.005));
+    return Rotated(0.7,
+                   Eigen::Vector3d(1.0, -2.0, 0.5) + frame * Eigen::Vector3d(0.01, 0.002, -0.005));
   }
-  static RigidTransform Turning(double frame) {
-    return Turned(0.7 + frame * 2.0 * kRadPerDeg, {1.0, -2.0, 0.5});
+  static RigidTransform Rotating(double frame) {
+    return Rotated(0.7 + frame * 2.0 * kRadPerDeg, {1.0, -2.0, 0.5});
   }
   static void ExpectNear(const std::optional<RigidTransform>& pose,
                          const RigidTransform& expected) {
@@ -39,7 +39,7 @@ class MotionHistoryTest : public ::testing::Test {
 };
 
 TEST_F(MotionHistoryTest, ConstantVelocityGoesOn) {
-  for (const auto& motion : {Sliding, Turning}) {
+  for (const auto& motion : {Sliding, Rotating}) {
     history_.Clear();
     for (int frame = 0; frame < 20; ++frame) history_.Add({At(frame), motion(frame)});
     for (const int ahead : {0, 1, 2}) {
@@ -52,22 +52,22 @@ TEST_F(MotionHistoryTest, ConstantVelocityGoesOn) {
 }
 
 TEST_F(MotionHistoryTest, AScrewGoesOnByTheSameMotionInTheRigsCoordinates) {
-  const RigidTransform motion = Turned(3.0 * kRadPerDeg, {0.01, 0.0, 0.02});
-  const RigidTransform first = Turned(1.2, {0.3, 0.1, -0.4});
+  const RigidTransform motion = Rotated(3.0 * kRadPerDeg, {0.01, 0.0, 0.02});
+  const RigidTransform first = Rotated(1.2, {0.3, 0.1, -0.4});
   history_.Add({At(0), first});
   history_.Add({At(1), first * motion});
   ExpectNear(history_.Predict(At(2)), first * motion * motion);
 }
 
 TEST_F(MotionHistoryTest, SmoothPredictionHasLessOfTheNoise) {
-  constexpr double kNoiseM = 0.001;
+  constexpr double kNoise_m = 0.001;
   for (int frame = 0; frame < 20; ++frame) {
     RigidTransform pose = Sliding(frame);
-    pose.translation().x() += frame == 18 ? kNoiseM : 0.0;
+    pose.translation().x() += frame == 18 ? kNoise_m : 0.0;
     history_.Add({At(frame), pose});
   }
-  EXPECT_NEAR(TranslationDistance(*history_.Predict(At(20)), Sliding(20)), kNoiseM, kRounding);
-  EXPECT_LT(TranslationDistance(*history_.PredictSmoothly(At(20)), Sliding(20)), 0.2 * kNoiseM);
+  EXPECT_NEAR(TranslationDistance(*history_.Predict(At(20)), Sliding(20)), kNoise_m, kRounding);
+  EXPECT_LT(TranslationDistance(*history_.PredictSmoothly(At(20)), Sliding(20)), 0.2 * kNoise_m);
 }
 
 TEST_F(MotionHistoryTest, NothingIsPredictedWithFewerThanTwoPoses) {
@@ -102,7 +102,7 @@ TEST_F(MotionHistoryTest, ClearForgetsTheMotion) {
   for (int frame = 0; frame < 5; ++frame) history_.Add({At(frame), Sliding(frame)});
   history_.Clear();
   EXPECT_FALSE(history_.last().has_value());
-  history_.Add({At(5), Turning(5)});
+  history_.Add({At(5), Rotating(5)});
   EXPECT_FALSE(history_.Predict(At(6)).has_value());
 }
 

@@ -10,12 +10,12 @@
 namespace isotherm {
 
 void PoseUncertainty::Update(const TrackingResult& result, const PriorError& prior) {
-  const MotionSpace& motion = result.motion;
+  const Observability& motion = result.motion;
   const Vector6 to_motion = motion.scale.cwiseInverse();
   const Matrix6 before = prior.continues ? without_noise_ : covariance_;
   without_noise_ = result.covariance;
   Matrix6 noise = Matrix6::Zero();
-  for (int i = 0; i < motion.free_axes; ++i) {
+  for (int i = 0; i < motion.unobservable_axes; ++i) {
     const Vector6 axis = motion.axes.col(i);
     const auto along_axis = [&](double translation_m, double rotation_rad) {
       return std::hypot(translation_m * axis.head<3>().norm(),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ground/tracker/motion_space.h"
+#include "ground/tracker/observability.h"
 #include "ground/tracker/prior_error.h"
 
 namespace isotherm {
@@ -12,7 +12,7 @@ struct TrackingResult;
 /// model. Thread-compatible.
 class PoseUncertainty {
  public:
-  /// After each tracked frame, with the error of the prior that held its free directions.
+  /// After each tracked frame, with the error of the prior that held its unobservable directions.
   void Update(const TrackingResult& result, const PriorError& prior);
 
   /// Goes on in coordinates whose axes are rotated.
@@ -30,7 +30,7 @@ class PoseUncertainty {
  private:
   Matrix6 covariance_ = Matrix6::Zero();
   Matrix6 without_noise_ =
-      Matrix6::Zero();  ///< The part of the newest pose alone, along free axes.
+      Matrix6::Zero();  ///< The part of the newest pose alone, along unobservable axes.
   double surface_sigma_m_ = 0.0;
   double mean_depth_m_ = 1.0;
 };

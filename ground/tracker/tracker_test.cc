@@ -135,9 +135,9 @@ class IcpTrackerTest : public ::testing::Test {
     return testing::RenderDepth(testing::BallInCorner, camera_, pose);
   }
   static RigidTransform Moved(const Eigen::Vector3d& translation_m, double angle_deg) {
-    const Eigen::AngleAxisd turn(angle_deg * kRadPerDeg,
-                                 Eigen::Vector3d(0.4, 1.0, -0.3).normalized());
-    return testing::FirstPose() * MakeTransform(translation_m, Eigen::Quaterniond(turn));
+    const Eigen::AngleAxisd rotation(angle_deg * kRadPerDeg,
+                                     Eigen::Vector3d(0.4, 1.0, -0.3).normalized());
+    return testing::FirstPose() * MakeTransform(translation_m, Eigen::Quaterniond(rotation));
   }
 
   TrackerOptions options_;

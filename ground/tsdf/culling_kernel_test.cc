@@ -44,7 +44,7 @@ TEST(CullBlocksTest, KeepsExactlyTheBlocksInsideWhereSumsAreExact) {
     testing::Random random;
     std::int64_t kept = 0;
     std::int64_t all = 0;
-    for (int count = 0; count <= 5 * testing::kMostLanes; ++count) {
+    for (int count = 0; count <= 5 * testing::kMaxLanes; ++count) {
       for (int round = 0; round < 20; ++round, all += count) {
         Planes planes;
         for (auto& plane : planes) {
@@ -95,10 +95,10 @@ TEST(VisibleBlocksTest, FindsEachBlockOfWhichAVoxelIsInView) {
   int found_in_all = 0;
   for (int round = 0; round < 12; ++round) {
     const auto uniform = [&] { return random.Uniform(-1.0F, 1.0F); };
-    const Eigen::Quaterniond turn(1.0, uniform(), uniform(), uniform());
+    const Eigen::Quaterniond rotation(1.0, uniform(), uniform(), uniform());
     const Eigen::Vector3d ahead =
-        turn.normalized() * Eigen::Vector3d(0.0, 0.0, 0.15 + 0.15 * uniform());
-    const RigidTransform pose = MakeTransform(grid.min_m + 0.5 * grid.size_m() - ahead, turn);
+        rotation.normalized() * Eigen::Vector3d(0.0, 0.0, 0.15 + 0.15 * uniform());
+    const RigidTransform pose = MakeTransform(grid.min_m + 0.5 * grid.size_m() - ahead, rotation);
     const std::span<const std::int32_t> found = visible.Find(volume, camera, pose);
     found_in_all += static_cast<int>(found.size());
     for (std::int32_t block = 0; block < volume.block_count(); ++block) {

@@ -16,9 +16,9 @@ namespace isotherm::HWY_NAMESPACE {
 /// Noise reaches this many standard deviations (a generous estimate) behind the surface.
 constexpr float kNoiseReach = 1.0F;
 
-/// Share of the weight that an observation keeps at the far end of the band, and of the band in
+/// Fraction of the weight that an observation keeps at the far end of the band, and of the band in
 /// which weights fall, at least.
-constexpr float kLeastCertainty = 0.02F;
+constexpr float kMinCertainty = 0.02F;
 
 /// Weight of an observation: the variance of triangulated depth grows with the fourth power of
 /// depth, but far surfaces must still be learnt in a few frames.
@@ -223,8 +223,8 @@ HWY_INLINE VI Average(const UpdateConstants& c, const Observation& o, float max_
   // from elsewhere (Bylow et al., Real-time camera tracking and 3D reconstruction using
   // signed distance functions, 2013).
   const VF noise_reach = hn::Min(hn::Mul(hn::Mul(o.depth, o.depth), c.noise_reach_at_1m), one);
-  const VF room = hn::Max(hn::Sub(one, noise_reach), hn::Set(d, kLeastCertainty));
-  const VF certainty = hn::Max(hn::Set(d, kLeastCertainty),
+  const VF room = hn::Max(hn::Sub(one, noise_reach), hn::Set(d, kMinCertainty));
+  const VF certainty = hn::Max(hn::Set(d, kMinCertainty),
                                hn::Min(one, hn::Mul(hn::Add(one, tsdf), Reciprocal(room))));
   const VF new_weight = hn::Mul(o.weight, certainty);
   const VF old_tsdf = hn::ConvertTo(d, hn::ShiftRight<TsdfLayout::kTsdfShift>(word));

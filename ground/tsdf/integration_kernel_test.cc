@@ -30,7 +30,7 @@ Eigen::Matrix3f RandomRotation(Random& random) {
 
 /// A row of depth with gaps, near and far, and memory behind it for a whole vector.
 std::vector<float> RandomDepths(Random& random, int width) {
-  std::vector<float> depths(static_cast<std::size_t>(width + testing::kMostLanes));
+  std::vector<float> depths(static_cast<std::size_t>(width + testing::kMaxLanes));
   for (float& z : depths) {
     z = random.Chance(0.3) ? 0.0F : random.Uniform(0.3F, random.Chance(0.1) ? 65.0F : 1.2F);
   }
@@ -100,7 +100,7 @@ class MakeSampleRowTest : public ::testing::Test {
 TEST_F(MakeSampleRowTest, MatchesTheScalarReferenceForAnyWidth) {
   testing::ForEachInstructionSet([&] {
     compared_ = 0;
-    for (int width = 0; width <= 5 * testing::kMostLanes; ++width) {
+    for (int width = 0; width <= 5 * testing::kMaxLanes; ++width) {
       FillRow(width);
       CompareRow();
     }
@@ -182,7 +182,7 @@ TEST_F(FindMissingBlocksTest, NamesExactlyTheMissingBlocksOfTheBand) {
   testing::ForEachInstructionSet([&] {
     std::size_t found = 0;
     for (int round = 0; round < 10; ++round) {
-      for (int width = 0; width <= 5 * testing::kMostLanes; ++width) {
+      for (int width = 0; width <= 5 * testing::kMaxLanes; ++width) {
         Rearrange(width);
         std::set<std::int32_t> truth;
         for (int x = 0; x < width; ++x) {
@@ -302,14 +302,14 @@ class IntegrateBlockTest : public ::testing::Test {
       tsdf.push_back(static_cast<int>(truth.voxel.bits) >> 16);
       weight.push_back(static_cast<int>(truth.voxel.bits & 0xFFFFU));
     }
-    const auto [least_tsdf, most_tsdf] = std::minmax_element(tsdf.begin(), tsdf.end());
-    const auto [least_weight, most_weight] = std::minmax_element(weight.begin(), weight.end());
+    const auto [min_tsdf, max_tsdf] = std::minmax_element(tsdf.begin(), tsdf.end());
+    const auto [min_weight, max_weight] = std::minmax_element(weight.begin(), weight.end());
     const int new_tsdf = static_cast<int>(after.bits) >> 16;
     const int new_weight = static_cast<int>(after.bits & 0xFFFFU);
-    ASSERT_GE(new_tsdf, *least_tsdf - kStep);
-    ASSERT_LE(new_tsdf, *most_tsdf + kStep);
-    ASSERT_GE(new_weight, *least_weight - kStep);
-    ASSERT_LE(new_weight, *most_weight + kStep);
+    ASSERT_GE(new_tsdf, *min_tsdf - kStep);
+    ASSERT_LE(new_tsdf, *max_tsdf + kStep);
+    ASSERT_GE(new_weight, *min_weight - kStep);
+    ASSERT_LE(new_weight, *max_weight + kStep);
     if (after.bits != before.bits) ++updated_;
   }
 

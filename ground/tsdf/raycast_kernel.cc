@@ -57,13 +57,13 @@ HWY_INLINE VI LocalPart(int axis, VI voxel) {
 struct Corners {
   VF tsdf[8];
   VF fraction[3];  ///< Fraction of the way from the lower to the upper ones, along each axis.
-  VI least_weight;
+  VI min_weight;
 };
 
 HWY_INLINE Corners LoadCorners(const RaycastKernelArgs& a, const Vector3& p) {
   const VI one = hn::Set(di, 1);
-  // Per axis, for the lower and the upper voxel: share of the table index and of the index in the
-  // block. Positions on rays are positive, so truncation is the floor.
+  // Per axis, for the lower and the upper voxel: fraction of the table index and of the index in
+  // the block. Positions on rays are positive, so truncation is the floor.
   VI table_part[3][2], local_part[3][2];
   Corners corners;
   bool crosses[3];
@@ -85,7 +85,7 @@ HWY_INLINE Corners LoadCorners(const RaycastKernelArgs& a, const Vector3& p) {
     local_part[axis][1] = LocalPart(axis, upper);
   }
   VI block[8];
-  corners.least_weight = hn::Set(di, TsdfLayout::kWeightMask);
+  corners.min_weight = hn::Set(di, TsdfLayout::kWeightMask);
   for (int k = 0; k < 8; ++k) {
     // Where no lane crosses a border of blocks, both corners lie in the same block.
     if ((k & 1) != 0 && !crosses[0]) {
@@ -102,7 +102,7 @@ HWY_INLINE Corners LoadCorners(const RaycastKernelArgs& a, const Vector3& p) {
     const VI local =
         hn::Or(local_part[0][k & 1], hn::Or(local_part[1][(k >> 1) & 1], local_part[2][k >> 2]));
     const VI word = hn::GatherIndex(di, a.voxels, hn::Add(block[k], local));
-    corners.least_weight = hn::Min(corners.least_weight, WeightCode(word));
+    corners.min_weight = hn::Min(corners.min_weight, WeightCode(word));
     corners.tsdf[k] = DecodeTsdf(word);
   }
   return corners;
@@ -133,8 +133,7 @@ HWY_INLINE Interpolated Interpolate(const RaycastKernelArgs& a, const Vector3& p
       lerp(hn::Sub(corner[5], corner[4]), hn::Sub(corner[7], corner[6]), fraction[1]), fraction[2]);
   result.gradient.y = lerp(hn::Sub(x10, x00), hn::Sub(x11, x01), fraction[2]);
   result.gradient.z = hn::Sub(far, near);
-  result.valid =
-      hn::RebindMask(d, hn::Gt(corners.least_weight, hn::Set(di, a.min_weight_code - 1)));
+  result.valid = hn::RebindMask(d, hn::Gt(corners.min_weight, hn::Set(di, a.min_weight_code - 1)));
   return result;
 }
 
@@ -218,9 +217,10 @@ class March {
     const VF value = DecodeTsdf(word);
     const MF behind = hn::And(active_, hn::And(observed, hn::Le(value, zero)));
     const MF hit = hn::And(behind, hn::Gt(previous_, zero));
-    const VF share = hn::Div(previous_, hn::Max(hn::Sub(previous_, value), hn::Set(d, 1e-9F)));
+    const VF at_crossing =
+        hn::Div(previous_, hn::Max(hn::Sub(previous_, value), hn::Set(d, 1e-9F)));
     crossing_ = hn::IfThenElse(
-        hit, hn::MulAdd(share, hn::Sub(depth_, previous_depth_), previous_depth_), crossing_);
+        hit, hn::MulAdd(at_crossing, hn::Sub(depth_, previous_depth_), previous_depth_), crossing_);
     found_ = hn::Or(found_, hit);
     // A surface entered from behind (or whose front was never observed) hides what lies beyond it.
     active_ = hn::AndNot(behind, active_);

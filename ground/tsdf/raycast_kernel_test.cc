@@ -72,12 +72,12 @@ class RaycastTileTest : public ::testing::Test {
   /// Looks at the surface from before it, from anywhere within 40 degrees.
   RigidTransform RandomPose() {
     const auto uniform = [&] { return random_.Uniform(-1.0F, 1.0F); };
-    const Eigen::Quaterniond turn(1.0, 0.3 * uniform(), 0.3 * uniform(), uniform());
+    const Eigen::Quaterniond orientation(1.0, 0.3 * uniform(), 0.3 * uniform(), uniform());
     const Eigen::Vector3d aim(0.5 * kSide + 0.05 * uniform(), 0.5 * kSide + 0.05 * uniform(),
                               0.6 * kSide);
-    const RigidTransform rotation = MakeTransform(Eigen::Vector3d::Zero(), turn);
+    const RigidTransform rotation = MakeTransform(Eigen::Vector3d::Zero(), orientation);
     return MakeTransform(aim - rotation * Eigen::Vector3d(0.0, 0.0, random_.Uniform(0.1F, 0.5F)),
-                         turn);
+                         orientation);
   }
   static CameraModel Camera(int width, int height) {
     CameraModel camera;

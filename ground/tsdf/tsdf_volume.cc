@@ -5,12 +5,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <new>
 
 #include "common/base/check.h"
@@ -53,19 +49,19 @@ GrowingArena::~GrowingArena() {
   if (file_ >= 0) close(file_);
 }
 
-bool GrowingArena::Back(std::size_t bytes) {
+bool GrowingArena::Commit(std::size_t bytes) {
   constexpr std::size_t kStep = std::size_t{16} << 20;
-  if (file_ < 0 || bytes <= backed_bytes_) return true;
+  if (file_ < 0 || bytes <= committed_bytes_) return true;
   const std::size_t wanted = std::min(bytes_, (bytes + kStep - 1) / kStep * kStep);
-  if (posix_fallocate(file_, static_cast<off_t>(backed_bytes_),
-                      static_cast<off_t>(wanted - backed_bytes_)) != 0) {
+  if (posix_fallocate(file_, static_cast<off_t>(committed_bytes_),
+                      static_cast<off_t>(wanted - committed_bytes_)) != 0) {
     return false;
   }
-  backed_bytes_ = wanted;
+  committed_bytes_ = wanted;
   return true;
 }
 
-void GrowingArena::GiveBack(std::size_t offset, std::size_t bytes) const {
+void GrowingArena::Decommit(std::size_t offset, std::size_t bytes) const {
   if (file_ < 0) return;
   const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
   const std::size_t begin = (offset + page - 1) / page * page;
@@ -83,17 +79,6 @@ void GrowingArena::Fetch(std::size_t offset, std::size_t bytes) const {
   if (begin < end) madvise(data_ + begin, end - begin, MADV_WILLNEED);
 }
 
-Status CheckSpillDir(const std::filesystem::path& dir) {
-  if (dir.empty()) return OkStatus();
-  const int file = open(dir.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  if (file < 0) {
-    return IoError(fmt::format("volume.spill_dir: no file can be made in {}: {}", dir.string(),
-                               std::strerror(errno)));
-  }
-  close(file);
-  return OkStatus();
-}
-
 TsdfVolume::TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std::int32_t max_blocks,
                        const std::filesystem::path& spill_dir)
     : grid_(grid),
@@ -107,7 +92,7 @@ TsdfVolume::TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std:
                  static_cast<std::size_t>(grid.blocks.z() + 2),
              kNoBlock) {
   CHECK(max_blocks > 0 && max_blocks <= kMaxAddressableBlocks);
-  if (!arena_.Back(kBlockBytes)) throw std::bad_alloc();
+  if (!arena_.Commit(kBlockBytes)) throw std::bad_alloc();
 }
 
 std::int32_t TsdfVolume::FindOrAllocate(const GridIndex& b) {
@@ -118,7 +103,7 @@ std::int32_t TsdfVolume::FindOrAllocateEntry(std::int32_t entry) {
   std::int32_t& block = table_[static_cast<std::size_t>(entry)];
   if (block != kNoBlock) return block;
   if (block_count() >= max_blocks_ ||
-      !arena_.Back((static_cast<std::size_t>(block_count()) + 2) * kBlockBytes)) {
+      !arena_.Commit((static_cast<std::size_t>(block_count()) + 2) * kBlockBytes)) {
     ++refused_blocks_;
     return kNoBlock;
   }
@@ -130,8 +115,8 @@ std::int32_t TsdfVolume::FindOrAllocateEntry(std::int32_t entry) {
   return block;
 }
 
-void TsdfVolume::GiveBack(std::int32_t first_block, std::int32_t count) const {
-  arena_.GiveBack((static_cast<std::size_t>(first_block) + 1) * kBlockBytes,
+void TsdfVolume::Decommit(std::int32_t first_block, std::int32_t count) const {
+  arena_.Decommit((static_cast<std::size_t>(first_block) + 1) * kBlockBytes,
                   static_cast<std::size_t>(count) * kBlockBytes);
 }
 

@@ -48,10 +48,10 @@ class GrowingArena {
   std::byte* data() const { return data_; }
   /// Makes sure that the first `bytes` can be written: a file on a full disk cannot grow. False if
   /// not.
-  bool Back(std::size_t bytes);
+  bool Commit(std::size_t bytes);
   /// Gives the memory of whole pages within a part back; touching it brings it back from the file.
   /// Does nothing without a file.
-  void GiveBack(std::size_t offset, std::size_t bytes) const;
+  void Decommit(std::size_t offset, std::size_t bytes) const;
   /// Has the file's pages read in the background, so that touching them soon does not wait for the
   /// disk. Does nothing without a file.
   void Fetch(std::size_t offset, std::size_t bytes) const;
@@ -59,12 +59,9 @@ class GrowingArena {
  private:
   std::byte* data_ = nullptr;
   std::size_t bytes_ = 0;
-  std::size_t backed_bytes_ = 0;
+  std::size_t committed_bytes_ = 0;
   int file_ = -1;
 };
-
-/// Whether a folder can take the files of arenas; the message names it. Empty is fine.
-Status CheckSpillDir(const std::filesystem::path& dir);
 
 /// Truncated signed distances in sparse 8^3 blocks inside the scan volume. A direct table over the
 /// volume's blocks finds a block by its coordinates. Blocks never move, so `voxels` of a block
@@ -114,7 +111,7 @@ class TsdfVolume {
   }
   /// Gives the memory of blocks back until they are touched again; does nothing without a spill
   /// folder.
-  void GiveBack(std::int32_t first_block, std::int32_t count) const;
+  void Decommit(std::int32_t first_block, std::int32_t count) const;
   /// Has blocks that were given back read in the background.
   void Fetch(std::int32_t first_block, std::int32_t count) const;
   /// The voxel at voxel coordinates; a never observed voxel where there is no block.

@@ -1,5 +1,5 @@
 // Does a frame cost more the longer the scan and the larger the volume? A camera slides along a
-// wall that repeats itself, so that every period of the way shows exactly the same pictures:
+// wall that repeats itself, so that every period of the way shows exactly the same images:
 // whatever grows is the model's fault.
 #include <benchmark/benchmark.h>
 

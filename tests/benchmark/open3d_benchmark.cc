@@ -148,7 +148,7 @@ void Print(const Comparison& run, const GroundOptions& options, const BenchmarkF
   fmt::print("\nisotherm: {} of {} frames tracked, {} integrated; Open3D: {} without a solution\n",
              counts.depth_tracked, counts.depth_in, counts.depth_integrated, run.open3d->lost());
   if (frames.truth.empty()) {
-    fmt::print("no ground truth: trajectories are not judged\n");
+    fmt::print("no ground truth: trajectories are not assessed\n");
     return;
   }
   PrintErrors("isotherm", run.ours->trajectory(), frames.truth);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 5;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-constexpr double kOrbitRadiusM = 0.8;
+constexpr double kOrbitRadius_m = 0.8;
 constexpr double kDegPerFrame = 0.6;  // At most, to be integrated (thesis 6.1.3).
 const Eigen::Vector3d kCentre(0.48, 0.48, 0.48);
 
@@ -39,7 +39,7 @@ Scene MachineScene() {
 RigidTransform OrbitPose(double angle_deg) {
   const double a = angle_deg * kRadPerDeg;
   const Eigen::Vector3d position =
-      kCentre + kOrbitRadiusM * Eigen::Vector3d(std::sin(a), -0.35, -std::cos(a)).normalized();
+      kCentre + kOrbitRadius_m * Eigen::Vector3d(std::sin(a), -0.35, -std::cos(a)).normalized();
   const Eigen::Vector3d forward = (kCentre - position).normalized();
   const Eigen::Vector3d right = Eigen::Vector3d(0, 1, 0).cross(forward).normalized();
   Eigen::Matrix3d R;
@@ -97,8 +97,8 @@ TEST_F(DriftTest, AnOrbitIsClosedAndTheGapIsSpread) {
   std::cout << "worst pose " << 1e3 * worst_m << " mm\n";
   EXPECT_LT(worst_m, error_before_m);
 
-  constexpr double kQuarterVoxelM = 0.001;
-  EXPECT_LT(closed.median_m, kQuarterVoxelM);
+  constexpr double kQuarterVoxel_m = 0.001;
+  EXPECT_LT(closed.median_m, kQuarterVoxel_m);
   EXPECT_GT(closed.covered, 0.9);
 }
 

@@ -1,4 +1,4 @@
-// Temperatures as a second cue, on simulated heated walls with truth: what they add where the
+// Temperatures as a second alignment, on simulated heated walls with truth: what they add where the
 // geometry leaves directions free, and that they add nothing where they say nothing.
 #include <gtest/gtest.h>
 
@@ -86,8 +86,8 @@ struct Outcome {
   double across_m = 0.0;
   double sigma_m = 0.0;  ///< What the pipeline says.
   int degraded = 0;
-  int least_free = 6;
-  int most_free = 0;
+  int min_unobservable = 6;
+  int max_unobservable = 0;
   int lost = 0;
   std::uint64_t fused = 0;
   double track_ms = 0.0;
@@ -97,7 +97,7 @@ struct Setting {
   bool use_thermal = true;
   double netd_k = 0.1;
   double nuc_from =
-      1e9;  ///< Frames from here on for 0.4 s repeat the last picture and are not valid.
+      1e9;  ///< Frames from here on for 0.4 s repeat the last image and are not valid.
   double min_gradient_k_m = TrackerOptions().thermal_min_gradient_k_m();
 };
 
@@ -131,7 +131,7 @@ Outcome Run(const Scene& scene, const Setting& setting) {
 
   Outcome outcome;
   int thermal_number = 0;
-  Image<std::uint16_t> picture;
+  Image<std::uint16_t> image;
   double squares_x = 0.0;
   double squares_y = 0.0;
   const int frames = static_cast<int>(kSeconds / kDepthPeriod);
@@ -146,10 +146,10 @@ Outcome Run(const Scene& scene, const Setting& setting) {
       frame->header.capture_time = time_at(taken);
       const bool shutter = taken >= setting.nuc_from && taken < setting.nuc_from + 0.4;
       if (!shutter) {
-        picture = thermal_sensor.Render(scene, walk.PoseAt(taken) * rig.T_thermal_depth->inverse(),
-                                        NoiseStream(kSeed, 1, number), thermal_scratch);
+        image = thermal_sensor.Render(scene, walk.PoseAt(taken) * rig.T_thermal_depth->inverse(),
+                                      NoiseStream(kSeed, 1, number), thermal_scratch);
       }
-      frame->centikelvin = picture;
+      frame->centikelvin = image;
       frame->valid = !shutter;
       pipeline.ProcessThermal(frame);
     }
@@ -165,8 +165,10 @@ Outcome Run(const Scene& scene, const Setting& setting) {
       continue;
     }
     if (i > 0) {
-      outcome.least_free = std::min(outcome.least_free, report.tracking.motion.free_axes);
-      outcome.most_free = std::max(outcome.most_free, report.tracking.motion.free_axes);
+      outcome.min_unobservable =
+          std::min(outcome.min_unobservable, report.tracking.motion.unobservable_axes);
+      outcome.max_unobservable =
+          std::max(outcome.max_unobservable, report.tracking.motion.unobservable_axes);
     }
     outcome.degraded += report.tracking.verdict() == Verdict::kDegraded ? 1 : 0;
     const RigidTransform& pose = report.pose.T_map_depth;
@@ -190,9 +192,10 @@ Outcome Show(const char* what, const Scene& scene, const Setting& setting) {
   std::cout << what << (setting.use_thermal ? " with" : " without") << ": off at the end "
             << 1e3 * o.end_m << " mm and " << o.end_deg << " degrees, on the way "
             << 1e3 * o.rms_x_m << " mm along x, " << 1e3 * o.rms_y_m << " mm along y (rms), across "
-            << 1e3 * o.across_m << " mm, sigma " << 1e3 * o.sigma_m << " mm, free " << o.least_free
-            << " to " << o.most_free << ", degraded " << o.degraded << ", lost " << o.lost
-            << ", thermal fused " << o.fused << ", track " << o.track_ms << " ms\n";
+            << 1e3 * o.across_m << " mm, sigma " << 1e3 * o.sigma_m << " mm, free "
+            << o.min_unobservable << " to " << o.max_unobservable << ", degraded " << o.degraded
+            << ", lost " << o.lost << ", thermal fused " << o.fused << ", track " << o.track_ms
+            << " ms\n";
   return o;
 }
 
@@ -205,7 +208,7 @@ class HeatedWallTest : public ::testing::Test {
     setting.use_thermal = false;
     geometry_alone_ = Show("wall", HeatedWall(Pattern::kSpots, 10.0), setting);
     EXPECT_GT(geometry_alone_.end_m, 0.5) << "the motion before, rest, is held";
-    EXPECT_EQ(geometry_alone_.least_free, 3);
+    EXPECT_EQ(geometry_alone_.min_unobservable, 3);
   }
   static Outcome geometry_alone_;
 };
@@ -233,8 +236,8 @@ TEST_F(HeatedWallTest, FaintSpotsMeasureItLessWell) {
 
 TEST_F(HeatedWallTest, StripesLeaveTheMotionAlongThemToTheMotionBefore) {
   const Outcome outcome = Show("stripes of 10 K", HeatedWall(Pattern::kStripes, 10.0), {});
-  EXPECT_EQ(outcome.least_free, 1);
-  EXPECT_EQ(outcome.most_free, 1);
+  EXPECT_EQ(outcome.min_unobservable, 1);
+  EXPECT_EQ(outcome.max_unobservable, 1);
   EXPECT_LT(outcome.rms_x_m, 0.002);
   EXPECT_LT(outcome.rms_y_m, 1.02 * geometry_alone_.rms_y_m) << "no worse along them";
   EXPECT_GT(outcome.sigma_m, 0.1);
@@ -243,20 +246,20 @@ TEST_F(HeatedWallTest, StripesLeaveTheMotionAlongThemToTheMotionBefore) {
 /// Hot, so that the emissivity's change with the angle shows: a pattern that goes with the camera.
 TEST_F(HeatedWallTest, AnEquallyHotWallGainsNothingAndLosesNothing) {
   const Outcome outcome = Show("150 °C everywhere", HeatedWall(Pattern::kUniform, 0.0, 150.0), {});
-  EXPECT_EQ(outcome.least_free, 3);
-  EXPECT_EQ(outcome.most_free, 3);
+  EXPECT_EQ(outcome.min_unobservable, 3);
+  EXPECT_EQ(outcome.max_unobservable, 3);
   EXPECT_EQ(outcome.end_m, geometry_alone_.end_m);
   EXPECT_EQ(outcome.end_deg, geometry_alone_.end_deg);
   EXPECT_EQ(outcome.sigma_m, geometry_alone_.sigma_m);
 }
 
-TEST_F(HeatedWallTest, APictureThatIsFrozenByTheShutterIsNotUsed) {
+TEST_F(HeatedWallTest, AnImageThatIsFrozenByTheShutterIsNotUsed) {
   Setting setting;
   setting.nuc_from = 2.0;
   const Outcome outcome =
       Show("spots of 10 K, shutter", HeatedWall(Pattern::kSpots, 10.0), setting);
   EXPECT_EQ(outcome.lost, 0);
-  EXPECT_EQ(outcome.most_free, 3) << "for a while the motion before is all there is";
+  EXPECT_EQ(outcome.max_unobservable, 3) << "for a while the motion before is all there is";
   EXPECT_GE(outcome.degraded, 10);
   EXPECT_LE(outcome.degraded, 15);
   // Used, it would hold the rig for 0.4 s: 6 cm and more.

@@ -25,8 +25,8 @@ constexpr std::uint64_t kSeed = 12;
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kFrame = 1.0 / 30.0;
 // A voxel of 4 mm; undisturbed, the pose is within 1 mm of the truth.
-constexpr double kWrongPoseM = 0.004;
-constexpr double kWrongPoseDeg = 0.5;
+constexpr double kWrongPose_m = 0.004;
+constexpr double kWrongPose_deg = 0.5;
 constexpr int kLostWithin = 3;    // Frames.
 constexpr int kFoundWithin = 30;  // Frames: 1 s.
 constexpr double kSurfaceMargin = 1.1;
@@ -120,7 +120,7 @@ class RecordedRecoveryTest : public ::testing::Test {
       const Shot& shot = script.shots[i];
       seconds += shot.seconds;
       const DepthReport report = pipeline.ProcessDepth(Frame(shot, i, seconds));
-      Judge(script, i, report, outcome);
+      Assess(script, i, report, outcome);
     }
     SurfaceOptions surface_options;
     surface_options.min_weight = 1.0F;
@@ -190,15 +190,15 @@ class RecordedRecoveryTest : public ::testing::Test {
     return frame;
   }
 
-  static void Judge(const Script& script, std::size_t i, const DepthReport& report,
-                    Outcome& outcome) {
+  static void Assess(const Script& script, std::size_t i, const DepthReport& report,
+                     Outcome& outcome) {
     const bool disturbed = i >= script.disturbed && i < script.back;
     if (report.tracked) {
       const RigidTransform& truth = Truth(script.shots[i].frame);
       const double error_m = TranslationDistance(report.pose.T_map_depth, truth);
       const double error_deg = RotationAngle(report.pose.T_map_depth, truth) * kDegPerRad;
       const bool covered = script.shots[i].cover != Shot::Cover::kNothing;
-      const bool wrong = covered || error_m > kWrongPoseM || error_deg > kWrongPoseDeg;
+      const bool wrong = covered || error_m > kWrongPose_m || error_deg > kWrongPose_deg;
       outcome.largest_error_m = std::max(outcome.largest_error_m, error_m);
       outcome.believed_wrong += wrong ? 1 : 0;
       outcome.fused_wrong += wrong && report.integrated ? 1 : 0;
@@ -282,10 +282,10 @@ TEST_F(RecordedRecoveryTest, F53AWhipPanIsNotFusedAtAWrongPose) {
   constexpr int kFirst = 80;
   constexpr int kStep = 6;
   constexpr int kReach = 90;
-  double most_deg = 0.0;
+  double max_deg = 0.0;
   for (int i = kFirst; i < kFirst + kReach; i += kStep)
-    most_deg = std::max(most_deg, RotationAngle(Truth(i), Truth(i + kStep)) * kDegPerRad);
-  ASSERT_GT(most_deg, 3.0) << "degrees per frame";
+    max_deg = std::max(max_deg, RotationAngle(Truth(i), Truth(i + kStep)) * kDegPerRad);
+  ASSERT_GT(max_deg, 3.0) << "degrees per frame";
   Script script;
   script.Play(0, kFirst);
   script.disturbed = script.shots.size();

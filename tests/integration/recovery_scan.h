@@ -36,7 +36,7 @@ class RecoveryScan {
   double PositionError(const RigidTransform& truth) const;
 
   /// Depth of the model against the scene's from some poses: median and 95th percentile of the
-  /// absolute difference, metres, and the share of the scene's pixels that the model has.
+  /// absolute difference, metres, and the fraction of the scene's pixels that the model has.
   struct ModelError {
     double median_m = 0.0;
     double p95_m = 0.0;

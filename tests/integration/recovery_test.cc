@@ -23,7 +23,7 @@ constexpr double kWrongPose = 0.005;  // Metres: more than a voxel off.
 
 using testing::RecoveryScan;
 
-RigidTransform Turned(double angle_deg, const Eigen::Vector3d& axis) {
+RigidTransform Rotated(double angle_deg, const Eigen::Vector3d& axis) {
   return MakeTransform(Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(
                                                     angle_deg * kRadPerDeg, axis.normalized())));
 }
@@ -104,7 +104,7 @@ TEST_F(RecoveryTest, F52ACoveredCameraIsLostAndFindsItsWayBack) {
 TEST_F(RecoveryTest, F52AJumpIsNoticedAndTheScanGoesOnWhenItIsBack) {
   const Outcome calm = Run([](const auto&) { return kDisturbed; });
   const RigidTransform jump = MakeTransform({0.2, 0.0, 0.0}, Eigen::Quaterniond::Identity()) *
-                              Turned(20.0, Eigen::Vector3d(0.2, 1.0, 0.1));
+                              Rotated(20.0, Eigen::Vector3d(0.2, 1.0, 0.1));
   const Outcome outcome = Run([&](const auto& show) {
     for (int i = 0; i < 15; ++i) show(PoseAt(kDisturbed + i) * jump);
     return kDisturbed + 15;
@@ -135,7 +135,7 @@ TEST_F(RecoveryTest, F53AWhipPanIsNotFusedAtAWrongPose) {
     constexpr double kPerFrame = 90.0 * kFrame;
     for (int i = 1; i <= 30; ++i) {
       const double angle = kPerFrame * (i <= 15 ? i : 30 - i);
-      show(PoseAt(kDisturbed) * Turned(angle, Eigen::Vector3d::UnitY()));
+      show(PoseAt(kDisturbed) * Rotated(angle, Eigen::Vector3d::UnitY()));
     }
     return kDisturbed;
   });
@@ -193,16 +193,16 @@ TEST_F(RecoveryTest, AWeaklyObservedDirectionIsMeasuredNotHeld) {
   constexpr int kLast = 32 * 30;
   scan_.Start(PoseAt(kFirst));
   double most = 0.0;
-  double least_strength = 1.0;
+  double min_strength = 1.0;
   for (int i = kFirst; i <= kLast; ++i) {
     const DepthReport report = scan_.Show(PoseAt(i));
     ASSERT_TRUE(report.tracked) << i;
-    least_strength = std::min(least_strength, report.tracking.motion.strength(0));
+    min_strength = std::min(min_strength, report.tracking.motion.strength(0));
     most = std::max(most, scan_.PositionError(PoseAt(i)));
   }
-  std::cout << "weakest direction " << least_strength << ", largest error " << 1e3 * most
+  std::cout << "weakest direction " << min_strength << ", largest error " << 1e3 * most
             << " mm, degraded " << scan_.pipeline().counts().depth_degraded << '\n';
-  EXPECT_LT(least_strength, 0.001);
+  EXPECT_LT(min_strength, 0.001);
   EXPECT_LT(most, kWrongPose);
 }
 

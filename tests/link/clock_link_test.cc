@@ -30,14 +30,14 @@ class WrongClock final : public Clock {
 class ClockLinkTest : public ::testing::Test {
  protected:
   /// Statuses of a rig whose clock is `ahead` until the ground has compared; what it then thinks.
-  std::optional<ClockAccount> Compare(Nanoseconds ahead) {
+  std::optional<SessionClock> Compare(Nanoseconds ahead) {
     auto participant = std::move(*Participant::Create(environment_, domain_.number()));
     SubscriberOptions options;
     options.edge_id = "test-edge";
     SubscriberHandlers handlers;
-    handlers.clock = [this](const ClockAccount& account) {
+    handlers.clock = [this](const SessionClock& counters) {
       std::scoped_lock lock(mutex_);
-      if (account.offset) account_ = account;
+      if (counters.offset) counters_ = counters;
       changed_.notify_all();
     };
     const auto subscriber =
@@ -55,13 +55,13 @@ class ClockLinkTest : public ::testing::Test {
     status.clock.synchronised = true;
     const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
     std::unique_lock lock(mutex_);
-    while (!account_ && std::chrono::steady_clock::now() < deadline) {
+    while (!counters_ && std::chrono::steady_clock::now() < deadline) {
       lock.unlock();
       EXPECT_TRUE(edge.publisher().Publish(status).ok());
       lock.lock();
       changed_.wait_for(lock, 100ms);
     }
-    return account_;
+    return counters_;
   }
 
   SystemClock clock_;
@@ -69,28 +69,28 @@ class ClockLinkTest : public ::testing::Test {
   TestDomain domain_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<ClockAccount> account_;
+  std::optional<SessionClock> counters_;
 };
 
 TEST_F(ClockLinkTest, F18AClockThatIsAheadIsMeasuredAndAlarmed) {
-  const auto account = Compare(3600s);
-  ASSERT_TRUE(account.has_value());
-  EXPECT_TRUE(account->alarm);
-  EXPECT_NEAR(account->offset->offset_s, 3600.0, account->offset->uncertainty_s);
+  const auto counters = Compare(3600s);
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_TRUE(counters->alarm);
+  EXPECT_NEAR(counters->offset->offset_s, 3600.0, counters->offset->uncertainty_s);
 }
 
 TEST_F(ClockLinkTest, F18AClockThatIsBehindIsMeasuredAndAlarmed) {
-  const auto account = Compare(-3600s);
-  ASSERT_TRUE(account.has_value());
-  EXPECT_TRUE(account->alarm);
-  EXPECT_NEAR(account->offset->offset_s, -3600.0, account->offset->uncertainty_s);
+  const auto counters = Compare(-3600s);
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_TRUE(counters->alarm);
+  EXPECT_NEAR(counters->offset->offset_s, -3600.0, counters->offset->uncertainty_s);
 }
 
 TEST_F(ClockLinkTest, F18ARightClockIsNoAlarm) {
-  const auto account = Compare(0s);
-  ASSERT_TRUE(account.has_value());
-  EXPECT_FALSE(account->alarm);
-  EXPECT_NEAR(account->offset->offset_s, 0.0, account->offset->uncertainty_s);
+  const auto counters = Compare(0s);
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_FALSE(counters->alarm);
+  EXPECT_NEAR(counters->offset->offset_s, 0.0, counters->offset->uncertainty_s);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ class EdgeSide {
     status.scan_state = ScanState::kScanning;
     CHECK(publisher_->Publish(status).ok());
   }
-  /// Depth frames first..end-1 and the share of thermal frames that belongs to them.
+  /// Depth frames first..end-1 and the fraction of thermal frames that belongs to them.
   void SendFrames(std::uint64_t first, std::uint64_t end) {
     const auto start = std::chrono::steady_clock::now();
     for (std::uint64_t i = first; i < end; ++i) {

@@ -25,8 +25,8 @@ class GroundSide {
     SubscriberHandlers handlers;
     handlers.depth = [this](ReceivedDepth item) { Take(*item.encoded, &depth_); };
     handlers.thermal = [this](ReceivedThermal item) { Take(*item.encoded, &thermal_); };
-    handlers.outside_pose = [this](const OutsidePoseSample& sample) {
-      Update([&] { outside_poses_.push_back(sample.number); });
+    handlers.external_odometry = [this](const ExternalOdometrySample& sample) {
+      Update([&] { external_odometry_.push_back(sample.number); });
     };
     handlers.rig = [this](const RigDescription& rig) {
       Update([&] { rig_session_ = rig.session; });
@@ -34,8 +34,8 @@ class GroundSide {
     handlers.command_result = [this](const CommandResult& result) {
       Update([&] { result_ = result; });
     };
-    handlers.session_end = [this](const SessionAccount& account) {
-      Update([&] { ended_.push_back(account); });
+    handlers.session_end = [this](const SessionCounters& counters) {
+      Update([&] { ended_.push_back(counters); });
     };
     subscriber_ = std::move(*Subscriber::Create(*participant_, clock, options, handlers));
     receiver_ = std::jthread([this](const std::stop_token& stop) { subscriber_->Run(stop); });
@@ -47,8 +47,8 @@ class GroundSide {
     receiver_.join();
   }
 
-  /// The account of the session that ended as number `count`.
-  std::optional<SessionAccount> AwaitSessionEnd(std::size_t count = 1) {
+  /// The counters of the session that ended as number `count`.
+  std::optional<SessionCounters> AwaitSessionEnd(std::size_t count = 1) {
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, kLinkPatience, [&] { return ended_.size() >= count; })) return {};
     return ended_[count - 1];
@@ -57,10 +57,10 @@ class GroundSide {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, kLinkPatience, [&] { return depth_.size() >= count; });
   }
-  std::vector<std::uint64_t> AwaitOutsidePoses(std::size_t count) {
+  std::vector<std::uint64_t> AwaitExternalOdometry(std::size_t count) {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kLinkPatience, [&] { return outside_poses_.size() >= count; });
-    return outside_poses_;
+    changed_.wait_for(lock, kLinkPatience, [&] { return external_odometry_.size() >= count; });
+    return external_odometry_;
   }
   std::optional<CommandResult> AwaitResult() {
     std::unique_lock lock(mutex_);
@@ -111,10 +111,10 @@ class GroundSide {
   std::unique_ptr<Subscriber> subscriber_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<std::uint64_t> depth_, thermal_, outside_poses_;
+  std::vector<std::uint64_t> depth_, thermal_, external_odometry_;
   std::optional<std::uint64_t> rig_session_;
   std::optional<CommandResult> result_;
-  std::vector<SessionAccount> ended_;
+  std::vector<SessionCounters> ended_;
   int corrupt_ = 0;
   std::jthread receiver_;
 };

@@ -68,11 +68,11 @@ TEST(HostileTest, F60WhatCannotBeIsRefusedCountedAndLoggedOncePerCause) {
   EXPECT_EQ(refusals.count(RefusalCause::kUnknownValue), 2 * kRepeats);
   // The undecodable one has the number of a frame that is here: a duplicate, not even looked at.
   EXPECT_EQ(refusals.count(RefusalCause::kUndecodable), 0U);
-  const SessionAccount account = subscriber->stats().account;
-  EXPECT_EQ(account.depth.received, 2U);
-  EXPECT_EQ(account.depth.missing, 0U);
+  const SessionCounters counters = subscriber->stats().counters;
+  EXPECT_EQ(counters.depth.received, 2U);
+  EXPECT_EQ(counters.depth.missing, 0U);
   // Each good one was sent kRepeats times; in the second session the frames of the first, too.
-  EXPECT_EQ(account.depth.received + account.depth.duplicates + account.depth.refused,
+  EXPECT_EQ(counters.depth.received + counters.depth.duplicates + counters.depth.refused,
             3 * kRepeats);
 
   EXPECT_EQ(environment.refused().malformed, kRepeats);  // Beyond the bound of the type.
@@ -119,7 +119,7 @@ class Impostor {
     CHECK(status_.Write(kName, status).ok());
   }
   void Pose(std::uint64_t session) {
-    OutsidePoseSample sample{.session = session, .number = poses_++, .pose = {}};
+    ExternalOdometrySample sample{.session = session, .number = poses_++, .pose = {}};
     sample.pose.source = "vio";
     CHECK(pose_.Write(kName, sample).ok());
   }
@@ -139,7 +139,7 @@ class Impostor {
   Writer<EncodedThermalFrame> thermal_;
   Writer<RigDescription> rig_;
   Writer<EdgeStatus> status_;
-  Writer<OutsidePoseSample> pose_;
+  Writer<ExternalOdometrySample> pose_;
   std::uint64_t frames_ = 0;
   std::uint64_t poses_ = 0;
 };
@@ -177,11 +177,11 @@ class ImpostorTest : public ::testing::Test {
   void ExpectAWholeScan() {
     edge_->SendFrames(kFrames - 10, kFrames);
     EXPECT_TRUE(edge_->End());
-    const auto account = ground_->AwaitSessionEnd();
-    ASSERT_TRUE(account.has_value());
-    EXPECT_EQ(account->session, plan_.session);
-    EXPECT_TRUE(account->ended);
-    for (const StreamAccount& stream : {account->depth, account->thermal}) {
+    const auto counters = ground_->AwaitSessionEnd();
+    ASSERT_TRUE(counters.has_value());
+    EXPECT_EQ(counters->session, plan_.session);
+    EXPECT_TRUE(counters->ended);
+    for (const StreamCounters& stream : {counters->depth, counters->thermal}) {
       EXPECT_EQ(stream.published, kFrames);
       EXPECT_EQ(stream.received, kFrames);
       EXPECT_EQ(stream.missing, 0U);
@@ -192,11 +192,11 @@ class ImpostorTest : public ::testing::Test {
     EXPECT_EQ(ground_->thermal(), Range(0, kFrames));
     EXPECT_EQ(ground_->corrupt(), 0);
     EXPECT_EQ(ground_->rig_session(), plan_.session);
-    EXPECT_TRUE(ground_->AwaitOutsidePoses(0).empty());
-    account_ = *account;
+    EXPECT_TRUE(ground_->AwaitExternalOdometry(0).empty());
+    counters_ = *counters;
   }
-  static std::uint64_t Refused(const StreamAccount& account, RefusalCause cause) {
-    return account.refused_by_cause[static_cast<std::size_t>(cause)];
+  static std::uint64_t Refused(const StreamCounters& counters, RefusalCause cause) {
+    return counters.refused_by_cause[static_cast<std::size_t>(cause)];
   }
 
   SystemClock clock_;
@@ -205,7 +205,7 @@ class ImpostorTest : public ::testing::Test {
   EdgePlan plan_;
   std::unique_ptr<GroundSide> ground_;
   std::unique_ptr<EdgeSide> edge_;
-  SessionAccount account_;
+  SessionCounters counters_;
 };
 
 TEST_F(ImpostorTest, F60SamplesOfAnotherProcessChangeNothingAndAreCounted) {
@@ -227,7 +227,7 @@ TEST_F(ImpostorTest, F60SamplesOfAnotherProcessChangeNothingAndAreCounted) {
   EXPECT_TRUE(Await([&] { return refusals.count(RefusalCause::kOtherWriter) > 2 * frames; }))
       << refusals.count(RefusalCause::kOtherWriter);
   ExpectAWholeScan();
-  for (const StreamAccount& stream : {account_.depth, account_.thermal}) {
+  for (const StreamCounters& stream : {counters_.depth, counters_.thermal}) {
     EXPECT_EQ(stream.refused, frames);
     EXPECT_EQ(Refused(stream, RefusalCause::kOtherWriter), frames);
   }
@@ -246,10 +246,10 @@ TEST_F(ImpostorTest, F60WildFramesOfTheRigItselfStopNoneBehindThem) {
   ASSERT_TRUE(writer.WaitForAcknowledgments(kLinkPatience));
   edge_->SendFrames(kFrames / 2, kFrames - 10);
   ExpectAWholeScan();
-  EXPECT_EQ(Refused(account_.depth, RefusalCause::kImplausibleTime), 1U);
-  EXPECT_EQ(Refused(account_.depth, RefusalCause::kImpossibleNumber), 1U);
-  EXPECT_EQ(account_.depth.refused, 2U);
-  EXPECT_EQ(account_.thermal.refused, 0U);
+  EXPECT_EQ(Refused(counters_.depth, RefusalCause::kImplausibleTime), 1U);
+  EXPECT_EQ(Refused(counters_.depth, RefusalCause::kImpossibleNumber), 1U);
+  EXPECT_EQ(counters_.depth.refused, 2U);
+  EXPECT_EQ(counters_.thermal.refused, 0U);
 }
 
 TEST_F(ImpostorTest, F64AThousandFramesOfAnUnknownSessionWriteAFewLines) {
@@ -263,7 +263,7 @@ TEST_F(ImpostorTest, F64AThousandFramesOfAnUnknownSessionWriteAFewLines) {
   const std::string log = ::testing::internal::GetCapturedStderr();
   EXPECT_LE(Count(log, "warning: "), 5) << log;
   EXPECT_GE(Count(log, "another process of the same name"), 1) << log;
-  EXPECT_GT(account_.depth.refused, 0U);
+  EXPECT_GT(counters_.depth.refused, 0U);
 }
 
 }  // namespace

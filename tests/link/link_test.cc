@@ -44,14 +44,14 @@ class LinkTest : public ::testing::Test {
     return std::make_unique<GroundSide>(environment_, clock_, domain_.number(), work_per_frame);
   }
   static void ExpectEverything(const EdgePlan& plan, GroundSide& ground) {
-    const auto account = ground.AwaitSessionEnd();
-    ASSERT_TRUE(account.has_value());
-    EXPECT_TRUE(account->ended);
-    EXPECT_EQ(account->session, plan.session);
-    EXPECT_EQ(account->depth.published, plan.depth_frames);
-    EXPECT_EQ(account->depth.missing, 0U);
-    EXPECT_EQ(account->thermal.published, plan.thermal_frames);
-    EXPECT_EQ(account->thermal.missing, 0U);
+    const auto counters = ground.AwaitSessionEnd();
+    ASSERT_TRUE(counters.has_value());
+    EXPECT_TRUE(counters->ended);
+    EXPECT_EQ(counters->session, plan.session);
+    EXPECT_EQ(counters->depth.published, plan.depth_frames);
+    EXPECT_EQ(counters->depth.missing, 0U);
+    EXPECT_EQ(counters->thermal.published, plan.thermal_frames);
+    EXPECT_EQ(counters->thermal.missing, 0U);
     EXPECT_EQ(ground.depth(), Range(0, plan.depth_frames));
     EXPECT_EQ(ground.thermal(), Range(0, plan.thermal_frames));
     EXPECT_EQ(ground.corrupt(), 0);
@@ -120,11 +120,11 @@ TEST_F(LinkTest, F19AGroundThatJoinsLateKnowsExactlyWhatItMissed) {
   edge.publisher().SetPolicy(PublishPolicy::kLossless);
   edge.SendFrames(100, 200);
   EXPECT_TRUE(edge.End());
-  const auto account = ground->AwaitSessionEnd();
-  ASSERT_TRUE(account.has_value());
-  EXPECT_EQ(account->depth.published, 200U);
-  EXPECT_EQ(account->depth.received + account->depth.missing, 200U);
-  EXPECT_EQ(account->depth.missing, first);
+  const auto counters = ground->AwaitSessionEnd();
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_EQ(counters->depth.published, 200U);
+  EXPECT_EQ(counters->depth.received + counters->depth.missing, 200U);
+  EXPECT_EQ(counters->depth.missing, first);
   EXPECT_EQ(ground->depth(), Range(first, 200));
   EXPECT_EQ(ground->rig_session(), plan.session);  // Written before the ground was there.
 }
@@ -136,10 +136,10 @@ TEST_F(LinkTest, ARestartedEdgeIsANewSession) {
   ASSERT_TRUE(ground->AwaitSessionEnd(1).has_value());
   plan.session = 2;
   EXPECT_EQ(system_test::RunToEnd(Peer(plan), kLinkPatience).status, 0);
-  const auto account = ground->AwaitSessionEnd(2);
-  ASSERT_TRUE(account.has_value());
-  EXPECT_EQ(account->session, 2U);
-  EXPECT_EQ(account->depth.missing, 0U);
+  const auto counters = ground->AwaitSessionEnd(2);
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_EQ(counters->session, 2U);
+  EXPECT_EQ(counters->depth.missing, 0U);
   EXPECT_EQ(ground->depth().size(), 80U);
 }
 
@@ -156,10 +156,10 @@ TEST_F(LinkTest, ARestartedGroundGoesOnWithTheSession) {
   ASSERT_TRUE(ground->AwaitDepth(1));
   edge.SendFrames(50, 150);
   EXPECT_TRUE(edge.End());
-  const auto account = ground->AwaitSessionEnd();
-  ASSERT_TRUE(account.has_value());
-  EXPECT_EQ(account->depth.received + account->depth.missing, 150U);
-  EXPECT_EQ(ground->depth(), Range(account->depth.missing, 150));
+  const auto counters = ground->AwaitSessionEnd();
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_EQ(counters->depth.received + counters->depth.missing, 150U);
+  EXPECT_EQ(ground->depth(), Range(counters->depth.missing, 150));
 }
 
 TEST_F(LinkTest, AnEdgeThatIsKilledIsSeenToBeGone) {
@@ -196,19 +196,19 @@ TEST_F(LinkTest, NobodyThereEndsTheWaitForGround) {
   EXPECT_TRUE(edge.publisher().Drain(1ms));  // Nobody listens: nothing to wait for.
 }
 
-TEST_F(LinkTest, PosesFromOutsideArriveInOrder) {
+TEST_F(LinkTest, OdometryPosesArriveInOrder) {
   constexpr std::uint64_t kPoses = 300;  // Fewer than the history, so that none may be missing.
   const auto ground = StartGround();
   EdgeSide edge(environment_, clock_, Plan(1, 1));
   ASSERT_TRUE(edge.publisher().WaitForGround(kLinkPatience, {}));
   edge.Begin();
   for (std::uint64_t i = 0; i < kPoses; ++i) {
-    OutsidePoseSample sample{.session = 1, .number = i, .pose = {}};
+    ExternalOdometrySample sample{.session = 1, .number = i, .pose = {}};
     sample.pose.source = "vio";
     sample.pose.time = CaptureTimeFromNanoseconds(static_cast<std::int64_t>(i));
     ASSERT_TRUE(edge.publisher().Publish(sample, {}).ok());
   }
-  EXPECT_EQ(ground->AwaitOutsidePoses(kPoses), Range(0, kPoses));
+  EXPECT_EQ(ground->AwaitExternalOdometry(kPoses), Range(0, kPoses));
 }
 
 TEST_F(LinkTest, F38PosesFromOutsideDoNotHoldUpAStop) {
@@ -216,7 +216,7 @@ TEST_F(LinkTest, F38PosesFromOutsideDoNotHoldUpAStop) {
   edge.Begin();
   std::stop_source stop;
   stop.request_stop();
-  OutsidePoseSample sample{.session = 1, .number = 0, .pose = {}};
+  ExternalOdometrySample sample{.session = 1, .number = 0, .pose = {}};
   sample.pose.source = "vio";
   sample.pose.time = CaptureTimeFromNanoseconds(1);
   EXPECT_TRUE(edge.publisher().Publish(sample, stop.get_token()).ok()) << "there is some time left";

@@ -72,7 +72,7 @@ const FolderArrows& AllowedArrows() {
        with(kCommon, {"common/transport", "edge/options", "edge/frame", "edge/source",
                       "edge/camera_process", "edge/openni", "edge/thermal_camera", "edge/spool",
                       "edge/publisher", "edge/pipeline"})},
-      // The ground: frames in; poses; the model; what is made of it; what joins, judges and runs
+      // The ground: frames in; poses; the model; what is made of it; what joins, assesses and runs
       // it.
       {"ground/options", with(kCommon, {})},
       {"ground/subscriber", with(kCommon, {"common/transport"})},

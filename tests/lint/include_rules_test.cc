@@ -71,18 +71,18 @@ TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
 }
 
 TEST(IncludeRulesTest, HeavyHeadersDoNotLeaveTheirFolder) {
-  const SourceFile picture = {"ground/renderer/picture.h", {"#include <opencv2/core.hpp>"}};
+  const SourceFile image = {"ground/renderer/image.h", {"#include <opencv2/core.hpp>"}};
   const SourceFile message = {"common/config/rig.h", {"#include \"common/config/rig.pb.h\""}};
-  const SourceFile neighbour = {"ground/renderer/picture.cc",
-                                {"#include \"ground/renderer/picture.h\""}};
-  EXPECT_THAT(CheckIncludes({picture, message, neighbour}), IsEmpty());
+  const SourceFile neighbour = {"ground/renderer/image.cc",
+                                {"#include \"ground/renderer/image.h\""}};
+  EXPECT_THAT(CheckIncludes({image, message, neighbour}), IsEmpty());
 
   const SourceFile pipeline = {
       "ground/service/ground_service.cc",
-      {"#include \"ground/renderer/picture.h\"", "#include \"common/config/rig.h\""}};
-  const std::vector<Violation> violations = CheckIncludes({picture, message, neighbour, pipeline});
+      {"#include \"ground/renderer/image.h\"", "#include \"common/config/rig.h\""}};
+  const std::vector<Violation> violations = CheckIncludes({image, message, neighbour, pipeline});
   ASSERT_EQ(violations.size(), 2U) << ToString(violations);
-  EXPECT_EQ(violations[0].path, picture.path);
+  EXPECT_EQ(violations[0].path, image.path);
   EXPECT_THAT(violations[0].message, HasSubstr("reaches other folders"));
   EXPECT_EQ(violations[1].path, message.path);
 }

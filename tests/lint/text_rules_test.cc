@@ -85,8 +85,7 @@ TEST(TextRulesTest, TheWalkFindsOurFilesAndSkipsBuildTrees) {
   const std::filesystem::path root =
       std::filesystem::path(::testing::TempDir()) / "isotherm_lint_walk";
   std::filesystem::remove_all(root);
-  for (const char* path :
-       {"common/base/a.cc", "build/dev/b.cc", "node_modules/c.h", "picture.png"}) {
+  for (const char* path : {"common/base/a.cc", "build/dev/b.cc", "node_modules/c.h", "image.png"}) {
     std::filesystem::create_directories((root / path).parent_path());
     std::ofstream(root / path) << "\tint x;\n";
   }

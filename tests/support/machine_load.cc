@@ -50,8 +50,8 @@ std::uint64_t TicksWithDescendants(pid_t pid) {
 MachineLoad::MachineLoad()
     : start_(Read()), thread_([this](const std::stop_token& stop) { Watch(stop); }) {}
 
-MachineLoad::Account MachineLoad::Read() {
-  Account account;
+MachineLoad::ProcessorTime MachineLoad::Read() {
+  ProcessorTime time;
   // The own part last: it is never too small for what it is taken off from.
   std::ifstream file("/proc/stat");
   std::string name;
@@ -63,14 +63,14 @@ MachineLoad::Account MachineLoad::Read() {
   for (int field = 0; field < kFields; ++field) {
     std::uint64_t ticks = 0;
     file >> ticks;
-    account.all += ticks;
-    if (field != kIdle && field != kWaitingForDisks) account.busy += ticks;
+    time.all += ticks;
+    if (field != kIdle && field != kWaitingForDisks) time.busy += ticks;
   }
-  account.own = TicksWithDescendants(::getpid());
-  return account;
+  time.own = TicksWithDescendants(::getpid());
+  return time;
 }
 
-double MachineLoad::OthersShare(const Account& from, const Account& to) {
+double MachineLoad::OthersFraction(const ProcessorTime& from, const ProcessorTime& to) {
   const auto all = static_cast<double>(to.all - from.all);
   if (all <= 0.0) return 0.0;
   const double others =
@@ -81,34 +81,34 @@ double MachineLoad::OthersShare(const Account& from, const Account& to) {
 void MachineLoad::Watch(const std::stop_token& stop) {
   std::mutex mutex;
   std::condition_variable_any never;
-  Account before = start_;
+  ProcessorTime before = start_;
   while (!stop.stop_requested()) {
     std::unique_lock lock(mutex);
     never.wait_for(lock, stop, kWindow, [] { return false; });
     if (stop.stop_requested()) return;
-    const Account now = Read();
+    const ProcessorTime now = Read();
     const std::scoped_lock worst_lock(mutex_);
-    worst_ = std::max(worst_, OthersShare(before, now));
+    worst_ = std::max(worst_, OthersFraction(before, now));
     before = now;
   }
 }
 
-double MachineLoad::others_share() const { return OthersShare(start_, Read()); }
+double MachineLoad::others_fraction() const { return OthersFraction(start_, Read()); }
 
-double MachineLoad::worst_others_share() const {
+double MachineLoad::worst_others_fraction() const {
   const std::scoped_lock lock(mutex_);
-  return std::max(worst_, others_share());
+  return std::max(worst_, others_fraction());
 }
 
 bool MachineLoad::is_busy() const {
-  return others_share() > kBusyOnAverage || worst_others_share() > kBusyForASecond;
+  return others_fraction() > kBusyOnAverage || worst_others_fraction() > kBusyForASecond;
 }
 
 std::string MachineLoad::ToText() const {
   return fmt::format(
       "others took {:.0f} % of this computer's processors, {:.0f} % in the worst "
       "second",
-      100.0 * others_share(), 100.0 * worst_others_share());
+      100.0 * others_fraction(), 100.0 * worst_others_fraction());
 }
 
 }  // namespace isotherm::system_test

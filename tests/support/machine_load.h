@@ -9,19 +9,19 @@
 namespace isotherm::system_test {
 
 /// How busy others keep this computer: other programs and, on a virtual machine, its host. From the
-/// kernel's account of processor time, of which that of this process and all its descendants is
+/// kernel's count of processor time, of which that of this process and all its descendants is
 /// taken off: a program that is tested never makes its own excuse. Measured from its construction
 /// on. Thread-safe.
 ///
-/// It may excuse times and shares of a processor. It excuses no frame that nobody counted.
+/// It may excuse times and fractions of a processor. It excuses no frame that nobody counted.
 class MachineLoad {
  public:
   MachineLoad();
 
-  /// The share of all processors that others took, 0..1, since the construction.
-  double others_share() const;
+  /// The fraction of all processors that others took, 0..1, since the construction.
+  double others_fraction() const;
   /// The same in the worst second.
-  double worst_others_share() const;
+  double worst_others_fraction() const;
   /// Others left so little that lateness and losses by lateness tell nothing.
   bool is_busy() const;
   /// Those figures, for people.
@@ -29,16 +29,16 @@ class MachineLoad {
 
  private:
   /// In ticks of the kernel's clock.
-  struct Account {
+  struct ProcessorTime {
     std::uint64_t all = 0;   ///< Ticks of all processors, idle or not.
     std::uint64_t busy = 0;  ///< Including what the host took.
     std::uint64_t own = 0;
   };
-  static Account Read();
-  static double OthersShare(const Account& from, const Account& to);
+  static ProcessorTime Read();
+  static double OthersFraction(const ProcessorTime& from, const ProcessorTime& to);
   void Watch(const std::stop_token& stop);
 
-  const Account start_;
+  const ProcessorTime start_;
   mutable std::mutex mutex_;
   double worst_ = 0.0;
   std::jthread thread_;

@@ -29,7 +29,7 @@ TEST(MachineLoadTest, WhatThisProcessAndItsChildrenTakeIsNoExcuse) {
   const double own_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec);
   const double all_s = Seconds(std::chrono::steady_clock::now() - start).count() *
                        static_cast<double>(::sysconf(_SC_NPROCESSORS_ONLN));
-  EXPECT_LE(load.others_share(), 1.0 - own_s / all_s + kTicks) << load.ToText();
+  EXPECT_LE(load.others_fraction(), 1.0 - own_s / all_s + kTicks) << load.ToText();
 }
 
 TEST(MachineLoadTest, WhatOthersTakeIsOne) {
@@ -40,10 +40,10 @@ TEST(MachineLoadTest, WhatOthersTakeIsOne) {
   const pid_t other = std::stoi(starter.output());
   const MachineLoad load;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (load.worst_others_share() < 0.1 && std::chrono::steady_clock::now() < end) {
+  while (load.worst_others_fraction() < 0.1 && std::chrono::steady_clock::now() < end) {
     starter.WaitForExit(Seconds(0.1));
   }
-  EXPECT_GE(load.worst_others_share(), 0.1) << load.ToText();
+  EXPECT_GE(load.worst_others_fraction(), 0.1) << load.ToText();
   ::kill(other, SIGKILL);
 }
 

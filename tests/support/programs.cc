@@ -106,7 +106,7 @@ RecordingContent ReadRecording(const std::filesystem::path& path) {
   return content;
 }
 
-FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::string& done) {
+FrameCountersText CountersOf(const std::string& output, Sensor sensor, const std::string& done) {
   const std::string name = sensor == Sensor::kDepth ? "depth" : "thermal";
   // A blank in the format stands for any number of them in the text.
   const std::string format = name + " captured %ld = " + done +
@@ -114,11 +114,11 @@ FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::
                              " + no free slot in the camera's process %ld\n";
   std::istringstream lines(output);
   for (std::string line; std::getline(lines, line);) {
-    FrameAccountText account;
+    FrameCountersText counters;
     const int numbers =
-        std::sscanf(line.c_str(), format.c_str(), &account.captured, &account.done,
-                    &account.rejected, &account.queue_full, &account.failed, &account.left_out);
-    if (numbers >= 5 && line.find("unaccounted") == std::string::npos) return account;
+        std::sscanf(line.c_str(), format.c_str(), &counters.captured, &counters.done,
+                    &counters.rejected, &counters.queue_full, &counters.failed, &counters.left_out);
+    if (numbers >= 5 && line.find("unaccounted") == std::string::npos) return counters;
   }
   return {};
 }

@@ -56,16 +56,16 @@ RecordingContent ReadRecording(const std::filesystem::path& path);
 
 /// The numbers of a line of the edge's summary: "depth    captured 100 = recorded 99 + rejected 1 +
 /// queue full 0 + failed 0".
-struct FrameAccountText {
+struct FrameCountersText {
   long captured = -1, done = -1, rejected = -1, queue_full = -1, failed = -1;
   long left_out = 0;  ///< " + no free slot in the camera's process 3"; not there: none.
   bool Closes() const {
     return captured >= 0 && captured == done + rejected + queue_full + failed + left_out;
   }
 };
-/// `done`: "recorded" or "published". An account that does not close if there is no such line, or
+/// `done`: "recorded" or "published". Counters that do not balance if there is no such line, or
 /// if it speaks of unaccounted frames.
-FrameAccountText AccountOf(const std::string& output, Sensor sensor, const std::string& done);
+FrameCountersText CountersOf(const std::string& output, Sensor sensor, const std::string& done);
 
 /// "depth    lost in the camera or its library 3"; 0 if there is no such line.
 long LostInCamera(const std::string& output, Sensor sensor);

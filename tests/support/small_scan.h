@@ -25,7 +25,7 @@ inline Image<std::uint16_t> SmallNoise(int width, int height, std::uint16_t base
   return image;
 }
 
-/// Writes a second of both cameras, in small pictures, for an edge to replay.
+/// Writes a second of both cameras, in small images, for an edge to replay.
 inline void WriteSmallScan(const std::filesystem::path& path) {
   using std::chrono::milliseconds;
   const Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, {});

@@ -37,7 +37,7 @@ constexpr double kNoticed_s = 1.0;
 /// How long a camera is away: longer than a service manager waits for a sign of life.
 constexpr std::chrono::seconds kOutage{11};
 /// Frames whose fate may not be seen in the recording's numbers: those under way at its end.
-constexpr std::uint64_t kMostUnderWay = 32;
+constexpr std::uint64_t kMaxUnderWay = 32;
 /// Until frames come from a camera that was plugged in again: failure F02.
 constexpr double kBackAfterReplug_s = 5.0;
 /// Ten times a frame's period and more: nothing but a busy computer.
@@ -117,7 +117,7 @@ class BothCamerasTest : public ::testing::Test {
     edge.Signal(SIGTERM);
     EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
     for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal})
-      EXPECT_TRUE(AccountOf(edge.output(), sensor, "recorded").Closes()) << edge.output();
+      EXPECT_TRUE(CountersOf(edge.output(), sensor, "recorded").Closes()) << edge.output();
     RecordingContent content = ReadRecording(file_);
     EXPECT_TRUE(content.complete);
     EXPECT_FALSE(content.depth.empty());
@@ -127,12 +127,12 @@ class BothCamerasTest : public ::testing::Test {
   /// lost, and none is lost unless others took the processors.
   void ExpectDepthLosesNothing(const std::vector<StoredFrame>& frames,
                                const std::string& output) const {
-    const FrameAccountText account = AccountOf(output, Sensor::kDepth, "recorded");
+    const FrameCountersText counters = CountersOf(output, Sensor::kDepth, "recorded");
     const std::uint64_t missing = frames.back().frame_number + 1 - frames.size();
-    const auto counted = static_cast<std::uint64_t>(account.captured - account.done +
+    const auto counted = static_cast<std::uint64_t>(counters.captured - counters.done +
                                                     LostInCamera(output, Sensor::kDepth));
     EXPECT_GE(counted, missing) << output;
-    EXPECT_LE(counted, missing + kMostUnderWay) << output;
+    EXPECT_LE(counted, missing + kMaxUnderWay) << output;
     if (!load_.is_busy()) {
       EXPECT_EQ(missing, 0U) << load_.ToText() << output;
     }
@@ -212,7 +212,7 @@ TEST_F(BothCamerasTest, F14ALibraryThatCrashesTakesOnlyItsProcessDownAndDepthLos
   ASSERT_TRUE(edge.WaitForOutput(kThermalWorks, kPatience, 2)) << edge.output();
   const RecordingContent content = End(edge);
   ExpectDepthLosesNothing(content.depth, edge.output());
-  if (load_.is_busy()) GTEST_SKIP() << load_.ToText() << ": all was judged but times";
+  if (load_.is_busy()) GTEST_SKIP() << load_.ToText() << ": all was assessed but times";
   EXPECT_LT(LongestGap_s(content.thermal), kBackAfterCrash_s);
 }
 
@@ -227,7 +227,7 @@ TEST_F(BothCamerasTest, F14ALibraryThatHangsIsReplacedAndDepthLosesNothing) {
   const RecordingContent content = End(edge);
   EXPECT_GE(LongestGap_s(content.thermal), 2.0);
   ExpectDepthLosesNothing(content.depth, edge.output());
-  if (load_.is_busy()) GTEST_SKIP() << load_.ToText() << ": all was judged but times";
+  if (load_.is_busy()) GTEST_SKIP() << load_.ToText() << ": all was assessed but times";
   EXPECT_LT(LongestGap_s(content.thermal), 2.0 + kBackAfterCrash_s);
 }
 
@@ -251,7 +251,7 @@ TEST_F(BothCamerasTest, F38AStopIsPromptAlthoughACamerasProcessCannotBeEnded) {
   ::waitpid(camera, nullptr, __WALL);
   EXPECT_THAT(edge.output(), HasSubstr("does not end although it was killed"));
   EXPECT_TRUE(ReadRecording(file_).complete);
-  if (load_.is_busy()) GTEST_SKIP() << load_.ToText() << ": all was judged but times";
+  if (load_.is_busy()) GTEST_SKIP() << load_.ToText() << ": all was assessed but times";
   EXPECT_LT(ToSeconds(left_after), kPromptly_s);
 }
 

@@ -24,7 +24,7 @@ using testing::TemporaryDirectory;
 /// A program must be gone this soon after SIGTERM.
 constexpr Seconds kLeaveLimit{2};
 /// Length of the simulated scan: long enough to be tracked, integrated and fused.
-constexpr double kScanSeconds = 2.0;
+constexpr double kScan_s = 2.0;
 
 std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<std::string>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -35,7 +35,7 @@ class DaemonsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     shared_ = std::make_unique<TemporaryDirectory>();
-    SimulateScan(Source(), kScanSeconds);
+    SimulateScan(Source(), kScan_s);
   }
   static void TearDownTestSuite() { shared_.reset(); }
   static std::filesystem::path Source() { return shared_->path() / "source.mcap"; }
@@ -62,7 +62,7 @@ class DaemonsTest : public ::testing::Test {
         {}};
   }
 
-  void ExpectAccountIsExact(const char* sensor, std::size_t frames) const {
+  void ExpectCountersAreExact(const char* sensor, std::size_t frames) const {
     const auto stats = ReadStats(Path("ground"));
     const auto count = [&](const char* what) { return NumberAt(stats, {"link", sensor, what}); };
     EXPECT_EQ(count("published"), static_cast<double>(frames)) << sensor;
@@ -85,8 +85,8 @@ class DaemonsTest : public ::testing::Test {
     EXPECT_TRUE(ground.depth == edge.depth) << ground.depth.size() << " of " << edge.depth.size();
     EXPECT_TRUE(ground.thermal == edge.thermal)
         << ground.thermal.size() << " of " << edge.thermal.size();
-    ExpectAccountIsExact("depth", source.depth.size());
-    ExpectAccountIsExact("thermal", source.thermal.size());
+    ExpectCountersAreExact("depth", source.depth.size());
+    ExpectCountersAreExact("thermal", source.thermal.size());
   }
 
   static std::unique_ptr<TemporaryDirectory> shared_;
@@ -194,24 +194,24 @@ TEST_F(DaemonsTest, FeedbackReachesTheEdgeAndItsAgeIsKnown) {
   Process ground(Ground({"--once"}));
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   const Finished edge = RunToEnd(Edge({"--wait-for-ground", "--exit-at-end", "--set",
-                                       "display.picture_file=" + Path("confidence.png").string()}),
+                                       "display.image_file=" + Path("confidence.png").string()}),
                                  kPatience);
   EXPECT_EQ(edge.status, 0) << edge.output;
   EXPECT_EQ(ground.WaitForExit(kPatience), 0) << ground.output();
 
   // Two seconds at 10 Hz; a computer that is busy with other things may skip some.
-  constexpr double kLeastMessages = 5;
+  constexpr double kMinMessages = 5;
   // Anything above is not an age, but another clock.
-  constexpr double kMostAge_ms = 3000;
+  constexpr double kMaxAge_ms = 3000;
   const auto stats = ReadStats(Path("ground"));
   const double received = NumberAt(stats, {"link", "feedback", "received_by_edge"});
-  EXPECT_GE(received, kLeastMessages) << edge.output;
+  EXPECT_GE(received, kMinMessages) << edge.output;
   EXPECT_LE(received, NumberAt(stats, {"feedback", "messages"}));
   const double p50_ms = NumberAt(stats, {"link", "feedback", "latency_p50_ms"});
   const double p99_ms = NumberAt(stats, {"link", "feedback", "latency_p99_ms"});
   EXPECT_GT(p50_ms, 0.0);
   EXPECT_GE(p99_ms, p50_ms);
-  EXPECT_LT(p99_ms, kMostAge_ms);
+  EXPECT_LT(p99_ms, kMaxAge_ms);
   std::cout << "feedback: " << received << " messages, p50 " << p50_ms << " ms, p99 " << p99_ms
             << " ms\n";
   EXPECT_THAT(edge.output, HasSubstr("depth capture to arrival p50"));

@@ -35,11 +35,11 @@ class CamerasTest : public ::testing::Test {
   std::vector<std::string> Record() const { return {"--record", file_.string()}; }
 
   /// Ends the daemon and checks that each frame is accounted for.
-  FrameAccountText End(Process& edge) {
+  FrameCountersText End(Process& edge) {
     edge.Signal(SIGTERM);
     EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
-    const FrameAccountText recorded = AccountOf(edge.output(), Sensor::kDepth, "recorded");
-    const FrameAccountText published = AccountOf(edge.output(), Sensor::kDepth, "published");
+    const FrameCountersText recorded = CountersOf(edge.output(), Sensor::kDepth, "recorded");
+    const FrameCountersText published = CountersOf(edge.output(), Sensor::kDepth, "published");
     EXPECT_TRUE(recorded.Closes()) << edge.output();
     EXPECT_TRUE(published.Closes()) << edge.output();
     const RecordingContent content = ReadRecording(file_);
@@ -62,8 +62,8 @@ class CamerasTest : public ::testing::Test {
 TEST_F(CamerasTest, RecordsAndPublishesWhatTheCameraSees) {
   Process edge(Edge(Record()));
   ASSERT_TRUE(edge.WaitForOutput(kWorking, kPatience)) << edge.output();
-  const FrameAccountText account = End(edge);
-  EXPECT_GT(account.done, 0);
+  const FrameCountersText counters = End(edge);
+  EXPECT_GT(counters.done, 0);
   const RecordingContent content = ReadRecording(file_);
   ASSERT_FALSE(content.depth.empty());
   ASSERT_EQ(content.depth[0].pixels.size(), 640U * 480U);
@@ -185,9 +185,9 @@ TEST_F(CamerasTest, AnOniFileIsPlayedInAProcessOfItsOwnAndNoFrameOfItIsLost) {
   EXPECT_EQ(edge.status, 0) << edge.output;
   EXPECT_THAT(edge.output, HasSubstr("is confined to its camera"));
   EXPECT_THAT(edge.output, Not(HasSubstr("signal")));
-  const FrameAccountText account = AccountOf(edge.output, Sensor::kDepth, "recorded");
-  EXPECT_TRUE(account.Closes()) << edge.output;
-  EXPECT_EQ(account.done, account.captured);
+  const FrameCountersText counters = CountersOf(edge.output, Sensor::kDepth, "recorded");
+  EXPECT_TRUE(counters.Closes()) << edge.output;
+  EXPECT_EQ(counters.done, counters.captured);
   const RecordingContent content = ReadRecording(file_);
   ASSERT_GE(content.depth.size(), static_cast<std::size_t>(kFrames));
   for (std::size_t i = 0; i < content.depth.size(); ++i) {

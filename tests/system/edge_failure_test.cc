@@ -132,7 +132,7 @@ TEST_F(EdgeFailureTest, F39WhenTheRecordingHangsTheWatchdogIsNotFedAndSigtermIsS
   EXPECT_TRUE(manager_.WaitForSilence(kFed, kWatchdogSec, kPatience)) << edge.output();
   EXPECT_THAT(edge.output(), HasSubstr("the disk does not answer"));
   EXPECT_LT(Leave(edge, 73), Seconds(3.5) + kSlack);
-  EXPECT_THAT(edge.output(), HasSubstr("= published")) << "the account is told all the same";
+  EXPECT_THAT(edge.output(), HasSubstr("= published")) << "the counters are told all the same";
   close(stuck);
 }
 
@@ -197,10 +197,10 @@ TEST_F(EdgeFailureTest, F31WithoutItsNetworkItRecordsAndSaysWhatIsMissing) {
   ASSERT_TRUE(WaitForSize(edge, file_, 100'000)) << edge.output();
   EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
   EXPECT_LE(Count(edge.output(), "cannot join"), 1) << edge.output();
-  const FrameAccountText recorded = AccountOf(edge.output(), Sensor::kDepth, "recorded");
+  const FrameCountersText recorded = CountersOf(edge.output(), Sensor::kDepth, "recorded");
   EXPECT_TRUE(recorded.Closes());
   EXPECT_EQ(recorded.done, recorded.captured);
-  EXPECT_TRUE(AccountOf(edge.output(), Sensor::kDepth, "published").Closes());
+  EXPECT_TRUE(CountersOf(edge.output(), Sensor::kDepth, "published").Closes());
   EXPECT_TRUE(ReadRecording(file_).complete);
   command.arguments.push_back("--exit-at-end");
   EXPECT_EQ(RunToEnd(command, kPatience).status, 69);
@@ -261,16 +261,16 @@ TEST_P(F43SyncErrorTest, TheFileIsLeftANewOneBegunAndEachFrameIsAccountedFor) {
   EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
   EXPECT_EQ(Count(edge.output(), "recording ended early"), 1) << edge.output();
 
-  const FrameAccountText account = AccountOf(edge.output(), Sensor::kDepth, "recorded");
-  EXPECT_TRUE(account.Closes()) << edge.output();
-  EXPECT_GT(account.failed, 0);
+  const FrameCountersText counters = CountersOf(edge.output(), Sensor::kDepth, "recorded");
+  EXPECT_TRUE(counters.Closes()) << edge.output();
+  EXPECT_GT(counters.failed, 0);
   long found = 0;
   const auto files = FilesIn(disk_);
   ASSERT_EQ(files.size(), 2U) << "the suspect one and the next; none without a frame";
   for (const auto& file : files) found += static_cast<long>(ReadRecording(file).depth.size());
   // Frames that were not synced count as lost, and may be there all the same.
-  EXPECT_GE(found, account.done);
-  EXPECT_LE(found, account.done + account.failed);
+  EXPECT_GE(found, counters.done);
+  EXPECT_LE(found, counters.done + counters.failed);
 }
 
 INSTANTIATE_TEST_SUITE_P(Errors, F43SyncErrorTest, ::testing::Values(EIO, EROFS, ENOSPC));
@@ -310,14 +310,14 @@ TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
   std::filesystem::remove(ballast);
   ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
   EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
-  const FrameAccountText account = AccountOf(edge.output(), Sensor::kDepth, "recorded");
-  EXPECT_TRUE(account.Closes()) << edge.output();
+  const FrameCountersText counters = CountersOf(edge.output(), Sensor::kDepth, "recorded");
+  EXPECT_TRUE(counters.Closes()) << edge.output();
   long found = 0;
   for (const auto& file : FilesIn(disk_)) {
     EXPECT_GT(std::filesystem::file_size(file), 0U);
     found += static_cast<long>(ReadRecording(file).depth.size());
   }
-  EXPECT_EQ(found, account.done);
+  EXPECT_EQ(found, counters.done);
 }
 
 TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) {
@@ -333,7 +333,7 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   EXPECT_THAT(content.depth, Not(IsEmpty()));
   EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: the disk is full", kPatience));
   Leave(edge, 73);
-  const FrameAccountText published = AccountOf(edge.output(), Sensor::kDepth, "published");
+  const FrameCountersText published = CountersOf(edge.output(), Sensor::kDepth, "published");
   EXPECT_EQ(published.done, published.captured);
   EXPECT_GT(published.done, static_cast<long>(content.depth.size()));
 }
@@ -372,7 +372,7 @@ class OutputPipeTest : public EdgeFailureTest {
     EXPECT_LT(manager_.LongestSilence(kFed, Seconds(12)), kWatchdogSec);
     EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
     EXPECT_TRUE(ReadRecording(file_).complete);
-    EXPECT_TRUE(AccountOf(edge.output(), Sensor::kDepth, "recorded").Closes());
+    EXPECT_TRUE(CountersOf(edge.output(), Sensor::kDepth, "recorded").Closes());
   }
 
   const std::filesystem::path pipe_ = folder_.path() / "output";

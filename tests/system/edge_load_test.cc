@@ -43,13 +43,13 @@ constexpr int kPreparedFrames = 8;
 constexpr std::chrono::microseconds kDepthPeriod{33'333};
 /// Frames that may be on their way when the recording begins or ends: those of the slots between
 /// the camera's process and the edge, of the queue behind them and of the library.
-constexpr std::uint64_t kMostUnderWay = 32;
+constexpr std::uint64_t kMaxUnderWay = 32;
 /// What the edge may need where it has the processors for itself, of a core.
-constexpr double kMostCpuShare = 0.35;
+constexpr double kMaxCpuFraction = 0.35;
 /// From a frame's arrival to its stamp, seconds, in the middle.
 constexpr double kSoonestStamp_s = 0.005;
 /// What the edge may hold in memory, with its camera's process.
-constexpr double kMostMemory_mb = 60.0;
+constexpr double kMaxMemory_mb = 60.0;
 constexpr unsigned kSeed = 20;
 constexpr std::uint64_t kSession = 1;
 
@@ -63,7 +63,7 @@ double CpuSeconds(int who) {
 }
 
 /// Returns what a process has in memory, MB; pages that processes share count for each with its
-/// share.
+/// fraction.
 double Memory_mb(const std::string& process) {
   std::ifstream pages("/proc/" + process + "/smaps_rollup");
   for (std::string line; std::getline(pages, line);) {
@@ -166,8 +166,8 @@ class EdgeLoadTest : public ::testing::Test {
     thermal_ = thermal.get();
     cameras.push_back({Sensor::kThermal, Supervise(std::move(thermal))});
     const auto dropped = [this](Sensor sensor) {
-      account_.Count(sensor, FrameFate::kRecordQueueFull);
-      account_.Count(sensor, FrameFate::kPublishQueueFull);
+      counters_.Count(sensor, FrameFate::kRecordQueueFull);
+      counters_.Count(sensor, FrameFate::kPublishQueueFull);
     };
     return std::make_unique<CameraPair>(
         std::move(cameras),
@@ -177,15 +177,15 @@ class EdgeLoadTest : public ::testing::Test {
   std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source) {
     auto supervised = std::make_unique<SupervisedSource>(
         std::move(source), options_.frame_check(), clock_,
-        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kCaptured); },
-        [this](Sensor sensor) { account_.Count(sensor, FrameFate::kRejected); });
-    CountLosses(*supervised, account_);
+        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kCaptured); },
+        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kRejected); });
+    CountLosses(*supervised, counters_);
     return supervised;
   }
 
   /// Holds what the edge needs, without the making of thermal frames.
   struct Usage {
-    double cpu_share = 0.0;  ///< Part of a core.
+    double cpu_fraction = 0.0;  ///< Part of a core.
     double memory_mb = 0.0;
     double child_memory_mb = 0.0;  ///< Memory of the depth camera's process.
   };
@@ -210,10 +210,10 @@ class EdgeLoadTest : public ::testing::Test {
         file_, FromSeconds(options_.spool().flush_interval_s()), cameras.rig(), {}});
     auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
                                                     [this] { return FreeDiskBytes(file_); },
-                                                    options_.spool(), clock_, account_});
+                                                    options_.spool(), clock_, counters_});
     ASSERT_TRUE(spool->Begin().ok());
     EdgePipeline pipeline(
-        options_, {cameras, *publisher_, account_, health_, clock_, std::move(spool), kSession});
+        options_, {cameras, *publisher_, counters_, health_, clock_, std::move(spool), kSession});
     pipeline.StartReceiving();
     ASSERT_TRUE(publisher_->WaitForGround(std::chrono::seconds(20), {}));
     const double cpu_before_s = CpuSeconds(RUSAGE_SELF);
@@ -223,7 +223,7 @@ class EdgeLoadTest : public ::testing::Test {
     usage.memory_mb = Memory_mb("self");
     usage.child_memory_mb = Memory_mb(std::to_string(depth_->pid()));
     wall_s_ = ToSeconds(clock_.SteadyNow() - start);
-    usage.cpu_share = (CpuSeconds(RUSAGE_SELF) - cpu_before_s) / wall_s_;
+    usage.cpu_fraction = (CpuSeconds(RUSAGE_SELF) - cpu_before_s) / wall_s_;
     EXPECT_TRUE(pipeline.Stop().ok());
     // As the daemon says it: only now the ground knows that no earlier number is still to come.
     EdgeStatus ended;
@@ -234,29 +234,29 @@ class EdgeLoadTest : public ::testing::Test {
   }
 
   /// Prints the figures; whatever was lost must have been counted.
-  void ReportAndCheckAccounts(const Usage& usage) {
+  void ReportAndCheckCounters(const Usage& usage) {
     std::printf(
         "edge: %.1f %% of a core, %.0f MB resident; depth camera's process: %.1f %%, %.0f MB\n",
-        100.0 * usage.cpu_share, usage.memory_mb, 100.0 * CpuSeconds(RUSAGE_CHILDREN) / wall_s_,
+        100.0 * usage.cpu_fraction, usage.memory_mb, 100.0 * CpuSeconds(RUSAGE_CHILDREN) / wall_s_,
         usage.child_memory_mb);
     const auto recording = RecordingReader::Open(file_);
     ASSERT_TRUE(recording.has_value());
     EXPECT_TRUE((*recording)->info().complete);
     for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
       const bool is_depth = sensor == Sensor::kDepth;
-      const SensorAccount account = account_.Get(sensor);
+      const SensorCounters counters = counters_.Get(sensor);
       const CameraReport report = health_.Get(sensor);
       std::printf(
           "%s: due %lu; captured %lu, lost in the camera or its library %lu; left out in the "
           "camera's process %lu, recorded %lu, published %lu; stamped p50 %.3f ms p99 %.3f ms "
           "after arrival\n",
-          is_depth ? "depth" : "thermal", Due(sensor), account.captured, account.lost_in_camera,
-          account.left_out, account.recorded, account.published, report.stamping_p50_s * 1e3,
+          is_depth ? "depth" : "thermal", Due(sensor), counters.captured, counters.lost_in_camera,
+          counters.left_out, counters.recorded, counters.published, report.stamping_p50_s * 1e3,
           report.stamping_p99_s * 1e3);
-      EXPECT_GT(account.captured, 0U);
-      EXPECT_EQ(account.OnTheWayToDisk(), 0);
-      EXPECT_EQ(account.OnTheWayToGround(), 0);
-      EXPECT_EQ(account.recorded,
+      EXPECT_GT(counters.captured, 0U);
+      EXPECT_EQ(counters.OnTheWayToDisk(), 0);
+      EXPECT_EQ(counters.OnTheWayToGround(), 0);
+      EXPECT_EQ(counters.recorded,
                 (*recording)->info().messages_by_topic.at(is_depth ? "/depth" : "/thermal"));
     }
   }
@@ -294,11 +294,11 @@ class EdgeLoadTest : public ::testing::Test {
         {Sensor::kDepth, SharedCounter(camera_.script.counter).value()},
         {Sensor::kThermal, thermal_->made()}};
     for (const auto& [sensor, made] : cameras) {
-      const SensorAccount account = account_.Get(sensor);
-      const std::uint64_t accounted = account.captured + account.lost_in_camera;
+      const SensorCounters counters = counters_.Get(sensor);
+      const std::uint64_t accounted = counters.captured + counters.lost_in_camera;
       const std::uint64_t due = Due(sensor);
       EXPECT_GE(accounted, due) << "frames vanished";
-      EXPECT_LE(accounted, due + kMostUnderWay) << "frames were counted twice";
+      EXPECT_LE(accounted, due + kMaxUnderWay) << "frames were counted twice";
       EXPECT_GE(made, accounted) << "more than the camera has made";
     }
   }
@@ -306,20 +306,20 @@ class EdgeLoadTest : public ::testing::Test {
   /// What was lost may be no larger a part than others took of the processors: nothing where they
   /// took little.
   void ExpectNoMoreIsLostThanOthersTook(const MachineLoad& load) {
-    const double share = load.is_busy() ? load.worst_others_share() : 0.0;
+    const double fraction = load.is_busy() ? load.worst_others_fraction() : 0.0;
     for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
-      const SensorAccount account = account_.Get(sensor);
-      const std::uint64_t due = account.captured + account.lost_in_camera;
-      const double most = share * static_cast<double>(due);
-      EXPECT_LE(static_cast<double>(due - account.recorded), most) << load.ToText();
-      EXPECT_LE(static_cast<double>(due - account.published), most) << load.ToText();
+      const SensorCounters counters = counters_.Get(sensor);
+      const std::uint64_t due = counters.captured + counters.lost_in_camera;
+      const double most = fraction * static_cast<double>(due);
+      EXPECT_LE(static_cast<double>(due - counters.recorded), most) << load.ToText();
+      EXPECT_LE(static_cast<double>(due - counters.published), most) << load.ToText();
     }
   }
 
   /// `received`: what the other process says at its end. It has all that was published, or lacks no
   /// larger a part than others took of the processors.
   void ExpectReceived(const std::string& received, const MachineLoad& load) {
-    const double share = load.is_busy() ? load.worst_others_share() : 0.0;
+    const double fraction = load.is_busy() ? load.worst_others_fraction() : 0.0;
     unsigned long depth = 0;
     unsigned long thermal = 0;
     const std::size_t at = received.find("received depth=");
@@ -328,9 +328,9 @@ class EdgeLoadTest : public ::testing::Test {
         std::sscanf(received.c_str() + at, "received depth=%lu thermal=%lu", &depth, &thermal), 2);
     for (const auto& [sensor, frames] :
          {std::pair(Sensor::kDepth, depth), std::pair(Sensor::kThermal, thermal)}) {
-      const auto published = static_cast<double>(account_.Get(sensor).published);
+      const auto published = static_cast<double>(counters_.Get(sensor).published);
       EXPECT_LE(static_cast<double>(frames), published);
-      EXPECT_GE(static_cast<double>(frames), (1.0 - share) * published) << load.ToText();
+      EXPECT_GE(static_cast<double>(frames), (1.0 - fraction) * published) << load.ToText();
     }
   }
 
@@ -344,7 +344,7 @@ class EdgeLoadTest : public ::testing::Test {
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Publisher> publisher_;
   double wall_s_ = 0.0;  ///< That it ran.
-  FrameAccount account_;
+  FrameCounters counters_;
   CameraHealth health_;
   CameraProcess* depth_ = nullptr;
   PreparedThermalCamera* thermal_ = nullptr;
@@ -361,17 +361,17 @@ TEST_F(EdgeLoadTest, EachFrameIsAccountedForAndMemoryIsBounded) {
   const MachineLoad load;
   ASSERT_NO_FATAL_FAILURE(Run(*cameras, usage));
   std::printf("%s\n", load.ToText().c_str());
-  ASSERT_NO_FATAL_FAILURE(ReportAndCheckAccounts(usage));
+  ASSERT_NO_FATAL_FAILURE(ReportAndCheckCounters(usage));
   ExpectEachFrameIsAccountedFor();
   ExpectNoMoreIsLostThanOthersTook(load);
-  EXPECT_LT(usage.memory_mb + usage.child_memory_mb, kMostMemory_mb);
+  EXPECT_LT(usage.memory_mb + usage.child_memory_mb, kMaxMemory_mb);
   sink.Signal(SIGTERM);
   EXPECT_EQ(sink.WaitForExit(kPatience), 0);
   ExpectReceived(sink.output(), load);
   if (load.is_busy()) {
-    GTEST_SKIP() << load.ToText() << ": all was judged but times and the share of a processor";
+    GTEST_SKIP() << load.ToText() << ": all was assessed but times and the fraction of a processor";
   }
-  EXPECT_LT(usage.cpu_share, kMostCpuShare);
+  EXPECT_LT(usage.cpu_fraction, kMaxCpuFraction);
   EXPECT_LT(health_.Get(Sensor::kDepth).stamping_p50_s, kSoonestStamp_s);
   EXPECT_LT(health_.Get(Sensor::kThermal).stamping_p50_s, kSoonestStamp_s);
 }

@@ -25,7 +25,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using testing::TemporaryDirectory;
 
-constexpr double kScanSeconds = 2.0;
+constexpr double kScan_s = 2.0;
 constexpr ExitStatus kDiskFull = 73;
 constexpr ExitStatus kDiskStuck = 74;
 
@@ -62,7 +62,7 @@ class GroundDiskTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     shared_ = std::make_unique<TemporaryDirectory>();
-    SimulateScan(Source(), kScanSeconds);
+    SimulateScan(Source(), kScan_s);
   }
   static void TearDownTestSuite() { shared_.reset(); }
   static std::filesystem::path Source() { return shared_->path() / "source.mcap"; }
@@ -101,7 +101,7 @@ class GroundDiskTest : public ::testing::Test {
   }
 
   /// Everything that was published arrived and was reconstructed; of the recording, all is known.
-  static void ExpectWholeAccount(const google::protobuf::Struct& stats, const char* sensor) {
+  static void ExpectWholeCounters(const google::protobuf::Struct& stats, const char* sensor) {
     const auto count = [&](const std::string& what) {
       return NumberAt(stats, {"link", sensor, what});
     };
@@ -138,8 +138,8 @@ TEST_F(GroundDiskTest, F42AStuckRecordingCostsTheRecordingOnly) {
   EXPECT_THAT(ground.output(), HasSubstr("the disk is stuck: the recording is not complete"));
   EXPECT_THAT(ground.output(), HasSubstr("frames are not in the recording"));
   const auto stats = ReadStats(Path("ground"));
-  ExpectWholeAccount(stats, "depth");
-  ExpectWholeAccount(stats, "thermal");
+  ExpectWholeCounters(stats, "depth");
+  ExpectWholeCounters(stats, "thermal");
   EXPECT_GT(NumberAt(stats, {"link", "depth", "not_recorded_by_reason", "disk_too_slow"}), 0);
   EXPECT_GT(NumberAt(stats, {"frames", "depth", "tracked"}), 100);
   EXPECT_TRUE(std::filesystem::exists(Path("ground/cloud.ply")));
@@ -211,15 +211,15 @@ TEST_F(GroundDiskTest, ANewScanLosesNothingWhileResultsAreWritten) {
   ASSERT_EQ(scans.size(), 2U) << ground.output();
   for (const Scan& scan : scans) {
     const auto stats = ReadStats(scan.folder);
-    ExpectWholeAccount(stats, "depth");
-    ExpectWholeAccount(stats, "thermal");
+    ExpectWholeCounters(stats, "depth");
+    ExpectWholeCounters(stats, "thermal");
     EXPECT_EQ(NumberAt(stats, {"link", "session"}), static_cast<double>(scan.session));
     EXPECT_TRUE(ReadRecording(scan.folder / "scan.mcap").complete);
   }
   if (HasFailure()) std::cout << "edge:\n" << second.output << "ground:\n" << ground.output();
 }
 
-TEST_F(GroundDiskTest, F33TheScanOfAKilledEdgeHasItsOwnAccount) {
+TEST_F(GroundDiskTest, F33TheScanOfAKilledEdgeHasItsOwnCounters) {
   Process ground(Ground());
   ASSERT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
   {
@@ -300,8 +300,8 @@ TEST_F(SmallDiskTest, F41AFullDiskCostsTheRecordingsEndNotTheResults) {
   for (const char* name : {"model.iso", "cloud.ply", "mesh.ply", "trajectory.txt"})
     EXPECT_TRUE(std::filesystem::exists(Path("kept") / name)) << name << "\n" << ground->output;
   const auto stats = ReadStats(Path("kept"));
-  ExpectWholeAccount(stats, "depth");
-  ExpectWholeAccount(stats, "thermal");
+  ExpectWholeCounters(stats, "depth");
+  ExpectWholeCounters(stats, "thermal");
   EXPECT_GT(NumberAt(stats, {"link", "depth", "not_recorded_by_reason", "disk_nearly_full"}), 0);
   const RecordingContent recording = ReadRecording(Path("kept/scan.mcap"));
   EXPECT_TRUE(recording.complete) << "it ends in order";
@@ -320,8 +320,8 @@ TEST_F(SmallDiskTest, F41ResultsThatFindNoRoomGoElsewhereAndItIsSaid) {
   for (const char* name : {"model.iso", "cloud.ply", "mesh.ply", "trajectory.txt", "stats.json"})
     EXPECT_TRUE(std::filesystem::exists(elsewhere / name)) << name << "\n" << ground->output;
   const auto stats = ReadStats(elsewhere);
-  ExpectWholeAccount(stats, "depth");
-  ExpectWholeAccount(stats, "thermal");
+  ExpectWholeCounters(stats, "depth");
+  ExpectWholeCounters(stats, "thermal");
   if (HasFailure()) std::cout << ground->output;
 }
 

@@ -150,13 +150,13 @@ TEST_F(InstallTest, TheUnitsAreClosedAsFarAsTheyCanBe) {
   if (analyze.empty()) GTEST_SKIP() << "systemd-analyze is not installed";
   ASSERT_EQ(Install().status, 0);
   for (const auto& [name, limit] : {std::pair{"edge", "16"}, std::pair{"ground", "14"}}) {
-    const Finished judged =
+    const Finished assessed =
         RunToEnd({analyze,
                   {"security", "--offline=yes", "--no-pager", "--threshold=" + std::string(limit),
                    Unit("isotherm-" + std::string(name) + ".service")},
                   {}},
                  kPatience);
-    EXPECT_EQ(judged.status, 0) << judged.output;
+    EXPECT_EQ(assessed.status, 0) << assessed.output;
   }
 }
 

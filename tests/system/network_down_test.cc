@@ -116,7 +116,7 @@ TEST_F(NetworkDownTest, F38WithTheirOwnInterfaceDownBothLeaveInTime) {
   Down(ground_);
   ExpectToLeaveInTime(edge);
   EXPECT_TRUE(ReadRecording(copy_).complete);
-  EXPECT_TRUE(AccountOf(edge.output(), Sensor::kDepth, "published").Closes()) << edge.output();
+  EXPECT_TRUE(CountersOf(edge.output(), Sensor::kDepth, "published").Closes()) << edge.output();
   ExpectToLeaveInTime(ground);
 }
 
@@ -135,7 +135,7 @@ TEST_F(NetworkDownTest, F38WithThePeerGoneBothLeaveInTime) {
   }
   ExpectToLeaveInTime(edge);
   EXPECT_TRUE(ReadRecording(copy_).complete);
-  EXPECT_TRUE(AccountOf(edge.output(), Sensor::kDepth, "published").Closes()) << edge.output();
+  EXPECT_TRUE(CountersOf(edge.output(), Sensor::kDepth, "published").Closes()) << edge.output();
   ExpectToLeaveInTime(ground);
 }
 

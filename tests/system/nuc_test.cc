@@ -79,11 +79,12 @@ TEST_F(NucTest, F07ACorrectionThatIsAskedForClosesTheShutterAndEnds) {
                     HasSubstr("info: nuc: shutter closed as ordered"), HasSubstr("event from")));
 }
 
-TEST_F(NucTest, F07AShutterOfWhichTheCameraDoesNotTellIsFoundInItsPictures) {
-  Process edge(Edge({"source.simulation.shutter.tells=false", "nuc.commanded_duration_s=0"}));
+TEST_F(NucTest, F07AShutterOfWhichTheCameraDoesNotTellIsFoundInItsImages) {
+  Process edge(
+      Edge({"source.simulation.shutter.reports_shutter=false", "nuc.commanded_duration_s=0"}));
   ASSERT_TRUE(edge.WaitForOutput("started", kPatience)) << edge.output();
   EXPECT_EQ(Nuc({"--now"}).status, 0);
-  EXPECT_TRUE(edge.WaitForOutput("known by its pictures", kPatience)) << edge.output();
+  EXPECT_TRUE(edge.WaitForOutput("known by its images", kPatience)) << edge.output();
   EXPECT_TRUE(edge.WaitForOutput("shutter open after", kPatience)) << edge.output();
   edge.Signal(SIGTERM);
   EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
@@ -108,8 +109,8 @@ TEST_F(NucTest, F08AStormIsReportedWithWhatItCostsAndNothingIsOrderedOnTop) {
 }
 
 TEST_F(NucTest, F08AnOrderThatIsNotFollowedIsReported) {
-  Process edge(
-      Edge({"source.simulation.shutter.obeys=false", "nuc.max_attempts=1", "nuc.answer_s=0.5"}));
+  Process edge(Edge({"source.simulation.shutter.follows_orders=false", "nuc.max_attempts=1",
+                     "nuc.answer_s=0.5"}));
   ASSERT_TRUE(edge.WaitForOutput("started", kPatience)) << edge.output();
   EXPECT_EQ(Nuc({"--now"}).status, 0);
   EXPECT_TRUE(edge.WaitForOutput("did not close within 0.5 s (attempt 1 of 1)", kPatience))

@@ -19,7 +19,7 @@ using ::testing::IsEmpty;
 using ::testing::Not;
 using testing::TemporaryDirectory;
 
-constexpr double kScanSeconds = 1.0;
+constexpr double kScan_s = 1.0;
 
 std::vector<std::string> Joined(std::vector<std::string> a, const std::vector<std::string>& b) {
   a.insert(a.end(), b.begin(), b.end());
@@ -36,7 +36,7 @@ int Count(const std::string& text, const std::string& part) {
 
 class ShortTypesTest : public ::testing::Test {
  protected:
-  ShortTypesTest() { SimulateScan(Path("source.mcap"), kScanSeconds); }
+  ShortTypesTest() { SimulateScan(Path("source.mcap"), kScan_s); }
 
   std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
   static std::string Domain() { return std::to_string(TestDomain()); }

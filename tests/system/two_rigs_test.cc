@@ -50,7 +50,7 @@ class TwoRigsTest : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {GroundService(), arguments, {}};
   }
-  /// The ground has everything that the rig recorded, and nothing else, and its account says so.
+  /// The ground has everything that the rig recorded, and nothing else, and its counters says so.
   static void ExpectTheScanOf(const std::filesystem::path& edge,
                               const std::filesystem::path& results) {
     const RecordingContent sent = ReadRecording(edge);
@@ -112,9 +112,9 @@ TEST_F(TwoRigsTest, ARigThatNobodyFollowsIsNamedOnBothSidesAndDoesNotWait) {
       << ground.output();
   EXPECT_TRUE(edge.WaitForOutput("follows \"rig7\", not \"drone\"", kPatience)) << edge.output();
   EXPECT_EQ(edge.WaitForExit(kPatience), 0) << edge.output();
-  const FrameAccountText account = AccountOf(edge.output(), Sensor::kDepth, "published");
-  EXPECT_TRUE(account.Closes()) << edge.output();
-  EXPECT_EQ(account.queue_full, 0) << "it waited for receipts of a ground that is not its own";
+  const FrameCountersText counters = CountersOf(edge.output(), Sensor::kDepth, "published");
+  EXPECT_TRUE(counters.Closes()) << edge.output();
+  EXPECT_EQ(counters.queue_full, 0) << "it waited for receipts of a ground that is not its own";
   EXPECT_THAT(edge.output(), Not(HasSubstr("no receipt from the ground")));
 }
 

@@ -165,13 +165,13 @@ class UnitsScanTest : public UnitsTest {
   }
 
   /// What the edge captured is recorded there, and what it published is on the ground.
-  void ExpectTheAccountCloses() const {
+  void ExpectTheCountersBalance() const {
     const std::string journal = Journal("--identifier isotherm-edge") + '\n';
     const auto stats = ReadStats(OnlyScan());
     for (const auto& [sensor, name] :
          {std::pair{Sensor::kDepth, "depth"}, std::pair{Sensor::kThermal, "thermal"}}) {
-      const FrameAccountText recorded = AccountOf(journal, sensor, "recorded");
-      const FrameAccountText published = AccountOf(journal, sensor, "published");
+      const FrameCountersText recorded = CountersOf(journal, sensor, "recorded");
+      const FrameCountersText published = CountersOf(journal, sensor, "published");
       EXPECT_TRUE(recorded.Closes() && published.Closes()) << journal;
       EXPECT_EQ(recorded.captured, 200) << name;
       EXPECT_EQ(recorded.done, recorded.captured) << name;
@@ -221,7 +221,7 @@ TEST_F(UnitsScanTest, AScanBetweenTheTwoServices) {
   for (const char* file : {"scan.mcap", "cloud.ply", "mesh.ply", "model.iso", "trajectory.txt"}) {
     EXPECT_TRUE(std::filesystem::exists(OnlyScan() / file)) << file;
   }
-  ExpectTheAccountCloses();
+  ExpectTheCountersBalance();
   ExpectReadableByTheGroupOnly();
 }
 

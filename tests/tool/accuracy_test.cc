@@ -137,7 +137,7 @@ TEST_F(AccuracyTest, RealKinectRoom) {
     ASSERT_TRUE(ApplyOverride(set, options).ok());
   }
   const ReconstructSummary summary = Run(options, {});
-  EXPECT_EQ(summary.repeated_frames, 43U) << "pictures that come twice with the same content";
+  EXPECT_EQ(summary.repeated_frames, 43U) << "images that come twice with the same content";
   EXPECT_GE(summary.tracked_frames + summary.repeated_frames, 475U);
   EvaluationRequest request;
   request.groundtruth = data_ / "groundtruth.txt";
@@ -180,20 +180,20 @@ shutter { interval_s: 0 first_s: 100 })",
   const auto column = [&](const char* name) -> const std::vector<float>& {
     return *cloud->Find(name);
   };
-  constexpr float kInnerRadiusM = 0.06F;  // Of 0.076: away from the rim.
+  constexpr float kInnerRadius_m = 0.06F;  // Of 0.076: away from the rim.
   std::vector<double> object, apparent;
   for (std::size_t i = 0; i < cloud->count; ++i) {
     const float radius = std::hypot(column("x")[i] - 0.49F, column("y")[i] - 0.565F);
-    const bool on_target = radius < kInnerRadiusM && std::abs(column("z")[i] - 0.514F) < 0.006F;
+    const bool on_target = radius < kInnerRadius_m && std::abs(column("z")[i] - 0.514F) < 0.006F;
     if (!on_target || std::isnan(column("scalar_temperature")[i])) continue;
     object.push_back(column("scalar_temperature")[i]);
     apparent.push_back(column("apparent_temperature")[i]);
   }
   ASSERT_GT(object.size(), 300U);
-  constexpr double kTrueCelsius = 99.95;  // Falls from 100 to 99.85 towards the rim.
-  constexpr double kToleranceKelvin = 0.5;
-  EXPECT_NEAR(TakeMedian(object), kTrueCelsius, kToleranceKelvin);
-  EXPECT_LT(TakeMedian(apparent), kTrueCelsius - 2.0);  // Not interpreted it would be wrong.
+  constexpr double kTrue_celsius = 99.95;  // Falls from 100 to 99.85 towards the rim.
+  constexpr double kTolerance_k = 0.5;
+  EXPECT_NEAR(TakeMedian(object), kTrue_celsius, kTolerance_k);
+  EXPECT_LT(TakeMedian(apparent), kTrue_celsius - 2.0);  // Not interpreted it would be wrong.
 }
 
 // A phone's LiDAR: 256 x 192 pixels at 60 Hz, another depth unit. Nothing may depend on the usual

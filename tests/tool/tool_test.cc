@@ -31,7 +31,7 @@ class ToolTest : public isotherm::testing::ToolRun {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
 
-  // Pictures of the result in `out`.
+  // Renderings of the result in `out`.
   void RenderResult() const {
     const Outcome one =
         Run("render out -o one.png --scale 20..60 --unit fahrenheit --size 320x240");
@@ -39,7 +39,7 @@ class ToolTest : public isotherm::testing::ToolRun {
     EXPECT_THAT(one.out, AllOf(HasSubstr("the whole model"), HasSubstr("68.0 to 140.0 \u00B0F"),
                                HasSubstr("one.png")));
     EXPECT_THAT(ReadAll(folder_ / "one.png"), testing::StartsWith("\x89PNG"));
-    // The pose that it says gives the same picture again, from the model's file as well.
+    // The pose that it says gives the same rendering again, from the model's file as well.
     const std::size_t pose = one.out.find("--view \"");
     ASSERT_NE(pose, std::string::npos);
     const Outcome again =
@@ -71,7 +71,7 @@ class ToolTest : public isotherm::testing::ToolRun {
     refused(". -o x.png", kNoInput, "has no model.iso");
     refused("scan.mcap -o x.png", kUsage, "not an Isotherm model");
     refused("out -o x.jpg", kUsage, "written as PNG; name x.png");
-    refused("out -o x.png --layer all", kUsage, "pictures do not fit into one file");
+    refused("out -o x.png --layer all", kUsage, "renderings do not fit into one file");
     refused("out -o x.png --layer heat", kUsage, "there is no layer 'heat'");
     refused("out -o x.png --size 3x4", kUsage, "--size");
     refused("out -o x.png --view \"1 2 3\"", kUsage, "--view");
@@ -156,7 +156,7 @@ TEST_F(ToolTest, EveryOptionIsListedWithDefaultAndMeaning) {
   EXPECT_EQ(ground.status, 0) << ground.err;
   EXPECT_THAT(ground.out,
               AllOf(HasSubstr("\n  tsdf.truncation_distance_m = 0\n      Signed distances"),
-                    HasSubstr("  tracker.outside.max_gap_s = 0.2\n"),
+                    HasSubstr("  tracker.external_odometry.max_gap_s = 0.2\n"),
                     HasSubstr("  thermal.policy = BEST_CONDITIONS\n"), HasSubstr("LOWEST_GOOD")));
   const Outcome stage = Run("options ground volume");
   EXPECT_THAT(stage.out, AllOf(HasSubstr("volume.voxel_size_m = 0.002"), Not(HasSubstr("tsdf."))));

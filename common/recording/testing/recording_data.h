@@ -156,7 +156,7 @@ inline CaptureTime TimeOf(const RecordedItem& item) {
     }
     CaptureTime operator()(const NucEvent& event) { return event.start; }
     CaptureTime operator()(const RecordedPose& pose) { return pose.pose.time; }
-    CaptureTime operator()(const OutsidePose& pose) { return pose.time; }
+    CaptureTime operator()(const ExternalOdometry& pose) { return pose.time; }
     CaptureTime operator()(const RecordedLog& log) { return log.time; }
     CaptureTime operator()(const ClockStep& step) { return step.time; }
   };

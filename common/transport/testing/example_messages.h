@@ -42,8 +42,8 @@ inline RigDescription Good() {
   return rig;
 }
 template <>
-inline OutsidePoseSample Good() {
-  OutsidePoseSample sample{.session = 7, .number = 4, .pose = {}};
+inline ExternalOdometrySample Good() {
+  ExternalOdometrySample sample{.session = 7, .number = 4, .pose = {}};
   sample.pose.source = "vio";
   return sample;
 }
@@ -79,7 +79,7 @@ inline Feedback Good() {
   feedback.T_world_depth = feedback.T_depth_next = RigidTransform::Identity();
   feedback.model = feedback.view = {.good = 1, .acceptable = 0, .bad = 0, .never_measured = 0};
   feedback.advice = {Advice::kSlower, Advice::kDone};
-  feedback.picture.assign(33, 0x89);
+  feedback.image.assign(33, 0x89);
   feedback.latencies = {{.stage = "track", .p50_s = 0.01F, .p99_s = 0.02F}};
   feedback.pose_covariance = PoseCovariance::Identity();
   feedback.advice_reason = "40 % is too far";

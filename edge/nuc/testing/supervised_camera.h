@@ -27,7 +27,7 @@ enum class Shows {
   kSaysBlocked,
   kSaysError,
   kPolledClosed,
-  kFrozen,   ///< The same picture, without a word.
+  kFrozen,   ///< The same image, without a word.
   kUniform,  ///< Like the shutter, without a word.
 };
 
@@ -65,10 +65,10 @@ inline NucObservation Observe(Shows shows) {
       says(kInProgress, NucSource::kPolled);
       break;
     case Shows::kFrozen:
-      seen.picture.is_frozen = true;
+      seen.image.is_frozen = true;
       break;
     case Shows::kUniform:
-      seen.picture.is_like_shutter = true;
+      seen.image.is_like_shutter = true;
       break;
   }
   return seen;

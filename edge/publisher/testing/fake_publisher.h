@@ -31,10 +31,10 @@ class FakePublisher final : public Publisher {
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
     return Take(frame, thermal_, stop);
   }
-  Status Publish(const OutsidePoseSample& sample, std::stop_token) override {
+  Status Publish(const ExternalOdometrySample& sample, std::stop_token) override {
     std::scoped_lock lock(mutex_);
     if (broken_) return Unavailable("no link");
-    outside_poses_.push_back(sample);
+    external_odometry_.push_back(sample);
     return OkStatus();
   }
   Status Publish(EdgeStatus) override { return OkStatus(); }
@@ -71,9 +71,9 @@ class FakePublisher final : public Publisher {
     std::scoped_lock lock(mutex_);
     return thermal_;
   }
-  std::vector<OutsidePoseSample> outside_poses() const {
+  std::vector<ExternalOdometrySample> external_odometry() const {
     std::scoped_lock lock(mutex_);
-    return outside_poses_;
+    return external_odometry_;
   }
   std::vector<CommandResult> answers() const {
     std::scoped_lock lock(mutex_);
@@ -100,7 +100,7 @@ class FakePublisher final : public Publisher {
   std::optional<PublishPolicy> policy_;
   std::vector<EncodedDepthFrame> depth_;
   std::vector<EncodedThermalFrame> thermal_;
-  std::vector<OutsidePoseSample> outside_poses_;
+  std::vector<ExternalOdometrySample> external_odometry_;
   std::vector<CommandResult> answers_;
 };
 

@@ -71,8 +71,8 @@ std::vector<ControlAnswer> FakeSource::TakeControlAnswers() {
   return answers;
 }
 
-OutsidePose FakeSource::MakePose() const {
-  OutsidePose pose;
+ExternalOdometry FakeSource::MakePose() const {
+  ExternalOdometry pose;
   pose.source = "fake";
   pose.time = kFakeEpoch + static_cast<int>(frames_[0]) * kPeriod[0];
   return pose;
@@ -95,7 +95,7 @@ RawFrame FakeSource::MakeFrame(const Step& step) {
 
   frame.pixels =
       depth ? Image<std::uint16_t>(8, 6, kDepthRaw) : Image<std::uint16_t>(6, 4, kCentikelvin);
-  // No thermal camera is free of noise; the first picture has none, for comparison.
+  // No thermal camera is free of noise; the first image has none, for comparison.
   if (!depth && step.fault != "same") noise_ = static_cast<std::uint16_t>(frame.frame_number % 97);
   if (!depth) frame.pixels.At(0, 1) = static_cast<std::uint16_t>(kCentikelvin + noise_);
   if (step.fault == "empty") frame.pixels = {};

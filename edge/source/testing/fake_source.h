@@ -19,14 +19,14 @@ namespace isotherm {
 ///
 ///   d  t      a depth or thermal frame (8x6 and 6x4 pixels; 30 and 40 Hz; arrival = kFakeEpoch +
 ///   device time)
-///   p         a pose from outside, true when the next depth frame arrives
+///   p         an odometry pose, true when the next depth frame arrives
 ///   -         nothing yet
 ///   %         Read does not come back until Release()
 ///   !         Read fails (the cable came off)
 ///   d:empty   the frame has no pixels             d:size    ... the wrong size
 ///   d:reset   the camera's counter starts again   t:shut    the shutter is closed
 ///   t:hot     every other pixel is out of range   d:holes   every other pixel is 0 or 65535
-///   t:same    the picture before once more        d:lost    three numbers are missing before it
+///   t:same    the image before once more        d:lost    three numbers are missing before it
 ///   d:left    ... because its frames were left out (TakeLeftOut)
 ///
 /// At the end of the script the stream ends. Opening again goes on with the script. Thread-bound.
@@ -80,7 +80,7 @@ class FakeSource final : public FrameSource {
     std::string fault;
   };
   RawFrame MakeFrame(const Step& step);
-  OutsidePose MakePose() const;
+  ExternalOdometry MakePose() const;
 
   std::vector<Step> steps_;
   std::size_t next_ = 0;
@@ -97,7 +97,7 @@ class FakeSource final : public FrameSource {
   int failures_to_open_ = 0;
   std::uint64_t frames_[2] = {};
   std::array<std::uint64_t, 2> left_out_{};
-  std::uint16_t noise_ = 0;  ///< In one pixel of the newest thermal picture.
+  std::uint16_t noise_ = 0;  ///< In one pixel of the newest thermal image.
   std::chrono::microseconds device_zero_[2] = {};
 };
 

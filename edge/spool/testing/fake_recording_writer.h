@@ -19,7 +19,7 @@ struct FakeRecording {
   std::vector<std::uint64_t> thermal_frames;
   std::vector<NucEvent> nuc_events;
   std::vector<ClockStep> clock_steps;
-  std::vector<OutsidePose> outside_poses;
+  std::vector<ExternalOdometry> external_odometry;
   std::vector<std::pair<std::string, CaptureTime>> messages;  ///< By topic.
   std::vector<RecordedLog> log;
   int writes_after_failure = 0;
@@ -50,8 +50,8 @@ class FakeRecordingWriter final : public RecordingWriter {
     recording_.clock_steps.push_back(step);
     return OkStatus();
   }
-  Status Write(const OutsidePose& pose) override {
-    recording_.outside_poses.push_back(pose);
+  Status Write(const ExternalOdometry& pose) override {
+    recording_.external_odometry.push_back(pose);
     return OkStatus();
   }
   Status WritePose(std::string_view, const StampedPose&) override { return OkStatus(); }
@@ -99,13 +99,13 @@ class FakeRecordingWriter final : public RecordingWriter {
 
 /// A spool that records to `recording`, in one file.
 inline std::unique_ptr<Spool> MakeFakeSpool(FakeRecording& recording, const SpoolOptions& options,
-                                            const Clock& clock, FrameAccount& account,
+                                            const Clock& clock, FrameCounters& counters,
                                             std::uint64_t room = UINT64_MAX) {
   return std::make_unique<Spool>(SpoolParts{
       [&recording, room]() -> Result<RecordingFile> {
         return RecordingFile{"scan.mcap", std::make_unique<FakeRecordingWriter>(recording, room)};
       },
-      [] { return std::uint64_t{0}; }, options, clock, account});
+      [] { return std::uint64_t{0}; }, options, clock, counters});
 }
 
 }  // namespace isotherm

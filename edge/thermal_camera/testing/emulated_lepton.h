@@ -8,7 +8,7 @@
 namespace isotherm {
 
 /// A FLIR Lepton 3.5 on a PureThermal board, at full speed: 160x120 pixels with telemetry. Its
-/// picture is noise about a ramp, so that no two are the same.
+/// image is noise about a ramp, so that no two are the same.
 class EmulatedLepton final : public EmulatedUvcCamera {
  public:
   explicit EmulatedLepton(std::string_view script, std::string_view serial = "LEPTON-1");

@@ -8,7 +8,7 @@
 namespace isotherm {
 
 /// An InfiRay P2 Pro at high speed: 256x384 words, of which the lower half is temperatures. Faults
-/// besides those of EmulatedUvcCamera: `f:nuc` the picture stands still and the shutter says so
+/// besides those of EmulatedUvcCamera: `f:nuc` the image stands still and the shutter says so
 /// when asked, `f:silent` it stands still and says nothing, `f:cold` all counts are 0x8000.
 class EmulatedP2Pro final : public EmulatedUvcCamera {
  public:

@@ -14,7 +14,7 @@ constexpr std::size_t kCutBytes = 512;
 
 // Ids of frames.
 constexpr int kShutter = 1;
-constexpr int kPicture = 3;
+constexpr int kImage = 3;
 constexpr int kFirst = 4;
 constexpr int kOther = 8;
 
@@ -91,7 +91,7 @@ std::vector<std::uint8_t> EmulatedSeek::MakeFrame(int id, const FaultStep& step)
     for (int x = 0; x < model.width; ++x) {
       noise_ = noise_ * 1'664'525 + 1'013'904'223;
       int count = kShutterLevel + PatternAt(x, y);
-      if (id == kPicture) count += x + static_cast<int>((noise_ >> 24) % kNoise);
+      if (id == kImage) count += x + static_cast<int>((noise_ >> 24) % kNoise);
       if (IsDead(x, y)) count = 0;
       const int word = (model.top + y) * model.raw_width + model.left + x;
       PutLe16(frame, 2 * static_cast<std::size_t>(word), static_cast<std::uint16_t>(count));
@@ -127,7 +127,7 @@ bool EmulatedSeek::Serve(Nanoseconds time) {
   if (time < *next_frame_at_) return false;
   *next_frame_at_ = std::max(*next_frame_at_ + kPeriod, time);
   FaultStep step{"f", ""};
-  int id = kPicture;
+  int id = kImage;
   if (!start_frames_.empty()) {
     id = start_frames_.front();
     start_frames_.pop_front();

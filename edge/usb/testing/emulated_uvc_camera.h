@@ -15,7 +15,7 @@
 namespace isotherm {
 
 /// A UVC camera that does what a script says: descriptors, agreement on a mode, payloads with
-/// headers over isochronous or bulk transfers, extension units. What the pictures show is the
+/// headers over isochronous or bulk transfers, extension units. What the images show is the
 /// business of derived classes.
 class EmulatedUvcCamera : public EmulatedDevice {
  public:

@@ -17,11 +17,11 @@ struct FaultStep {
 /// `[count*]what[:fault]`. The last step is repeated for ever.
 ///
 ///   f          a frame
-///   f:freeze   the picture and the counter of the frame before   f:nuc      it corrects itself
-///   f:still    the picture of the frame before, counter goes on  f:imminent ... is about to
+///   f:freeze   the image and the counter of the frame before   f:nuc      it corrects itself
+///   f:still    the image of the frame before, counter goes on  f:imminent ... is about to
 ///   f:short    the end is missing        f:head   a payload with a damaged header
 ///   f:error    the error bit is set      f:lost   the bus lost a packet
-///   f:noeof    no end-of-frame bit       f:skip   three pictures were not sent
+///   f:noeof    no end-of-frame bit       f:skip   three images were not sent
 ///   f:reset    the camera's clock starts again   f:flip  a bit of the frame counter is wrong
 ///   -          nothing for the time of a frame
 ///   stall, unstall   requests are refused from here on, or answered again; takes no time

@@ -8,7 +8,7 @@
 
 namespace isotherm::testing {
 
-inline constexpr double kTruncationM = 0.012;
+inline constexpr double kTruncation_m = 0.012;
 
 /// A cube of 0.16 m with 4 mm voxels, its corner at `min_m`.
 inline VoxelGrid SmallGrid(const Eigen::Vector3d& min_m = Eigen::Vector3d::Zero()) {
@@ -30,7 +30,7 @@ inline void FillVolume(TsdfVolume& volume,
     for (int y = 0; y < voxels.y(); ++y) {
       for (int x = 0; x < voxels.x(); ++x) {
         const GridIndex voxel(x, y, z);
-        const double tsdf = distance_m(grid.VoxelCentre(voxel)) / kTruncationM;
+        const double tsdf = distance_m(grid.VoxelCentre(voxel)) / kTruncation_m;
         if (std::abs(tsdf) > 1.0) continue;
         const std::int32_t block = volume.FindOrAllocate(voxel / kBlockSide);
         volume.voxels(block)[(x & 7) + kBlockSide * ((y & 7) + kBlockSide * (z & 7))].Update(

@@ -20,14 +20,14 @@ class SubMapTest : public ::testing::Test {
     volume.set_size_y_m(0.64);
     volume.set_size_z_m(0.64);
     volume.set_voxel_size_m(0.004);
-    options_.mutable_tsdf()->set_truncation_distance_m(kTruncationM);
+    options_.mutable_tsdf()->set_truncation_distance_m(kTruncation_m);
   }
 
   VoxelGrid Grid() const { return MakeVoxelGrid(options_.volume()).value(); }
   SubMap MakeSubMap() const {
     const std::int32_t max_blocks = MaxBlocks(options_.volume(), Grid());
     SubMap map;
-    map.tsdf = std::make_unique<TsdfVolume>(Grid(), kTruncationM, max_blocks);
+    map.tsdf = std::make_unique<TsdfVolume>(Grid(), kTruncation_m, max_blocks);
     map.thermal = std::make_unique<ThermalVolume>(max_blocks);
     map.relocaliser = std::make_unique<Relocaliser>(options_.relocaliser(), camera_);
     return map;
@@ -52,7 +52,7 @@ class SubMapTest : public ::testing::Test {
     return preprocessor_.Process(frame, pool_);
   }
 
-  static constexpr double kTruncationM = 0.016;
+  static constexpr double kTruncation_m = 0.016;
   GroundOptions options_;
   const CameraModel camera_ = SmallDepthCamera();
   ThreadPool pool_{2};

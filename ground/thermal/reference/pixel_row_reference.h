@@ -35,7 +35,7 @@ struct Pixel {
 };
 
 /// Whether the row is smeared by less than its limits here.
-inline void JudgeSmear(const PixelRowArgs& a, int x, Pixel& result) {
+inline void AssessSmear(const PixelRowArgs& a, int x, Pixel& result) {
   const auto vector = [](const float* v) {
     return Eigen::Map<const Eigen::Vector3f>(v).cast<double>().eval();
   };
@@ -111,7 +111,7 @@ inline Pixel MakePixel(const PixelRowArgs& a, int x) {
                                      a.cosine_max_angle, a.cosine_min_angle);
   for (const float limit : {a.cosine_good_angle, a.cosine_min_angle, a.cosine_max_angle})
     result.certain_angle = result.certain_angle && std::abs(cosine - double{limit}) > 1e-5;
-  JudgeSmear(a, x, result);
+  AssessSmear(a, x, result);
   const double slope_k = std::hypot(result.slope_u, result.slope_v) / ThermalPixel::kSlopeScale;
   // Codes stop at their limits, temperatures do not.
   const double error_k = slope_k * std::max(double{a.uncertainty_px}, result.smear_px);

@@ -12,7 +12,7 @@ namespace isotherm::reference {
 /// Returns what ResampleRow must make of pixel x.
 inline double ResamplePixel(const ResampleRowArgs& a, int x) {
   if (a.source[x] < 0) return std::numeric_limits<double>::quiet_NaN();
-  const float* p = a.picture + a.source[x];
+  const float* p = a.image + a.source[x];
   const double fx = a.fraction_x[x];
   const double above = p[0] + fx * (double{p[1]} - p[0]);
   const double below = p[a.stride] + fx * (double{p[a.stride + 1]} - p[a.stride]);

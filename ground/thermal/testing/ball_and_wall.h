@@ -47,7 +47,7 @@ class BallAndWallTest : public ::testing::Test {
   }
   static double Scene(const Eigen::Vector3d& p) { return std::min(Ball(p), 0.60 - p.z()); }
 
-  ThermalFrame Picture(const RigidTransform& T_map_thermal) const {
+  ThermalFrame TakeFrame(const RigidTransform& T_map_thermal) const {
     ThermalFrame frame;
     frame.valid = true;
     frame.centikelvin = Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height);
@@ -66,12 +66,12 @@ class BallAndWallTest : public ::testing::Test {
 
   /// Calls `visit(voxel, place)` for voxels with a temperature, or at least classes.
   template <typename Visit>
-  void ForEachJudged(const Visit& visit) const {
+  void ForEachAssessed(const Visit& visit) const {
     for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
       ForEachVoxel(std::as_const(*thermal_).voxels(block), tsdf_->grid(),
                    tsdf_->block_coordinates(block),
                    [&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
-                     if (voxel.judged()) visit(voxel, p);
+                     if (voxel.assessed()) visit(voxel, p);
                    });
     }
   }
@@ -88,7 +88,7 @@ class BallAndWallTest : public ::testing::Test {
                       capture);
   }
   Outcome Fuse(const ThermalOptions& options) {
-    FuseFrame(options, Picture(T_map_thermal_));
+    FuseFrame(options, TakeFrame(T_map_thermal_));
     Outcome outcome;
     for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
       ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),

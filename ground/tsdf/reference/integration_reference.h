@@ -83,7 +83,7 @@ inline VoxelUpdate UpdateVoxel(const IntegrationKernelArgs& a, const Eigen::Vect
   constexpr double kNearPixelBorder = 2e-3;  // Pixels.
   constexpr double kNearBandBorder = 2e-6;   // Metres.
   constexpr double kNearWeightStep = 0.02;   // Weight codes.
-  constexpr double kLeastCertainty = 0.02;
+  constexpr double kMinCertainty = 0.02;
   VoxelUpdate result{voxel};
   const auto decide = [&result](double value, double slack) {
     if (std::abs(value) < slack) result.certain = false;
@@ -117,7 +117,7 @@ inline VoxelUpdate UpdateVoxel(const IntegrationKernelArgs& a, const Eigen::Vect
   const double noise_reach =
       std::min(1.0, static_cast<double>(a.noise_at_1m) * s.depth_m * s.depth_m / truncation);
   const double certainty =
-      std::clamp((1.0 + tsdf) / std::max(kLeastCertainty, 1.0 - noise_reach), kLeastCertainty, 1.0);
+      std::clamp((1.0 + tsdf) / std::max(kMinCertainty, 1.0 - noise_reach), kMinCertainty, 1.0);
   const double new_weight = weight * certainty;
   const double total = voxel.weight() + new_weight;
   if (!decide(total * TsdfVoxel::kWeightScale - 0.5, kNearWeightStep)) return result;

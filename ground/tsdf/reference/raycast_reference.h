@@ -79,13 +79,14 @@ class Raycaster {
       const GridIndex side(k & 1, (k >> 1) & 1, k >> 2);
       const double corner = At(lower.cast<int>() + side);
       if (std::isnan(corner)) return corner;
-      Eigen::Vector3d share;
-      for (int axis = 0; axis < 3; ++axis) share[axis] = side[axis] != 0 ? f[axis] : 1.0 - f[axis];
-      value += corner * share.prod();
+      Eigen::Vector3d fraction;
+      for (int axis = 0; axis < 3; ++axis)
+        fraction[axis] = side[axis] != 0 ? f[axis] : 1.0 - f[axis];
+      value += corner * fraction.prod();
       if (gradient == nullptr) continue;
       for (int axis = 0; axis < 3; ++axis) {
-        (*gradient)[axis] +=
-            (side[axis] != 0 ? corner : -corner) * share[(axis + 1) % 3] * share[(axis + 2) % 3];
+        (*gradient)[axis] += (side[axis] != 0 ? corner : -corner) * fraction[(axis + 1) % 3] *
+                             fraction[(axis + 2) % 3];
       }
     }
     return value;

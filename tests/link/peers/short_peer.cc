@@ -44,7 +44,7 @@ const std::vector<ShortTopic>& ShortTopics() {
       {TopicId::kThermal,
        "isotherm::wire::ThermalFrame",
        {&ends_early_NameOnly_desc, &ends_early_Thermal1_desc, &ends_early_Thermal2_desc}},
-      {TopicId::kOutsidePose,
+      {TopicId::kExternalOdometry,
        "isotherm::wire::OutsidePose",
        {&ends_early_NameOnly_desc, &ends_early_OutsidePose1_desc, &ends_early_OutsidePose2_desc}},
       {TopicId::kRig,
@@ -73,13 +73,13 @@ const std::vector<ShortTopic>& ShortTopics() {
   return topics;
 }
 
-constexpr std::size_t kMostTypes = 6;  // Of one topic.
+constexpr std::size_t kMaxTypes = 6;  // Of one topic.
 
 /// The writers of one topic.
 class ShortWriters {
  public:
   /// One participant per type, because within one a topic has one type.
-  ShortWriters(const std::array<dds_entity_t, kMostTypes>& participants, const ShortTopic& topic)
+  ShortWriters(const std::array<dds_entity_t, kMaxTypes>& participants, const ShortTopic& topic)
       : topic_(topic) {
     const QosPtr qos = MakeQos(topic.topic);
     for (std::size_t i = 0; i < topic.types.size(); ++i) {
@@ -117,7 +117,7 @@ class ShortWriters {
 
 int Main(int domain, const char* edge_id) {
   setenv("CYCLONEDDS_URI", kProfile, /*overwrite=*/1);
-  std::array<dds_entity_t, kMostTypes> participants{};
+  std::array<dds_entity_t, kMaxTypes> participants{};
   for (dds_entity_t& participant : participants) {
     participant = dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
     CHECK(participant > 0);

@@ -22,7 +22,7 @@ constexpr const char* kProfile =
     "<CycloneDDS><Domain><General><Interfaces><NetworkInterface name=\"lo\"/></Interfaces>"
     "</General></Domain></CycloneDDS>";
 constexpr dds_duration_t kRepeat = DDS_MSECS(50);
-constexpr int kMostRepeats = 1200;  // A minute: nobody is there any more.
+constexpr int kMaxRepeats = 1200;  // A minute: nobody is there any more.
 constexpr bool kSameMajor = PEER_MAJOR == kWireMajor;
 // A peer of wire 1 had no version in the names.
 constexpr const char* kTopics = PEER_MAJOR == 1 ? "isotherm/" : "isotherm/2/";
@@ -118,7 +118,7 @@ int Main(int domain, int seconds) {
   own_receipt.session = 13;
   own_receipt.thermal.next_number = own_receipt.thermal.received = 40;
 
-  for (int i = 0; i < kMostRepeats; ++i) {
+  for (int i = 0; i < kMaxRepeats; ++i) {
     const bool got_all = status.got() && command.got() && receipt.got();
     if (hello.got() && (!kSameMajor || got_all)) break;
     for (std::uint8_t role = 0; role < 2; ++role) {

@@ -1,0 +1,99 @@
+#include "edge/nuc/image_watch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <span>
+
+#include "common/frame/frame.h"
+#include "edge/options/edge_options.pb.h"
+
+namespace isotherm {
+namespace {
+
+// Failure F05: repeats beyond three times the camera's own.
+constexpr int kRepeatsPerNative = 3;
+// Frames whose least spread the scene is known by: a shutter takes one or two to close.
+constexpr std::size_t kSceneFrames = 8;
+// A scene with less spread cannot be told from a shutter, whose image has noise and some shading.
+constexpr double kMinSceneSpread_k = 0.5;
+// Every so many pixels in both directions are enough for the spread.
+constexpr int kStride = 4;
+
+/// 64 bits at a time; equal images have equal hashes.
+std::uint64_t Hash(const Image<std::uint16_t>& image) {
+  constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15ULL;  // 2^64 over the golden ratio.
+  std::uint64_t hash = static_cast<std::uint64_t>(image.width());
+  const std::span<const std::uint16_t> pixels = image.pixels();
+  const std::size_t bytes = pixels.size_bytes();
+  const auto* const data = reinterpret_cast<const unsigned char*>(pixels.data());
+  for (std::size_t i = 0; i < bytes; i += sizeof(std::uint64_t)) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, data + i, std::min(sizeof word, bytes - i));
+    hash = (hash ^ word) * kMultiplier;
+    hash ^= hash >> 29U;
+  }
+  return hash;
+}
+
+}  // namespace
+
+double ImageSpread(const Image<std::uint16_t>& centikelvin) {
+  double count = 0.0, sum = 0.0, squares = 0.0;
+  for (int y = 0; y < centikelvin.height(); y += kStride) {
+    const std::span<const std::uint16_t> row = centikelvin.Row(y);
+    for (std::size_t x = 0; x < row.size(); x += kStride) {
+      if (row[x] == 0) continue;
+      const double kelvin = row[x] / kCentikelvinPerKelvin;
+      count += 1.0;
+      sum += kelvin;
+      squares += kelvin * kelvin;
+    }
+  }
+  if (count == 0.0) return 0.0;
+  const double mean = sum / count;
+  return std::sqrt(std::max(0.0, squares / count - mean * mean));
+}
+
+ImageWatch::ImageWatch(const NucOptions& options)
+    : max_repeats_(kRepeatsPerNative * options.native_repeats()),
+      uniform_fraction_(options.shutter_like_spread()),
+      longest_(FromSeconds(options.max_duration_s())) {}
+
+ImageEvidence ImageWatch::Add(const Image<std::uint16_t>& centikelvin, CaptureTime time,
+                              bool known_closed) {
+  ImageEvidence evidence;
+  evidence.is_frozen = IsFrozen(centikelvin);
+  if (uniform_fraction_ > 0.0 && !evidence.is_frozen) {
+    evidence.is_like_shutter = IsLikeShutter(ImageSpread(centikelvin), time, known_closed);
+  }
+  return evidence;
+}
+
+bool ImageWatch::IsFrozen(const Image<std::uint16_t>& centikelvin) {
+  const std::uint64_t hash = Hash(centikelvin);
+  repeats_ = hash == last_hash_ ? repeats_ + 1 : 0;
+  last_hash_ = hash;
+  return repeats_ >= max_repeats_;
+}
+
+bool ImageWatch::IsLikeShutter(double spread_k, CaptureTime time, bool known_closed) {
+  if (known_closed) {
+    uniform_since_.reset();
+    return false;
+  }
+  const bool knows_scene = scene_spreads_k_.size() == kSceneFrames;
+  const double scene_k = knows_scene ? *std::ranges::min_element(scene_spreads_k_) : 0.0;
+  const bool uniform = scene_k >= kMinSceneSpread_k && spread_k < uniform_fraction_ * scene_k;
+  if (uniform) {
+    if (!uniform_since_) uniform_since_ = time;
+    if (time - *uniform_since_ <= longest_) return true;
+    scene_spreads_k_.clear();  // No shutter is closed for so long: this is the scene.
+  }
+  uniform_since_.reset();
+  scene_spreads_k_.push_back(spread_k);
+  if (scene_spreads_k_.size() > kSceneFrames) scene_spreads_k_.pop_front();
+  return false;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,108 @@
+#include "ground/cli/model_renderings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+#include "ground/export/png_file.h"
+#include "ground/export/surface.h"
+#include "ground/renderer/renderer.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsPng(const fs::path& path) { return path.extension() == ".png"; }
+
+}  // namespace
+
+ModelSurface SurfaceOf(const LoadedModel& model, const GroundOptions& options, ThreadPool& pool) {
+  const Surface surface = ExtractSurface(
+      *model.tsdf, *model.thermal,
+      {.min_weight = static_cast<float>(options.export_().min_weight()), .triangles = false}, pool);
+  ModelSurface result;
+  result.points_m.reserve(surface.points.size());
+  result.celsius.reserve(surface.points.size());
+  for (const CloudPoint& point : surface.points) {
+    result.points_m.push_back(point.position_m);
+    result.celsius.push_back(point.celsius);
+  }
+  return result;
+}
+
+std::vector<fs::path> RenderingFiles(const RenderingRequest& request) {
+  if (IsPng(request.output)) return {request.output};
+  std::vector<fs::path> files;
+  for (std::size_t view = 0; view < request.views.size(); ++view) {
+    for (const RenderLayer layer : request.layers) {
+      files.push_back(request.output / (request.views.size() == 1
+                                            ? fmt::format("{}.png", LayerName(layer))
+                                            : fmt::format("{}_{:03}.png", LayerName(layer), view)));
+    }
+  }
+  return files;
+}
+
+Status PrepareRenderings(const RenderingRequest& request) {
+  constexpr std::string_view kOtherFormats[] = {".jpg",  ".jpeg", ".gif", ".bmp", ".tif",
+                                                ".tiff", ".webp", ".svg", ".pdf"};
+  if (std::ranges::count(kOtherFormats, request.output.extension().string()) > 0) {
+    return InvalidArgument(fmt::format(
+        "-o {}: renderings are written as PNG; name {} or, for several, a folder",
+        request.output.string(), fs::path(request.output).replace_extension(".png").string()));
+  }
+  const std::size_t count = request.views.size() * request.layers.size();
+  if (IsPng(request.output) && count != 1) {
+    return InvalidArgument(
+        fmt::format("-o {}: {} renderings do not fit into one file; name a folder",
+                    request.output.string(), count));
+  }
+  const fs::path folder = IsPng(request.output) ? request.output.parent_path() : request.output;
+  if (folder.empty()) return OkStatus();
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    return IoError(fmt::format("creating the folder {}: {}; choose another place with -o",
+                               folder.string(), error ? error.message() : "a file is in the way"));
+  }
+  return OkStatus();
+}
+
+Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& options,
+                            const std::optional<TemperatureScale>& scale,
+                            const RenderingRequest& request, ThreadPool& pool,
+                            const std::function<void(double fraction)>& progress) {
+  const Renderer renderer(options.renderer(), options.thermal());
+  const bool thermal = std::ranges::count(request.layers, RenderLayer::kThermal) > 0;
+  const std::vector<fs::path> files = RenderingFiles(request);
+  auto file = files.begin();
+  Raycaster raycaster;
+  SurfaceMaps maps;
+  ViewMaps view;
+  int empty = 0;
+  for (const RigidTransform& T_world_camera : request.views) {
+    raycaster.Cast(*model.tsdf, request.camera, T_world_camera,
+                   static_cast<float>(options.export_().min_weight()), pool, maps);
+    SampleView(maps, T_world_camera.translation(), *model.tsdf, *model.thermal, pool, view);
+    empty += std::ranges::all_of(view.cos_view.pixels(), [](float c) { return std::isnan(c); });
+    if (std::ranges::count(request.layers, RenderLayer::kAge) > 0)
+      SampleNucAge(maps, *model.tsdf, *model.thermal, pool, view);
+    std::optional<ContourField> contours;
+    if (thermal && renderer.draws_lines()) {
+      contours = SampleContours(maps, *model.tsdf, *model.thermal,
+                                options.renderer().isotherm_smoothing_px(), pool);
+    }
+    for (const RenderLayer layer : request.layers) {
+      const RgbImage rendering = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);
+      if (Status status = WritePng(rendering, *file); !status.ok()) return Err(status);
+      ++file;
+      progress(static_cast<double>(file - files.begin()) / static_cast<double>(files.size()));
+    }
+  }
+  return empty;
+}
+
+}  // namespace isotherm

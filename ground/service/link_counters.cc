@@ -1,0 +1,146 @@
+#include "ground/service/link_counters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numeric>
+
+#include "ground/subscriber/clock_watch.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kMsPerS = 1e3;
+
+Json DescribeStream(const StreamCounters& counters, std::uint64_t recorded,
+                    const NotRecordedCounts& left_out) {
+  Json json;
+  json["published"] = counters.published;
+  json["received"] = counters.received;
+  json["missing"] = counters.missing;
+  json["late"] = counters.late;
+  json["duplicates"] = counters.duplicates;
+  json["refused"] = counters.refused;
+  for (std::size_t i = 0; i < counters.refused_by_cause.size(); ++i) {
+    if (counters.refused_by_cause[i] == 0) continue;
+    std::string cause(ToString(static_cast<RefusalCause>(i)));
+    std::ranges::replace(cause, ' ', '_');
+    json["refused_by_cause"][cause] = counters.refused_by_cause[i];
+  }
+  json["recorded"] = recorded;
+  for (std::size_t i = 0; i < left_out.size(); ++i) {
+    if (left_out[i] > 0)
+      json["not_recorded_by_reason"][ToString(static_cast<NotRecorded>(i))] = left_out[i];
+  }
+  return json;
+}
+
+/// Returns what the recording lacks and why, or nothing.
+std::string RecordingText(const RecordingProgress& recording) {
+  const auto sum = [&](NotRecorded reason) {
+    const auto i = static_cast<std::size_t>(reason);
+    return recording.depth_left_out[i] + recording.thermal_left_out[i];
+  };
+  std::string text;
+  if (const std::uint64_t frames = sum(NotRecorded::kDiskTooSlow); frames > 0) {
+    text += fmt::format(
+        "         {} frames are not in the recording, because the disk did not take them in time\n",
+        frames);
+  }
+  if (const std::uint64_t frames = sum(NotRecorded::kDiskNearlyFull); frames > 0) {
+    text += fmt::format(
+        "         {} frames are not in the recording: what was left of the disk was kept for the "
+        "results\n",
+        frames);
+  }
+  if (recording.stats.failed > 0) {
+    text += fmt::format("         {} frames could not be written to the recording: {}\n",
+                        recording.stats.failed, recording.status.message());
+  }
+  if (!recording.path.empty() && !recording.closed)
+    text += "         the recording is not finished: the disk is slow or stuck\n";
+  return text;
+}
+
+std::string StreamText(const char* name, const StreamCounters& counters, std::uint64_t recorded) {
+  std::string text = fmt::format("{:<8} {} published = {} received + {} missing; {} recorded", name,
+                                 counters.published, counters.received, counters.missing, recorded);
+  if (counters.refused > 0) text += fmt::format("; {} samples refused", counters.refused);
+  return text + "\n";
+}
+
+void DescribeClock(const SessionClock& clock, Json& json) {
+  json["synchronised"] = clock.rig.synchronised;
+  json["unsynchronised_at_some_time"] = clock.unsynchronised;
+  json["correcting_ms"] = kMsPerS * clock.rig.offset_s;
+  json["estimated_error_ms"] = kMsPerS * clock.rig.estimated_error_s;
+  json["max_error_ms"] = kMsPerS * clock.rig.max_error_s;
+  json["steps"] = clock.rig.steps;
+  json["step_sum_s"] = clock.rig.step_sum_s;
+  const auto describe = [&json](const char* sensor, const CameraReport& camera) {
+    json["stamp_sigma_ms"][sensor] = kMsPerS * camera.stamp_sigma_s;
+    json["unsynchronised_frames"][sensor] = camera.unsynchronised_frames;
+  };
+  describe("depth", clock.depth_camera);
+  describe("thermal", clock.thermal_camera);
+  Json& difference = json["minus_ground_clock"];
+  if (clock.offset) {
+    difference["ms"] = kMsPerS * clock.offset->offset_s;
+    difference["uncertainty_ms"] = kMsPerS * clock.offset->uncertainty_s;
+    difference["largest_certain_ms"] = kMsPerS * clock.largest_offset_s;
+  }
+  json["alarm"] = clock.alarm;
+  json["alarms"] = clock.alarms;
+}
+
+}  // namespace
+
+void DescribeCounters(const SessionCounters& counters, const RecordingProgress& recording,
+                      Json& link) {
+  link["depth"] =
+      DescribeStream(counters.depth, recording.stats.depth_frames, recording.depth_left_out);
+  link["thermal"] =
+      DescribeStream(counters.thermal, recording.stats.thermal_frames, recording.thermal_left_out);
+  // What the stuck disk has not taken yet.
+  const bool waits = !recording.path.empty() && !recording.closed;
+  const auto add_waiting = [&](const char* sensor, const StreamCounters& stream,
+                               std::uint64_t recorded, const NotRecordedCounts& left_out) {
+    const std::uint64_t settled = std::accumulate(left_out.begin(), left_out.end(), recorded);
+    if (waits && stream.received > settled)
+      link[sensor]["not_recorded_by_reason"]["still_waiting"] = stream.received - settled;
+  };
+  add_waiting("depth", counters.depth, recording.stats.depth_frames, recording.depth_left_out);
+  add_waiting("thermal", counters.thermal, recording.stats.thermal_frames,
+              recording.thermal_left_out);
+  link["recording_failed_frames"] = recording.stats.failed;
+  link["refused_samples"] = counters.refused_samples;
+  link["recording_finished"] = recording.closed;
+  if (!recording.status.ok()) link["recording_failed_because"] = recording.status.message();
+  if (counters.clock) DescribeClock(*counters.clock, link["clock"]);
+  Json& feedback = link["feedback"];
+  feedback["received_by_edge"] = counters.feedback.count;
+  if (!std::isfinite(counters.feedback.p50_s)) return;
+  feedback["latency_p50_ms"] = kMsPerS * counters.feedback.p50_s;
+  feedback["latency_p99_ms"] = kMsPerS * counters.feedback.p99_s;
+}
+
+std::string CountersText(const SessionCounters& counters, const RecordingProgress& recording) {
+  std::string text = StreamText("link", counters.depth, recording.stats.depth_frames) +
+                     StreamText("", counters.thermal, recording.stats.thermal_frames);
+  if (!counters.ended) {
+    text += "         the rig had not said its last word: what it sent after these is not known\n";
+  }
+  text += RecordingText(recording);
+  if (counters.clock)
+    text += fmt::format("{:<8} of the rig: {}\n", "clock", ClockText(*counters.clock));
+  if (!std::isfinite(counters.feedback.p50_s)) return text;
+  return text + fmt::format(
+                    "feedback {} messages, from depth capture to arrival on the edge p50 "
+                    "{:.0f} ms, p99 {:.0f} ms\n",
+                    counters.feedback.count, kMsPerS * counters.feedback.p50_s,
+                    kMsPerS * counters.feedback.p99_s);
+}
+
+}  // namespace isotherm

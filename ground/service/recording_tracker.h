@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+#include "common/base/status.h"
+#include "common/frame/frame.h"
+#include "common/recording/recording.h"
+
+namespace isotherm {
+
+/// Why a received frame is not in the recording.
+enum class NotRecorded : std::uint8_t {
+  kDiskTooSlow = 0,     ///< The queue to the disk was full.
+  kDiskNearlyFull = 1,  ///< What is left is for the results.
+};
+inline constexpr std::size_t kNotRecordedReasons = 2;
+/// "disk_too_slow", as in stats.json.
+std::string_view ToString(NotRecorded reason);
+
+/// Frames of one stream that the recording does not have, by reason.
+using NotRecordedCounts = std::array<std::uint64_t, kNotRecordedReasons>;
+
+/// Holds what became of a session's recording, or what has so far.
+struct RecordingProgress {
+  std::filesystem::path path{};  ///< Empty: there is none.
+  RecordingStats stats{};
+  NotRecordedCounts depth_left_out{};
+  NotRecordedCounts thermal_left_out{};
+  bool closed = false;  ///< Nothing more will be written: index and footer are on the disk.
+  Status status{};      ///< The first failure.
+  /// Room on the disk as of the newest look at it; 0 bytes per second = not known yet.
+  std::uint64_t free_bytes = 0;
+  std::uint64_t reserve_bytes = 0;  ///< The recording stops when no more than this is free.
+  double bytes_per_s = 0.0;
+
+  std::uint64_t left_out() const;
+};
+
+/// "disk: 3.2 h left", "disk: 40 min left"; empty if that is not known.
+std::string DiskText(const RecordingProgress& progress);
+
+/// The progress of one session's recording, shared by who writes it and who tells. Thread-safe.
+class RecordingTracker {
+ public:
+  RecordingProgress Get() const {
+    std::scoped_lock lock(mutex_);
+    return progress_;
+  }
+  /// The progress as soon as it is closed, or as it is after `patience`.
+  RecordingProgress WaitUntilClosed(std::chrono::nanoseconds patience) const;
+  void CountLeftOut(Sensor sensor, NotRecorded reason);
+  /// `change` gets the progress.
+  template <typename Change>
+  void Update(const Change& change) {
+    std::scoped_lock lock(mutex_);
+    change(progress_);
+    if (progress_.closed) closed_.notify_all();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::condition_variable closed_;
+  RecordingProgress progress_;
+};
+
+}  // namespace isotherm

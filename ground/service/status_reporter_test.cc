@@ -1,0 +1,129 @@
+#include "ground/service/status_reporter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace isotherm {
+namespace {
+
+using std::chrono::seconds;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+constexpr std::size_t kColumns = 79;  // Of a terminal with 80: a full line would wrap.
+
+GroundSituation Scanning() {
+  GroundSituation situation;
+  situation.link.edge_present = true;
+  situation.link.counters.session = 1;
+  situation.link.counters.depth = {.published = 10, .received = 9, .missing = 1};
+  Feedback feedback;
+  feedback.tracking_state = TrackingState::kTracked;
+  feedback.view.good = 0.55F;
+  feedback.model.good = 0.22F;
+  feedback.covered_area_m2 = 0.84;
+  feedback.advice = {Advice::kMoveCloser};
+  feedback.advice_reason = "40 % of the surface is farther than 0.60 m";
+  situation.feedback = feedback;
+  return situation;
+}
+
+std::string Narrow(const GroundSituation& situation) {
+  return FitLine(StatusParts(situation), " | ", kColumns);
+}
+
+TEST(StatusReporterTest, BeforeAScanItSaysWhatIsWaitedFor) {
+  GroundSituation situation;
+  EXPECT_EQ(StatusText(situation), "waiting for a rig");
+  situation.link.edge_present = true;
+  EXPECT_EQ(StatusText(situation), "rig found, no scan yet");
+}
+
+TEST(StatusReporterTest, AdviceComesFirstThenTrackingCoverageAndFrames) {
+  EXPECT_THAT(
+      StatusText(Scanning()),
+      StartsWith("closer (40 % of the surface is farther than 0.60 m) | tracked | view 55 % "
+                 "good | all 22 % of 0.84 m2 | received 9 of 10 depth, 0 of 0 thermal"));
+  EXPECT_EQ(Narrow(Scanning()),
+            "closer (40 % of the surface is farther than 0.60 m) | tracked | view 55 % good");
+}
+
+TEST(StatusReporterTest, TheLongestAdviceIsNotCutAt80Columns) {
+  GroundSituation situation = Scanning();
+  situation.feedback->advice = {Advice::kMoreOblique};
+  situation.feedback->advice_reason =
+      "55 % of the surface is seen at less than 10 deg and reflects you";
+  EXPECT_EQ(Narrow(situation),
+            "more oblique (55 % of the surface is seen at less than 10 deg and reflects you)");
+}
+
+TEST(StatusReporterTest, F48WorkThatWasLeftOutIsSaidWithWhatToDo) {
+  GroundSituation situation = Scanning();
+  situation.behind = {.now = true, .thermal_frames = 764, .depth_frames = 0};
+  EXPECT_EQ(Narrow(situation),
+            "closer (40 % of the surface is farther than 0.60 m) | BEHIND 764 | tracked");
+  EXPECT_THAT(StatusText(situation),
+              HasSubstr("reconstruct scan.mcap again: 764 thermal frames were left out"));
+}
+
+TEST(StatusReporterTest, F41TheRigsDiskIsSaidWhenItIsLowOrFull) {
+  GroundSituation situation = Scanning();
+  situation.edge = EdgeStatus();
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("disk"))) << "it does not say";
+  situation.edge->disk_free_bytes = 4'100'000'000;
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("disk")));
+  situation.edge->disk_free_bytes = 3'240'000'000;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | rig's disk low, 3.2 GB left"));
+  situation.edge->disk_free_bytes = 1;  // None.
+  EXPECT_THAT(Narrow(situation), HasSubstr(" | RIG'S DISK FULL, 0.0 GB"));
+}
+
+TEST(StatusReporterTest, F42AStuckDiskAndWhatTheRecordingLacksAreSaid) {
+  GroundSituation situation = Scanning();
+  situation.recording_at_it = seconds(12);
+  situation.recording.depth_left_out[0] = 30;
+  situation.recording.thermal_left_out[0] = 40;
+  EXPECT_THAT(StatusText(situation),
+              HasSubstr(" | DISK STUCK for 12 s | RECORDING LACKS 70 frames"));
+  situation.problem = "the recording has not gone on for 61 s";
+  EXPECT_THAT(StatusText(situation),
+              StartsWith("STUCK: the recording has not gone on for 61 s | "));
+}
+
+TEST(StatusReporterTest, F42ResultsThatAreLostAreSaid) {
+  GroundSituation situation = Scanning();
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("RESULTS")));
+  situation.scans_given_up = 2;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | RESULTS OF 2 SCANS LOST"));
+}
+
+TEST(StatusReporterTest, F41TheDiskLastsSoLong) {
+  GroundSituation situation = Scanning();
+  RecordingProgress& recording = situation.recording;
+  EXPECT_THAT(StatusText(situation), Not(HasSubstr("disk")));
+  recording.path = "scan.mcap";
+  recording.free_bytes = 54'100'000'000;
+  recording.reserve_bytes = 100'000'000;
+  recording.bytes_per_s = 5e6;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | disk: 3 h left"));
+  recording.free_bytes = 400'000'000;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | disk: 1 min left"));
+  recording.free_bytes = 50'000'000;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | disk: 0 min left"));
+  recording.status = ResourceExhausted("full");
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | NOT RECORDING"));
+}
+
+TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {
+  GroundSituation situation = Scanning();
+  situation.edge = EdgeStatus();
+  situation.edge->depth.dropped = {{"queue full", 5}, {"rejected", 2}};
+  situation.edge->thermal.dropped = {{"queue full", 3}};
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | dropped by the rig 10"));
+  situation.link.edge_present = false;
+  EXPECT_THAT(StatusText(situation), StartsWith("RIG LOST | closer"));
+}
+
+}  // namespace
+}  // namespace isotherm

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <vector>
+
+#include "common/messages/messages.h"
+
+namespace isotherm {
+
+/// Which frame numbers of one stream have arrived. received() + missing() = next(), always. Memory
+/// is bounded: when there are too many holes, the oldest is given up, its frames stay missing for
+/// good. Thread-compatible.
+class ReceiptTracker {
+ public:
+  explicit ReceiptTracker(std::size_t max_holes = 1024) : max_holes_(max_holes) {}
+
+  /// Enters `number`; false if it was here before or was given up.
+  bool Add(std::uint64_t number);
+  /// True if Add would take `number`.
+  bool IsNew(std::uint64_t number) const;
+
+  std::uint64_t next() const { return next_; }  ///< One above the highest number.
+  std::uint64_t received() const { return received_; }
+  std::uint64_t missing() const { return next_ - received_; }
+  /// The newest `max` holes, ascending.
+  std::vector<FrameRange> NewestHoles(std::size_t max) const;
+
+ private:
+  using Holes = std::map<std::uint64_t, std::uint64_t>;  ///< First to last number, both missing.
+  Holes::const_iterator FindHole(std::uint64_t number) const;
+  void AddHole(std::uint64_t first, std::uint64_t last);
+
+  const std::size_t max_holes_;
+  Holes holes_;
+  std::uint64_t next_ = 0;
+  std::uint64_t received_ = 0;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,110 @@
+#include "ground/subscriber/session_tracker.h"
+
+#include <gtest/gtest.h>
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Nanoseconds kGrace = 2s;
+
+StreamTally Tally(std::uint64_t session, std::uint64_t received, std::uint64_t next) {
+  return {.session = session,
+          .next = next,
+          .received = received,
+          .late = 0,
+          .duplicates = 0,
+          .refused = {}};
+}
+
+EdgeStatus Status(std::uint64_t session, ScanState state, std::uint64_t depth,
+                  std::uint64_t thermal) {
+  EdgeStatus status;
+  status.session = session;
+  status.scan_state = state;
+  status.depth.published = depth;
+  status.thermal.published = thermal;
+  return status;
+}
+
+class SessionTrackerTest : public ::testing::Test {
+ protected:
+  SessionTracker sessions_{kGrace};
+  SteadyTime now_{1h};
+};
+
+TEST_F(SessionTrackerTest, WhileScanningWhatIsNotHereIsMissing) {
+  sessions_.OnFrame(1, now_);
+  const SessionCounters counters = sessions_.Counters(Tally(1, 8, 10), Tally(1, 5, 5));
+  EXPECT_EQ(counters.depth.published, 10U);
+  EXPECT_EQ(counters.depth.missing, 2U);
+  EXPECT_EQ(counters.thermal.missing, 0U);
+  EXPECT_FALSE(counters.ended);
+  EXPECT_EQ(sessions_.TryClose(Tally(1, 8, 10), Tally(1, 5, 5), now_ + 1h), std::nullopt);
+}
+
+TEST_F(SessionTrackerTest, F19PublishedIsReceivedPlusMissingAtTheEnd) {
+  sessions_.OnFrame(1, now_);
+  sessions_.OnStatus(Status(1, ScanState::kEnded, 9, 5), now_);
+  // Numbers up to 9 were seen, but the edge published only 9 of these 10: it dropped one itself.
+  const SessionCounters counters = sessions_.Counters(Tally(1, 8, 10), Tally(1, 5, 5));
+  EXPECT_TRUE(counters.ended);
+  EXPECT_EQ(counters.depth.published, 9U);
+  EXPECT_EQ(counters.depth.received, 8U);
+  EXPECT_EQ(counters.depth.missing, 1U);
+}
+
+TEST_F(SessionTrackerTest, TheLastStatusSaysHowSoonFeedbackArrived) {
+  EdgeStatus status = Status(1, ScanState::kScanning, 9, 5);
+  status.feedback = {.count = 10, .p50_s = 0.05, .p99_s = 0.10};
+  sessions_.OnStatus(status, now_);
+  status.scan_state = ScanState::kEnded;
+  status.feedback = {.count = 20, .p50_s = 0.06, .p99_s = 0.12};
+  sessions_.OnStatus(status, now_);
+  const SessionCounters counters = sessions_.Counters(Tally(1, 9, 9), Tally(1, 5, 5));
+  EXPECT_EQ(counters.feedback.count, 20U);
+  EXPECT_EQ(counters.feedback.p99_s, 0.12);
+}
+
+TEST_F(SessionTrackerTest, ACompleteSessionClosesAtOnceAndOnce) {
+  sessions_.OnFrame(1, now_);
+  sessions_.OnStatus(Status(1, ScanState::kEnded, 10, 5), now_);
+  EXPECT_EQ(sessions_.TryClose(Tally(1, 9, 10), Tally(1, 5, 5), now_), std::nullopt);
+  const auto counters = sessions_.TryClose(Tally(1, 10, 10), Tally(1, 5, 5), now_);
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_TRUE(counters->closed);
+  EXPECT_EQ(counters->depth.missing + counters->thermal.missing, 0U);
+  EXPECT_EQ(sessions_.TryClose(Tally(1, 10, 10), Tally(1, 5, 5), now_), std::nullopt);
+  EXPECT_EQ(sessions_.oldest_open(), std::nullopt);
+}
+
+TEST_F(SessionTrackerTest, LostFramesAreGivenUpAfterTheGraceTime) {
+  sessions_.OnFrame(1, now_);
+  sessions_.OnStatus(Status(1, ScanState::kEnded, 10, 0), now_);
+  ASSERT_EQ(sessions_.deadline(), now_ + kGrace);
+  sessions_.OnStatus(Status(1, ScanState::kEnded, 10, 0), now_ + 1s);  // A repeat changes nothing.
+  EXPECT_EQ(sessions_.TryClose(Tally(1, 9, 10), Tally(1, 0, 0), now_ + kGrace - 1ns), std::nullopt);
+  const auto counters = sessions_.TryClose(Tally(1, 9, 10), Tally(1, 0, 0), now_ + kGrace);
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_EQ(counters->depth.missing, 1U);
+}
+
+TEST_F(SessionTrackerTest, ASessionThatNeverEndedClosesWhenAnotherHasBegun) {
+  sessions_.OnFrame(1, now_);
+  sessions_.OnFrame(2, now_ + 1s);
+  EXPECT_EQ(sessions_.oldest_open(), 1U);
+  const auto counters = sessions_.TryClose(Tally(1, 4, 4), Tally(1, 4, 4), now_ + kGrace);
+  ASSERT_TRUE(counters.has_value());
+  EXPECT_FALSE(counters->ended);
+  EXPECT_EQ(sessions_.oldest_open(), 2U);
+  EXPECT_EQ(sessions_.newest(), 2U);
+}
+
+TEST_F(SessionTrackerTest, AnIdleEdgeOpensNoSession) {
+  sessions_.OnStatus(Status(0, ScanState::kIdle, 0, 0), now_);
+  EXPECT_EQ(sessions_.newest(), std::nullopt);
+}
+
+}  // namespace
+}  // namespace isotherm

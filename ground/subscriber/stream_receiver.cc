@@ -1,0 +1,214 @@
+#include "ground/subscriber/stream_receiver.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+
+namespace isotherm {
+namespace {
+
+Result<Image<std::uint16_t>> PixelsOf(const EncodedDepthFrame& encoded) {
+  return Decode(encoded.image, kMaxFramePixels);
+}
+
+Result<Image<std::uint16_t>> PixelsOf(const EncodedThermalFrame& encoded) {
+  return DecodeTemperatures(encoded.image, kMaxFramePixels);
+}
+
+ReceivedDepth Unpacked(EncodedDepthFrame&& encoded, Image<std::uint16_t>&& pixels,
+                       CaptureTime arrival) {
+  auto frame = std::make_shared<DepthFrame>();
+  frame->header = encoded.header;
+  frame->depth_raw = std::move(pixels);
+  frame->depth_scale = encoded.depth_scale;
+  return {.frame = std::move(frame),
+          .encoded = std::make_shared<const EncodedDepthFrame>(std::move(encoded)),
+          .arrival = arrival};
+}
+
+ReceivedThermal Unpacked(EncodedThermalFrame&& encoded, Image<std::uint16_t>&& pixels,
+                         CaptureTime arrival) {
+  auto frame = std::make_shared<ThermalFrame>();
+  frame->header = encoded.header;
+  frame->centikelvin = std::move(pixels);
+  frame->nuc_state = encoded.nuc_state;
+  frame->nuc_source = encoded.nuc_source;
+  frame->seconds_since_nuc = encoded.seconds_since_nuc;
+  frame->housekeeping = encoded.housekeeping;
+  frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
+  return {.frame = std::move(frame),
+          .encoded = std::make_shared<const EncodedThermalFrame>(std::move(encoded)),
+          .arrival = arrival};
+}
+
+}  // namespace
+
+template <typename Item>
+StreamReceiver<Item>::StreamReceiver(std::string_view name, Nanoseconds reorder_window,
+                                     RefusalCounter* refusals, Consumer deliver,
+                                     Consumer deliver_late)
+    : name_(name),
+      refusals_(refusals),
+      deliver_(std::move(deliver)),
+      deliver_late_(std::move(deliver_late)),
+      stream_(reorder_window) {}
+
+template <typename Item>
+bool StreamReceiver<Item>::IsWanted(const FrameHeader& header, typename Stream::Session session) {
+  if (session == Stream::Session::kNew) return true;
+  if (session == Stream::Session::kOver) {
+    Refuse(RefusalCause::kOtherSession, header);
+    return false;
+  }
+  switch (stream_.Check(header.frame_number)) {
+    case Stream::Verdict::kDuplicate:
+      stream_.CountDuplicate();
+      return false;
+    case Stream::Verdict::kInOrder:
+    case Stream::Verdict::kLate:
+      break;
+  }
+  return true;
+}
+
+template <typename Item>
+bool StreamReceiver<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now) {
+  const FrameHeader header = encoded.header;
+  const typename Stream::Session session = stream_.Classify(header.session);
+  if (!IsWanted(header, session)) return false;
+  Result<Image<std::uint16_t>> pixels = PixelsOf(encoded);
+  if (!pixels) {
+    Refuse(RefusalCause::kUndecodable, header);
+    return false;
+  }
+  if (session == Stream::Session::kNew) BeginSession(header);
+  const FrameMark mark{header.frame_number, header.capture_time, now};
+  Item item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
+  if (newest_) {
+    if (const auto cause = CheckFollows(*newest_, mark)) {
+      return Suspect(std::move(item), mark, *cause);
+    }
+  }
+  RefuseAside();
+  Accept(std::move(item), mark);
+  return true;
+}
+
+template <typename Item>
+void StreamReceiver<Item>::BeginSession(const FrameHeader& header) {
+  DeliverAll();
+  if (newest_) previous_ = tally(stream_.tally().session);
+  refused_before_ = newest_ ? refusals_->counts() : RefusalCounts{};
+  newest_.reset();
+  stream_.BeginSession(header.session);
+  LOG(Subscriber, Info) << "first " << name_ << " frame, session=" << header.session
+                        << " frame_number=" << header.frame_number;
+}
+
+template <typename Item>
+void StreamReceiver<Item>::Accept(Item&& item, const FrameMark& mark) {
+  if (!newest_ || mark.number > newest_->number) newest_ = mark;
+  const auto verdict = stream_.Add(mark.number, std::move(item), mark.arrival);
+  // Add leaves a late item where it is.
+  if (verdict == Stream::Verdict::kLate && deliver_late_) deliver_late_(std::move(item));
+}
+
+template <typename Item>
+bool StreamReceiver<Item>::Suspect(Item&& item, const FrameMark& mark, RefusalCause cause) {
+  if (FollowsGap() && MayFollowGap(aside_.back().mark, mark, item.arrival)) {
+    BelieveAside();
+    if (!CheckFollows(*newest_, mark)) {
+      Accept(std::move(item), mark);
+      return true;
+    }
+  } else if (!aside_.empty()) {
+    const FrameMark& last = aside_.back().mark;
+    if (mark.number <= last.number || CheckFollows(last, mark)) RefuseAside();
+  }
+  aside_.push_back({std::move(item), mark, cause});
+  if (aside_.size() < kConfirm) return false;
+  BelieveAside();
+  return true;
+}
+
+template <typename Item>
+bool StreamReceiver<Item>::FollowsGap() const {
+  return replay_ && newest_ && !aside_.empty() &&
+         MayFollowGap(*newest_, aside_.front().mark, aside_.front().item.arrival);
+}
+
+template <typename Item>
+void StreamReceiver<Item>::BelieveAside() {
+  const bool gap = FollowsGap();
+  std::vector<Aside> believed = std::exchange(aside_, {});
+  const FrameMark& first = believed.front().mark;
+  const double advance_s = ToSeconds(first.time - newest_->time);
+  if (gap) {
+    LOG(Subscriber, Info) << "the recording that is played has a gap in its " << name_
+                          << " stream, frame_number=" << first.number << " gap_s=" << advance_s;
+  } else {
+    LOG(Subscriber, Warning) << "the " << name_
+                             << " stream has jumped, from frame_number=" << newest_->number
+                             << " to " << first.number << ", capture time by " << advance_s
+                             << " s; it goes on there: look at the clocks of rig and camera";
+  }
+  while (std::optional<Item> waiting = stream_.Flush()) {
+    if (deliver_) deliver_(std::move(*waiting));
+  }
+  stream_.Resync(first.number);
+  newest_.reset();
+  for (Aside& next : believed) Accept(std::move(next.item), next.mark);
+}
+
+template <typename Item>
+void StreamReceiver<Item>::SettleAside() {
+  if (FollowsGap()) return BelieveAside();
+  RefuseAside();
+}
+
+template <typename Item>
+void StreamReceiver<Item>::RefuseAside() {
+  for (const Aside& aside : aside_) Refuse(aside.cause, aside.item.frame->header);
+  aside_.clear();
+}
+
+template <typename Item>
+StreamTally StreamReceiver<Item>::tally(std::uint64_t session) const {
+  if (previous_ && previous_->session == session) return *previous_;
+  StreamTally tally = stream_.tally(session);
+  if (newest_ && session == stream_.tally().session) {
+    tally.refused = refusals_->counts();
+    for (std::size_t i = 0; i < tally.refused.size(); ++i) tally.refused[i] -= refused_before_[i];
+  }
+  return tally;
+}
+
+template <typename Item>
+void StreamReceiver<Item>::DeliverDue(SteadyTime now) {
+  if (!aside_.empty() && now >= aside_.front().mark.arrival + kMaxAside) SettleAside();
+  while (std::optional<Item> item = stream_.Next(now)) {
+    if (deliver_) deliver_(std::move(*item));
+  }
+}
+
+template <typename Item>
+void StreamReceiver<Item>::DeliverAll() {
+  SettleAside();
+  while (std::optional<Item> item = stream_.Flush()) {
+    if (deliver_) deliver_(std::move(*item));
+  }
+}
+
+template <typename Item>
+void StreamReceiver<Item>::Refuse(RefusalCause cause, const FrameHeader& header) {
+  refusals_->Add(cause, fmt::format("stream={} session={} frame_number={}", name_, header.session,
+                                    header.frame_number));
+}
+
+template class StreamReceiver<ReceivedDepth>;
+template class StreamReceiver<ReceivedThermal>;
+
+}  // namespace isotherm

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "common/transport/refusal.h"
+#include "ground/subscriber/frame_plausibility.h"
+#include "ground/subscriber/frame_stream.h"
+#include "ground/subscriber/received_frame.h"
+
+namespace isotherm {
+
+/// The way of one stream from the link to its consumer: session, number and payload are checked,
+/// the payload is unpacked, the order is restored. A frame whose number or capture time cannot
+/// follow those before is kept aside: when kConfirm in a row agree with each other, the stream has
+/// really jumped and goes on with them; otherwise they are refused, and one wild frame stops none
+/// behind it. A replay as fast as the ground takes it passes over the gaps of its recording: one
+/// more frame confirms those, and none contradicts the last. Item is ReceivedDepth or
+/// ReceivedThermal. No DDS, no clock. Thread-compatible.
+template <typename Item>
+class StreamReceiver {
+ public:
+  using Encoded = std::remove_const_t<typename decltype(Item::encoded)::element_type>;
+  using Consumer = std::function<void(Item)>;
+  static constexpr std::size_t kConfirm = 3;
+  /// Frames that are kept aside are refused after this time.
+  static constexpr Nanoseconds kMaxAside = std::chrono::seconds(1);
+
+  /// `refusals` are this stream's and must outlive the receiver. `deliver` gets frames in order;
+  /// `deliver_late` those behind the reorder window. Empty consumers are skipped.
+  StreamReceiver(std::string_view name, Nanoseconds reorder_window, RefusalCounter* refusals,
+                 Consumer deliver, Consumer deliver_late);
+
+  /// Whether the frames of this session come as fast as the ground takes them.
+  void SetReplay(bool replay) { replay_ = replay; }
+  /// Takes a frame that has passed the transport's checks; true if it was good and new.
+  bool Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now);
+  /// Delivers what is in order or has waited long enough.
+  void DeliverDue(SteadyTime now);
+  /// Delivers everything that waits, in order.
+  void DeliverAll();
+
+  const FrameStream<Item>& stream() const { return stream_; }
+  /// As FrameStream::tally, with what was refused.
+  StreamTally tally(std::uint64_t session) const;
+
+ private:
+  using Stream = FrameStream<Item>;
+
+  /// True if a frame with this header would be taken; counts it if not.
+  bool IsWanted(const FrameHeader& header, typename Stream::Session session);
+  void BeginSession(const FrameHeader& header);
+  void Accept(Item&& item, const FrameMark& mark);
+  /// Keeps a frame aside that `cause` speaks against; true if it is believed now.
+  bool Suspect(Item&& item, const FrameMark& mark, RefusalCause cause);
+  /// The frames kept aside are where the stream goes on.
+  void BelieveAside();
+  void RefuseAside();
+  /// No other frame will say whether those kept aside are right.
+  void SettleAside();
+  bool FollowsGap() const;  ///< What is aside.
+  void Refuse(RefusalCause cause, const FrameHeader& header);
+
+  const std::string_view name_;
+  RefusalCounter* const refusals_;
+  const Consumer deliver_;
+  const Consumer deliver_late_;
+  Stream stream_;
+  std::optional<FrameMark> newest_;  ///< The newest of the frames that were taken.
+  struct Aside {
+    Item item;
+    FrameMark mark;
+    RefusalCause cause;
+  };
+  bool replay_ = false;
+  std::vector<Aside> aside_;        ///< Each follows the one before it.
+  RefusalCounts refused_before_{};  ///< When the session began.
+  std::optional<StreamTally> previous_;
+};
+
+extern template class StreamReceiver<ReceivedDepth>;
+extern template class StreamReceiver<ReceivedThermal>;
+
+}  // namespace isotherm
