@@ -7,7 +7,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kRounding = 1e-9;  ///< Relative.
+constexpr double kRounding = 1e-6;  // Relative; on the wire the numbers are floats.
 
 double LargestDeviation(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);

@@ -67,14 +67,14 @@ std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Fe
 constexpr std::size_t kCovarianceNumbers = 21;
 
 /// The upper triangle, row by row.
-void ToWireCovariance(const PoseCovariance& from, std::span<double> to) {
+void ToWireCovariance(const PoseCovariance& from, std::span<float> to) {
   std::size_t k = 0;
   for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) to[k++] = from(i, j);
+    for (int j = i; j < 6; ++j) to[k++] = static_cast<float>(from(i, j));
   }
 }
 
-PoseCovariance FromWireCovariance(std::span<const double> from) {
+PoseCovariance FromWireCovariance(std::span<const float> from) {
   PoseCovariance to;
   std::size_t k = 0;
   for (int i = 0; i < 6; ++i) {
@@ -202,7 +202,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->covered_area_m2 = from.covered_area_m2;
   to->model = FromWireFractions(from.model);
   to->view = FromWireFractions(from.view);
-  const std::span<const double> covariance = Elements(from.pose_covariance);
+  const std::span<const float> covariance = Elements(from.pose_covariance);
   if (!covariance.empty() && covariance.size() != kCovarianceNumbers)
     return RefusalCause::kOutOfRange;
   if (!covariance.empty()) to->pose_covariance = FromWireCovariance(covariance);

@@ -203,6 +203,8 @@ std::vector<RigGate::Rival> RigGate::rivals() const {
   std::vector<Rival> rivals;
   for (const Process& process : processes_) {
     if (process.peer == owner_ || !process.refused) continue;
+    // Whoever had the place before and was never heard again: an edge that was killed.
+    if (process.heard < process.since) continue;
     rivals.push_back({.peer = process.peer, .session = process.rig ? SessionOf(*process.rig) : 0});
   }
   return rivals;

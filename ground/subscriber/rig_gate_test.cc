@@ -138,6 +138,23 @@ TEST_F(RigGateTest, ASilentOwnerThatIsThereKeepsItsSessionForAWhile) {
   EXPECT_THAT(passed_, ElementsAre("rig 1", "rig 2"));
 }
 
+TEST_F(RigGateTest, F33WhatIsLeftOfAKilledEdgeIsNoRivalUntilItIsHeardAgain) {
+  Add(kFirst, Rig(1));
+  Add(kFirst, Frame(1, 0));
+  Wait(100ms);
+  Add(kSecond, Rig(2));
+  for (int i = 0; i < 50; ++i) {
+    Add(kSecond, Frame(2, static_cast<std::uint64_t>(i)));
+    Wait(100ms);
+    EXPECT_THAT(gate_.rivals(), IsEmpty()) << i;
+  }
+  ASSERT_EQ(gate_.owner(), kSecond);
+  // It was only cut off, and is there after all.
+  Add(kFirst, Frame(1, 1));
+  Wait(100ms);
+  EXPECT_THAT(gate_.rivals(), ElementsAre(RigGate::Rival{kFirst, 1}));
+}
+
 TEST_F(RigGateTest, F33AnEdgeThatWasKilledIsFollowedByItsSuccessorWithoutLoss) {
   Add(kFirst, Rig(1));
   Add(kFirst, Frame(1, 0));

@@ -123,12 +123,14 @@ class TsdfVolume {
   void set_may_end_rays(std::int32_t block, bool value) { may_end_rays_[block] = value ? 1 : 0; }
 
   /// For kernels: first voxel of block 0, the block table with its border, and coordinates of all
-  /// blocks (x y z each).
+  /// blocks (x y z each; null without a block).
   TsdfVoxel* base() const { return reinterpret_cast<TsdfVoxel*>(arena_.data()) + kBlockVoxels; }
   std::span<const std::int32_t> table() const { return table_; }
   std::int32_t table_stride_y() const { return grid_.blocks.x() + 2; }
   std::int32_t table_stride_z() const { return table_stride_y() * (grid_.blocks.y() + 2); }
-  const std::int32_t* coordinates() const { return coordinates_.data()->data(); }
+  const std::int32_t* coordinates() const {
+    return coordinates_.empty() ? nullptr : coordinates_.front().data();
+  }
   std::size_t memory_bytes() const;
 
  private:

@@ -69,12 +69,12 @@ TEST(ShippedConfigurationTest, TheDefaultsAreValid) {
   EXPECT_TRUE(Validate(EdgeOptions()).ok()) << Validate(EdgeOptions()).message();
 }
 
-TEST(ShippedConfigurationTest, TheCalibrationInTheReadmeIsValid) {
-  const std::string readme = ReadAll(std::filesystem::path(ISOTHERM_SOURCE_DIR) / "README.md");
-  const std::size_t begin = readme.find("# rig.textproto");
+TEST(ShippedConfigurationTest, TheCalibrationInTheDocumentsIsValid) {
+  const std::string page = ReadAll(std::filesystem::path(ISOTHERM_SOURCE_DIR) / "docs/data.md");
+  const std::size_t begin = page.find("# rig.textproto");
   ASSERT_NE(begin, std::string::npos);
   const Result<Rig> rig =
-      ParseRigCalibration(readme.substr(begin, readme.find("```", begin) - begin), "README.md");
+      ParseRigCalibration(page.substr(begin, page.find("```", begin) - begin), "docs/data.md");
   ASSERT_TRUE(rig.has_value()) << rig.error().message();
   EXPECT_TRUE(CheckThermalFusion(*rig).ok());
 }
