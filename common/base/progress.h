@@ -26,7 +26,7 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  /// Fraction that is done, 0..1. Cheap to call often: writes only when the image changes.
+  /// Fraction that is done, 0..1. Cheap to call often: writes only when what is shown changes.
   void Update(double fraction);
   /// Shows 100 % and the time it took.
   void Finish();

@@ -43,7 +43,7 @@ struct ThermalHousekeeping {
   float shutter_celsius = kUnknown_celsius;
 };
 
-/// Holds what identifies and dates a frame, from the edge to the end.
+/// Holds what identifies a frame and its times, from the edge to the end.
 struct FrameHeader {
   std::uint64_t session = 0;  ///< One per start of a scan on the edge.
   std::uint64_t frame_number =

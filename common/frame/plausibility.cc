@@ -86,7 +86,7 @@ void CheckOverlap(const StreamTimes& depth, const StreamTimes& thermal, Doubts& 
   doubts.push_back(fmt::format(
       "thermal frames begin {:+.3f} s after the depth frames, and the two overlap for {:.3f} s "
       "only: "
-      "they seem to be dated by two clocks; give both streams stamps of one clock, or the "
+      "they seem to be stamped by two clocks; give both streams stamps of one clock, or the "
       "difference as thermal_delay_s of the calibration",
       ToSeconds(thermal.first - depth.first), std::max(0.0, common_s)));
 }
@@ -130,7 +130,7 @@ Doubts DoubtsAbout(const Rig& rig) {
   if (std::abs(rig.thermal_delay_s) > kMaxDelay_s) {
     doubts.push_back(
         fmt::format("thermal_delay_s is {:.6g} s: cameras are late by milliseconds; is it in "
-                    "milliseconds, or are the streams dated by two clocks?",
+                    "milliseconds, or are the streams stamped by two clocks?",
                     rig.thermal_delay_s));
   }
   if (rig.depth && rig.depth_scale < kMinDepthScale) {

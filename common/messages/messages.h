@@ -86,7 +86,7 @@ struct ExternalOdometrySample {
 enum class ScanState : std::uint8_t {
   kIdle = 0,      ///< No session yet.
   kScanning = 1,  ///< Frames are being published.
-  kEnded = 2,     ///< The counts in the status are final: the ground can close its counters.
+  kEnded = 2,     ///< The counts in the status are final: the ground can close the session.
 };
 
 /// Says what happens when the link or the ground is slower than the cameras.

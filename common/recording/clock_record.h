@@ -8,7 +8,8 @@
 
 namespace isotherm {
 
-/// Name of the metadata in a recording that say how good the wall clock was that dated its frames.
+/// Name of the metadata in a recording that say how good the wall clock was that stamped its
+/// frames.
 inline constexpr std::string_view kClockMetadata = "clock";
 
 /// `synchronised` (yes, no) and, if it is, `offset_s`, `estimated_error_s` and `max_error_s`.

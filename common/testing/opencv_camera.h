@@ -5,7 +5,7 @@
 
 #include "common/geometry/camera.h"
 
-// Our cameras as OpenCV wants them: simulation and reconstruction fraction one distortion model, so
+// Our cameras as OpenCV wants them: simulation and reconstruction share one distortion model, so
 // only somebody else's can tell whether it is the one that calibrations are made for.
 namespace isotherm::testing {
 

@@ -66,7 +66,7 @@ class Mutator {
     } else {
       for (std::uint64_t changes = 1 + Below(4); changes > 0; --changes) Change(bytes);
     }
-    bytes.resize(std::max(bytes.size(), kHeaderBytes));  // Less is not handed on at all.
+    bytes.resize(std::max(bytes.size(), kHeaderBytes));  // Less is not passed on at all.
     return bytes;
   }
   std::uint64_t Below(std::uint64_t bound) { return bound == 0 ? 0 : random_() % bound; }

@@ -297,7 +297,7 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
   return status;
 }
 
-/// Captures until told to leave, then hands on what is under way. The process's exit status.
+/// Captures until told to leave, then passes on what is under way. The process's exit status.
 int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
             std::unique_ptr<Spool> spool, FrameCounters& counters, CameraHealth& health,
             Publisher& publisher, Leaving& leaving, const Clock& clock,

@@ -27,7 +27,7 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kDescription =
-    "Captures depth and thermal frames, dates them, follows the thermal camera's shutter, records "
+    "Captures depth and thermal frames, stamps them, follows the thermal camera's shutter, records "
     "them and\n"
     "publishes them over DDS to isotherm-ground. By default it simulates a scan; --source says "
     "where frames come from.";

@@ -44,7 +44,7 @@ std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal
 /// Returns what is wrong with the wall clock and what to do about it; nullopt if nothing is.
 std::optional<std::string> ClockProblem(const KernelClock& clock);
 
-/// Returns what the recording says of the clock that dates its frames, at the start of a scan.
+/// Returns what the recording says of the clock that stamps its frames, at the start of a scan.
 std::map<std::string, std::string> ClockMetadata(const KernelClock& clock, TimeBase time_base);
 
 /// One line for the operator's journal: what the ground says, or what is wrong with it, then rates,

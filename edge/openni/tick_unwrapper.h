@@ -8,7 +8,7 @@
 namespace isotherm {
 
 /// Makes one rising time line of a camera's microsecond stamps. OpenNI2 counts in 64 bits, but some
-/// drivers hand on what a 32-bit counter says, which starts again every 71.6 minutes.
+/// drivers pass on what a 32-bit counter says, which starts again every 71.6 minutes.
 ///
 ///   backwards by more than half of 32 bits, from below 2^32   the counter wrapped: it goes on
 ///   any other step backwards                                  a reset: the ticks go backwards

@@ -100,7 +100,7 @@ void EdgePipeline::StartCapture() {
 
 bool EdgePipeline::StopCapture(Nanoseconds limit) {
   if (std::exchange(capture_stopped_, true)) return !capture_left_behind_;
-  // Along the line, so that each stage can still hand on what it has.
+  // Along the line, so that each stage can still pass on what it has.
   capture_thread_.request_stop();
   if (capture_thread_.joinable()) {
     capture_left_behind_ = capture_ended_.wait_for(limit) != std::future_status::ready;

@@ -161,7 +161,7 @@ class EdgePipeline {
   /// Feedback of several seconds, for the spool thread to take along with the frames.
   BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
   BoundedQueue<CommandResult> nuc_answers_{64, OverflowPolicy::kDropOldest};
-  // Commands that come faster than they can be obeyed are refused, the oldest first.
+  // Commands that come faster than they can be executed are refused, the oldest first.
   const std::function<void(const Command&)> refuse_ = [this](const Command& command) {
     nuc_answers_.Push(
         {command.number, CommandOutcome::kRefused, "too many commands at once; send it again"}, {});

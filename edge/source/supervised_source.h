@@ -25,7 +25,7 @@ class FrameCheckOptions;
 ///
 /// A camera with another serial number than the calibration's or the first one's is not used: the
 /// calibration is not its own. Nor is one that sends counts where the scan began with temperatures,
-/// or the other way round. Reports each frame through `on_frame` before it is assessed and each
+/// or the other way round. Reports each frame through `on_frame` before it is checked and each
 /// refused one through `on_rejected`. Thread-bound.
 class SupervisedSource final : public FrameSource {
  public:

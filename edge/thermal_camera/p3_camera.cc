@@ -17,7 +17,7 @@ using std::chrono::seconds;
 
 constexpr int kStreamInterface = 1;
 constexpr std::uint8_t kEndpoint = 0x81;
-// Smaller than a frame, so that the first bytes are dated soon; transfers of the camera end with
+// Smaller than a frame, so that the first bytes are stamped soon; transfers of the camera end with
 // frames and markers.
 constexpr int kTransferBytes = 16'384;
 constexpr int kTransfers = 8;

@@ -16,7 +16,7 @@ class UsbDevice;
 /// Seek Compact, CompactXR and CompactPro (vendor protocol, bulk transfers). Frames are asked for
 /// one by one, so the rate is what camera and computer make of it. They are counts: nobody has
 /// published what temperatures they mean. The camera closes its shutter when it sees fit and sends
-/// what it saw then; that frame is handed on as a correction. Thread-bound.
+/// what it saw then; that frame is passed on as a correction. Thread-bound.
 class SeekCamera final : public ThermalCamera {
  public:
   static constexpr const char* kDriver = "seek-bulk";

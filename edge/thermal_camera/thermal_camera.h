@@ -84,7 +84,7 @@ class ThermalCamera {
   virtual Status SetAutomaticNuc(bool /*on*/) {
     return Refuse("decides by itself when to correct itself");
   }
-  /// Sets the measuring range, reads it back where the camera lets itself be asked, and puts it
+  /// Sets the measuring range, reads it back where the camera can be asked, and puts it
   /// into info().settings. kFailedPrecondition if the camera keeps another one.
   virtual Status SetGain(ThermalGain gain) {
     return gain == ThermalGain::kKeep ? OkStatus() : Refuse("has one range only");

@@ -81,7 +81,7 @@ TEST_F(UvcBulkJoinerTest, PayloadEndsWithATransferThatIsNotFull) {
   EXPECT_THAT(Add({1, 2, 3}), ElementsAre(1, 2, 3));
   EXPECT_THAT(Add({4, 5, 6, 7}, 10), IsEmpty());
   EXPECT_THAT(Add({8}, 20), ElementsAre(4, 5, 6, 7, 8));
-  // Dated by its first bytes.
+  // Stamped by its first bytes.
   EXPECT_EQ(joiner_.first_stamp().steady, At(10).steady);
   EXPECT_EQ(joiner_.first_stamp().wall, At(10).wall);
 }

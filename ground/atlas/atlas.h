@@ -65,7 +65,7 @@ class Atlas {
   /// A pose and its covariance in `world`; nullopt while their sub-map is not joined.
   std::optional<WorldPose> ToWorld(const MapPose& pose) const;
 
-  /// The same view was verified in the active sub-map and in another one: closes the loop.
+  /// Closes the loop: the same view was found, and verified, in the active sub-map and in another.
   void Link(int other, const RigidTransform& T_active_depth, const RigidTransform& T_other_depth);
   const DriftReport& drift() const { return drift_; }
 

@@ -16,7 +16,7 @@ namespace isotherm {
 namespace {
 
 constexpr double kSigmas = 3.0;
-// A frame that is dated less certainly says little.
+// A frame that is stamped less certainly says little.
 constexpr double kMaxStampSigma_s = 0.003;
 constexpr double kVisibilityFraction = 0.4;
 // Fewer than a calibration takes, for the operator waits.

@@ -12,7 +12,8 @@ namespace isotherm {
 using PartWeights = std::vector<double>;
 
 /// How much the thermal images disagree at one delay in seconds, by resampling of the scan's
-/// parts. Every delay must assess the same samples. `fine`: as exactly as possible, otherwise fast.
+/// parts. All delays must be compared by the same samples. `fine`: as exactly as possible,
+/// otherwise fast.
 using DisagreementOf = std::function<std::vector<double>(
     double delay_s, bool fine, const std::vector<PartWeights>& resamplings)>;
 

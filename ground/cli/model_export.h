@@ -9,8 +9,8 @@
 namespace isotherm {
 
 /// Writes the results of a saved model into `dir`, with temperatures as `interpretation` has them.
-/// The images show the model as the depth camera saw it from the last pose that the model knows;
-/// without one there are none. The volume in `options` becomes the model's.
+/// The renderings show the model as the depth camera saw it from the last pose that the model
+/// knows; without one there are none. The volume in `options` becomes the model's.
 Result<ResultSummary> ExportModel(const std::filesystem::path& model, GroundOptions options,
                                   const Interpretation& interpretation,
                                   const std::filesystem::path& dir,

@@ -117,7 +117,7 @@ void AppendNuc(const RecordingSummary& summary, std::string& text) {
   }
 }
 
-/// The state of the clock that dated the frames; empty if the recording does not say.
+/// The state of the clock that stamped the frames; empty if the recording does not say.
 std::string ClockState(const RecordingInfo& info) {
   const auto found = info.metadata.find(std::string(kClockMetadata));
   if (found == info.metadata.end()) return "";
@@ -141,7 +141,7 @@ std::string ClockState(const RecordingInfo& info) {
   return state;
 }
 
-/// How good the clock was that dated the frames, and what to add to their times to get UTC.
+/// How good the clock was that stamped the frames, and what to add to their times to get UTC.
 void AppendClock(const RecordingReport& report, std::string& text) {
   if (const std::string state = ClockState(report.info); !state.empty())
     text += fmt::format("{:<14}{}\n", "clock", Printable(state));

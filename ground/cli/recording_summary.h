@@ -88,7 +88,7 @@ class RecordingSummarizer {
   bool in_nuc_ = false;
 };
 
-/// Reads all of a recording that can be read, and shows `plausibility` what it assesses by.
+/// Reads all of a recording that can be read, and shows `plausibility` what it needs.
 RecordingSummary Summarize(RecordingReader& reader, PlausibilityCheck& plausibility);
 
 std::string EncodingName(Encoding encoding);

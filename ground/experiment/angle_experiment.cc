@@ -105,7 +105,7 @@ double DielectricReflectivity(double angle_rad, double n) {
   return 0.5 * (s * s + p * p);
 }
 
-/// Largest difference between the emissivity that simulated thermal renderings of the disc show and
+/// Largest difference between the emissivity that simulated thermal images of the disc show and
 /// Fresnel's, over the sweep.
 double CompareWithFresnel(const SimulatedScan& scan) {
   SimulatedScan::Scratch scratch;

@@ -69,7 +69,7 @@ Swing FromTo(double from, double to, double duration_s) {
 void PlayScan(const SimulatedScan& scan, ThreadPool& pool, const FrameSinks& sinks) {
   constexpr int kFramesPerThread = 4;
   const std::vector<Item> items = InOrderOfTime(scan);
-  // Frames of a batch are rendered in parallel and handed on one after the other.
+  // Frames of a batch are rendered in parallel and passed on one after the other.
   const auto batch = static_cast<std::size_t>(pool.threads() * kFramesPerThread);
   std::vector<SimulatedScan::Scratch> scratch(batch);
   std::vector<RawFrame> frames(batch);

@@ -66,7 +66,7 @@ ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
 ViewMaps LookAtModel(const GroundPipeline& pipeline, const SimulatedScan& scan, CaptureTime time,
                      ThreadPool& pool);
 
-/// Images of temperatures with the same colours whatever they show.
+/// Options for renderings with the same colours whatever they show.
 RendererOptions FixedScale(double low_celsius, double high_celsius);
 
 }  // namespace isotherm

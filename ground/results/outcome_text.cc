@@ -31,7 +31,7 @@ constexpr std::array<Explanation, 7> kLost = {{
 constexpr std::array<Explanation, 12> kLeftOut = {{
     {"nuc", "taken during a correction (NUC) of the thermal camera, as it must be"},
     {"wrong_size", "of another size than the calibration's"},
-    {"time_uncertain", "dated too uncertainly (thermal.max_time_sigma_s)"},
+    {"time_uncertain", "stamped too uncertainly (thermal.max_time_sigma_s)"},
     {"no_depth", "no depth frames came along with them"},
     {"no_depth_after",
      "no depth frame came after them; many of these mean that the cameras' clocks differ"},

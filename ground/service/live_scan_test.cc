@@ -39,7 +39,7 @@ class LiveScanTest : public ::testing::Test {
 
   static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
 
-  /// A depth frame whose turn comes `wait` after its arrival, dated `jitter` frames off.
+  /// A depth frame whose turn comes `wait` after its arrival, stamped `jitter` frames off.
   void Depth(int i, Nanoseconds wait, double jitter = 0.0) {
     constexpr double kStep = 0.003;  // Metres per frame.
     auto frame = std::make_shared<DepthFrame>(testing::RenderDepth(

@@ -14,7 +14,7 @@ namespace isotherm {
 bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal, float min_cosine);
 
 /// Assesses kept temperatures again by the surface as it is known now. A measurement's angle was
-/// assessed by what the surface looked like then; of many noisy assessments the kindest wins
+/// found from what the surface looked like then; of many noisy angles the kindest wins
 /// (algorithm 6), so that steep faces and edges keep values that never were good. A temperature is
 /// dropped if its voxel's surface turns out to have been seen at a bad angle, or turned away from
 /// the surface that was seen: it belongs to another face. The final review also drops what lies

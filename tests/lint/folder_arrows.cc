@@ -84,7 +84,7 @@ const FolderArrows& AllowedArrows() {
        with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/tracker"})},
       {"ground/thermal", with(kCommon, {"ground/options", "ground/surface", "ground/tsdf"})},
       {"ground/atlas", with(kCommon, {"ground/options", "ground/surface", "ground/tsdf",
-                                      "ground/tracker", "ground/relocaliser", "ground/thermal"})},
+                                      "ground/relocaliser", "ground/thermal"})},
       {"ground/model",
        with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal"})},
       {"ground/renderer",
@@ -115,11 +115,10 @@ const FolderArrows& AllowedArrows() {
                       "ground/export", "ground/feedback", "ground/renderer", "ground/pipeline",
                       "ground/calibration", "ground/results", "ground/configuration"})},
       {"ground/cli",
-       with(kCommon,
-            {"common/transport", "common/simulation", "common/dataset", "ground/options",
-             "ground/subscriber", "ground/surface", "ground/tsdf", "ground/thermal", "ground/model",
-             "ground/renderer", "ground/export", "ground/evaluation", "ground/experiment",
-             "ground/calibration", "ground/configuration", "ground/offline"})},
+       with(kCommon, {"common/transport", "common/simulation", "common/dataset", "ground/options",
+                      "ground/subscriber", "ground/surface", "ground/tsdf", "ground/model",
+                      "ground/renderer", "ground/export", "ground/evaluation", "ground/experiment",
+                      "ground/calibration", "ground/configuration", "ground/offline"})},
   };
   return kAllowed;
 }

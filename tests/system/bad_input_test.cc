@@ -181,7 +181,7 @@ INSTANTIATE_TEST_SUITE_P(
                         "these look like microseconds (30.3 Hz): divide them by 1000000"},
         DoubtfulDataset{"ThermalStampsOfAnotherClock",
                         [](const DatasetFolder& d) { WriteStamps(d, 1.0, 1000.0); },
-                        "they seem to be dated by two clocks"},
+                        "they seem to be stamped by two clocks"},
         DoubtfulDataset{"ExtrinsicsInMillimetres",
                         [](const DatasetFolder& d) { WriteRig(d, "1000", "50"); },
                         "as millimetres they would be 0.05 m"},

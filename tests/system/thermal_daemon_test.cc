@@ -128,7 +128,8 @@ TEST_F(ThermalDaemonTest, F04UnpluggedInMidFrameTheScanGoesOnWhenItIsBack) {
   EXPECT_FALSE(edge.WaitForExit(Seconds(1.5)).has_value());
   const FrameCountersText counters = End(edge);
   EXPECT_GE(counters.done, 20 + 4) << edge.output();
-  // The camera's counter stood still meanwhile: its frames must not be dated as if it had gone on.
+  // The camera's counter stood still meanwhile: its frames must not be stamped as if it had gone
+  // on.
   EXPECT_THAT(edge.output(), Not(HasSubstr("UNSYNCHRONISED")));
 }
 

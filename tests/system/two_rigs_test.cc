@@ -50,7 +50,7 @@ class TwoRigsTest : public ::testing::Test {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {GroundService(), arguments, {}};
   }
-  /// The ground has everything that the rig recorded, and nothing else, and its counters says so.
+  /// The ground has everything that the rig recorded, and nothing else, and its counters say so.
   static void ExpectTheScanOf(const std::filesystem::path& edge,
                               const std::filesystem::path& results) {
     const RecordingContent sent = ReadRecording(edge);
