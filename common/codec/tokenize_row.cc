@@ -14,7 +14,12 @@ template <typename Model>
   std::uint16_t* const symbols = row.symbols;
   std::uint16_t* const residuals = row.residuals;
   std::uint16_t* const raw_bits = row.raw_bits;
-#pragma GCC ivdep  // Inputs and outputs do not overlap.
+  // Inputs and outputs do not overlap.
+#ifdef __clang__
+#pragma clang loop vectorize(assume_safety)
+#else
+#pragma GCC ivdep
+#endif
   for (int x = 0; x < width; ++x) {
     const int pixel = pixels[x + 1];
     const Neighbours neighbours{.west = filled[x],
