@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <future>
+#include <mutex>
 #include <stop_token>
 #include <utility>
 
@@ -31,13 +32,13 @@ constexpr std::chrono::milliseconds kTimeForLastWords{300};
 
 void ExitDeadline::Arm(Duration limit, int status, std::string what,
                        std::function<void()> last_words) {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   Start(limit, status, std::move(what), std::move(last_words));
 }
 
 void ExitDeadline::ArmFirst(Duration limit, int status, std::string what,
                             std::function<void()> last_words) {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!thread_.joinable()) Start(limit, status, std::move(what), std::move(last_words));
 }
 

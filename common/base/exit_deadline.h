@@ -2,9 +2,10 @@
 
 #include <chrono>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
+
+#include "common/base/mutex.h"
 
 namespace isotherm {
 
@@ -29,10 +30,11 @@ class ExitDeadline {
                 std::function<void()> last_words = {});
 
  private:
-  void Start(Duration limit, int status, std::string what, std::function<void()> last_words);
+  void Start(Duration limit, int status, std::string what, std::function<void()> last_words)
+      REQUIRES(mutex_);
 
-  std::mutex mutex_;  // Guards what follows.
-  std::jthread thread_;
+  Mutex mutex_;
+  std::jthread thread_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm

@@ -98,7 +98,7 @@ bool UnblockedOutput::Offer() {
 }
 
 void UnblockedOutput::Write(std::string_view text) {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   LookAtDescriptor();
   Offer();
   if (kept_.size() + text.size() > kKeptBytes) {
@@ -110,13 +110,13 @@ void UnblockedOutput::Write(std::string_view text) {
 }
 
 std::uint64_t UnblockedOutput::TakeLeftOut() {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   if (left_out_ == 0) return 0;
   return Offer() ? std::exchange(left_out_, 0) : 0;
 }
 
 void UnblockedOutput::Flush(int patience_ms) {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   // Each round either gets rid of something or is the last one.
   while (!Offer()) {
     if (!IsWritable(own_ >= 0 ? own_ : descriptor_, patience_ms)) return;

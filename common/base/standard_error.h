@@ -2,9 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <string_view>
+
+#include "common/base/mutex.h"
 
 namespace isotherm {
 
@@ -32,20 +33,21 @@ class UnblockedOutput {
  private:
   enum class Kind : std::uint8_t { kDirect, kReopened, kSocket, kPolled };
 
-  void LookAtDescriptor();
+  void LookAtDescriptor() REQUIRES(mutex_);
   /// Offers what is kept; true if nothing is left.
-  bool Offer();
+  bool Offer() REQUIRES(mutex_);
   /// Bytes taken: 0 if there is no room, below 0 if there never will be any.
-  std::ptrdiff_t TryWrite(std::string_view text) const;
+  std::ptrdiff_t TryWrite(std::string_view text) const REQUIRES(mutex_);
 
   const int descriptor_;
-  mutable std::mutex mutex_;  // Guards what follows.
-  Kind kind_ = Kind::kDirect;
-  int own_ = -1;  ///< With kReopened, the same file opened so that it never waits.
-  std::uint64_t device_ = 0;
-  std::uint64_t inode_ = 0;
-  std::string kept_;
-  std::uint64_t left_out_ = 0;
+  Mutex mutex_;
+  Kind kind_ GUARDED_BY(mutex_) = Kind::kDirect;
+  /// With kReopened, the same file opened so that it never waits.
+  int own_ GUARDED_BY(mutex_) = -1;
+  std::uint64_t device_ GUARDED_BY(mutex_) = 0;
+  std::uint64_t inode_ GUARDED_BY(mutex_) = 0;
+  std::string kept_ GUARDED_BY(mutex_);
+  std::uint64_t left_out_ GUARDED_BY(mutex_) = 0;
 };
 
 /// Writes to standard error by way of the process's one UnblockedOutput. Thread-safe.

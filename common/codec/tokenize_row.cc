@@ -14,7 +14,10 @@ template <typename Model>
   std::uint16_t* const symbols = row.symbols;
   std::uint16_t* const residuals = row.residuals;
   std::uint16_t* const raw_bits = row.raw_bits;
-#pragma GCC ivdep  // Inputs and outputs do not overlap.
+  // Inputs and outputs do not overlap. Clang has no such word: it looks whether they do.
+#ifndef __clang__
+#pragma GCC ivdep
+#endif
   for (int x = 0; x < width; ++x) {
     const int pixel = pixels[x + 1];
     const Neighbours neighbours{.west = filled[x],

@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/base/mutex.h"
 
 namespace isotherm {
 
@@ -34,9 +34,11 @@ class BoundedQueue {
 
   /// Returns false if `value` was not taken because stop was requested while waiting for room.
   bool Push(T value, std::stop_token stop) {
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (policy_ == OverflowPolicy::kBlock) {
-      if (!changed_.wait(lock, stop, [this] { return values_.size() < capacity_; })) return false;
+      if (!changed_.wait(lock, stop,
+                         [this]() REQUIRES(mutex_) { return values_.size() < capacity_; }))
+        return false;
     } else if (values_.size() == capacity_) {
       if (on_drop_) on_drop_(values_.front());
       values_.pop_front();
@@ -49,8 +51,9 @@ class BoundedQueue {
 
   /// Waits for a value. Returns nullopt if stop was requested and nothing is left.
   std::optional<T> Pop(std::stop_token stop) {
-    std::unique_lock lock(mutex_);
-    if (!changed_.wait(lock, stop, [this] { return !values_.empty(); })) return std::nullopt;
+    MutexLock lock(mutex_);
+    if (!changed_.wait(lock, stop, [this]() REQUIRES(mutex_) { return !values_.empty(); }))
+      return std::nullopt;
     T value = std::move(values_.front());
     values_.pop_front();
     changed_.notify_all();
@@ -61,8 +64,9 @@ class BoundedQueue {
   /// something to do when nothing comes.
   template <typename Duration>
   std::optional<T> PopFor(Duration patience, std::stop_token stop) {
-    std::unique_lock lock(mutex_);
-    if (!changed_.wait_for(lock, stop, patience, [this] { return !values_.empty(); }))
+    MutexLock lock(mutex_);
+    if (!changed_.wait_for(lock, stop, patience,
+                           [this]() REQUIRES(mutex_) { return !values_.empty(); }))
       return std::nullopt;
     T value = std::move(values_.front());
     values_.pop_front();
@@ -71,12 +75,12 @@ class BoundedQueue {
   }
 
   std::size_t size() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return values_.size();
   }
   /// Values that made room for newer ones since construction.
   std::uint64_t dropped() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return dropped_;
   }
 
@@ -84,10 +88,10 @@ class BoundedQueue {
   const std::size_t capacity_;
   const OverflowPolicy policy_;
   const std::function<void(const T&)> on_drop_;
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<T> values_;
-  std::uint64_t dropped_ = 0;
+  std::deque<T> values_ GUARDED_BY(mutex_);
+  std::uint64_t dropped_ GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace isotherm

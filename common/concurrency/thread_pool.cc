@@ -27,7 +27,7 @@ void ThreadPool::ParallelFor(int count, const std::function<void(int)>& body) {
     return;
   }
   {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     body_ = &body;
     count_ = count;
     next_ = 0;
@@ -36,8 +36,8 @@ void ThreadPool::ParallelFor(int count, const std::function<void(int)>& body) {
   }
   wake_.notify_all();
   RunFractions(body, count);
-  std::unique_lock lock(mutex_);
-  done_.wait(lock, [this] { return running_ == 0; });
+  MutexLock lock(mutex_);
+  done_.wait(lock, [this]() REQUIRES(mutex_) { return running_ == 0; });
 }
 
 void ThreadPool::Work(std::stop_token stop) {
@@ -46,14 +46,14 @@ void ThreadPool::Work(std::stop_token stop) {
     const std::function<void(int)>* body = nullptr;
     int count = 0;
     {
-      std::unique_lock lock(mutex_);
-      if (!wake_.wait(lock, stop, [&] { return generation_ != seen; })) return;
+      MutexLock lock(mutex_);
+      if (!wake_.wait(lock, stop, [&]() REQUIRES(mutex_) { return generation_ != seen; })) return;
       seen = generation_;
       body = body_;
       count = count_;
     }
     RunFractions(*body, count);
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (--running_ == 0) done_.notify_one();
   }
 }

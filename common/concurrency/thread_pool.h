@@ -3,10 +3,11 @@
 #include <atomic>
 #include <condition_variable>
 #include <functional>
-#include <mutex>
 #include <stop_token>
 #include <thread>
 #include <vector>
+
+#include "common/base/mutex.h"
 
 namespace isotherm {
 
@@ -31,13 +32,13 @@ class ThreadPool {
   void Work(std::stop_token stop);
   void RunFractions(const std::function<void(int)>& body, int count);
 
-  std::mutex mutex_;
+  Mutex mutex_;
   std::condition_variable_any wake_;
-  std::condition_variable done_;
-  const std::function<void(int)>* body_ = nullptr;
-  int count_ = 0;
-  int running_ = 0;
-  long generation_ = 0;
+  std::condition_variable_any done_;
+  const std::function<void(int)>* body_ GUARDED_BY(mutex_) = nullptr;
+  int count_ GUARDED_BY(mutex_) = 0;
+  int running_ GUARDED_BY(mutex_) = 0;
+  long generation_ GUARDED_BY(mutex_) = 0;
   std::atomic<int> next_{0};
   std::vector<std::jthread> workers_;
 };

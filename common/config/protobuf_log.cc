@@ -2,11 +2,11 @@
 
 #include <google/protobuf/stubs/logging.h>
 
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 #include "common/time/clock.h"
 #include "common/time/line_limiter.h"
 
@@ -21,11 +21,11 @@ LogLevel LevelOf(google::protobuf::LogLevel level) {
 /// The library's handler is a plain function: what it needs must be static.
 void Handle(google::protobuf::LogLevel level, const char* /*filename*/, int /*line*/,
             const std::string& message) {
-  static std::mutex mutex;
-  static LineLimiter limiter;
+  static Mutex mutex;
+  static LineLimiter limiter GUARDED_BY(mutex);
   std::optional<std::uint64_t> left_out;
   {
-    std::scoped_lock lock(mutex);
+    MutexLock lock(mutex);
     left_out = limiter.Admit(SystemClock().SteadyNow());
   }
   if (left_out) WriteLog(LevelOf(level), "Protobuf", message + LeftOutText(*left_out));

@@ -10,17 +10,17 @@ CaptureTime SystemClock::Now() const {
 SteadyTime SystemClock::SteadyNow() const { return std::chrono::steady_clock::now(); }
 
 CaptureTime FakeClock::Now() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return now_;
 }
 
 SteadyTime FakeClock::SteadyNow() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return steady_now_;
 }
 
 void FakeClock::Advance(Nanoseconds duration) {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   now_ += duration;
   steady_now_ += duration;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <mutex>
-
+#include "common/base/mutex.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {
@@ -31,9 +30,9 @@ class FakeClock final : public Clock {
   void Advance(Nanoseconds duration);
 
  private:
-  mutable std::mutex mutex_;
-  CaptureTime now_;
-  SteadyTime steady_now_{};
+  mutable Mutex mutex_;
+  CaptureTime now_ GUARDED_BY(mutex_);
+  SteadyTime steady_now_ GUARDED_BY(mutex_){};
 };
 
 }  // namespace isotherm

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <unordered_map>
+
+#include "common/base/mutex.h"
 
 namespace isotherm {
 
@@ -18,7 +19,7 @@ class InstanceLimit {
 
   /// Whether a sample of `writer` for the key `instance` may be kept.
   bool Admit(std::uint64_t writer, std::uint64_t instance) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (writer_of_.contains(instance)) return true;
     if (writer_of_.size() >= kInAll) return false;
     const auto is_of_writer = [writer](const auto& entry) { return entry.second == writer; };
@@ -29,13 +30,14 @@ class InstanceLimit {
   }
   /// The middleware keeps nothing of it any more: all its writers are gone.
   void Forget(std::uint64_t instance) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     writer_of_.erase(instance);
   }
 
  private:
-  std::mutex mutex_;
-  std::unordered_map<std::uint64_t, std::uint64_t> writer_of_;  ///< By instance: who began it.
+  Mutex mutex_;
+  /// By instance: who began it.
+  std::unordered_map<std::uint64_t, std::uint64_t> writer_of_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm

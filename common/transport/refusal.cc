@@ -56,7 +56,7 @@ void RefusalCounter::Add(RefusalCause cause, std::string_view detail) {
   const auto index = static_cast<std::size_t>(cause);
   std::optional<std::uint64_t> left_out;
   {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     ++counts_.at(index);
     if (whole_ == nullptr) left_out = limiters_.at(index).Admit(SystemClock().SteadyNow());
   }
@@ -67,17 +67,17 @@ void RefusalCounter::Add(RefusalCause cause, std::string_view detail) {
 }
 
 RefusalCounts RefusalCounter::counts() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return counts_;
 }
 
 std::uint64_t RefusalCounter::count(RefusalCause cause) const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return counts_.at(static_cast<std::size_t>(cause));
 }
 
 std::uint64_t RefusalCounter::total() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return std::accumulate(counts_.begin(), counts_.end(), std::uint64_t{0});
 }
 

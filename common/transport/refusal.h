@@ -3,9 +3,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <mutex>
 #include <string_view>
 
+#include "common/base/mutex.h"
 #include "common/time/line_limiter.h"
 
 namespace isotherm {
@@ -55,9 +55,10 @@ class RefusalCounter {
 
  private:
   RefusalCounter* const whole_ = nullptr;
-  mutable std::mutex mutex_;  // Guards what follows.
-  RefusalCounts counts_{};
-  std::array<LineLimiter, static_cast<std::size_t>(RefusalCause::kCount)> limiters_{};
+  mutable Mutex mutex_;
+  RefusalCounts counts_ GUARDED_BY(mutex_){};
+  std::array<LineLimiter, static_cast<std::size_t>(RefusalCause::kCount)> limiters_
+      GUARDED_BY(mutex_){};
 };
 
 }  // namespace isotherm

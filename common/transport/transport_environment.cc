@@ -4,10 +4,10 @@
 #include <malloc.h>
 
 #include <cstdlib>
-#include <mutex>
 #include <string_view>
 
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 #include "common/time/line_limiter.h"
 
 namespace isotherm {
@@ -40,7 +40,7 @@ struct TransportEnvironment::LogSink {
     std::string_view text(data.message, data.size);
     while (text.ends_with('\n') || text.ends_with('\0')) text.remove_suffix(1);
     {
-      std::scoped_lock lock(mutex);
+      MutexLock lock(mutex);
       if (LevelOf(data.priority) == LogLevel::kError) last_error = text;
       if (is_quiet) return;
       if (std::uint64_t* refused = RefusalIn(text); refused != nullptr && ++*refused > 1) return;
@@ -50,7 +50,7 @@ struct TransportEnvironment::LogSink {
   }
 
   /// The counter for a message that says that something was refused, otherwise null.
-  std::uint64_t* RefusalIn(std::string_view text) {
+  std::uint64_t* RefusalIn(std::string_view text) REQUIRES(mutex) {
     const auto says = [text](std::string_view words) {
       return text.find(words) != std::string_view::npos;
     };
@@ -62,21 +62,21 @@ struct TransportEnvironment::LogSink {
   }
 
   const Clock& clock;
-  std::mutex mutex;  // Guards what follows.
-  MiddlewareRefusals refusals;
-  LineLimiter limiter{kMaxLogLinesPerSecond, std::chrono::seconds(1)};
-  std::string last_error;
-  bool is_quiet = false;
+  Mutex mutex;
+  MiddlewareRefusals refusals GUARDED_BY(mutex);
+  LineLimiter limiter GUARDED_BY(mutex){kMaxLogLinesPerSecond, std::chrono::seconds(1)};
+  std::string last_error GUARDED_BY(mutex);
+  bool is_quiet GUARDED_BY(mutex) = false;
 };
 
 TransportEnvironment::Quiet::Quiet(const TransportEnvironment& environment)
     : environment_(environment) {
-  std::scoped_lock lock(environment_.sink_->mutex);
+  MutexLock lock(environment_.sink_->mutex);
   environment_.sink_->is_quiet = true;
 }
 
 TransportEnvironment::Quiet::~Quiet() {
-  std::scoped_lock lock(environment_.sink_->mutex);
+  MutexLock lock(environment_.sink_->mutex);
   environment_.sink_->is_quiet = false;
 }
 
@@ -91,17 +91,17 @@ TransportEnvironment::TransportEnvironment(const Clock& clock)
 TransportEnvironment::~TransportEnvironment() { dds_set_log_sink(nullptr, nullptr); }
 
 std::string TransportEnvironment::last_error() const {
-  std::scoped_lock lock(sink_->mutex);
+  MutexLock lock(sink_->mutex);
   return sink_->last_error;
 }
 
 std::uint64_t TransportEnvironment::suppressed_log_lines() const {
-  std::scoped_lock lock(sink_->mutex);
+  MutexLock lock(sink_->mutex);
   return sink_->limiter.suppressed();
 }
 
 MiddlewareRefusals TransportEnvironment::refused() const {
-  std::scoped_lock lock(sink_->mutex);
+  MutexLock lock(sink_->mutex);
   return sink_->refusals;
 }
 

@@ -10,13 +10,13 @@ void CameraHealth::SetWorks(Sensor sensor, bool works) {
 
 void CameraHealth::AddStamping(Sensor sensor, Nanoseconds latency) {
   Entry& entry = At(sensor);
-  std::scoped_lock lock(entry.mutex);
+  MutexLock lock(entry.mutex);
   entry.stamping_ms.Add(ToSeconds(latency) * 1e3);
 }
 
 void CameraHealth::NoteStamp(Sensor sensor, const Stamp& stamp) {
   Entry& entry = At(sensor);
-  std::scoped_lock lock(entry.mutex);
+  MutexLock lock(entry.mutex);
   entry.stamp_sigma_s = ToSeconds(stamp.sigma);
   if (!stamp.synchronised) ++entry.unsynchronised_frames;
 }
@@ -27,7 +27,7 @@ CameraReport CameraHealth::Get(Sensor sensor) const {
   report.state = entry.state;
   report.failures = entry.failures;
   if (entry.blind && report.state != CameraState::kLost) report.state = CameraState::kBlind;
-  std::scoped_lock lock(entry.mutex);
+  MutexLock lock(entry.mutex);
   report.stamp_sigma_s = entry.stamp_sigma_s;
   report.unsynchronised_frames = entry.unsynchronised_frames;
   if (entry.stamping_ms.count() == 0) return report;

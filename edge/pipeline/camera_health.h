@@ -4,8 +4,8 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
-#include <mutex>
 
+#include "common/base/mutex.h"
 #include "common/base/stage_stats.h"
 #include "common/frame/frame.h"
 #include "common/messages/messages.h"
@@ -34,10 +34,10 @@ class CameraHealth {
     std::atomic<CameraState> state{CameraState::kNone};  ///< But for kBlind.
     std::atomic<bool> blind{false};
     std::atomic<std::uint32_t> failures{0};
-    mutable std::mutex mutex;
-    StageStats stamping_ms;  ///< Guarded by `mutex`, as what follows.
-    double stamp_sigma_s = std::numeric_limits<double>::quiet_NaN();
-    std::uint64_t unsynchronised_frames = 0;
+    mutable Mutex mutex;
+    StageStats stamping_ms GUARDED_BY(mutex);
+    double stamp_sigma_s GUARDED_BY(mutex) = std::numeric_limits<double>::quiet_NaN();
+    std::uint64_t unsynchronised_frames GUARDED_BY(mutex) = 0;
   };
   Entry& At(Sensor sensor) { return entries_[static_cast<std::size_t>(sensor)]; }
 

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <map>
-#include <mutex>
 #include <thread>
 
+#include "common/base/mutex.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/pipeline/edge_pipeline.h"
@@ -30,27 +30,27 @@ class SettableClock final : public Clock {
  public:
   explicit SettableClock(CaptureTime start) : wall_(start) {}
   CaptureTime Now() const override {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return wall_;
   }
   SteadyTime SteadyNow() const override {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return steady_;
   }
   void Advance(Nanoseconds duration) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     wall_ += duration;
     steady_ += duration;
   }
   void Step(Nanoseconds step) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     wall_ += step;
   }
 
  private:
-  mutable std::mutex mutex_;
-  CaptureTime wall_;
-  SteadyTime steady_{seconds(1'000)};
+  mutable Mutex mutex_;
+  CaptureTime wall_ GUARDED_BY(mutex_);
+  SteadyTime steady_ GUARDED_BY(mutex_){seconds(1'000)};
 };
 
 /// A camera whose frames arrive without jitter. Before some of them the wall clock is set.

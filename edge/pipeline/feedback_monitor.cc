@@ -6,13 +6,13 @@ namespace isotherm {
 
 void FeedbackMonitor::NoteCapture(CaptureTime capture_time, CaptureTime now) {
   if (time_base_ != TimeBase::kShifted) return;
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   shift_ = std::min(shift_.value_or(Nanoseconds::max()), Nanoseconds(now - capture_time));
 }
 
 void FeedbackMonitor::Add(const Feedback& feedback, CaptureTime arrival) {
   constexpr double kMsPerS = 1e3;
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   newest_ = feedback;
   ++count_;
   const Nanoseconds age = arrival - feedback.capture_time;
@@ -21,13 +21,13 @@ void FeedbackMonitor::Add(const Feedback& feedback, CaptureTime arrival) {
 }
 
 std::optional<Feedback> FeedbackMonitor::newest() const {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   return newest_;
 }
 
 FeedbackLatency FeedbackMonitor::latency() const {
   constexpr double kSPerMs = 1e-3;
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   FeedbackLatency latency;
   latency.count = count_;
   if (latency_.count() == 0) return latency;

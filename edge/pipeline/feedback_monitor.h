@@ -1,8 +1,8 @@
 #pragma once
 
-#include <mutex>
 #include <optional>
 
+#include "common/base/mutex.h"
 #include "common/base/stage_stats.h"
 #include "common/messages/messages.h"
 #include "edge/pipeline/time_base.h"
@@ -26,11 +26,12 @@ class FeedbackMonitor {
 
  private:
   const TimeBase time_base_;
-  mutable std::mutex mutex_;          // Guards what follows.
-  std::optional<Nanoseconds> shift_;  ///< Wall clock minus capture times.
-  std::optional<Feedback> newest_;
-  std::uint64_t count_ = 0;
-  StageStats latency_;
+  mutable Mutex mutex_;
+  /// Wall clock minus capture times.
+  std::optional<Nanoseconds> shift_ GUARDED_BY(mutex_);
+  std::optional<Feedback> newest_ GUARDED_BY(mutex_);
+  std::uint64_t count_ GUARDED_BY(mutex_) = 0;
+  StageStats latency_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm

@@ -13,19 +13,19 @@ Status NoLink() { return Unavailable("the network is not there yet"); }
 
 void LatePublisher::Run(std::stop_token stop, const PublisherHandlers& handlers) {
   Result<std::unique_ptr<Publisher>> connected = connect_(stop, [this](const Status& reason) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     problem_ = reason.message();
   });
   if (!connected) {
     if (!stop.stop_requested()) {
       LOG(Publisher, Error) << "nothing will be published: " << connected.error().message();
-      std::scoped_lock lock(mutex_);
+      MutexLock lock(mutex_);
       problem_ = "nothing is published: " + connected.error().message();
     }
     return;
   }
   {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     owned_ = std::move(*connected);
     problem_.clear();
     if (policy_) owned_->SetPolicy(*policy_);
@@ -42,14 +42,14 @@ void LatePublisher::Run(std::stop_token stop, const PublisherHandlers& handlers)
 
 bool LatePublisher::WaitForGround(Nanoseconds timeout, std::stop_token stop) {
   {
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (!changed_.wait_for(lock, stop, timeout, [this] { return link() != nullptr; })) return false;
   }
   return link()->WaitForGround(timeout, std::move(stop));
 }
 
 Status LatePublisher::BeginSession(const RigDescription& rig) {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   rig_ = rig;
   return link() != nullptr ? link()->BeginSession(rig) : OkStatus();
 }
@@ -79,14 +79,14 @@ bool LatePublisher::Drain(Nanoseconds timeout) {
 }
 
 void LatePublisher::SetPolicy(PublishPolicy policy) {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   policy_ = policy;
   if (link() != nullptr) link()->SetPolicy(policy);
 }
 
 PublisherStats LatePublisher::stats() const {
   if (link() != nullptr) return link()->stats();
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   PublisherStats stats;
   stats.problem = problem_;
   return stats;

@@ -4,10 +4,10 @@
 #include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 
+#include "common/base/mutex.h"
 #include "edge/publisher/publisher.h"
 
 namespace isotherm {
@@ -43,12 +43,12 @@ class LatePublisher final : public Publisher {
   Publisher* link() const { return link_.load(); }
 
   const Connect connect_;
-  mutable std::mutex mutex_;  // Guards what follows.
+  mutable Mutex mutex_;
   std::condition_variable_any changed_;
-  std::unique_ptr<Publisher> owned_;
-  std::optional<RigDescription> rig_;
-  std::optional<PublishPolicy> policy_;
-  std::string problem_;
+  std::unique_ptr<Publisher> owned_ GUARDED_BY(mutex_);
+  std::optional<RigDescription> rig_ GUARDED_BY(mutex_);
+  std::optional<PublishPolicy> policy_ GUARDED_BY(mutex_);
+  std::string problem_ GUARDED_BY(mutex_);
   std::atomic<Publisher*> link_{nullptr};
 };
 

@@ -7,9 +7,9 @@
 #include <array>
 #include <atomic>
 #include <condition_variable>
-#include <mutex>
 
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 #include "common/concurrency/latest_value.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/qos.h"
@@ -116,30 +116,32 @@ class DdsPublisher final : public Publisher {
   /// Messages for other rigs share the topics.
   bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
   void TakeReceipts();
-  void OnReceipt(const Received<Receipt>& received);
+  void OnReceipt(const Received<Receipt>& received) REQUIRES(receipts_mutex_);
   void OnFeedback(const Received<Feedback>& received, const PublisherHandlers& handlers);
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
-  /// Says once what the ground makes of this rig. With mutex_ held.
-  void LogRelation();
-  /// Why what the ground says of this session cannot be. With mutex_ held.
-  std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const;
-  std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const;
+  /// Says once what the ground makes of this rig.
+  void LogRelation() REQUIRES(mutex_);
+  /// Why what the ground says of this session cannot be.
+  std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_);
+  std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const
+      REQUIRES(mutex_);
   std::optional<std::uint64_t> session() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return session_;
   }
   bool IsGroundReady() const;
   /// Whether the ground that follows this rig, or may, reads what `writer` writes: an onlooker is
-  /// not waited for. With mutex_ held.
+  /// not waited for.
   template <typename Frame>
-  bool IsAwaited(const Writer<Frame>& writer) const {
+  bool IsAwaited(const Writer<Frame>& writer) const REQUIRES(mutex_) {
     if (relation_.IsRefused(clock_.SteadyNow())) return false;  // It will never confirm.
     return grounds_.MayHaveFollower([&](PeerHandle peer) { return writer.Reaches(peer); });
   }
-  /// As above, or somebody who has just come. With mutex_ held.
+  /// As above, or somebody who has just come.
   template <typename Frame>
-  bool MayBeAwaited(const Writer<Frame>& writer, Stream* stream, SteadyTime now) const {
+  bool MayBeAwaited(const Writer<Frame>& writer, Stream* stream, SteadyTime now) const
+      REQUIRES(mutex_) {
     if (relation_.IsRefused(now)) return false;
     const int readers = writer.matched_readers();
     if (readers > stream->readers) stream->reader_came_at = now;
@@ -154,22 +156,24 @@ class DdsPublisher final : public Publisher {
   const Hello own_hello_;
   RefusalCounter refusals_;
   EdgeEndpoints ends_;
-  std::mutex receipts_mutex_;  // Run() takes receipts, and so does Drain(), before or after Run().
+  // Run() takes receipts, and so does Drain(), before or after Run().
+  Mutex receipts_mutex_;
   LatestValue<Receipt> receipt_;
   std::atomic<PublishPolicy> policy_;
 
-  mutable std::mutex mutex_;  // Guards what follows.
-  std::condition_variable changed_;
-  std::optional<std::uint64_t> session_;
-  Stream depth_;
-  Stream thermal_;
-  std::uint64_t flow_waits_ = 0;
-  std::uint64_t flow_timeouts_ = 0;
-  std::optional<ClockEcho> clock_echo_;  // Not sent yet.
-  GroundRegister grounds_;
-  GroundRelation relation_;
-  bool ground_present_ = false;
-  std::optional<SteadyTime> stopped_at_;  // When it was first seen that stop was requested.
+  mutable Mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<std::uint64_t> session_ GUARDED_BY(mutex_);
+  Stream depth_ GUARDED_BY(mutex_);
+  Stream thermal_ GUARDED_BY(mutex_);
+  std::uint64_t flow_waits_ GUARDED_BY(mutex_) = 0;
+  std::uint64_t flow_timeouts_ GUARDED_BY(mutex_) = 0;
+  std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);  // Not sent yet.
+  GroundRegister grounds_ GUARDED_BY(mutex_);
+  GroundRelation relation_ GUARDED_BY(mutex_);
+  bool ground_present_ GUARDED_BY(mutex_) = false;
+  // When it was first seen that stop was requested.
+  std::optional<SteadyTime> stopped_at_ GUARDED_BY(mutex_);
 };
 
 Status DdsPublisher::Open(const Participant& participant) {
@@ -209,8 +213,9 @@ void DdsPublisher::Run(std::stop_token stop, const PublisherHandlers& handlers) 
 }
 
 void DdsPublisher::TakeReceipts() {
-  std::scoped_lock lock(receipts_mutex_);
-  ends_.receipts.Take([&](Received<Receipt>&& receipt) { OnReceipt(receipt); });
+  MutexLock lock(receipts_mutex_);
+  ends_.receipts.Take([&](Received<Receipt>&& receipt)
+                          REQUIRES(receipts_mutex_) { OnReceipt(receipt); });
 }
 
 void DdsPublisher::OnPeer(const Received<Hello>& peer) {
@@ -220,7 +225,7 @@ void DdsPublisher::OnPeer(const Received<Hello>& peer) {
     refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
     return;
   }
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   grounds_.Add(peer.writer, ends_.peers.PeerOf(peer.writer));
 }
 
@@ -229,7 +234,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   const ClockEcho echo{.ping = receipt.clock_ping, .received = clock_.Now()};
   const SteadyTime now = clock_.SteadyNow();
   const PeerHandle sender = ends_.receipts.PeerOf(received.writer);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const bool ours = IsOurs(received.edge_id);
   const bool accepted = receipt.verdict == SessionVerdict::kFollowed;
   // What it says of another session of this name takes nothing back of what it said of ours.
@@ -270,7 +275,7 @@ void DdsPublisher::OnFeedback(const Received<Feedback>& received,
   const PeerHandle sender = ends_.feedback.PeerOf(received.writer);
   std::optional<RefusalCause> cause;
   {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     cause = RefusalOf(feedback, sender);
   }
   if (cause) {
@@ -290,9 +295,9 @@ std::optional<RefusalCause> DdsPublisher::RefusalOf(const Feedback& feedback,
 }
 
 void DdsPublisher::LookForGround() {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   // The next one may be another version.
-  grounds_.RemoveIf([this](const GroundRegister::Ground& ground) {
+  grounds_.RemoveIf([this](const GroundRegister::Ground& ground) REQUIRES(mutex_) {
     const bool is_gone = ends_.peers.PeerOf(ground.hello_writer) == 0;
     if (is_gone) depth_.readers = thermal_.readers = 0;  // Who reads now may be its successor.
     return is_gone;
@@ -318,7 +323,7 @@ void DdsPublisher::LogRelation() {
 }
 
 bool DdsPublisher::IsGroundReady() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return grounds_.HasFollower(
       [this](PeerHandle peer) { return ends_.depth.Reaches(peer) && ends_.thermal.Reaches(peer); });
 }
@@ -327,7 +332,7 @@ bool DdsPublisher::WaitForGround(Nanoseconds timeout, std::stop_token stop) {
   const SteadyTime deadline = clock_.SteadyNow() + timeout;
   while (!IsGroundReady()) {
     if (stop.stop_requested() || clock_.SteadyNow() >= deadline) return false;
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     changed_.wait_for(lock, kPollInterval);
   }
   return true;
@@ -335,7 +340,7 @@ bool DdsPublisher::WaitForGround(Nanoseconds timeout, std::stop_token stop) {
 
 Status DdsPublisher::BeginSession(const RigDescription& rig) {
   {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     session_ = rig.session;
     for (Stream* stream : {&depth_, &thermal_}) {
       stream->counts = {};
@@ -351,7 +356,7 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
 template <typename Frame>
 void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
                                const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   bool waited = false;
   while (!stream->window.HasRoom() && MayBeAwaited(writer, stream, clock_.SteadyNow())) {
     const SteadyTime now = clock_.SteadyNow();
@@ -372,7 +377,7 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
 
 bool DdsPublisher::HasTimeLeft() {
   const SteadyTime now = clock_.SteadyNow();
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (!stopped_at_) stopped_at_ = now;
   return now < *stopped_at_ + kStopWriting;
 }
@@ -387,16 +392,16 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
   }
   if (policy_ == PublishPolicy::kLossless) WaitForRoom(*writer, stream, stop);
   if (stop.stop_requested() && !HasTimeLeft()) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     ++stream->counts.failed;
     return NoTimeLeft();
   }
   {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     stream->published.Note(number, frame.header.capture_time);
   }
   const Status written = writer->Write(options_.edge_id, frame);
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (!written.ok()) {
     ++stream->counts.failed;
     return written;
@@ -409,7 +414,7 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
 
 Status DdsPublisher::Publish(EdgeStatus status) {
   {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (session_) status.session = *session_;
     status.depth.published = depth_.counts.published;
     status.depth.next_frame_number = depth_.counts.next_frame_number;
@@ -423,12 +428,12 @@ Status DdsPublisher::Publish(EdgeStatus status) {
 }
 
 bool DdsPublisher::HasNobodyToWaitFor() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return !IsAwaited(ends_.depth) && !IsAwaited(ends_.thermal);
 }
 
 bool DdsPublisher::IsHandled() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const std::optional<Receipt> receipt = receipt_.Get();
   if (depth_.counts.published + thermal_.counts.published == 0) return true;
   return receipt && receipt->session == session_ &&
@@ -449,14 +454,14 @@ bool DdsPublisher::Drain(Nanoseconds timeout) {
   for (TakeReceipts(); !IsHandled(); TakeReceipts()) {
     if (HasNobodyToWaitFor()) return true;
     if (left() == Nanoseconds(0)) return false;
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     changed_.wait_for(lock, kPollInterval);
   }
   return true;
 }
 
 PublisherStats DdsPublisher::stats() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return {.depth = depth_.counts,
           .thermal = thermal_.counts,
           .flow_waits = flow_waits_,

@@ -23,7 +23,7 @@ MergeQueue::MergeQueue(std::size_t cameras, std::size_t capacity, OverflowPolicy
 
 void MergeQueue::Push(std::size_t camera, SourceItem item, const std::stop_token& stop) {
   CHECK(camera < cameras_);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   Lane& lane = lanes_[camera];
   if (policy_ == OverflowPolicy::kBlock) {
     // At the end it may hold one more: what was captured is not lost.
@@ -37,14 +37,15 @@ void MergeQueue::Push(std::size_t camera, SourceItem item, const std::stop_token
 }
 
 void MergeQueue::End(std::size_t camera) {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   lanes_[camera].ended = true;
   changed_.notify_all();
 }
 
 SourceItem MergeQueue::Pop(Nanoseconds timeout, const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, stop, timeout, [this] { return Next() != nullptr || AllEnded(); });
+  MutexLock lock(mutex_);
+  changed_.wait_for(lock, stop, timeout,
+                    [this]() REQUIRES(mutex_) { return Next() != nullptr || AllEnded(); });
   Lane* lane = Next();
   if (lane == nullptr) return AllEnded() ? SourceItem(EndOfStream{}) : SourceItem(NothingYet{});
   SourceItem item = std::move(lane->items.front());

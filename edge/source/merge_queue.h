@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 
+#include "common/base/mutex.h"
 #include "common/concurrency/bounded_queue.h"
 #include "edge/source/frame_source.h"
 
@@ -40,16 +40,16 @@ class MergeQueue {
     bool ended = false;
   };
   /// The lane whose first item is next; nullptr if there is none.
-  Lane* Next();
-  bool AllEnded() const;
+  Lane* Next() REQUIRES(mutex_);
+  bool AllEnded() const REQUIRES(mutex_);
 
   const std::size_t cameras_;
   const std::size_t capacity_;
   const OverflowPolicy policy_;
   const std::function<void(Sensor)> on_drop_;
-  std::mutex mutex_;
+  Mutex mutex_;
   std::condition_variable_any changed_;
-  std::array<Lane, kMaxCameras> lanes_;
+  std::array<Lane, kMaxCameras> lanes_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm

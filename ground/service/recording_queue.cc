@@ -31,10 +31,11 @@ void RecordingQueue::Add(Item item, std::size_t bytes) {
 bool RecordingQueue::Offer(Item item, std::chrono::nanoseconds patience,
                            const std::stop_token& stop) {
   const std::size_t bytes = Bytes(item);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (!HasRoom(bytes)) {
     if (!moved_ || patience.count() == 0) return false;
-    if (!changed_.wait_for(lock, stop, patience, [&] { return HasRoom(bytes); })) {
+    if (!changed_.wait_for(lock, stop, patience,
+                           [&]() REQUIRES(mutex_) { return HasRoom(bytes); })) {
       moved_ = false;
       return false;
     }
@@ -45,15 +46,16 @@ bool RecordingQueue::Offer(Item item, std::chrono::nanoseconds patience,
 
 void RecordingQueue::Push(Item item) {
   const std::size_t bytes = Bytes(item);
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   Add(std::move(item), bytes);
 }
 
 RecordingQueue::Outcome RecordingQueue::Pop(std::chrono::nanoseconds timeout,
                                             const std::stop_token& stop,
                                             std::optional<Item>& item) {
-  std::unique_lock lock(mutex_);
-  if (!changed_.wait_for(lock, stop, timeout, [this] { return !items_.empty(); }))
+  MutexLock lock(mutex_);
+  if (!changed_.wait_for(lock, stop, timeout,
+                         [this]() REQUIRES(mutex_) { return !items_.empty(); }))
     return stop.stop_requested() ? Outcome::kEnd : Outcome::kTimeout;
   item = std::move(items_.front().first);
   bytes_ -= items_.front().second;

@@ -4,10 +4,10 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 
+#include "common/base/mutex.h"
 #include "ground/service/session_item.h"
 
 namespace isotherm {
@@ -34,15 +34,17 @@ class RecordingQueue {
               std::optional<Item>& item);
 
  private:
-  bool HasRoom(std::size_t bytes) const;
-  void Add(Item item, std::size_t bytes);
+  bool HasRoom(std::size_t bytes) const REQUIRES(mutex_);
+  void Add(Item item, std::size_t bytes) REQUIRES(mutex_);
 
   const Limits limits_;
-  std::mutex mutex_;
+  Mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<std::pair<Item, std::size_t>> items_;  ///< With their size in bytes.
-  std::size_t bytes_ = 0;
-  bool moved_ = true;  ///< Something was taken since somebody waited in vain.
+  /// With their size in bytes.
+  std::deque<std::pair<Item, std::size_t>> items_ GUARDED_BY(mutex_);
+  std::size_t bytes_ GUARDED_BY(mutex_) = 0;
+  /// Something was taken since somebody waited in vain.
+  bool moved_ GUARDED_BY(mutex_) = true;
 };
 
 }  // namespace isotherm

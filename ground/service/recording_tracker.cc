@@ -37,13 +37,13 @@ std::string DiskText(const RecordingProgress& progress) {
 }
 
 RecordingProgress RecordingTracker::WaitUntilClosed(std::chrono::nanoseconds patience) const {
-  std::unique_lock lock(mutex_);
-  closed_.wait_for(lock, patience, [this] { return progress_.closed; });
+  MutexLock lock(mutex_);
+  closed_.wait_for(lock, patience, [this]() REQUIRES(mutex_) { return progress_.closed; });
   return progress_;
 }
 
 void RecordingTracker::CountLeftOut(Sensor sensor, NotRecorded reason) {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   NotRecordedCounts& counts =
       sensor == Sensor::kDepth ? progress_.depth_left_out : progress_.thermal_left_out;
   ++counts[static_cast<std::size_t>(reason)];

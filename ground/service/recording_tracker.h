@@ -5,9 +5,9 @@
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
-#include <mutex>
 #include <string>
 
+#include "common/base/mutex.h"
 #include "common/base/status.h"
 #include "common/frame/frame.h"
 #include "common/recording/recording.h"
@@ -49,7 +49,7 @@ std::string DiskText(const RecordingProgress& progress);
 class RecordingTracker {
  public:
   RecordingProgress Get() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return progress_;
   }
   /// The progress as soon as it is closed, or as it is after `patience`.
@@ -58,15 +58,15 @@ class RecordingTracker {
   /// `change` gets the progress.
   template <typename Change>
   void Update(const Change& change) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     change(progress_);
     if (progress_.closed) closed_.notify_all();
   }
 
  private:
-  mutable std::mutex mutex_;
-  mutable std::condition_variable closed_;
-  RecordingProgress progress_;
+  mutable Mutex mutex_;
+  mutable std::condition_variable_any closed_;
+  RecordingProgress progress_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm

@@ -80,7 +80,7 @@ std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
 void ResultWriter::Hand(EndedScan ended, const std::stop_token& stop) {
   ++board_.scans_being_written;
   const Nanoseconds patience = ended.start.rig.waits_for_ground ? kReplayPatience : Nanoseconds(0);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (!WaitForRoom(lock, patience, stop)) {
     --board_.scans_being_written;
     lock.unlock();
@@ -90,9 +90,8 @@ void ResultWriter::Hand(EndedScan ended, const std::stop_token& stop) {
   changed_.notify_all();
 }
 
-bool ResultWriter::WaitForRoom(std::unique_lock<std::mutex>& lock, Nanoseconds patience,
-                               const std::stop_token& stop) {
-  const auto has_room = [this] { return !waiting_; };
+bool ResultWriter::WaitForRoom(MutexLock& lock, Nanoseconds patience, const std::stop_token& stop) {
+  const auto has_room = [this]() REQUIRES(mutex_) { return !waiting_; };
   if (changed_.wait_for(lock, stop, patience, has_room)) return true;
   if (!stop.stop_requested()) return false;
   changed_.wait(lock, has_room);
@@ -115,8 +114,9 @@ void ResultWriter::GiveUp(const EndedScan& ended) {
 }
 
 std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
-  std::unique_lock lock(mutex_);
-  if (!changed_.wait(lock, stop, [this] { return waiting_.has_value(); })) return std::nullopt;
+  MutexLock lock(mutex_);
+  if (!changed_.wait(lock, stop, [this]() REQUIRES(mutex_) { return waiting_.has_value(); }))
+    return std::nullopt;
   std::optional<EndedScan> ended = std::exchange(waiting_, std::nullopt);
   changed_.notify_all();
   return ended;

@@ -3,10 +3,10 @@
 #include <condition_variable>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <stop_token>
 
+#include "common/base/mutex.h"
 #include "common/time/clock.h"
 #include "common/time/thread_progress.h"
 #include "ground/export/json.h"
@@ -57,8 +57,8 @@ class ResultWriter {
   static constexpr Nanoseconds kReplayPatience = std::chrono::seconds(10);
 
   /// False if there is still no room after `patience`.
-  bool WaitForRoom(std::unique_lock<std::mutex>& lock, Nanoseconds patience,
-                   const std::stop_token& stop);
+  bool WaitForRoom(MutexLock& lock, Nanoseconds patience, const std::stop_token& stop)
+      REQUIRES(mutex_);
   void GiveUp(const EndedScan& ended);
   std::optional<EndedScan> Take(const std::stop_token& stop);
   void Write(EndedScan ended);
@@ -72,9 +72,9 @@ class ResultWriter {
   ScanBoard& board_;
   ThreadProgress& progress_;
   const std::function<void()> written_;
-  std::mutex mutex_;
+  Mutex mutex_;
   std::condition_variable_any changed_;
-  std::optional<EndedScan> waiting_;
+  std::optional<EndedScan> waiting_ GUARDED_BY(mutex_);
   Status status_;
   Status given_up_;  ///< Of the reconstruction thread.
 };

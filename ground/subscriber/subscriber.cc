@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <deque>
-#include <mutex>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 #include "common/time/line_limiter.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/wait_set.h"
@@ -138,11 +138,12 @@ class DdsSubscriber final : public Subscriber {
   SteadyTime receipt_due_{};
   int frames_since_receipt_ = 0;
 
-  mutable std::mutex mutex_;  // Guards what follows.
-  std::string edge_id_;
-  std::uint64_t next_command_;
-  SubscriberStats stats_;
-  std::deque<SessionCounters> counters_;  ///< Oldest first; at most kMaxSessions.
+  mutable Mutex mutex_;
+  std::string edge_id_ GUARDED_BY(mutex_);
+  std::uint64_t next_command_ GUARDED_BY(mutex_);
+  SubscriberStats stats_ GUARDED_BY(mutex_);
+  /// Oldest first; at most kMaxSessions.
+  std::deque<SessionCounters> counters_ GUARDED_BY(mutex_);
 };
 
 DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& options,
@@ -287,7 +288,7 @@ void DdsSubscriber::Refuse(const RigSample& sample, RefusalCause cause) {
 }
 
 void DdsSubscriber::FollowFirst(const std::string& edge_id) {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (!edge_id_.empty()) return;
   edge_id_ = edge_id;
   LOG(Subscriber, Info) << "following the first rig seen, edge_id=" << edge_id;
@@ -295,7 +296,7 @@ void DdsSubscriber::FollowFirst(const std::string& edge_id) {
 
 bool DdsSubscriber::IsFollowed(const std::string& edge_id) {
   FollowFirst(edge_id);
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   if (edge_id == edge_id_) return true;
   ++stats_.other_edge;
   return false;
@@ -319,7 +320,7 @@ void DdsSubscriber::Housekeep() {
   CloseSessions(now);
   if (now >= look_due_) LookAround(now);
   KeepCounters();
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   stats_.counters = counters_.empty() ? SessionCounters() : counters_.back();
   stats_.refusals = refusals_.counts();
   stats_.refused = refusals_.total();
@@ -341,7 +342,7 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   if (other_rigs_.Update(!others_text.empty(), now)) {
     LOG(Subscriber, Warning) << others_text;
   }
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   stats_.rig_problem =
       rivals_.empty() ? others_text
                       : fmt::format("{} MORE of the name \"{}\", refused: give each rig a name",
@@ -395,7 +396,7 @@ void DdsSubscriber::TellOverflow(SteadyTime now) {
 }
 
 std::string DdsSubscriber::followed() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return edge_id_;
 }
 
@@ -404,7 +405,7 @@ void DdsSubscriber::KeepCounters() {
   const std::vector<std::uint64_t> sessions = sessions_.sessions();
   // The streams know no more than two; the counters of older ones are as they were.
   const std::size_t first = sessions.size() - std::min<std::size_t>(sessions.size(), 2);
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   for (std::size_t i = first; i < sessions.size(); ++i) {
     const std::uint64_t session = sessions[i];
     SessionCounters counters = sessions_.Counters(depth_.tally(session), thermal_.tally(session));
@@ -473,7 +474,7 @@ Status DdsSubscriber::Publish(const Feedback& feedback) {
 }
 
 Result<std::uint64_t> DdsSubscriber::Send(Command command) {
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const std::string edge_id = edge_id_;
   command.number = next_command_++;
   lock.unlock();
@@ -484,12 +485,12 @@ Result<std::uint64_t> DdsSubscriber::Send(Command command) {
 }
 
 SubscriberStats DdsSubscriber::stats() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return stats_;
 }
 
 SessionCounters DdsSubscriber::counters(std::uint64_t session) const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   const auto kept = std::ranges::find(counters_, session, &SessionCounters::session);
   if (kept != counters_.end()) return *kept;
   SessionCounters unknown;

@@ -17,8 +17,6 @@
 namespace isotherm {
 namespace {
 
-constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
-
 /// The block table may take this fraction of the memory limit; the rest is for voxels.
 constexpr double kTableFraction = 0.25;
 

@@ -35,7 +35,7 @@ const RecordRow* ThermalRecords::Find(std::int32_t block, int row) const {
 RecordRow& ThermalRecords::Row(std::int32_t block, int row) {
   std::uint32_t& entry = Entry(block, row);
   if (entry != 0) return RowAt(entry);
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   Part& part = parts_[static_cast<std::size_t>(block / kBlocksPerPart)];
   if (part.pages.empty() || part.used == kRowsPerPage) {
     part.pages.push_back(page_count_++);
@@ -53,6 +53,7 @@ bool ThermalRecords::Commit(std::int32_t blocks) {
 template <typename Visit>
 void ThermalRecords::ForPages(std::int32_t first_block, std::int32_t count,
                               const Visit& visit) const {
+  const MutexLock lock(mutex_);
   for (std::int32_t block = first_block; block + kBlocksPerPart <= first_block + count;
        block += kBlocksPerPart) {
     const auto part = static_cast<std::size_t>(block / kBlocksPerPart);

@@ -2,10 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <mutex>
 #include <utility>
 #include <vector>
 
+#include "common/base/mutex.h"
 #include "ground/thermal/thermal_record.h"
 #include "ground/tsdf/tsdf_volume.h"
 
@@ -36,7 +36,10 @@ class ThermalRecords {
   /// Has rows that were given back read in the background.
   void Fetch(std::int32_t first_block, std::int32_t count) const;
   /// Bytes of all rows, in memory or spilled.
-  std::size_t memory_bytes() const { return page_count_ * kPageBytes; }
+  std::size_t memory_bytes() const {
+    const MutexLock lock(mutex_);
+    return page_count_ * kPageBytes;
+  }
 
  private:
   static constexpr std::uint32_t kRowsPerPage = 32;
@@ -59,9 +62,9 @@ class ThermalRecords {
 
   GrowingArena index_;  ///< Per block and row: 0 = none, else page * kRowsPerPage + row + 1.
   GrowingArena pages_;
-  std::mutex mutex_;  ///< Guards what follows; taken once per new row.
-  std::vector<Part> parts_;
-  std::uint32_t page_count_ = 0;
+  mutable Mutex mutex_;  ///< Taken once per new row.
+  std::vector<Part> parts_ GUARDED_BY(mutex_);
+  std::uint32_t page_count_ GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace isotherm

@@ -3,9 +3,9 @@
 
 #include <condition_variable>
 #include <memory>
-#include <mutex>
 #include <optional>
 
+#include "common/base/mutex.h"
 #include "common/transport/testing/test_domain.h"
 #include "ground/subscriber/subscriber.h"
 #include "tests/link/edge_side.h"
@@ -36,7 +36,7 @@ class ClockLinkTest : public ::testing::Test {
     options.edge_id = "test-edge";
     SubscriberHandlers handlers;
     handlers.clock = [this](const SessionClock& counters) {
-      std::scoped_lock lock(mutex_);
+      MutexLock lock(mutex_);
       if (counters.offset) counters_ = counters;
       changed_.notify_all();
     };
@@ -54,7 +54,7 @@ class ClockLinkTest : public ::testing::Test {
     status.scan_state = ScanState::kScanning;
     status.clock.synchronised = true;
     const auto deadline = std::chrono::steady_clock::now() + kLinkPatience;
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     while (!counters_ && std::chrono::steady_clock::now() < deadline) {
       lock.unlock();
       EXPECT_TRUE(edge.publisher().Publish(status).ok());
@@ -67,9 +67,9 @@ class ClockLinkTest : public ::testing::Test {
   SystemClock clock_;
   TransportEnvironment environment_{clock_};
   TestDomain domain_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::optional<SessionClock> counters_;
+  Mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<SessionClock> counters_ GUARDED_BY(mutex_);
 };
 
 TEST_F(ClockLinkTest, F18AClockThatIsAheadIsMeasuredAndAlarmed) {

@@ -3,11 +3,11 @@
 #include <condition_variable>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
 
+#include "common/base/mutex.h"
 #include "ground/subscriber/subscriber.h"
 #include "tests/link/edge_side.h"
 
@@ -26,16 +26,16 @@ class GroundSide {
     handlers.depth = [this](ReceivedDepth item) { Take(*item.encoded, &depth_); };
     handlers.thermal = [this](ReceivedThermal item) { Take(*item.encoded, &thermal_); };
     handlers.external_odometry = [this](const ExternalOdometrySample& sample) {
-      Update([&] { external_odometry_.push_back(sample.number); });
+      Update([&]() REQUIRES(mutex_) { external_odometry_.push_back(sample.number); });
     };
     handlers.rig = [this](const RigDescription& rig) {
-      Update([&] { rig_session_ = rig.session; });
+      Update([&]() REQUIRES(mutex_) { rig_session_ = rig.session; });
     };
     handlers.command_result = [this](const CommandResult& result) {
-      Update([&] { result_ = result; });
+      Update([&]() REQUIRES(mutex_) { result_ = result; });
     };
     handlers.session_end = [this](const SessionCounters& counters) {
-      Update([&] { ended_.push_back(counters); });
+      Update([&]() REQUIRES(mutex_) { ended_.push_back(counters); });
     };
     subscriber_ = std::move(*Subscriber::Create(*participant_, clock, options, handlers));
     receiver_ = std::jthread([this](const std::stop_token& stop) { subscriber_->Run(stop); });
@@ -49,45 +49,49 @@ class GroundSide {
 
   /// The counters of the session that ended as number `count`.
   std::optional<SessionCounters> AwaitSessionEnd(std::size_t count = 1) {
-    std::unique_lock lock(mutex_);
-    if (!changed_.wait_for(lock, kLinkPatience, [&] { return ended_.size() >= count; })) return {};
+    MutexLock lock(mutex_);
+    if (!changed_.wait_for(lock, kLinkPatience,
+                           [&]() REQUIRES(mutex_) { return ended_.size() >= count; }))
+      return {};
     return ended_[count - 1];
   }
   bool AwaitDepth(std::size_t count) {
-    std::unique_lock lock(mutex_);
-    return changed_.wait_for(lock, kLinkPatience, [&] { return depth_.size() >= count; });
+    MutexLock lock(mutex_);
+    return changed_.wait_for(lock, kLinkPatience,
+                             [&]() REQUIRES(mutex_) { return depth_.size() >= count; });
   }
   std::vector<std::uint64_t> AwaitExternalOdometry(std::size_t count) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kLinkPatience, [&] { return external_odometry_.size() >= count; });
+    MutexLock lock(mutex_);
+    changed_.wait_for(lock, kLinkPatience,
+                      [&]() REQUIRES(mutex_) { return external_odometry_.size() >= count; });
     return external_odometry_;
   }
   std::optional<CommandResult> AwaitResult() {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kLinkPatience, [&] { return result_.has_value(); });
+    MutexLock lock(mutex_);
+    changed_.wait_for(lock, kLinkPatience, [&]() REQUIRES(mutex_) { return result_.has_value(); });
     return result_;
   }
   std::vector<std::uint64_t> depth() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return depth_;
   }
   std::vector<std::uint64_t> thermal() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return thermal_;
   }
   int corrupt() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return corrupt_;
   }
   std::optional<std::uint64_t> rig_session() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return rig_session_;
   }
 
  private:
   template <typename Function>
   void Update(Function update) {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     update();
     changed_.notify_all();
   }
@@ -100,7 +104,7 @@ class GroundSide {
     for (std::size_t i = 0; i < frame.image.payload.size(); i += kMarkEvery) {
       good = good && frame.image.payload[i] == Mark(number, i);
     }
-    Update([&] {
+    Update([&]() REQUIRES(mutex_) {
       numbers->push_back(number);
       if (!good) ++corrupt_;
     });
@@ -109,13 +113,15 @@ class GroundSide {
   const Nanoseconds work_per_frame_;
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Subscriber> subscriber_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<std::uint64_t> depth_, thermal_, external_odometry_;
-  std::optional<std::uint64_t> rig_session_;
-  std::optional<CommandResult> result_;
-  std::vector<SessionCounters> ended_;
-  int corrupt_ = 0;
+  mutable Mutex mutex_;
+  std::condition_variable_any changed_;
+  std::vector<std::uint64_t> depth_ GUARDED_BY(mutex_);
+  std::vector<std::uint64_t> thermal_ GUARDED_BY(mutex_);
+  std::vector<std::uint64_t> external_odometry_ GUARDED_BY(mutex_);
+  std::optional<std::uint64_t> rig_session_ GUARDED_BY(mutex_);
+  std::optional<CommandResult> result_ GUARDED_BY(mutex_);
+  std::vector<SessionCounters> ended_ GUARDED_BY(mutex_);
+  int corrupt_ GUARDED_BY(mutex_) = 0;
   std::jthread receiver_;
 };
 

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <fstream>
+#include <mutex>
 #include <sstream>
 
 #include "tests/support/process.h"
@@ -87,7 +88,7 @@ void MachineLoad::Watch(const std::stop_token& stop) {
     never.wait_for(lock, stop, kWindow, [] { return false; });
     if (stop.stop_requested()) return;
     const ProcessorTime now = Read();
-    const std::scoped_lock worst_lock(mutex_);
+    const MutexLock worst_lock(mutex_);
     worst_ = std::max(worst_, OthersFraction(before, now));
     before = now;
   }
@@ -96,7 +97,7 @@ void MachineLoad::Watch(const std::stop_token& stop) {
 double MachineLoad::others_fraction() const { return OthersFraction(start_, Read()); }
 
 double MachineLoad::worst_others_fraction() const {
-  const std::scoped_lock lock(mutex_);
+  const MutexLock lock(mutex_);
   return std::max(worst_, others_fraction());
 }
 

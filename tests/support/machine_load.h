@@ -1,10 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <stop_token>
 #include <string>
 #include <thread>
+
+#include "common/base/mutex.h"
 
 namespace isotherm::system_test {
 
@@ -39,8 +40,8 @@ class MachineLoad {
   void Watch(const std::stop_token& stop);
 
   const ProcessorTime start_;
-  mutable std::mutex mutex_;
-  double worst_ = 0.0;
+  mutable Mutex mutex_;
+  double worst_ GUARDED_BY(mutex_) = 0.0;
   std::jthread thread_;
 };
 

@@ -112,26 +112,27 @@ std::optional<ExitStatus> Process::WaitForExit(Seconds timeout) {
   CHECK(waitpid(pid_, &status, 0) == pid_);
   exit_status_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   // Grandchildren may hold the pipe open for longer; the program's own output is complete by now.
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, std::chrono::seconds(2), [this] { return output_ended_; });
+  MutexLock lock(mutex_);
+  changed_.wait_for(lock, std::chrono::seconds(2),
+                    [this]() REQUIRES(mutex_) { return output_ended_; });
   return exit_status_;
 }
 
 bool Process::WaitForOutput(std::string_view text, Seconds timeout, int times) {
-  std::unique_lock lock(mutex_);
-  const auto seen = [&] {
+  MutexLock lock(mutex_);
+  const auto seen = [&]() REQUIRES(mutex_) {
     std::size_t at = output_.find(text);
     for (int more = times - 1; more > 0 && at != std::string::npos; --more) {
       at = output_.find(text, at + 1);
     }
     return at != std::string::npos;
   };
-  changed_.wait_for(lock, timeout, [&] { return seen() || output_ended_; });
+  changed_.wait_for(lock, timeout, [&]() REQUIRES(mutex_) { return seen() || output_ended_; });
   return seen();
 }
 
 std::string Process::output() const {
-  std::scoped_lock lock(mutex_);
+  MutexLock lock(mutex_);
   return output_;
 }
 
@@ -140,7 +141,7 @@ void Process::Drain(int pipe) {
   for (;;) {
     const ssize_t count = read(pipe, buffer.data(), buffer.size());
     if (count < 0 && errno == EINTR) continue;
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (count <= 0) {
       output_ended_ = true;
       changed_.notify_all();

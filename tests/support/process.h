@@ -4,12 +4,13 @@
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
 #include <vector>
+
+#include "common/base/mutex.h"
 
 namespace isotherm::system_test {
 
@@ -53,10 +54,10 @@ class Process {
   pid_t pid_ = -1;
   int pidfd_ = -1;
   std::optional<ExitStatus> exit_status_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  std::string output_;
-  bool output_ended_ = false;
+  mutable Mutex mutex_;
+  std::condition_variable_any changed_;
+  std::string output_ GUARDED_BY(mutex_);
+  bool output_ended_ GUARDED_BY(mutex_) = false;
   std::jthread reader_;
 };
 

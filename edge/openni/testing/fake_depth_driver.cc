@@ -18,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/base/mutex.h"
 #include "edge/openni/testing/fake_depth_script.h"
 #include "edge/openni/testing/shared_counter.h"
 
@@ -296,12 +297,12 @@ class FakeDriver final : public oni::driver::DriverBase {
     const std::optional<FakeDepthScript> script = ReadFakeDepthScript();
     if (!script || !script->connected || std::strcmp(uri, kUri) != 0) return nullptr;
     while (script->open_hangs) pause();
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     device_ = new FakeDevice(*script);
     return device_;
   }
   void deviceClose(oni::driver::DeviceBase* device) override {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     device_ = nullptr;
     delete device;
   }
@@ -318,7 +319,7 @@ class FakeDriver final : public oni::driver::DriverBase {
       return;
     }
     {
-      std::scoped_lock lock(mutex_);
+      MutexLock lock(mutex_);
       if (device_ != nullptr) device_->Unplug();
     }
     deviceDisconnected(&info_);
@@ -326,8 +327,8 @@ class FakeDriver final : public oni::driver::DriverBase {
 
   OniDeviceInfo info_{};
   bool there_ = false;
-  std::mutex mutex_;
-  FakeDevice* device_ = nullptr;
+  Mutex mutex_;
+  FakeDevice* device_ GUARDED_BY(mutex_) = nullptr;
   std::jthread watcher_;
 };
 

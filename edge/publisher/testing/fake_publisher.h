@@ -1,11 +1,12 @@
 #pragma once
 
 #include <atomic>
-#include <mutex>
+#include <condition_variable>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "common/base/mutex.h"
 #include "edge/publisher/publisher.h"
 
 namespace isotherm {
@@ -17,7 +18,7 @@ class FakePublisher final : public Publisher {
   void Run(std::stop_token stop, const PublisherHandlers& handlers) override {
     for (const Command& command : commands) handlers.command(command);
     for (const auto& [message, arrival] : feedback) handlers.feedback(message, arrival);
-    std::unique_lock lock(mutex_);
+    MutexLock lock(mutex_);
     changed_.wait(lock, stop, [] { return false; });
   }
   bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
@@ -26,20 +27,20 @@ class FakePublisher final : public Publisher {
     return OkStatus();
   }
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
-    return Take(frame, depth_, stop);
+    return Take(frame, &depth_, stop);
   }
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override {
-    return Take(frame, thermal_, stop);
+    return Take(frame, &thermal_, stop);
   }
   Status Publish(const ExternalOdometrySample& sample, std::stop_token) override {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     if (broken_) return Unavailable("no link");
     external_odometry_.push_back(sample);
     return OkStatus();
   }
   Status Publish(EdgeStatus) override { return OkStatus(); }
   Status Answer(const CommandResult& result) override {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     answers_.push_back(result);
     return OkStatus();
   }
@@ -55,28 +56,28 @@ class FakePublisher final : public Publisher {
   void Break() { broken_ = true; }
   /// Publish waits from now on until it is released or stop is requested.
   void Hold() {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     held_ = true;
   }
   void Release() {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     held_ = false;
     changed_.notify_all();
   }
   std::vector<EncodedDepthFrame> depth() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return depth_;
   }
   std::vector<EncodedThermalFrame> thermal() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return thermal_;
   }
   std::vector<ExternalOdometrySample> external_odometry() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return external_odometry_;
   }
   std::vector<CommandResult> answers() const {
-    std::scoped_lock lock(mutex_);
+    MutexLock lock(mutex_);
     return answers_;
   }
   std::optional<PublishPolicy> policy() const { return policy_; }
@@ -84,24 +85,24 @@ class FakePublisher final : public Publisher {
 
  private:
   template <typename Frame>
-  Status Take(const Frame& frame, std::vector<Frame>& frames, const std::stop_token& stop) {
-    std::unique_lock lock(mutex_);
+  Status Take(const Frame& frame, std::vector<Frame>* frames, const std::stop_token& stop) {
+    MutexLock lock(mutex_);
     if (broken_) return Unavailable("no link");
-    changed_.wait(lock, stop, [this] { return !held_; });
-    frames.push_back(frame);
+    changed_.wait(lock, stop, [this]() REQUIRES(mutex_) { return !held_; });
+    frames->push_back(frame);
     return OkStatus();
   }
 
-  mutable std::mutex mutex_;
+  mutable Mutex mutex_;
   std::condition_variable_any changed_;
-  bool held_ = false;
+  bool held_ GUARDED_BY(mutex_) = false;
   std::atomic<bool> broken_{false};
   std::atomic<int> sessions_{0};
   std::optional<PublishPolicy> policy_;
-  std::vector<EncodedDepthFrame> depth_;
-  std::vector<EncodedThermalFrame> thermal_;
-  std::vector<ExternalOdometrySample> external_odometry_;
-  std::vector<CommandResult> answers_;
+  std::vector<EncodedDepthFrame> depth_ GUARDED_BY(mutex_);
+  std::vector<EncodedThermalFrame> thermal_ GUARDED_BY(mutex_);
+  std::vector<ExternalOdometrySample> external_odometry_ GUARDED_BY(mutex_);
+  std::vector<CommandResult> answers_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm

@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <condition_variable>
 #include <cstdlib>
-#include <mutex>
 #include <stop_token>
 #include <string_view>
 #include <thread>
@@ -21,6 +20,7 @@
 
 #include "common/base/check.h"
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 #include "edge/usb/testing/emulated_requests.h"
 
 namespace isotherm {
@@ -86,17 +86,17 @@ class EmulatedBus::Impl {
   void Plug(std::shared_ptr<EmulatedDevice> device);
   void Unplug();
   bool plugged() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return device_ != nullptr;
   }
   void SetChild(std::optional<pid_t> child) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     child_ = child;
     requests_.reset();  // They were another process's.
     Poke();
   }
   void FindChild(std::function<std::optional<pid_t>()> find) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     find_child_ = std::move(find);
   }
 
@@ -107,11 +107,11 @@ class EmulatedBus::Impl {
   }
   void Handle(UMockdevIoctlClient* client);
   /// 0 or an error number.
-  int Do(unsigned long request, std::uintptr_t argument);
-  int DoSmall(unsigned long request, std::uintptr_t argument);
-  void AnswerReap();
-  /// Wakes whoever waits; `mutex_` is held.
-  void Poke() {
+  int Do(unsigned long request, std::uintptr_t argument) REQUIRES(mutex_);
+  int DoSmall(unsigned long request, std::uintptr_t argument) REQUIRES(mutex_);
+  void AnswerReap() REQUIRES(mutex_);
+  /// Wakes whoever waits.
+  void Poke() REQUIRES(mutex_) {
     poked_ = true;
     changed_.notify_all();
   }
@@ -119,22 +119,25 @@ class EmulatedBus::Impl {
   void UnplugIfItWants();
 
   UMockdevTestbed* const testbed_;
-  mutable std::mutex mutex_;
-  std::mutex plug_mutex_;  ///< Held while the device appears or disappears.
+  mutable Mutex mutex_;
+  Mutex plug_mutex_;  ///< Held while the device appears or disappears.
   std::condition_variable_any changed_;
-  bool poked_ = false;
-  std::optional<pid_t> child_ = getpid();
-  std::function<std::optional<pid_t>()> find_child_;
-  std::shared_ptr<EmulatedDevice> device_;
-  std::unique_ptr<EmulatedRequests> requests_;
-  UMockdevIoctlBase* handler_ = nullptr;
-  std::string node_;
-  int number_ = 1;
-  bool gone_ = true;
-  UMockdevIoctlClient* reaping_ = nullptr;  ///< Waits for a finished request, ...
-  std::uintptr_t reap_into_ = 0;            ///< ... whose address goes here.
-  Nanoseconds reap_until_{0};
-  bool found_nothing_ = false;  ///< The last time that it was asked.
+  bool poked_ GUARDED_BY(mutex_) = false;
+  std::optional<pid_t> child_ GUARDED_BY(mutex_) = getpid();
+  std::function<std::optional<pid_t>()> find_child_ GUARDED_BY(mutex_);
+  std::shared_ptr<EmulatedDevice> device_ GUARDED_BY(mutex_);
+  std::unique_ptr<EmulatedRequests> requests_ GUARDED_BY(mutex_);
+  UMockdevIoctlBase* handler_ GUARDED_BY(plug_mutex_) = nullptr;
+  std::string node_ GUARDED_BY(mutex_);
+  int number_ GUARDED_BY(plug_mutex_) = 1;
+  bool gone_ GUARDED_BY(mutex_) = true;
+  /// Waits for a finished request, ...
+  UMockdevIoctlClient* reaping_ GUARDED_BY(mutex_) = nullptr;
+  /// ... whose address goes here.
+  std::uintptr_t reap_into_ GUARDED_BY(mutex_) = 0;
+  Nanoseconds reap_until_ GUARDED_BY(mutex_){0};
+  /// The last time that it was asked.
+  bool found_nothing_ GUARDED_BY(mutex_) = false;
   std::shared_ptr<EmulatedDevice> comes_back_;
   std::optional<Nanoseconds> comes_back_at_;
   std::jthread thread_;
@@ -161,43 +164,46 @@ void EmulatedBus::FindChild(std::function<std::optional<pid_t>()> find) {
 }
 
 void EmulatedBus::Impl::Plug(std::shared_ptr<EmulatedDevice> device) {
-  const std::lock_guard plug_lock(plug_mutex_);
-  CHECK(gone_);
+  const MutexLock plug_lock(plug_mutex_);
   ++number_;
-  node_ = fmt::format("bus/usb/001/{:03}", number_);
+  const std::string node = fmt::format("bus/usb/001/{:03}", number_);
+  const EmulatedIdentity identity = device->identity();
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
+    CHECK(gone_);
+    node_ = node;
     device_ = std::move(device);
     requests_.reset();
     gone_ = false;
   }
   GError* error = nullptr;
-  const EmulatedIdentity identity = device_->identity();
-  const std::string description = Describe(identity, number_, node_);
+  const std::string description = Describe(identity, number_, node);
   Expect(umockdev_testbed_add_from_string(testbed_, description.c_str(), &error), error);
   std::vector<std::uint8_t> descriptors = Descriptors(identity);
   umockdev_testbed_set_attribute_binary(testbed_, kSysPath, "descriptors", descriptors.data(),
                                         static_cast<gint>(descriptors.size()));
   handler_ = umockdev_ioctl_base_new();
   g_signal_connect(handler_, "handle-ioctl", G_CALLBACK(&Impl::OnIoctl), this);
-  Expect(umockdev_testbed_attach_ioctl(testbed_, ("/dev/" + node_).c_str(), handler_, &error),
+  Expect(umockdev_testbed_attach_ioctl(testbed_, ("/dev/" + node).c_str(), handler_, &error),
          error);
   umockdev_testbed_uevent(testbed_, kSysPath, "add");
 }
 
 void EmulatedBus::Impl::Unplug() {
-  const std::lock_guard plug_lock(plug_mutex_);
+  const MutexLock plug_lock(plug_mutex_);
+  std::string node;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (gone_) return;
     gone_ = true;
+    node = node_;
     if (requests_) requests_->EndAll();
     device_.reset();
     AnswerReap();
   }
   umockdev_testbed_uevent(testbed_, kSysPath, "remove");
   GError* error = nullptr;
-  Expect(umockdev_testbed_detach_ioctl(testbed_, ("/dev/" + node_).c_str(), &error), error);
+  Expect(umockdev_testbed_detach_ioctl(testbed_, ("/dev/" + node).c_str(), &error), error);
   umockdev_testbed_remove_device(testbed_, kSysPath);
   g_object_unref(std::exchange(handler_, nullptr));
 }
@@ -207,14 +213,14 @@ void EmulatedBus::Impl::Handle(UMockdevIoctlClient* client) {
   std::uintptr_t address = 0;
   __builtin_memcpy(&address, argument->data, sizeof(address));
   const unsigned long request = umockdev_ioctl_client_get_request(client);
-  std::unique_lock lock(mutex_);
+  MutexLock lock(mutex_);
   while (find_child_) {
     const std::optional<pid_t> before = std::exchange(child_, find_child_());
     if (child_ != before) requests_.reset();
     if (child_) break;
     changed_.wait_for(lock, kLookAgainAfter);
   }
-  changed_.wait(lock, [this] { return child_.has_value(); });
+  changed_.wait(lock, [this]() REQUIRES(mutex_) { return child_.has_value(); });
   if (request == USBDEVFS_REAPURBNDELAY || request == USBDEVFS_REAPURB) {
     reaping_ = UMOCKDEV_IOCTL_CLIENT(g_object_ref(client));
     reap_into_ = address;
@@ -294,7 +300,7 @@ void EmulatedBus::Impl::AnswerReap() {
 void EmulatedBus::Impl::Run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     {
-      std::unique_lock lock(mutex_);
+      MutexLock lock(mutex_);
       const Nanoseconds now = Now();
       if (requests_ && !gone_) requests_->Serve(now);
       AnswerReap();
@@ -306,7 +312,7 @@ void EmulatedBus::Impl::Run(const std::stop_token& stop) {
       }
       const Nanoseconds wait = wake ? *wake - now : std::chrono::milliseconds(100);
       changed_.wait_for(lock, stop, std::max(wait, Nanoseconds(50'000)),
-                        [this] { return std::exchange(poked_, false); });
+                        [this]() REQUIRES(mutex_) { return std::exchange(poked_, false); });
     }
     UnplugIfItWants();
   }
@@ -315,7 +321,7 @@ void EmulatedBus::Impl::Run(const std::stop_token& stop) {
 void EmulatedBus::Impl::UnplugIfItWants() {
   std::shared_ptr<EmulatedDevice> device;
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     device = device_;
   }
   if (device) {
