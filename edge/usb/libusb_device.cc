@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <mutex>
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 #include "edge/usb/libusb_stream.h"
 #include "edge/usb/usb_device.h"
 
@@ -197,9 +197,10 @@ class UsbDevice::Impl {
     LOG(Usb, Error) << "USB device " << info_.bus_port
                     << ": cancelled transfers did not come back; their memory is given up";
     // Kept for good, and where a leak checker finds it.
-    static auto* const given_up = new std::vector<std::unique_ptr<LibusbStream>>();
-    static std::mutex mutex;
-    std::scoped_lock lock(mutex);
+    static Mutex mutex;
+    static auto* const given_up GUARDED_BY(mutex) =
+        new std::vector<std::unique_ptr<LibusbStream>>();
+    const MutexLock lock(mutex);
     given_up->push_back(std::move(stream));
     unsound_ = true;
   }
