@@ -46,7 +46,7 @@ compiled=$(grep -oE '"file": "[^"]+"' "$tree/compile_commands.json" | cut -d'"' 
 
 # Reads sources, one a line, and checks those that are compiled; a header is checked by way of its own source.
 tidy() {
-  grep -xFf <(echo "$compiled") | sort -u | nice xargs -r -P "$(nproc)" -n 1 clang-tidy-14 --quiet -p "$tree" "$@" 2> >(
+  { grep -xFf <(echo "$compiled") || true; } | sort -u | nice xargs -r -P "$(nproc)" -n 1 clang-tidy-14 --quiet -p "$tree" "$@" 2> >(
     grep -vE '^[0-9]+ warnings? (generated|treated)|^Suppressed|^Use -header-filter' >&2 || true)
 }
 
