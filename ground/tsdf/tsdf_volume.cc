@@ -15,6 +15,8 @@ namespace isotherm {
 namespace {
 
 constexpr std::size_t kBlockBytes = kBlockVoxels * sizeof(TsdfVoxel);
+// The grid limits memory by this, and knows no voxels: one of each volume.
+static_assert(sizeof(TsdfVoxel) + sizeof(std::uint32_t) == kBytesPerVoxel);
 
 }  // namespace
 
