@@ -62,7 +62,7 @@ if [ -f "$details" ]; then
   if [ -n "$skipped" ]; then
     say "skipped cases (reasons in $details)"
     echo "$skipped"
-    unlisted=$(echo "$skipped" | sed 's/^\[  SKIPPED \] //' | grep -vxFf <(grep -v '^#' tests/skips.txt) || true)
+    unlisted=$(echo "$skipped" | sed 's/^\[  SKIPPED \] //' | grep -vxFf <(sed -e '/^#/d' -e "s/^$preset: //" tests/skips.txt) || true)
     if [ "$strict" = 1 ] && [ -n "$unlisted" ]; then
       say "skipped, but not in tests/skips.txt"
       echo "$unlisted"
