@@ -1,34 +1,25 @@
 #pragma once
 
-#include <memory>
+#include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "common/base/log.h"
 #include "common/base/status.h"
-#include "common/frame/frame.h"
 #include "common/messages/messages.h"
-#include "edge/nuc/image_watch.h"
-#include "edge/nuc/shutter_log.h"
-#include "edge/nuc/warm_up_watch.h"
+#include "edge/nuc/frame_clock.h"
+#include "edge/nuc/nuc_hold.h"
+#include "edge/nuc/nuc_need.h"
+#include "edge/nuc/nuc_notices.h"
+#include "edge/nuc/nuc_observation.h"
+#include "edge/nuc/nuc_orders.h"
+#include "edge/nuc/nuc_state.h"
+#include "edge/nuc/shutter_watch.h"
+#include "edge/nuc/warm_up_wait.h"
 
 namespace isotherm {
 
 class NucOptions;
-
-/// Holds what one thermal frame tells about the correction.
-struct NucObservation {
-  CaptureTime time{};
-  bool shutter_closed = false;        ///< The camera says so in the frame.
-  std::optional<CameraNuc> camera{};  ///< What else the camera says; nullopt = nothing.
-  ThermalHousekeeping housekeeping{};
-  ImageEvidence image{};
-};
-
-/// Says what the camera is to do.
-enum class NucOrder : std::uint8_t { kTrigger, kAutomaticOn, kAutomaticOff, kRestartCamera };
 
 /// Holds what is known about the thermal camera's correction at one frame, and what follows.
 struct NucStatus {
@@ -39,16 +30,17 @@ struct NucStatus {
   std::optional<NucOrder> order;  ///< To be passed on; the camera's answer goes to OnAnswer.
 };
 
-/// Something that operator, log and recording should know.
-struct NucNotice {
-  CaptureTime time{};
-  LogLevel level = LogLevel::kInfo;
-  std::string text{};
-};
-
 /// Follows the non-uniformity correction (NUC) of the thermal camera, decides for every frame
 /// whether its temperatures are valid, and when the camera is to correct itself
-/// (thesis 3.2.3, 8.2).
+/// (thesis 3.2.3, 8.2). It puts small machines together, each of which follows one thing:
+///
+///   ShutterWatch  open, closed, stuck, settling; storms of corrections
+///   NucOrders     what was ordered: not answered yet, accepted, followed or not
+///   NucNeed       why a correction is needed
+///   NucHold       the operator puts corrections off
+///   WarmUpWait    whether a camera that is not warm is waited for
+///
+/// The state follows from what they say (the table in nuc_state.cc):
 ///
 ///   kUnknown    --(no first NUC asked for, and warm or not waited for)--> kIdle
 ///   kIdle       --(due: request, start of scan, drift, interval)--------> kDesired
@@ -79,7 +71,9 @@ class NucSupervisor {
   };
 
   NucSupervisor(const NucOptions& options, Role role);
-  ~NucSupervisor();
+  /// The machines refer to the notices.
+  NucSupervisor(const NucSupervisor&) = delete;
+  NucSupervisor& operator=(const NucSupervisor&) = delete;
 
   /// Advances to a frame. At most one order comes of it.
   NucStatus Update(const NucObservation& seen);
@@ -99,77 +93,40 @@ class NucSupervisor {
 
   NucPolicy policy() const { return policy_; }
   /// The closings of the last minute, for the status.
-  const ShutterLog& shutter() const { return shutter_; }
-  bool is_storm() const { return storm_; }
-  bool is_warming_up() const { return warm_up_state_ == WarmUpWatch::State::kCold; }
+  const ShutterLog& shutter() const { return shutter_.log(); }
+  bool is_storm() const { return shutter_.is_storm(); }
+  bool is_warming_up() const { return warm_up_.is_cold(); }
   /// Why the state is what it is, one sentence; empty if there is nothing to say.
   const std::string& reason() const { return reason_; }
   /// Since the last call.
-  std::vector<NucNotice> TakeNotices();
+  std::vector<NucNotice> TakeNotices() { return notices_.Take(); }
 
  private:
   void Advance(const NucObservation& seen);
-  void ForgetCamera(Nanoseconds gap);
-  std::optional<NucSource> ClosedBy(const NucObservation& seen) const;
-  void OnShutter(const NucObservation& seen);
-  void FollowStorm();
-  void FollowWarmUp(const ThermalHousekeeping& housekeeping);
-  void FollowHold();
-  void FollowOrder();
+  void FollowShutter(const NucObservation& seen);
+  void GiveUp();
+  void OnTriggerAnswered(const Status& answer);
   /// Why a NUC is wanted now; empty = it is not.
   std::string DueReason(const NucObservation& seen) const;
-  std::string DriftReason(const ThermalHousekeeping& housekeeping) const;
-  std::optional<NucOrder> NextOrder(const NucObservation& seen);
-  bool MayTrigger() const;
-  CaptureTime EarliestTrigger() const;
-  NucState NextState(const NucObservation& seen) const;
-  bool IsValid(const NucObservation& seen) const;
-  bool NeedsFirstNuc() const;
-  bool WaitsForWarmUp() const;
-  /// By the images alone: the camera does not say that its shutter is closed.
-  bool IsFrozen(const NucObservation& seen) const;
-  /// Closed, or frozen, for longer than a correction takes.
-  bool IsStuck(const NucObservation& seen) const;
-  void GiveUp();
-  std::string Explain(const NucObservation& seen) const;
-  bool IsHeld() const { return held_until_.has_value(); }
-  void Note(LogLevel level, std::string text);
+  std::optional<NucOrder> NextOrder();
+  /// kUnavailable: there is nothing to command yet, or at all.
+  Status CheckCommandable() const;
+  Nanoseconds Age() const;
+  NucFacts Facts(const NucObservation& seen) const;
+  std::optional<double> SecondsSinceNuc(const NucObservation& seen) const;
+  std::string Explain(NucState state) const;
 
-  const std::unique_ptr<const NucOptions> options_;
   const Role role_;
   NucPolicy policy_;
-
-  CaptureTime frame_time_{};  ///< Time of the newest frame, as it came.
-  CaptureTime now_{};         ///< The same, but never earlier than the frame before.
-  std::optional<CaptureTime> first_frame_;
-  ShutterLog shutter_;
-  WarmUpWatch warm_up_;
-  WarmUpWatch::State warm_up_state_ = WarmUpWatch::State::kNotAssessed;
-  NucState state_ = NucState::kUnknown;
+  FrameClock clock_;
+  NucNotices notices_;
+  ShutterWatch shutter_;
+  NucOrders orders_;
+  NucNeed need_;
+  NucHold hold_;
+  WarmUpWait warm_up_;
+  std::string due_;  ///< Why a NUC is wanted; empty = it is not.
   std::string reason_;
-  std::string due_;          ///< Why a NUC is wanted; empty = it is not.
-  std::string ordered_for_;  ///< The same when it was ordered.
-  bool storm_ = false;
-  bool reported_stuck_ = false;
-  bool reports_shutter_ = false;  ///< The camera says when its shutter is closed.
-  bool cannot_trigger_ = false;   ///< The camera has said that it takes no such order.
-  bool nuc_seen_ = false;
-  bool first_nuc_waived_ = false;  ///< It did not come; the scan goes on without.
-  /// At the last NUC, or at the first frame.
-  ThermalHousekeeping reference_;
-
-  bool requested_ = false;
-  std::optional<CaptureTime> last_trigger_;
-  bool trigger_unanswered_ = false;             ///< An order that the camera has not answered yet.
-  std::optional<CaptureTime> waiting_since_;    ///< An order that was accepted and not yet seen.
-  std::optional<CaptureTime> commanded_until_;  ///< For cameras that do not tell.
-  int attempts_ = 0;
-  std::optional<CaptureTime> hold_started_;
-  std::optional<CaptureTime> held_until_;
-  bool hold_used_up_ = false;
-  std::optional<bool> automatic_;  ///< As ordered last.
-  std::optional<CaptureTime> last_restart_;
-  std::vector<NucNotice> notices_;
 };
 
 }  // namespace isotherm

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/frame/frame.h"
+#include "edge/nuc/image_watch.h"
+
+namespace isotherm {
+
+/// Holds what one thermal frame tells about the correction.
+struct NucObservation {
+  CaptureTime time{};
+  bool shutter_closed = false;        ///< The camera says so in the frame.
+  std::optional<CameraNuc> camera{};  ///< What else the camera says; nullopt = nothing.
+  ThermalHousekeeping housekeeping{};
+  ImageEvidence image{};
+};
+
+}  // namespace isotherm
