@@ -6,6 +6,7 @@
 #include <future>
 #include <mutex>
 #include <stop_token>
+#include <thread>
 #include <utility>
 
 #include "common/base/log.h"
@@ -18,9 +19,10 @@ constexpr std::chrono::milliseconds kTimeForLastWords{300};
 
 [[noreturn]] void Leave(ExitDeadline::Duration limit, int status, const std::string& what,
                         const std::function<void()>& last_words) {
-  std::future<void> said;  // Its destructor would wait, but never runs.
   if (last_words) {
-    said = std::async(std::launch::async, last_words);
+    std::packaged_task<void()> saying(last_words);
+    const std::future<void> said = saying.get_future();
+    std::thread(std::move(saying)).detach();  // Nobody waits longer for one that hangs.
     said.wait_for(kTimeForLastWords);
   }
   LOG(Service, Warning) << what << " did not end within "
