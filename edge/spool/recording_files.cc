@@ -1,29 +1,15 @@
 #include "edge/spool/recording_files.h"
 
-#include <string>
 #include <system_error>
 #include <utility>
 
 #include "common/base/log.h"
-#include "edge/spool/recording_name.h"
+#include "common/recording/recording_parts.h"
 
 namespace isotherm {
-namespace {
-
-/// The number of the first free name after `part`.
-int NextFree(const std::filesystem::path& path, int part) {
-  std::error_code ignored;
-  do {
-    ++part;
-  } while (std::filesystem::exists(PartPath(path, part), ignored));
-  return part;
-}
-
-}  // namespace
-
 Result<RecordingFile> RecordingFiles::Next() {
   const bool is_device = IsDevice(description_.path);
-  const int part = is_device ? 1 : NextFree(description_.path, part_);
+  const int part = is_device ? 1 : NextFreePart(description_.path, part_);
   const std::filesystem::path path = PartPath(description_.path, part);
   RecordingOptions options;
   options.flush_interval = description_.flush_interval;

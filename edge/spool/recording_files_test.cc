@@ -28,11 +28,6 @@ TEST(RecordingPathTest, F40SessionsOfOneSecondGetFilesOfTheirOwn) {
   EXPECT_EQ(RecordingPath("/tmp", kNow, 1)->parent_path(), "/tmp");
 }
 
-TEST(PartPathTest, PartsLieBesideTheFirst) {
-  EXPECT_EQ(PartPath("a/scan.mcap", 1), "a/scan.mcap");
-  EXPECT_EQ(PartPath("a/scan.mcap", 3), "a/scan-3.mcap");
-}
-
 class RecordingFilesTest : public ::testing::Test {
  protected:
   RecordingDescription Description() const {

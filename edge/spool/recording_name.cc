@@ -28,16 +28,4 @@ std::optional<std::filesystem::path> RecordingPath(const std::string& record, Ca
          fmt::format("edge-{:%Y%m%d-%H%M%S}-{:08x}.mcap", fmt::gmtime(seconds), ShortName(session));
 }
 
-std::filesystem::path PartPath(const std::filesystem::path& path, int part) {
-  if (part <= 1) return path;
-  return path.parent_path() /
-         fmt::format("{}-{}{}", path.stem().string(), part, path.extension().string());
-}
-
-bool IsDevice(const std::filesystem::path& path) {
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  return std::filesystem::is_character_file(status) || std::filesystem::is_fifo(status);
-}
-
 }  // namespace isotherm

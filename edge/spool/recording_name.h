@@ -15,10 +15,4 @@ namespace isotherm {
 std::optional<std::filesystem::path> RecordingPath(const std::string& record, CaptureTime now,
                                                    std::uint64_t session);
 
-/// The name of a recording's file number `part`: "scan.mcap", "scan-2.mcap", ...
-std::filesystem::path PartPath(const std::filesystem::path& path, int part);
-
-/// Whether it is written to as it is: a device or a pipe, which has no parts.
-bool IsDevice(const std::filesystem::path& path);
-
 }  // namespace isotherm

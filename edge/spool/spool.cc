@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <system_error>
 #include <utility>
 
 #include "common/base/log.h"
 #include "common/recording/feedback_record.h"
+#include "common/recording/recording_parts.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -18,12 +18,6 @@ constexpr Nanoseconds kLookInterval = std::chrono::seconds(1);
 // A disk that takes this much more is well again; one that fails sooner is still the same failure.
 constexpr Nanoseconds kProven = std::chrono::seconds(3);
 constexpr double kBytesPerMb = 1e6;
-
-void RemoveIfEmpty(const std::filesystem::path& path, const RecordingStats& stats) {
-  if (stats.depth_frames + stats.thermal_frames > 0) return;
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
-}
 
 }  // namespace
 
@@ -162,7 +156,7 @@ Status Spool::CloseFile() {
   closed_.thermal_frames += stats.thermal_frames;
   closed_.bytes += stats.bytes;
   file_.reset();
-  RemoveIfEmpty(path_, stats);
+  RemoveIfWithoutFrames(path_, stats);
   return closed;
 }
 
@@ -175,8 +169,7 @@ Status Spool::Close() {
 
 void Spool::Note(const Status& status) {
   if (status.ok()) return;
-  if (status.code() == StatusCode::kInvalidArgument || status.code() == StatusCode::kDataLoss) {
-    // One message is wrong, not the disk.
+  if (!EndsFile(status)) {
     if (first_error_.ok()) first_error_ = status;
     if (refused_++ == 0) {
       LOG(Spool, Warning) << "not recorded: " << status.message();

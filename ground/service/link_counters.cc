@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -37,27 +38,24 @@ Json DescribeStream(const StreamCounters& counters, std::uint64_t recorded,
   return json;
 }
 
+std::string LackText(std::uint64_t frames, const std::string& why) {
+  if (frames == 0) return {};
+  return fmt::format("         {} frames are not in the recording{}\n", frames, why);
+}
+
 /// Returns what the recording lacks and why, or nothing.
 std::string RecordingText(const RecordingProgress& recording) {
-  const auto sum = [&](NotRecorded reason) {
-    const auto i = static_cast<std::size_t>(reason);
-    return recording.depth_left_out[i] + recording.thermal_left_out[i];
-  };
-  std::string text;
-  if (const std::uint64_t frames = sum(NotRecorded::kDiskTooSlow); frames > 0) {
-    text += fmt::format(
-        "         {} frames are not in the recording, because the disk did not take them in time\n",
-        frames);
-  }
-  if (const std::uint64_t frames = sum(NotRecorded::kDiskNearlyFull); frames > 0) {
-    text += fmt::format(
-        "         {} frames are not in the recording: what was left of the disk was kept for the "
-        "results\n",
-        frames);
-  }
-  if (recording.stats.failed > 0) {
-    text += fmt::format("         {} frames could not be written to the recording: {}\n",
-                        recording.stats.failed, recording.status.message());
+  std::string text = LackText(recording.left_out(NotRecorded::kDiskTooSlow),
+                              ", because the disk did not take them in time") +
+                     LackText(recording.left_out(NotRecorded::kDiskNearlyFull),
+                              ": what was left of the disk was kept for the results") +
+                     LackText(recording.left_out(NotRecorded::kDiskFailed),
+                              ", because the disk failed: " + recording.status.message()) +
+                     LackText(recording.left_out(NotRecorded::kUnwritable),
+                              ", because they are wrong; the log says how");
+  if (recording.files.size() > 1) {
+    text += fmt::format("         the recording has {} files, up to {}\n", recording.files.size(),
+                        recording.files.back().string());
   }
   if (!recording.path.empty() && !recording.closed)
     text += "         the recording is not finished: the disk is slow or stuck\n";
@@ -99,10 +97,9 @@ void DescribeClock(const SessionClock& clock, Json& json) {
 
 void DescribeCounters(const SessionCounters& counters, const RecordingProgress& recording,
                       Json& link) {
-  link["depth"] =
-      DescribeStream(counters.depth, recording.stats.depth_frames, recording.depth_left_out);
+  link["depth"] = DescribeStream(counters.depth, recording.depth_frames, recording.depth_left_out);
   link["thermal"] =
-      DescribeStream(counters.thermal, recording.stats.thermal_frames, recording.thermal_left_out);
+      DescribeStream(counters.thermal, recording.thermal_frames, recording.thermal_left_out);
   // What the stuck disk has not taken yet.
   const bool waits = !recording.path.empty() && !recording.closed;
   const auto add_waiting = [&](const char* sensor, const StreamCounters& stream,
@@ -111,10 +108,12 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
     if (waits && stream.received > settled)
       link[sensor]["not_recorded_by_reason"]["still_waiting"] = stream.received - settled;
   };
-  add_waiting("depth", counters.depth, recording.stats.depth_frames, recording.depth_left_out);
-  add_waiting("thermal", counters.thermal, recording.stats.thermal_frames,
-              recording.thermal_left_out);
-  link["recording_failed_frames"] = recording.stats.failed;
+  add_waiting("depth", counters.depth, recording.depth_frames, recording.depth_left_out);
+  add_waiting("thermal", counters.thermal, recording.thermal_frames, recording.thermal_left_out);
+  link["recording_failed_frames"] =
+      recording.left_out(NotRecorded::kDiskFailed) + recording.left_out(NotRecorded::kUnwritable);
+  for (const std::filesystem::path& file : recording.files)
+    link["recording_files"].push_back(file.filename().string());
   link["refused_samples"] = counters.refused_samples;
   link["recording_finished"] = recording.closed;
   if (!recording.status.ok()) link["recording_failed_because"] = recording.status.message();
@@ -127,8 +126,8 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
 }
 
 std::string CountersText(const SessionCounters& counters, const RecordingProgress& recording) {
-  std::string text = StreamText("link", counters.depth, recording.stats.depth_frames) +
-                     StreamText("", counters.thermal, recording.stats.thermal_frames);
+  std::string text = StreamText("link", counters.depth, recording.depth_frames) +
+                     StreamText("", counters.thermal, recording.thermal_frames);
   if (!counters.ended) {
     text += "         the rig had not said its last word: what it sent after these is not known\n";
   }

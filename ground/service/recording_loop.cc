@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "common/base/log.h"
 #include "ground/export/results.h"
@@ -52,38 +53,26 @@ void RecordingLoop::Handle(const SessionStart& start) {
     LOG(Ground, Error) << "this scan's folder cannot be used: " << prepared.message();
   }
   if (!options_.live().record()) return;
-  start_.recording->Update([&](auto& progress) { progress.path = start.folder / "scan.mcap"; });
+  const std::filesystem::path path = start.folder / "scan.mcap";
+  start_.recording->Update([&](auto& progress) { progress.path = path; });
   opened_ = clock_.SteadyNow();
   next_look_ = opened_;
-  if (HasRoom()) Open();
-}
-
-void RecordingLoop::Open() {
-  Result<std::unique_ptr<ScanRecorder>> recorder =
-      ScanRecorder::Create(start_.folder / "scan.mcap", options_);
-  if (!recorder) {
-    LOG(Ground, Error) << "not recording: " << recorder.error().message();
-    Fail(recorder.error());
-    return;
-  }
-  recorder_ = std::move(*recorder);
-  recorder_->Write(start_.rig);
+  recorder_ = std::make_unique<ScanRecorder>(path, options_, start.rig, clock_);
+  LookAtDisk();
+  if (!nearly_full_) recorder_->Tend();
+  Enter();
 }
 
 template <typename Frame>
 void RecordingLoop::HandleFrame(const Frame& frame, Sensor sensor) {
-  if (!start_.recording) return;
-  if (recorder_ && !HasRoom()) StopForReserve();
-  if (!recorder_) {
-    if (nearly_full_) {
-      start_.recording->CountLeftOut(sensor, NotRecorded::kDiskNearlyFull);
-    } else {
-      start_.recording->Update([](auto& progress) { ++progress.stats.failed; });
-    }
-    return;
+  if (!recorder_) return;
+  LookAtDisk();
+  if (nearly_full_) {
+    start_.recording->CountLeftOut(sensor, NotRecorded::kDiskNearlyFull);
+  } else {
+    recorder_->Write(frame);
+    flushed_ = false;
   }
-  recorder_->Write(frame);
-  flushed_ = false;
   Enter();
 }
 
@@ -107,13 +96,13 @@ std::uint64_t RecordingLoop::ReserveBytes(std::uint64_t capacity) const {
          std::max(expected + expected / 2, std::min(kMaxReserveBytes, capacity / kReservePart));
 }
 
-bool RecordingLoop::HasRoom() {
+void RecordingLoop::LookAtDisk() {
   const SteadyTime now = clock_.SteadyNow();
-  if (now < next_look_) return true;
+  if (now < next_look_) return;
   next_look_ = now + kLookInterval;
   std::error_code error;
   const auto space = std::filesystem::space(start_.folder, error);
-  if (error) return true;  // Writing will say what is wrong.
+  if (error) return;  // Writing will say what is wrong.
   const std::uint64_t reserve = ReserveBytes(space.capacity);
   const double elapsed_s = ToSeconds(now - opened_);
   start_.recording->Update([&](auto& progress) {
@@ -121,23 +110,28 @@ bool RecordingLoop::HasRoom() {
     progress.reserve_bytes = reserve;
     constexpr double kTooShort_s = 3.0;
     if (elapsed_s > kTooShort_s)
-      progress.bytes_per_s = static_cast<double>(progress.stats.bytes) / elapsed_s;
+      progress.bytes_per_s = static_cast<double>(progress.bytes) / elapsed_s;
   });
-  nearly_full_ = space.available <= reserve;
-  if (!nearly_full_) return true;
-  Fail(ResourceExhausted(fmt::format(
-      "the recording {} ends here, because only {:.0f} MB are free on the disk and {:.0f} MB are "
-      "kept for the results; the scan goes on. Free some space",
-      (start_.folder / "scan.mcap").string(), static_cast<double>(space.available) / kMegabyte,
-      static_cast<double>(reserve) / kMegabyte)));
-  LOG(Ground, Warning) << status_.message();
-  return false;
+  const bool before =
+      std::exchange(nearly_full_, space.available <= (nearly_full_ ? 2 * reserve : reserve));
+  if (nearly_full_ && !before) StopForReserve(space.available, reserve);
+  if (before && !nearly_full_) {
+    LOG(Ground, Warning) << "there is room on the disk again, the recording goes on; "
+                            "frames not recorded="
+                         << start_.recording->Get().left_out(NotRecorded::kDiskNearlyFull);
+  }
 }
 
-void RecordingLoop::StopForReserve() {
-  static_cast<void>(recorder_->Close());
-  Enter();
-  recorder_.reset();  // What still waits is counted as left out until End().
+void RecordingLoop::StopForReserve(std::uint64_t free_bytes, std::uint64_t reserve_bytes) {
+  recorder_->EndFile();
+  const auto& files = recorder_->files();
+  Fail(ResourceExhausted(fmt::format(
+      "the recording {} stops here, because only {:.0f} MB are free on the disk and {:.0f} MB are "
+      "kept for the results; the scan goes on. Free some space",
+      (files.empty() ? start_.folder / "scan.mcap" : files.back()).string(),
+      static_cast<double>(free_bytes) / kMegabyte,
+      static_cast<double>(reserve_bytes) / kMegabyte)));
+  LOG(Ground, Warning) << status_.message();
 }
 
 void RecordingLoop::Fail(const Status& status) {
@@ -148,9 +142,20 @@ void RecordingLoop::Fail(const Status& status) {
 }
 
 void RecordingLoop::Enter() {
-  const RecordingStats stats = recorder_->stats();
+  const RecorderCounts depth = recorder_->counts(Sensor::kDepth);
+  const RecorderCounts thermal = recorder_->counts(Sensor::kThermal);
+  const auto enter = [](const RecorderCounts& counts, NotRecordedCounts& left_out) {
+    left_out[static_cast<std::size_t>(NotRecorded::kDiskFailed)] = counts.lost;
+    left_out[static_cast<std::size_t>(NotRecorded::kUnwritable)] = counts.unwritable;
+  };
   start_.recording->Update([&](auto& progress) {
-    progress.stats = stats;
+    progress.files = recorder_->files();
+    progress.depth_frames = depth.recorded;
+    progress.thermal_frames = thermal.recorded;
+    progress.bytes = recorder_->bytes();
+    enter(depth, progress.depth_left_out);
+    enter(thermal, progress.thermal_left_out);
+    progress.paused = !recorder_->is_recording();
     if (progress.status.ok()) progress.status = recorder_->status();
   });
 }
@@ -161,7 +166,12 @@ void RecordingLoop::End() {
     Enter();
     recorder_.reset();
   }
-  if (start_.recording) start_.recording->Update([](auto& progress) { progress.closed = true; });
+  if (start_.recording) {
+    start_.recording->Update([](auto& progress) {
+      progress.closed = true;
+      progress.paused = false;
+    });
+  }
   start_.recording.reset();
 }
 

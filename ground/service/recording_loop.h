@@ -15,8 +15,9 @@
 
 namespace isotherm {
 
-/// Records one session after the other, and leaves room on the disk for the results: the recording
-/// ends when no more than these are expected to take is free. Thread-bound to the recording thread.
+/// Records one session after the other, and leaves room on the disk for the results: the file ends
+/// when no more than these are expected to take is free, and another is begun when twice that is.
+/// Thread-bound to the recording thread.
 class RecordingLoop {
  public:
   RecordingLoop(const GroundOptions& options, const Clock& clock, const ScanBoard& board,
@@ -38,11 +39,10 @@ class RecordingLoop {
   void Handle(const ReceivedThermal& frame) { HandleFrame(frame, Sensor::kThermal); }
   template <typename Frame>
   void HandleFrame(const Frame& frame, Sensor sensor);
-  void Open();
-  /// Looks from time to time how much is free; false if that is for the results.
-  bool HasRoom();
+  /// Looks from time to time how much is free, and whether that is for the results.
+  void LookAtDisk();
   std::uint64_t ReserveBytes(std::uint64_t capacity) const;
-  void StopForReserve();
+  void StopForReserve(std::uint64_t free_bytes, std::uint64_t reserve_bytes);
   void Fail(const Status& status);
   /// Enters what was written so far into the recording's progress.
   void Enter();
@@ -54,7 +54,7 @@ class RecordingLoop {
   ThreadProgress& progress_;
   SessionStart start_;
   std::unique_ptr<ScanRecorder> recorder_;
-  bool nearly_full_ = false;  ///< The recording was ended for the results' sake.
+  bool nearly_full_ = false;  ///< What is free is for the results.
   bool flushed_ = true;
   SteadyTime opened_{};
   SteadyTime next_look_{};

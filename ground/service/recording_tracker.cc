@@ -13,6 +13,10 @@ std::string_view ToString(NotRecorded reason) {
       return "disk_too_slow";
     case NotRecorded::kDiskNearlyFull:
       return "disk_nearly_full";
+    case NotRecorded::kDiskFailed:
+      return "disk_failed";
+    case NotRecorded::kUnwritable:
+      return "unwritable";
   }
   return "?";
 }
@@ -22,6 +26,11 @@ std::uint64_t RecordingProgress::left_out() const {
     return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
   };
   return sum(depth_left_out) + sum(thermal_left_out);
+}
+
+std::uint64_t RecordingProgress::left_out(NotRecorded reason) const {
+  const auto i = static_cast<std::size_t>(reason);
+  return depth_left_out[i] + thermal_left_out[i];
 }
 
 std::string DiskText(const RecordingProgress& progress) {

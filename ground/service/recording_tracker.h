@@ -6,11 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "common/base/mutex.h"
 #include "common/base/status.h"
 #include "common/frame/frame.h"
-#include "common/recording/recording.h"
 
 namespace isotherm {
 
@@ -18,8 +19,10 @@ namespace isotherm {
 enum class NotRecorded : std::uint8_t {
   kDiskTooSlow = 0,     ///< The queue to the disk was full.
   kDiskNearlyFull = 1,  ///< What is left is for the results.
+  kDiskFailed = 2,      ///< Writing failed, or the disk was waited for after that.
+  kUnwritable = 3,      ///< The frame itself is wrong.
 };
-inline constexpr std::size_t kNotRecordedReasons = 2;
+inline constexpr std::size_t kNotRecordedReasons = 4;
 /// "disk_too_slow", as in stats.json.
 std::string_view ToString(NotRecorded reason);
 
@@ -28,18 +31,23 @@ using NotRecordedCounts = std::array<std::uint64_t, kNotRecordedReasons>;
 
 /// Holds what became of a session's recording, or what has so far.
 struct RecordingProgress {
-  std::filesystem::path path{};  ///< Empty: there is none.
-  RecordingStats stats{};
+  std::filesystem::path path{};                ///< The first file's; empty: there is no recording.
+  std::vector<std::filesystem::path> files{};  ///< More than one after an error or a full disk.
+  std::uint64_t depth_frames = 0;
+  std::uint64_t thermal_frames = 0;
+  std::uint64_t bytes = 0;
   NotRecordedCounts depth_left_out{};
   NotRecordedCounts thermal_left_out{};
   bool closed = false;  ///< Nothing more will be written: index and footer are on the disk.
   Status status{};      ///< The first failure.
+  bool paused = false;  ///< No frame is written at this moment: the disk fails or is nearly full.
   /// Room on the disk as of the newest look at it; 0 bytes per second = not known yet.
   std::uint64_t free_bytes = 0;
   std::uint64_t reserve_bytes = 0;  ///< The recording stops when no more than this is free.
   double bytes_per_s = 0.0;
 
   std::uint64_t left_out() const;
+  std::uint64_t left_out(NotRecorded reason) const;
 };
 
 /// "disk: 3.2 h left", "disk: 40 min left"; empty if that is not known.

@@ -65,9 +65,11 @@ class ClockRecordTest : public ::testing::Test {
  protected:
   void Record(const std::vector<SessionClock>& clocks) {
     const std::filesystem::path path = folder_.path() / "scan.mcap";
-    auto recorder = std::move(*ScanRecorder::Create(path, GroundOptions()));
-    for (const SessionClock& clock : clocks) recorder->Write(clock);
-    ASSERT_TRUE(recorder->Close().ok());
+    const FakeClock time(kTime);
+    ScanRecorder recorder(path, GroundOptions(), RigDescription(), time);
+    recorder.Tend();
+    for (const SessionClock& clock : clocks) recorder.Write(clock);
+    ASSERT_TRUE(recorder.Close().ok());
     reader_ = std::move(*RecordingReader::Open(path));
   }
   const std::map<std::string, std::string>& Metadata() const {

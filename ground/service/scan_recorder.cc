@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
-#include <string>
 #include <tuple>
 #include <utility>
 
@@ -11,9 +9,22 @@
 #include "common/config/text_proto.h"
 #include "common/recording/clock_record.h"
 #include "common/recording/feedback_record.h"
+#include "common/recording/recording_parts.h"
 
 namespace isotherm {
 namespace {
+
+// A disk that takes this much more is well again; one that fails sooner is still the same failure.
+constexpr Nanoseconds kProven = std::chrono::seconds(3);
+
+ScanRecorder::CreateWriter OnDisk(const GroundOptions& options) {
+  RecordingOptions recording;
+  recording.image_storage =
+      options.live().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
+  return [recording](const std::filesystem::path& path) {
+    return RecordingWriter::Create(path, recording);
+  };
+}
 
 /// As the edge's recording has it; nothing if there is no camera.
 void AddCamera(const std::string& name, const StreamMode& camera,
@@ -26,78 +37,186 @@ void AddCamera(const std::string& name, const StreamMode& camera,
 
 }  // namespace
 
-Result<std::unique_ptr<ScanRecorder>> ScanRecorder::Create(const std::filesystem::path& path,
-                                                           const GroundOptions& options) {
-  RecordingOptions recording;
-  recording.image_storage =
-      options.live().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
-  Result<std::unique_ptr<RecordingWriter>> writer = RecordingWriter::Create(path, recording);
-  if (!writer) return Err(writer.error());
-  std::unique_ptr<ScanRecorder> recorder(new ScanRecorder(std::move(*writer)));
-  recorder->Note(recorder->writer_->WriteMetadata(
-      "configuration", {{"program", "isotherm-ground"}, {"options", ToTextProto(options)}}));
-  return recorder;
+ScanRecorder::ScanRecorder(const std::filesystem::path& path, const GroundOptions& options,
+                           const RigDescription& rig, const Clock& clock)
+    : ScanRecorder(path, options, rig, clock, OnDisk(options)) {}
+
+ScanRecorder::ScanRecorder(const std::filesystem::path& path, const GroundOptions& options,
+                           const RigDescription& rig, const Clock& clock, CreateWriter create)
+    : path_(path),
+      options_text_(ToTextProto(options)),
+      rig_(rig),
+      clock_(clock),
+      create_(std::move(create)) {}
+
+void ScanRecorder::Tend() {
+  if (is_recording()) return NoteWorks();
+  if (clock_.SteadyNow() < retry_at_) return;
+  if (const Status begun = BeginFile(); !begun.ok()) Fail(begun);
 }
 
-void ScanRecorder::Note(const Status& status) {
-  if (status.ok() || !first_error_.ok()) return;
-  first_error_ = status;
-  LOG(Ground, Error) << "the recording ends here, the scan goes on: " << status.message();
+Status ScanRecorder::BeginFile() {
+  const int part = IsDevice(path_) ? 1 : NextFreePart(path_, part_);
+  const std::filesystem::path file = PartPath(path_, part);
+  Result<std::unique_ptr<RecordingWriter>> writer = create_(file);
+  if (!writer) return writer.error();
+  if (files_.empty() && part > 1) {
+    LOG(Ground, Warning) << path_.string()
+                         << " exists already and stays as it is; recording beside it";
+  }
+  writer_ = std::move(*writer);
+  part_ = part;
+  files_.push_back(file);
+  begun_at_ = clock_.SteadyNow();
+  step_sum_s_ = 0.0;
+  ISOTHERM_RETURN_IF_ERROR(WriteBeginning());
+  if (part > 1) {
+    LOG(Ground, Info) << "recording to " << file.string();
+  }
+  return OkStatus();
 }
 
-void ScanRecorder::Write(const RigDescription& rig) {
-  Note(writer_->Write(rig.rig));
+Status ScanRecorder::WriteBeginning() {
+  ISOTHERM_RETURN_IF_ERROR(writer_->WriteMetadata(
+      "configuration", {{"program", "isotherm-ground"}, {"options", options_text_}}));
+  ISOTHERM_RETURN_IF_ERROR(writer_->Write(rig_.rig));
   std::map<std::string, std::string> cameras;
-  AddCamera("depth", rig.depth, cameras);
-  AddCamera("thermal", rig.thermal, cameras);
-  if (!cameras.empty()) Note(writer_->WriteMetadata("cameras", cameras));
+  AddCamera("depth", rig_.depth, cameras);
+  AddCamera("thermal", rig_.thermal, cameras);
+  if (!cameras.empty()) ISOTHERM_RETURN_IF_ERROR(writer_->WriteMetadata("cameras", cameras));
+  if (!rig_clock_) return OkStatus();
+  ISOTHERM_RETURN_IF_ERROR(WriteClockStep());
+  return WriteClockMetadata();
 }
-void ScanRecorder::Write(const ReceivedDepth& depth) {
-  Note(writer_->Write(*depth.encoded, depth.arrival));
+
+template <typename Frame>
+void ScanRecorder::WriteFrame(Sensor sensor, const Frame& frame) {
+  const auto stream = static_cast<std::size_t>(sensor);
+  ++offered_[stream];
+  Tend();
+  if (!is_recording()) return;
+  const Status written = writer_->Write(*frame.encoded, frame.arrival);
+  if (!written.ok() && !EndsFile(written)) ++unwritable_[stream];
+  Note(written);
 }
-void ScanRecorder::Write(const ReceivedThermal& thermal) {
-  Note(writer_->Write(*thermal.encoded, thermal.arrival));
-}
+template void ScanRecorder::WriteFrame(Sensor, const ReceivedDepth&);
+template void ScanRecorder::WriteFrame(Sensor, const ReceivedThermal&);
 
 void ScanRecorder::Write(const Feedback& feedback) {
-  Note(WriteFeedback(feedback, std::nullopt, *writer_));
+  if (is_recording()) Note(WriteFeedback(feedback, std::nullopt, *writer_));
 }
 
 void ScanRecorder::Write(const ExternalOdometrySample& sample) {
-  Note(writer_->Write(sample.pose));
+  if (is_recording()) Note(writer_->Write(sample.pose));
 }
 
 void ScanRecorder::Write(const SessionClock& clock) {
-  const SessionClock before = std::exchange(clock_, clock).value_or(SessionClock());
-  const double step_s = clock.rig.step_sum_s - before.rig.step_sum_s;
-  if (step_s != 0.0) {
-    const Nanoseconds total = FromSeconds(clock.rig.step_sum_s);
-    Note(writer_->Write(ClockStep{clock.time - total, FromSeconds(step_s), total}));
-  }
+  const SessionClock before = std::exchange(rig_clock_, clock).value_or(SessionClock());
+  if (is_recording()) Note(WriteClockStep());
   const auto kind = [](const SessionClock& counters) {
     return std::tuple(counters.rig.synchronised, counters.unsynchronised, counters.rig.steps,
                       counters.alarm, counters.offset.has_value());
   };
-  if (kind(clock) != kind(before)) WriteClockMetadata();
+  if (is_recording() && kind(clock) != kind(before)) Note(WriteClockMetadata());
 }
 
-void ScanRecorder::WriteClockMetadata() {
-  std::map<std::string, std::string> state = ToMetadata(clock_->rig);
-  if (clock_->unsynchronised) state["synchronised"] = "no";
-  state["steps"] = fmt::format("{}", clock_->rig.steps);
-  state["alarms"] = fmt::format("{}", clock_->alarms);
-  if (clock_->offset) {
-    state["minus_ground_clock_s"] = fmt::format("{}", clock_->offset->offset_s);
-    state["minus_ground_clock_uncertainty_s"] = fmt::format("{}", clock_->offset->uncertainty_s);
+Status ScanRecorder::WriteClockStep() {
+  const double step_s =
+      rig_clock_->rig.step_sum_s - std::exchange(step_sum_s_, rig_clock_->rig.step_sum_s);
+  if (step_s == 0.0) return OkStatus();
+  const Nanoseconds total = FromSeconds(rig_clock_->rig.step_sum_s);
+  return writer_->Write(ClockStep{rig_clock_->time - total, FromSeconds(step_s), total});
+}
+
+Status ScanRecorder::WriteClockMetadata() {
+  std::map<std::string, std::string> state = ToMetadata(rig_clock_->rig);
+  if (rig_clock_->unsynchronised) state["synchronised"] = "no";
+  state["steps"] = fmt::format("{}", rig_clock_->rig.steps);
+  state["alarms"] = fmt::format("{}", rig_clock_->alarms);
+  if (rig_clock_->offset) {
+    state["minus_ground_clock_s"] = fmt::format("{}", rig_clock_->offset->offset_s);
+    state["minus_ground_clock_uncertainty_s"] =
+        fmt::format("{}", rig_clock_->offset->uncertainty_s);
   }
-  Note(writer_->WriteMetadata(kClockMetadata, state));
+  return writer_->WriteMetadata(kClockMetadata, state);
+}
+
+void ScanRecorder::Flush() {
+  if (is_recording()) Note(writer_->Flush());
+}
+
+void ScanRecorder::Note(const Status& status) {
+  if (status.ok()) return;
+  if (EndsFile(status)) return Fail(status);
+  if (!refusal_.ok()) return;
+  refusal_ = status;
+  LOG(Ground, Warning) << "not recorded: " << status.message();
+}
+
+void ScanRecorder::Fail(const Status& status) {
+  if (disk_error_.ok()) disk_error_ = status;
+  if (is_recording()) static_cast<void>(CloseFile());
+  retry_at_ = clock_.SteadyNow() + back_off_.Next();
+  if (problem_.ok()) {
+    LOG(Ground, Error) << "the recording stops here, the scan goes on: " << status.message()
+                       << "; a new file is begun when the disk takes it";
+  }
+  problem_ = status;
+}
+
+void ScanRecorder::NoteWorks() {
+  if (problem_.ok()) {
+    lost_before_ = Lost();
+    return;
+  }
+  if (clock_.SteadyNow() - begun_at_ < kProven) return;
+  problem_ = OkStatus();
+  back_off_.Reset();
+  LOG(Ground, Warning) << "the disk works again, recording to " << files_.back().string()
+                       << "; frames not recorded=" << Lost() - lost_before_;
+}
+
+Status ScanRecorder::CloseFile() {
+  Status closed = OkStatus();
+  if (rig_clock_) closed = WriteClockMetadata();  // As it was in the end.
+  if (const Status ended = writer_->Close(); closed.ok()) closed = ended;
+  const RecordingStats stats = writer_->stats();
+  writer_.reset();
+  closed_.depth_frames += stats.depth_frames;
+  closed_.thermal_frames += stats.thermal_frames;
+  closed_.bytes += stats.bytes;
+  if (EndsFile(closed) && RemoveIfWithoutFrames(files_.back(), stats)) {
+    files_.pop_back();
+    --part_;
+  }
+  return closed;
+}
+
+void ScanRecorder::EndFile() {
+  if (is_recording()) Note(CloseFile());
 }
 
 Status ScanRecorder::Close() {
-  if (clock_) WriteClockMetadata();  // As it was in the end.
-  clock_.reset();
-  Note(writer_->Close());
-  return first_error_;
+  EndFile();
+  return status();
+}
+
+RecorderCounts ScanRecorder::counts(Sensor sensor) const {
+  const RecordingStats open = is_recording() ? writer_->stats() : RecordingStats();
+  const auto stream = static_cast<std::size_t>(sensor);
+  RecorderCounts counts{.offered = offered_[stream], .unwritable = unwritable_[stream]};
+  counts.recorded = sensor == Sensor::kDepth ? closed_.depth_frames + open.depth_frames
+                                             : closed_.thermal_frames + open.thermal_frames;
+  counts.lost = counts.offered - counts.recorded - counts.unwritable;
+  return counts;
+}
+
+std::uint64_t ScanRecorder::Lost() const {
+  return counts(Sensor::kDepth).lost + counts(Sensor::kThermal).lost;
+}
+
+std::uint64_t ScanRecorder::bytes() const {
+  return closed_.bytes + (is_recording() ? writer_->stats().bytes : 0);
 }
 
 }  // namespace isotherm

@@ -1,52 +1,118 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/base/status.h"
+#include "common/frame/frame.h"
 #include "common/messages/messages.h"
 #include "common/recording/recording.h"
+#include "common/time/back_off.h"
+#include "common/time/clock.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/subscriber/received_frame.h"
 #include "ground/subscriber/session_counters.h"
 
 namespace isotherm {
 
-/// Writes what arrives during one session into `scan.mcap`. A disk that fills up ends the
-/// recording, not the scan: what was written stays readable and the rest is counted.
-/// Thread-compatible.
+/// Counts one stream's frames: offered = recorded + unwritable + lost.
+struct RecorderCounts {
+  std::uint64_t offered = 0;
+  std::uint64_t recorded = 0;
+  std::uint64_t unwritable = 0;  ///< No disk would take them, because they are wrong.
+  std::uint64_t lost = 0;        ///< The disk failed.
+};
+
+/// Writes what arrives during one session into `scan.mcap`, and after an error of the disk into
+/// `scan-2.mcap` and so on.
+///
+///   recording --(error of the disk)--------------------------> waiting
+///   waiting   --(back-off over, a new file can be begun)-----> recording
+///
+/// After an error the file is closed as well as it can be and never touched again. Each file has
+/// the whole beginning; one that failed before it got a frame is removed. A message that is wrong
+/// ends nothing. Thread-compatible.
 class ScanRecorder {
  public:
-  static Result<std::unique_ptr<ScanRecorder>> Create(const std::filesystem::path& path,
-                                                      const GroundOptions& options);
+  using CreateWriter =
+      std::function<Result<std::unique_ptr<RecordingWriter>>(const std::filesystem::path&)>;
 
-  void Write(const RigDescription& rig);
-  void Write(const ReceivedDepth& depth);
-  void Write(const ReceivedThermal& thermal);
+  /// Records to the disk; `path` is the first file's. `clock` must outlive the recorder.
+  ScanRecorder(const std::filesystem::path& path, const GroundOptions& options,
+               const RigDescription& rig, const Clock& clock);
+  /// The same with files that `create` makes.
+  ScanRecorder(const std::filesystem::path& path, const GroundOptions& options,
+               const RigDescription& rig, const Clock& clock, CreateWriter create);
+
+  /// Begins a file if there is none and one is due. Frames do so as well.
+  void Tend();
+  void Write(const ReceivedDepth& depth) { WriteFrame(Sensor::kDepth, depth); }
+  void Write(const ReceivedThermal& thermal) { WriteFrame(Sensor::kThermal, thermal); }
   void Write(const Feedback& feedback);
   void Write(const ExternalOdometrySample& sample);
   /// Keeps what is known of the rig's clock, and writes what changed in kind: synchronisation,
   /// steps, alarm.
   void Write(const SessionClock& clock);
   /// Hands what was written so far to the operating system.
-  void Flush() { Note(writer_->Flush()); }
-  /// Writes index and footer. The first error of the recording, or ok. Idempotent.
+  void Flush();
+  /// Ends the file in order; the next frame begins another one.
+  void EndFile();
+  /// Writes index and footer, and returns status(). Idempotent.
   Status Close();
 
-  RecordingStats stats() const { return writer_->stats(); }
-  /// The first error so far, or ok.
-  const Status& status() const { return first_error_; }
+  RecorderCounts counts(Sensor sensor) const;
+  /// Returns the bytes of all files.
+  std::uint64_t bytes() const;
+  /// Returns the files in their order, the newest last; none that was removed.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+  /// Returns the disk's first error, or without one the first message's that was wrong, or ok.
+  const Status& status() const { return disk_error_.ok() ? refusal_ : disk_error_; }
+  /// Returns why the disk is not trusted at this moment; ok while all is well.
+  const Status& problem() const { return problem_; }
+  bool is_recording() const { return writer_ != nullptr; }
 
  private:
-  explicit ScanRecorder(std::unique_ptr<RecordingWriter> writer) : writer_(std::move(writer)) {}
+  template <typename Frame>
+  void WriteFrame(Sensor sensor, const Frame& frame);
+  Status BeginFile();
+  Status WriteBeginning();
+  Status WriteClockStep();
+  Status WriteClockMetadata();
   void Note(const Status& status);
-  void WriteClockMetadata();
+  /// The file cannot go on, or could not be begun: another one later.
+  void Fail(const Status& status);
+  void NoteWorks();
+  /// Returns the first error of closing it, or ok.
+  Status CloseFile();
+  std::uint64_t Lost() const;
 
+  const std::filesystem::path path_;
+  const std::string options_text_;
+  const RigDescription rig_;
+  const Clock& clock_;
+  const CreateWriter create_;
   std::unique_ptr<RecordingWriter> writer_;
-  Status first_error_;
-  std::optional<SessionClock> clock_;  ///< The newest.
+  int part_ = 0;  ///< The newest file's number.
+  std::vector<std::filesystem::path> files_;
+  RecordingStats closed_{};                    ///< Sum over the files before.
+  std::array<std::uint64_t, 2> offered_{};     ///< By Sensor.
+  std::array<std::uint64_t, 2> unwritable_{};  ///< By Sensor.
+  Status disk_error_;
+  Status refusal_;
+  Status problem_;
+  std::uint64_t lost_before_ = 0;  ///< When all was well last.
+  BackOff back_off_;
+  SteadyTime retry_at_{};
+  SteadyTime begun_at_{};                  ///< The newest file.
+  std::optional<SessionClock> rig_clock_;  ///< The newest.
+  double step_sum_s_ = 0.0;                ///< As the newest file says.
 };
 
 }  // namespace isotherm

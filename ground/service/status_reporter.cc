@@ -59,9 +59,8 @@ void AddTroubles(const GroundSituation& situation, std::vector<std::string>& par
     parts.push_back(fmt::format("RESULTS OF {} SCANS LOST", situation.scans_given_up));
   if (situation.link.counters.clock && situation.link.counters.clock->alarm)
     parts.emplace_back("CLOCK ALARM");
-  if (!situation.recording.status.ok()) {
-    parts.emplace_back("NOT RECORDING");
-  } else if (situation.recording.left_out() > 0) {
+  if (situation.recording.paused) parts.emplace_back("NOT RECORDING");
+  if (situation.recording.left_out() > 0) {
     parts.push_back(fmt::format("RECORDING LACKS {} frames", situation.recording.left_out()));
   }
 }

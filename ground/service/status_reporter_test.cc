@@ -7,6 +7,7 @@ namespace isotherm {
 namespace {
 
 using std::chrono::seconds;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -111,8 +112,18 @@ TEST(StatusReporterTest, F41TheDiskLastsSoLong) {
   EXPECT_THAT(StatusText(situation), HasSubstr(" | disk: 1 min left"));
   recording.free_bytes = 50'000'000;
   EXPECT_THAT(StatusText(situation), HasSubstr(" | disk: 0 min left"));
+}
+
+TEST(StatusReporterTest, F43ARecordingThatPausesSaysSoAndThatGoesOnWhatItLacks) {
+  GroundSituation situation = Scanning();
+  RecordingProgress& recording = situation.recording;
   recording.status = ResourceExhausted("full");
-  EXPECT_THAT(StatusText(situation), HasSubstr(" | NOT RECORDING"));
+  recording.paused = true;
+  recording.depth_left_out[static_cast<std::size_t>(NotRecorded::kDiskFailed)] = 7;
+  EXPECT_THAT(StatusText(situation), HasSubstr(" | NOT RECORDING | RECORDING LACKS 7 frames"));
+  recording.paused = false;
+  EXPECT_THAT(StatusText(situation),
+              AllOf(HasSubstr(" | RECORDING LACKS 7 frames"), Not(HasSubstr("NOT RECORDING"))));
 }
 
 TEST(StatusReporterTest, WhatTheRigDroppedItselfIsSaid) {

@@ -1,33 +1,27 @@
-// The ground and its disk: stuck, slow, full; results that take long; a rig that dies. Edge and
+// The ground and its disk: stuck, slow; results that take long; a rig that dies. Edge and
 // ground as two processes over DDS on loopback.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iostream>
-#include <memory>
 #include <thread>
 
 #include "common/testing/temporary_directory.h"
 #include "tests/support/programs.h"
+#include "tests/system/ground_disk.h"
 
 namespace isotherm::system_test {
 namespace {
 
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::Not;
 using testing::TemporaryDirectory;
-
-constexpr double kScan_s = 2.0;
-constexpr ExitStatus kDiskFull = 73;
-constexpr ExitStatus kDiskStuck = 74;
 
 /// Waits for a file that another process makes.
 bool WaitForFile(const std::filesystem::path& path, Seconds patience) {
@@ -57,74 +51,6 @@ std::vector<Scan> ScansIn(const std::string& log) {
   }
   return scans;
 }
-
-class GroundDiskTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    shared_ = std::make_unique<TemporaryDirectory>();
-    SimulateScan(Source(), kScan_s);
-  }
-  static void TearDownTestSuite() { shared_.reset(); }
-  static std::filesystem::path Source() { return shared_->path() / "source.mcap"; }
-
-  std::filesystem::path Path(const std::string& name) const { return folder_.path() / name; }
-
-  /// As fast as the ground takes it.
-  static Command Edge(int loops) {
-    Command edge = EndlessEdge();
-    edge.arguments.insert(edge.arguments.end(),
-                          {"--rate", "0", "--wait-for-ground", "--exit-at-end", "--set",
-                           "source.loops=" + std::to_string(loops)});
-    return edge;
-  }
-  /// As a camera would.
-  static Command EndlessEdge() {
-    return {EdgeDaemon(),
-            {"--recording", Source(), "--domain", std::to_string(TestDomain()), "--set",
-             "source.loops=0"},
-            {}};
-  }
-  Command Ground(const std::vector<std::string>& more = {}) const {
-    Command ground{GroundService(),
-                   {"--domain", std::to_string(TestDomain()), "--output", Path("ground")},
-                   {}};
-    const std::vector<std::string> quick = QuickModel();
-    ground.arguments.insert(ground.arguments.end(), more.begin(), more.end());
-    ground.arguments.insert(ground.arguments.end(), quick.begin(), quick.end());
-    return ground;
-  }
-
-  /// A recording that never gets anywhere: nobody opens the other end.
-  void PutPipeInPlaceOfTheRecording() const {
-    std::filesystem::create_directories(Path("ground"));
-    ASSERT_EQ(mkfifo(Path("ground/scan.mcap").c_str(), 0600), 0);
-  }
-
-  /// Everything that was published arrived and was reconstructed; of the recording, all is known.
-  static void ExpectWholeCounters(const google::protobuf::Struct& stats, const char* sensor) {
-    const auto count = [&](const std::string& what) {
-      return NumberAt(stats, {"link", sensor, what});
-    };
-    EXPECT_GT(count("published"), 0) << sensor;
-    EXPECT_EQ(count("received"), count("published")) << sensor;
-    EXPECT_EQ(count("missing"), 0) << sensor;
-    EXPECT_EQ(NumberAt(stats, {"frames", sensor, "in"}), count("received")) << sensor;
-    double not_recorded = 0.0;
-    const auto& stream = stats.fields().at("link").struct_value().fields().at(sensor);
-    const auto& fields = stream.struct_value().fields();
-    if (fields.contains("not_recorded_by_reason")) {
-      for (const auto& [reason, frames] :
-           fields.at("not_recorded_by_reason").struct_value().fields())
-        not_recorded += frames.number_value();
-    }
-    EXPECT_EQ(count("recorded") + not_recorded, count("received")) << sensor;
-  }
-
-  static std::unique_ptr<TemporaryDirectory> shared_;
-  TemporaryDirectory folder_;
-};
-
-std::unique_ptr<TemporaryDirectory> GroundDiskTest::shared_;
 
 TEST_F(GroundDiskTest, F42AStuckRecordingCostsTheRecordingOnly) {
   PutPipeInPlaceOfTheRecording();
@@ -256,73 +182,6 @@ TEST_F(GroundDiskTest, F33TheScanOfAKilledEdgeHasItsOwnCounters) {
   }
   EXPECT_THAT(ground.output(), HasSubstr("the rig had not said its last word"));
   if (HasFailure()) std::cout << "ground:\n" << ground.output();
-}
-
-/// Runs the ground for one scan with a small file system as its output folder, whose content is in
-/// Path("kept") afterwards; nullopt if this computer does not allow that.
-class SmallDiskTest : public GroundDiskTest {
- protected:
-  std::optional<Finished> RunGround(const std::string& size, int loops) {
-    const auto unshared = [](const std::string& script) {
-      return Command{
-          "/usr/bin/unshare", {"--map-root-user", "--mount", "/bin/sh", "-c", script}, {}};
-    };
-    const std::string disk = Path("ground").string();
-    std::filesystem::create_directories(disk);
-    std::filesystem::create_directories(Path("elsewhere"));
-    const std::string mount = "mount -t tmpfs -o size=" + size + " none '" + disk + "'";
-    if (!std::filesystem::exists("/usr/bin/unshare") ||
-        RunToEnd(unshared(mount), kPatience).status != 0)
-      return std::nullopt;
-    std::string program = "'" + GroundService().string() + "'";
-    for (const std::string& argument : Ground({"--once"}).arguments)
-      program += " '" + argument + "'";
-    Command command = unshared(mount + " && " + program + "; status=$?; cp -r '" + disk + "' '" +
-                               Path("kept").string() + "'; df -k '" + disk + "'; exit $status");
-    command.environment = {"TMPDIR=" + Path("elsewhere").string()};
-    Process ground(command);
-    EXPECT_TRUE(ground.WaitForOutput("ready", kPatience)) << ground.output();
-    const Finished edge = RunToEnd(Edge(loops), kPatience);
-    EXPECT_EQ(edge.status, 0) << edge.output;
-    Finished finished;
-    finished.status = ground.WaitForExit(kPatience).value_or(-1);
-    finished.output = ground.output();
-    return finished;
-  }
-};
-
-TEST_F(SmallDiskTest, F41AFullDiskCostsTheRecordingsEndNotTheResults) {
-  const std::optional<Finished> ground = RunGround("30m", 6);
-  if (!ground) GTEST_SKIP() << "mounting a small file system is not allowed here";
-  EXPECT_EQ(ground->status, kDiskFull) << ground->output;
-  EXPECT_THAT(ground->output, HasSubstr("are kept for the results"));
-  EXPECT_THAT(ground->output, HasSubstr("what was left of the disk was kept for the results"));
-  for (const char* name : {"model.iso", "cloud.ply", "mesh.ply", "trajectory.txt"})
-    EXPECT_TRUE(std::filesystem::exists(Path("kept") / name)) << name << "\n" << ground->output;
-  const auto stats = ReadStats(Path("kept"));
-  ExpectWholeCounters(stats, "depth");
-  ExpectWholeCounters(stats, "thermal");
-  EXPECT_GT(NumberAt(stats, {"link", "depth", "not_recorded_by_reason", "disk_nearly_full"}), 0);
-  const RecordingContent recording = ReadRecording(Path("kept/scan.mcap"));
-  EXPECT_TRUE(recording.complete) << "it ends in order";
-  EXPECT_EQ(static_cast<double>(recording.depth.size()),
-            NumberAt(stats, {"link", "depth", "recorded"}));
-  EXPECT_THAT(recording.depth, Not(IsEmpty()));
-  if (HasFailure()) std::cout << ground->output;
-}
-
-TEST_F(SmallDiskTest, F41ResultsThatFindNoRoomGoElsewhereAndItIsSaid) {
-  const std::optional<Finished> ground = RunGround("1m", 1);
-  if (!ground) GTEST_SKIP() << "mounting a small file system is not allowed here";
-  EXPECT_EQ(ground->status, kDiskFull) << ground->output;
-  const std::filesystem::path elsewhere = Path("elsewhere/isotherm-ground");
-  EXPECT_THAT(ground->output, HasSubstr("the results are in " + elsewhere.string()));
-  for (const char* name : {"model.iso", "cloud.ply", "mesh.ply", "trajectory.txt", "stats.json"})
-    EXPECT_TRUE(std::filesystem::exists(elsewhere / name)) << name << "\n" << ground->output;
-  const auto stats = ReadStats(elsewhere);
-  ExpectWholeCounters(stats, "depth");
-  ExpectWholeCounters(stats, "thermal");
-  if (HasFailure()) std::cout << ground->output;
 }
 
 }  // namespace

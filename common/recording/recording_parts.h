@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+
+#include "common/base/status.h"
+#include "common/recording/recording.h"
+
+namespace isotherm {
+
+/// Returns the name of a recording's file number `part`: "scan.mcap", "scan-2.mcap", ...
+std::filesystem::path PartPath(const std::filesystem::path& path, int part);
+
+/// Returns the number of the first free name after `part`.
+int NextFreePart(const std::filesystem::path& path, int part);
+
+/// Returns whether `path` is written to as it is: a device or a pipe has no parts.
+bool IsDevice(const std::filesystem::path& path);
+
+/// Returns whether the file cannot go on after a writer's `status`: the disk failed. Otherwise one
+/// message was wrong, and the next may be right.
+bool EndsFile(const Status& status);
+
+/// Removes a closed file that got no frame. Returns whether it did.
+bool RemoveIfWithoutFrames(const std::filesystem::path& path, const RecordingStats& stats);
+
+}  // namespace isotherm

@@ -1,0 +1,173 @@
+// A recording of the ground on a disk that fails and works again.
+#include "ground/service/scan_recorder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+
+#include "common/recording/testing/recording_data.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using testing::kScanStart;
+
+constexpr Nanoseconds kLongerThanAnyBackOff = 6s;
+constexpr Nanoseconds kFrameInterval = 33ms;
+
+/// A disk in memory on which each file has the room that the test gives it.
+class ScanRecorderTest : public ::testing::Test {
+ protected:
+  static RigDescription MakeRig() {
+    RigDescription rig;
+    rig.rig = testing::MakeRig();
+    return rig;
+  }
+  Result<std::unique_ptr<RecordingWriter>> CreateFile(const std::filesystem::path& path) {
+    ++tries_;
+    if (!disk_works_) return Err(IoError("read-only file system"));
+    const auto disk = std::make_shared<MemorySink::Disk>();
+    disk->capacity = room_;
+    auto writer = MakeRecordingWriter(std::make_unique<MemorySink>(disk), kSmallChunks);
+    if (writer) disks_[path.string()] = disk;
+    return writer;
+  }
+  void Depth() {
+    auto frame = std::make_shared<EncodedDepthFrame>(
+        testing::MakeDepth(number_, kScanStart + static_cast<int>(number_) * kFrameInterval));
+    ++number_;
+    clock_.Advance(kFrameInterval);
+    recorder_.Write(ReceivedDepth{nullptr, std::move(frame), clock_.Now()});
+  }
+  void Depths(int count) {
+    for (int i = 0; i < count; ++i) Depth();
+  }
+  std::unique_ptr<RecordingReader> Read(const std::string& path) const {
+    return testing::ReaderOf(disks_.at(path)->bytes).value();
+  }
+  /// The numbers of the frames that can be read from all files together.
+  std::multiset<std::uint64_t> NumbersRead() const {
+    std::multiset<std::uint64_t> numbers;
+    for (const std::filesystem::path& file : recorder_.files()) {
+      const auto reader = Read(file.string());
+      for (const auto& depth : testing::ReadAll(*reader).All<RecordedDepth>())
+        numbers.insert(depth.frame.header.frame_number);
+    }
+    return numbers;
+  }
+  RecorderCounts counts() const { return recorder_.counts(Sensor::kDepth); }
+
+  static constexpr RecordingOptions kSmallChunks{.flush_interval = 60ms};
+  FakeClock clock_{kScanStart};
+  const RigDescription rig_ = MakeRig();
+  std::size_t room_ = std::numeric_limits<std::size_t>::max();
+  bool disk_works_ = true;
+  int tries_ = 0;
+  std::uint64_t number_ = 0;
+  std::map<std::string, std::shared_ptr<MemorySink::Disk>> disks_;
+  // Files of this name are not on the real disk, so no name is ever taken there.
+  ScanRecorder recorder_{"not-there/scan.mcap", GroundOptions(), rig_, clock_,
+                         [this](const std::filesystem::path& path) { return CreateFile(path); }};
+};
+
+TEST_F(ScanRecorderTest, F43AfterAFullDiskASecondFileIsBegunAndBothHaveAllButTheCountedLoss) {
+  room_ = 12'000;
+  while (recorder_.status().ok()) Depth();
+  EXPECT_EQ(recorder_.status().code(), StatusCode::kResourceExhausted);
+  EXPECT_FALSE(recorder_.is_recording());
+  Depths(3);  // Nobody tries again for each frame.
+  EXPECT_EQ(tries_, 1);
+  room_ = std::numeric_limits<std::size_t>::max();
+  clock_.Advance(kLongerThanAnyBackOff);
+  const std::uint64_t first_again = number_;
+  Depths(5);
+  EXPECT_EQ(recorder_.Close().code(), StatusCode::kResourceExhausted) << "it is not complete";
+
+  EXPECT_THAT(recorder_.files(), ElementsAre("not-there/scan.mcap", "not-there/scan-2.mcap"));
+  const std::multiset<std::uint64_t> read = NumbersRead();
+  EXPECT_EQ(counts().offered, number_);
+  EXPECT_EQ(counts().recorded, read.size());
+  EXPECT_EQ(counts().lost, number_ - read.size());
+  EXPECT_GT(read.count(0), 0U) << "what was good before is kept";
+  for (std::uint64_t i = 0; i < number_; ++i) EXPECT_LE(read.count(i), 1U);
+  for (std::uint64_t i = first_again; i < number_; ++i) EXPECT_EQ(read.count(i), 1U) << i;
+}
+
+TEST_F(ScanRecorderTest, EachFileHasTheRigTheOptionsAndTheClock) {
+  SessionClock clock;
+  clock.time = kScanStart;
+  clock.rig.synchronised = true;
+  clock.rig.steps = 1;
+  clock.rig.step_sum_s = 2.0;
+  recorder_.Tend();
+  recorder_.Write(clock);
+  Depths(2);
+  recorder_.EndFile();
+  Depths(2);
+  EXPECT_TRUE(recorder_.Close().ok());
+  ASSERT_EQ(recorder_.files().size(), 2U);
+  for (const std::filesystem::path& file : recorder_.files()) {
+    const auto reader = Read(file.string());
+    EXPECT_TRUE(reader->info().complete) << file;
+    const Result<Rig> rig = reader->ReadRig();
+    ASSERT_TRUE(rig.has_value()) << file << rig.error().message();
+    EXPECT_EQ(rig->serial, rig_.rig.serial) << file;
+    EXPECT_EQ(reader->info().metadata.at("configuration").at("program"), "isotherm-ground");
+    EXPECT_EQ(reader->info().metadata.at("clock").at("steps"), "1");
+    const auto steps = testing::ReadAll(*reader).All<ClockStep>();
+    ASSERT_EQ(steps.size(), 1U) << file;
+    EXPECT_EQ(steps[0].wall_minus_time, 2s);
+  }
+}
+
+TEST_F(ScanRecorderTest, F43ADiskThatStaysBrokenIsTriedWithABackOffAndLeavesNoFile) {
+  disk_works_ = false;
+  const SteadyTime begin = clock_.SteadyNow();
+  while (clock_.SteadyNow() - begin < 60s) Depth();
+  // Half a second, 1, 2, 4, 5, 5, ...
+  EXPECT_GE(tries_, 13);
+  EXPECT_LE(tries_, 16);
+  EXPECT_EQ(counts().lost, number_);
+  EXPECT_THAT(recorder_.files(), IsEmpty());
+  disk_works_ = true;
+  clock_.Advance(kLongerThanAnyBackOff);
+  Depth();
+  EXPECT_TRUE(recorder_.is_recording());
+  EXPECT_EQ(counts().recorded, 1U);
+}
+
+TEST_F(ScanRecorderTest, F43OneFailureIsOneProblemUntilTheDiskHasProvenItself) {
+  room_ = 12'000;
+  while (recorder_.status().ok()) Depth();
+  room_ = std::numeric_limits<std::size_t>::max();
+  clock_.Advance(kLongerThanAnyBackOff);
+  Depth();
+  EXPECT_TRUE(recorder_.is_recording());
+  EXPECT_FALSE(recorder_.problem().ok()) << "it may fail again at once";
+  clock_.Advance(3s);
+  Depth();
+  EXPECT_TRUE(recorder_.problem().ok());
+  EXPECT_FALSE(recorder_.status().ok()) << "the recording is not complete all the same";
+}
+
+TEST_F(ScanRecorderTest, AFrameThatIsWrongIsNotTheDisksFault) {
+  Depth();
+  auto wrong = std::make_shared<EncodedDepthFrame>(
+      testing::MakeDepth(99, CaptureTimeFromNanoseconds(-1)));  // Before the epoch.
+  recorder_.Write(ReceivedDepth{nullptr, std::move(wrong), clock_.Now()});
+  Depth();
+  EXPECT_EQ(counts().unwritable, 1U);
+  EXPECT_EQ(counts().lost, 0U);
+  EXPECT_TRUE(recorder_.problem().ok());
+  EXPECT_EQ(recorder_.Close().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(recorder_.files().size(), 1U);
+  EXPECT_THAT(NumbersRead(), ElementsAre(0, 1));
+}
+
+}  // namespace
+}  // namespace isotherm
