@@ -1,10 +1,9 @@
 #include "edge/daemon/rig_name.h"
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
 #include <cctype>
+
+#include "common/base/host_name.h"
 
 namespace isotherm {
 namespace {
@@ -22,10 +21,6 @@ std::string RigNameOf(std::string_view host_name) {
   return name.empty() ? "edge" : name;
 }
 
-std::string HostRigName() {
-  std::array<char, 256> name{};
-  if (gethostname(name.data(), name.size() - 1) != 0) return RigNameOf("");
-  return RigNameOf(name.data());
-}
+std::string HostRigName() { return RigNameOf(HostName()); }
 
 }  // namespace isotherm

@@ -1,25 +1,23 @@
 #include "ground/subscriber/subscriber.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <deque>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/base/mutex.h"
-#include "common/time/line_limiter.h"
 #include "common/transport/endpoints.h"
-#include "common/transport/wait_set.h"
 #include "ground/subscriber/clock_comparison.h"
 #include "ground/subscriber/clock_watch.h"
+#include "ground/subscriber/ground_endpoints.h"
 #include "ground/subscriber/peer_table.h"
 #include "ground/subscriber/rig_gate.h"
-#include "ground/subscriber/rig_roster.h"
+#include "ground/subscriber/rig_watch.h"
+#include "ground/subscriber/session_history.h"
 #include "ground/subscriber/session_tracker.h"
 #include "ground/subscriber/stream_receiver.h"
 
@@ -30,32 +28,8 @@ using namespace std::chrono_literals;
 
 constexpr int kFramesPerTurn = 8;  // Of one stream before the other has its turn.
 constexpr int kMessagesPerTurn = 64;
-constexpr int kFramesPerReceipt = 8;  // A fast sender must not wait for the next interval.
-constexpr Nanoseconds kMaxReorderWindow = 200ms;
+constexpr int kFramesPerReceipt = 8;          // A fast sender must not wait for the next interval.
 constexpr Nanoseconds kIdleInterval = 100ms;  // How often presence is looked at.
-constexpr Nanoseconds kRivalInterval = 1s;    // How often a second edge is told that it is refused.
-
-std::string HostName() {
-  std::array<char, 256> name{};
-  if (gethostname(name.data(), name.size() - 1) != 0) return "";
-  return name.data();
-}
-
-/// The ends of all topics of a ground station.
-struct GroundEndpoints {
-  Reader<EncodedDepthFrame> depth;
-  Reader<EncodedThermalFrame> thermal;
-  Reader<ExternalOdometrySample> external_odometry;
-  Reader<RigDescription> rig;
-  Reader<EdgeStatus> status;
-  Reader<CommandResult> results;
-  Reader<Hello> peers;
-  Writer<Command> command;
-  Writer<Receipt> receipt;
-  Writer<Feedback> feedback;
-  Writer<Hello> hello;
-  WaitSet wait_set;
-};
 
 class DdsSubscriber final : public Subscriber {
  public:
@@ -102,8 +76,6 @@ class DdsSubscriber final : public Subscriber {
   void Refuse(const RigSample& sample, RefusalCause cause);
   /// Who is there, who is the rig, and who only says so.
   void LookAround(SteadyTime now);
-  void AnswerRivals(SteadyTime now);
-  void TellOverflow(SteadyTime now);
   std::string followed() const;  ///< Empty before there is one.
   /// True for the rig that is followed; without a choice that is the first one seen.
   bool IsFollowed(const std::string& edge_id);
@@ -124,13 +96,8 @@ class DdsSubscriber final : public Subscriber {
   StreamReceiver<ReceivedThermal> thermal_;
   PeerTable peers_;
   RigGate gate_;
-  RigRoster roster_;
-  OtherRigsNotice other_rigs_;
-  std::vector<RigGate::Rival> rivals_;
+  RigWatch watch_{gate_};
   SteadyTime look_due_{};
-  SteadyTime rivals_due_{};
-  std::uint64_t told_overflow_ = 0;
-  LineLimiter overflow_limiter_;
   SessionTracker sessions_;
   std::uint64_t described_session_ = 0;  ///< Session of the newest description of the rig.
   ClockComparison clock_comparison_;
@@ -142,8 +109,7 @@ class DdsSubscriber final : public Subscriber {
   std::string edge_id_ GUARDED_BY(mutex_);
   std::uint64_t next_command_ GUARDED_BY(mutex_);
   SubscriberStats stats_ GUARDED_BY(mutex_);
-  /// Oldest first; at most kMaxSessions.
-  std::deque<SessionCounters> counters_ GUARDED_BY(mutex_);
+  SessionHistory history_ GUARDED_BY(mutex_);
 };
 
 DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& options,
@@ -171,25 +137,8 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
       next_command_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))) {}
 
 Status DdsSubscriber::Open(const Participant& participant) {
-  ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant, &depth_refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant, &thermal_refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.external_odometry.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.results.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.peers.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.command.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.receipt.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.feedback.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.hello.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.depth));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.thermal));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.external_odometry));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.rig));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.status));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.results));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.peers));
+  ISOTHERM_RETURN_IF_ERROR(
+      ends_.Open(participant, {refusals_, depth_refusals_, thermal_refusals_}));
   return ends_.hello.Write(options_.ground_id, own_hello_);
 }
 
@@ -306,7 +255,7 @@ void DdsSubscriber::OnPeer(const Received<Hello>& peer) {
   if (peer.message.role != Role::kEdge) return;
   const Status compatible = CheckCompatible(own_hello_, peer.message);
   if (!compatible.ok()) return refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
-  roster_.Add(peers_.Identify(ends_.peers, peer.writer), peer.edge_id, peer.message.host);
+  watch_.Add(peers_.Identify(ends_.peers, peer.writer), peer.edge_id, peer.message.host);
   // An edge that waits for a ground has sent nothing else.
   FollowFirst(peer.edge_id);
 }
@@ -321,7 +270,7 @@ void DdsSubscriber::Housekeep() {
   if (now >= look_due_) LookAround(now);
   KeepCounters();
   MutexLock lock(mutex_);
-  stats_.counters = counters_.empty() ? SessionCounters() : counters_.back();
+  stats_.counters = history_.Newest();
   stats_.refusals = refusals_.counts();
   stats_.refused = refusals_.total();
 }
@@ -330,69 +279,20 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   look_due_ = now + kIdleInterval;
   const auto is_present = [this](PeerHandle peer) { return peers_.IsPresent(peer); };
   gate_.Update(now, is_present);
-  roster_.Update(is_present);
-  AnswerRivals(now);
-  TellOverflow(now);
   const std::string edge_id = followed();
-  // That writers live is known within their lease of a second; who they are, for ten.
-  const bool present =
-      ends_.status.matched_writers() > 0 && (is_present(gate_.owner()) || roster_.Has(edge_id));
-  const std::vector<std::string> others = roster_.Others(edge_id);
-  const std::string others_text = present || edge_id.empty() ? "" : OtherRigsText(edge_id, others);
-  if (other_rigs_.Update(!others_text.empty(), now)) {
-    LOG(Subscriber, Warning) << others_text;
+  const RigSighting sighting =
+      watch_.Look(now, edge_id, ends_.status.matched_writers() > 0, is_present);
+  for (const std::uint64_t session : sighting.sessions_to_refuse) {
+    Receipt refusal;
+    refusal.session = session;
+    refusal.verdict = SessionVerdict::kOtherRig;
+    static_cast<void>(ends_.receipt.Write(edge_id, refusal));  // Repeated every second.
   }
   MutexLock lock(mutex_);
-  stats_.rig_problem =
-      rivals_.empty() ? others_text
-                      : fmt::format("{} MORE of the name \"{}\", refused: give each rig a name",
-                                    rivals_.size(), edge_id_);
-  if (present == stats_.edge_present) return;
-  stats_.edge_present = present;
-  LOG(Subscriber, Info) << (present ? "rig found" : "rig lost");
-}
-
-void DdsSubscriber::AnswerRivals(SteadyTime now) {
-  const std::vector<RigGate::Rival> before = std::exchange(rivals_, gate_.rivals());
-  const auto has = [](const std::vector<RigGate::Rival>& rivals, PeerHandle peer) {
-    return std::ranges::find(rivals, peer, &RigGate::Rival::peer) != rivals.end();
-  };
-  for (const RigGate::Rival& rival : rivals_) {
-    if (has(before, rival.peer)) continue;
-    LOG(Subscriber, Error) << fmt::format(
-        "a second rig of the name \"{}\", on the computer \"{}\", is refused (its session {}): "
-        "the scan of the first one, on \"{}\", goes on. Give one of them another name (--edge-id "
-        "of isotherm-edge)",
-        followed(), roster_.HostOf(rival.peer), rival.session, roster_.HostOf(gate_.owner()));
-  }
-  for (const RigGate::Rival& rival : before) {
-    if (has(rivals_, rival.peer)) continue;
-    LOG(Subscriber, Info) << (rival.peer == gate_.owner()
-                                  ? "the second rig of this name is followed "
-                                    "now, session="
-                                  : "a second rig of this name has left, "
-                                    "session=")
-                          << rival.session;
-  }
-  if (rivals_ == before && now < rivals_due_) return;
-  rivals_due_ = now + kRivalInterval;
-  for (const RigGate::Rival& rival : rivals_) {
-    if (rival.session == 0) continue;
-    Receipt refusal;
-    refusal.session = rival.session;
-    refusal.verdict = SessionVerdict::kOtherRig;
-    static_cast<void>(ends_.receipt.Write(followed(), refusal));  // Repeated every second.
-  }
-}
-
-void DdsSubscriber::TellOverflow(SteadyTime now) {
-  const std::uint64_t overflowed = gate_.overflowed();
-  if (overflowed == told_overflow_ || !overflow_limiter_.Admit(now)) return;
-  LOG(Subscriber, Warning) << fmt::format(
-      "{} samples were refused: a rig \"{}\" that is not followed yet, or has not described "
-      "itself, sent more than {} samples or {} MB",
-      overflowed - std::exchange(told_overflow_, overflowed), followed(), RigGate::kMaxHeldSamples,
-      RigGate::kMaxHeldBytes >> 20U);
+  stats_.rig_problem = sighting.problem;
+  if (sighting.present == stats_.edge_present) return;
+  stats_.edge_present = sighting.present;
+  LOG(Subscriber, Info) << (sighting.present ? "rig found" : "rig lost");
 }
 
 std::string DdsSubscriber::followed() const {
@@ -401,25 +301,14 @@ std::string DdsSubscriber::followed() const {
 }
 
 void DdsSubscriber::KeepCounters() {
-  constexpr std::size_t kMaxSessions = 8;
   const std::vector<std::uint64_t> sessions = sessions_.sessions();
   // The streams know no more than two; the counters of older ones are as they were.
   const std::size_t first = sessions.size() - std::min<std::size_t>(sessions.size(), 2);
   MutexLock lock(mutex_);
   for (std::size_t i = first; i < sessions.size(); ++i) {
     const std::uint64_t session = sessions[i];
-    SessionCounters counters = sessions_.Counters(depth_.tally(session), thermal_.tally(session));
-    const auto kept = std::ranges::find(counters_, session, &SessionCounters::session);
-    const bool newest = i + 1 == sessions.size();
-    // Samples are refused before it is known whose they are.
-    counters.refused_samples =
-        newest || kept == counters_.end() ? refusals_.total() : kept->refused_samples;
-    if (kept != counters_.end()) {
-      *kept = counters;
-      continue;
-    }
-    if (counters_.size() == kMaxSessions) counters_.pop_front();
-    counters_.push_back(counters);
+    history_.Keep(sessions_.Counters(depth_.tally(session), thermal_.tally(session)),
+                  i + 1 == sessions.size(), refusals_.total());
   }
 }
 
@@ -491,35 +380,10 @@ SubscriberStats DdsSubscriber::stats() const {
 
 SessionCounters DdsSubscriber::counters(std::uint64_t session) const {
   MutexLock lock(mutex_);
-  const auto kept = std::ranges::find(counters_, session, &SessionCounters::session);
-  if (kept != counters_.end()) return *kept;
-  SessionCounters unknown;
-  unknown.session = session;
-  return unknown;
+  return history_.Get(session);
 }
 
 }  // namespace
-
-Status Validate(const SubscriberOptions& options) {
-  if (options.edge_id.size() > kMaxIdBytes) {
-    return InvalidArgument(fmt::format("edge_id must have at most {} bytes", kMaxIdBytes));
-  }
-  if (options.ground_id.empty() || options.ground_id.size() > kMaxIdBytes) {
-    return InvalidArgument(fmt::format("ground_id must have 1 to {} bytes", kMaxIdBytes));
-  }
-  if (options.reorder_window < Nanoseconds(0) || options.reorder_window > kMaxReorderWindow) {
-    return InvalidArgument(fmt::format("reorder_window = {} s is outside 0..{}",
-                                       ToSeconds(options.reorder_window),
-                                       ToSeconds(kMaxReorderWindow)));
-  }
-  if (options.max_clock_offset < Nanoseconds(0)) {
-    return InvalidArgument("max_clock_offset must not be negative");
-  }
-  if (options.receipt_interval <= Nanoseconds(0) || options.end_grace < Nanoseconds(0)) {
-    return InvalidArgument("receipt_interval must be positive and end_grace not negative");
-  }
-  return OkStatus();
-}
 
 Result<std::unique_ptr<Subscriber>> Subscriber::Create(const Participant& participant,
                                                        const Clock& clock,

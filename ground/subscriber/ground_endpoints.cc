@@ -1,0 +1,27 @@
+#include "ground/subscriber/ground_endpoints.h"
+
+namespace isotherm {
+
+Status GroundEndpoints::Open(const Participant& participant, const Refusals& refusals) {
+  ISOTHERM_RETURN_IF_ERROR(depth.Open(participant, &refusals.depth));
+  ISOTHERM_RETURN_IF_ERROR(thermal.Open(participant, &refusals.thermal));
+  ISOTHERM_RETURN_IF_ERROR(external_odometry.Open(participant, &refusals.all));
+  ISOTHERM_RETURN_IF_ERROR(rig.Open(participant, &refusals.all));
+  ISOTHERM_RETURN_IF_ERROR(status.Open(participant, &refusals.all));
+  ISOTHERM_RETURN_IF_ERROR(results.Open(participant, &refusals.all));
+  ISOTHERM_RETURN_IF_ERROR(peers.Open(participant, &refusals.all));
+  ISOTHERM_RETURN_IF_ERROR(command.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(receipt.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(feedback.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(hello.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Open(participant));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(depth));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(thermal));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(external_odometry));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(rig));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(status));
+  ISOTHERM_RETURN_IF_ERROR(wait_set.Attach(results));
+  return wait_set.Attach(peers);
+}
+
+}  // namespace isotherm

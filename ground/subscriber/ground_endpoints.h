@@ -1,0 +1,37 @@
+#pragma once
+
+#include "common/base/status.h"
+#include "common/frame/frame.h"
+#include "common/messages/messages.h"
+#include "common/transport/endpoints.h"
+#include "common/transport/participant.h"
+#include "common/transport/refusal.h"
+#include "common/transport/wait_set.h"
+
+namespace isotherm {
+
+/// Holds a ground station's ends of all topics, and the wait set that wakes for each reader.
+struct GroundEndpoints {
+  /// The counters, which must outlive the readers, get the samples that cannot be decoded.
+  struct Refusals {
+    RefusalCounter& all;
+    RefusalCounter& depth;
+    RefusalCounter& thermal;
+  };
+  Status Open(const Participant& participant, const Refusals& refusals);
+
+  Reader<EncodedDepthFrame> depth;
+  Reader<EncodedThermalFrame> thermal;
+  Reader<ExternalOdometrySample> external_odometry;
+  Reader<RigDescription> rig;
+  Reader<EdgeStatus> status;
+  Reader<CommandResult> results;
+  Reader<Hello> peers;
+  Writer<Command> command;
+  Writer<Receipt> receipt;
+  Writer<Feedback> feedback;
+  Writer<Hello> hello;
+  WaitSet wait_set;
+};
+
+}  // namespace isotherm

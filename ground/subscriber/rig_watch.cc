@@ -1,0 +1,76 @@
+#include "ground/subscriber/rig_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace isotherm {
+
+RigSighting RigWatch::Look(SteadyTime now, const std::string& edge_id, bool has_status_writer,
+                           const IsPresent& is_present) {
+  roster_.Update(is_present);
+  RigSighting sighting;
+  sighting.sessions_to_refuse = LookAtRivals(now, edge_id);
+  TellOverflow(now, edge_id);
+  // That writers live is known within their lease of a second; who they are, for ten.
+  sighting.present = has_status_writer && (is_present(gate_.owner()) || roster_.Has(edge_id));
+  const std::string others_text =
+      sighting.present || edge_id.empty() ? "" : OtherRigsText(edge_id, roster_.Others(edge_id));
+  if (other_rigs_.Update(!others_text.empty(), now)) {
+    LOG(Subscriber, Warning) << others_text;
+  }
+  sighting.problem = rivals_.empty()
+                         ? others_text
+                         : fmt::format("{} MORE of the name \"{}\", refused: give each rig a name",
+                                       rivals_.size(), edge_id);
+  return sighting;
+}
+
+std::vector<std::uint64_t> RigWatch::LookAtRivals(SteadyTime now, const std::string& edge_id) {
+  const std::vector<RigGate::Rival> before = std::exchange(rivals_, gate_.rivals());
+  LogRivals(before, edge_id);
+  if (rivals_ == before && now < rivals_due_) return {};
+  rivals_due_ = now + kRivalInterval;
+  std::vector<std::uint64_t> sessions;
+  for (const RigGate::Rival& rival : rivals_) {
+    if (rival.session != 0) sessions.push_back(rival.session);
+  }
+  return sessions;
+}
+
+void RigWatch::LogRivals(const std::vector<RigGate::Rival>& before,
+                         const std::string& edge_id) const {
+  const auto has = [](const std::vector<RigGate::Rival>& rivals, PeerHandle peer) {
+    return std::ranges::find(rivals, peer, &RigGate::Rival::peer) != rivals.end();
+  };
+  for (const RigGate::Rival& rival : rivals_) {
+    if (has(before, rival.peer)) continue;
+    LOG(Subscriber, Error) << fmt::format(
+        "a second rig of the name \"{}\", on the computer \"{}\", is refused (its session {}): "
+        "the scan of the first one, on \"{}\", goes on. Give one of them another name (--edge-id "
+        "of isotherm-edge)",
+        edge_id, roster_.HostOf(rival.peer), rival.session, roster_.HostOf(gate_.owner()));
+  }
+  for (const RigGate::Rival& rival : before) {
+    if (has(rivals_, rival.peer)) continue;
+    LOG(Subscriber, Info) << (rival.peer == gate_.owner()
+                                  ? "the second rig of this name is followed now, session="
+                                  : "a second rig of this name has left, session=")
+                          << rival.session;
+  }
+}
+
+void RigWatch::TellOverflow(SteadyTime now, const std::string& edge_id) {
+  const std::uint64_t overflowed = gate_.overflowed();
+  if (overflowed == told_overflow_ || !overflow_limiter_.Admit(now)) return;
+  LOG(Subscriber, Warning) << fmt::format(
+      "{} samples were refused: a rig \"{}\" that is not followed yet, or has not described "
+      "itself, sent more than {} samples or {} MB",
+      overflowed - std::exchange(told_overflow_, overflowed), edge_id, RigGate::kMaxHeldSamples,
+      RigGate::kMaxHeldBytes >> 20U);
+}
+
+}  // namespace isotherm

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/time/line_limiter.h"
+#include "common/time/time_types.h"
+#include "common/transport/endpoints.h"
+#include "ground/subscriber/rig_gate.h"
+#include "ground/subscriber/rig_roster.h"
+
+namespace isotherm {
+
+/// Holds what a look at the rigs of the link found.
+struct RigSighting {
+  bool present = false;  ///< The rig that is followed is there.
+  /// What is wrong with the rigs that are there, for the operator. Empty = nothing.
+  std::string problem;
+  /// Sessions of rivals that are to be told now that they are refused.
+  std::vector<std::uint64_t> sessions_to_refuse;
+};
+
+/// Watches which rigs are there, which is the one that is followed, and which only says so, and
+/// logs when that changes. Pure but for the log: time enters through arguments. Thread-compatible.
+class RigWatch {
+ public:
+  using IsPresent = std::function<bool(PeerHandle)>;
+
+  /// A rival is told this often that it is refused.
+  static constexpr Nanoseconds kRivalInterval = std::chrono::seconds(1);
+
+  /// `gate` decides who is the rig, and must outlive the watch.
+  explicit RigWatch(const RigGate& gate) : gate_(gate) {}
+
+  /// The process `peer` has said that it is an edge.
+  void Add(PeerHandle peer, const std::string& edge_id, const std::string& host) {
+    roster_.Add(peer, edge_id, host);
+  }
+  /// To be called several times in a second, after the gate's Update(). `edge_id` is the name of
+  /// the rig that is followed, `has_status_writer` whether anybody writes statuses.
+  RigSighting Look(SteadyTime now, const std::string& edge_id, bool has_status_writer,
+                   const IsPresent& is_present);
+
+ private:
+  std::vector<std::uint64_t> LookAtRivals(SteadyTime now, const std::string& edge_id);
+  void LogRivals(const std::vector<RigGate::Rival>& before, const std::string& edge_id) const;
+  void TellOverflow(SteadyTime now, const std::string& edge_id);
+
+  const RigGate& gate_;
+  RigRoster roster_;
+  OtherRigsNotice other_rigs_;
+  std::vector<RigGate::Rival> rivals_;
+  SteadyTime rivals_due_{};
+  std::uint64_t told_overflow_ = 0;
+  LineLimiter overflow_limiter_;
+};
+
+}  // namespace isotherm
