@@ -1,22 +1,20 @@
 #include "edge/publisher/publisher.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <condition_variable>
 
+#include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/base/mutex.h"
 #include "common/concurrency/latest_value.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/qos.h"
-#include "common/transport/wait_set.h"
+#include "edge/publisher/edge_endpoints.h"
 #include "edge/publisher/flow_window.h"
-#include "edge/publisher/ground_register.h"
-#include "edge/publisher/ground_relation.h"
+#include "edge/publisher/ground_watch.h"
 #include "edge/publisher/published_stream.h"
 
 namespace isotherm {
@@ -33,29 +31,7 @@ constexpr Nanoseconds kStopPatience = 500ms;  // Waiting for the ground after st
 // Writing after stop, in all: without its peer, the middleware makes each write wait.
 constexpr Nanoseconds kStopWriting = 700ms;
 
-std::string HostName() {
-  std::array<char, 256> name{};
-  if (gethostname(name.data(), name.size() - 1) != 0) return "";
-  return name.data();
-}
-
 Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link is too slow"); }
-
-/// The ends of all topics of an edge.
-struct EdgeEndpoints {
-  Writer<EncodedDepthFrame> depth;
-  Writer<EncodedThermalFrame> thermal;
-  Writer<ExternalOdometrySample> external_odometry;
-  Writer<RigDescription> rig;
-  Writer<EdgeStatus> status;
-  Writer<CommandResult> result;
-  Writer<Hello> hello;
-  Reader<Command> commands;
-  Reader<Receipt> receipts;
-  Reader<Feedback> feedback;
-  Reader<Hello> peers;
-  WaitSet wait_set;
-};
 
 class DdsPublisher final : public Publisher {
  public:
@@ -67,7 +43,7 @@ class DdsPublisher final : public Publisher {
         policy_(options.policy),
         depth_{.counts = {}, .window = MakeWindow(options), .published = {}},
         thermal_{.counts = {}, .window = MakeWindow(options), .published = {}},
-        relation_(options.edge_id) {}
+        grounds_(options.edge_id) {}
 
   Status Open(const Participant& participant);
 
@@ -120,8 +96,6 @@ class DdsPublisher final : public Publisher {
   void OnFeedback(const Received<Feedback>& received, const PublisherHandlers& handlers);
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
-  /// Says once what the ground makes of this rig.
-  void LogRelation() REQUIRES(mutex_);
   /// Why what the ground says of this session cannot be.
   std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_);
   std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const
@@ -135,14 +109,14 @@ class DdsPublisher final : public Publisher {
   /// not waited for.
   template <typename Frame>
   bool IsAwaited(const Writer<Frame>& writer) const REQUIRES(mutex_) {
-    if (relation_.IsRefused(clock_.SteadyNow())) return false;  // It will never confirm.
-    return grounds_.MayHaveFollower([&](PeerHandle peer) { return writer.Reaches(peer); });
+    return grounds_.IsAwaited([&](PeerHandle peer) { return writer.Reaches(peer); },
+                              clock_.SteadyNow());
   }
   /// As above, or somebody who has just come.
   template <typename Frame>
   bool MayBeAwaited(const Writer<Frame>& writer, Stream* stream, SteadyTime now) const
       REQUIRES(mutex_) {
-    if (relation_.IsRefused(now)) return false;
+    if (grounds_.IsRefused(now)) return false;
     const int readers = writer.matched_readers();
     if (readers > stream->readers) stream->reader_came_at = now;
     stream->readers = readers;
@@ -169,30 +143,13 @@ class DdsPublisher final : public Publisher {
   std::uint64_t flow_waits_ GUARDED_BY(mutex_) = 0;
   std::uint64_t flow_timeouts_ GUARDED_BY(mutex_) = 0;
   std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);  // Not sent yet.
-  GroundRegister grounds_ GUARDED_BY(mutex_);
-  GroundRelation relation_ GUARDED_BY(mutex_);
-  bool ground_present_ GUARDED_BY(mutex_) = false;
+  GroundWatch grounds_ GUARDED_BY(mutex_);
   // When it was first seen that stop was requested.
   std::optional<SteadyTime> stopped_at_ GUARDED_BY(mutex_);
 };
 
 Status DdsPublisher::Open(const Participant& participant) {
-  ISOTHERM_RETURN_IF_ERROR(ends_.depth.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.thermal.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.external_odometry.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.rig.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.status.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.result.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.hello.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.commands.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.receipts.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.feedback.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.peers.Open(participant, &refusals_));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Open(participant));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.commands));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.receipts));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.feedback));
-  ISOTHERM_RETURN_IF_ERROR(ends_.wait_set.Attach(ends_.peers));
+  ISOTHERM_RETURN_IF_ERROR(ends_.Open(participant, refusals_));
   return ends_.hello.Write(options_.edge_id, own_hello_);
 }
 
@@ -237,10 +194,7 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   MutexLock lock(mutex_);
   const bool ours = IsOurs(received.edge_id);
   const bool accepted = receipt.verdict == SessionVerdict::kFollowed;
-  // What it says of another session of this name takes nothing back of what it said of ours.
-  const bool certain = !ours || !session_ || receipt.session == 0 || receipt.session == session_;
-  const bool from_ground = grounds_.NoteReceipt(sender, ours && accepted, certain);
-  if (from_ground) relation_.OnReceipt(received.edge_id, receipt, session_.value_or(0), now);
+  const bool from_ground = grounds_.OnReceipt(sender, received.edge_id, receipt, session_, now);
   if (!ours) return;
   std::optional<RefusalCause> cause;
   if (!from_ground) {
@@ -297,29 +251,11 @@ std::optional<RefusalCause> DdsPublisher::RefusalOf(const Feedback& feedback,
 void DdsPublisher::LookForGround() {
   MutexLock lock(mutex_);
   // The next one may be another version.
-  grounds_.RemoveIf([this](const GroundRegister::Ground& ground) REQUIRES(mutex_) {
-    const bool is_gone = ends_.peers.PeerOf(ground.hello_writer) == 0;
-    if (is_gone) depth_.readers = thermal_.readers = 0;  // Who reads now may be its successor.
-    return is_gone;
-  });
-  LogRelation();
-  const bool present = !grounds_.empty();
-  if (present == ground_present_) return;
-  ground_present_ = present;
-  LOG(Publisher, Info) << (present ? "ground station found" : "ground station lost");
-}
-
-void DdsPublisher::LogRelation() {
-  const SteadyTime now = clock_.SteadyNow();
-  const std::optional<std::string> news = relation_.News(now);
-  if (!news) return;
-  if (news->empty()) {
-    LOG(Publisher, Info) << "the ground station follows this rig now, or has left";
-  } else if (relation_.IsRefused(now)) {
-    LOG(Publisher, Error) << "the ground station " << *news;
-  } else {
-    LOG(Publisher, Warning) << "a ground station " << *news;
-  }
+  const bool left =
+      grounds_.Look(clock_.SteadyNow(), [this](std::uint64_t hello_writer) {
+        return ends_.peers.PeerOf(hello_writer) != 0;
+      });
+  if (left) depth_.readers = thermal_.readers = 0;  // Who reads now may be its successor.
 }
 
 bool DdsPublisher::IsGroundReady() const {
@@ -467,25 +403,11 @@ PublisherStats DdsPublisher::stats() const {
           .flow_waits = flow_waits_,
           .flow_timeouts = flow_timeouts_,
           .refused = refusals_.total(),
-          .ground_present = ground_present_,
-          .ground_problem = relation_.Problem(clock_.SteadyNow())};
+          .ground_present = grounds_.is_present(),
+          .ground_problem = grounds_.Problem(clock_.SteadyNow())};
 }
 
 }  // namespace
-
-Status Validate(const PublisherOptions& options) {
-  if (options.edge_id.empty() || options.edge_id.size() > kMaxIdBytes) {
-    return InvalidArgument(fmt::format("edge_id must have 1 to {} bytes", kMaxIdBytes));
-  }
-  if (options.flow_window_frames < 1 || options.flow_window_frames > kMaxFlowWindowFrames) {
-    return InvalidArgument(fmt::format("flow_window_frames = {} is outside 1..{}",
-                                       options.flow_window_frames, kMaxFlowWindowFrames));
-  }
-  if (options.flow_timeout <= Nanoseconds(0)) {
-    return InvalidArgument("flow_timeout must be positive");
-  }
-  return OkStatus();
-}
 
 Result<std::unique_ptr<Publisher>> Publisher::Create(const Participant& participant,
                                                      const Clock& clock,

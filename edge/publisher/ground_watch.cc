@@ -1,0 +1,46 @@
+#include "edge/publisher/ground_watch.h"
+
+#include "common/base/log.h"
+
+namespace isotherm {
+
+bool GroundWatch::OnReceipt(PeerHandle sender, const std::string& edge_id, const Receipt& receipt,
+                            const std::optional<std::uint64_t>& session, SteadyTime now) {
+  const bool ours = edge_id == edge_id_;
+  const bool accepted = receipt.verdict == SessionVerdict::kFollowed;
+  // What it says of another session of this name takes nothing back of what it said of ours.
+  const bool certain = !ours || !session || receipt.session == 0 || receipt.session == session;
+  if (!grounds_.NoteReceipt(sender, ours && accepted, certain)) return false;
+  relation_.OnReceipt(edge_id, receipt, session.value_or(0), now);
+  return true;
+}
+
+bool GroundWatch::Look(SteadyTime now,
+                       const std::function<bool(std::uint64_t hello_writer)>& is_there) {
+  bool left = false;
+  grounds_.RemoveIf([&](const GroundRegister::Ground& ground) {
+    const bool is_gone = !is_there(ground.hello_writer);
+    left = left || is_gone;
+    return is_gone;
+  });
+  LogRelation(now);
+  const bool present = !grounds_.empty();
+  if (present == is_present_) return left;
+  is_present_ = present;
+  LOG(Publisher, Info) << (present ? "ground station found" : "ground station lost");
+  return left;
+}
+
+void GroundWatch::LogRelation(SteadyTime now) {
+  const std::optional<std::string> news = relation_.News(now);
+  if (!news) return;
+  if (news->empty()) {
+    LOG(Publisher, Info) << "the ground station follows this rig now, or has left";
+  } else if (relation_.IsRefused(now)) {
+    LOG(Publisher, Error) << "the ground station " << *news;
+  } else {
+    LOG(Publisher, Warning) << "a ground station " << *news;
+  }
+}
+
+}  // namespace isotherm

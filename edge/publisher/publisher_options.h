@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+#include "common/base/status.h"
+#include "common/messages/messages.h"
+#include "common/time/time_types.h"
+
+namespace isotherm {
+
+struct PublisherOptions {
+  std::string edge_id = "edge";  ///< Key of everything this rig writes; 1..32 bytes.
+  std::string software_version;  ///< Goes into the hello.
+  PublishPolicy policy = PublishPolicy::kLive;
+  /// With kLossless: frames of one stream that may be under way beyond what the ground has handled.
+  /// Larger: faster replay, more memory on both sides. 1..kMaxFlowWindowFrames (qos.h), so that no
+  /// history overflows.
+  int flow_window_frames = 24;
+  /// With kLossless: the ground may be silent for so long before a frame is published all the same
+  /// (and counted).
+  Nanoseconds flow_timeout = std::chrono::seconds(10);
+};
+
+Status Validate(const PublisherOptions& options);
+
+}  // namespace isotherm
