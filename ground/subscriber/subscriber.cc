@@ -28,6 +28,8 @@ using namespace std::chrono_literals;
 
 constexpr int kFramesPerTurn = 8;  // Of one stream before the other has its turn.
 constexpr int kMessagesPerTurn = 64;
+constexpr int kMaxTurnsBehindFrames =
+    32;  // More frames than a reader keeps: somebody sends without end.
 constexpr int kFramesPerReceipt = 8;          // A fast sender must not wait for the next interval.
 constexpr Nanoseconds kIdleInterval = 100ms;  // How often presence is looked at.
 
@@ -48,6 +50,9 @@ class DdsSubscriber final : public Subscriber {
   /// Takes some of what has arrived; false if there was nothing.
   bool TakeTurn();
   int TakeMessages();
+  /// Keeps the descriptions of the rig that have arrived, until the frames before them were taken.
+  int TakeDescriptions();
+  void AdmitDescriptions();
   /// Hands what has arrived at `reader` to the gate; samples of other rigs are only counted.
   template <typename Message>
   int TakeSamples(Reader<Message>* reader, int max_samples);
@@ -96,6 +101,8 @@ class DdsSubscriber final : public Subscriber {
   StreamReceiver<ReceivedThermal> thermal_;
   PeerTable peers_;
   RigGate gate_;
+  std::vector<std::pair<PeerHandle, RigSample>> descriptions_;  ///< Not yet at the gate.
+  int turns_behind_frames_ = 0;                                 ///< That they have waited.
   RigWatch watch_{gate_};
   SteadyTime look_due_{};
   SessionTracker sessions_;
@@ -157,16 +164,37 @@ void DdsSubscriber::Run(std::stop_token stop) {
 }
 
 bool DdsSubscriber::TakeTurn() {
-  const int taken = TakeMessages();
-  return taken + TakeSamples(&ends_.depth, kFramesPerTurn) +
-             TakeSamples(&ends_.thermal, kFramesPerTurn) >
-         0;
+  const int taken = TakeDescriptions() + TakeMessages();
+  const int depth_taken = TakeSamples(&ends_.depth, kFramesPerTurn);
+  const int thermal_taken = TakeSamples(&ends_.thermal, kFramesPerTurn);
+  // A description may end a session, whose last frames were sent before it on other topics: those
+  // have arrived by now, and are taken first.
+  const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerTurn;
+  if (!frames_are_left || ++turns_behind_frames_ == kMaxTurnsBehindFrames) AdmitDescriptions();
+  return taken + depth_taken + thermal_taken > 0;
+}
+
+int DdsSubscriber::TakeDescriptions() {
+  if (!descriptions_.empty()) return 0;
+  return ends_.rig.Take(
+      [this](Received<RigDescription>&& received) {
+        if (!IsFollowed(received.edge_id)) return;
+        descriptions_.push_back(
+            {peers_.Identify(ends_.rig, received.writer),
+             {.content = std::move(received.message), .arrival = clock_.Now()}});
+      },
+      kMessagesPerTurn);
+}
+
+void DdsSubscriber::AdmitDescriptions() {
+  turns_behind_frames_ = 0;
+  for (auto& [peer, description] : std::exchange(descriptions_, {}))
+    gate_.Add(peer, std::move(description), clock_.SteadyNow());
 }
 
 int DdsSubscriber::TakeMessages() {
   const int taken = ends_.peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
-  return taken + TakeSamples(&ends_.rig, kMessagesPerTurn) +
-         TakeSamples(&ends_.external_odometry, kMessagesPerTurn) +
+  return taken + TakeSamples(&ends_.external_odometry, kMessagesPerTurn) +
          TakeSamples(&ends_.status, kMessagesPerTurn) +
          TakeSamples(&ends_.results, kMessagesPerTurn);
 }
