@@ -10,7 +10,7 @@
 #include "common/base/log.h"
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/scan_views.h"
-#include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/scan_model.h"
 
 namespace isotherm {
 namespace {
@@ -24,13 +24,13 @@ constexpr std::size_t kMaxPoints = 12'000, kCoarsePoints = 2000, kFinePoints = k
 constexpr int kResamplings = 100;
 
 /// How fast the image moves, pixels per second, by the last two poses.
-double SpeedNow(const GroundPipeline& pipeline, const CameraModel& camera) {
-  const std::optional<StampedMapPose> before = pipeline.tracker().motion().before_last();
-  const std::optional<StampedMapPose> now = pipeline.tracker().motion().last();
+double SpeedNow(const ScanModel& scan, const CameraModel& camera) {
+  const std::optional<StampedMapPose> before = scan.motion.before_last();
+  const std::optional<StampedMapPose> now = scan.motion.last();
   if (!before || !now || now->time <= before->time) return 0.0;
-  const double shift_rad = RotationAngle(before->T_map_depth, now->T_map_depth) +
-                           TranslationDistance(before->T_map_depth, now->T_map_depth) /
-                               pipeline.uncertainty().mean_depth_m();
+  const double shift_rad =
+      RotationAngle(before->T_map_depth, now->T_map_depth) +
+      TranslationDistance(before->T_map_depth, now->T_map_depth) / scan.uncertainty.mean_depth_m();
   return camera.fx * shift_rad / ToSeconds(now->time - before->time);
 }
 
@@ -104,23 +104,23 @@ DelayCheck::DelayCheck(const DelayCheckOptions& options, const Rig& rig,
       calibrated_s_(calibrated_s),
       selection_(static_cast<std::size_t>(std::max(2, options.max_frames()))) {}
 
-void DelayCheck::Add(const ThermalFramePtr& frame, const GroundPipeline& pipeline) {
+void DelayCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) {
   if (!options_.enabled() || !rig_.thermal || !frame->valid ||
       ToSeconds(frame->header.capture_sigma) > kMaxStampSigma_s)
     return;
   if (frame->centikelvin.width() != rig_.thermal->width ||
       frame->centikelvin.height() != rig_.thermal->height)
     return;
-  selection_.Add(frame, SpeedNow(pipeline, *rig_.thermal));
+  selection_.Add(frame, SpeedNow(scan, *rig_.thermal));
 }
 
-DelayReport DelayCheck::Finish(GroundPipeline& pipeline,
+DelayReport DelayCheck::Finish(const ScanModel& scan, ThreadPool& pool,
                                const std::function<void(double)>& progress) const {
   DelayReport report;
   report.calibrated_s = calibrated_s_;
   if (!options_.enabled()) return report;
   const auto start = std::chrono::steady_clock::now();
-  const Result<DelayEstimate> estimate = Estimate(pipeline, progress);
+  const Result<DelayEstimate> estimate = Estimate(scan, pool, progress);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
   report.elapsed_s = elapsed.count();
   if (!estimate) {
@@ -137,7 +137,7 @@ DelayReport DelayCheck::Finish(GroundPipeline& pipeline,
   return report;
 }
 
-Result<DelayEstimate> DelayCheck::Estimate(GroundPipeline& pipeline,
+Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan, ThreadPool& pool,
                                            const std::function<void(double)>& progress) const {
   if (Status status = CheckThermalFusion(rig_); !status.ok()) return Err(status);
   FindDelayOptions options;
@@ -148,15 +148,14 @@ Result<DelayEstimate> DelayCheck::Estimate(GroundPipeline& pipeline,
   ScanViews views;
   views.thermal_camera = *rig_.thermal;
   views.T_thermal_depth = *rig_.T_thermal_depth;
-  views.trajectory = pipeline.trajectory();
+  views.trajectory = scan.trajectory.poses();
   for (const ThermalFramePtr& frame : selection_.frames()) {
     views.frames.push_back({frame->header.capture_time, {frame, &frame->centikelvin}, {}});
   }
-  const Status surface =
-      AddSurface(pipeline.tsdf(), kMaxPoints, options.search.range_s, pipeline.pool(), views,
-                 PartOf(progress, 0.0, kVisibilityFraction));
+  const Status surface = AddSurface(scan.tsdf(), kMaxPoints, options.search.range_s, pool, views,
+                                    PartOf(progress, 0.0, kVisibilityFraction));
   if (!surface.ok()) return Err(surface);
-  return FindDelay(views, options, pipeline.pool(), PartOf(progress, kVisibilityFraction, 1.0));
+  return FindDelay(views, options, pool, PartOf(progress, kVisibilityFraction, 1.0));
 }
 
 }  // namespace isotherm

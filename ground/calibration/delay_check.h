@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/base/status.h"
+#include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "ground/calibration/find_delay.h"
@@ -13,7 +14,7 @@
 
 namespace isotherm {
 
-class GroundPipeline;
+struct ScanModel;
 
 Status Validate(const DelayCheckOptions& options);
 
@@ -49,14 +50,15 @@ class DelayCheck {
   DelayCheck(const DelayCheckOptions& options, const Rig& rig, std::optional<double> calibrated_s);
 
   /// After each thermal frame that the pipeline got. Keeps a reference to some of them.
-  void Add(const ThermalFramePtr& frame, const GroundPipeline& pipeline);
+  void Add(const ThermalFramePtr& frame, const ScanModel& scan);
 
   /// After the pipeline's Finish. Logs a warning if the delay has moved. `progress` gets the
   /// fraction done, 0..1.
-  DelayReport Finish(GroundPipeline& pipeline, const std::function<void(double)>& progress) const;
+  DelayReport Finish(const ScanModel& scan, ThreadPool& pool,
+                     const std::function<void(double)>& progress) const;
 
  private:
-  Result<DelayEstimate> Estimate(GroundPipeline& pipeline,
+  Result<DelayEstimate> Estimate(const ScanModel& scan, ThreadPool& pool,
                                  const std::function<void(double)>& progress) const;
 
   const DelayCheckOptions options_;

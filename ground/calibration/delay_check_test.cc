@@ -92,9 +92,9 @@ shutter { first_s: 5 })",
       auto late = std::make_shared<ThermalFrame>(*frame);
       late->header.capture_time +=
           FromSeconds(late_s + kJitter_s * NormalNoise(kSeed, frame->header.frame_number));
-      check.Add(std::move(late), *pipeline_);
+      check.Add(std::move(late), pipeline_->model());
     }
-    const DelayReport report = check.Finish(*pipeline_, {});
+    const DelayReport report = check.Finish(pipeline_->model(), pipeline_->pool(), {});
     std::printf("seed %d, stamps late by %+.1f ms, %.2f s: %s\n", static_cast<int>(kSeed),
                 1e3 * late_s, report.elapsed_s, Describe(report).c_str());
     return report;
@@ -170,16 +170,16 @@ TEST_F(DelayCheckTest, OffKeepsAndSaysNothing) {
   DelayCheckOptions options;
   options.set_enabled(false);
   DelayCheck check(options, *rig_, 0.0);
-  check.Add(frames_.front(), *pipeline_);
+  check.Add(frames_.front(), pipeline_->model());
   EXPECT_EQ(frames_.front().use_count(), 1);
-  EXPECT_EQ(check.Finish(*pipeline_, {}).verdict, DelayVerdict::kOff);
+  EXPECT_EQ(check.Finish(pipeline_->model(), pipeline_->pool(), {}).verdict, DelayVerdict::kOff);
 }
 
 TEST_F(DelayCheckTest, ABoundedNumberOfFramesIsKept) {
   DelayCheckOptions options;
   options.set_max_frames(50);
   DelayCheck check(options, *rig_, 0.0);
-  for (const std::shared_ptr<ThermalFrame>& frame : frames_) check.Add(frame, *pipeline_);
+  for (const std::shared_ptr<ThermalFrame>& frame : frames_) check.Add(frame, pipeline_->model());
   long kept = 0;
   for (const std::shared_ptr<ThermalFrame>& frame : frames_) kept += frame.use_count() - 1;
   EXPECT_GE(kept, 25);

@@ -193,11 +193,12 @@ Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
   ScanForCalibration scan{{}, *rig, AppliedDelay((*reader)->info())};
   scan.views.thermal_camera = *rig->thermal;
   scan.views.T_thermal_depth = *rig->T_thermal_depth;
-  scan.views.trajectory = (*pipeline)->trajectory();
+  const ScanModel model = (*pipeline)->model();
+  scan.views.trajectory = model.trajectory.poses();
   scan.views.frames = frames.TakeFrames();
-  Status fit = CheckTracked((*pipeline)->counts());
+  Status fit = CheckTracked(model.counts);
   if (fit.ok()) {
-    fit = AddSurface((*pipeline)->tsdf(), kMaxPoints, range_s, (*pipeline)->pool(), scan.views,
+    fit = AddSurface(model.tsdf(), kMaxPoints, range_s, (*pipeline)->pool(), scan.views,
                      PartOf(progress, kReadFraction, 1.0));
   }
   if (!fit.ok()) return Err(fit.WithContext(recording.string()));

@@ -74,13 +74,13 @@ struct DiscErrors {
 
 /// Errors of the disc's temperature, found from the apparent one with the emissivity at right
 /// angles.
-DiscErrors MeasureDisc(const PlayedScan& played, const GroundPipeline& pipeline, ThreadPool& pool) {
+DiscErrors MeasureDisc(const PlayedScan& played, const ScanModel& model, ThreadPool& pool) {
   // Nearer to its border, a thermal pixel and its blur receive radiation from the rim as well.
   constexpr double kBorder_m = 0.004;
   const SimulatedScan& scan = *played.scan;
   DiscErrors errors;
   for (const CheckedPoint& point :
-       CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool)) {
+       CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool)) {
     if (scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)].name != "disc")
       continue;
     const Eigen::Vector3d offset = point.truth.p_world - kDisc;
@@ -147,13 +147,13 @@ Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool) {
   constexpr const char* kLabels[] = {"not validated", "validated"};
   constexpr const char* kRenderings[] = {"not_validated", "validated"};
   for (std::size_t i = 0; i < 2; ++i) {
-    const GroundPipeline& pipeline = *played->pipelines[i];
-    const DiscErrors errors = MeasureDisc(*played, pipeline, pool);
+    const ScanModel model = played->pipelines[i]->model();
+    const DiscErrors errors = MeasureDisc(*played, model, pool);
     report.table.rows.push_back(
         {kLabels[i],
          {static_cast<double>(errors.points), errors.mean_kelvin, errors.largest_kelvin}});
     report.renderings.push_back(
-        {kRenderings[i], renderer.Thermal(LookAtModel(pipeline, *played->scan, middle, pool))});
+        {kRenderings[i], renderer.Thermal(LookAtModel(model, *played->scan, middle, pool))});
   }
   // Noise of single pixels (0.04 K) is 0.0006 of the difference in radiance.
   report.requirements = {{"largest error of the disc, validated", report.table.rows[1].values[2],

@@ -78,9 +78,9 @@ struct Agreement {
 Agreement Compare(const PlayedScan& played, const ThermalOptions& limits, ThreadPool& pool) {
   constexpr std::size_t kEvery = 15;  // Of the points, for time.
   const SimulatedScan& scan = *played.scan;
-  const GroundPipeline& pipeline = *played.pipelines.front();
+  const ScanModel model = played.pipelines.front()->model();
   std::vector<CheckedPoint> points;
-  const auto all = CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool);
+  const auto all = CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool);
   for (std::size_t i = 0; i < all.size(); i += kEvery) {
     if (all[i].point.distance_class != kNeverMeasured) points.push_back(all[i]);
   }
@@ -129,9 +129,9 @@ Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool) {
       {"points that are away from class borders", 100.0 * agreement.sure / agreement.points,
        Requirement::Sense::kAtLeast, 50.0, "%"}};
   const Renderer renderer({}, options.thermal());
-  const GroundPipeline& pipeline = *played->pipelines.front();
-  const ViewMaps view = LookAtModel(pipeline.tsdf(), pipeline.thermal(), *played->scan->rig().depth,
-                                    pipeline.trajectory().back().T_world_depth, pool);
+  const ScanModel model = played->pipelines.front()->model();
+  const ViewMaps view = LookAtModel(model.tsdf(), model.thermal(), *played->scan->rig().depth,
+                                    model.trajectory.poses().back().T_world_depth, pool);
   report.renderings = {{"thermal", renderer.Thermal(view)},
                        {"distance", renderer.Distance(view)},
                        {"angle", renderer.Angle(view)}};

@@ -55,8 +55,7 @@ StagedScene ResolutionTarget() {
 /// Difference between the middles of hot and of cold bars, as a fraction of the true one, by group.
 using Contrasts = std::array<double, kBarWidths_m.size()>;
 
-Contrasts MeasureContrasts(const SimulatedScan& scan, const GroundPipeline& pipeline,
-                           ThreadPool& pool) {
+Contrasts MeasureContrasts(const SimulatedScan& scan, const ScanModel& model, ThreadPool& pool) {
   constexpr double kMiddleFraction = 0.15;  // Of a bar's width, to either side of its middle.
   struct Sum {
     double celsius = 0.0;
@@ -65,7 +64,7 @@ Contrasts MeasureContrasts(const SimulatedScan& scan, const GroundPipeline& pipe
   };
   std::array<std::array<Sum, 2>, kBarWidths_m.size()> sums;
   for (const CheckedPoint& point :
-       CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool)) {
+       CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool)) {
     const Primitive& part =
         scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)];
     if (!part.name.ends_with("bar") || !point.measured()) continue;
@@ -87,9 +86,9 @@ Contrasts MeasureContrasts(const SimulatedScan& scan, const GroundPipeline& pipe
   return contrasts;
 }
 
-RgbImage Rendering(const SimulatedScan& scan, const GroundPipeline& pipeline, ThreadPool& pool) {
+RgbImage Rendering(const SimulatedScan& scan, const ScanModel& model, ThreadPool& pool) {
   return Renderer(FixedScale(23.0, kHot_celsius), ThermalOptions())
-      .Thermal(LookAtModel(pipeline, scan, scan.depth_times().front().exposure, pool));
+      .Thermal(LookAtModel(model, scan, scan.depth_times().front().exposure, pool));
 }
 
 GroundOptions FineModel(bool validation) {
@@ -146,7 +145,7 @@ Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
               (*with)->ProcessDepth(frame);
               (*without)->ProcessDepth(frame);
               if (!close_up && frame.header.capture_time >= close_up_until)
-                close_up = MeasureContrasts(**scan, **with, pool);
+                close_up = MeasureContrasts(**scan, (*with)->model(), pool);
             },
             [&](const ThermalFramePtr& frame) {
               (*with)->ProcessThermal(frame);
@@ -154,14 +153,14 @@ Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
             }});
   for (const auto* pipeline : {&*with, &*without}) {
     (*pipeline)->Finish();
-    if (Status status = CheckTracked(**pipeline); !status.ok()) return Err(status);
+    if (Status status = CheckTracked((*pipeline)->model()); !status.ok()) return Err(status);
   }
 
   if (!close_up) return Err(Internal("the scan was over before the close-up"));
-  ExperimentReport report = Describe(*close_up, MeasureContrasts(**scan, **without, pool),
-                                     MeasureContrasts(**scan, **with, pool));
-  report.renderings = {{"not_validated", Rendering(**scan, **without, pool)},
-                       {"validated", Rendering(**scan, **with, pool)}};
+  ExperimentReport report = Describe(*close_up, MeasureContrasts(**scan, (*without)->model(), pool),
+                                     MeasureContrasts(**scan, (*with)->model(), pool));
+  report.renderings = {{"not_validated", Rendering(**scan, (*without)->model(), pool)},
+                       {"validated", Rendering(**scan, (*with)->model(), pool)}};
   return report;
 }
 

@@ -100,8 +100,8 @@ Result<std::unique_ptr<GroundPipeline>> StartPipeline(GroundOptions options,
   return GroundPipeline::Create(options, scan.rig(), scan.PoseAt(scan.depth_times()[0].exposure));
 }
 
-Status CheckTracked(const GroundPipeline& pipeline) {
-  const PipelineCounts& counts = pipeline.counts();
+Status CheckTracked(const ScanModel& model) {
+  const PipelineCounts& counts = model.counts;
   if (counts.depth_tracked == counts.depth_in) return OkStatus();
   return FailedPrecondition(
       fmt::format("the rig was tracked in {} of {} depth frames only: the experiment says nothing",
@@ -128,7 +128,7 @@ Result<PlayedScan> Play(const SimulationOptions& cameras, StagedScene staged,
             }});
   for (const auto& pipeline : played.pipelines) {
     pipeline->Finish();
-    if (Status status = CheckTracked(*pipeline); !status.ok()) return Err(status);
+    if (Status status = CheckTracked(pipeline->model()); !status.ok()) return Err(status);
   }
   return played;
 }

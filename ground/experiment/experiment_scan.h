@@ -36,7 +36,7 @@ Result<std::unique_ptr<GroundPipeline>> StartPipeline(GroundOptions options,
                                                       const ThreadPool& pool);
 
 /// An experiment says nothing when the rig was lost.
-Status CheckTracked(const GroundPipeline& pipeline);
+Status CheckTracked(const ScanModel& model);
 
 /// A scan, and pipelines with options of their own that all get its frames.
 struct PlayedScan {

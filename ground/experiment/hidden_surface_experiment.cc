@@ -50,7 +50,7 @@ double CoveragePercent(const SimulatedScan& scan, const std::vector<CheckedPoint
 }
 
 ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& scan,
-                         const GroundPipeline& pipeline, const std::vector<Method>& methods,
+                         const ScanModel& model, const std::vector<Method>& methods,
                          ThreadPool& pool) {
   ExperimentReport report;
   report.table.rows_are = "method";
@@ -61,7 +61,7 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
   double coverage_percent = 0.0;  // With visibility.
   for (const Method& method : methods) {
     const std::vector<CheckedPoint> points =
-        CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), *method.thermal, pool);
+        CheckModel(scan.scene(), scan.band(), model.tsdf(), *method.thermal, pool);
     const AssignmentCheck check = CheckAssignment(points);
     if (&method == &methods.back())
       coverage_percent = CoveragePercent(scan, points, ThermalOptions());
@@ -71,7 +71,7 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
           static_cast<double>(check.too_warm), static_cast<double>(check.too_cold),
           check.WrongPercent()}});
     report.renderings.push_back(
-        {method.rendering, renderer.Thermal(LookAtModel(pipeline.tsdf(), *method.thermal,
+        {method.rendering, renderer.Thermal(LookAtModel(model.tsdf(), *method.thermal,
                                                         *scan.rig().depth, T_world_depth, pool))});
   }
   const auto wrong_percent = [&](std::size_t row) { return report.table.rows[row].values.back(); };
@@ -97,8 +97,9 @@ Result<ExperimentReport> CompareParallaxFilters(const HiddenSurfaceSetup& setup,
   const GroundOptions options;
   auto pipeline = StartPipeline(options, **scan, pool);
   if (!pipeline) return Err(pipeline.error());
-  ThesisFusion unfiltered(options, (*scan)->rig(), **pipeline, ParallaxFilter::kNone);
-  ThesisFusion algorithm4(options, (*scan)->rig(), **pipeline, ParallaxFilter::kAlgorithm4);
+  const ScanModel model = (*pipeline)->model();
+  ThesisFusion unfiltered(options, (*scan)->rig(), model, ParallaxFilter::kNone);
+  ThesisFusion algorithm4(options, (*scan)->rig(), model, ParallaxFilter::kAlgorithm4);
   PlayScan(**scan, pool,
            {[&](const DepthFrame& frame) {
               (*pipeline)->ProcessDepth(frame);
@@ -111,11 +112,11 @@ Result<ExperimentReport> CompareParallaxFilters(const HiddenSurfaceSetup& setup,
               algorithm4.AddThermal(frame);
             }});
   (*pipeline)->Finish();
-  if (Status status = CheckTracked(**pipeline); !status.ok()) return Err(status);
-  return Compare(setup, **scan, **pipeline,
+  if (Status status = CheckTracked(model); !status.ok()) return Err(status);
+  return Compare(setup, **scan, model,
                  {{"no filter", "no_filter", &unfiltered.thermal()},
                   {"algorithm 4", "algorithm4", &algorithm4.thermal()},
-                  {"visibility", "visibility", &(*pipeline)->thermal()}},
+                  {"visibility", "visibility", &model.thermal()}},
                  pool);
 }
 

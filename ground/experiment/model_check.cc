@@ -85,10 +85,9 @@ ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
   return view;
 }
 
-ViewMaps LookAtModel(const GroundPipeline& pipeline, const SimulatedScan& scan, CaptureTime time,
+ViewMaps LookAtModel(const ScanModel& model, const SimulatedScan& scan, CaptureTime time,
                      ThreadPool& pool) {
-  return LookAtModel(pipeline.tsdf(), pipeline.thermal(), *scan.rig().depth, scan.PoseAt(time),
-                     pool);
+  return LookAtModel(model.tsdf(), model.thermal(), *scan.rig().depth, scan.PoseAt(time), pool);
 }
 
 RendererOptions FixedScale(double low_celsius, double high_celsius) {

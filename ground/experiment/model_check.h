@@ -9,7 +9,7 @@
 #include "common/simulation/scene.h"
 #include "common/simulation/simulated_scan.h"
 #include "ground/export/surface.h"
-#include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/scan_model.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/view_maps.h"
 
@@ -63,7 +63,7 @@ ViewMaps LookAtModel(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                      ThreadPool& pool);
 
 /// Returns what the model shows the scan's depth camera from where it truly was at `time`.
-ViewMaps LookAtModel(const GroundPipeline& pipeline, const SimulatedScan& scan, CaptureTime time,
+ViewMaps LookAtModel(const ScanModel& model, const SimulatedScan& scan, CaptureTime time,
                      ThreadPool& pool);
 
 /// Options for renderings with the same colours whatever they show.

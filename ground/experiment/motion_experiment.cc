@@ -70,14 +70,14 @@ bool IsAtBorder(const CheckedPoint& point) {
 }
 
 ExperimentTable::Row DescribeModel(const char* label, const PlayedScan& played,
-                                   const GroundPipeline& pipeline, ThreadPool& pool) {
-  std::vector<CheckedPoint> points = CheckModel(played.scan->scene(), played.scan->band(),
-                                                pipeline.tsdf(), pipeline.thermal(), pool);
+                                   const ScanModel& model, ThreadPool& pool) {
+  std::vector<CheckedPoint> points =
+      CheckModel(played.scan->scene(), played.scan->band(), model.tsdf(), model.thermal(), pool);
   std::erase_if(points, IsAtBorder);
   const ErrorSummary errors = SummarizeErrors(points);
   return {label,
           {static_cast<double>(points.size()), static_cast<double>(errors.measured),
-           static_cast<double>(pipeline.counts().fusion.smeared), errors.median_k, errors.p999_k,
+           static_cast<double>(model.counts.fusion.smeared), errors.median_k, errors.p999_k,
            errors.largest_k}};
 }
 
@@ -110,11 +110,11 @@ Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool) {
   constexpr const char* kLabels[] = {"believed", "left out"};
   constexpr const char* kRenderings[] = {"believed", "left_out"};
   for (std::size_t i = 0; i < 2; ++i) {
-    const GroundPipeline& pipeline = *played->pipelines[i];
-    report.table.rows.push_back(DescribeModel(kLabels[i], *played, pipeline, pool));
+    const ScanModel model = played->pipelines[i]->model();
+    report.table.rows.push_back(DescribeModel(kLabels[i], *played, model, pool));
     report.renderings.push_back(
         {kRenderings[i],
-         renderer.Thermal(LookAtModel(pipeline, *played->scan,
+         renderer.Thermal(LookAtModel(model, *played->scan,
                                       played->scan->depth_times().front().exposure, pool))});
   }
   report.requirements = Require(report.table);

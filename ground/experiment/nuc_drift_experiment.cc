@@ -50,9 +50,9 @@ struct Outcome {
 Outcome Measure(const PlayedScan& played, ThreadPool& pool) {
   constexpr auto kGood = static_cast<std::uint8_t>(ConditionClass::kGood);
   const SimulatedScan& scan = *played.scan;
-  const GroundPipeline& pipeline = *played.pipelines.front();
+  const ScanModel model = played.pipelines.front()->model();
   std::vector<CheckedPoint> points =
-      CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool);
+      CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool);
   std::erase_if(points, [](const CheckedPoint& point) {
     return point.point.distance_class != kGood || point.point.angle_class != kGood;
   });
@@ -69,7 +69,7 @@ Outcome Measure(const PlayedScan& played, ThreadPool& pool) {
 
 RgbImage Rendering(const PlayedScan& played, ThreadPool& pool) {
   return Renderer(FixedScale(25.0, 70.0), ThermalOptions())
-      .Thermal(LookAtModel(*played.pipelines.front(), *played.scan,
+      .Thermal(LookAtModel(played.pipelines.front()->model(), *played.scan,
                            played.scan->depth_times().back().exposure, pool));
 }
 

@@ -35,10 +35,10 @@ struct VoxelCount {
   double measured = 0.0;
   double from_shutter = 0.0;
 };
-VoxelCount CountVoxels(const GroundPipeline& pipeline) {
+VoxelCount CountVoxels(const ScanModel& model) {
   VoxelCount count;
-  for (std::int32_t block = 0; block < pipeline.tsdf().block_count(); ++block) {
-    for (const ThermalVoxel& voxel : pipeline.thermal().voxels(block)) {
+  for (std::int32_t block = 0; block < model.tsdf().block_count(); ++block) {
+    for (const ThermalVoxel& voxel : model.thermal().voxels(block)) {
       count.measured += voxel.measured() ? 1.0 : 0.0;
       count.from_shutter += voxel.celsius() > kFromShutter_celsius ? 1.0 : 0.0;
     }
@@ -46,17 +46,15 @@ VoxelCount CountVoxels(const GroundPipeline& pipeline) {
   return count;
 }
 
-double LeftOutForNuc(const GroundPipeline& pipeline) {
-  const auto& left_out = pipeline.counts().thermal_left_out;
-  const auto found = left_out.find("nuc");
-  return found == left_out.end() ? 0.0 : static_cast<double>(found->second);
+double LeftOutForNuc(const ScanModel& model) {
+  return static_cast<double>(model.counts.thermal_left_out[LeftOutReason::kNuc]);
 }
 
-ExperimentTable::Row DescribeModel(const char* label, const GroundPipeline& pipeline) {
-  const VoxelCount voxels = CountVoxels(pipeline);
+ExperimentTable::Row DescribeModel(const char* label, const ScanModel& model) {
+  const VoxelCount voxels = CountVoxels(model);
   return {label,
-          {static_cast<double>(pipeline.counts().thermal_fused), LeftOutForNuc(pipeline),
-           voxels.measured, voxels.from_shutter}};
+          {static_cast<double>(model.counts.thermal_fused), LeftOutForNuc(model), voxels.measured,
+           voxels.from_shutter}};
 }
 
 /// Frames while the shutter was closed.
@@ -67,14 +65,14 @@ struct WhileClosed {
 };
 
 /// The table and what is required of it.
-ExperimentReport Describe(const GroundPipeline& ignored, const GroundPipeline& respected,
+ExperimentReport Describe(const ScanModel& ignored, const ScanModel& respected,
                           const WhileClosed& seen) {
   ExperimentReport report;
   report.table.rows_are = "frames of the closed shutter";
   report.table.columns = {"thermal frames fused", "left out for NUC", "voxels measured",
                           "voxels with the shutter's temperature"};
   report.table.rows = {DescribeModel("believed", ignored), DescribeModel("left out", respected)};
-  const PipelineCounts& counts = respected.counts();
+  const PipelineCounts& counts = respected.counts;
   report.requirements = {
       {"voxels with the shutter's temperature", report.table.rows[1].values[3],
        Requirement::Sense::kAtMost, 0.0, ""},
@@ -114,16 +112,17 @@ Result<ExperimentReport> RunNucExperiment(ThreadPool& pool) {
             }});
   for (const auto* pipeline : {&*respected, &*ignored}) (*pipeline)->Finish();
 
-  ExperimentReport report = Describe(**ignored, **respected, seen);
+  ExperimentReport report = Describe((*ignored)->model(), (*respected)->model(), seen);
   report.requirements.push_back({"NUC events in mid-scan",
                                  static_cast<double>((*scan)->nuc_events().size()),
                                  Requirement::Sense::kAtLeast, 3.0, ""});
   const Renderer renderer(FixedScale(20.0, kShutter_celsius), ThermalOptions());
-  const auto rendering = [&](const GroundPipeline& pipeline) {
+  const auto rendering = [&](const ScanModel& model) {
     return renderer.Thermal(
-        LookAtModel(pipeline, **scan, (*scan)->depth_times().back().exposure, pool));
+        LookAtModel(model, **scan, (*scan)->depth_times().back().exposure, pool));
   };
-  report.renderings = {{"believed", rendering(**ignored)}, {"left_out", rendering(**respected)}};
+  report.renderings = {{"believed", rendering((*ignored)->model())},
+                       {"left_out", rendering((*respected)->model())}};
   return report;
 }
 

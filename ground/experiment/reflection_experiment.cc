@@ -98,12 +98,11 @@ Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
   constexpr const char* kRenderings[] = {"best_conditions", "lowest"};
   Detection best_conditions;
   for (std::size_t i = 0; i < 2; ++i) {
-    const GroundPipeline& pipeline = *played->pipelines[i];
-    const Detection detection =
-        Detect(scan.scene(),
-               CheckModel(scan.scene(), scan.band(), pipeline.tsdf(), pipeline.thermal(), pool));
+    const ScanModel model = played->pipelines[i]->model();
+    const Detection detection = Detect(
+        scan.scene(), CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool));
     report.table.rows.push_back(DescribeDetection(kLabels[i], detection));
-    const ViewMaps view = LookAtModel(pipeline, scan, scan.depth_times().back().exposure, pool);
+    const ViewMaps view = LookAtModel(model, scan, scan.depth_times().back().exposure, pool);
     report.renderings.push_back({kRenderings[i], renderer.Thermal(view)});
     if (i > 0) continue;
     best_conditions = detection;

@@ -87,12 +87,11 @@ Status AddRange(const char* name, double hot_celsius, ThreadPool& pool, Experime
   const auto played =
       Play(ExperimentCameras(kDuration_s), MakeScene(scene_options), {GroundOptions()}, pool);
   if (!played) return played.error();
-  const GroundPipeline& pipeline = *played->pipelines.front();
+  const ScanModel model = played->pipelines.front()->model();
   const CameraModel& camera = *played->scan->rig().depth;
   const RigidTransform T_world_depth =
       played->scan->PoseAt(played->scan->depth_times().back().exposure);
-  const ViewMaps view =
-      LookAtModel(pipeline.tsdf(), pipeline.thermal(), camera, T_world_depth, pool);
+  const ViewMaps view = LookAtModel(model.tsdf(), model.thermal(), camera, T_world_depth, pool);
   const RgbImage flat = Renderer(ScaleFor(hot_celsius, false), {}).Thermal(view);
   const RgbImage shaded = Renderer(ScaleFor(hot_celsius, true), {}).Thermal(view);
   const EdgeCount count = CountEdges(played->scan->scene(), camera, T_world_depth, view,

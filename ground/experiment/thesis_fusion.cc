@@ -131,15 +131,15 @@ void ThesisFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_
                    [&](int block) { UpdateBlock(block, T_depth_world, tsdf, thermal); });
 }
 
-ThesisFusion::ThesisFusion(const GroundOptions& options, const Rig& rig,
-                           const GroundPipeline& pipeline, ParallaxFilter filter)
+ThesisFusion::ThesisFusion(const GroundOptions& options, const Rig& rig, const ScanModel& model,
+                           ParallaxFilter filter)
     : rig_(rig),
-      pipeline_(pipeline),
+      model_(model),
       fuser_(options.thermal(), rig, static_cast<float>(options.raycast().min_weight()), filter),
-      thermal_(pipeline.tsdf().max_blocks()) {}
+      thermal_(model.tsdf().max_blocks()) {}
 
 void ThesisFusion::AfterDepth(ThreadPool& pool) {
-  const std::vector<StampedPose>& poses = pipeline_.trajectory();
+  const std::vector<StampedPose>& poses = model_.trajectory.poses();
   if (poses.size() < 2) return;
   const StampedPose& before = poses[poses.size() - 2];
   const StampedPose& after = poses.back();
@@ -152,7 +152,7 @@ void ThesisFusion::AfterDepth(ThreadPool& pool) {
     const RigidTransform T_world_depth =
         Interpolate(before.T_world_depth, after.T_world_depth, alpha);
     fuser_.Fuse(frame, T_world_depth * rig_.T_thermal_depth->inverse(), after.T_world_depth,
-                pipeline_.tsdf(), pool, thermal_);
+                model_.tsdf(), pool, thermal_);
   }
 }
 

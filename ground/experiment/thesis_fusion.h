@@ -6,7 +6,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
-#include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/scan_model.h"
 #include "ground/thermal/measurement_conditions.h"
 #include "ground/thermal/thermal_rectifier.h"
 #include "ground/thermal/thermal_volume.h"
@@ -64,7 +64,7 @@ class ThesisFuser {
 /// thermal volume of its own. Thread-compatible.
 class ThesisFusion {
  public:
-  ThesisFusion(const GroundOptions& options, const Rig& rig, const GroundPipeline& pipeline,
+  ThesisFusion(const GroundOptions& options, const Rig& rig, const ScanModel& model,
                ParallaxFilter filter);
 
   void AddThermal(ThermalFramePtr frame) { waiting_.push_back(std::move(frame)); }
@@ -75,7 +75,7 @@ class ThesisFusion {
 
  private:
   const Rig rig_;
-  const GroundPipeline& pipeline_;
+  const ScanModel model_;
   ThesisFuser fuser_;
   ThermalVolume thermal_;
   std::deque<ThermalFramePtr> waiting_;

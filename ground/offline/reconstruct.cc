@@ -15,6 +15,7 @@
 #include "ground/calibration/delay_check.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/export/results.h"
+#include "ground/pipeline/ground_pipeline.h"
 #include "ground/results/scan_result.h"
 
 namespace isotherm {
@@ -69,7 +70,7 @@ class InlineDriver {
   }
 
   DelayReport CheckDelay() {
-    return delay_check_.Finish(pipeline_, [this](double fraction) {
+    return delay_check_.Finish(pipeline_.model(), pipeline_.pool(), [this](double fraction) {
       if (request_.progress)
         request_.progress(kFramesFraction + kMergeFraction + kDelayFraction * fraction,
                           "checking the delay");
@@ -135,7 +136,7 @@ class InlineDriver {
     } else {
       const ThermalFramePtr& thermal = std::get<ThermalFramePtr>(frame);
       pipeline_.ProcessThermal(thermal);
-      delay_check_.Add(thermal, pipeline_);
+      delay_check_.Add(thermal, pipeline_.model());
     }
   }
 
@@ -218,7 +219,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   const DelayReport delay = driver.CheckDelay();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
-  Json stats = DescribeScan(**pipeline, options, used);
+  Json stats = DescribeScan((*pipeline)->model(), options);
   stats["source"]["recording"] = request.recording.filename().string();
   stats["source"]["complete"] = info.complete;
   stats["source"]["bytes_ignored"] = info.bytes_ignored;
@@ -230,10 +231,11 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
     constexpr double kBefore = kFramesFraction + kMergeFraction + kDelayFraction;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);
   };
-  Result<WrittenScan> written = WriteScan(**pipeline, options, delay, driver.FindDoubts(),
-                                          std::move(stats), request.output_dir, progress);
+  Result<WrittenScan> written =
+      WriteScan((*pipeline)->model(), options, delay, driver.FindDoubts(), std::move(stats),
+                request.output_dir, (*pipeline)->pool(), progress);
   if (!written) return Err(written.error());
-  const PipelineCounts& counts = (*pipeline)->counts();
+  const PipelineCounts& counts = (*pipeline)->model().counts;
   return ReconstructSummary{
       counts.depth_in,      counts.depth_repeated,    counts.depth_tracked,      counts.thermal_in,
       counts.thermal_fused, std::move(written->text), std::move(written->doubts)};

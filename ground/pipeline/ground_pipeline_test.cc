@@ -71,9 +71,8 @@ class GroundPipelineTest : public ::testing::Test {
     frame->valid = valid;
     pipeline_->ProcessThermal(frame);
   }
-  std::uint64_t LeftOut(const std::string& reason) const {
-    const auto found = pipeline_->counts().thermal_left_out.find(reason);
-    return found == pipeline_->counts().thermal_left_out.end() ? 0 : found->second;
+  std::uint64_t LeftOut(LeftOutReason reason) const {
+    return pipeline_->model().counts.thermal_left_out[reason];
   }
 
   Rig rig_;
@@ -86,48 +85,49 @@ TEST_F(GroundPipelineTest, FollowsAKnownPath) {
   for (int i = 0; i < 10; ++i) {
     const DepthReport report = Depth(i);
     ASSERT_TRUE(report.tracked) << i;
-    EXPECT_LT(TranslationDistance(pipeline_->trajectory().back().T_world_depth, TruePose(i)),
+    EXPECT_LT(TranslationDistance(pipeline_->model().trajectory.poses().back().T_world_depth,
+                                  TruePose(i)),
               kMaxError)
         << i;
   }
-  EXPECT_EQ(pipeline_->counts().depth_tracked, 10U);
+  EXPECT_EQ(pipeline_->model().counts.depth_tracked, 10U);
 }
 
 TEST_F(GroundPipelineTest, ResultDoesNotDependOnTheNumberOfThreads) {
   for (int i = 0; i < 4; ++i) Depth(i);
-  const RigidTransform two = pipeline_->trajectory().back().T_world_depth;
-  const std::int32_t blocks = pipeline_->tsdf().block_count();
+  const RigidTransform two = pipeline_->model().trajectory.poses().back().T_world_depth;
+  const std::int32_t blocks = pipeline_->model().tsdf().block_count();
   options_.set_threads(3);
   Start();
   for (int i = 0; i < 4; ++i) Depth(i);
-  EXPECT_EQ(pipeline_->trajectory().back().T_world_depth.matrix(), two.matrix());
-  EXPECT_EQ(pipeline_->tsdf().block_count(), blocks);
+  EXPECT_EQ(pipeline_->model().trajectory.poses().back().T_world_depth.matrix(), two.matrix());
+  EXPECT_EQ(pipeline_->model().tsdf().block_count(), blocks);
 }
 
 TEST_F(GroundPipelineTest, F13ACoveredCameraLeavesTheModelAloneAndTrackingComesBack) {
   for (int i = 0; i < 4; ++i) Depth(i);
-  const std::uint64_t integrated = pipeline_->counts().depth_integrated;
+  const std::uint64_t integrated = pipeline_->model().counts.depth_integrated;
   for (int i = 4; i < 7; ++i) EXPECT_FALSE(Covered(i).tracked);
-  EXPECT_EQ(pipeline_->counts().depth_integrated, integrated);
-  EXPECT_EQ(pipeline_->counts().depth_lost.at("too_few_pixels"), 3U);
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, integrated);
+  EXPECT_EQ(pipeline_->model().counts.depth_lost[LostReason::kTooFewPixels], 3U);
   // Found again, but believed and fused only when two more frames agree.
   EXPECT_TRUE(Depth(4).unconfirmed);
   EXPECT_TRUE(Depth(5).unconfirmed);
-  EXPECT_EQ(pipeline_->trajectory().size(), 4U);
-  EXPECT_EQ(pipeline_->counts().depth_integrated, integrated);
+  EXPECT_EQ(pipeline_->model().trajectory.poses().size(), 4U);
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, integrated);
   EXPECT_TRUE(Depth(6).tracked);
-  EXPECT_EQ(pipeline_->trajectory().size(), 7U);
+  EXPECT_EQ(pipeline_->model().trajectory.poses().size(), 7U);
 }
 
 TEST_F(GroundPipelineTest, ThermalFramesWaitForTheDepthFrameBehindThem) {
   Depth(0);
   Thermal(0.5);
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 0U);
   Depth(1);
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 1U);
   int measured = 0;
-  for (std::int32_t block = 0; block < pipeline_->tsdf().block_count(); ++block) {
-    for (const ThermalVoxel& voxel : pipeline_->thermal().voxels(block)) {
+  for (std::int32_t block = 0; block < pipeline_->model().tsdf().block_count(); ++block) {
+    for (const ThermalVoxel& voxel : pipeline_->model().thermal().voxels(block)) {
       if (!voxel.measured()) continue;
       ++measured;
       ASSERT_NEAR(voxel.celsius(), 50.0, 0.03);
@@ -141,8 +141,8 @@ TEST_F(GroundPipelineTest, F10FramesOfAnUncertainTimeAreNotFused) {
   Thermal(0.3, true, std::chrono::milliseconds(2));
   Thermal(0.6, true, std::chrono::milliseconds(25));  // As the edge marks what is unsynchronised.
   Depth(1);
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
-  EXPECT_EQ(LeftOut("time_uncertain"), 1U);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kTimeUncertain), 1U);
 }
 
 TEST_F(GroundPipelineTest, EachThermalFrameIsAccountedFor) {
@@ -156,22 +156,22 @@ TEST_F(GroundPipelineTest, EachThermalFrameIsAccountedFor) {
   for (int i = 3; i < 6; ++i) Depth(i);  // Found again; the motion around 1.5 is not known.
   Thermal(5.5);
   pipeline_->Finish();
-  const PipelineCounts& counts = pipeline_->counts();
+  const PipelineCounts& counts = pipeline_->model().counts;
   EXPECT_EQ(counts.thermal_in, 5U);
   EXPECT_EQ(counts.thermal_fused, 1U);
-  EXPECT_EQ(LeftOut("nuc"), 1U);
-  EXPECT_EQ(LeftOut("pose_unknown"), 2U);
-  EXPECT_EQ(LeftOut("no_depth_after"), 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kNuc), 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kPoseUnknown), 2U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kNoDepthAfter), 1U);
 }
 
 TEST_F(GroundPipelineTest, F56WithoutExtrinsicsGeometryGoesOnAndThermalIsRefused) {
   rig_.T_thermal_depth.reset();
   Start();
-  EXPECT_EQ(pipeline_->thermal_status().code(), StatusCode::kFailedPrecondition);
+  EXPECT_EQ(pipeline_->model().thermal_status.code(), StatusCode::kFailedPrecondition);
   Depth(0);
   Thermal(0.5);
   EXPECT_TRUE(Depth(1).tracked);
-  EXPECT_EQ(LeftOut("no_calibration"), 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kNoCalibration), 1U);
 }
 
 TEST_F(GroundPipelineTest, F11AFrameOfAnotherSizeIsRefusedAndCounted) {
@@ -180,22 +180,11 @@ TEST_F(GroundPipelineTest, F11AFrameOfAnotherSizeIsRefusedAndCounted) {
   frame.depth_raw = Image<std::uint16_t>(17, 3, 500);
   ::testing::internal::CaptureStderr();
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked);
-  EXPECT_EQ(pipeline_->counts().depth_refused, 100U);
+  EXPECT_EQ(pipeline_->model().counts.depth_refused, 100U);
   EXPECT_TRUE(Depth(1).tracked);
   const std::string log = ::testing::internal::GetCapturedStderr();
   EXPECT_EQ(std::ranges::count(log, '\n'), 2) << log;  // When it began, and when it was over.
   EXPECT_NE(log.find("refused=100"), std::string::npos) << log;
-}
-
-TEST_F(GroundPipelineTest, WithoutAPoseTheVolumesCentreLiesOnTheFirstAxis) {
-  auto created = GroundPipeline::Create(options_, rig_, std::nullopt);
-  ASSERT_TRUE(created.has_value());
-  pipeline_ = std::move(*created);
-  Depth(0);
-  const RigidTransform& pose = pipeline_->trajectory().front().T_world_depth;
-  EXPECT_NEAR(pose.translation().x(), 0.32, 1e-9);
-  EXPECT_NEAR(pose.translation().y(), 0.32, 1e-9);
-  EXPECT_LT(pose.translation().z(), 0.0);
 }
 
 TEST_F(GroundPipelineTest, OptionsOutOfRangeAreNamed) {
@@ -216,32 +205,32 @@ TEST_F(GroundPipelineTest, F12EmptyFramesAreLostAndLeaveNothing) {
     EXPECT_FALSE(pipeline_->ProcessDepth(empty).tracked);
   }
   Thermal(0.5);
-  EXPECT_EQ(pipeline_->tsdf().block_count(), 0);
-  EXPECT_TRUE(pipeline_->trajectory().empty());
-  EXPECT_EQ(pipeline_->counts().depth_lost.at("too_few_pixels"), 3U);
+  EXPECT_EQ(pipeline_->model().tsdf().block_count(), 0);
+  EXPECT_TRUE(pipeline_->model().trajectory.poses().empty());
+  EXPECT_EQ(pipeline_->model().counts.depth_lost[LostReason::kTooFewPixels], 3U);
   EXPECT_TRUE(Depth(3).tracked) << "the scan begins with the first frame that shows something";
-  EXPECT_EQ(LeftOut("pose_unknown"), 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kPoseUnknown), 1U);
 }
 
 TEST_F(GroundPipelineTest, F11FramesWithoutPixelsAreRefusedAndCounted) {
   DepthFrame none;
   EXPECT_FALSE(pipeline_->ProcessDepth(none).tracked);
-  EXPECT_EQ(pipeline_->counts().depth_refused, 1U);
+  EXPECT_EQ(pipeline_->model().counts.depth_refused, 1U);
   auto thermal = std::make_shared<ThermalFrame>();
   thermal->valid = true;
   pipeline_->ProcessThermal(thermal);
-  EXPECT_EQ(LeftOut("wrong_size"), 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kWrongSize), 1U);
   EXPECT_TRUE(Depth(0).tracked);
 }
 
 TEST_F(GroundPipelineTest, CountsAreLeftOutWithASentenceAndGeometryGoesOn) {
-  EXPECT_TRUE(pipeline_->thermal_status().ok());
+  EXPECT_TRUE(pipeline_->model().thermal_status.ok());
   Depth(0);
   for (int i = 0; i < 3; ++i) pipeline_->ProcessThermal(std::make_shared<ThermalFrame>());
   EXPECT_TRUE(Depth(1).tracked);
-  EXPECT_EQ(LeftOut("counts"), 3U);
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
-  EXPECT_NE(pipeline_->thermal_status().message().find("sends counts"), std::string::npos);
+  EXPECT_EQ(LeftOut(LeftOutReason::kCounts), 3U);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 0U);
+  EXPECT_NE(pipeline_->model().thermal_status.message().find("sends counts"), std::string::npos);
 }
 
 TEST_F(GroundPipelineTest, F12AScaleThatIsNoneIsLostAndLeavesNothing) {
@@ -250,24 +239,24 @@ TEST_F(GroundPipelineTest, F12AScaleThatIsNoneIsLostAndLeavesNothing) {
     frame.depth_scale = bad;
     EXPECT_FALSE(pipeline_->ProcessDepth(frame).tracked) << bad;
   }
-  EXPECT_EQ(pipeline_->tsdf().block_count(), 0);
+  EXPECT_EQ(pipeline_->model().tsdf().block_count(), 0);
 }
 
 TEST_F(GroundPipelineTest, F01WithoutDepthNothingIsFused) {
   for (int i = 0; i < 3; ++i) Depth(i);
-  const std::int32_t blocks = pipeline_->tsdf().block_count();
+  const std::int32_t blocks = pipeline_->model().tsdf().block_count();
   for (int i = 3; i < 33; ++i) Thermal(i);
   pipeline_->Finish();
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
-  EXPECT_EQ(LeftOut("no_depth_after"), 30U);
-  EXPECT_EQ(pipeline_->tsdf().block_count(), blocks);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 0U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kNoDepthAfter), 30U);
+  EXPECT_EQ(pipeline_->model().tsdf().block_count(), blocks);
 }
 
 TEST_F(GroundPipelineTest, F04WithoutThermalGeometryGoesOnAndHasNoTemperature) {
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(Depth(i).tracked);
-  EXPECT_EQ(pipeline_->counts().depth_integrated, 5U);
-  const Surface surface =
-      ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, 5U);
+  const Surface surface = ExtractSurface(pipeline_->model().tsdf(), pipeline_->model().thermal(),
+                                         {}, pipeline_->pool());
   ASSERT_GT(surface.points.size(), 500U);
   for (const CloudPoint& point : surface.points) ASSERT_TRUE(std::isnan(point.celsius));
 }
@@ -278,8 +267,8 @@ TEST_F(GroundPipelineTest, F07WhileTheShutterIsClosedGeometryGoesOnAndNoTemperat
     Thermal(i - 0.5, /*valid=*/false);
     EXPECT_TRUE(Depth(i).tracked) << "no loss of tracking";
   }
-  EXPECT_EQ(LeftOut("nuc"), 4U);
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kNuc), 4U);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 0U);
 }
 
 TEST_F(GroundPipelineTest, F12TheMapHoldsNoValueThatIsNone) {
@@ -300,10 +289,10 @@ TEST_F(GroundPipelineTest, F12TheMapHoldsNoValueThatIsNone) {
     if (i > 0) pipeline_->ProcessThermal(thermal);
     EXPECT_TRUE(pipeline_->ProcessDepth(depth).tracked) << i;
   }
-  for (const StampedPose& pose : pipeline_->trajectory())
+  for (const StampedPose& pose : pipeline_->model().trajectory.poses())
     EXPECT_TRUE(pose.T_world_depth.matrix().allFinite());
-  const Surface surface =
-      ExtractSurface(pipeline_->tsdf(), pipeline_->thermal(), {}, pipeline_->pool());
+  const Surface surface = ExtractSurface(pipeline_->model().tsdf(), pipeline_->model().thermal(),
+                                         {}, pipeline_->pool());
   ASSERT_GT(surface.points.size(), 500U);
   int measured = 0;
   for (const CloudPoint& point : surface.points) {
@@ -363,15 +352,15 @@ TEST_F(GroundPipelineTest, WithoutTimeForThermalItIsLeftOutAndCounted) {
   pipeline_->set_load_shedding(LoadShedding::kNoThermal);
   Thermal(0.5);
   Depth(1);
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 0U);
-  EXPECT_EQ(LeftOut("behind"), 1U);
-  EXPECT_EQ(pipeline_->counts().depth_integrated, 2U);
-  EXPECT_EQ(pipeline_->counts().depth_behind, 0U);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 0U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 1U);
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, 2U);
+  EXPECT_EQ(pipeline_->model().counts.depth_behind, 0U);
   pipeline_->set_load_shedding(LoadShedding::kNone);
   Thermal(1.5);
   Depth(2);
-  EXPECT_EQ(pipeline_->counts().thermal_fused, 1U);
-  EXPECT_EQ(LeftOut("behind"), 1U);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 1U);
 }
 
 TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
@@ -386,11 +375,11 @@ TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
     EXPECT_EQ(report.integrated, i % 2 == 1) << i;
     EXPECT_LT(TranslationDistance(report.pose.T_map_depth, TruePose(i)), kMaxError) << i;
   }
-  const PipelineCounts& counts = pipeline_->counts();
+  const PipelineCounts& counts = pipeline_->model().counts;
   EXPECT_EQ(counts.depth_tracked, 1U + kFrames);
   EXPECT_EQ(counts.depth_integrated, 1U + kFrames / 2);
   EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
-  EXPECT_EQ(LeftOut("behind"), 0U + kFrames);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 0U + kFrames);
   pipeline_->set_load_shedding(LoadShedding::kNone);
   for (int i = kFrames + 1; i <= kFrames + 3; ++i) {
     Thermal(i - 0.5);

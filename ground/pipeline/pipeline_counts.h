@@ -1,12 +1,32 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
-#include <string>
+#include <string_view>
 
+#include "common/base/enum_array.h"
 #include "ground/thermal/thermal_fuser.h"
+#include "ground/tracker/icp_tracker.h"
 
 namespace isotherm {
+
+/// Why a thermal frame was not fused, in the order of the names, as in stats.json.
+enum class LeftOutReason : std::uint8_t {
+  kBehind,  ///< For want of time.
+  kCounts,  ///< Of a camera that measures no temperatures.
+  kDepthGap,
+  kDiskFull,
+  kNoCalibration,
+  kDepthStopped,  ///< Too many frames waited for a depth frame: "no_depth".
+  kNoDepthAfter,  ///< The scan ended before another depth frame.
+  kNuc,           ///< Taken during a correction.
+  kPoseUncertain,
+  kPoseUnknown,
+  kTimeUncertain,
+  kWrongSize,
+  kCount
+};
+/// "behind", as in stats.json.
+std::string_view ToString(LeftOutReason reason);
 
 /// Holds what the pipeline did with the frames it was given: in = sum of the outcomes.
 struct PipelineCounts {
@@ -18,10 +38,11 @@ struct PipelineCounts {
   std::uint64_t depth_integrated = 0;   ///< Some of the tracked ones.
   std::uint64_t depth_behind = 0;       ///< Not integrated for want of time.
   std::uint64_t depth_refused = 0;      ///< Frames of another size than the calibration's.
-  std::map<std::string, std::uint64_t> depth_lost;  ///< By reason.
+  EnumArray<LostReason, std::uint64_t> depth_lost;
+  std::uint64_t relocalisations = 0;  ///< Times that the rig was found again after a loss.
   std::uint64_t thermal_in = 0;
   std::uint64_t thermal_fused = 0;
-  std::map<std::string, std::uint64_t> thermal_left_out;  ///< By reason.
+  EnumArray<LeftOutReason, std::uint64_t> thermal_left_out;
   FusionReport fusion;  ///< Sum over all fused frames; dropped counts the last review, too.
 };
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "ground/pipeline/stage_timer.h"
+#include "ground/pipeline/stage_times.h"
 
 namespace isotherm {
 
@@ -20,16 +20,16 @@ ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float 
 bool ThermalStage::Add(ThermalFramePtr frame) {
   const NucAge nuc = nuc_epochs_.Follow(*frame);
   if (!frame->valid) {
-    LeaveOut("nuc");
+    LeaveOut(LeftOutReason::kNuc);
     return false;
   }
   if (frame->centikelvin.width() != camera_.width ||
       frame->centikelvin.height() != camera_.height) {
-    LeaveOut("wrong_size");
+    LeaveOut(LeftOutReason::kWrongSize);
     return false;
   }
   if (ToSeconds(frame->header.capture_sigma) > options_.max_time_sigma_s()) {
-    LeaveOut("time_uncertain");
+    LeaveOut(LeftOutReason::kTimeUncertain);
     return false;
   }
   waiting_.push_back({std::move(frame), nuc});
@@ -37,7 +37,7 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
   constexpr std::size_t kMaxWaiting = 64;
   if (waiting_.size() > kMaxWaiting) {
     waiting_.pop_front();
-    LeaveOut("no_depth");
+    LeaveOut(LeftOutReason::kDepthStopped);
   }
   return true;
 }
@@ -46,12 +46,15 @@ double ThermalStage::RegistrationSigmaPx(const TrackedDepth& depth) const {
   return camera_.fx * depth.surface_sigma_rad;
 }
 
-const char* ThermalStage::WhyLeftOut(CaptureTime time, const TrackedDepth& depth) const {
-  if (depth.refusal != nullptr) return depth.refusal;
-  if (!depth.before || time < depth.before->time) return "pose_unknown";
-  if (RegistrationSigmaPx(depth) > options_.max_registration_px()) return "pose_uncertain";
+std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,
+                                                      const TrackedDepth& depth) const {
+  if (depth.refusal) return depth.refusal;
+  if (!depth.before || time < depth.before->time) return LeftOutReason::kPoseUnknown;
+  if (RegistrationSigmaPx(depth) > options_.max_registration_px())
+    return LeftOutReason::kPoseUncertain;
   const double interval_s = ToSeconds(depth.now.time - depth.before->time);
-  return interval_s > options_.max_wait_s() ? "depth_gap" : nullptr;
+  if (interval_s > options_.max_wait_s()) return LeftOutReason::kDepthGap;
+  return std::nullopt;
 }
 
 void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool) {
@@ -59,8 +62,8 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
   while (!waiting_.empty() && waiting_.front().frame->header.capture_time <= depth.now.time) {
     const Waiting waiting = std::move(waiting_.front());
     waiting_.pop_front();
-    if (const char* reason = WhyLeftOut(waiting.frame->header.capture_time, depth)) {
-      LeaveOut(reason);
+    if (const auto reason = WhyLeftOut(waiting.frame->header.capture_time, depth)) {
+      LeaveOut(*reason);
       continue;
     }
     const StageTimer timer(timing_);
@@ -98,7 +101,7 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
 }
 
 void ThermalStage::Finish(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool) {
-  for (std::size_t i = 0; i < waiting_.size(); ++i) LeaveOut("no_depth_after");
+  for (std::size_t i = 0; i < waiting_.size(); ++i) LeaveOut(LeftOutReason::kNoDepthAfter);
   waiting_.clear();
   counts_.fusion.dropped += fuser_.FinalReview(tsdf, thermal, pool);
 }

@@ -26,7 +26,8 @@ struct TrackedDepth {
   double surface_sigma_rad = 0.0;  ///< One standard deviation of the pose, as a shift of surface
                                    ///< over its mean depth.
   const TsdfVolume& tsdf;
-  const char* refusal = nullptr;  ///< Why thermal frames cannot be fused now at all.
+  /// Why thermal frames cannot be fused now at all, if so.
+  std::optional<LeftOutReason> refusal = std::nullopt;
 };
 
 /// Takes thermal frames from their arrival to the model: each waits for the depth frame behind it,
@@ -52,11 +53,11 @@ class ThermalStage {
   };
 
   double RegistrationSigmaPx(const TrackedDepth& depth) const;
-  /// nullptr: the frame can be fused.
-  const char* WhyLeftOut(CaptureTime time, const TrackedDepth& depth) const;
+  /// nullopt: the frame can be fused.
+  std::optional<LeftOutReason> WhyLeftOut(CaptureTime time, const TrackedDepth& depth) const;
   void Fuse(const Waiting& waiting, const TrackedDepth& depth, ThermalVolume& thermal,
             ThreadPool& pool);
-  void LeaveOut(const char* reason) { ++counts_.thermal_left_out[reason]; }
+  void LeaveOut(LeftOutReason reason) { ++counts_.thermal_left_out[reason]; }
 
   const ThermalOptions options_;
   const CameraModel camera_;

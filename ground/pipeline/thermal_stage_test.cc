@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <map>
 #include <memory>
-#include <string>
 #include <utility>
 
 #include "common/testing/volume_shapes.h"
@@ -16,7 +14,7 @@ namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
-using LeftOut = std::map<std::string, std::uint64_t>;
+using LeftOut = EnumArray<LeftOutReason, std::uint64_t>;
 
 /// A stage between thermal frames and depth frames whose pose is given.
 class ThermalStageTest : public ::testing::Test {
@@ -88,7 +86,7 @@ TEST_F(ThermalStageTest, AFrameBetweenTwoTrackedDepthFramesIsFused) {
   EXPECT_EQ(counts_.thermal_fused, 0U) << "where the rig was is not known yet";
   Fuse(Depth(0.0, 1.0));
   EXPECT_EQ(counts_.thermal_fused, 1U);
-  EXPECT_TRUE(counts_.thermal_left_out.empty());
+  EXPECT_EQ(counts_.thermal_left_out, LeftOut());
   EXPECT_GT(Measured(), 1000);
 }
 
@@ -104,21 +102,21 @@ TEST_F(ThermalStageTest, F07WhileTheShutterIsClosedItIsNuc) {
   auto frame = Frame(0.5);
   frame->valid = false;
   EXPECT_FALSE(stage_->Add(frame));
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"nuc", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kNuc, 1}}));
 }
 
 TEST_F(ThermalStageTest, OfAnotherSizeThanTheCalibrations) {
   auto frame = Frame(0.5);
   frame->centikelvin = Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height - 1, 32'315);
   EXPECT_FALSE(stage_->Add(frame));
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"wrong_size", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kWrongSize, 1}}));
 }
 
 TEST_F(ThermalStageTest, F10DatedTooUncertainly) {
   auto frame = Frame(0.5);
   frame->header.capture_sigma = FromSeconds(options_.max_time_sigma_s()) + 1us;
   EXPECT_FALSE(stage_->Add(frame));
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"time_uncertain", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kTimeUncertain, 1}}));
   frame = Frame(0.5);
   frame->header.capture_sigma = FromSeconds(options_.max_time_sigma_s()) - 1us;
   EXPECT_TRUE(stage_->Add(frame));
@@ -127,7 +125,7 @@ TEST_F(ThermalStageTest, F10DatedTooUncertainly) {
 TEST_F(ThermalStageTest, F01WithoutDepthTheOldestGo) {
   constexpr int kWaiting = 64;
   for (int i = 0; i < kWaiting + 3; ++i) EXPECT_TRUE(stage_->Add(Frame(0.1 * i)));
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"no_depth", 3}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDepthStopped, 3}}));
 }
 
 TEST_F(ThermalStageTest, WithoutAPoseBeforeIt) {
@@ -135,14 +133,14 @@ TEST_F(ThermalStageTest, WithoutAPoseBeforeIt) {
   TrackedDepth depth = Depth(0.0, 1.0);
   depth.before.reset();
   Fuse(depth);
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"pose_unknown", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kPoseUnknown, 1}}));
   EXPECT_EQ(Measured(), 0);
 }
 
 TEST_F(ThermalStageTest, FromBeforeTheRigWasFoundAgain) {
   stage_->Add(Frame(0.5));
   Fuse(Depth(0.6, 1.0));
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"pose_unknown", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kPoseUnknown, 1}}));
 }
 
 TEST_F(ThermalStageTest, WhereThePoseMovesTheImageTooFar) {
@@ -151,7 +149,7 @@ TEST_F(ThermalStageTest, WhereThePoseMovesTheImageTooFar) {
   TrackedDepth depth = Depth(0.0, 1.0);
   depth.surface_sigma_rad = 1.01 * limit_rad;
   Fuse(depth);
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"pose_uncertain", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kPoseUncertain, 1}}));
   stage_->Add(Frame(1.5));
   TrackedDepth better = Depth(1.0, 2.0);
   better.surface_sigma_rad = 0.99 * limit_rad;
@@ -163,7 +161,7 @@ TEST_F(ThermalStageTest, WhereDepthFramesAreTooFarApart) {
   const double frames = 30.0 * options_.max_wait_s();
   stage_->Add(Frame(0.5));
   Fuse(Depth(0.0, frames + 0.1));
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"depth_gap", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDepthGap, 1}}));
   stage_->Add(Frame(100.5));
   Fuse(Depth(100.0, 100.0 + frames - 0.1));
   EXPECT_EQ(counts_.thermal_fused, 1U);
@@ -173,17 +171,18 @@ TEST_F(ThermalStageTest, ForThePipelinesReasonBeforeAnyOther) {
   stage_->Add(Frame(0.5));
   TrackedDepth depth = Depth(0.0, 1.0);
   depth.before.reset();
-  depth.refusal = "disk_full";
+  depth.refusal = LeftOutReason::kDiskFull;
   Fuse(depth);
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"disk_full", 1}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDiskFull, 1}}));
 }
 
 TEST_F(ThermalStageTest, WhatStillWaitsAtTheEndHasNoDepthBehindIt) {
   for (int i = 0; i < 3; ++i) stage_->Add(Frame(i));
   stage_->Finish(*tsdf_, *thermal_, pool_);
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"no_depth_after", 3}}));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kNoDepthAfter, 3}}));
   stage_->Finish(*tsdf_, *thermal_, pool_);
-  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{"no_depth_after", 3}})) << "counted once";
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kNoDepthAfter, 3}}))
+      << "counted once";
 }
 
 }  // namespace

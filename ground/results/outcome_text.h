@@ -1,20 +1,29 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <map>
-#include <string>
+#include <optional>
 #include <string_view>
+
+#include "common/base/enum_array.h"
+#include "ground/pipeline/pipeline_counts.h"
 
 namespace isotherm {
 
-/// Returns what the short names of reasons in stats.json mean, for people: a sentence with what to
-/// do, to be read behind "N lost: ". An unknown name explains itself.
-std::string ExplainLost(std::string_view reason);
+/// Returns what a reason means, for people: a sentence with what to do, to be read behind
+/// "N lost: ".
+std::string_view ExplainLost(LostReason reason);
 
 /// The same for thermal frames, behind "N not used: ".
-std::string ExplainLeftOut(std::string_view reason);
+std::string_view ExplainLeftOut(LeftOutReason reason);
 
-/// The name that occurs most often; empty without any.
-std::string MainReason(const std::map<std::string, std::uint64_t>& counts);
+/// The reason that occurs most often; nullopt without any.
+template <typename Reason>
+std::optional<Reason> MainReason(const EnumArray<Reason, std::uint64_t>& counts) {
+  const auto reasons = AllValues<Reason>();
+  const auto main =
+      std::ranges::max_element(reasons, {}, [&counts](Reason reason) { return counts[reason]; });
+  return counts[*main] == 0 ? std::nullopt : std::optional(*main);
+}
 
 }  // namespace isotherm

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <string>
+
 #include "ground/results/outcome_text.h"
 
 namespace isotherm {
@@ -19,8 +22,8 @@ std::string NotFoundInModel(const ScanOutcome& outcome) {
 }
 
 std::string CauseOfNoPose(const ScanOutcome& outcome) {
-  const std::string reason = MainReason(outcome.counts.depth_lost);
-  if (reason == "too_few_pixels") {
+  const std::optional<LostReason> reason = MainReason(outcome.counts.depth_lost);
+  if (reason == LostReason::kTooFewPixels) {
     const PreprocessorOptions& range = outcome.options.preprocessor();
     return fmt::format(
         "nearly all depths lie outside of preprocessor.min_depth_m to max_depth_m ({:g} to {:g} "
@@ -28,18 +31,19 @@ std::string CauseOfNoPose(const ScanOutcome& outcome) {
         "is depth_scale (raw units per metre) of the calibration right?",
         range.min_depth_m(), range.max_depth_m());
   }
-  if (reason == "outside_volume") {
+  if (reason == LostReason::kOutsideVolume) {
     return "at the first pose nothing in view lies in the scan volume: correct --initial-pose "
            "(T_world_depth), --volume or --volume-min, or leave the pose out";
   }
-  return reason.empty() ? "they could not be used" : ExplainLost(reason);
+  return std::string(reason ? ExplainLost(*reason) : "they could not be used");
 }
 
 std::string NoTemperature(const ScanOutcome& outcome) {
   const PipelineCounts& counts = outcome.counts;
   if (counts.thermal_fused == 0) {
+    const std::optional<LeftOutReason> reason = MainReason(counts.thermal_left_out);
     return fmt::format("none of {} thermal frames could be used: {}", counts.thermal_in,
-                       ExplainLeftOut(MainReason(counts.thermal_left_out)));
+                       reason ? ExplainLeftOut(*reason) : "");
   }
   if (counts.fusion.considered == 0) {
     return fmt::format(

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <string>
+
+#include "ground/pipeline/stage_times.h"
 #include "ground/results/outcome_text.h"
 
 namespace isotherm {
@@ -55,16 +59,16 @@ TEST_F(ScanDoubtsTest, ScansWithoutUsableThermalFramesMayHaveNoTemperatures) {
 }
 
 TEST_F(ScanDoubtsTest, NothingTrackedNamesTheCauseByItsReason) {
-  counts_.depth_lost = {{"too_few_pixels", 29}, {"step", 1}};
+  counts_.depth_lost = {{LostReason::kTooFewPixels, 29}, {LostReason::kStep, 1}};
   EXPECT_THAT(DoubtsAboutResult(NothingTracked()),
               ElementsAre(AllOf(HasSubstr("none of 30 depth frames was tracked"),
                                 HasSubstr("0.3 to 4 m"), HasSubstr("depth_scale"))));
-  counts_.depth_lost = {{"outside_volume", 30}};
+  counts_.depth_lost = {{LostReason::kOutsideVolume, 30}};
   EXPECT_THAT(DoubtsAboutResult(NothingTracked()), ElementsAre(HasSubstr("--initial-pose")));
 }
 
 TEST_F(ScanDoubtsTest, AModelThatIsWrittenUnchangedIsSaid) {
-  counts_.depth_lost = {{"not_found", 30}};
+  counts_.depth_lost = {{LostReason::kNotFound, 30}};
   ScanOutcome outcome = NothingTracked();
   outcome.continued = true;
   outcome.points = outcome.measured_points = 5000;  // The old model's.
@@ -75,11 +79,11 @@ TEST_F(ScanDoubtsTest, AModelThatIsWrittenUnchangedIsSaid) {
 }
 
 TEST_F(ScanDoubtsTest, NoTemperatureNamesTheCause) {
-  counts_.thermal_left_out = {{"nuc", 3}, {"no_depth_after", 37}};
+  counts_.thermal_left_out = {{LeftOutReason::kNuc, 3}, {LeftOutReason::kNoDepthAfter, 37}};
   EXPECT_THAT(
       DoubtsAboutResult(NoTemperature()),
       ElementsAre(AllOf(HasSubstr("none of 40 thermal frames"), HasSubstr("clocks differ"))));
-  counts_.thermal_left_out.clear();
+  counts_.thermal_left_out = {};
   counts_.thermal_fused = 40;
   EXPECT_THAT(DoubtsAboutResult(NoTemperature()), ElementsAre(HasSubstr("T_thermal_depth right")));
   counts_.fusion.considered = 10000;
@@ -87,19 +91,40 @@ TEST_F(ScanDoubtsTest, NoTemperatureNamesTheCause) {
               ElementsAre(AllOf(HasSubstr("0.9 m"), HasSubstr("thermal.keep_bad"))));
 }
 
+/// What is written into stats.json must be there for every value, and in the order of the values.
+template <typename Enum>
+void ExpectNamesInOrder(Enum first) {
+  std::string last;
+  for (const Enum value : AllValues<Enum>()) {
+    if (value < first) continue;
+    EXPECT_GT(std::string(ToString(value)), last) << static_cast<int>(value);
+    last = ToString(value);
+  }
+}
+
+TEST(OutcomeTextTest, EveryReasonAndStageHasANameInAlphabeticalOrder) {
+  ExpectNamesInOrder(LostReason::kNotFound);
+  ExpectNamesInOrder(LeftOutReason::kBehind);
+  ExpectNamesInOrder(Stage::kDepthFrame);
+  EXPECT_EQ(ToString(LostReason::kNone), "none");
+}
+
 TEST(OutcomeTextTest, ReasonsAreSentences) {
-  for (const char* reason : {"too_few_pixels", "too_few_inliers", "residual", "step", "singular",
-                             "not_found", "outside_volume"}) {
-    EXPECT_THAT(ExplainLost(reason), AllOf(HasSubstr(" "), Not(HasSubstr(reason)))) << reason;
+  for (const LostReason reason : AllValues<LostReason>()) {
+    if (reason == LostReason::kNone) continue;
+    const std::string name(ToString(reason));
+    EXPECT_THAT(std::string(ExplainLost(reason)), AllOf(HasSubstr(" "), Not(HasSubstr(name))));
   }
-  for (const char* reason :
-       {"nuc", "wrong_size", "time_uncertain", "no_depth", "no_depth_after", "pose_unknown",
-        "pose_uncertain", "depth_gap", "behind", "disk_full", "no_calibration", "counts"}) {
-    EXPECT_THAT(ExplainLeftOut(reason), HasSubstr(" ")) << reason;
-  }
-  EXPECT_EQ(ExplainLost("something_new"), "something_new");
-  EXPECT_EQ(MainReason({{"a", 3}, {"b", 7}, {"c", 1}}), "b");
-  EXPECT_EQ(MainReason({}), "");
+  for (const LeftOutReason reason : AllValues<LeftOutReason>())
+    EXPECT_THAT(std::string(ExplainLeftOut(reason)), HasSubstr(" ")) << ToString(reason);
+}
+
+TEST(OutcomeTextTest, TheMainReasonIsTheMostFrequentOne) {
+  using LostCounts = EnumArray<LostReason, std::uint64_t>;
+  EXPECT_EQ(MainReason(LostCounts{
+                {LostReason::kResidual, 3}, {LostReason::kSingular, 7}, {LostReason::kStep, 1}}),
+            LostReason::kSingular);
+  EXPECT_EQ(MainReason(LostCounts{}), std::nullopt);
 }
 
 }  // namespace

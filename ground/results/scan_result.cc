@@ -14,6 +14,7 @@
 #include "common/config/rig_calibration.pb.h"
 #include "ground/export/message_json.h"
 #include "ground/export/results.h"
+#include "ground/pipeline/saved_model.h"
 #include "ground/renderer/layers.h"
 #include "ground/results/outcome_text.h"
 #include "ground/results/scan_doubts.h"
@@ -33,16 +34,27 @@ Json DescribeStage(const StageStats& stats) {
 
 namespace {
 
-Json DescribeStages(const GroundPipeline& pipeline) {
+Json DescribeStages(const ScanModel& scan) {
   Json stages;
-  for (const auto& [name, stats] : pipeline.stage_stats()) stages[name] = DescribeStage(stats);
+  for (const Stage stage : AllValues<Stage>()) {
+    if (const StageStats* stats = scan.stages.Find(stage))
+      stages[std::string(ToString(stage))] = DescribeStage(*stats);
+  }
   return stages;
 }
 
-std::uint64_t Sum(const std::map<std::string, std::uint64_t>& counts) {
+std::uint64_t Sum(const EnumArray<LostReason, std::uint64_t>& counts) {
   std::uint64_t sum = 0;
-  for (const auto& [reason, count] : counts) sum += count;
+  for (const LostReason reason : AllValues<LostReason>()) sum += counts[reason];
   return sum;
+}
+
+/// Counts by name, of those that occurred.
+template <typename Reason>
+void DescribeReasons(const EnumArray<Reason, std::uint64_t>& counts, const char* key, Json& json) {
+  for (const Reason reason : AllValues<Reason>()) {
+    if (counts[reason] > 0) json[key][std::string(ToString(reason))] = counts[reason];
+  }
 }
 
 std::string List(const std::map<std::string, std::uint64_t>& counts) {
@@ -113,7 +125,7 @@ std::string DescribeOdometryInWords(const OdometryPrior& odometry) {
 }
 
 /// Returns what was out of the ordinary with depth frames; a line, or nothing.
-std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t relocalisations) {
+std::string DescribeIncidents(const PipelineCounts& counts) {
   std::string text;
   const auto add = [&text](std::uint64_t count, const char* what) {
     if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, what);
@@ -121,18 +133,21 @@ std::string DescribeIncidents(const PipelineCounts& counts, std::uint64_t reloca
   add(counts.depth_repeated, "repeated");
   add(counts.depth_degraded,
       "tracked by their motion before in some direction (a flat or round view does not tell it)");
-  add(relocalisations, "times found again after a loss");
+  add(counts.relocalisations, "times found again after a loss");
   add(counts.depth_unconfirmed, "not used while that was confirmed");
   add(counts.depth_behind, "not integrated to keep up");
   return text.empty() ? text : fmt::format("         {}\n", text);
 }
 
 /// A line for each reason, with what to do about it.
-std::string DescribeReasons(const std::map<std::string, std::uint64_t>& counts,
-                            std::string_view what, std::string (*explain)(std::string_view)) {
+template <typename Reason>
+std::string ExplainReasons(const EnumArray<Reason, std::uint64_t>& counts, std::string_view what,
+                           std::string_view (*explain)(Reason)) {
   std::string text;
-  for (const auto& [reason, count] : counts)
-    text += fmt::format("         {} {}: {}\n", count, what, explain(reason));
+  for (const Reason reason : AllValues<Reason>()) {
+    if (counts[reason] > 0)
+      text += fmt::format("         {} {}: {}\n", counts[reason], what, explain(reason));
+  }
   return text;
 }
 
@@ -151,14 +166,14 @@ std::set<std::string> WrittenNames(const ExportOptions& options, bool has_view, 
   return names;
 }
 
-void AddResultDoubts(const GroundPipeline& pipeline, const GroundOptions& options,
+void AddResultDoubts(const ScanModel& scan, const GroundOptions& options,
                      const ResultSummary& summary, Doubts& doubts) {
-  const Doubts more = DoubtsAboutResult({.counts = pipeline.counts(),
+  const Doubts more = DoubtsAboutResult({.counts = scan.counts,
                                          .options = options,
-                                         .continued = pipeline.is_continued(),
-                                         .can_fuse = pipeline.thermal_status().ok(),
-                                         .poses = pipeline.trajectory().size(),
-                                         .maps = static_cast<std::size_t>(pipeline.atlas().size()),
+                                         .continued = scan.is_continued,
+                                         .can_fuse = scan.thermal_status.ok(),
+                                         .poses = scan.trajectory.poses().size(),
+                                         .maps = static_cast<std::size_t>(scan.atlas.size()),
                                          .points = summary.points,
                                          .measured_points = summary.measured_points});
   doubts.insert(doubts.end(), more.begin(), more.end());
@@ -200,14 +215,13 @@ std::string DescribeSubMaps(const Atlas& atlas) {
 }
 
 /// model.iso, and one more for each sub-map that was never joined.
-Status SaveModels(const GroundPipeline& pipeline, const GroundOptions& options,
+Status SaveModels(const ScanModel& scan, const GroundOptions& options,
                   const std::filesystem::path& dir,
                   const std::function<void(std::string_view what, double fraction)>& progress) {
   if (!options.export_().model()) return OkStatus();
   Status first;
-  for (int i = 0; i < pipeline.atlas().size(); ++i) {
-    const std::string name = i == 0 ? "model.iso" : fmt::format("model-{}.iso", i + 1);
-    const Status saved = pipeline.Save(dir / name, i, [&](double) {
+  for (int i = 0; i < scan.atlas.size(); ++i) {
+    const Status saved = SaveSubMap(dir / ModelName(i), scan.atlas.map(i), scan.rig, [&](double) {
       if (progress) progress("model", 0.0);  // A small part of all.
     });
     if (first.ok()) first = saved;
@@ -217,8 +231,8 @@ Status SaveModels(const GroundPipeline& pipeline, const GroundOptions& options,
 
 }  // namespace
 
-Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig) {
-  const PipelineCounts& counts = pipeline.counts();
+Json DescribeScan(const ScanModel& scan, const GroundOptions& options) {
+  const PipelineCounts& counts = scan.counts;
   Json json;
   Json& depth = json["frames"]["depth"];
   depth["in"] = counts.depth_in;
@@ -226,26 +240,25 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   depth["tracked"] = counts.depth_tracked;
   depth["degraded"] = counts.depth_degraded;
   depth["unconfirmed"] = counts.depth_unconfirmed;
-  depth["relocalisations"] = pipeline.tracker().relocalisations();
+  depth["relocalisations"] = counts.relocalisations;
   depth["integrated"] = counts.depth_integrated;
   depth["not_integrated_behind"] = counts.depth_behind;
   depth["refused"] = counts.depth_refused;
   depth["lost"] = Sum(counts.depth_lost);
-  for (const auto& [reason, count] : counts.depth_lost) depth["lost_by_reason"][reason] = count;
-  if (const auto sigma = Figures(pipeline.trajectory_sigmas())) {
+  DescribeReasons(counts.depth_lost, "lost_by_reason", depth);
+  if (const auto sigma = Figures(scan.trajectory.sigmas())) {
     for (std::size_t i = 0; i < SigmaFigures::kNames.size(); ++i) {
       const std::string name(SigmaFigures::kNames[i]);
       json["pose_sigma"]["translation_mm"][name] = sigma->translation_mm[i];
       json["pose_sigma"]["rotation_deg"][name] = sigma->rotation_deg[i];
     }
   }
-  if (pipeline.tracker().external_odometry().stream().counts().in > 0)
-    json["external_odometry"] = DescribeOdometry(pipeline.tracker().external_odometry());
+  if (scan.external_odometry.stream().counts().in > 0)
+    json["external_odometry"] = DescribeOdometry(scan.external_odometry);
   Json& thermal = json["frames"]["thermal"];
   thermal["in"] = counts.thermal_in;
   thermal["fused"] = counts.thermal_fused;
-  for (const auto& [reason, count] : counts.thermal_left_out)
-    thermal["left_out_by_reason"][reason] = count;
+  DescribeReasons(counts.thermal_left_out, "left_out_by_reason", thermal);
   Json& not_assigned = thermal["pixels_not_assigned"];
   not_assigned["near_an_edge"] = counts.fusion.occluded;
   not_assigned["smeared"] = counts.fusion.smeared;
@@ -253,89 +266,89 @@ Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, 
   not_assigned["maybe_hidden"] = counts.fusion.maybe_hidden;
   thermal["voxels_assigned"] = counts.fusion.assigned;
   thermal["voxels_dropped_in_review"] = counts.fusion.dropped;
-  json["stages"] = DescribeStages(pipeline);
-  json["threads"] = pipeline.threads();
+  json["stages"] = DescribeStages(scan);
+  json["threads"] = scan.threads;
 
   Json& drift = json["drift"];
-  drift["loops_closed"] = pipeline.atlas().drift().closures;
-  drift["largest_gap_m"] = pipeline.atlas().drift().largest_gap_m;
-  drift["last_gap_m"] = pipeline.atlas().drift().last_gap_m;
-  drift["last_gap_rad"] = pipeline.atlas().drift().last_gap_rad;
-  drift["maps_never_joined"] = pipeline.atlas().size() - 1;
-  const VoxelGrid& grid = pipeline.tsdf().grid();
+  drift["loops_closed"] = scan.atlas.drift().closures;
+  drift["largest_gap_m"] = scan.atlas.drift().largest_gap_m;
+  drift["last_gap_m"] = scan.atlas.drift().last_gap_m;
+  drift["last_gap_rad"] = scan.atlas.drift().last_gap_rad;
+  drift["maps_never_joined"] = scan.atlas.size() - 1;
+  const VoxelGrid& grid = scan.tsdf().grid();
   Json& volume = json["volume"];
   for (int axis = 0; axis < 3; ++axis) {
     volume["min_m"].push_back(grid.min_m[axis]);
     volume["size_m"].push_back(grid.size_m()[axis]);
   }
   volume["voxel_size_m"] = grid.voxel_size_m;
-  volume["truncation_distance_m"] = pipeline.tsdf().truncation_distance_m();
-  volume["blocks"] = pipeline.tsdf().block_count();
-  volume["blocks_read_ahead"] = pipeline.spiller().fetched();
-  volume["blocks_spilled"] = pipeline.spiller().spilled();
-  volume["blocks_refused_for_memory"] = pipeline.tsdf().refused_blocks();
+  volume["truncation_distance_m"] = scan.tsdf().truncation_distance_m();
+  volume["blocks"] = scan.tsdf().block_count();
+  volume["blocks_read_ahead"] = scan.spiller.fetched();
+  volume["blocks_spilled"] = scan.spiller.spilled();
+  volume["blocks_refused_for_memory"] = scan.tsdf().refused_blocks();
   volume["memory_bytes"] =
-      pipeline.tsdf().memory_bytes() +
-      static_cast<std::size_t>(pipeline.tsdf().block_count()) * kBlockVoxels * sizeof(ThermalVoxel);
-  if (const ThermalRecords* records = pipeline.thermal().records())
+      scan.tsdf().memory_bytes() +
+      static_cast<std::size_t>(scan.tsdf().block_count()) * kBlockVoxels * sizeof(ThermalVoxel);
+  if (const ThermalRecords* records = scan.thermal().records())
     volume["record_bytes"] = records->memory_bytes();
-  json["calibration"] = ToJson(ToProto(rig));
+  json["calibration"] = ToJson(ToProto(scan.rig));
   json["configuration"] = ToJson(options);
-  if (!pipeline.thermal_status().ok())
-    json["thermal_not_fused_because"] = pipeline.thermal_status().message();
+  if (!scan.thermal_status.ok()) json["thermal_not_fused_because"] = scan.thermal_status.message();
   return json;
 }
 
 Result<WrittenScan> WriteScan(
-    GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
-    Json stats, const std::filesystem::path& dir,
+    const ScanModel& scan, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
+    Json stats, const std::filesystem::path& dir, ThreadPool& pool,
     const std::function<void(std::string_view what, double fraction)>& progress) {
   stats["delay_check"] = DescribeDelay(delay);
-  const bool has_view = pipeline.view().maps.width() > 0;
-  const SurfaceMaps view = has_view ? pipeline.CastFullView() : SurfaceMaps();
+  const bool has_view = scan.view.maps.width() > 0;
+  const SurfaceMaps view =
+      has_view ? CastFullView(scan, options.raycast().min_weight(), pool) : SurfaceMaps();
   const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
   if (!interpretation) return Err(interpretation.error());
   const bool interpreted = !interpretation->changes_nothing();
-  const ResultInputs inputs{pipeline.tsdf(),
-                            pipeline.thermal(),
-                            pipeline.trajectory(),
+  const ResultInputs inputs{scan.tsdf(),
+                            scan.thermal(),
+                            scan.trajectory.poses(),
                             has_view ? &view : nullptr,
-                            pipeline.view().T_map_depth.translation(),
+                            scan.view.T_map_depth.translation(),
                             options.renderer(),
                             options.thermal(),
                             options.export_(),
                             interpreted ? &*interpretation : nullptr,
                             stats,
                             [&](const ResultSummary& summary) {
-                              AddResultDoubts(pipeline, options, summary, doubts);
+                              AddResultDoubts(scan, options, summary, doubts);
                               return doubts;
                             }};
   // All others can be made again from the model.
-  const Status saved = SaveModels(pipeline, options, dir, progress);
+  const Status saved = SaveModels(scan, options, dir, progress);
   if (progress) progress("results", 0.0);
-  const Result<ResultSummary> summary = WriteResults(inputs, dir, pipeline.pool(), progress);
+  const Result<ResultSummary> summary = WriteResults(inputs, dir, pool, progress);
   if (!saved.ok()) return Err(saved);
   if (!summary) return Err(summary.error());
-  RemoveOtherResults(dir, WrittenNames(options.export_(), has_view, pipeline.atlas().size()));
+  RemoveOtherResults(dir, WrittenNames(options.export_(), has_view, scan.atlas.size()));
 
-  const PipelineCounts& counts = pipeline.counts();
+  const PipelineCounts& counts = scan.counts;
   std::string text = fmt::format("depth    {} frames: {} tracked, {} integrated\n", counts.depth_in,
                                  counts.depth_tracked, counts.depth_integrated);
-  text += DescribeReasons(counts.depth_lost, "lost", ExplainLost);
-  text += DescribeIncidents(counts, pipeline.tracker().relocalisations());
-  if (const auto sigma = Figures(pipeline.trajectory_sigmas())) {
+  text += ExplainReasons(counts.depth_lost, "lost", ExplainLost);
+  text += DescribeIncidents(counts);
+  if (const auto sigma = Figures(scan.trajectory.sigmas())) {
     text += fmt::format(
         "         pose within {:.2f} mm and {:.3f} deg of the model (one sigma, median), at worst "
         "{:.2f} mm and {:.3f} deg\n",
         sigma->translation_mm[0], sigma->rotation_deg[0], sigma->translation_mm[2],
         sigma->rotation_deg[2]);
   }
-  text += DescribeSubMaps(pipeline.atlas());
-  text += DescribeOdometryInWords(pipeline.tracker().external_odometry());
+  text += DescribeSubMaps(scan.atlas);
+  text += DescribeOdometryInWords(scan.external_odometry);
   text += fmt::format("thermal  {} frames: {} fused\n", counts.thermal_in, counts.thermal_fused);
-  text += DescribeReasons(counts.thermal_left_out, "not used", ExplainLeftOut);
-  if (!pipeline.thermal_status().ok())
-    text += fmt::format("         {}\n", pipeline.thermal_status().message());
+  text += ExplainReasons(counts.thermal_left_out, "not used", ExplainLeftOut);
+  if (!scan.thermal_status.ok())
+    text += fmt::format("         {}\n", scan.thermal_status.message());
   if (counts.thermal_in > 0 && delay.verdict != DelayVerdict::kOff)
     text += fmt::format("delay    {}\n", Describe(delay));
   const auto fraction = [&](std::size_t part) {
@@ -354,22 +367,22 @@ Result<WrittenScan> WriteScan(
   }
   for (const std::string& sentence : interpretation->Errors(summary->interpretation))
     text += fmt::format("         {}\n", sentence);
-  if (pipeline.spiller().spilled() > 0) {
+  if (scan.spiller.spilled() > 0) {
     text += fmt::format(
         "memory   the model has outgrown volume.max_memory_bytes: {} blocks went to {}, and came "
         "back when seen again\n",
-        pipeline.spiller().spilled(), options.volume().spill_dir());
+        scan.spiller.spilled(), options.volume().spill_dir());
   }
-  if (pipeline.tsdf().refused_blocks() > 0) {
+  if (scan.tsdf().refused_blocks() > 0) {
     text += "         volume.max_memory_bytes was reached: parts of the surface are missing\n";
   }
-  const auto median = [&](const char* stage) {
-    const auto found = pipeline.stage_stats().find(stage);
-    return found == pipeline.stage_stats().end() ? 0.0 : found->second.Percentile(50);
+  const auto median = [&](Stage stage) {
+    const StageStats* times = scan.stages.Find(stage);
+    return times == nullptr ? 0.0 : times->Percentile(50);
   };
   text += fmt::format(
       "time     {:.1f} ms per depth frame, {:.1f} ms per thermal frame (medians, {} threads)\n",
-      median("depth_frame"), median("thermal_frame"), pipeline.threads());
+      median(Stage::kDepthFrame), median(Stage::kThermalFrame), scan.threads);
   text += fmt::format("results  {}\n", dir.string());
   return WrittenScan{std::move(text), std::move(doubts)};
 }

@@ -10,7 +10,8 @@
 #include "common/geometry/camera.h"
 #include "ground/calibration/delay_check.h"
 #include "ground/export/json.h"
-#include "ground/pipeline/ground_pipeline.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/pipeline/scan_model.h"
 
 namespace isotherm {
 
@@ -18,7 +19,7 @@ namespace isotherm {
 Json DescribeStage(const StageStats& stats);
 
 /// Frames, stages, volume and calibration of a scan as they go into stats.json.
-Json DescribeScan(const GroundPipeline& pipeline, const GroundOptions& options, const Rig& rig);
+Json DescribeScan(const ScanModel& scan, const GroundOptions& options);
 
 struct WrittenScan {
   std::string text;  ///< One screen for the user.
@@ -29,8 +30,8 @@ struct WrittenScan {
 /// not write is removed. `stats` is DescribeScan() plus whatever the driver adds; `delay` goes into
 /// stats and text, `doubts` about the frames into stats.
 Result<WrittenScan> WriteScan(
-    GroundPipeline& pipeline, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
-    Json stats, const std::filesystem::path& dir,
+    const ScanModel& scan, const GroundOptions& options, const DelayReport& delay, Doubts doubts,
+    Json stats, const std::filesystem::path& dir, ThreadPool& pool,
     const std::function<void(std::string_view what, double fraction)>& progress);
 
 }  // namespace isotherm

@@ -88,9 +88,9 @@ std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
 }
 
 /// Where tracking last worked, in `world`; nullopt if that is not known.
-std::optional<RigidTransform> LastKnownPose(const GroundPipeline& pipeline) {
-  if (!pipeline.trajectory().empty()) return pipeline.trajectory().back().T_world_depth;
-  const Atlas& atlas = pipeline.atlas();
+std::optional<RigidTransform> LastKnownPose(const ScanModel& scan) {
+  if (!scan.trajectory.poses().empty()) return scan.trajectory.poses().back().T_world_depth;
+  const Atlas& atlas = scan.atlas;
   const std::vector<RigidTransform>& known = atlas.active().relocaliser->keyframes().poses();
   if (known.empty()) return std::nullopt;
   return InWorld(atlas, atlas.active_index(), known.back());
@@ -112,32 +112,31 @@ SurfaceAreas FeedbackMaker::areas() const {
   return sum;
 }
 
-ModelCoverage& FeedbackMaker::ActiveCoverage(const GroundPipeline& pipeline) {
+ModelCoverage& FeedbackMaker::ActiveCoverage(const ScanModel& scan) {
   return coverages_
-      .try_emplace(pipeline.atlas().active_index(),
-                   static_cast<float>(options_.export_().min_weight()))
+      .try_emplace(scan.atlas.active_index(), static_cast<float>(options_.export_().min_weight()))
       .first->second;
 }
 
-ViewPlanner* FeedbackMaker::Planner(const GroundPipeline& pipeline) {
+ViewPlanner* FeedbackMaker::Planner(const ScanModel& scan) {
   if (!rig_.depth || !rig_.thermal || !rig_.T_thermal_depth) return nullptr;
-  if (!planner_ || planned_map_ != pipeline.atlas().active_index()) {
-    planned_map_ = pipeline.atlas().active_index();
+  if (!planner_ || planned_map_ != scan.atlas.active_index()) {
+    planned_map_ = scan.atlas.active_index();
     planner_.emplace(options_.feedback(), options_.thermal(), rig_,
                      static_cast<float>(options_.raycast().min_weight()));
   }
   return &*planner_;
 }
 
-CoverageSummary FeedbackMaker::LookAtView(GroundPipeline& pipeline) {
-  const ModelView& model = pipeline.view();
+CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan, ThreadPool& pool) {
+  const ModelView& model = scan.view;
   view_.Resize(0, 0);
   if (model.maps.width() == 0) return {};
   const int columns = std::max(kMinColumns, options_.feedback().image_width_px());
   Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
   // Distances and angles are limits of the thermal camera.
-  SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), pipeline.tsdf(),
-             pipeline.thermal(), pipeline.pool(), view_);
+  SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), scan.tsdf(),
+             scan.thermal(), pool, view_);
   return SummarizeCoverage(view_, options_.thermal());
 }
 
@@ -159,21 +158,22 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   return situation;
 }
 
-void FeedbackMaker::AddNextPose(const DepthReport& report, const GroundPipeline& pipeline,
+void FeedbackMaker::AddNextPose(const DepthReport& report, const ScanModel& scan,
                                 Feedback& feedback) const {
   if (!report.tracked) {
-    feedback.T_world_depth_next = LastKnownPose(pipeline);
+    feedback.T_world_depth_next = LastKnownPose(scan);
     return;
   }
   if (feedback.done || !planner_ || planned_map_ != report.pose.map) return;
   const std::optional<NextView>& best = planner_->best();
   if (!best) return;
-  feedback.T_world_depth_next = InWorld(pipeline.atlas(), planned_map_, best->T_map_depth);
+  feedback.T_world_depth_next = InWorld(scan.atlas, planned_map_, best->T_map_depth);
   feedback.next_gain_m2 = best->gain_m2;
   feedback.T_depth_next = report.pose.T_map_depth.inverse() * best->T_map_depth;
 }
 
-Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipeline) {
+Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan,
+                             ThreadPool& pool) {
   ++messages_;
   Feedback feedback;
   feedback.session = session_;
@@ -181,11 +181,11 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipel
   feedback.capture_time = moment.header.capture_time;
   feedback.tracking_state = StateOf(moment.report);
   if (const auto pose =
-          moment.report.tracked ? pipeline.atlas().ToWorld(moment.report.pose) : std::nullopt) {
+          moment.report.tracked ? scan.atlas.ToWorld(moment.report.pose) : std::nullopt) {
     feedback.T_world_depth = pose->T_world_depth;
     feedback.pose_covariance = pose->covariance;
   }
-  const CoverageSummary view = LookAtView(pipeline);
+  const CoverageSummary view = LookAtView(scan, pool);
   feedback.view = ToFractions(view);
   feedback.model = ToFractions(areas());
   feedback.covered_area_m2 = std::max(0.0, areas().total_m2());
@@ -193,7 +193,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipel
   feedback.advice = ToWire(advice.kind);
   feedback.advice_reason = std::move(advice.reason);
   feedback.done = adviser_.done();
-  AddNextPose(moment.report, pipeline, feedback);
+  AddNextPose(moment.report, scan, feedback);
   if (options_.feedback().image_width_px() > 0 && view_.width() > 0) {
     feedback.image =
         EncodeWithin(DrawConfidence(view_, feedback.tracking_state == TrackingState::kLost),
@@ -202,25 +202,24 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, GroundPipeline& pipel
   return feedback;
 }
 
-void FeedbackMaker::ThinkAhead(GroundPipeline& pipeline) {
-  ModelCoverage& coverage = ActiveCoverage(pipeline);
+void FeedbackMaker::ThinkAhead(const ScanModel& scan, ThreadPool& pool) {
+  ModelCoverage& coverage = ActiveCoverage(scan);
   // Looking at blocks that were given back would bring them back from the disk: those near the rig
   // are in memory.
-  const bool has_spilled = pipeline.spiller().spilled() > 0;
-  const VoxelGrid& grid = pipeline.tsdf().grid();
-  const Eigen::Vector3d rig_vox = grid.ToVoxel(pipeline.view().T_map_depth.translation());
+  const bool has_spilled = scan.spiller.spilled() > 0;
+  const VoxelGrid& grid = scan.tsdf().grid();
+  const Eigen::Vector3d rig_vox = grid.ToVoxel(scan.view.T_map_depth.translation());
   const double reach_vox = kResidentReach_m / grid.voxel_size_m;
   coverage.Update(
-      pipeline.tsdf(), pipeline.thermal(),
+      scan.tsdf(), scan.thermal(),
       [&](std::int32_t block) {
-        const GridIndex first = pipeline.tsdf().block_coordinates(block) * kBlockSide;
+        const GridIndex first = scan.tsdf().block_coordinates(block) * kBlockSide;
         return has_spilled && (first.cast<double>() - rig_vox).norm() > reach_vox;
       },
-      options_.feedback().blocks_per_message(), pipeline.pool());
-  ViewPlanner* planner = Planner(pipeline);
-  if (planner == nullptr || pipeline.view().maps.width() == 0 || adviser_.done()) return;
-  planner->Step(pipeline.tsdf(), pipeline.thermal(), coverage, pipeline.view().T_map_depth,
-                pipeline.pool());
+      options_.feedback().blocks_per_message(), pool);
+  ViewPlanner* planner = Planner(scan);
+  if (planner == nullptr || scan.view.maps.width() == 0 || adviser_.done()) return;
+  planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, pool);
 }
 
 }  // namespace isotherm

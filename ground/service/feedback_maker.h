@@ -8,7 +8,8 @@
 #include "ground/feedback/model_coverage.h"
 #include "ground/feedback/view_planner.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/depth_report.h"
+#include "ground/pipeline/scan_model.h"
 
 namespace isotherm {
 
@@ -29,9 +30,9 @@ class FeedbackMaker {
  public:
   FeedbackMaker(const GroundOptions& options, const RigDescription& rig);
 
-  Feedback Make(const FeedbackMoment& moment, GroundPipeline& pipeline);
+  Feedback Make(const FeedbackMoment& moment, const ScanModel& scan, ThreadPool& pool);
   /// Goes on with the coverage of the whole model and with the search for the next view.
-  void ThinkAhead(GroundPipeline& pipeline);
+  void ThinkAhead(const ScanModel& scan, ThreadPool& pool);
 
   /// Surface that several sub-maps share counts in each of them.
   SurfaceAreas areas() const;
@@ -41,13 +42,12 @@ class FeedbackMaker {
 
  private:
   /// The model as the depth camera saw it last, with what the thermal camera makes of it.
-  CoverageSummary LookAtView(GroundPipeline& pipeline);
+  CoverageSummary LookAtView(const ScanModel& scan, ThreadPool& pool);
   ScanSituation Situation(const FeedbackMoment& moment) const;
-  void AddNextPose(const DepthReport& report, const GroundPipeline& pipeline,
-                   Feedback& feedback) const;
+  void AddNextPose(const DepthReport& report, const ScanModel& scan, Feedback& feedback) const;
   /// The coverage of the active sub-map, in whose coordinates the planner works too.
-  ModelCoverage& ActiveCoverage(const GroundPipeline& pipeline);
-  ViewPlanner* Planner(const GroundPipeline& pipeline);
+  ModelCoverage& ActiveCoverage(const ScanModel& scan);
+  ViewPlanner* Planner(const ScanModel& scan);
 
   const GroundOptions options_;
   const Rig rig_;

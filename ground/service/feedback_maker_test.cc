@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 
+#include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
 
 namespace isotherm {
@@ -64,7 +65,7 @@ class FeedbackMakerTest : public ::testing::Test {
     FeedbackMoment moment;
     moment.header = frame.header;
     moment.report = pipeline_->ProcessDepth(frame);
-    return maker_->Make(moment, *pipeline_);
+    return maker_->Make(moment, pipeline_->model(), pipeline_->pool());
   }
   Feedback Show(double roll_deg = 0.0) {
     last_true_ = TruePose(roll_deg);
@@ -94,8 +95,8 @@ class FeedbackMakerTest : public ::testing::Test {
 
 TEST_F(FeedbackMakerTest, ASubMapThatIsNotJoinedYetHasNeitherPoseNorUncertaintyInWorld) {
   const Feedback feedback = BeginRolledElsewhere();
-  ASSERT_EQ(pipeline_->atlas().size(), 2);
-  ASSERT_FALSE(pipeline_->atlas().active().joined);
+  ASSERT_EQ(pipeline_->model().atlas.size(), 2);
+  ASSERT_FALSE(pipeline_->model().atlas.active().joined);
   EXPECT_EQ(feedback.tracking_state, TrackingState::kTracked);
   EXPECT_FALSE(feedback.T_world_depth.has_value());
   EXPECT_FALSE(feedback.pose_covariance.has_value()) << "nobody could tell whose axes are meant";
@@ -116,10 +117,10 @@ TEST_F(FeedbackMakerTest, InARotatedSubMapPoseAndUncertaintyAreBothInWorld) {
   BeginRolledElsewhere();
   Feedback feedback;
   for (double roll_deg = 87.0; roll_deg > 0.0; roll_deg -= 3.0) feedback = Show(roll_deg);
-  for (int i = 0; i < 80 && !pipeline_->atlas().active().joined; ++i) feedback = Show();
-  ASSERT_TRUE(pipeline_->atlas().active().joined) << "the rig sees what it began with";
-  ASSERT_EQ(pipeline_->atlas().active_index(), 1);
-  const Eigen::Matrix3d R_world_map = pipeline_->atlas().active().T_world_map.linear();
+  for (int i = 0; i < 80 && !pipeline_->model().atlas.active().joined; ++i) feedback = Show();
+  ASSERT_TRUE(pipeline_->model().atlas.active().joined) << "the rig sees what it began with";
+  ASSERT_EQ(pipeline_->model().atlas.active_index(), 1);
+  const Eigen::Matrix3d R_world_map = pipeline_->model().atlas.active().T_world_map.linear();
   ASSERT_NEAR(R_world_map(1, 0), 1.0, 0.01) << "the sub-map's x axis is world's y axis";
 
   ASSERT_TRUE(feedback.T_world_depth && feedback.pose_covariance);

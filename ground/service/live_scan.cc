@@ -76,10 +76,9 @@ void LiveScan::FinishFrames(const std::function<void(double fraction)>& progress
 }
 
 BehindCounts LiveScan::behind() const {
-  const PipelineCounts& counts = pipeline_->counts();
-  const auto thermal = counts.thermal_left_out.find("behind");
+  const PipelineCounts& counts = model().counts;
   return {.now = is_behind_,
-          .thermal_frames = thermal == counts.thermal_left_out.end() ? 0 : thermal->second,
+          .thermal_frames = counts.thermal_left_out[LeftOutReason::kBehind],
           .depth_frames = counts.depth_behind};
 }
 
@@ -87,7 +86,7 @@ DelayReport LiveScan::CheckDelay(const std::function<void()>& progress) {
   constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   const SteadyTime start = clock_.SteadyNow();
   bool told = false;
-  return delay_check_.Finish(*pipeline_, [&](double fraction) {
+  return delay_check_.Finish(model(), pool(), [&](double fraction) {
     if (progress) progress();
     if (told || clock_.SteadyNow() - start < kSilence) return;
     told = true;
@@ -128,7 +127,7 @@ void LiveScan::Process(const Assembler::Frame& frame) {
   if (const auto* thermal = std::get_if<ThermalFramePtr>(&frame)) {
     NoteQueueTime(thermal->get());
     pipeline_->ProcessThermal(*thermal);
-    delay_check_.Add(*thermal, *pipeline_);
+    delay_check_.Add(*thermal, model());
     return;
   }
   const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
@@ -168,7 +167,7 @@ std::optional<Feedback> LiveScan::TakeFeedback() {
   if (!feedback_waiting_) return std::nullopt;
   feedback_waiting_ = false;
   const SteadyTime start = clock_.SteadyNow();
-  Feedback feedback = feedback_.Make(moment_, *pipeline_);
+  Feedback feedback = feedback_.Make(moment_, model(), pool());
   making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
   motion_since_ = moment_.header.capture_time;
   path_m_ = 0.0;
@@ -193,7 +192,7 @@ void LiveScan::LogWhenDone() {
 void LiveScan::ThinkAhead() {
   if (is_behind_) return;
   const SteadyTime start = clock_.SteadyNow();
-  feedback_.ThinkAhead(*pipeline_);
+  feedback_.ThinkAhead(model(), pool());
   thinking_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
 }
 

@@ -67,11 +67,8 @@ class LiveScanTest : public ::testing::Test {
     }
   }
 
-  const PipelineCounts& counts() { return scan_->pipeline().counts(); }
-  std::uint64_t ThermalBehind() {
-    const auto found = counts().thermal_left_out.find("behind");
-    return found == counts().thermal_left_out.end() ? 0 : found->second;
-  }
+  const PipelineCounts& counts() { return scan_->model().counts; }
+  std::uint64_t ThermalBehind() { return counts().thermal_left_out[LeftOutReason::kBehind]; }
 
   FakeClock clock_{CaptureTime(FromSeconds(1000.0))};
   GroundOptions options_;
@@ -98,8 +95,8 @@ TEST_F(LiveScanTest, FeedbackSaysHowUncertainThePoseIs) {
   const PoseSigma sigma = LargestSigma(*feedback->pose_covariance);
   EXPECT_GT(sigma.translation_m, 0.0);
   EXPECT_LT(sigma.translation_m, 0.001) << "a ball in a corner holds the rig in all directions";
-  EXPECT_EQ(scan_->pipeline().trajectory_sigmas().size(), scan_->pipeline().trajectory().size());
-  EXPECT_EQ(scan_->pipeline().trajectory_sigmas().back().rotation_rad, sigma.rotation_rad);
+  EXPECT_EQ(scan_->model().trajectory.sigmas().size(), scan_->model().trajectory.poses().size());
+  EXPECT_EQ(scan_->model().trajectory.sigmas().back().rotation_rad, sigma.rotation_rad);
 }
 
 TEST_F(LiveScanTest, BeyondMostOfTheLongestWaitThermalFramesAreLeftOut) {

@@ -49,7 +49,7 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
   LOG(Ground, Info) << "scan started, session=" << start.rig.session
                     << " results=" << start.folder.string();
   for (const std::string& doubt : DoubtsAbout(start.rig.rig)) LOG(Ground, Warning) << doubt;
-  if (const Status& thermal = scan_->pipeline().thermal_status(); !thermal.ok()) {
+  if (const Status& thermal = scan_->model().thermal_status; !thermal.ok()) {
     LOG(Ground, Warning) << thermal.message();
   }
 }
@@ -76,7 +76,7 @@ void ReconstructionLoop::HandleFrame(const Frame& frame) {
 
 void ReconstructionLoop::EstimateResults() {
   if (board_.scans_being_written == 0) ended_result_bytes_ = 0;
-  const auto blocks = static_cast<std::uint64_t>(scan_->pipeline().tsdf().block_count());
+  const auto blocks = static_cast<std::uint64_t>(scan_->model().tsdf().block_count());
   result_bytes_ = kResultBytesAtLeast + kResultBytesPerBlock * blocks;
   board_.result_bytes = ended_result_bytes_ + result_bytes_;
 }

@@ -25,7 +25,7 @@ constexpr Nanoseconds kClosingPatience = 1s;
 
 Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCounters& counters,
                  const RecordingProgress& recording, std::uint64_t unprocessed) {
-  Json stats = DescribeScan(scan.pipeline(), options, scan.rig());
+  Json stats = DescribeScan(scan.model(), options);
   Json& link = stats["link"];
   link["session"] = counters.session;
   link["closed"] = counters.closed;
@@ -160,8 +160,8 @@ Result<std::string> ResultWriter::WriteSomewhere(LiveScan& scan, const DelayRepo
   const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
   const auto write = [&](const fs::path& to) -> Result<std::string> {
     if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
-    Result<WrittenScan> written =
-        WriteScan(scan.pipeline(), options_, delay, DoubtsAbout(scan.rig()), stats, to, progress);
+    Result<WrittenScan> written = WriteScan(scan.model(), options_, delay, DoubtsAbout(scan.rig()),
+                                            stats, to, scan.pool(), progress);
     if (!written) return Err(written.error());
     for (const std::string& doubt : written->doubts) LOG(Ground, Warning) << doubt;
     return std::move(written->text);

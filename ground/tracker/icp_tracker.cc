@@ -8,12 +8,23 @@
 #include <numbers>
 #include <vector>
 
+#include "common/base/enum_array.h"
 #include "ground/tracker/icp_kernel.h"
 #include "ground/tracker/odometry_stream.h"
 #include "ground/tracker/thermal_alignment.h"
 
 namespace isotherm {
 namespace {
+
+constexpr EnumArray<LostReason, std::string_view> kLostReasons = {
+    {LostReason::kNone, "none"},
+    {LostReason::kNotFound, "not_found"},
+    {LostReason::kOutsideVolume, "outside_volume"},
+    {LostReason::kResidual, "residual"},
+    {LostReason::kSingular, "singular"},
+    {LostReason::kStep, "step"},
+    {LostReason::kTooFewInliers, "too_few_inliers"},
+    {LostReason::kTooFewPixels, "too_few_pixels"}};
 
 constexpr int kRowsPerTask = 8;
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
@@ -86,25 +97,7 @@ void ApplyTwist(const Vector6& twist, RigidTransform& T_map_depth) {
   T_map_depth.translation() += update.translation();
 }
 
-std::string_view ToString(LostReason reason) {
-  switch (reason) {
-    case LostReason::kNone:
-      return "none";
-    case LostReason::kTooFewPixels:
-      return "too_few_pixels";
-    case LostReason::kTooFewInliers:
-      return "too_few_inliers";
-    case LostReason::kResidual:
-      return "residual";
-    case LostReason::kStep:
-      return "step";
-    case LostReason::kSingular:
-      return "singular";
-    case LostReason::kNotFound:
-      return "not_found";
-  }
-  return "unknown";
-}
+std::string_view ToString(LostReason reason) { return kLostReasons[reason]; }
 
 Status Validate(const TrackerOptions& o) {
   if (o.iterations_coarse() < 0 || o.iterations_middle() < 0 || o.iterations_fine() < 1 ||

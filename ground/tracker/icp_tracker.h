@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <optional>
+#include <string_view>
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
@@ -15,16 +17,19 @@ namespace isotherm {
 
 class ThermalAlignment;
 
-/// Why a frame could not be tracked.
-enum class LostReason {
+/// Why a frame could not be tracked, in the order of the names, as in stats.json.
+enum class LostReason : std::uint8_t {
   kNone,
-  kTooFewPixels,
-  kTooFewInliers,
+  kNotFound,       ///< Lost before, and nothing convincing since.
+  kOutsideVolume,  ///< The first frame shows nothing of the scan volume.
   kResidual,
-  kStep,
   kSingular,
-  kNotFound,  ///< Lost before, and nothing convincing since.
+  kStep,
+  kTooFewInliers,
+  kTooFewPixels,
+  kCount
 };
+/// "not_found", as in stats.json.
 std::string_view ToString(LostReason reason);
 
 /// Holds what the model looks like from a pose: the tracker's reference. Maps in `map`.

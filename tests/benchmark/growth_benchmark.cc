@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/base/check.h"
@@ -103,17 +104,19 @@ void BM_Growth(benchmark::State& state) {
           std::chrono::steady_clock::now() - start;
       if (i >= frames - kFramesPerPeriod) last_period_ms.push_back(elapsed.count());
     }
-    const RigidTransform& end = (*pipeline)->trajectory().back().T_world_depth;
-    state.counters["tracked"] = static_cast<double>((*pipeline)->counts().depth_tracked);
+    const RigidTransform& end = (*pipeline)->model().trajectory.poses().back().T_world_depth;
+    state.counters["tracked"] = static_cast<double>((*pipeline)->model().counts.depth_tracked);
     state.counters["drift_mm"] =
         1e3 * (end.translation() - Eigen::Vector3d((frames - 1) * kStep, 0.0, 0.0)).norm();
     state.counters["resident_mib"] = ResidentMib();
-    state.counters["spilled"] = static_cast<double>((*pipeline)->spiller().spilled());
-    state.counters["voxel_sum"] = VoxelSum((*pipeline)->tsdf());
-    state.counters["blocks"] = static_cast<double>((*pipeline)->tsdf().block_count());
+    state.counters["spilled"] = static_cast<double>((*pipeline)->model().spiller.spilled());
+    state.counters["voxel_sum"] = VoxelSum((*pipeline)->model().tsdf());
+    state.counters["blocks"] = static_cast<double>((*pipeline)->model().tsdf().block_count());
     state.counters["last_period_p50_ms"] = TakeMedian(last_period_ms);
-    for (const auto& [stage, stats] : (*pipeline)->stage_stats())
-      state.counters[stage + "_p50_ms"] = stats.Percentile(50);
+    for (const Stage stage : AllValues<Stage>()) {
+      if (const StageStats* stats = (*pipeline)->model().stages.Find(stage))
+        state.counters[std::string(ToString(stage)) + "_p50_ms"] = stats->Percentile(50);
+    }
   }
 }
 

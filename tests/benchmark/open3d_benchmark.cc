@@ -108,16 +108,17 @@ void PrintRow(const char* stage, double ours_ms, double open3d_ms) {
 }
 
 void PrintTimes(const Comparison& run) {
-  const auto ours = [&](const char* stage) {
-    const auto found = run.ours->stage_stats().find(stage);
-    return found == run.ours->stage_stats().end() ? 0.0 : Median(found->second);
+  const auto ours = [&](Stage stage) {
+    const StageStats* stats = run.ours->model().stages.Find(stage);
+    return stats == nullptr ? 0.0 : Median(*stats);
   };
   const FusionTimes& open3d = run.open3d->times();
   fmt::print("{:<34}{:>12}{:>12}{:>10}\n", "median ms per frame", "isotherm", "Open3D", "ratio");
-  PrintRow("tracking with preprocessing", ours("preprocess") + ours("track"), Median(open3d.track));
-  PrintRow("integration with allocation", ours("integrate"), Median(open3d.integrate));
-  PrintRow("ray cast as each tracks against", ours("raycast"), Median(open3d.raycast));
-  PrintRow("depth frame", ours("depth_frame"), Median(open3d.frame));
+  PrintRow("tracking with preprocessing", ours(Stage::kPreprocess) + ours(Stage::kTrack),
+           Median(open3d.track));
+  PrintRow("integration with allocation", ours(Stage::kIntegrate), Median(open3d.integrate));
+  PrintRow("ray cast as each tracks against", ours(Stage::kRaycast), Median(open3d.raycast));
+  PrintRow("depth frame", ours(Stage::kDepthFrame), Median(open3d.frame));
   PrintRow("(ray cast, both full size)", Median(run.full_cast), Median(open3d.raycast));
 }
 
@@ -136,7 +137,7 @@ void PrintErrors(const char* name, const std::vector<StampedPose>& trajectory,
 
 void Print(const Comparison& run, const GroundOptions& options, const BenchmarkFrames& frames) {
   const CameraModel& camera = *frames.rig.depth;
-  const Eigen::Vector3d size = run.ours->tsdf().grid().size_m();
+  const Eigen::Vector3d size = run.ours->model().tsdf().grid().size_m();
   fmt::print(
       "{} depth frames, {} x {}, {} threads each, voxels {:g} mm, truncation {:g} mm, "
       "volume {:.2f} x {:.2f} x {:.2f} m\n\n",
@@ -144,14 +145,14 @@ void Print(const Comparison& run, const GroundOptions& options, const BenchmarkF
       1e3 * options.volume().voxel_size_m(),
       1e3 * TruncationDistance(options.tsdf(), options.volume()), size.x(), size.y(), size.z());
   PrintTimes(run);
-  const PipelineCounts& counts = run.ours->counts();
+  const PipelineCounts& counts = run.ours->model().counts;
   fmt::print("\nisotherm: {} of {} frames tracked, {} integrated; Open3D: {} without a solution\n",
              counts.depth_tracked, counts.depth_in, counts.depth_integrated, run.open3d->lost());
   if (frames.truth.empty()) {
     fmt::print("no ground truth: trajectories are not assessed\n");
     return;
   }
-  PrintErrors("isotherm", run.ours->trajectory(), frames.truth);
+  PrintErrors("isotherm", run.ours->model().trajectory.poses(), frames.truth);
   PrintErrors("Open3D", run.open3d->trajectory(), frames.truth);
 }
 

@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include <memory>
+#include <string>
 
 #include "common/base/check.h"
 #include "ground/pipeline/ground_pipeline.h"
@@ -20,7 +21,7 @@ void BM_Pipeline(benchmark::State& state) {
   options.mutable_volume()->set_voxel_size_m(1e-3 * static_cast<double>(state.range(0)));
   options.set_threads(static_cast<int>(state.range(1)));
 
-  std::map<std::string, StageStats> stages;
+  StageTimes stages;
   for (auto _ : state) {
     const Result<std::unique_ptr<GroundPipeline>> pipeline =
         GroundPipeline::Create(options, frames.rig, std::nullopt);
@@ -34,16 +35,19 @@ void BM_Pipeline(benchmark::State& state) {
       (*pipeline)->ProcessDepth(depth);
     }
     (*pipeline)->Finish();
-    stages = (*pipeline)->stage_stats();
-    state.counters["tracked"] = static_cast<double>((*pipeline)->counts().depth_tracked);
+    stages = (*pipeline)->model().stages;
+    state.counters["tracked"] = static_cast<double>((*pipeline)->model().counts.depth_tracked);
   }
   state.counters["frames/s"] = benchmark::Counter(
       static_cast<double>(state.iterations()) * static_cast<double>(frames.depth.size()),
       benchmark::Counter::kIsRate);
-  for (const auto& [stage, stats] : stages) {
-    state.counters[stage + "_p50_ms"] = stats.Percentile(50);
-    state.counters[stage + "_p95_ms"] = stats.Percentile(95);
-    state.counters[stage + "_p99_ms"] = stats.Percentile(99);
+  for (const Stage stage : AllValues<Stage>()) {
+    const StageStats* stats = stages.Find(stage);
+    if (stats == nullptr) continue;
+    const std::string name(ToString(stage));
+    state.counters[name + "_p50_ms"] = stats->Percentile(50);
+    state.counters[name + "_p95_ms"] = stats->Percentile(95);
+    state.counters[name + "_p99_ms"] = stats->Percentile(99);
   }
 }
 

@@ -75,20 +75,20 @@ TEST_F(DriftTest, AnOrbitIsClosedAndTheGapIsSpread) {
     const RigidTransform pose = OrbitPose(kDegPerFrame * i);
     ASSERT_TRUE(scan_.Show(pose).tracked) << i;
     error_after_m = scan_.PositionError(pose);
-    if (pipeline.atlas().drift().closures == 0) error_before_m = error_after_m;
+    if (pipeline.model().atlas.drift().closures == 0) error_before_m = error_after_m;
   }
-  const DriftReport& drift = pipeline.atlas().drift();
-  std::cout << pipeline.atlas().size() << " sub-maps, " << drift.closures << " closures, missed by "
-            << 1e3 * drift.largest_gap_m << " mm; position off by " << 1e3 * error_before_m
-            << " mm before, " << 1e3 * error_after_m << " mm after\n";
+  const DriftReport& drift = pipeline.model().atlas.drift();
+  std::cout << pipeline.model().atlas.size() << " sub-maps, " << drift.closures
+            << " closures, missed by " << 1e3 * drift.largest_gap_m << " mm; position off by "
+            << 1e3 * error_before_m << " mm before, " << 1e3 * error_after_m << " mm after\n";
   ASSERT_GE(drift.closures, 1U);
   constexpr double kGapLeft = 0.3;
   EXPECT_LE(error_after_m, kGapLeft * error_before_m);
   const auto closed = FinishAndCompare("closed");
-  EXPECT_EQ(pipeline.atlas().size(), 1);
+  EXPECT_EQ(pipeline.model().atlas.size(), 1);
   // What the trajectory says about the past has moved too.
   double worst_m = 0.0;
-  for (const StampedPose& pose : pipeline.trajectory()) {
+  for (const StampedPose& pose : pipeline.model().trajectory.poses()) {
     const double i =
         std::round(30.0 * (1e-9 * static_cast<double>(ToNanoseconds(pose.time)) - 100.0));
     worst_m =
@@ -113,23 +113,24 @@ TEST_F(DriftTest, AScanThatGoesOnElsewhereIsJoinedWhenBothAreSeen) {
   // The far side: nothing of it was seen yet.
   double angle_deg = 170.0;
   int lost = 0;
-  while (pipeline.atlas().size() == 1 && lost++ < 60) scan_.Show(OrbitPose(angle_deg));
-  ASSERT_EQ(pipeline.atlas().size(), 2);
-  EXPECT_FALSE(pipeline.atlas().map(1).joined);
-  const std::size_t before = pipeline.trajectory().size();
+  while (pipeline.model().atlas.size() == 1 && lost++ < 60) scan_.Show(OrbitPose(angle_deg));
+  ASSERT_EQ(pipeline.model().atlas.size(), 2);
+  EXPECT_FALSE(pipeline.model().atlas.map(1).joined);
+  const std::size_t before = pipeline.model().trajectory.poses().size();
   int elsewhere = 0;
-  for (; angle_deg > 0.0 && !pipeline.atlas().map(1).joined; angle_deg -= kDegPerFrame) {
+  for (; angle_deg > 0.0 && !pipeline.model().atlas.map(1).joined; angle_deg -= kDegPerFrame) {
     ASSERT_TRUE(scan_.Show(OrbitPose(angle_deg)).tracked) << angle_deg;
     ++elsewhere;
   }
-  ASSERT_TRUE(pipeline.atlas().map(1).joined);
+  ASSERT_TRUE(pipeline.model().atlas.map(1).joined);
   std::cout << "joined at " << angle_deg << " degrees, position off by "
             << 1e3 * scan_.PositionError(OrbitPose(angle_deg + kDegPerFrame)) << " mm\n";
   // All that was tracked meanwhile has its place now.
-  EXPECT_GE(pipeline.trajectory().size(), before + static_cast<std::size_t>(elsewhere));
+  EXPECT_GE(pipeline.model().trajectory.poses().size(),
+            before + static_cast<std::size_t>(elsewhere));
   EXPECT_LT(scan_.PositionError(OrbitPose(angle_deg + kDegPerFrame)), 0.005);
   const auto error = FinishAndCompare("joined");
-  EXPECT_EQ(pipeline.atlas().size(), 1);
+  EXPECT_EQ(pipeline.model().atlas.size(), 1);
   EXPECT_LT(error.median_m, 0.002);
 }
 

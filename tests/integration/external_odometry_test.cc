@@ -111,13 +111,13 @@ class ExternalOdometryTest : public ::testing::Test {
       outcome.off_source_m =
           std::max(outcome.off_source_m, scan.PositionError(odometry.Seen(kFrame * i)));
     }
-    const RigidTransform& end = scan.pipeline().trajectory().back().T_world_depth;
+    const RigidTransform& end = scan.pipeline().model().trajectory.poses().back().T_world_depth;
     const RigidTransform truth = path(kFrame * (frames - 1));
     outcome.end_rotation_rad = RotationAngle(end, truth);
     outcome.across_m = std::abs(end.translation().z() - truth.translation().z());
-    outcome.end_sigma_m = scan.pipeline().trajectory_sigmas().back().translation_m;
-    outcome.used = scan.pipeline().tracker().external_odometry().counts();
-    outcome.samples = scan.pipeline().tracker().external_odometry().stream().counts();
+    outcome.end_sigma_m = scan.pipeline().model().trajectory.sigmas().back().translation_m;
+    outcome.used = scan.pipeline().model().external_odometry.counts();
+    outcome.samples = scan.pipeline().model().external_odometry.stream().counts();
     return outcome;
   }
   static void Print(const char* what, const Outcome& outcome) {

@@ -181,9 +181,9 @@ Outcome Run(const Scene& scene, const Setting& setting) {
   }
   outcome.rms_x_m = std::sqrt(squares_x / frames);
   outcome.rms_y_m = std::sqrt(squares_y / frames);
-  outcome.sigma_m = pipeline.uncertainty().surface_sigma_m();
-  outcome.fused = pipeline.counts().thermal_fused;
-  outcome.track_ms = pipeline.stage_stats().at("track").Percentile(50);
+  outcome.sigma_m = pipeline.model().uncertainty.surface_sigma_m();
+  outcome.fused = pipeline.model().counts.thermal_fused;
+  outcome.track_ms = pipeline.model().stages.Find(Stage::kTrack)->Percentile(50);
   return outcome;
 }
 

@@ -127,7 +127,8 @@ class RecordedRecoveryTest : public ::testing::Test {
     surface_options.triangles = false;
     std::vector<Eigen::Vector3f> cloud;
     for (const CloudPoint& point :
-         ExtractSurface(pipeline.tsdf(), pipeline.thermal(), surface_options, pipeline.pool())
+         ExtractSurface(pipeline.model().tsdf(), pipeline.model().thermal(), surface_options,
+                        pipeline.pool())
              .points) {
       cloud.push_back(point.position_m);
     }

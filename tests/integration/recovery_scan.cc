@@ -55,7 +55,7 @@ DepthReport RecoveryScan::ShowCovered() {
 }
 
 double RecoveryScan::PositionError(const RigidTransform& truth) const {
-  return TranslationDistance(pipeline_->trajectory().back().T_world_depth, truth);
+  return TranslationDistance(pipeline_->model().trajectory.poses().back().T_world_depth, truth);
 }
 
 RecoveryScan::ModelError RecoveryScan::CompareModel(
@@ -66,7 +66,7 @@ RecoveryScan::ModelError RecoveryScan::CompareModel(
   std::vector<double> errors;
   std::size_t visible = 0;
   for (const RigidTransform& pose : poses) {
-    Raycaster().Cast(pipeline_->tsdf(), camera, pose, 1.0F, pool, maps);
+    Raycaster().Cast(pipeline_->model().tsdf(), camera, pose, 1.0F, pool, maps);
     for (int v = 0; v < camera.height; v += 2) {
       for (int u = 0; u < camera.width; u += 2) {
         const Eigen::Vector2d xy = Unproject(camera, {u, v});

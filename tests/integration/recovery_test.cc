@@ -11,6 +11,7 @@
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/testing/temporary_directory.h"
+#include "ground/pipeline/saved_model.h"
 #include "tests/integration/recovery_scan.h"
 
 namespace isotherm {
@@ -178,7 +179,7 @@ TEST_F(RecoveryTest, F55RandomStartsInAFinishedModelAreFoundAndNeverElsewhere) {
     }
   }
   std::cout << found << " of " << kStarts << " found, " << wrong << " found elsewhere\n";
-  const StageStats& cost = scan_.pipeline().stage_stats().at("relocalise");
+  const StageStats& cost = *scan_.pipeline().model().stages.Find(Stage::kRelocalise);
   std::cout << "a lost frame takes " << cost.Percentile(50) << " ms, 95 % " << cost.Percentile(95)
             << " ms\n";
   // 95 to 97 with several seeds; rounding differs between instruction sets.
@@ -201,7 +202,7 @@ TEST_F(RecoveryTest, AWeaklyObservedDirectionIsMeasuredNotHeld) {
     most = std::max(most, scan_.PositionError(PoseAt(i)));
   }
   std::cout << "weakest direction " << min_strength << ", largest error " << 1e3 * most
-            << " mm, degraded " << scan_.pipeline().counts().depth_degraded << '\n';
+            << " mm, degraded " << scan_.pipeline().model().counts.depth_degraded << '\n';
   EXPECT_LT(min_strength, 0.001);
   EXPECT_LT(most, kWrongPose);
 }
@@ -210,7 +211,8 @@ TEST_F(RecoveryTest, ASavedModelIsFoundAgainAndGoneOnWith) {
   const testing::TemporaryDirectory folder;
   scan_.Start(PoseAt(0));
   for (int i = 0; i < kFrames / 2; ++i) scan_.Show(PoseAt(i));
-  ASSERT_TRUE(scan_.pipeline().Save(folder.path() / "model.iso").ok());
+  const ScanModel saved = scan_.pipeline().model();
+  ASSERT_TRUE(SaveSubMap(folder.path() / "model.iso", saved.atlas.active(), saved.rig).ok());
   const auto before = scan_.CompareModel(CheckPoses());
 
   // Another scan of the same place, from somewhere else on the way, without any initial pose.
@@ -257,7 +259,7 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
   }
   // Without any structure the velocity is not known either: the prior is at rest.
   const RigidTransform truth = pose(30 * kSeconds - 1);
-  const RigidTransform& end = scan.pipeline().trajectory().back().T_world_depth;
+  const RigidTransform& end = scan.pipeline().model().trajectory.poses().back().T_world_depth;
   const double prior_drift = (truth.translation() - pose(0).translation()).norm();
   const double drift = TranslationDistance(end, truth);
   std::cout << "drift " << 1e3 * drift << " mm of " << 1e3 * prior_drift << " mm, across "
@@ -267,7 +269,7 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
   EXPECT_LT(std::abs(end.translation().z() - truth.translation().z()), 0.002);
   EXPECT_LT(RotationAngle(end, truth), 1.0 * kRadPerDeg);
   EXPECT_GE(degraded, 30 * kSeconds - 10);
-  EXPECT_GT(scan.pipeline().uncertainty().surface_sigma_m(), drift / 3.0);
+  EXPECT_GT(scan.pipeline().model().uncertainty.surface_sigma_m(), drift / 3.0);
 }
 
 }  // namespace

@@ -67,23 +67,25 @@ TEST(SpillTest, AModelUnderALimitEqualsTheOneWithout) {
   volume.set_voxel_size_m(0.004);
   options.mutable_tsdf()->set_truncation_distance_m(0.016);
   options.set_threads(2);
-  const auto whole = Scan(options);
+  const auto kept_in_memory = Scan(options);
+  const ScanModel whole = kept_in_memory->model();
 
   const testing::TemporaryDirectory folder;
   volume.set_spill_dir(folder.path().string());
   volume.set_max_memory_bytes(6'000'000);  // A good half of what the model takes.
-  const auto spilled = Scan(options);
+  const auto limited = Scan(options);
+  const ScanModel spilled = limited->model();
 
-  EXPECT_GT(spilled->spiller().spilled(), 1000U);
-  EXPECT_LT(spilled->spiller().resident_blocks(), whole->tsdf().block_count());
-  EXPECT_EQ(spilled->tsdf().refused_blocks(), 0U);
-  ASSERT_EQ(spilled->counts().depth_tracked, whole->counts().depth_tracked);
-  ASSERT_EQ(spilled->tsdf().block_count(), whole->tsdf().block_count());
-  for (std::int32_t block = 0; block < whole->tsdf().block_count(); ++block) {
-    ASSERT_EQ(spilled->tsdf().block_coordinates(block), whole->tsdf().block_coordinates(block));
+  EXPECT_GT(spilled.spiller.spilled(), 1000U);
+  EXPECT_LT(spilled.spiller.resident_blocks(), whole.tsdf().block_count());
+  EXPECT_EQ(spilled.tsdf().refused_blocks(), 0U);
+  ASSERT_EQ(spilled.counts.depth_tracked, whole.counts.depth_tracked);
+  ASSERT_EQ(spilled.tsdf().block_count(), whole.tsdf().block_count());
+  for (std::int32_t block = 0; block < whole.tsdf().block_count(); ++block) {
+    ASSERT_EQ(spilled.tsdf().block_coordinates(block), whole.tsdf().block_coordinates(block));
     for (std::size_t i = 0; i < kBlockVoxels; ++i) {
-      ASSERT_EQ(spilled->tsdf().voxels(block)[i].bits, whole->tsdf().voxels(block)[i].bits);
-      ASSERT_EQ(spilled->thermal().voxels(block)[i].bits, whole->thermal().voxels(block)[i].bits);
+      ASSERT_EQ(spilled.tsdf().voxels(block)[i].bits, whole.tsdf().voxels(block)[i].bits);
+      ASSERT_EQ(spilled.thermal().voxels(block)[i].bits, whole.thermal().voxels(block)[i].bits);
     }
   }
 }

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include "common/base/enum_array.h"
+#include "common/base/stage_stats.h"
+
+namespace isotherm {
+
+/// What the pipeline spends time on, in the order of the names, as in stats.json.
+enum class Stage : std::uint8_t {
+  kDepthFrame,  ///< All that a depth frame does to the geometric model; the next ones are parts.
+  kIntegrate,
+  kMerge,  ///< Once, at the end: sub-maps become one model.
+  kPreprocess,
+  kRaycast,
+  kRelocalise,  ///< Instead of kTrack while the rig is lost.
+  kSubMaps,
+  kThermalFrame,
+  kTrack,
+  kCount
+};
+/// "depth_frame", as in stats.json.
+std::string_view ToString(Stage stage);
+
+/// Milliseconds per call of each stage. Thread-compatible.
+class StageTimes {
+ public:
+  /// The scan has this stage from now on, even if it is never called.
+  StageStats& operator[](Stage stage) {
+    std::optional<StageStats>& stats = stats_[stage];
+    return stats ? *stats : stats.emplace();
+  }
+  /// nullptr if the scan has had no such stage.
+  const StageStats* Find(Stage stage) const {
+    const std::optional<StageStats>& stats = stats_[stage];
+    return stats ? &*stats : nullptr;
+  }
+
+ private:
+  EnumArray<Stage, std::optional<StageStats>> stats_;
+};
+
+/// Adds the time from construction to Stop() or destruction to a stage.
+class StageTimer {
+ public:
+  explicit StageTimer(StageStats& stats) : stats_(&stats) {}
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+  ~StageTimer() { Stop(); }
+
+  void Stop() {
+    if (stats_ == nullptr) return;
+    const std::chrono::duration<double, std::milli> elapsed =
+        std::chrono::steady_clock::now() - start_;
+    stats_->Add(elapsed.count());
+    stats_ = nullptr;
+  }
+
+ private:
+  StageStats* stats_;
+  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace isotherm
