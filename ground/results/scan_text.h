@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "ground/calibration/delay_check.h"
+#include "ground/export/interpretation.h"
+#include "ground/export/results.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/pipeline/scan_model.h"
+
+namespace isotherm {
+
+/// What a finished scan is about on one screen, for the user: frames, surface, temperatures, time.
+std::string SummaryText(const ScanModel& scan, const GroundOptions& options,
+                        const DelayReport& delay, const ResultSummary& summary,
+                        const Interpretation& interpretation);
+
+}  // namespace isotherm
