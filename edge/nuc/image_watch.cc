@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <span>
 
 #include "common/frame/frame.h"
@@ -19,22 +18,6 @@ constexpr std::size_t kSceneFrames = 8;
 constexpr double kMinSceneSpread_k = 0.5;
 // Every so many pixels in both directions are enough for the spread.
 constexpr int kStride = 4;
-
-/// 64 bits at a time; equal images have equal hashes.
-std::uint64_t Hash(const Image<std::uint16_t>& image) {
-  constexpr std::uint64_t kMultiplier = 0x9E3779B97F4A7C15ULL;  // 2^64 over the golden ratio.
-  std::uint64_t hash = static_cast<std::uint64_t>(image.width());
-  const std::span<const std::uint16_t> pixels = image.pixels();
-  const std::size_t bytes = pixels.size_bytes();
-  const auto* const data = reinterpret_cast<const unsigned char*>(pixels.data());
-  for (std::size_t i = 0; i < bytes; i += sizeof(std::uint64_t)) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, data + i, std::min(sizeof word, bytes - i));
-    hash = (hash ^ word) * kMultiplier;
-    hash ^= hash >> 29U;
-  }
-  return hash;
-}
 
 }  // namespace
 
@@ -63,18 +46,11 @@ ImageWatch::ImageWatch(const NucOptions& options)
 ImageEvidence ImageWatch::Add(const Image<std::uint16_t>& centikelvin, CaptureTime time,
                               bool known_closed) {
   ImageEvidence evidence;
-  evidence.is_frozen = IsFrozen(centikelvin);
+  evidence.is_frozen = repeats_.Add(centikelvin) >= max_repeats_;
   if (uniform_fraction_ > 0.0 && !evidence.is_frozen) {
     evidence.is_like_shutter = IsLikeShutter(ImageSpread(centikelvin), time, known_closed);
   }
   return evidence;
-}
-
-bool ImageWatch::IsFrozen(const Image<std::uint16_t>& centikelvin) {
-  const std::uint64_t hash = Hash(centikelvin);
-  repeats_ = hash == last_hash_ ? repeats_ + 1 : 0;
-  last_hash_ = hash;
-  return repeats_ >= max_repeats_;
 }
 
 bool ImageWatch::IsLikeShutter(double spread_k, CaptureTime time, bool known_closed) {

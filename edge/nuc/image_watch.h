@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/frame/image.h"
+#include "common/frame/repeat_detector.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {
@@ -33,14 +34,12 @@ class ImageWatch {
   ImageEvidence Add(const Image<std::uint16_t>& centikelvin, CaptureTime time, bool known_closed);
 
  private:
-  bool IsFrozen(const Image<std::uint16_t>& centikelvin);
   bool IsLikeShutter(double spread_k, CaptureTime time, bool known_closed);
 
   const int max_repeats_;
   const double uniform_fraction_;  ///< 0 = never.
   const Nanoseconds longest_;
-  std::optional<std::uint64_t> last_hash_;
-  int repeats_ = 0;
+  RepeatDetector repeats_;
   std::deque<double> scene_spreads_k_;  ///< Spreads of the last frames with a scene.
   std::optional<CaptureTime> uniform_since_;
 };

@@ -1,16 +1,7 @@
 #include "edge/thermal_camera/frame_novelty.h"
 
-#include <cstring>
-#include <string_view>
-
 namespace isotherm {
 namespace {
-
-std::uint64_t HashOf(const Image<std::uint16_t>& counts) {
-  const std::string_view bytes(reinterpret_cast<const char*>(counts.data()),
-                               counts.size() * sizeof(std::uint16_t));
-  return std::hash<std::string_view>{}(bytes);
-}
 
 bool IsCorrecting(const RawThermalFrame& frame) {
   return frame.nuc && frame.nuc->state == NucState::kInProgress;
@@ -19,9 +10,9 @@ bool IsCorrecting(const RawThermalFrame& frame) {
 }  // namespace
 
 Novelty FrameNovelty::Process(const RawThermalFrame& frame) {
-  const std::uint64_t hash = HashOf(frame.counts);
   const bool same_counter = missed_ && frame.device_counter == counter_;
-  const bool repeated = hash_ && (hash == hash_ || (frame.device_counter && same_counter));
+  const bool same_image = images_.Add(frame.counts) > 0;
+  const bool repeated = same_image || (frame.device_counter && same_counter);
   Novelty novelty;
   if (repeated) {
     ++repeats_;
@@ -32,7 +23,6 @@ Novelty FrameNovelty::Process(const RawThermalFrame& frame) {
     repeats_ = 0;
     first_seen_ = frame.first_packet.steady;
   }
-  hash_ = hash;
   counter_ = frame.device_counter;
   was_correcting_ = IsCorrecting(frame);
   return novelty;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "common/frame/repeat_detector.h"
 #include "edge/source/missed_frames.h"
 #include "edge/thermal_camera/thermal_camera.h"
 
@@ -37,7 +38,7 @@ class FrameNovelty {
   const int max_repeats_;
   std::optional<MissedFrames> missed_;  ///< Absent: the camera does not count.
   std::optional<std::uint64_t> counter_;
-  std::optional<std::uint64_t> hash_;
+  RepeatDetector images_;
   int repeats_ = 0;
   bool was_correcting_ = false;
   SteadyTime first_seen_{};

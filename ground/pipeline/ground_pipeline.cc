@@ -114,7 +114,8 @@ bool GroundPipeline::Admit(const DepthFrame& frame, DepthReport& report) {
     ++counts_.depth_refused;
     return false;
   }
-  report.repeated = IsRepeated(frame);
+  // A rig that is lost is looked for in each frame anew.
+  report.repeated = repeats_.Add(frame.depth_raw) > 0 && tracker_.motion().last().has_value();
   if (report.repeated) ++counts_.depth_repeated;
   return !report.repeated;
 }
@@ -133,13 +134,6 @@ bool GroundPipeline::HasCalibratedSize(const DepthFrame& frame) {
     LOG(Ground, Info) << "depth frames have the calibration's size again, refused=" << refused;
   }
   return true;
-}
-
-bool GroundPipeline::IsRepeated(const DepthFrame& frame) {
-  const bool repeated =
-      tracker_.motion().last() && std::ranges::equal(frame.depth_raw.pixels(), last_raw_.pixels());
-  if (!repeated) last_raw_ = frame.depth_raw;
-  return repeated;
 }
 
 const PreparedDepth& GroundPipeline::Prepare(const DepthFrame& frame) {

@@ -7,6 +7,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
+#include "common/frame/repeat_detector.h"
 #include "common/geometry/camera.h"
 #include "ground/atlas/atlas.h"
 #include "ground/model/model_file.h"
@@ -73,7 +74,6 @@ class GroundPipeline {
   /// False for frames that cannot be used, or say nothing new.
   bool Admit(const DepthFrame& frame, DepthReport& report);
   bool HasCalibratedSize(const DepthFrame& frame);
-  bool IsRepeated(const DepthFrame& frame);
 
   // The verbs of a depth frame's life, in order. Each leaves alone what the one before gave up.
   const PreparedDepth& Prepare(const DepthFrame& frame);
@@ -110,9 +110,9 @@ class GroundPipeline {
   IntegrationGate gate_;
   BlockSpiller spiller_;
   VisibleBlocks near_view_;
-  std::uint64_t wrong_size_ = 0;   ///< Depth frames of another size, without a right one between.
-  Image<std::uint16_t> last_raw_;  ///< Image of the last depth frame.
-  bool has_room_ = true;           ///< For temperatures; false once the disk to spill to is full.
+  std::uint64_t wrong_size_ = 0;  ///< Depth frames of another size, without a right one between.
+  RepeatDetector repeats_;        ///< Among depth frames.
+  bool has_room_ = true;          ///< For temperatures; false once the disk to spill to is full.
   LoadShedding load_shedding_ = LoadShedding::kNone;
   bool integrate_next_ = true;                 ///< With kEverySecond.
   std::optional<ThermalStage> thermal_stage_;  ///< Only if the rig's thermal frames can be fused.
