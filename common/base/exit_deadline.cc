@@ -17,17 +17,24 @@ namespace {
 // Enough for some lines to anybody who reads them.
 constexpr std::chrono::milliseconds kTimeForLastWords{300};
 
+[[noreturn]] void LeaveNow(ExitDeadline::Duration limit, int status, const std::string& what) {
+  LOG(Service, Warning) << what << " did not end within "
+                        << std::chrono::duration<double>(limit).count() << " s; leaving without it";
+  _exit(status);
+}
+
 [[noreturn]] void Leave(ExitDeadline::Duration limit, int status, const std::string& what,
                         const std::function<void()>& last_words) {
   if (last_words) {
     std::packaged_task<void()> saying(last_words);
     const std::future<void> said = saying.get_future();
-    std::thread(std::move(saying)).detach();  // Nobody waits longer for one that hangs.
-    said.wait_for(kTimeForLastWords);
+    std::thread speaker(std::move(saying));
+    if (said.wait_for(kTimeForLastWords) != std::future_status::ready) {
+      LeaveNow(limit, status, what);  // One that hangs is not waited for.
+    }
+    speaker.join();
   }
-  LOG(Service, Warning) << what << " did not end within "
-                        << std::chrono::duration<double>(limit).count() << " s; leaving without it";
-  _exit(status);
+  LeaveNow(limit, status, what);
 }
 
 }  // namespace
