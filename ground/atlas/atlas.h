@@ -13,6 +13,7 @@
 #include "ground/atlas/pose_graph.h"
 #include "ground/atlas/sub_map.h"
 #include "ground/options/ground_options.pb.h"
+#include "ground/surface/voxel_grid.h"
 
 namespace isotherm {
 

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "ground/surface/block_layout.h"
+#include "ground/surface/voxel_grid.h"
 #include "ground/thermal/thermal_fuser.h"
 
 namespace isotherm {

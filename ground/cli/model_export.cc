@@ -8,6 +8,7 @@
 #include "ground/cli/simulation_files.h"
 #include "ground/export/message_json.h"
 #include "ground/model/load_model.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {

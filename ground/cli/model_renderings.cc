@@ -8,6 +8,7 @@
 #include "ground/export/png_file.h"
 #include "ground/export/surface.h"
 #include "ground/renderer/renderer.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {

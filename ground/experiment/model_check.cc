@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/base/quantile.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {

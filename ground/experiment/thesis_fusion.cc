@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "ground/surface/voxel_grid.h"
+
 namespace isotherm {
 namespace {
 

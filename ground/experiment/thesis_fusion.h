@@ -7,6 +7,7 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "ground/pipeline/scan_model.h"
+#include "ground/surface/surface_maps.h"
 #include "ground/thermal/measurement_conditions.h"
 #include "ground/thermal/thermal_rectifier.h"
 #include "ground/thermal/thermal_volume.h"

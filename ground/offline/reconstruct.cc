@@ -16,6 +16,7 @@
 #include "ground/calibration/scan_views.h"
 #include "ground/export/results.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/pipeline_counts.h"
 #include "ground/results/scan_result.h"
 
 namespace isotherm {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "common/base/log.h"
+#include "ground/relocaliser/relocaliser.h"
 
 namespace isotherm {
 namespace {

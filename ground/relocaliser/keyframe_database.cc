@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/quantile.h"
+#include "ground/surface/voxel_grid.h"
 
 namespace isotherm {
 namespace {

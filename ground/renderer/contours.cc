@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/concurrency/thread_pool.h"
+#include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
 namespace {

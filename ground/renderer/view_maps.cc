@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/concurrency/thread_pool.h"
+#include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
 namespace {

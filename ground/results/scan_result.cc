@@ -16,6 +16,8 @@
 #include "ground/results/scan_doubts.h"
 #include "ground/results/scan_text.h"
 #include "ground/results/sigma_figures.h"
+#include "ground/thermal/thermal_records.h"
+#include "ground/thermal/thermal_volume.h"
 
 namespace isotherm {
 

@@ -10,6 +10,7 @@
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/depth_report.h"
 #include "ground/pipeline/scan_model.h"
+#include "ground/renderer/view_maps.h"
 
 namespace isotherm {
 
