@@ -32,12 +32,29 @@ constexpr RenamedOption kRenamed[] = {
     {"isotherm.ClockOptions", "impulse_share", "impulse_fraction"},
 };
 
+struct RenamedFlag {
+  std::string_view before;
+  std::string_view now;
+};
+
+constexpr RenamedFlag kRenamedFlags[] = {
+    {"--outside-poses", "--external-odometry"},
+};
+
 }  // namespace
 
 std::string_view NameSinceRenaming(const google::protobuf::Descriptor& type,
                                    std::string_view name) {
   for (const RenamedOption& option : kRenamed) {
     if (option.type == type.full_name() && option.before == name) return option.now;
+  }
+  return {};
+}
+
+std::string_view FlagSinceRenaming(std::string_view flag) {
+  const std::string_view name = flag.substr(0, flag.find('='));
+  for (const RenamedFlag& renamed : kRenamedFlags) {
+    if (renamed.before == name) return renamed.now;
   }
   return {};
 }

@@ -16,6 +16,10 @@ std::string_view NameSinceRenaming(const google::protobuf::Descriptor& type, std
 /// the present names.
 std::string WithPresentNames(std::string text);
 
+/// Returns the present name of the command-line flag that was once called `flag` ("--x" or
+/// "--x=value"); empty if there was no such one.
+std::string_view FlagSinceRenaming(std::string_view flag);
+
 /// " It is called 'x' now." for an option that was renamed, else DidYouMean.
 std::string SuggestOption(const google::protobuf::Descriptor& type, std::string_view name);
 

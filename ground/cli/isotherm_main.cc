@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/config/nearest_name.h"
 #include "common/config/protobuf_log.h"
+#include "common/config/renamed_options.h"
 #include "ground/cli/command.h"
 
 namespace isotherm {
@@ -44,6 +46,16 @@ Exit status:
   73  the output cannot be created, the disk is full, or a limit is reached
   74  reading or writing failed
   78  wrong configuration (all problems are listed))";
+
+/// Returns " --x is called --y now." for each flag that has another name since.
+std::string ExplainRenamed(int argc, char** argv) {
+  std::string text;
+  for (int i = 1; i < argc; ++i) {
+    if (const std::string_view now = FlagSinceRenaming(argv[i]); !now.empty())
+      text += fmt::format(" {} is called {} now.", argv[i], now);
+  }
+  return text;
+}
 
 /// A first word that is no command is most likely a misspelt one.
 std::string ExplainExtras(const CLI::App& app, int argc, char** argv, const std::string& what) {
@@ -81,12 +93,14 @@ int Main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError& error) {
-    return Fail(InvalidArgument(ExplainExtras(app, argc, argv, error.what())));
+    return Fail(
+        InvalidArgument(ExplainExtras(app, argc, argv, error.what()) + ExplainRenamed(argc, argv)));
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success);
     if (asked) return app.exit(error);  // --help, --version
     return Fail(InvalidArgument(std::string(error.what()) +
-                                " (isotherm --help explains the command line)"));
+                                " (isotherm --help explains the command line)" +
+                                ExplainRenamed(argc, argv)));
   }
   if (!body) {
     std::fputs(app.help().c_str(), stdout);

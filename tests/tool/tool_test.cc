@@ -151,6 +151,14 @@ TEST_F(ToolTest, AMisspeltCommandOrNameIsSuggested) {
   EXPECT_THAT(Run("import . -o ''").err, HasSubstr("-o '': names no file"));
 }
 
+TEST_F(ToolTest, AFlagThatWasRenamedIsRefusedWithItsPresentName) {
+  for (const std::string flag : {"--outside-poses vio.txt", "--outside-poses=vio.txt"}) {
+    const Outcome outcome = Run("import x -o y " + flag);
+    EXPECT_EQ(outcome.status, kUsage) << flag;
+    EXPECT_THAT(outcome.err, HasSubstr("is called --external-odometry now")) << flag;
+  }
+}
+
 TEST_F(ToolTest, EveryOptionIsListedWithDefaultAndMeaning) {
   const Outcome ground = Run("options");
   EXPECT_EQ(ground.status, 0) << ground.err;
