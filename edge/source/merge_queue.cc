@@ -24,21 +24,21 @@ MergeQueue::MergeQueue(std::size_t cameras, std::size_t capacity, OverflowPolicy
 void MergeQueue::Push(std::size_t camera, SourceItem item, const std::stop_token& stop) {
   CHECK(camera < cameras_);
   MutexLock lock(mutex_);
-  Lane& lane = lanes_[camera];
+  CameraQueue& queue = queues_[camera];
   if (policy_ == OverflowPolicy::kBlock) {
     // At the end it may hold one more: what was captured is not lost.
-    changed_.wait(lock, stop, [&] { return lane.items.size() < capacity_; });
-  } else if (lane.items.size() == capacity_) {
-    if (const auto* frame = std::get_if<RawFrame>(&lane.items.front())) on_drop_(frame->sensor);
-    lane.items.pop_front();
+    changed_.wait(lock, stop, [&] { return queue.items.size() < capacity_; });
+  } else if (queue.items.size() == capacity_) {
+    if (const auto* frame = std::get_if<RawFrame>(&queue.items.front())) on_drop_(frame->sensor);
+    queue.items.pop_front();
   }
-  lane.items.push_back(std::move(item));
+  queue.items.push_back(std::move(item));
   changed_.notify_all();
 }
 
 void MergeQueue::End(std::size_t camera) {
   MutexLock lock(mutex_);
-  lanes_[camera].ended = true;
+  queues_[camera].ended = true;
   changed_.notify_all();
 }
 
@@ -46,28 +46,28 @@ SourceItem MergeQueue::Pop(Nanoseconds timeout, const std::stop_token& stop) {
   MutexLock lock(mutex_);
   changed_.wait_for(lock, stop, timeout,
                     [this]() REQUIRES(mutex_) { return Next() != nullptr || AllEnded(); });
-  Lane* lane = Next();
-  if (lane == nullptr) return AllEnded() ? SourceItem(EndOfStream{}) : SourceItem(NothingYet{});
-  SourceItem item = std::move(lane->items.front());
-  lane->items.pop_front();
+  CameraQueue* queue = Next();
+  if (queue == nullptr) return AllEnded() ? SourceItem(EndOfStream{}) : SourceItem(NothingYet{});
+  SourceItem item = std::move(queue->items.front());
+  queue->items.pop_front();
   changed_.notify_all();
   return item;
 }
 
-MergeQueue::Lane* MergeQueue::Next() {
-  Lane* next = nullptr;
-  for (Lane& lane : lanes_) {
-    if (lane.items.empty()) continue;
-    if (next == nullptr || ArrivalOf(lane.items.front()) < ArrivalOf(next->items.front())) {
-      next = &lane;
+MergeQueue::CameraQueue* MergeQueue::Next() {
+  CameraQueue* next = nullptr;
+  for (CameraQueue& queue : queues_) {
+    if (queue.items.empty()) continue;
+    if (next == nullptr || ArrivalOf(queue.items.front()) < ArrivalOf(next->items.front())) {
+      next = &queue;
     }
   }
   return next;
 }
 
 bool MergeQueue::AllEnded() const {
-  return std::all_of(lanes_.begin(), lanes_.begin() + static_cast<std::ptrdiff_t>(cameras_),
-                     [](const Lane& lane) { return lane.ended; });
+  return std::all_of(queues_.begin(), queues_.begin() + static_cast<std::ptrdiff_t>(cameras_),
+                     [](const CameraQueue& queue) { return queue.ended; });
 }
 
 }  // namespace isotherm

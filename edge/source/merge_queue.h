@@ -35,12 +35,13 @@ class MergeQueue {
   SourceItem Pop(Nanoseconds timeout, const std::stop_token& stop);
 
  private:
-  struct Lane {
+  /// Holds what waits of one camera.
+  struct CameraQueue {
     std::deque<SourceItem> items;
     bool ended = false;
   };
-  /// The lane whose first item is next; nullptr if there is none.
-  Lane* Next() REQUIRES(mutex_);
+  /// Returns the camera's queue whose first item is next; nullptr if there is none.
+  CameraQueue* Next() REQUIRES(mutex_);
   bool AllEnded() const REQUIRES(mutex_);
 
   const std::size_t cameras_;
@@ -49,7 +50,7 @@ class MergeQueue {
   const std::function<void(Sensor)> on_drop_;
   Mutex mutex_;
   std::condition_variable_any changed_;
-  std::array<Lane, kMaxCameras> lanes_ GUARDED_BY(mutex_);
+  std::array<CameraQueue, kMaxCameras> queues_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm

@@ -14,8 +14,8 @@ ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float 
       counts_(counts),
       timing_(timing),
       fuser_(options, *rig.thermal, min_weight),
-      near_holes_(options, fuser_.ideal_camera()),
-      sight_lines_(options, fuser_.ideal_camera()) {}
+      near_range_occlusion_(options, fuser_.ideal_camera()),
+      line_of_sight_occlusion_(options, fuser_.ideal_camera()) {}
 
 bool ThermalStage::Add(ThermalFramePtr frame) {
   const NucAge nuc = nuc_epochs_.Follow(*frame);
@@ -68,8 +68,8 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
     }
     const StageTimer timer(timing_);
     if (!std::exchange(is_prepared, true)) {
-      near_holes_.Update(depth.depth_m, depth.view.maps, depth.view.camera);
-      sight_lines_.Update(depth.view.maps, depth.view.camera, depth.view.T_map_depth);
+      near_range_occlusion_.Update(depth.depth_m, depth.view.maps, depth.view.camera);
+      line_of_sight_occlusion_.Update(depth.view.maps, depth.view.camera, depth.view.T_map_depth);
     }
     Fuse(waiting, depth, thermal, pool);
   }
@@ -86,14 +86,14 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
       Interpolate(before.T_map_depth, now.T_map_depth, alpha);
   const RigidTransform T_map_thermal = T_map_depth_at_capture * T_depth_thermal_;
   const RigidTransform T_view_thermal = depth.view.T_map_depth.inverse() * T_map_thermal;
-  near_holes_.Aim(T_view_thermal);
-  sight_lines_.Aim(T_view_thermal);
+  near_range_occlusion_.Aim(T_view_thermal);
+  line_of_sight_occlusion_.Aim(T_view_thermal);
   const CaptureConditions capture{
       .motion = MotionBetween(before.T_map_depth * T_depth_thermal_,
                               now.T_map_depth * T_depth_thermal_, interval_s),
       .registration_px = RegistrationSigmaPx(depth),
-      .holes = &near_holes_,
-      .sight = &sight_lines_,
+      .near_range = &near_range_occlusion_,
+      .line_of_sight = &line_of_sight_occlusion_,
       .nuc = waiting.nuc};
   counts_.fusion += fuser_.Fuse(*waiting.frame, T_map_thermal, depth.view.camera,
                                 T_map_depth_at_capture, depth.tsdf, pool, thermal, capture);

@@ -9,9 +9,9 @@
 #include "common/geometry/camera.h"
 #include "common/geometry/map_pose.h"
 #include "ground/pipeline/pipeline_counts.h"
-#include "ground/thermal/near_holes.h"
+#include "ground/thermal/line_of_sight_occlusion.h"
+#include "ground/thermal/near_range_occlusion.h"
 #include "ground/thermal/nuc_epochs.h"
-#include "ground/thermal/sight_lines.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/tracker/icp_tracker.h"
 
@@ -65,8 +65,8 @@ class ThermalStage {
   PipelineCounts& counts_;
   StageStats& timing_;
   ThermalFuser fuser_;
-  NearHoles near_holes_;
-  SightLines sight_lines_;
+  NearRangeOcclusion near_range_occlusion_;
+  LineOfSightOcclusion line_of_sight_occlusion_;
   NucEpochs nuc_epochs_;
   std::deque<Waiting> waiting_;
 };

@@ -56,7 +56,7 @@ class FakeRig {
       }
     });
   }
-  int obeyed() const { return executed_; }
+  int executed() const { return executed_; }
 
  private:
   const std::string edge_id_;
@@ -113,8 +113,8 @@ TEST_F(RigCommanderTest, OfTwoRigsTheOneThatIsNamedGetsTheOrder) {
     ASSERT_TRUE(answer.has_value()) << answer.error().message();
     EXPECT_EQ(answer->text, "by " + name);
   }
-  EXPECT_EQ(alpha->obeyed(), 1);
-  EXPECT_EQ(beta->obeyed(), 1);
+  EXPECT_EQ(alpha->executed(), 1);
+  EXPECT_EQ(beta->executed(), 1);
 }
 
 TEST_F(RigCommanderTest, AnOrderWaitsForTheReaderOfTheRigThatIsNamed) {
@@ -129,7 +129,7 @@ TEST_F(RigCommanderTest, AnOrderWaitsForTheReaderOfTheRigThatIsNamed) {
       << "alpha's reader is not the one";
   beta->Listen();
   EXPECT_TRUE(commander->Send({}, kPatience).has_value());
-  EXPECT_EQ(beta->obeyed(), 1) << "the order that had no reader was not sent";
+  EXPECT_EQ(beta->executed(), 1) << "the order that had no reader was not sent";
 }
 
 TEST_F(RigCommanderTest, WithoutANameSeveralRigsAreNamedInsteadOfOneTaken) {

@@ -182,8 +182,8 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
       occluded += counts.occluded;
       smeared += counts.smeared;
       steep += counts.steep;
-      if (capture.holes != nullptr)
-        maybe_hidden += capture.holes->LeaveOut(y, {pixels, static_cast<std::size_t>(width)});
+      if (capture.near_range != nullptr)
+        maybe_hidden += capture.near_range->LeaveOut(y, {pixels, static_cast<std::size_t>(width)});
       for (int x = 0; x < width; ++x) {
         const float depth = pixels[x].depth_m;
         const auto tile = static_cast<std::size_t>(x / kTile);
@@ -191,11 +191,11 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
         if (depth > 0.0F) nearest[tile] = std::min(nearest[tile], depth);
       }
     }
-    if (capture.sight != nullptr) {
+    if (capture.line_of_sight != nullptr) {
       const int first = task * kRowsPerTask;
       const std::span rows(pixels_.data() + static_cast<std::ptrdiff_t>(first) * width,
                            static_cast<std::size_t>((end - first) * width));
-      maybe_hidden += capture.sight->LeaveOut(first, rows);
+      maybe_hidden += capture.line_of_sight->LeaveOut(first, rows);
     }
   });
   report.occluded = occluded;

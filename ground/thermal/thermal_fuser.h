@@ -9,11 +9,11 @@
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/camera_motion.h"
+#include "ground/thermal/line_of_sight_occlusion.h"
 #include "ground/thermal/measurement_conditions.h"
 #include "ground/thermal/measurement_recorder.h"
-#include "ground/thermal/near_holes.h"
+#include "ground/thermal/near_range_occlusion.h"
 #include "ground/thermal/nuc_epochs.h"
-#include "ground/thermal/sight_lines.h"
 #include "ground/thermal/temperature_review.h"
 #include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/thermal_rectifier.h"
@@ -40,10 +40,11 @@ struct FusionReport {
 
 /// Holds what is known about a thermal frame beside its image and pose.
 struct CaptureConditions {
-  CameraMotion motion;                ///< Motion of the thermal camera.
-  double registration_px = 0.0;       ///< Standard deviation of the pose in its image.
-  const NearHoles* holes = nullptr;   ///< Where something unseen may be in the way.
-  const SightLines* sight = nullptr;  ///< What the depth camera looks through.
+  CameraMotion motion;                             ///< Motion of the thermal camera.
+  double registration_px = 0.0;                    ///< Standard deviation of the pose in its image.
+  const NearRangeOcclusion* near_range = nullptr;  ///< Where something unseen may be in the way.
+  const LineOfSightOcclusion* line_of_sight =
+      nullptr;  ///< Space that the depth camera sees through.
   NucAge nuc;
 };
 

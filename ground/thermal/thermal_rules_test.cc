@@ -1,4 +1,4 @@
-// What keeps a temperature out of the model, and what is kept beside it.
+// Rules keep temperatures out of the model, and some things are kept beside those that are in it.
 #include <gtest/gtest.h>
 
 #include <cmath>

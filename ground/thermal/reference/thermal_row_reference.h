@@ -5,8 +5,8 @@
 
 #include "ground/thermal/thermal_kernel.h"
 
-// What the kernels beside this folder must do, one element at a time and in double precision: their
-// specification. Compiled for tests only.
+// These functions do what the kernels beside this folder must do, one element at a time and in
+// double precision: they are their specification. Compiled for tests only.
 namespace isotherm::reference {
 
 /// Returns what ResampleRow must make of pixel x.

@@ -1,4 +1,4 @@
-#include "ground/thermal/near_holes.h"
+#include "ground/thermal/near_range_occlusion.h"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@ namespace isotherm {
 namespace {
 
 /// A wall that fills both views, 0.6 m away; the thermal camera sits beside the depth camera.
-class NearHolesTest : public ::testing::Test {
+class NearRangeOcclusionTest : public ::testing::Test {
  protected:
-  NearHolesTest() {
+  NearRangeOcclusionTest() {
     depth_camera_ = CameraModel{320, 240, 290.0, 290.0, 159.5, 119.5};
     thermal_camera_ = CameraModel{160, 120, 150.0, 150.0, 79.5, 59.5};
     depth_m_ = Image<float>(320, 240, 0.6F);
@@ -20,15 +20,15 @@ class NearHolesTest : public ::testing::Test {
   }
   /// Pixels that are left out of the whole thermal image.
   std::int64_t LeftOut() {
-    NearHoles holes(options_, thermal_camera_);
-    holes.Update(depth_m_, model_, depth_camera_);
-    holes.Aim(T_thermal_depth_.inverse());
+    NearRangeOcclusion occlusion(options_, thermal_camera_);
+    occlusion.Update(depth_m_, model_, depth_camera_);
+    occlusion.Aim(T_thermal_depth_.inverse());
     std::int64_t count = 0;
     image_.assign(static_cast<std::size_t>(160 * 120), ThermalPixel{});
     for (int y = 0; y < 120; ++y) {
       const std::span<ThermalPixel> row(image_.data() + 160 * y, 160);
       for (ThermalPixel& pixel : row) pixel.flags = ThermalPixel::kAssignable;
-      count += holes.LeaveOut(y, row);
+      count += occlusion.LeaveOut(y, row);
     }
     return count;
   }
@@ -50,7 +50,7 @@ class NearHolesTest : public ::testing::Test {
   std::vector<ThermalPixel> image_;
 };
 
-TEST_F(NearHolesTest, ALensCapBeforePartOfTheDepthCameraLeavesOutWhatItMayHide) {
+TEST_F(NearRangeOcclusionTest, ALensCapBeforePartOfTheDepthCameraLeavesOutWhatItMayHide) {
   // A hand 0.15 to 0.3 m away, in the middle of the depth camera's view.
   MakeHole(120, 80, 80);
   EXPECT_GT(LeftOut(), 500);
@@ -60,7 +60,7 @@ TEST_F(NearHolesTest, ALensCapBeforePartOfTheDepthCameraLeavesOutWhatItMayHide) 
   EXPECT_FALSE(IsLeftOut(60, 5)) << "beside the hole's rows";
 }
 
-TEST_F(NearHolesTest, SmallHolesAndEdgesCostNothing) {
+TEST_F(NearRangeOcclusionTest, SmallHolesAndEdgesCostNothing) {
   for (int i = 0; i < 12; ++i) MakeHole(20 + 24 * i, 100, 10);
   for (int y = 0; y < 240; ++y) {
     for (int x = 200; x < 206; ++x) depth_m_.At(x, y) = 0.0F;  // The shadow at an edge.
@@ -68,7 +68,7 @@ TEST_F(NearHolesTest, SmallHolesAndEdgesCostNothing) {
   EXPECT_EQ(LeftOut(), 0);
 }
 
-TEST_F(NearHolesTest, WhatIsNearBeforeAPlaceNeverScannedIsNoticedBetweenSurfaces) {
+TEST_F(NearRangeOcclusionTest, WhatIsNearBeforeAPlaceNeverScannedIsNoticedBetweenSurfaces) {
   // A pipe close to the camera, from the upper border to the lower.
   for (int y = 0; y < 240; ++y) {
     for (int x = 140; x < 190; ++x) {
@@ -81,7 +81,7 @@ TEST_F(NearHolesTest, WhatIsNearBeforeAPlaceNeverScannedIsNoticedBetweenSurfaces
   EXPECT_FALSE(IsLeftOut(150, 60));
 }
 
-TEST_F(NearHolesTest, AShadowBesideSomethingNearCostsNothing) {
+TEST_F(NearRangeOcclusionTest, AShadowBesideSomethingNearCostsNothing) {
   // A post 0.4 m away; the projector 7.5 cm beside cannot light 18 pixels of the wall next to it.
   for (int y = 0; y < 240; ++y) {
     for (int x = 100; x < 160; ++x) depth_m_.At(x, y) = 0.4F;
@@ -94,7 +94,7 @@ TEST_F(NearHolesTest, AShadowBesideSomethingNearCostsNothing) {
   EXPECT_GT(LeftOut(), 500);
 }
 
-TEST_F(NearHolesTest, OpenSpaceBesideTheSurfaceCostsNothing) {
+TEST_F(NearRangeOcclusionTest, OpenSpaceBesideTheSurfaceCostsNothing) {
   for (int y = 0; y < 240; ++y) {
     for (int x = 160; x < 320; ++x) {
       depth_m_.At(x, y) = 0.0F;
@@ -104,13 +104,13 @@ TEST_F(NearHolesTest, OpenSpaceBesideTheSurfaceCostsNothing) {
   EXPECT_EQ(LeftOut(), 0);
 }
 
-TEST_F(NearHolesTest, WhereNoSurfaceIsKnownThereIsNothingToMiss) {
+TEST_F(NearRangeOcclusionTest, WhereNoSurfaceIsKnownThereIsNothingToMiss) {
   depth_m_.Fill(0.0F);
   model_.vx.Fill(std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(LeftOut(), 0);
 }
 
-TEST_F(NearHolesTest, ANearRangeOfZeroTurnsItOff) {
+TEST_F(NearRangeOcclusionTest, ANearRangeOfZeroTurnsItOff) {
   depth_m_.Fill(0.0F);
   EXPECT_GT(LeftOut(), 10'000);
   options_.set_near_range_m(0.0);

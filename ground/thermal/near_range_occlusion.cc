@@ -1,4 +1,4 @@
-#include "ground/thermal/near_holes.h"
+#include "ground/thermal/near_range_occlusion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,14 +26,16 @@ int Tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
 
 }  // namespace
 
-NearHoles::NearHoles(const ThermalOptions& options, const CameraModel& thermal_camera)
+NearRangeOcclusion::NearRangeOcclusion(const ThermalOptions& options,
+                                       const CameraModel& thermal_camera)
     : near_range_m_(options.near_range_m()),
       hole_px_(options.hole_px()),
       thermal_camera_(thermal_camera),
       left_out_(Tiles(thermal_camera.width), Tiles(thermal_camera.height)) {}
 
-NearHoles::Square NearHoles::Look(int column, int row, const Image<float>& depth_m,
-                                  const SurfaceMaps& model) const {
+NearRangeOcclusion::Square NearRangeOcclusion::Look(int column, int row,
+                                                    const Image<float>& depth_m,
+                                                    const SurfaceMaps& model) const {
   const int scale = std::max(1, depth_m.width() / model.width());
   int known = 0, returns = 0, known_returns = 0;
   float sum_m = 0.0F;
@@ -58,7 +60,8 @@ NearHoles::Square NearHoles::Look(int column, int row, const Image<float>& depth
   return {Kind::kSurface, sum_m / static_cast<float>(returns)};
 }
 
-bool NearHoles::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model, double model_fx) {
+bool NearRangeOcclusion::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model,
+                                   double model_fx) {
   const int scale = std::max(1, depth_m.width() / model.width());
   hole_side_ = std::max(1, hole_px_ / scale);
   squares_.Resize(model.width() / hole_side_, model.height() / hole_side_);
@@ -72,7 +75,7 @@ bool NearHoles::FindHoles(const Image<float>& depth_m, const SurfaceMaps& model,
 }
 
 template <typename At, typename Assess>
-void NearHoles::ForEmptyRuns(int count, const At& at, const Assess& assess) {
+void NearRangeOcclusion::ForEmptyRuns(int count, const At& at, const Assess& assess) {
   // Depth of the surface next to a run, 0 = the image's border or nothing certain.
   const auto beside_m = [&](int i, int step) {
     while (i >= 0 && i < count && at(i).kind == Kind::kNeither) i += step;
@@ -85,7 +88,7 @@ void NearHoles::ForEmptyRuns(int count, const At& at, const Assess& assess) {
   }
 }
 
-void NearHoles::AssessRow(int row, double model_fx) {
+void NearRangeOcclusion::AssessRow(int row, double model_fx) {
   const auto at = [&](int i) -> Square& { return squares_.At(i, row); };
   ForEmptyRuns(squares_.width(), at, [&](int first, int end, float left_m, float right_m) {
     const auto inverse = [](float z_m) { return z_m > 0.0F ? 1.0F / z_m : 0.0F; };
@@ -99,7 +102,7 @@ void NearHoles::AssessRow(int row, double model_fx) {
   });
 }
 
-void NearHoles::AssessColumn(int column) {
+void NearRangeOcclusion::AssessColumn(int column) {
   const auto at = [&](int i) -> Square& { return squares_.At(column, i); };
   ForEmptyRuns(squares_.height(), at, [&](int first, int end, float above_m, float below_m) {
     if (!(above_m > 0.0F && below_m > 0.0F)) return;
@@ -107,7 +110,7 @@ void NearHoles::AssessColumn(int column) {
   });
 }
 
-bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal) const {
+bool NearRangeOcclusion::CrossesHole(const Eigen::Vector2d& xy_thermal) const {
   for (int i = 0; i < kSteps; ++i) {
     const double fraction = 1.0 + i * (1.0 / kNearestFraction - 1.0) / (kSteps - 1);
     const double z_m = near_range_m_ / fraction;
@@ -126,15 +129,15 @@ bool NearHoles::CrossesHole(const Eigen::Vector2d& xy_thermal) const {
   return false;
 }
 
-void NearHoles::Update(const Image<float>& depth_m, const SurfaceMaps& model,
-                       const CameraModel& model_camera) {
+void NearRangeOcclusion::Update(const Image<float>& depth_m, const SurfaceMaps& model,
+                                const CameraModel& model_camera) {
   model_camera_ = model_camera;
   any_ = false;
   has_holes_ =
       near_range_m_ > 0.0 && model.width() > 0 && FindHoles(depth_m, model, model_camera.fx);
 }
 
-void NearHoles::Aim(const RigidTransform& T_depth_thermal) {
+void NearRangeOcclusion::Aim(const RigidTransform& T_depth_thermal) {
   T_depth_thermal_ = T_depth_thermal;
   any_ = false;
   if (!has_holes_) return;
@@ -151,7 +154,7 @@ void NearHoles::Aim(const RigidTransform& T_depth_thermal) {
   }
 }
 
-std::int64_t NearHoles::LeaveOut(int y, std::span<ThermalPixel> row) const {
+std::int64_t NearRangeOcclusion::LeaveOut(int y, std::span<ThermalPixel> row) const {
   std::int64_t count = 0;
   if (!any_) return count;
   for (std::size_t x = 0; x < row.size(); ++x) {

@@ -1,4 +1,4 @@
-#include "ground/thermal/sight_lines.h"
+#include "ground/thermal/line_of_sight_occlusion.h"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// A wall, and before its left half a thin screen, as the depth camera sees them; the thermal
 /// camera sits 6 cm to the left.
-class SightLinesTest : public ::testing::Test {
+class LineOfSightOcclusionTest : public ::testing::Test {
  protected:
-  SightLinesTest() {
+  LineOfSightOcclusionTest() {
     depth_camera_ = CameraModel{320, 240, 290.0, 290.0, 159.5, 119.5};
     thermal_camera_ = CameraModel{160, 120, 150.0, 150.0, 79.5, 59.5};
     SetModel([](double x) { return x < 0.0 ? kScreen_m : kWall_m; });
@@ -43,7 +43,7 @@ class SightLinesTest : public ::testing::Test {
     pixel.depth_m = static_cast<float>(depth_m);
     pixel.flags = ThermalPixel::kSeen | ThermalPixel::kAssignable;
     image_.assign(160 * 120, pixel);
-    SightLines lines(options_, thermal_camera_);
+    LineOfSightOcclusion lines(options_, thermal_camera_);
     lines.Update(model_, depth_camera_, T_map_depth_);
     lines.Aim(T_depth_thermal_);
     std::int64_t count = 0;
@@ -72,7 +72,7 @@ class SightLinesTest : public ::testing::Test {
 
 /// A line of sight to the wall is proven unless one of its points more than the tolerance behind
 /// the screen lies at x < 0, where the screen hides it from the depth camera.
-TEST_F(SightLinesTest, WhatPassesBehindSomethingIsLeftOut) {
+TEST_F(LineOfSightOcclusionTest, WhatPassesBehindSomethingIsLeftOut) {
   EXPECT_GT(LeaveOut(kWall_m), 1000);
   int proven = 0, hidden = 0;
   for (int v = 0; v < 120; ++v) {
@@ -94,7 +94,7 @@ TEST_F(SightLinesTest, WhatPassesBehindSomethingIsLeftOut) {
 }
 
 /// As after a sweep: the thermal camera was where the depth camera is now.
-TEST_F(SightLinesTest, TheCameraIsWhereItWasWhenTheFrameWasCaptured) {
+TEST_F(LineOfSightOcclusionTest, TheCameraIsWhereItWasWhenTheFrameWasCaptured) {
   T_depth_thermal_ = RigidTransform::Identity();
   EXPECT_GT(LeaveOut(kWall_m), 0) << "behind the screen itself";
   for (int v = 0; v < 120; ++v) {
@@ -105,13 +105,13 @@ TEST_F(SightLinesTest, TheCameraIsWhereItWasWhenTheFrameWasCaptured) {
   }
 }
 
-TEST_F(SightLinesTest, WhatIsSeenFirstIsNeverLeftOut) {
+TEST_F(LineOfSightOcclusionTest, WhatIsSeenFirstIsNeverLeftOut) {
   EXPECT_EQ(LeaveOut(kScreen_m), 0);
   SetModel([](double) { return kWall_m; });
   EXPECT_EQ(LeaveOut(kWall_m), 0);
 }
 
-TEST_F(SightLinesTest, WhatReachesTheImagesBorderGoesOnBeyondIt) {
+TEST_F(LineOfSightOcclusionTest, WhatReachesTheImagesBorderGoesOnBeyondIt) {
   // Only the leftmost twenty columns show the screen.
   SetModel([](double x) { return x < -0.48 ? kScreen_m : kWall_m; });
   EXPECT_GT(LeaveOut(kWall_m), 0);
@@ -120,12 +120,12 @@ TEST_F(SightLinesTest, WhatReachesTheImagesBorderGoesOnBeyondIt) {
   EXPECT_FALSE(IsLeftOut(80, 60));
 }
 
-TEST_F(SightLinesTest, WhereTheDepthCameraSeesNothingNothingIsInTheWay) {
+TEST_F(LineOfSightOcclusionTest, WhereTheDepthCameraSeesNothingNothingIsInTheWay) {
   SetModel([](double) { return kNan; });
   EXPECT_EQ(LeaveOut(kWall_m), 0);
 }
 
-TEST_F(SightLinesTest, ANearRangeOfZeroTurnsItOff) {
+TEST_F(LineOfSightOcclusionTest, ANearRangeOfZeroTurnsItOff) {
   options_.set_near_range_m(0.0);
   EXPECT_EQ(LeaveOut(kWall_m), 0);
 }

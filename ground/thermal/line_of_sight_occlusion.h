@@ -11,15 +11,16 @@
 
 namespace isotherm {
 
-/// What hides a surface from the thermal camera need not be in the model: a face that the
-/// depth camera sees only edge-on, or a part of a thing that is outside its image. So a thermal
-/// pixel is assigned only if no part of its line of sight, from the near range to the surface, lies
-/// behind what the depth camera sees of the model (as in space carving, Kutulakos and Seitz 2000).
-/// What reaches its image's border is taken to go on beyond. Thread-compatible.
-class SightLines {
+/// Leaves out thermal pixels whose line of sight may be occluded. An occluder need not be in the
+/// model: it may be a face that the depth camera sees only edge-on, or a part of a thing that is
+/// outside its image. So a thermal pixel is assigned only if no part of its line of sight, from the
+/// near range to the surface, lies behind what the depth camera sees of the model (as in space
+/// carving, Kutulakos and Seitz 2000). A thing that reaches its image's border is taken to go on
+/// beyond. Thread-compatible.
+class LineOfSightOcclusion {
  public:
   /// `thermal_camera` without distortion.
-  SightLines(const ThermalOptions& options, const CameraModel& thermal_camera);
+  LineOfSightOcclusion(const ThermalOptions& options, const CameraModel& thermal_camera);
 
   /// `model`: the model's surface in `map` as seen by the depth camera (`model_camera`, perhaps
   /// halved) from `T_map_depth`.

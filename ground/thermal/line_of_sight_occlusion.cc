@@ -1,4 +1,4 @@
-#include "ground/thermal/sight_lines.h"
+#include "ground/thermal/line_of_sight_occlusion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,18 +14,19 @@ constexpr int kSteps = 12;
 
 }  // namespace
 
-SightLines::SightLines(const ThermalOptions& options, const CameraModel& thermal_camera)
+LineOfSightOcclusion::LineOfSightOcclusion(const ThermalOptions& options,
+                                           const CameraModel& thermal_camera)
     : near_range_m_(static_cast<float>(options.near_range_m())),
       tolerance_m_(static_cast<float>(options.parallax_tolerance_m())),
       thermal_camera_(thermal_camera) {}
 
-void SightLines::Aim(const RigidTransform& T_depth_thermal) {
+void LineOfSightOcclusion::Aim(const RigidTransform& T_depth_thermal) {
   R_depth_thermal_ = T_depth_thermal.linear().cast<float>();
   t_depth_thermal_ = T_depth_thermal.translation().cast<float>();
 }
 
-void SightLines::Update(const SurfaceMaps& model, const CameraModel& model_camera,
-                        const RigidTransform& T_map_depth) {
+void LineOfSightOcclusion::Update(const SurfaceMaps& model, const CameraModel& model_camera,
+                                  const RigidTransform& T_map_depth) {
   model_camera_ = model_camera;
   depth_m_.Resize(model.width(), model.height());
   const Eigen::Vector4f z = T_map_depth.inverse().matrix().row(2).cast<float>();
@@ -37,7 +38,7 @@ void SightLines::Update(const SurfaceMaps& model, const CameraModel& model_camer
     depth_m[i] = z[0] * x_map[i] + z[1] * y_map[i] + z[2] * z_map[i] + z[3];
 }
 
-float SightLines::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const {
+float LineOfSightOcclusion::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const {
   const Eigen::Vector3f ray = R_depth_thermal_ * xy_thermal.homogeneous();
   const auto fx = static_cast<float>(model_camera_.fx), fy = static_cast<float>(model_camera_.fy);
   const auto cx = static_cast<float>(model_camera_.cx), cy = static_cast<float>(model_camera_.cy);
@@ -61,7 +62,7 @@ float SightLines::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float z_m) const
   return z_m;
 }
 
-std::int64_t SightLines::LeaveOut(int y, std::span<ThermalPixel> rows) const {
+std::int64_t LineOfSightOcclusion::LeaveOut(int y, std::span<ThermalPixel> rows) const {
   const int width = thermal_camera_.width;
   const int height = static_cast<int>(rows.size()) / width;
   if (near_range_m_ <= 0.0F || depth_m_.width() == 0) return 0;

@@ -19,10 +19,10 @@ namespace isotherm {
 /// holes (edges, dark spots) do not count, nor does an emptiness that reaches the image's border
 /// on two sides, nor what can be the projector's shadow beside something near; so what comes near
 /// there before a place never scanned is not noticed. Thread-compatible.
-class NearHoles {
+class NearRangeOcclusion {
  public:
   /// `thermal_camera` without distortion.
-  NearHoles(const ThermalOptions& options, const CameraModel& thermal_camera);
+  NearRangeOcclusion(const ThermalOptions& options, const CameraModel& thermal_camera);
 
   /// `depth_m`: the last depth image, 0 = no return. `model`: the model's surface at the same time
   /// from the same pose, seen by the depth camera at the same or a halved size.
