@@ -50,8 +50,8 @@ void SyncFolder(const std::filesystem::path& folder) {
 
 OutputFile::OutputFile(std::filesystem::path path)
     : path_(std::move(path)), partial_(PartialName(path_)) {
-  // What an interrupted run left behind. Anything else of that name, a link above all, would lead
-  // the content to where somebody else wants it.
+  // An interrupted run may have left it behind. Anything else of that name, a link above all, would
+  // lead the content to where somebody else wants it.
   std::error_code ignored;
   if (std::filesystem::is_regular_file(std::filesystem::symlink_status(partial_, ignored)))
     std::filesystem::remove(partial_, ignored);

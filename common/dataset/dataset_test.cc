@@ -228,7 +228,7 @@ TEST_F(ImageFileTest, WrongSizeDepthOrChannelsAreSaid) {
 }
 
 TEST_F(ImageFileTest, F65NoOtherFormatIsOpenedWhateverItsName) {
-  // What other programs' files start with: TIFF in both byte orders, JPEG, BMP, OpenEXR, PNM, GIF.
+  // Other programs' files start like this: TIFF in both byte orders, JPEG, BMP, OpenEXR, PNM, GIF.
   for (const std::string& start :
        {std::string("II*\0\x08\0\0\0", 8), std::string("MM\0*\0\0\0\x08", 8),
         std::string("\xff\xd8\xff\xe0\0\x10JFIF", 10), std::string("BM"),

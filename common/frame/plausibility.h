@@ -10,8 +10,8 @@
 
 namespace isotherm {
 
-/// What can be read but cannot be right, a sentence each: what was found, the likely cause, and
-/// what to do. Empty if nothing is in doubt.
+/// Doubts say of what can be read but cannot be right, in a sentence each, what was found, the
+/// likely cause, and what to do. They are empty if nothing is in doubt.
 using Doubts = std::vector<std::string>;
 
 /// Units of a calibration: cameras more than a metre apart, a delay of more than a second, depth in

@@ -15,8 +15,8 @@
 #include "common/time/kernel_clock.h"
 #include "common/time/time_types.h"
 
-/// What crosses the link besides frames, in the program's own types. idl/ says how it is packed,
-/// qos.cc how it is carried. The bounds of the link are the constants below: writers cut text and
+/// These types cross the link besides frames. idl/ says how they are packed, qos.cc how they are
+/// carried. The bounds of the link are the constants below: writers cut text and
 /// lists that are longer, and leave out an image that is too large.
 namespace isotherm {
 

@@ -1,4 +1,4 @@
-// What happens to recordings when disks fill up, power fails or bits rot.
+// These tests show what is left of recordings when disks fill up, power fails or bits rot.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

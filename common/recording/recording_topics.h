@@ -8,7 +8,7 @@
 #include "common/geometry/stamped_pose.h"
 #include "common/recording/recording.h"
 
-/// What a recording's messages are called, for those who copy them without unpacking them.
+/// This header names a recording's messages for those who copy them without unpacking them.
 namespace isotherm::recording {
 
 /// Start of the year 2100: later times are damage.
@@ -25,7 +25,7 @@ inline constexpr std::string_view kClockTopic = "/clock";
 inline constexpr std::string_view kGroundtruthTopic = "/groundtruth";
 inline constexpr std::string_view kTrajectoryTopic = "/trajectory";
 inline constexpr std::string_view kExternalOdometryTopic = "/external_odometry";
-/// What kExternalOdometryTopic was called before; still read.
+/// kExternalOdometryTopic was called so before, and is still read under this name.
 inline constexpr std::string_view kOldOdometryTopic = "/outside_pose";
 inline constexpr std::string_view kLogTopic = "/log";
 

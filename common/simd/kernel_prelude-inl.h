@@ -1,4 +1,4 @@
-// What every kernel begins with. A kernel is a source file that Highway compiles once per
+// Every kernel begins with this file. A kernel is a source file that Highway compiles once per
 // instruction set, in namespace isotherm::HWY_NAMESPACE; the best one for the processor is picked
 // at run time. The file names itself, and then includes this before anything else:
 //

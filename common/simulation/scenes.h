@@ -18,8 +18,8 @@ inline constexpr double kSceneCube_m = 0.96;
 struct StagedScene {
   Scene scene;
   ScanPath path;
-  /// What moves with the rig and is behind it, such as the operator: seen in mirrors only. Poses
-  /// are T_depth_primitive; materials are the scene's.
+  /// These move with the rig and are behind it, as the operator is: they are seen in mirrors only.
+  /// Poses are T_depth_primitive; materials are the scene's.
   std::vector<Primitive> carried;
 };
 

@@ -24,7 +24,7 @@ using std::chrono::seconds;
 using ::testing::HasSubstr;
 
 constexpr seconds kPatience{20};
-/// What a daemon that is told to stop may take in all.
+/// A daemon that is told to stop may take so long in all.
 constexpr seconds kPromptly{2};
 
 CameraProcess::Settings Fake(const std::string& what, int after_frames) {

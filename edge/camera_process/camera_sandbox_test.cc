@@ -1,5 +1,5 @@
-// What a hostile library may do in a camera's process: a real process tries, and says in its frames
-// what came of it.
+// A hostile library can do little in a camera's process: a real process tries, and says in its
+// frames what came of it.
 
 #include "edge/camera_process/camera_sandbox.h"
 
@@ -26,7 +26,7 @@ class CameraSandboxTest : public ::testing::Test {
     for (const char* name : {"allowed", "foreign"}) std::ofstream(folder_.path() / name) << "text";
   }
 
-  /// What the second frame of the process says.
+  /// Runs the process, and keeps what its second frame says.
   void Run(const std::string& what) {
     CameraProcess::Settings settings;
     settings.name = "fake camera";

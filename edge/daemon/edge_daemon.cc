@@ -40,8 +40,8 @@ using std::chrono::milliseconds;
 constexpr Nanoseconds kTick = milliseconds(50);
 // Time to let the ground confirm the last frames when a signal says to leave.
 constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
-// What is told to leave leaves within two seconds. The cameras end first, a vendor's process within
-// one second, ...
+// A daemon that is told to leave leaves within two seconds. The cameras end first, a vendor's
+// process within one second, ...
 constexpr Nanoseconds kTimeForCameras = milliseconds(1750);
 // ... then the recording: a disk may take this long to answer, ...
 constexpr Nanoseconds kTimeForDisk = milliseconds(3500);

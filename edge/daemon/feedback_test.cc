@@ -1,4 +1,4 @@
-// What the edge does with feedback: its age, its words, its image.
+// The edge measures the age of feedback, and shows its words and its image.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -24,8 +24,8 @@ bool WriteAll(int file, std::span<const std::uint8_t> bytes) {
 Status ReplaceFile(const std::filesystem::path& path, std::span<const std::uint8_t> bytes) {
   std::filesystem::path partial = path;
   partial += ".partial";
-  // What an interrupted run left behind. A link in its place would lead the image to where somebody
-  // else wants it.
+  // An interrupted run may have left it behind. A link in its place would lead the image to where
+  // somebody else wants it.
   std::error_code error;
   if (std::filesystem::is_regular_file(std::filesystem::symlink_status(partial, error)))
     std::filesystem::remove(partial, error);

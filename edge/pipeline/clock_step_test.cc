@@ -1,4 +1,4 @@
-// What happens to capture times when somebody sets the edge's wall clock during a scan.
+// Somebody sets the edge's wall clock during a scan, and capture times go on as before.
 
 #include <gtest/gtest.h>
 

@@ -101,8 +101,8 @@ class SupervisedSource final : public FrameSource {
   std::array<std::uint64_t, 2> left_out_{};  ///< Whose numbers are not yet seen to be missing.
   std::array<std::string, 2> calibrated_serials_;  ///< By Sensor; empty: any.
   std::array<std::string, 2> serials_;  ///< By Sensor, of the cameras from the start; empty: any.
-  /// What the thermal camera sends, from the start; a scan that begins without one takes
-  /// temperatures.
+  /// Says whether the thermal camera sends counts only, known from the start; a scan that begins
+  /// without a camera takes temperatures.
   std::optional<bool> counts_only_;
   std::array<int, 2> bad_in_a_row_{};  ///< By Sensor: one camera may fail while the other works.
   std::array<bool, 2> is_first_{};  ///< By Sensor: no frame yet since the camera was opened again.

@@ -46,7 +46,7 @@ struct SpoolStatus {
   std::filesystem::path path;                                ///< The newest file's.
   std::optional<std::uint64_t> free_bytes;                   ///< Absent: not known.
   double left_s = std::numeric_limits<double>::quiet_NaN();  ///< Until it ends for lack of space.
-  /// What is wrong and what to do, in a sentence and in a few words; empty if nothing is.
+  /// Both say what is wrong and what to do, in a sentence and in a few words; empty if nothing is.
   std::string problem;
   std::string brief;
 };

@@ -18,7 +18,8 @@ struct Size {
   int height = 0;
 };
 constexpr Size kSizes[] = {{160, 120}, {80, 60}};  // Lepton 3.x and 2.x.
-// What leaves the camera: 26 Hz inside, of which export rules let every third image out.
+// Images leave the camera at this rate: it has 26 Hz inside, of which export rules let every third
+// image out.
 constexpr double kRate_hz = 8.7;
 constexpr int kCounterStep = 3;
 

@@ -30,7 +30,8 @@ std::string_view ToString(DelayVerdict verdict);
 struct DelayReport {
   DelayVerdict verdict = DelayVerdict::kOff;
   std::string reason;  ///< Why the scan cannot tell.
-  /// What the stamps contain by calibration, seconds; nullopt = an edge added it and did not say.
+  /// The stamps contain this delay by calibration, seconds; nullopt = an edge added it and did not
+  /// say.
   std::optional<double> calibrated_s;
   std::optional<DelayEstimate> off_by;  ///< What would have to be added to it.
   double elapsed_s = 0.0;               ///< Time that the check took.

@@ -13,7 +13,8 @@ class App;
 
 namespace isotherm {
 
-/// What the chosen subcommand does after its options were read; the process's exit status.
+/// Does what the chosen subcommand is for, after its options were read; returns the process's exit
+/// status.
 using CommandBody = std::function<int()>;
 
 /// Says the failure in one sentence on standard error and returns its exit status.

@@ -9,7 +9,7 @@
 
 namespace isotherm {
 
-// What a result folder of a scan tells to commands that go on with it.
+// A scan's result folder tells this to commands that go on with it.
 
 /// `place` is a model.iso or a result folder with one in it. The model's file.
 Result<std::filesystem::path> FindModel(const std::filesystem::path& place);

@@ -5,7 +5,8 @@
 namespace isotherm {
 namespace {
 
-// What is promised of the default estimator, ten seconds after the start (docs/timing.md).
+// The default estimator is promised to be as good as this ten seconds after the start
+// (docs/timing.md).
 constexpr double kPromisedRms_s = 0.0003;
 constexpr double kPromisedP99_s = 0.001;
 

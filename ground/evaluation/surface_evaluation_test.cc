@@ -237,7 +237,7 @@ TEST(SurfaceEvaluationTest, ReferenceSurfaceAgreesWithItself) {
   options.emissivity = 0.96;
   const auto report = EvaluateTemperatures(cloud, points->positions_m, truth, options);
   ASSERT_TRUE(report) << report.error().message();
-  // What the smoothing of the truth between its samples costs.
+  // Smoothing the truth between its samples costs so much.
   EXPECT_LT(report->good.all.magnitude.median, 0.05);
   EXPECT_LT(report->good.all.magnitude.p95, 0.5);
 }

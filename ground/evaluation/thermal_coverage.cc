@@ -13,7 +13,7 @@ namespace {
 
 /// Discs seen more from the side than this are left to their neighbours.
 constexpr float kMinFacing = 0.05F;
-/// What lies behind the first surface by no more than this many spacings belongs to it.
+/// Points that lie behind the first surface by no more than this many spacings belong to it.
 constexpr float kBehindSpacings = 3.0F;
 constexpr float kMinDepth_m = 0.05F;
 

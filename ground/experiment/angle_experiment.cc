@@ -55,7 +55,7 @@ GroundOptions WithAngleLimits(bool validation) {
   ThermalOptions& thermal = *options.mutable_thermal();
   // The rim stands 8 mm above the disc: less than what counts as hiding by default.
   thermal.set_parallax_tolerance_m(0.004);
-  // What is asked for here.
+  // The experiment asks for this accuracy.
   thermal.set_max_gradient_error_k(1.0);
   // As in the thesis.
   thermal.set_angle_min_deg(15.0);

@@ -27,7 +27,7 @@ StagedScene SweepAlongBars() {
     scene.Box(hot ? "hot bar" : "cold bar", {x, 0.02, kWall_m}, {x + kBar_m, 0.76, kWall_m + 0.05})
         .temperature = Uniform(hot ? kHot_celsius : kCold_celsius);
   }
-  // What the tracker holds on to.
+  // The tracker holds on to these.
   scene.Box("sill", {0.02, 0.76, 0.62}, {0.94, 0.82, 0.86}).temperature = Uniform(kCold_celsius);
   scene.RotatedBox("carton", {0.24, 0.68, 0.70}, {0.12, 0.14, 0.10}, {0, 30, 0}).temperature =
       Uniform(kCold_celsius);

@@ -46,7 +46,7 @@ struct ResultInputs {
   const TsdfVolume& tsdf;
   const ThermalVolume& thermal;
   std::optional<std::span<const StampedPose>> trajectory;  ///< nullopt: no trajectory.txt.
-  /// What the model looks like from `viewer_world`, ray-cast, in `world`; nullptr: no renderings.
+  /// Shows the model as it looks from `viewer_world`, ray-cast, in `world`; nullptr: no renderings.
   const SurfaceMaps* view = nullptr;
   Eigen::Vector3d viewer_world = Eigen::Vector3d::Zero();
   const RendererOptions& renderer_options;
@@ -54,7 +54,8 @@ struct ResultInputs {
   const ExportOptions& export_options;
   const Interpretation* interpretation = nullptr;  ///< nullptr: temperatures stay apparent.
   const Json& stats;  ///< Becomes stats.json, with `software`, `surface`, `interpretation` added.
-  /// What to warn of, knowing the surface; goes into stats.json as `warnings`. May be empty.
+  /// Returns the warnings that the surface gives reason for; they go into stats.json as `warnings`.
+  /// May be empty.
   std::function<std::vector<std::string>(const ResultSummary&)> warnings{};
 };
 

@@ -10,7 +10,8 @@ class ThermalOptions;
 /// where the view is taken now. Fractions are of the pixels with a surface and 0 if there are none.
 struct CoverageSummary {
   double surface = 0.0;  ///< Pixels with a surface, fraction of the image.
-  // What is stored (MeasurementQuality). The four add up to 1 if there is a surface.
+  // These are fractions by what is stored (MeasurementQuality). The four add up to 1 if there is a
+  // surface.
   double good = 0.0;
   double acceptable = 0.0;
   double bad = 0.0;

@@ -22,7 +22,7 @@ constexpr double kAskew_rad = 25.0 * std::numbers::pi / 180.0;
 /// Another view takes the place of the best one when it gains so much more: it should not jump.
 constexpr double kClearlyBetter = 1.2;
 
-/// What is nearer to the camera than this fraction of the least distance is in its way.
+/// A surface nearer to the camera than this fraction of the least distance is in its way.
 constexpr double kClearance = 0.7;
 
 /// A view counts as taken within this far of it, for so many steps.

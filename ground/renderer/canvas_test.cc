@@ -1,4 +1,4 @@
-// What the canvas draws against OpenCV, which draws the same letters and shapes in its own way.
+// The canvas is compared with OpenCV, which draws the same letters and shapes in its own way.
 
 #include "ground/renderer/canvas.h"
 

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What a session sends, and what comes out on both sides.
+/// Plays a session, and collects what comes out on both sides.
 class DistributorTest : public ::testing::Test {
  protected:
   static constexpr std::uint64_t kSession = 7;

@@ -100,7 +100,7 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
   link["depth"] = DescribeStream(counters.depth, recording.depth_frames, recording.depth_left_out);
   link["thermal"] =
       DescribeStream(counters.thermal, recording.thermal_frames, recording.thermal_left_out);
-  // What the stuck disk has not taken yet.
+  // A stuck disk has not taken all frames yet.
   const bool waits = !recording.path.empty() && !recording.closed;
   const auto add_waiting = [&](const char* sensor, const StreamCounters& stream,
                                std::uint64_t recorded, const NotRecordedCounts& left_out) {

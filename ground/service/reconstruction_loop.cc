@@ -11,7 +11,7 @@
 namespace isotherm {
 namespace {
 
-/// What the results of a model take per block of 512 voxels, about: model.iso, cloud and mesh.
+/// The results of a model (model.iso, cloud and mesh) take about this much per block of 512 voxels.
 constexpr std::uint64_t kResultBytesPerBlock = 6'000;
 /// Images, trajectory, statistics.
 constexpr std::uint64_t kResultBytesAtLeast = 4U << 20;

@@ -17,7 +17,7 @@ using namespace std::chrono_literals;
 // Frames that have stopped coming must not wait in an open chunk.
 constexpr Nanoseconds kFlushAfter = 500ms;
 constexpr Nanoseconds kLookInterval = 200ms;
-// What is in an open chunk, the index and the footer.
+// An open chunk, the index and the footer take no more.
 constexpr std::uint64_t kClosingBytes = 5U << 20;
 // Kept free in any case: so much, but of a small disk no more than this part.
 constexpr std::uint64_t kMaxReserveBytes = 100U << 20;

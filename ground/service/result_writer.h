@@ -32,7 +32,7 @@ struct EndedScan {
 /// to the thread of results.
 class ResultWriter {
  public:
-  /// What is known of a session's frames by now.
+  /// Returns what is known of a session's frames by now.
   using CountersSource = std::function<SessionCounters(std::uint64_t session)>;
   /// `written` is called after each scan, whatever became of its results.
   ResultWriter(const GroundOptions& options, const Clock& clock, CountersSource counters,

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr CaptureTime kStart{seconds(1'700'000'000)};
-// What bounds hold beyond: drift is bounded, nanoseconds are rounded.
+// Bounds are exceeded by no more: drift is bounded, nanoseconds are rounded.
 constexpr double kRounding_s = 1e-6;
 
 /// Two computers with a link between them, as seen by somebody who knows the time.

@@ -16,7 +16,7 @@ namespace isotherm {
 /// Holds what a look at the rigs of the link found.
 struct RigSighting {
   bool present = false;  ///< The rig that is followed is there.
-  /// What is wrong with the rigs that are there, for the operator. Empty = nothing.
+  /// Tells the operator what is wrong with the rigs that are there. Empty = nothing.
   std::string problem;
   /// Sessions of rivals that are to be told now that they are refused.
   std::vector<std::uint64_t> sessions_to_refuse;

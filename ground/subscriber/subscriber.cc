@@ -64,7 +64,7 @@ class DdsSubscriber final : public Subscriber {
   void SendReceipt(SteadyTime now);
   Nanoseconds TimeToNextDuty(SteadyTime now) const;
   void OnPeer(const Received<Hello>& peer);
-  // What the gate lets through.
+  // The gate lets these through.
   void On(const RigDescription& rig, CaptureTime arrival);
   void On(const EdgeStatus& status, CaptureTime arrival);
   void On(const ExternalOdometrySample& sample, CaptureTime arrival);

@@ -46,8 +46,8 @@ struct SubscriberStats {
   RefusalCounts refusals{};      ///< Samples of all topics since the start, by cause.
   std::uint64_t other_edge = 0;  ///< Samples of rigs that are not followed.
   bool edge_present = false;
-  /// What is wrong with the rigs that are there, for the operator: another one than the one that is
-  /// followed, or two of one name. Empty = nothing.
+  /// Tells the operator what is wrong with the rigs that are there: another one than the one that
+  /// is followed, or two of one name. Empty = nothing.
   std::string rig_problem;
 };
 

@@ -30,7 +30,7 @@ class OdometryPriorTest : public ::testing::Test {
     return Rotated(0.3 * std::sin(2.0 * t), {0.2, 1.0, 0.1},
                    {0.1 * std::sin(3.0 * t), 0.2 * t, 0.05 * std::cos(2.0 * t)});
   }
-  /// What the source says; `seen` maps time to T_map_depth as the source sees it.
+  /// Gives the prior what the source says; `seen` maps time to T_map_depth as the source sees it.
   template <typename Seen>
   void Feed(double from_s, double to_s, Seen seen) {
     for (int i = static_cast<int>(std::lround(100.0 * from_s)); i < 100.0 * to_s - 0.5; ++i) {

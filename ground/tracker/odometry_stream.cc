@@ -18,7 +18,8 @@ constexpr std::size_t kMaxSamples = 4096;  ///< Four seconds at 1 kHz.
 constexpr double kUnitTolerance = 0.01;
 /// Jitter that two neighbouring poses may show on top of the greatest speed, in sigmas.
 constexpr double kJitterSigmas = 4.0;
-/// What a rig in somebody's hands may do while its motion is carried on from the newest sample.
+/// A rig in somebody's hands may accelerate so much while its motion is carried on from the newest
+/// sample.
 constexpr double kAcceleration = 2.0;         ///< m/s²
 constexpr double kAngularAcceleration = 4.0;  ///< rad/s²
 

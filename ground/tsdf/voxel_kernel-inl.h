@@ -1,5 +1,5 @@
-// What the voxel kernels share: where a block's voxels are, and records of four 32-bit words looked
-// up or written by SIMD lanes. Included once per instruction set.
+// The voxel kernels share this file: where a block's voxels are, and records of four 32-bit words
+// looked up or written by SIMD lanes. Included once per instruction set.
 #include "common/simd/kernel_prelude-inl.h"
 
 #if defined(ISOTHERM_VOXEL_KERNEL_INL_H_) == defined(HWY_TARGET_TOGGLE)

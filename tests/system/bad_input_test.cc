@@ -1,5 +1,5 @@
-// What the programs say and return when they are given something that cannot work: one sentence
-// that names the file, the exit status of --help, and nothing lost that was good.
+// The programs are given something that cannot work. They say one sentence that names the file,
+// return the exit status of --help, and lose nothing that was good.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -30,7 +30,7 @@ using testing::HasSubstr;
 
 /// For things that take a fraction of it on an idle computer.
 constexpr Seconds kPatience{60};
-/// What the daemon promises after SIGTERM, and what a loaded test computer adds.
+/// The daemon promises to leave so soon after SIGTERM, and a loaded test computer adds the slack.
 constexpr Seconds kTimeToLeave{2.0};
 constexpr Seconds kSlack{3.0};
 constexpr int kFrames = kSmallScanFrames;

@@ -33,7 +33,7 @@ using ::testing::Not;
 constexpr const char* kWatchdog = "WATCHDOG_USEC=10000000";
 constexpr Seconds kWatchdogSec{10};
 constexpr const char* kFed = "WATCHDOG=1";
-/// What is promised after SIGTERM, and what a loaded test computer adds.
+/// The daemon promises to leave so soon after SIGTERM, and a loaded test computer adds the slack.
 constexpr Seconds kTimeToLeave{2.0};
 constexpr Seconds kSlack{4.0};
 
@@ -338,7 +338,7 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   EXPECT_GT(published.done, static_cast<long>(content.depth.size()));
 }
 
-/// What the daemon writes to, as a pipe of which the test has both ends.
+/// The daemon writes to a pipe of which the test has both ends.
 class OutputPipeTest : public EdgeFailureTest {
  protected:
   OutputPipeTest() {

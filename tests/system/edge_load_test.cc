@@ -44,11 +44,11 @@ constexpr std::chrono::microseconds kDepthPeriod{33'333};
 /// Frames that may be on their way when the recording begins or ends: those of the slots between
 /// the camera's process and the edge, of the queue behind them and of the library.
 constexpr std::uint64_t kMaxUnderWay = 32;
-/// What the edge may need where it has the processors for itself, of a core.
+/// The edge may need this fraction of a core where it has the processors for itself.
 constexpr double kMaxCpuFraction = 0.35;
 /// From a frame's arrival to its stamp, seconds, in the middle.
 constexpr double kSoonestStamp_s = 0.005;
-/// What the edge may hold in memory, with its camera's process.
+/// The edge may hold this much memory, with its camera's process.
 constexpr double kMaxMemory_mb = 60.0;
 constexpr unsigned kSeed = 20;
 constexpr std::uint64_t kSession = 1;

@@ -19,7 +19,7 @@ namespace {
 
 using mcap::Bytes;
 
-/// What a program may take for a file: memory, and processor time by the size of the file. The time
+/// A program may take this for a file: memory, and processor time by the size of the file. The time
 /// that starting and a file of no size take is on top, for a busy machine.
 constexpr long kMaxMemoryKilobytes = 256 * 1024;
 constexpr double kSecondsPerMegabyte = 1.0;

@@ -143,8 +143,8 @@ TEST_F(InstallTest, TheNetworkIsChosenInOneFile) {
   EXPECT_THAT(offered, ::testing::ElementsAre("cyclonedds-lan.xml", "cyclonedds-radio.xml"));
 }
 
-/// What systemd-analyze finds to criticise, 0 (nothing) to 10. Without the network (1.1 of it),
-/// reading the state of the clock (0.6) and, on the edge, devices, neither would be of use.
+/// systemd-analyze may find this much to criticise, 0 (nothing) to 10. Without the network (1.1 of
+/// it), reading the state of the clock (0.6) and, on the edge, devices, neither would be of use.
 TEST_F(InstallTest, TheUnitsAreClosedAsFarAsTheyCanBe) {
   const std::filesystem::path analyze = FindProgram("systemd-analyze");
   if (analyze.empty()) GTEST_SKIP() << "systemd-analyze is not installed";

@@ -1,5 +1,6 @@
-// What the programs load before they do anything. The edge runs on a small computer, so it loads
-// few libraries and little memory; a library comes back unnoticed by way of another one.
+// These tests look at what the programs load before they do anything. The edge runs on a small
+// computer, so it loads few libraries and little memory; a library comes back unnoticed by way of
+// another one.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -19,7 +19,7 @@ namespace isotherm::system_test {
 namespace {
 
 constexpr const char* kIp = "/usr/sbin/ip";
-/// What is promised after SIGTERM, and what a loaded test computer adds.
+/// The daemons promise to leave so soon after SIGTERM, and a loaded test computer adds the slack.
 constexpr Seconds kTimeToLeave{2.0};
 constexpr Seconds kSlack{5.0};
 

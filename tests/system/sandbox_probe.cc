@@ -1,4 +1,5 @@
-// What the sandbox of a unit lets its service do, one word per line; run in the service's place.
+// Prints what the sandbox of a unit lets its service do, one word per line; run in the service's
+// place.
 
 #include <linux/landlock.h>
 #include <sched.h>

@@ -105,7 +105,7 @@ TEST_F(AccuracyTest, RenderedFurnaceDoorWithTruth) {
   EXPECT_LE(report.temperature->good.all.magnitude.median, 0.6);
 }
 
-// What comes with the tests: 3.2 s of the same scan, every second frame and pixel.
+// This excerpt comes with the tests: 3.2 s of the same scan, every second frame and pixel.
 TEST_F(AccuracyTest, ExcerptOfTheRenderedFurnaceDoorWithTruth) {
   ASSERT_TRUE(ImportFolder(ISOTHERM_SOURCE_DIR "/tests/data/furnace_excerpt"));
   GroundOptions options;

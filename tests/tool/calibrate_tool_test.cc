@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr int kUsage = 64, kData = 65;
-// What is asked of the calibration, of real cameras' resolution.
+// The calibration is asked for this accuracy at real cameras' resolution.
 constexpr double kTolerance_s = 0.001;
 // Small cameras in a coarse model come out 1.1 to 1.4 ms late; presumably tracked poses lag.
 constexpr double kSmallCameraTolerance_s = 0.002;

@@ -9,8 +9,8 @@
 #include "common/testing/kernel_checks.h"
 #include "ground/surface/filter_kernel.h"
 
-// What the kernels beside this folder must do, one element at a time and in double precision: their
-// specification. Compiled for tests only.
+// These functions do what the kernels beside this folder must do, one element at a time and in
+// double precision: they are their specification. Compiled for tests only.
 namespace isotherm::reference {
 
 /// The bilateral filter's mean with the biweight's weights.

@@ -8,8 +8,8 @@
 #include "common/testing/kernel_checks.h"
 #include "ground/tracker/icp_kernel.h"
 
-// What the kernel beside this folder must do, one element at a time and in double precision: its
-// specification. Compiled for tests only.
+// These functions do what the kernel beside this folder must do, one element at a time and in
+// double precision: they are its specification. Compiled for tests only.
 namespace isotherm::reference {
 
 using testing::AtLeastZero;

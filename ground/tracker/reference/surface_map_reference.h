@@ -7,8 +7,8 @@
 #include "common/testing/kernel_checks.h"
 #include "ground/surface/surface_map_kernel.h"
 
-// What the kernel beside this folder must do, one element at a time and in double precision: its
-// specification. Compiled for tests only.
+// These functions do what the kernel beside this folder must do, one element at a time and in
+// double precision: they are its specification. Compiled for tests only.
 namespace isotherm::reference {
 
 using testing::AtLeastZero;

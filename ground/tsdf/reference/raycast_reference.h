@@ -9,8 +9,8 @@
 
 #include "ground/tsdf/tsdf_volume.h"
 
-// What the kernel beside this folder must do, one element at a time and in double precision: its
-// specification. Compiled for tests only.
+// These functions do what the kernel beside this folder must do, one element at a time and in
+// double precision: they are its specification. Compiled for tests only.
 namespace isotherm::reference {
 
 /// Rays through the trilinearly interpolated distance in small steps, then bisection.

@@ -14,7 +14,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// What the recordings contain; contents.mjs has the same.
+// The recordings contain this; contents.mjs has the same.
 constexpr CaptureTime kStart{std::chrono::seconds(1'700'000'000)};
 
 struct Stream {
