@@ -47,6 +47,20 @@ HWY_INLINE MF OnOneSurface(const SurfaceMapArgs& a, const Cross& depth) {
                  hn::And(even(depth.left, depth.right), even(depth.up, depth.down)));
 }
 
+/// Normals, not normalised, and their squared lengths.
+struct Normals {
+  VF x, y, z, squared;
+};
+
+/// Returns b x a of the differences along the row and the column, which points towards the camera
+/// (x right, y down, z forward).
+HWY_INLINE Normals CrossProduct(VF ax, VF ay, VF az, VF bx, VF by, VF bz) {
+  const VF nx = hn::Sub(hn::Mul(by, az), hn::Mul(bz, ay));
+  const VF ny = hn::Sub(hn::Mul(bz, ax), hn::Mul(bx, az));
+  const VF nz = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
+  return {nx, ny, nz, hn::MulAdd(nx, nx, hn::MulAdd(ny, ny, hn::Mul(nz, nz)))};
+}
+
 // Makes a row of vertices and normals of a depth image: vertex = depth * ray, normal = normalised
 // cross product of the differences of the vertices `reach` pixels below and above, right and left.
 // NaN unless the five pixels lie on one surface.
@@ -98,22 +112,18 @@ void SurfaceMapRow(const SurfaceMapArgs& a, int y, SurfaceMaps& maps) {
     const VF bz = hn::Sub(depth.down, depth.up);
     const VF bx = hn::Mul(rx, bz);
     const VF by = hn::Sub(hn::Mul(ray_y_lower, depth.down), hn::Mul(ray_y_upper, depth.up));
-    // b x a points towards the camera (x right, y down, z forward).
-    const VF nx = hn::Sub(hn::Mul(by, az), hn::Mul(bz, ay));
-    const VF ny = hn::Sub(hn::Mul(bz, ax), hn::Mul(bx, az));
-    const VF nz = hn::Sub(hn::Mul(bx, ay), hn::Mul(by, ax));
-    const VF squared = hn::MulAdd(nx, nx, hn::MulAdd(ny, ny, hn::Mul(nz, nz)));
-    const auto good = hn::And(smooth, hn::Gt(squared, hn::Zero(d)));
-    const VF scale = hn::Div(hn::Set(d, 1.0F), hn::Sqrt(squared));
+    const Normals n = CrossProduct(ax, ay, az, bx, by, bz);
+    const auto good = hn::And(smooth, hn::Gt(n.squared, hn::Zero(d)));
+    const VF scale = hn::Div(hn::Set(d, 1.0F), hn::Sqrt(n.squared));
     const auto store = [&](Image<float>& plane, VF value) {
       hn::StoreU(hn::IfThenElse(good, value, none), d, plane.Row(y).data() + x);
     };
     store(maps.vx, hn::Mul(rx, depth.centre));
     store(maps.vy, hn::Mul(ray_y_centre, depth.centre));
     store(maps.vz, depth.centre);
-    store(maps.nx, hn::Mul(nx, scale));
-    store(maps.ny, hn::Mul(ny, scale));
-    store(maps.nz, hn::Mul(nz, scale));
+    store(maps.nx, hn::Mul(n.x, scale));
+    store(maps.ny, hn::Mul(n.y, scale));
+    store(maps.nz, hn::Mul(n.z, scale));
   }
 }
 

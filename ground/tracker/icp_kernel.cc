@@ -88,6 +88,18 @@ HWY_INLINE Vector3 OnlyWhere(MF mask, const Vector3& v) {
           hn::IfThenElseZero(mask, v.z)};
 }
 
+/// Adds the pixels where `good`; lanes that are no inliers contribute zeros.
+HWY_INLINE void AddInliers(const IcpKernelArgs& a, MF good, const Vector3& n,
+                           const Vector3& difference, const Vector3& arm, VF depth,
+                           NormalEquations& equations) {
+  const Vector3 n_good = OnlyWhere(good, n);
+  const VF residual = hn::IfThenElseZero(good, Dot(n_good, difference));
+  const VF ratio = hn::IfThenElseZero(good, hn::Div(hn::Set(d, a.reference_depth_m), depth));
+  const VF squared_ratio = hn::Mul(ratio, ratio);
+  const VF weight = hn::Mul(squared_ratio, squared_ratio);
+  equations.Add(n_good, OnlyWhere(good, arm), residual, weight);
+}
+
 // One pass of point-to-plane ICP with projective association (algorithm 1): a vertex p of the
 // current frame meets the model's vertex q in the pixel that p is projected to; if they are near
 // and their normals agree, it adds to the normal equations of the twist
@@ -143,15 +155,7 @@ void AccumulateIcpRows(const IcpKernelArgs& a, int first_row, int last_row, IcpK
           Rotate(a.R_map_depth, {load(current.nx), load(current.ny), load(current.nz)});
       good = hn::And(good, hn::Gt(Dot(n, n_current), hn::Set(d, a.min_normal_cosine)));
       out.inliers += static_cast<std::int64_t>(hn::CountTrue(d, good));
-
-      // Lanes that are no inliers contribute zeros.
-      const Vector3 n_good = OnlyWhere(good, n);
-      const VF residual = hn::IfThenElseZero(good, Dot(n_good, difference));
-      const VF ratio =
-          hn::IfThenElseZero(good, hn::Div(hn::Set(d, a.reference_depth_m), p_depth.z));
-      const VF squared_ratio = hn::Mul(ratio, ratio);
-      const VF weight = hn::Mul(squared_ratio, squared_ratio);
-      equations.Add(n_good, OnlyWhere(good, arm), residual, weight);
+      AddInliers(a, good, n, difference, arm, p_depth.z, equations);
     }
   }
   for (std::size_t k = 0; k < out.sums.size(); ++k)
