@@ -1,17 +1,13 @@
 #include "common/recording/recording_messages.h"
 
 #include <fmt/format.h>
-#include <google/protobuf/descriptor.h>
-#include <google/protobuf/descriptor.pb.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "common/base/check.h"
 #include "common/config/rig_calibration.h"
-#include "common/recording/schema.h"
 
 namespace isotherm::recording {
 namespace {
@@ -155,23 +151,7 @@ Result<EncodedImage> TakeImage(foxglove::RawImage& message) {
   return image;
 }
 
-void AddFileWithImports(const google::protobuf::FileDescriptor& file, std::set<std::string>& done,
-                        google::protobuf::FileDescriptorSet& files) {
-  if (!done.insert(file.name()).second) return;
-  for (int i = 0; i < file.dependency_count(); ++i) {
-    AddFileWithImports(*file.dependency(i), done, files);
-  }
-  file.CopyTo(files.add_file());
-}
-
 }  // namespace
-
-std::string SerializedSchema(const google::protobuf::Descriptor& descriptor) {
-  google::protobuf::FileDescriptorSet files;
-  std::set<std::string> done;
-  AddFileWithImports(*descriptor.file(), done, files);
-  return files.SerializeAsString();
-}
 
 template <typename Image>
 Image ToMessage(const EncodedDepthFrame& frame, const std::optional<CaptureTime>& arrival) {

@@ -16,6 +16,7 @@
 #include "common/recording/byte_stream.h"
 #include "ground/model/model.pb.h"
 #include "ground/model/record_part.h"
+#include "ground/model/saved_rig.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
@@ -54,68 +55,6 @@ std::string_view AsText(std::span<const std::uint8_t> bytes) {
 template <typename T>
 std::string_view BytesOf(const T& value) {
   return {reinterpret_cast<const char*>(&value), sizeof(value)};
-}
-
-void AddPose(const RigidTransform& pose, google::protobuf::RepeatedField<double>* out) {
-  const Eigen::Quaterniond q(pose.linear());
-  for (const double v : {pose.translation().x(), pose.translation().y(), pose.translation().z(),
-                         q.x(), q.y(), q.z(), q.w()}) {
-    out->Add(v);
-  }
-}
-
-constexpr int kPoseNumbers = 7;
-/// Places further from the origin than this lose millimetres in the arithmetic of kernels.
-constexpr double kMaxCoordinate_m = 1e4;
-
-/// Numbers of a pose starting at `first`; nullopt if they are none.
-std::optional<RigidTransform> PoseAt(const google::protobuf::RepeatedField<double>& numbers,
-                                     int first) {
-  const auto at = [&](int i) { return numbers.Get(first + i); };
-  const Eigen::Quaterniond q(at(6), at(3), at(4), at(5));
-  const Eigen::Vector3d t(at(0), at(1), at(2));
-  constexpr double kUnitTolerance = 1e-3;
-  if (!t.allFinite() || !(t.cwiseAbs().maxCoeff() <= kMaxCoordinate_m) ||
-      !(std::abs(q.norm() - 1.0) < kUnitTolerance))
-    return std::nullopt;
-  return MakeTransform(t, q);
-}
-
-SavedCamera ToSaved(const CameraModel& camera) {
-  SavedCamera saved;
-  saved.set_width(camera.width);
-  saved.set_height(camera.height);
-  saved.set_fx(camera.fx);
-  saved.set_fy(camera.fy);
-  saved.set_cx(camera.cx);
-  saved.set_cy(camera.cy);
-  for (const double k : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3})
-    saved.add_distortion(k);
-  return saved;
-}
-
-/// nullopt: there was no such camera. Distortion coefficients that are missing are 0.
-std::optional<CameraModel> FromSaved(const SavedCamera& saved) {
-  if (!saved.has_width()) return std::nullopt;
-  CameraModel camera{saved.width(), saved.height(), saved.fx(), saved.fy(), saved.cx(), saved.cy()};
-  const auto k = [&](int i) { return i < saved.distortion_size() ? saved.distortion(i) : 0.0; };
-  camera.k1 = k(0);
-  camera.k2 = k(1);
-  camera.p1 = k(2);
-  camera.p2 = k(3);
-  camera.k3 = k(4);
-  return camera;
-}
-
-/// How a rig's camera differs from a saved one; empty if it does not.
-std::string Difference(const char* name, const SavedCamera& saved,
-                       const std::optional<CameraModel>& camera) {
-  if (!camera) return saved.has_width() ? fmt::format("it has no {} camera", name) : "";
-  const SavedCamera now = ToSaved(*camera);
-  if (now.SerializeAsString() == saved.SerializeAsString()) return "";
-  return fmt::format(
-      "its {} camera has {} x {} px, fx {:.2f} px, the model's {} x {} px, fx {:.2f} px", name,
-      now.width(), now.height(), now.fx(), saved.width(), saved.height(), saved.fx());
 }
 
 /// The block's bytes beside those of the others of its chunk.
