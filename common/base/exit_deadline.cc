@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <future>
 #include <mutex>
@@ -13,9 +14,6 @@
 
 namespace isotherm {
 namespace {
-
-// Enough for some lines to anybody who reads them.
-constexpr std::chrono::milliseconds kTimeForLastWords{300};
 
 [[noreturn]] void LeaveNow(ExitDeadline::Duration limit, int status, const std::string& what) {
   LOG(Service, Warning) << what << " did not end within "
@@ -29,7 +27,7 @@ constexpr std::chrono::milliseconds kTimeForLastWords{300};
     std::packaged_task<void()> saying(last_words);
     const std::future<void> said = saying.get_future();
     std::thread speaker(std::move(saying));
-    if (said.wait_for(kTimeForLastWords) != std::future_status::ready) {
+    if (said.wait_for(ExitDeadline::kTimeForLastWords) != std::future_status::ready) {
       LeaveNow(limit, status, what);  // One that hangs is not waited for.
     }
     speaker.join();
@@ -41,25 +39,39 @@ constexpr std::chrono::milliseconds kTimeForLastWords{300};
 
 void ExitDeadline::Arm(Duration limit, int status, std::string what,
                        std::function<void()> last_words) {
+  const Clock::time_point now = Clock::now();
   const MutexLock lock(mutex_);
-  Start(limit, status, std::move(what), std::move(last_words));
+  Start({now, now + limit, status, std::move(what), std::move(last_words)});
 }
 
 void ExitDeadline::ArmFirst(Duration limit, int status, std::string what,
                             std::function<void()> last_words) {
+  const Clock::time_point now = Clock::now();
   const MutexLock lock(mutex_);
-  if (!thread_.joinable()) Start(limit, status, std::move(what), std::move(last_words));
+  if (!armed_) Start({now, now + limit, status, std::move(what), std::move(last_words)});
 }
 
-void ExitDeadline::Start(Duration limit, int status, std::string what,
-                         std::function<void()> last_words) {
-  thread_ = std::jthread([limit, status, what = std::move(what),
-                          last_words = std::move(last_words)](const std::stop_token& disarmed) {
+void ExitDeadline::Bound(Duration total) {
+  const MutexLock lock(mutex_);
+  if (bound_) return;
+  bound_ = Clock::now() + total;
+  if (armed_ && armed_->end > *bound_) Wait();
+}
+
+void ExitDeadline::Start(Armed armed) {
+  armed_ = std::move(armed);
+  Wait();
+}
+
+void ExitDeadline::Wait() {
+  if (bound_) armed_->end = std::min(armed_->end, *bound_);
+  thread_ = std::jthread([armed = *armed_](const std::stop_token& disarmed) {
     std::mutex mutex;
     std::condition_variable_any never;
     std::unique_lock lock(mutex);
-    never.wait_for(lock, disarmed, limit, [] { return false; });
-    if (!disarmed.stop_requested()) Leave(limit, status, what, last_words);
+    never.wait_until(lock, disarmed, armed.end, [] { return false; });
+    if (!disarmed.stop_requested())
+      Leave(armed.end - armed.begin, armed.status, armed.what, armed.last_words);
   });
 }
 

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <optional>
 #include <string>
 #include <thread>
 
@@ -11,10 +12,14 @@ namespace isotherm {
 
 /// Ends the process when leaving takes too long, for instance because a library cannot be torn down
 /// (the middleware, while its network interface is down) or a disk does not answer. Nothing happens
-/// before it is armed and after its own end. Thread-safe.
+/// before it is armed and after its own end. What is left behind in stages, each with a deadline of
+/// its own, cannot add up to more than one bound over all of them. Thread-safe.
 class ExitDeadline {
  public:
   using Duration = std::chrono::nanoseconds;
+
+  /// Enough for some lines to anybody who reads them; on top of a deadline.
+  static constexpr std::chrono::milliseconds kTimeForLastWords{300};
 
   ExitDeadline() = default;
   ExitDeadline(const ExitDeadline&) = delete;
@@ -29,11 +34,26 @@ class ExitDeadline {
   void ArmFirst(Duration limit, int status, std::string what,
                 std::function<void()> last_words = {});
 
+  /// The process has `total` left from now on, whatever is armed already or later: a deadline
+  /// beyond it is moved up to it. The first bound counts. Nothing happens before something is
+  /// armed.
+  void Bound(Duration total);
+
  private:
-  void Start(Duration limit, int status, std::string what, std::function<void()> last_words)
-      REQUIRES(mutex_);
+  using Clock = std::chrono::steady_clock;
+  struct Armed {
+    Clock::time_point begin, end;
+    int status = 0;
+    std::string what;
+    std::function<void()> last_words;
+  };
+  void Start(Armed armed) REQUIRES(mutex_);
+  /// Begins to wait for what is armed, within the bound.
+  void Wait() REQUIRES(mutex_);
 
   Mutex mutex_;
+  std::optional<Clock::time_point> bound_ GUARDED_BY(mutex_);
+  std::optional<Armed> armed_ GUARDED_BY(mutex_);
   std::jthread thread_ GUARDED_BY(mutex_);
 };
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <string>
 #include <thread>
 
 namespace isotherm {
@@ -63,6 +64,46 @@ TEST(ExitDeadlineTest, AFirstDeadlineLeavesOneThatIsThereAlone) {
         Hang();
       },
       testing::ExitedWithCode(kStatus), "the disk did not end");
+}
+
+TEST(ExitDeadlineTest, StagesCannotAddUpToMoreThanTheBound) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        ExitDeadline deadline;
+        deadline.Bound(milliseconds(100));
+        for (int stage = 0; stage < 20; ++stage) {
+          deadline.Arm(milliseconds(60), kStatus, "stage " + std::to_string(stage));
+          std::this_thread::sleep_for(milliseconds(50));
+        }
+        _exit(0);  // A second after the beginning.
+      },
+      testing::ExitedWithCode(kStatus), "stage [0-9]* did not end within 0\\.0");
+}
+
+TEST(ExitDeadlineTest, ABoundMovesUpADeadlineThatIsThere) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        ExitDeadline deadline;
+        deadline.Arm(hours(1), kStatus, "the network");
+        deadline.Bound(milliseconds(20));
+        deadline.Bound(hours(1));  // The first one counts.
+        Hang();
+      },
+      testing::ExitedWithCode(kStatus), "the network did not end");
+}
+
+TEST(ExitDeadlineTest, ABoundAloneEndsNothing) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        ExitDeadline deadline;
+        deadline.Bound(milliseconds(1));
+        std::this_thread::sleep_for(milliseconds(50));
+        _exit(0);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST(ExitDeadlineTest, NothingHappensToAProcessThatLeavesInTime) {

@@ -24,6 +24,7 @@
 #include "edge/daemon/host_status.h"
 #include "edge/daemon/housekeeping.h"
 #include "edge/daemon/open_source.h"
+#include "edge/daemon/stop_limits.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/pipeline/edge_pipeline.h"
 #include "edge/publisher/late_publisher.h"
@@ -35,20 +36,6 @@ namespace isotherm {
 namespace {
 
 using std::chrono::milliseconds;
-
-// How often the main thread looks around.
-constexpr Nanoseconds kTick = milliseconds(50);
-// Time to let the ground confirm the last frames when a signal says to leave.
-constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
-// A daemon that is told to leave leaves within two seconds. The cameras end first, a vendor's
-// process within one second, ...
-constexpr Nanoseconds kTimeForCameras = milliseconds(1750);
-// ... then the recording: a disk may take this long to answer, ...
-constexpr Nanoseconds kTimeForDisk = milliseconds(3500);
-// ... the link takes less than this by itself, if nothing in it hangs, ...
-constexpr Nanoseconds kTimeForLink = milliseconds(2500);
-// ... and with its network interface down the middleware never ends by itself.
-constexpr Nanoseconds kTimeForMiddleware = milliseconds(400);
 
 // EX_CANTCREAT of sysexits.h: the recording could not be created or not be finished.
 constexpr int kExitRecording = 73;
@@ -220,10 +207,10 @@ void WaitForGround(Publisher& publisher, const std::stop_token& stop) {
 bool Drain(Publisher& publisher, const LinkOptions& options, const Clock& clock,
            const std::stop_token& stop) {
   const SteadyTime start = clock.SteadyNow();
-  while (!publisher.Drain(kTick)) {
+  while (!publisher.Drain(stop_limits::kTick)) {
     const Nanoseconds configured = FromSeconds(options.linger_s());
     const Nanoseconds limit =
-        stop.stop_requested() ? std::min(configured, kLingerAfterSignal) : configured;
+        stop.stop_requested() ? std::min(configured, stop_limits::kLingerAfterSignal) : configured;
     if (clock.SteadyNow() - start >= limit) return false;
   }
   return true;
@@ -240,7 +227,7 @@ void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Houseke
         LOG(Edge, Info) << "the source has ended; waiting for a signal to leave";
       }
     }
-    Pause(stop, kTick);
+    Pause(stop, stop_limits::kTick);
   }
 }
 
@@ -275,23 +262,24 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
           const std::stop_token& stop) {
   const auto say = [&] { PrintSummary(ending, publisher, pipeline); };
   // With a signal the time already runs.
-  ending.deadline.ArmFirst(kTimeForCameras + kTimeForDisk, kExitRecording, "a camera", say);
-  const bool cameras_ended = pipeline.StopCapture(kTimeForCameras);
+  ending.deadline.ArmFirst(stop_limits::kCameras + stop_limits::kDisk, kExitRecording, "a camera",
+                           say);
+  const bool cameras_ended = pipeline.StopCapture(stop_limits::kCameras);
   if (!cameras_ended) {
-    LOG(Edge, Error) << "a camera did not end within " << ToSeconds(kTimeForCameras)
+    LOG(Edge, Error) << "a camera did not end within " << ToSeconds(stop_limits::kCameras)
                      << " s; leaving without it";
   }
-  ending.deadline.Arm(kTimeForDisk, kExitRecording, "the disk", say);
+  ending.deadline.Arm(stop_limits::kDisk, kExitRecording, "the disk", say);
   const int status = pipeline.StopRecording().ok() ? 0 : kExitRecording;
   const Nanoseconds linger =
       stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().linger_s());
-  ending.deadline.Arm(kTimeForLink + linger, status, "the network", say);
+  ending.deadline.Arm(stop_limits::kLink + linger, status, "the network", say);
   static_cast<void>(pipeline.Stop());
   housekeeping.PublishEnd();
   if (!Drain(publisher, options.link(), clock, stop)) {
     LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
   }
-  ending.deadline.Arm(kTimeForMiddleware, status,
+  ending.deadline.Arm(stop_limits::kMiddleware, status,
                       cameras_ended ? "the middleware or standard output" : "a camera");
   say();
   return status;
@@ -362,7 +350,8 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const std::stop_token stop = signal.token();
   Leaving leaving;  // Outlives what may not end.
   const std::stop_callback on_signal(stop, [&leaving] {
-    leaving.deadline.ArmFirst(kTimeForDisk, leaving.status_if_stuck, "what was under way");
+    leaving.deadline.Bound(stop_limits::kTotal);
+    leaving.deadline.ArmFirst(stop_limits::kDisk, leaving.status_if_stuck, "what was under way");
   });
   FrameCounters counters;
   CameraHealth health;
