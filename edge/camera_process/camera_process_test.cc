@@ -12,9 +12,9 @@
 #include <stop_token>
 #include <thread>
 
+#include "edge/camera_process/testing/fake_process.h"
 #include "edge/camera_process/testing/process_holder.h"
 #include "edge/options/edge_options.pb.h"
-#include "edge/source/camera_pair.h"
 
 namespace isotherm {
 namespace {
@@ -26,15 +26,6 @@ using ::testing::HasSubstr;
 constexpr seconds kPatience{20};
 /// A daemon that is told to stop may take so long in all.
 constexpr seconds kPromptly{2};
-
-CameraProcess::Settings Fake(const std::string& what, int after_frames) {
-  CameraProcess::Settings settings;
-  settings.name = "fake camera";
-  settings.program = FAKE_CAMERA_PROCESS;
-  settings.arguments = {what, std::to_string(after_frames)};
-  settings.hang_timeout = milliseconds(500);
-  return settings;
-}
 
 class CameraProcessTest : public ::testing::Test {
  protected:
@@ -340,63 +331,6 @@ TEST_F(CameraProcessTest, F14FramesThatWereLeftOutAreCountedAlsoWhenTheProcessDi
   constexpr auto kThermal = static_cast<std::size_t>(Sensor::kThermal);
   EXPECT_EQ(camera_->TakeLeftOut()[kThermal], kFrames - PixelSlots::kSlots);
   EXPECT_EQ(camera_->TakeLeftOut()[kThermal], 0U) << "taken once";
-}
-
-/// Counts up in this process, a frame a millisecond.
-class SteadyCamera final : public FrameSource {
- public:
-  std::string_view name() const override { return "steady camera"; }
-  Status Open() override { return OkStatus(); }
-  Result<SourceItem> Read(std::stop_token) override {
-    std::this_thread::sleep_for(milliseconds(1));  // The camera's period.
-    RawFrame frame;
-    frame.sensor = Sensor::kDepth;
-    frame.frame_number = number_++;
-    frame.arrival_wall = clock_.Now();
-    frame.pixels = Image<std::uint16_t>(4, 3, 700);
-    return frame;
-  }
-  void Close() override {}
-
- private:
-  const SystemClock clock_;
-  std::uint64_t number_ = 0;
-};
-
-TEST(CameraProcessPairTest, F14WhileOneLibraryCrashesAndHangsTheOtherCameraLosesNoFrame) {
-  const SystemClock clock;
-  FrameCheckOptions options;
-  options.set_retry_min_s(0.05);
-  for (const char* what : {"crash", "hang"}) {
-    const auto ignore = [](Sensor) {};
-    int dropped = 0;
-    std::vector<CameraPair::Camera> cameras;
-    cameras.push_back(
-        {Sensor::kDepth, std::make_unique<SupervisedSource>(std::make_unique<SteadyCamera>(),
-                                                            options, clock, ignore, ignore)});
-    cameras.push_back({Sensor::kThermal, std::make_unique<SupervisedSource>(
-                                             std::make_unique<CameraProcess>(Fake(what, 5), clock),
-                                             options, clock, ignore, ignore)});
-    CameraPair pair(std::move(cameras),
-                    {1000, OverflowPolicy::kDropOldest, [&dropped](Sensor) { ++dropped; }});
-    ASSERT_TRUE(pair.Open().ok());
-    // Until the process has died, was started again, and has delivered: frames 5 and later.
-    std::uint64_t next_depth = 0;
-    std::uint64_t thermal = 0;
-    const SteadyTime end = clock.SteadyNow() + kPatience;
-    while (thermal < 5 && clock.SteadyNow() < end) {
-      const Result<SourceItem> item = pair.Read({});
-      const auto* frame = item ? std::get_if<RawFrame>(&*item) : nullptr;
-      if (frame == nullptr) continue;
-      if (frame->sensor == Sensor::kThermal) thermal = std::max(thermal, frame->frame_number);
-      if (frame->sensor != Sensor::kDepth) continue;
-      ASSERT_EQ(frame->frame_number, next_depth) << what;
-      ++next_depth;
-    }
-    EXPECT_GE(thermal, 5U) << what << ": not started again";
-    EXPECT_EQ(dropped, 0);
-    EXPECT_GT(next_depth, 0U);
-  }
 }
 
 }  // namespace
