@@ -117,6 +117,10 @@ Status CheckImagesExist(const std::vector<ImageEntry>& entries, const fs::path& 
   for (const ImageEntry& entry : entries) {
     std::error_code error;
     if (fs::is_regular_file(entry.path, error)) continue;
+    if (fs::exists(entry.path, error)) {
+      return InvalidArgument(fmt::format("{}:{}: image '{}' is a folder, a pipe or a device",
+                                         list.string(), entry.line, entry.path.string()));
+    }
     const fs::path folder = entry.path.parent_path();
     const std::string suggestion = Exists(folder)
                                        ? DidYouMean(entry.path.filename().string(), NamesIn(folder))

@@ -2,42 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <vector>
+#include <cstdint>
+#include <span>
+#include <string>
 
+#include "common/base/read_file.h"
 #include "common/png/png.h"
 
 namespace isotherm {
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
-
-constexpr std::streamoff kMaxFileBytes = 64 << 20;
-
-Result<Bytes> ReadBytes(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    const int reason = errno;
-    std::string text = fmt::format("cannot be opened: {}", std::strerror(reason));
-    return Err(reason == ENOENT ? NotFound(std::move(text)) : IoError(std::move(text)));
-  }
-  file.seekg(0, std::ios::end);
-  const auto size = static_cast<std::streamoff>(file.tellg());
-  if (!file || size < 0) return Err(IoError("cannot be read"));
-  if (size == 0) return Err(DataLoss("is empty"));
-  if (size > kMaxFileBytes) {
-    return Err(DataLoss(
-        fmt::format("has {} bytes, more than an image can ({} at most)", size, kMaxFileBytes)));
-  }
-  Bytes bytes(static_cast<std::size_t>(size));
-  file.seekg(0);
-  file.read(reinterpret_cast<char*>(bytes.data()), size);
-  if (!file) return Err(IoError("cannot be read"));
-  return bytes;
-}
+constexpr std::uint64_t kMaxFileBytes = 64 << 20;
 
 Status CheckFormat(const PngHead& head, int width, int height) {
   if (head.channels != 1) {
@@ -64,13 +39,15 @@ Result<Image<std::uint16_t>> ReadGrey16(const std::filesystem::path& path, int w
   const auto with_path = [&](const Status& status) {
     return Err(status.WithContext(path.string()));
   };
-  const Result<Bytes> bytes = ReadBytes(path);
-  if (!bytes) return with_path(bytes.error());
-  const Result<PngHead> head = ReadPngHead(*bytes);
+  const Result<std::string> file = ReadFile(path, kMaxFileBytes);
+  if (!file) return Err(file.error());
+  if (file->empty()) return with_path(DataLoss("is empty"));
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(file->data()), file->size());
+  const Result<PngHead> head = ReadPngHead(bytes);
   if (!head) return with_path(head.error());
   if (Status status = CheckFormat(*head, width, height); !status.ok()) return with_path(status);
   Image<std::uint16_t> image(width, height);
-  if (Status status = DecodeGrey16Png(*bytes, image); !status.ok()) return with_path(status);
+  if (Status status = DecodeGrey16Png(bytes, image); !status.ok()) return with_path(status);
   return image;
 }
 

@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 
+#include "common/base/read_file.h"
 #include "common/config/nearest_name.h"
 
 namespace isotherm {
@@ -51,29 +48,17 @@ bool ParseDecimal(std::string_view word, Nanoseconds& time) {
 }  // namespace
 
 Result<std::string> ReadTextFile(const std::filesystem::path& path) {
+  Result<std::string> text = ReadFile(path);
+  if (text || text.error().code() != StatusCode::kNotFound) return text;
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    return Err(
-        InvalidArgument(fmt::format("{}: is a folder, expected a text file", path.string())));
+  std::vector<std::string> names;
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
   }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    const int reason = errno;
-    std::vector<std::string> names;
-    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-      names.push_back(entry->path().filename().string());
-    }
-    std::string text =
-        fmt::format("{}: cannot be opened: {}.{}", path.string(), std::strerror(reason),
-                    reason == ENOENT ? DidYouMean(path.filename().string(), names) : std::string());
-    return Err(reason == ENOENT ? NotFound(std::move(text)) : IoError(std::move(text)));
-  }
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) return Err(IoError(fmt::format("{}: cannot be read", path.string())));
-  return text;
+  return Err(NotFound(
+      fmt::format("{}.{}", text.error().message(), DidYouMean(path.filename().string(), names))));
 }
 
 std::vector<TextLine> ContentLines(std::string_view text) {

@@ -111,6 +111,9 @@ class OpenedDevice final : public OpenniDevice {
  private:
   Status OpenFile(const std::string& path) {
     if (!std::filesystem::exists(path)) return NotFound(path + ": no such file");
+    // A pipe would be waited for until somebody writes to it.
+    if (!std::filesystem::is_regular_file(path))
+      return InvalidArgument(path + ": is a folder, a pipe or a device, expected an .oni file");
     if (device_.open(path.c_str()) != openni::STATUS_OK || !device_.isFile()) {
       return DataLoss(fmt::format("{}: not a recording of OpenNI2: {}", path, OpenniError()));
     }

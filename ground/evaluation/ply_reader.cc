@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <optional>
+
+#include "common/base/read_file.h"
 
 namespace isotherm {
 namespace {
@@ -227,16 +226,9 @@ Result<PlyVertices> ParsePly(std::string_view bytes) {
 }
 
 Result<PlyVertices> ReadPly(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    const int reason = errno;
-    std::string text =
-        fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(reason));
-    return Err(reason == ENOENT ? NotFound(std::move(text)) : IoError(std::move(text)));
-  }
-  const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  Result<PlyVertices> vertices = ParsePly(bytes);
+  const Result<std::string> bytes = ReadFile(path);
+  if (!bytes) return Err(bytes.error());
+  Result<PlyVertices> vertices = ParsePly(*bytes);
   if (!vertices) return Err(vertices.error().WithContext(path.string()));
   return vertices;
 }

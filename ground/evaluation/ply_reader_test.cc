@@ -2,16 +2,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cmath>
 #include <cstring>
 
+#include "common/testing/temporary_directory.h"
 #include "ground/evaluation/point_sets.h"
 
 namespace isotherm {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::string Bytes(const auto& value, bool swap) {
   std::string bytes(sizeof(value), '\0');
@@ -36,8 +38,8 @@ std::string Binary(bool big_endian) {
 void ExpectContent(const Result<PlyVertices>& vertices) {
   ASSERT_TRUE(vertices) << vertices.error().message();
   ASSERT_EQ(vertices->count, 2U);
-  EXPECT_THAT(*vertices->Find("x"), testing::ElementsAre(1.5F, -2.0F));
-  EXPECT_THAT(*vertices->Find("seen"), testing::ElementsAre(515.0F, 0.0F));
+  EXPECT_THAT(*vertices->Find("x"), ::testing::ElementsAre(1.5F, -2.0F));
+  EXPECT_THAT(*vertices->Find("seen"), ::testing::ElementsAre(515.0F, 0.0F));
   EXPECT_EQ(vertices->Find("scalar_temperature")->at(0), 20.25F);
   EXPECT_TRUE(std::isnan(vertices->Find("scalar_temperature")->at(1)));
   EXPECT_EQ(vertices->Find("y"), nullptr);
@@ -89,6 +91,15 @@ TEST(PlyReaderTest, AbsurdOrUnknownHeadersAreRefused) {
   EXPECT_THAT(error("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\nabc\n"),
               HasSubstr("'abc' is not a number"));
   EXPECT_EQ(ReadPly("/nonexistent.ply").error().code(), StatusCode::kNotFound);
+}
+
+TEST(PlyReaderTest, APipeIsRefusedAtOnceAndNamed) {
+  const testing::TemporaryDirectory folder;
+  const std::string pipe = folder.path() / "cloud.ply";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const Result<PlyVertices> read = ReadPly(pipe);
+  ASSERT_FALSE(read.has_value());
+  EXPECT_THAT(read.error().message(), HasSubstr(pipe + ": is a pipe or a device"));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
-// isotherm-edge as a process, when what it needs is missing or fails: cameras, disk, network,
-// whoever reads its messages. The test plays the service manager.
+// isotherm-edge as a process, when what it needs is missing or fails: cameras, disk, network. The
+// test plays the service manager.
+
+#include "tests/system/edge_failure.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -9,18 +11,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
-
-#include "common/testing/temporary_directory.h"
-#include "edge/openni/testing/fake_depth_camera.h"
-#include "tests/support/programs.h"
-#include "tests/support/small_scan.h"
 
 namespace isotherm::system_test {
 namespace {
@@ -29,79 +25,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-/// As in the shipped unit.
-constexpr const char* kWatchdog = "WATCHDOG_USEC=10000000";
-constexpr Seconds kWatchdogSec{10};
-constexpr const char* kFed = "WATCHDOG=1";
-/// The daemon promises to leave so soon after SIGTERM, and a loaded test computer adds the slack.
-constexpr Seconds kTimeToLeave{2.0};
-constexpr Seconds kSlack{4.0};
-
 int Count(const std::string& text, const std::string& words) {
   int count = 0;
   for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
     ++count;
   return count;
 }
-
-class EdgeFailureTest : public ::testing::Test {
- protected:
-  EdgeFailureTest() { WriteSmallScan(scan_); }
-
-  Command Edge(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.end(), {"--domain", std::to_string(TestDomain())});
-    return {EdgeDaemon(),
-            std::move(arguments),
-            {"LD_LIBRARY_PATH=" FAKE_OPENNI, manager_.environment(), kWatchdog},
-            {}};
-  }
-  Command OnCameras(std::vector<std::string> more) const {
-    // The fake camera's script lies in the test's folder, which its confined process may read.
-    std::vector<std::string> arguments = {
-        "--source", "cameras",
-        "--set",    "source.thermal_camera.enabled=false",
-        "--set",    "source.camera_sandbox.read=\"" + folder_.path().string() + "\""};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return Edge(std::move(arguments));
-  }
-  /// A scan that goes on until the end of the test.
-  Command Replay(std::vector<std::string> more) const {
-    std::vector<std::string> arguments = {"--recording", scan_.string(), "--set", "source.loops=0"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return Edge(std::move(arguments));
-  }
-  /// Ends it and measures how long it takes.
-  static Seconds Leave(Process& edge, int expected_status) {
-    const auto asked = std::chrono::steady_clock::now();
-    edge.Signal(SIGTERM);
-    EXPECT_EQ(edge.WaitForExit(kPatience), expected_status) << edge.output();
-    return std::chrono::steady_clock::now() - asked;
-  }
-  static std::vector<std::filesystem::path> FilesIn(const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    return files;
-  }
-  bool WaitForSize(Process& edge, const std::filesystem::path& file, std::uintmax_t bytes) {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
-    std::error_code missing;
-    while (!std::filesystem::exists(file) || std::filesystem::file_size(file, missing) < bytes) {
-      manager_.Drain();
-      if (edge.WaitForExit(Seconds(0.05))) return false;
-      if (std::chrono::steady_clock::now() > deadline) return false;
-    }
-    return true;
-  }
-
-  const ::isotherm::testing::TemporaryDirectory folder_;
-  NotifySocket manager_{folder_.path()};
-  FakeDepthCamera camera_{folder_.path()};
-  const std::filesystem::path scan_ = folder_.path() / "scan.mcap";
-  const std::filesystem::path disk_ = folder_.path() / "disk";
-  const std::filesystem::path file_ = disk_ / "copy.mcap";
-};
 
 TEST_F(EdgeFailureTest, F01F39WithoutItsCameraForLongItLivesOnAndTheRecordingIsOnTheDisk) {
   Process edge(OnCameras({"--record", file_}));
@@ -336,76 +265,6 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   const FrameCountersText published = CountersOf(edge.output(), Sensor::kDepth, "published");
   EXPECT_EQ(published.done, published.captured);
   EXPECT_GT(published.done, static_cast<long>(content.depth.size()));
-}
-
-/// The daemon writes to a pipe of which the test has both ends.
-class OutputPipeTest : public EdgeFailureTest {
- protected:
-  OutputPipeTest() {
-    if (mkfifo(pipe_.c_str(), 0600) != 0) return;
-    reader_ = open(pipe_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-    writer_ = open(pipe_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
-  }
-  ~OutputPipeTest() override {
-    CloseReader();
-    close(writer_);
-  }
-  void CloseReader() {
-    if (reader_ >= 0) close(std::exchange(reader_, -1));
-  }
-  /// Until nothing more fits.
-  void Fill() const {
-    const std::string page(4096, 'x');
-    while (write(writer_, page.data(), page.size()) > 0) {
-    }
-  }
-  Command WithIts(Command command, const std::string& descriptor = "2") const {
-    const std::string script = "exec \"$0\" \"$@\" " + descriptor + ">" + pipe_.string();
-    command.arguments.insert(command.arguments.begin(), {"-c", script, command.program});
-    command.program = "/bin/sh";
-    return command;
-  }
-  /// It does what it should although nobody reads what it says.
-  void ExpectAllIsWell(Process& edge) {
-    ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience));
-    ASSERT_TRUE(WaitForSize(edge, file_, 50'000));
-    EXPECT_LT(manager_.LongestSilence(kFed, Seconds(12)), kWatchdogSec);
-    EXPECT_LT(Leave(edge, 0), kTimeToLeave + kSlack);
-    EXPECT_TRUE(ReadRecording(file_).complete);
-    EXPECT_TRUE(CountersOf(edge.output(), Sensor::kDepth, "recorded").Closes());
-  }
-
-  const std::filesystem::path pipe_ = folder_.path() / "output";
-  int reader_ = -1;
-  int writer_ = -1;
-};
-
-TEST_F(OutputPipeTest, F38AReaderThatIsGoneDoesNotEndTheScan) {
-  Process edge(WithIts(Replay({"--record", file_, "--log-level", "debug"})));
-  ASSERT_TRUE(manager_.WaitFor("READY=1", kPatience));
-  close(std::exchange(writer_, -1));
-  CloseReader();
-  ExpectAllIsWell(edge);
-}
-
-TEST_F(OutputPipeTest, F39AFullPipeThatNobodyReadsHoldsUpNothing) {
-  Fill();
-  Process edge(WithIts(Replay({"--record", file_, "--log-level", "debug"})));
-  ExpectAllIsWell(edge);
-}
-
-TEST_F(OutputPipeTest, F39AForcedExitDoesNotWaitForWhoReadsTheSummary) {
-  Fill();
-  const std::filesystem::path disk = folder_.path() / "pipe";
-  ASSERT_EQ(mkfifo(disk.c_str(), 0600), 0);
-  const int stuck = open(disk.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
-  ASSERT_GE(stuck, 0);
-  Process edge(WithIts(Replay({"--record", disk}), "1"));
-  ASSERT_TRUE(manager_.WaitFor(kFed, kPatience));
-  EXPECT_TRUE(edge.WaitForOutput("the disk does not answer", kPatience)) << edge.output();
-  EXPECT_LT(Leave(edge, 73), Seconds(3.5) + kSlack);
-  EXPECT_THAT(edge.output(), HasSubstr("the disk did not end"));
-  close(stuck);
 }
 
 }  // namespace

@@ -12,6 +12,11 @@
 #include <sstream>
 #include <thread>
 
+#ifdef RECORDS_ONI
+#include "common/testing/temporary_directory.h"
+#include "edge/openni/testing/fake_depth_camera.h"
+#include "edge/openni/testing/record_oni.h"
+#endif
 #include "tests/support/container.h"
 #include "tests/support/programs.h"
 
@@ -19,6 +24,7 @@ namespace isotherm::system_test {
 namespace {
 
 using std::filesystem::path;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 using ::testing::SizeIs;
@@ -149,10 +155,16 @@ class UnitsScanTest : public UnitsTest {
       EXPECT_EQ(Property(unit, "NRestarts"), "0") << unit;
       EXPECT_THAT(Property(unit, "StatusText"), Not(IsEmpty())) << unit;
       // It has run for twice as long as the watchdog is patient, so it was fed.
-      EXPECT_EQ(Property(unit, "WatchdogUSec"), "10s") << unit;
-      EXPECT_NE(Property(unit, "WatchdogTimestampMonotonic"), "0") << unit;
+      ExpectWatched(unit);
     }
     EXPECT_EQ(container_->Output("systemctl --failed --no-legend"), "");
+  }
+
+  /// The service manager waits for signs of life, and has had one.
+  static void ExpectWatched(const std::string& unit) {
+    EXPECT_EQ(Property(unit, "WatchdogUSec"), "10s") << unit;
+    EXPECT_EQ(Property(unit, "NotifyAccess"), "main") << unit;
+    EXPECT_NE(Property(unit, "WatchdogTimestampMonotonic"), "0") << unit;
   }
 
   void ExpectNoUnexplainedWarning() const {
@@ -251,6 +263,63 @@ TEST_F(UnitsTest, F37F40StartedAgainAtOnceHoweverOftenItIsKilled) {
   }
   EXPECT_EQ(Property(kGround, "NRestarts"), std::to_string(kKills));
 }
+
+TEST_F(UnitsScanTest, F39ADaemonThatIsStoppedIsKilledByTheWatchdogAndComesBack) {
+  Prepare(1, Plays::kForEver);
+  ASSERT_EQ(Run({"systemctl", "start", kGround, kEdge}).status, 0);
+  std::map<std::string, std::string> stopped;
+  for (const std::string& unit : {kEdge, kGround}) {
+    ExpectWatched(unit);
+    stopped[unit] = MainPid(*container_, unit);
+    ASSERT_THAT(stopped[unit], Not(IsEmpty())) << unit;
+    Run({"systemctl", "kill", "--kill-who", "main", "--signal", "STOP", unit});
+  }
+  for (const std::string& unit : {kEdge, kGround}) {
+    ASSERT_TRUE(Until(kPatience, [&] {
+      const std::string now = MainPid(*container_, unit);
+      return !now.empty() && now != stopped[unit];
+    })) << container_->Output("systemctl status " + unit);
+    EXPECT_TRUE(JournalHas(unit + ": Failed with result 'watchdog'")) << unit;
+    EXPECT_EQ(Property(unit, "NRestarts"), "1") << unit;
+    EXPECT_EQ(Property(unit, "Result"), "success") << unit;
+    ExpectWatched(unit);
+  }
+  // As healthy as before: the edge captures, and the ground follows it.
+  EXPECT_TRUE(Until(kPatience, [&] {
+    return container_->Output("systemctl show --value --property StatusText " + kGround)
+               .find("depth") != std::string::npos;
+  })) << container_->Output("systemctl status " + kGround);
+  EXPECT_EQ(container_->Output("systemctl --failed --no-legend"), "");
+}
+
+#ifdef RECORDS_ONI
+// The library of the camera locks itself in (system calls, files) under what the unit forbids
+// already; a played file takes the same way as a camera.
+TEST_F(UnitsTest, F14TheCamerasProcessConfinesItselfUnderTheUnitAndItsFramesArrive) {
+  constexpr int kFrames = 40;
+  const ::isotherm::testing::TemporaryDirectory folder;
+  const FakeDepthCamera camera(folder.path());
+  const Status recorded = RecordOni(folder.path() / "scan.oni", kFrames);
+  ASSERT_TRUE(recorded.ok()) << recorded.message();
+  std::filesystem::copy_file(folder.path() / "scan.oni", root() / "srv/scan.oni",
+                             std::filesystem::copy_options::overwrite_existing);
+  // The shipped configuration, but for the name of the camera.
+  container_->Output(
+      "chmod 0644 /srv/scan.oni; sed -i 's|kind: CAMERAS|& depth_camera { uri: "
+      "\"/srv/scan.oni\" } thermal_camera { enabled: false }|' "
+      "/etc/isotherm/edge.textproto");
+  ASSERT_EQ(Run({"systemctl", "start", kEdge}).status, 0);
+  EXPECT_TRUE(Until(kPatience, [&] { return JournalHas("is confined to its camera"); }));
+  EXPECT_TRUE(Until(kPatience, [&] { return JournalHas("the source has ended"); }));
+  EXPECT_EQ(Run({"systemctl", "stop", kEdge}).status, 0);
+  EXPECT_EQ(Property(kEdge, "Result"), "success");
+  const std::string journal = Journal("--identifier isotherm-edge") + '\n';
+  EXPECT_THAT(journal, Not(HasSubstr("not confined")));
+  const FrameCountersText counters = CountersOf(journal, Sensor::kDepth, "recorded");
+  EXPECT_TRUE(counters.Closes()) << journal;
+  EXPECT_GE(counters.done, kFrames) << journal;
+}
+#endif
 
 TEST_F(UnitsTest, TheSandboxAllowsWhatIsNeededAndNoMore) {
   std::filesystem::copy_file(SANDBOX_PROBE, root() / "usr/bin/sandbox_probe",
