@@ -129,9 +129,10 @@ std::optional<std::uint64_t> RigGate::OpenSession(const Process& process) const 
 
 bool RigGate::MayHold(const Process& process) const {
   if (process.refused) return false;
-  return std::ranges::none_of(processes_, [&](const Process& other) {
+  const std::ptrdiff_t others = std::ranges::count_if(processes_, [&](const Process& other) {
     return other.peer != owner_ && other.peer != process.peer && !other.held.empty();
   });
+  return others < kMaxOthersHeld;
 }
 
 void RigGate::Hold(Process& process, RigSample&& sample, SteadyTime now) {

@@ -34,19 +34,21 @@ struct RigSample {
 ///   another process --(the owner is there, but silent for kSilence)--------> owner
 ///   another process --(the owner's session is closed, or was never announced)--> owner at once
 ///
-/// Until that is decided the samples of one other process are kept, within kMaxHeldBytes, so that
-/// an edge that was killed and started again loses nothing. Samples of a session that the owner has
-/// not announced are kept for kPatience. What is not used is refused with a cause. Pure: time
-/// enters through arguments. Thread-compatible.
+/// Until that is decided the samples of kMaxOthersHeld other processes are kept, each within
+/// kMaxHeldBytes, so that an edge that was killed and started again loses nothing. Samples of a
+/// session that the owner has not announced are kept for kPatience. What is not used is refused
+/// with a cause. Pure: time enters through arguments. Thread-compatible.
 class RigGate {
  public:
   static constexpr Nanoseconds kTrial = std::chrono::seconds(1);
   static constexpr Nanoseconds kSilence = std::chrono::seconds(2);
   static constexpr Nanoseconds kPatience = std::chrono::seconds(5);
-  static constexpr std::size_t kMaxHeldBytes = 64U
-                                               << 20U;  ///< For one process; two at most are held.
+  static constexpr std::size_t kMaxHeldBytes = 64U << 20U;  ///< For one process.
   static constexpr std::size_t kMaxHeldSamples = 512;
   static constexpr std::size_t kMaxProcesses = 16;
+  /// Processes beside the owner whose samples are kept: an edge may be killed twice before it is
+  /// decided that the first one is gone.
+  static constexpr std::ptrdiff_t kMaxOthersHeld = 2;
 
   using Pass = std::function<void(RigSample&&)>;
   using Refuse = std::function<void(const RigSample&, RefusalCause)>;

@@ -17,6 +17,7 @@ using ::testing::IsEmpty;
 
 constexpr PeerHandle kFirst = 11;
 constexpr PeerHandle kSecond = 22;
+constexpr PeerHandle kThird = 33;
 
 RigSample Rig(std::uint64_t session) {
   RigDescription rig;
@@ -170,6 +171,35 @@ TEST_F(RigGateTest, F33AnEdgeThatWasKilledIsFollowedByItsSuccessorWithoutLoss) {
   EXPECT_EQ(passed_.size(), 2U + 1U + 30U);
   EXPECT_EQ(passed_.back(), "frame 2/29");
   EXPECT_THAT(refused_, IsEmpty());
+}
+
+TEST_F(RigGateTest, F37AnEdgeThatIsKilledTwiceWithinASecondLosesNoFrame) {
+  Add(kFirst, Rig(1));
+  Add(kFirst, Frame(1, 0));
+  Wait(100ms);
+  Add(kSecond, Rig(2));  // The first one was killed, which nobody knows yet.
+  Add(kSecond, Frame(2, 0));
+  Wait(400ms);
+  Add(kThird, Rig(3));  // And so was the second one.
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    Add(kThird, Frame(3, i));
+    Wait(33ms);
+    // A process that is gone is known to be so a second later.
+    if (i == 20) gone_ = {kFirst};
+    if (i == 40) gone_ = {kFirst, kSecond};
+  }
+  EXPECT_EQ(gate_.owner(), kThird);
+  EXPECT_THAT(std::vector(passed_.begin(), passed_.begin() + 6),
+              ElementsAre("rig 1", "frame 1/0", "rig 2", "frame 2/0", "rig 3", "frame 3/0"));
+  EXPECT_EQ(passed_.size(), 4U + 1U + 100U);
+  EXPECT_THAT(refused_, IsEmpty());
+}
+
+TEST_F(RigGateTest, OfManyOtherProcessesOnlySoManyAreKept) {
+  Add(kFirst, Rig(1));
+  constexpr PeerHandle kStranger = 100;
+  for (PeerHandle i = 0; i < 10; ++i) Add(kStranger + i, Frame(50 + i, 0));
+  EXPECT_EQ(refused(RefusalCause::kOtherWriter), 10U - RigGate::kMaxOthersHeld);
 }
 
 TEST_F(RigGateTest, AfterAnOutageTheFirstOneThatIsHeardIsNotTheOwner) {
