@@ -17,20 +17,27 @@ constexpr Nanoseconds kNoFrames = std::chrono::seconds(10);
 
 }  // namespace
 
+HousekeepingHost ThisComputer() {
+  return {.read = [] { return ReadHostStatus("."); },
+          .notify_status = NotifyStatus,
+          .notify_alive = NotifyWatchdog,
+          .watchdog_interval = WatchdogInterval()};
+}
+
 Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
                            const FrameCounters& counters, const CameraHealth& health,
-                           std::filesystem::path image_file)
+                           std::filesystem::path image_file, HousekeepingHost host)
     : clock_(clock),
       pipeline_(pipeline),
       publisher_(publisher),
       counters_(counters),
       health_(health),
       image_file_(std::move(image_file)),
+      host_(std::move(host)),
       terminal_(line_->is_terminal()),
-      synchronised_(ReadKernelClock().synchronised),
+      synchronised_(host_.read().clock.synchronised),
       next_status_(clock.SteadyNow()),
       next_log_(next_status_ + kLogInterval),
-      watchdog_interval_(WatchdogInterval()),
       next_feed_(next_status_),
       newest_depth_{.at = next_status_},
       newest_thermal_{.at = next_status_} {}
@@ -77,7 +84,7 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   status.spool_fill_ratio = pipeline_.spool_fill_ratio();
   status.depth_camera = health_.Get(Sensor::kDepth);
   status.thermal_camera = health_.Get(Sensor::kThermal);
-  AddHostStatus(ReadHostStatus("."), status);
+  AddHostStatus(host_.read(), status);
   if (const std::optional<SpoolStatus> recording = pipeline_.recording()) {
     status.disk_free_bytes = ToReport(recording->free_bytes);
   }
@@ -180,7 +187,7 @@ void Housekeeping::ReportStatus() {
   reported_ = std::move(problems);
   std::string text;
   for (const std::string& problem : reported_) text += (text.empty() ? "" : "; ") + problem;
-  NotifyStatus(text.empty() ? "all is well again" : text);
+  host_.notify_status(text.empty() ? "all is well again" : text);
 }
 
 void Housekeeping::Log() {
@@ -190,7 +197,7 @@ void Housekeeping::Log() {
   if (!terminal_) {
     LOG(Edge, Info) << line;
   }
-  if (reported_.empty()) NotifyStatus(line);
+  if (reported_.empty()) host_.notify_status(line);
 }
 
 bool Housekeeping::GetsOn(SteadyTime now) {
@@ -217,8 +224,8 @@ bool Housekeeping::GetsOn(SteadyTime now) {
 
 void Housekeeping::FeedWatchdog(SteadyTime now) {
   if (now < next_feed_) return;
-  next_feed_ = now + watchdog_interval_.value_or(kStatusInterval);
-  if (GetsOn(now) && watchdog_interval_) NotifyWatchdog();
+  next_feed_ = now + host_.watchdog_interval.value_or(kStatusInterval);
+  if (GetsOn(now) && host_.watchdog_interval) host_.notify_alive();
 }
 
 }  // namespace isotherm

@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,7 @@
 #include "common/messages/feedback_text.h"
 #include "common/time/clock.h"
 #include "edge/daemon/edge_report.h"
+#include "edge/daemon/host_status.h"
 #include "edge/frame/frame_counters.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/pipeline/edge_pipeline.h"
@@ -18,14 +21,27 @@
 
 namespace isotherm {
 
+/// Housekeeping asks this of the computer, and tells this to the service manager. Functions, so that
+/// tests play both.
+struct HousekeepingHost {
+  std::function<HostStatus()> read;
+  std::function<void(std::string_view)> notify_status;
+  std::function<void()> notify_alive;
+  std::optional<Nanoseconds> watchdog_interval;  ///< Nullopt: nobody watches.
+};
+
+/// The computer that this program runs on.
+HousekeepingHost ThisComputer();
+
 /// Does what is left to the daemon's main thread beside the line: answers commands, publishes the
 /// status once a second, tells the operator and the service manager. Thread-bound.
 class Housekeeping {
  public:
-  /// All must outlive it. `image_file`: where the confidence image goes (empty: nowhere).
+  /// All but `host` must outlive it. `image_file`: where the confidence image goes (empty:
+  /// nowhere).
   Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
                const FrameCounters& counters, const CameraHealth& health,
-               std::filesystem::path image_file);
+               std::filesystem::path image_file, HousekeepingHost host = ThisComputer());
 
   /// Does what is due; call it often.
   void Tick();
@@ -57,12 +73,12 @@ class Housekeeping {
   const FrameCounters& counters_;
   const CameraHealth& health_;
   const std::filesystem::path image_file_;
+  const HousekeepingHost host_;
   std::optional<TerminalLine> line_{std::in_place};  ///< Until the end.
   const bool terminal_;
   bool synchronised_;
   SteadyTime next_status_;
   SteadyTime next_log_;
-  const std::optional<Nanoseconds> watchdog_interval_;  ///< Nullopt: nobody watches.
   SteadyTime next_feed_;
   RateMeter depth_rate_;
   RateMeter thermal_rate_;

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,7 +39,11 @@ class FakePublisher final : public Publisher {
     external_odometry_.push_back(sample);
     return OkStatus();
   }
-  Status Publish(EdgeStatus) override { return OkStatus(); }
+  Status Publish(EdgeStatus status) override {
+    MutexLock lock(mutex_);
+    statuses_.push_back(std::move(status));
+    return OkStatus();
+  }
   Status Answer(const CommandResult& result) override {
     MutexLock lock(mutex_);
     answers_.push_back(result);
@@ -46,7 +51,12 @@ class FakePublisher final : public Publisher {
   }
   bool Drain(Nanoseconds) override { return true; }
   void SetPolicy(PublishPolicy policy) override { policy_ = policy; }
-  PublisherStats stats() const override { return {}; }
+  PublisherStats stats() const override {
+    PublisherStats stats;
+    MutexLock lock(mutex_);
+    stats.problem = problem_;
+    return stats;
+  }
   std::optional<Receipt> receipt() const override { return std::nullopt; }
 
   /// Commands and feedback, with its arrival, that the ground sends at the start of Run.
@@ -54,6 +64,11 @@ class FakePublisher final : public Publisher {
   std::vector<std::pair<Feedback, CaptureTime>> feedback;
 
   void Break() { broken_ = true; }
+  /// Why there is no network; empty if there is one.
+  void SetProblem(std::string problem) {
+    MutexLock lock(mutex_);
+    problem_ = std::move(problem);
+  }
   /// Publish waits from now on until it is released or stop is requested.
   void Hold() {
     MutexLock lock(mutex_);
@@ -80,6 +95,10 @@ class FakePublisher final : public Publisher {
     MutexLock lock(mutex_);
     return answers_;
   }
+  std::vector<EdgeStatus> statuses() const {
+    MutexLock lock(mutex_);
+    return statuses_;
+  }
   std::optional<PublishPolicy> policy() const { return policy_; }
   int sessions() const { return sessions_; }
 
@@ -103,6 +122,8 @@ class FakePublisher final : public Publisher {
   std::vector<EncodedThermalFrame> thermal_ GUARDED_BY(mutex_);
   std::vector<ExternalOdometrySample> external_odometry_ GUARDED_BY(mutex_);
   std::vector<CommandResult> answers_ GUARDED_BY(mutex_);
+  std::vector<EdgeStatus> statuses_ GUARDED_BY(mutex_);
+  std::string problem_ GUARDED_BY(mutex_);
 };
 
 }  // namespace isotherm
