@@ -70,7 +70,7 @@ class OpenniDepthSourceTest : public ::testing::Test {
   }
 
   const testing::TemporaryDirectory folder_;
-  FakeDepthCamera camera_{folder_.path()};
+  FakeDepthCamera camera_;
   DepthCameraOptions options_;
   const SystemClock clock_;
   std::unique_ptr<OpenniDepthSource> source_;

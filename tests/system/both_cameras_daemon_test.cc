@@ -152,7 +152,7 @@ class BothCamerasTest : public ::testing::Test {
   const SystemClock clock_;
   const MachineLoad load_;
   const ::isotherm::testing::TemporaryDirectory folder_;
-  FakeDepthCamera depth_{folder_.path()};
+  FakeDepthCamera depth_;
   const std::filesystem::path file_ = folder_.path() / "scan.mcap";
   const std::filesystem::path config_ = folder_.path() / "pi450.xml";
   std::atomic<pid_t> edge_pid_{0};

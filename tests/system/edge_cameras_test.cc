@@ -55,7 +55,7 @@ class CamerasTest : public ::testing::Test {
   static constexpr const char* kLost = "depth camera: lost";
 
   const ::isotherm::testing::TemporaryDirectory folder_;
-  FakeDepthCamera camera_{folder_.path()};
+  FakeDepthCamera camera_;
   const std::filesystem::path file_ = folder_.path() / "scan.mcap";
 };
 

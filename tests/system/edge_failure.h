@@ -79,7 +79,7 @@ class EdgeFailureTest : public ::testing::Test {
 
   const ::isotherm::testing::TemporaryDirectory folder_;
   NotifySocket manager_{folder_.path()};
-  FakeDepthCamera camera_{folder_.path()};
+  FakeDepthCamera camera_;
   const std::filesystem::path scan_ = folder_.path() / "scan.mcap";
   const std::filesystem::path disk_ = folder_.path() / "disk";
   const std::filesystem::path file_ = disk_ / "copy.mcap";

@@ -336,7 +336,7 @@ class EdgeLoadTest : public ::testing::Test {
 
   const ::isotherm::testing::TemporaryDirectory folder_;
   const std::filesystem::path file_ = folder_.path() / "scan.mcap";
-  FakeDepthCamera camera_{folder_.path()};
+  FakeDepthCamera camera_;
   double seconds_ = 60.0;
   EdgeOptions options_;
   const SystemClock clock_;

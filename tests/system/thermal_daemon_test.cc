@@ -309,7 +309,7 @@ TEST_F(ThermalDaemonTest, CountsAreRecordedAsCountsAndF04UnpluggingIsSurvived) {
 
 #ifdef FAKE_OPENNI
 TEST_F(ThermalDaemonTest, GroundSaysThatThereAreCountsOnlyAndGeometryGoesOn) {
-  FakeDepthCamera depth(folder_.path());
+  FakeDepthCamera depth;
   bus_->Plug(std::make_shared<EmulatedSeek>("f"));
   Command ground_command{
       GroundService(),

@@ -4,19 +4,18 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/testing/temporary_directory.h"
 #include "edge/openni/testing/fake_depth_script.h"
 
 namespace isotherm {
 
 /// Tells the fake driver what to be, for this process and its children. Every change of `script`
-/// takes effect with Apply: `connected` at once, the rest when the camera is opened.
+/// takes effect with Apply: `connected` at once, the rest when the camera is opened. Without one
+/// there is no camera.
 class FakeDepthCamera {
  public:
-  explicit FakeDepthCamera(std::filesystem::path folder) : path_(std::move(folder) / "depth.txt") {
-    Apply();
-    setenv("ISOTHERM_FAKE_DEPTH", path_.c_str(), 1);
-  }
-  ~FakeDepthCamera() { unsetenv("ISOTHERM_FAKE_DEPTH"); }
+  FakeDepthCamera() { Apply(); }
+  ~FakeDepthCamera() { std::filesystem::remove(path_); }
   FakeDepthCamera(const FakeDepthCamera&) = delete;
   FakeDepthCamera& operator=(const FakeDepthCamera&) = delete;
 
@@ -30,12 +29,22 @@ class FakeDepthCamera {
     script.connected = in;
     Apply();
   }
-  const std::filesystem::path& path() const { return path_; }
-
   FakeDepthScript script;
 
  private:
-  const std::filesystem::path path_;
+  /// One file per process, told once: the driver's thread may outlive a test, and must not read the
+  /// environment while the next one changes it.
+  static const std::filesystem::path& Path() {
+    static const testing::TemporaryDirectory folder;
+    static const std::filesystem::path path = [] {
+      std::filesystem::path file = folder.path() / "depth.txt";
+      setenv("ISOTHERM_FAKE_DEPTH", file.c_str(), 1);
+      return file;
+    }();
+    return path;
+  }
+
+  const std::filesystem::path path_ = Path();
 };
 
 }  // namespace isotherm
