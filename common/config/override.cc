@@ -16,10 +16,16 @@ namespace {
 namespace pb = google::protobuf;
 using pb::FieldDescriptor;
 
+bool IsListOfTexts(const FieldDescriptor& field) {
+  return field.is_repeated() && field.cpp_type() == FieldDescriptor::CPPTYPE_STRING;
+}
+
+/// What an assignment can name: a value is added to a list of texts, other lists are for files.
 std::vector<std::string> FieldNames(const pb::Descriptor& type) {
   std::vector<std::string> names;
   for (int i = 0; i < type.field_count(); ++i) {
-    if (!type.field(i)->is_repeated()) names.push_back(type.field(i)->name());
+    if (!type.field(i)->is_repeated() || IsListOfTexts(*type.field(i)))
+      names.push_back(type.field(i)->name());
   }
   return names;
 }
@@ -67,6 +73,10 @@ std::string_view Unquoted(std::string_view text) {
 
 Status SetScalar(pb::Message& message, const FieldDescriptor* field, std::string_view text) {
   const pb::Reflection& reflection = *message.GetReflection();
+  if (IsListOfTexts(*field)) {
+    reflection.AddString(&message, field, std::string(Unquoted(text)));
+    return OkStatus();
+  }
   const auto set = [&](const auto& value, auto setter) {
     if (!value) return value.error();
     (reflection.*setter)(&message, field, *value);
@@ -116,12 +126,12 @@ Status ApplyOverride(std::string_view assignment, pb::Message& message) {
     const pb::Descriptor& type = *target->GetDescriptor();
     const FieldDescriptor* field = type.FindFieldByName(name);
     const std::string_view where = begin == 0 ? std::string_view() : path.substr(0, begin - 1);
-    if (field == nullptr || field->is_repeated()) {
+    if (field == nullptr || (field->is_repeated() && !IsListOfTexts(*field))) {
       const std::vector<std::string> known = FieldNames(type);
       return InvalidArgument(fmt::format("'{}': there is no {} '{}'{}.{} Known: {}.", assignment,
                                          begin == 0 ? "stage or option" : "option", name,
                                          where.empty() ? "" : fmt::format(" in '{}'", where),
-                                         SuggestOption(type, name), JoinNames(known)));
+                                         SuggestOption(type, name, where), JoinNames(known)));
     }
     if (dot == std::string_view::npos) return SetScalar(*target, field, value).WithContext(path);
     if (field->message_type() == nullptr) {

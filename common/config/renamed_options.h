@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -9,18 +10,28 @@ class Descriptor;
 
 namespace isotherm {
 
-/// The present name of the option that `type` once called `name`; empty if it never had such a one.
-std::string_view NameSinceRenaming(const google::protobuf::Descriptor& type, std::string_view name);
+/// Names an option that was called or placed differently once.
+struct RenamedOption {
+  enum class Place { kOptions, kRigFile };
 
-/// Options in text format, a field per line, as programs of earlier versions wrote them down: with
-/// the present names.
-std::string WithPresentNames(std::string text);
+  std::string_view type;    ///< The message that it was in, without the package.
+  std::string_view before;  ///< Its name there, which is reserved now.
+  std::string_view now;     ///< Dotted, from that message or from the rig file's on.
+  Place place = Place::kOptions;
+};
 
 /// Returns the present name of the command-line flag that was once called `flag` ("--x" or
 /// "--x=value"); empty if there was no such one.
 std::string_view FlagSinceRenaming(std::string_view flag);
 
-/// " It is called 'x' now." for an option that was renamed, else DidYouMean.
-std::string SuggestOption(const google::protobuf::Descriptor& type, std::string_view name);
+std::span<const RenamedOption> RenamedOptions();
+
+/// Returns what `type` once called `name`; nullptr if it never had such a one.
+const RenamedOption* FindRenamed(const google::protobuf::Descriptor& type, std::string_view name);
+
+/// Returns " It is called 'x' now." for an option that was renamed, else DidYouMean. `parent` is
+/// where the message stands, if that is known: "tsdf".
+std::string SuggestOption(const google::protobuf::Descriptor& type, std::string_view name,
+                          std::string_view parent = {});
 
 }  // namespace isotherm

@@ -12,6 +12,8 @@ namespace {
 
 // Quaternions with fewer digits than a double are fine, anything else is a typing error.
 constexpr double kQuaternionNormTolerance = 1e-3;
+constexpr double kMetresPerMillimetre = 1e-3;
+constexpr double kMetresPerMicrometre = 1e-6;
 
 Status CheckQuaternion(const Transform& t) {
   const double norm =
@@ -75,6 +77,51 @@ Transform ToProto(const RigidTransform& transform) {
   return t;
 }
 
+DepthSensorModel FromProto(const DepthSensorProperties& sensor) {
+  return {.near_range_m = sensor.near_range_m(),
+          .min_depth_m = sensor.min_depth_m(),
+          .max_depth_m = sensor.max_depth_m(),
+          .noise_at_1m_m = sensor.noise_at_1m_m()};
+}
+
+DepthSensorProperties ToProto(const DepthSensorModel& sensor) {
+  DepthSensorProperties properties;
+  properties.set_near_range_m(sensor.near_range_m);
+  properties.set_min_depth_m(sensor.min_depth_m);
+  properties.set_max_depth_m(sensor.max_depth_m);
+  properties.set_noise_at_1m_m(sensor.noise_at_1m_m);
+  return properties;
+}
+
+ThermalSensorModel FromProto(const ThermalSensorProperties& sensor) {
+  ThermalSensorModel model{.time_constant_s = sensor.time_constant_s(),
+                           .row_readout_s = sensor.row_readout_s(),
+                           .pixel_pitch_m = {},
+                           .lens = {}};
+  if (sensor.has_pixel_pitch_um())
+    model.pixel_pitch_m = sensor.pixel_pitch_um() * kMetresPerMicrometre;
+  if (sensor.has_lens()) {
+    const ThermalLens& lens = sensor.lens();
+    model.lens = {lens.focal_length_mm() * kMetresPerMillimetre, lens.f_number(), lens.focus_m()};
+  }
+  return model;
+}
+
+ThermalSensorProperties ToProto(const ThermalSensorModel& sensor) {
+  ThermalSensorProperties properties;
+  properties.set_time_constant_s(sensor.time_constant_s);
+  properties.set_row_readout_s(sensor.row_readout_s);
+  if (sensor.pixel_pitch_m)
+    properties.set_pixel_pitch_um(*sensor.pixel_pitch_m / kMetresPerMicrometre);
+  if (sensor.lens) {
+    ThermalLens& lens = *properties.mutable_lens();
+    lens.set_focal_length_mm(sensor.lens->focal_length_m / kMetresPerMillimetre);
+    lens.set_f_number(sensor.lens->f_number);
+    lens.set_focus_m(sensor.lens->focus_m);
+  }
+  return properties;
+}
+
 Rig FromProto(const RigCalibration& calibration) {
   Rig rig;
   if (calibration.has_depth()) rig.depth = FromProto(calibration.depth());
@@ -91,6 +138,8 @@ Rig FromProto(const RigCalibration& calibration) {
   if (calibration.has_reprojection_error_px()) {
     rig.reprojection_error_px = calibration.reprojection_error_px();
   }
+  rig.depth_sensor = FromProto(calibration.depth_sensor());
+  rig.thermal_sensor = FromProto(calibration.thermal_sensor());
   return rig;
 }
 
@@ -107,6 +156,8 @@ RigCalibration ToProto(const Rig& rig) {
   if (!rig.depth_serial.empty()) calibration.set_depth_serial(rig.depth_serial);
   if (!rig.thermal_serial.empty()) calibration.set_thermal_serial(rig.thermal_serial);
   if (rig.reprojection_error_px) calibration.set_reprojection_error_px(*rig.reprojection_error_px);
+  *calibration.mutable_depth_sensor() = ToProto(rig.depth_sensor);
+  *calibration.mutable_thermal_sensor() = ToProto(rig.thermal_sensor);
   return calibration;
 }
 

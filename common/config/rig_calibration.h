@@ -5,7 +5,9 @@
 namespace isotherm {
 
 class CameraIntrinsics;
+class DepthSensorProperties;
 class RigCalibration;
+class ThermalSensorProperties;
 class Transform;
 
 /// Conversions between the calibration message and the types that the stages use. No checks:
@@ -15,6 +17,10 @@ CameraModel FromProto(const CameraIntrinsics& intrinsics);
 CameraIntrinsics ToProto(const CameraModel& camera);
 RigidTransform FromProto(const Transform& transform);
 Transform ToProto(const RigidTransform& transform);
+DepthSensorModel FromProto(const DepthSensorProperties& sensor);
+DepthSensorProperties ToProto(const DepthSensorModel& sensor);
+ThermalSensorModel FromProto(const ThermalSensorProperties& sensor);
+ThermalSensorProperties ToProto(const ThermalSensorModel& sensor);
 Rig FromProto(const RigCalibration& calibration);
 RigCalibration ToProto(const Rig& rig);
 

@@ -19,6 +19,7 @@
 
 #include "common/config/nearest_name.h"
 #include "common/config/renamed_options.h"
+#include "common/config/reserved_fields.h"
 
 namespace isotherm {
 namespace {
@@ -106,6 +107,11 @@ std::vector<std::string> FieldNames(const pb::Descriptor& type) {
   return names;
 }
 
+std::string UnknownField(const pb::Descriptor& type, const std::string& name) {
+  return fmt::format("unknown field '{}'.{} Known fields here: {}.", name,
+                     SuggestOption(type, name), JoinNames(FieldNames(type)));
+}
+
 // Protobuf's wording for an unknown field, with its type's fields added.
 void ExplainUnknownField(const pb::Descriptor& root, TextError& error) {
   constexpr std::string_view kType = "Message type \"";
@@ -118,8 +124,7 @@ void ExplainUnknownField(const pb::Descriptor& root, TextError& error) {
   name.resize(std::min({name.find('"'), name.size(), kMaxNameBytes}));
   const pb::Descriptor* type = root.file()->pool()->FindMessageTypeByName(type_name);
   if (type == nullptr) return;
-  error.message = fmt::format("unknown field '{}'.{} Known fields here: {}.", name,
-                              SuggestOption(*type, name), JoinNames(FieldNames(*type)));
+  error.message = UnknownField(*type, name);
 }
 
 bool IsAboutFieldBefore(const std::string& message) {
@@ -346,6 +351,10 @@ Status ParseTextProto(const std::string& text, std::string_view source_name, pb:
   } else {
     errors = CollectErrors(text, message, std::move(errors));
     for (TextError& error : errors) ExplainUnknownField(*message.GetDescriptor(), error);
+  }
+  for (const ReservedField& field : FindReservedFields(text, *message.GetDescriptor())) {
+    if (errors.size() >= kMaxErrors) break;
+    errors.push_back({{field.line, field.column}, UnknownField(*field.type, field.name)});
   }
   return ErrorsToStatus(source_name, std::move(errors));
 }

@@ -22,8 +22,9 @@ Status LoadTextProto(const std::filesystem::path& path, google::protobuf::Messag
 /// Text format of `message`, defaults included, as it goes into logs and recordings.
 std::string ToTextProto(const google::protobuf::Message& message);
 
-/// Applies `stage.field=value` (any depth: `a.b.c=value`). Repeated fields are not supported. Names
-/// the stage or field that does not exist and lists those that do.
+/// Applies `stage.field=value` (any depth: `a.b.c=value`). Of repeated fields only those of strings
+/// are supported: the value is added. Names the stage or field that does not exist and lists those
+/// that do, or says what it is called now.
 Status ApplyOverride(std::string_view assignment, google::protobuf::Message& message);
 
 /// rig.textproto, checked (Validate) and converted. Messages name the file and the field.

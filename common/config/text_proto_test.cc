@@ -77,6 +77,64 @@ TEST(RigCalibrationTest, AbsentPartsStayAbsent) {
   EXPECT_FALSE(again->T_thermal_depth.has_value());
 }
 
+constexpr char kSensorText[] = R"(
+depth_sensor { near_range_m: 0.5 min_depth_m: 0.4 max_depth_m: 6 noise_at_1m_m: 0.01 }
+thermal_sensor {
+  time_constant_s: 0.012 row_readout_s: 0.0001 pixel_pitch_um: 17
+  lens { focal_length_mm: 13 f_number: 1.25 focus_m: 0.6 }
+})";
+
+TEST(RigCalibrationTest, SensorsAreReadInMetresAndWrittenBack) {
+  const Result<Rig> first = ParseRigCalibration(std::string(kRigText) + kSensorText, "first");
+  ASSERT_TRUE(first) << first.error().message();
+  for (const Result<Rig>& rig : {first, ParseRigCalibration(ToText(*first), "second")}) {
+    ASSERT_TRUE(rig) << rig.error().message();
+    EXPECT_EQ(rig->depth_sensor.near_range_m, 0.5);
+    EXPECT_EQ(rig->depth_sensor.min_depth_m, 0.4);
+    EXPECT_EQ(rig->depth_sensor.max_depth_m, 6.0);
+    EXPECT_EQ(rig->depth_sensor.noise_at_1m_m, 0.01);
+    EXPECT_EQ(rig->thermal_sensor.time_constant_s, 0.012);
+    EXPECT_EQ(rig->thermal_sensor.row_readout_s, 0.0001);
+    EXPECT_NEAR(rig->thermal_sensor.pixel_pitch_m.value(), 17e-6, 1e-12);
+    ASSERT_TRUE(rig->thermal_sensor.lens.has_value());
+    EXPECT_NEAR(rig->thermal_sensor.lens->focal_length_m, 0.013, 1e-9);
+    EXPECT_EQ(rig->thermal_sensor.lens->f_number, 1.25);
+    EXPECT_EQ(rig->thermal_sensor.lens->focus_m, 0.6);
+  }
+}
+
+/// A file from before these fields existed means what the options' defaults were then.
+TEST(RigCalibrationTest, ARigFileWithoutSensorsHasThoseOfBefore) {
+  const Rig rig = ParseRigCalibration(kRigText, "rig").value();
+  EXPECT_EQ(rig.depth_sensor.near_range_m, 0.35);
+  EXPECT_EQ(rig.depth_sensor.min_depth_m, 0.3);
+  EXPECT_EQ(rig.depth_sensor.max_depth_m, 4.0);
+  EXPECT_EQ(rig.depth_sensor.noise_at_1m_m, 0.006);
+  EXPECT_EQ(rig.thermal_sensor.time_constant_s, 0.010);
+  EXPECT_EQ(rig.thermal_sensor.row_readout_s, 0.0);
+  EXPECT_FALSE(rig.thermal_sensor.pixel_pitch_m.has_value());
+  EXPECT_FALSE(rig.thermal_sensor.lens.has_value());
+  const Rig by_default;
+  EXPECT_EQ(ToText(by_default), ToText(FromProto(RigCalibration())));
+}
+
+TEST(RigCalibrationTest, ImpossibleSensorsAreRefusedWithTheField) {
+  const auto error = [](const std::string& from, const std::string& to) {
+    return RigError(ReplaceFirst(std::string(kRigText) + kSensorText, from, to));
+  };
+  EXPECT_THAT(error("near_range_m: 0.5", "near_range_m: -1"), HasSubstr("near_range_m"));
+  EXPECT_THAT(error("max_depth_m: 6", "max_depth_m: 0.4"), HasSubstr("min_depth_m < max_depth_m"));
+  EXPECT_THAT(error("noise_at_1m_m: 0.01", "noise_at_1m_m: 0"), HasSubstr("noise_at_1m_m"));
+  EXPECT_THAT(error("time_constant_s: 0.012", "time_constant_s: nan"),
+              HasSubstr("time_constant_s"));
+  EXPECT_THAT(error("row_readout_s: 0.0001", "row_readout_s: 1"), HasSubstr("row_readout_s"));
+  EXPECT_THAT(error("pixel_pitch_um: 17", "pixel_pitch_um: -17"), HasSubstr("pixel_pitch_um"));
+  EXPECT_THAT(error("pixel_pitch_um: 17", ""), HasSubstr("thermal_sensor.lens"));
+  EXPECT_THAT(error("f_number: 1.25", "f_number: 0"), HasSubstr("thermal_sensor.lens"));
+  EXPECT_THAT(error("focus_m: 0.6", "focus_m: 0.01"), HasSubstr("beyond the focal length"));
+  EXPECT_THAT(error("focus_m: 0.6", ""), HasSubstr("lens.focus_m' is missing"));
+}
+
 TEST(RigCalibrationTest, F57RigWithoutIntrinsicsIsRejected) {
   EXPECT_THAT(RigError("depth_scale: 1000\n"), HasSubstr("neither depth nor thermal intrinsics"));
   const std::string error = RigError("depth { width: 640 height: 480 }\n");

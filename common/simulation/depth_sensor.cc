@@ -70,15 +70,16 @@ bool IsEdge(const HitImage& hits, int x, int y) {
 
 DepthSensor::DepthSensor(const CameraModel& camera, const SimulatedDepthOptions& options)
     : grid_(camera),
-      disparity_metres_px_(static_cast<float>(camera.fx * options.baseline_m())),
-      step_px_(static_cast<float>(options.disparity_step_px())),
-      sigma_px_(static_cast<float>(options.disparity_noise_px())),
-      min_depth_m_(static_cast<float>(options.min_depth_m())),
-      max_depth_m_(static_cast<float>(options.max_depth_m())),
-      grazing_start_cos_(static_cast<float>(std::cos(options.grazing_start_deg() * kDegree))),
-      grazing_end_cos_(static_cast<float>(std::cos(options.grazing_end_deg() * kDegree))),
-      edge_dropout_(static_cast<float>(options.edge_dropout())),
-      depth_scale_(static_cast<float>(options.depth_scale())) {}
+      disparity_metres_px_(static_cast<float>(camera.fx * options.expert().baseline_m())),
+      step_px_(static_cast<float>(options.expert().disparity_step_px())),
+      sigma_px_(static_cast<float>(options.expert().disparity_noise_px())),
+      min_depth_m_(static_cast<float>(options.expert().min_depth_m())),
+      max_depth_m_(static_cast<float>(options.expert().max_depth_m())),
+      grazing_start_cos_(
+          static_cast<float>(std::cos(options.expert().grazing_start_deg() * kDegree))),
+      grazing_end_cos_(static_cast<float>(std::cos(options.expert().grazing_end_deg() * kDegree))),
+      edge_dropout_(static_cast<float>(options.expert().edge_dropout())),
+      depth_scale_(static_cast<float>(options.expert().depth_scale())) {}
 
 Image<std::uint16_t> DepthSensor::Render(const Scene& scene, const RigidTransform& T_world_depth,
                                          std::uint64_t noise_stream, Scratch& scratch) const {

@@ -26,7 +26,8 @@ class DepthSensorTest : public ::testing::Test {
   DepthSensorTest() : builder_(23.0), camera_(*DefaultSimulatedRig().depth) {
     std::cout << "seed " << kSeed << '\n';
     builder_.UseMaterial({});
-    options_.set_depth_scale(10000.0);  // Fine units: what is looked at here is disparity.
+    options_.mutable_expert()->set_depth_scale(
+        10000.0);  // Fine units: what is looked at here is disparity.
   }
 
   void AddWall(double distance_m) {
@@ -39,7 +40,8 @@ class DepthSensorTest : public ::testing::Test {
                          NoiseStream(kSeed, 0, frame), scratch);
   }
   double DisparityStepM(double depth_m) const {
-    return depth_m * depth_m * options_.disparity_step_px() / (camera_.fx * options_.baseline_m());
+    return depth_m * depth_m * options_.expert().disparity_step_px() /
+           (camera_.fx * options_.expert().baseline_m());
   }
 
   SceneBuilder builder_;
@@ -48,15 +50,15 @@ class DepthSensorTest : public ::testing::Test {
 };
 
 TEST_F(DepthSensorTest, WithoutNoiseAndStepsDepthIsTrue) {
-  options_.set_disparity_noise_px(0.0);
-  options_.set_disparity_step_px(0.0);
+  options_.mutable_expert()->set_disparity_noise_px(0.0);
+  options_.mutable_expert()->set_disparity_step_px(0.0);
   AddWall(0.7);
   const Image<std::uint16_t> depth = Render();
   for (const std::uint16_t raw : depth.pixels()) EXPECT_NEAR(raw, 7000, 1);
 }
 
 TEST_F(DepthSensorTest, DepthComesInStepsThatGrowWithTheSquareOfTheDistance) {
-  options_.set_disparity_noise_px(0.0);
+  options_.mutable_expert()->set_disparity_noise_px(0.0);
   // A wall that recedes from 0.5 m to 1 m, seen steeply enough for returns.
   builder_.RotatedBox("slope", {0.0, 0.0, 0.75}, {4.0, 4.0, 0.001}, {0.0, 40.0, 0.0});
   const Image<std::uint16_t> depth = Render();
@@ -75,7 +77,7 @@ TEST_F(DepthSensorTest, DepthComesInStepsThatGrowWithTheSquareOfTheDistance) {
 }
 
 TEST_F(DepthSensorTest, NoiseGrowsWithTheSquareOfTheDistance) {
-  options_.set_disparity_step_px(0.0);
+  options_.mutable_expert()->set_disparity_step_px(0.0);
   for (const double distance_m : {0.5, 0.7, 1.0, 1.3}) {
     builder_ = SceneBuilder(23.0);
     builder_.UseMaterial({});
@@ -89,8 +91,8 @@ TEST_F(DepthSensorTest, NoiseGrowsWithTheSquareOfTheDistance) {
     }
     const double count = static_cast<double>(depth.size());
     const double sigma_m = std::sqrt(squares / count);
-    const double expected_m = distance_m * distance_m * options_.disparity_noise_px() /
-                              (camera_.fx * options_.baseline_m());
+    const double expected_m = distance_m * distance_m * options_.expert().disparity_noise_px() /
+                              (camera_.fx * options_.expert().baseline_m());
     EXPECT_NEAR(sigma_m / expected_m, 1.0, 0.03) << distance_m;
     EXPECT_LT(std::abs(sum / count), 0.05 * expected_m) << distance_m;
   }
@@ -107,7 +109,7 @@ TEST_F(DepthSensorTest, DefaultNoiseIsThatOfTheDataSheet) {
 }
 
 TEST_F(DepthSensorTest, NeighboursShareTheirNoiseAndFramesDoNot) {
-  options_.set_disparity_step_px(0.0);
+  options_.mutable_expert()->set_disparity_step_px(0.0);
   AddWall(1.0);
   const Image<std::uint16_t> first = Render(0), second = Render(1);
   const auto correlation = [&](const Image<std::uint16_t>& other, int dx, int dy) {
@@ -146,7 +148,7 @@ TEST_F(DepthSensorTest, NothingReturnsOutOfRange) {
 TEST_F(DepthSensorTest, GrazingSurfacesHaveHoles) {
   // Spheres show all angles; the fraction of returns falls from 1 to 0 between the two limits.
   builder_.Sphere("ball", {0.0, 0.0, 0.8}, 0.25);
-  options_.set_edge_dropout(0.0);
+  options_.mutable_expert()->set_edge_dropout(0.0);
   const Image<std::uint16_t> depth = Render();
   const Scene scene = builder_.Build("test");
   int steep = 0, steep_returns = 0, between = 0, between_returns = 0;
@@ -157,10 +159,10 @@ TEST_F(DepthSensorTest, GrazingSurfacesHaveHoles) {
       if (!hit) continue;
       const double angle =
           std::acos(std::abs(hit->point.n_world.dot(direction.normalized()))) / kDegree;
-      if (angle > options_.grazing_end_deg() + 0.1) {
+      if (angle > options_.expert().grazing_end_deg() + 0.1) {
         EXPECT_EQ(depth.At(x, y), kNoDepth);
       }
-      if (angle > 20.0 && angle < options_.grazing_start_deg() - 0.1) {
+      if (angle > 20.0 && angle < options_.expert().grazing_start_deg() - 0.1) {
         ++steep;
         steep_returns += depth.At(x, y) != kNoDepth;
       }
@@ -179,7 +181,7 @@ TEST_F(DepthSensorTest, ThingsThrowAShadowToTheLeftAsWideAsTheDisparityDifferenc
   constexpr double kNear_m = 0.6, kFar_m = 0.9;
   builder_.Box("near", {-0.05, -0.05, kNear_m}, {0.05, 0.05, kNear_m + 0.001});
   AddWall(kFar_m);
-  options_.set_edge_dropout(0.0);
+  options_.mutable_expert()->set_edge_dropout(0.0);
   const Image<std::uint16_t> depth = Render();
   const int row = camera_.height / 2;
   int holes = 0, last_hole = -1;
@@ -188,7 +190,8 @@ TEST_F(DepthSensorTest, ThingsThrowAShadowToTheLeftAsWideAsTheDisparityDifferenc
     ++holes;
     last_hole = x;
   }
-  const double expected_px = camera_.fx * options_.baseline_m() * (1.0 / kNear_m - 1.0 / kFar_m);
+  const double expected_px =
+      camera_.fx * options_.expert().baseline_m() * (1.0 / kNear_m - 1.0 / kFar_m);
   EXPECT_NEAR(holes, expected_px, 2.0);
   // It ends where the near thing begins.
   EXPECT_NEAR(last_hole, camera_.cx - 0.05 / kNear_m * camera_.fx, 2.0);
@@ -197,7 +200,7 @@ TEST_F(DepthSensorTest, ThingsThrowAShadowToTheLeftAsWideAsTheDisparityDifferenc
 TEST_F(DepthSensorTest, EdgesLoseTheFractionThatTheOptionsSay) {
   builder_.Box("near", {-0.2, -0.2, 0.6}, {0.2, 0.2, 0.601});
   AddWall(0.9);
-  options_.set_edge_dropout(0.5);
+  options_.mutable_expert()->set_edge_dropout(0.5);
   const Image<std::uint16_t> depth = Render();
   // The right edge has no shadow.
   const int edge = static_cast<int>(std::floor(camera_.cx + 0.2 / 0.6 * camera_.fx));
@@ -212,7 +215,7 @@ TEST_F(DepthSensorTest, AnySizeAndUnitWorks) {
   camera_ = camera_.Downscaled(2);
   camera_.width = 101;
   camera_.height = 77;
-  options_.set_depth_scale(5000.0);
+  options_.mutable_expert()->set_depth_scale(5000.0);
   AddWall(0.8);
   const Image<std::uint16_t> depth = Render();
   EXPECT_EQ(depth.width(), 101);

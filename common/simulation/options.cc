@@ -28,25 +28,28 @@ class RangeCheck {
 
 void CheckDepth(const SimulatedDepthOptions& depth, RangeCheck& check) {
   check("depth.rate_hz", depth.rate_hz(), 0.1, 1000.0);
-  check("depth.baseline_m", depth.baseline_m(), 0.001, 10.0);
-  check("depth.disparity_step_px", depth.disparity_step_px(), 0.0, 10.0);
-  check("depth.disparity_noise_px", depth.disparity_noise_px(), 0.0, 10.0);
-  check("depth.min_depth_m", depth.min_depth_m(), 0.0, 100.0);
-  check("depth.max_depth_m", depth.max_depth_m(), depth.min_depth_m(), 100.0);
-  check("depth.grazing_start_deg", depth.grazing_start_deg(), 0.0, 90.0);
-  check("depth.grazing_end_deg", depth.grazing_end_deg(), depth.grazing_start_deg(), 90.0);
-  check("depth.edge_dropout", depth.edge_dropout(), 0.0, 1.0);
-  check("depth.depth_scale", depth.depth_scale(), 1.0, 1e6);
+  check("depth.expert.baseline_m", depth.expert().baseline_m(), 0.001, 10.0);
+  check("depth.expert.disparity_step_px", depth.expert().disparity_step_px(), 0.0, 10.0);
+  check("depth.expert.disparity_noise_px", depth.expert().disparity_noise_px(), 0.0, 10.0);
+  check("depth.expert.min_depth_m", depth.expert().min_depth_m(), 0.0, 100.0);
+  check("depth.expert.max_depth_m", depth.expert().max_depth_m(), depth.expert().min_depth_m(),
+        100.0);
+  check("depth.expert.grazing_start_deg", depth.expert().grazing_start_deg(), 0.0, 90.0);
+  check("depth.expert.grazing_end_deg", depth.expert().grazing_end_deg(),
+        depth.expert().grazing_start_deg(), 90.0);
+  check("depth.expert.edge_dropout", depth.expert().edge_dropout(), 0.0, 1.0);
+  check("depth.expert.depth_scale", depth.expert().depth_scale(), 1.0, 1e6);
 }
 
 void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
   check("thermal.rate_hz", thermal.rate_hz(), 0.1, 1000.0);
-  check("thermal.netd_kelvin", thermal.netd_kelvin(), 0.0, 10.0);
-  check("thermal.blur_px", thermal.blur_px(), 0.0, 10.0);
-  check("thermal.band_min_um", thermal.band_min_um(), 0.5, 100.0);
-  check("thermal.band_max_um", thermal.band_max_um(), thermal.band_min_um() + 0.01, 200.0);
-  check("thermal.time_constant_s", thermal.time_constant_s(), 0.0, 1.0);
-  check("thermal.readout_s", thermal.readout_s(), 0.0, 1.0);
+  check("thermal.expert.netd_kelvin", thermal.expert().netd_kelvin(), 0.0, 10.0);
+  check("thermal.expert.blur_px", thermal.expert().blur_px(), 0.0, 10.0);
+  check("thermal.expert.band_min_um", thermal.expert().band_min_um(), 0.5, 100.0);
+  check("thermal.expert.band_max_um", thermal.expert().band_max_um(),
+        thermal.expert().band_min_um() + 0.01, 200.0);
+  check("thermal.expert.time_constant_s", thermal.expert().time_constant_s(), 0.0, 1.0);
+  check("thermal.expert.readout_s", thermal.expert().readout_s(), 0.0, 1.0);
 }
 
 void CheckClock(const std::string& name, const ClockOptions& clock, RangeCheck& check) {
@@ -85,11 +88,11 @@ Status Validate(const SimulationOptions& options) {
   check("shutter.first_s", shutter.first_s(), 0.0, kHour);
   check("shutter.interval_s", shutter.interval_s(), 0.0, kHour);
   check("shutter.duration_s", shutter.duration_s(), 0.0, kHour);
-  check("shutter.duration_step_s", shutter.duration_step_s(), 0.0, kHour);
-  check("shutter.shutter_celsius", shutter.shutter_celsius(), kMinRadiometric_celsius,
-        kMaxRadiometric_celsius);
-  check("shutter.drift_k", shutter.drift_k(), 0.0, 100.0);
-  check("shutter.order_delay_s", shutter.order_delay_s(), 0.0, 60.0);
+  check("shutter.expert.duration_step_s", shutter.expert().duration_step_s(), 0.0, kHour);
+  check("shutter.expert.shutter_celsius", shutter.expert().shutter_celsius(),
+        kMinRadiometric_celsius, kMaxRadiometric_celsius);
+  check("shutter.expert.drift_k", shutter.expert().drift_k(), 0.0, 100.0);
+  check("shutter.expert.order_delay_s", shutter.expert().order_delay_s(), 0.0, 60.0);
   const ThermalDriftOptions& drift = options.drift();
   check("drift.housing_celsius", drift.housing_celsius(), -60.0, 120.0);
   check("drift.warm_up_k", drift.warm_up_k(), -100.0, 100.0);
@@ -102,7 +105,7 @@ Status Validate(const SimulationOptions& options) {
   check("odometry.scale_error", odometry.scale_error(), -0.9, 10.0);
   check("odometry.position_sigma_m", odometry.position_sigma_m(), 0.0, 1.0);
   check("odometry.rotation_sigma_deg", odometry.rotation_sigma_deg(), 0.0, 45.0);
-  check("thermal_phase_s", options.thermal_phase_s(), 0.0, 10.0);
+  check("thermal_phase_s", options.expert().thermal_phase_s(), 0.0, 10.0);
   return check.status();
 }
 
@@ -158,7 +161,7 @@ Result<Rig> SimulatedRig(const SimulationOptions& options) {
     return Err(InvalidArgument(fmt::format(
         "{}: a simulated rig needs depth, thermal and T_thermal_depth", options.rig_file())));
   }
-  rig.depth_scale = options.depth().depth_scale();
+  rig.depth_scale = options.depth().expert().depth_scale();
   return rig;
 }
 

@@ -3,9 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
-#include <string_view>
-#include <utility>
 
 #include "common/config/text_proto.h"
 #include "common/simulation/simulation_options.pb.h"
@@ -23,39 +22,39 @@ TEST(RenamedOptionsTest, AnOldNameInAFileFailsWithTheNewOne) {
   EXPECT_THAT(read.message(), HasSubstr("old.textproto:1:15: unknown field 'impulse_share'. It is "
                                         "called 'impulse_fraction' now."));
   EXPECT_THAT(read.message(), HasSubstr("old.textproto:2:11: unknown field 'obeys'. It is called "
-                                        "'follows_orders' now."));
+                                        "'expert.follows_orders' now."));
 }
 
 TEST(RenamedOptionsTest, AnOldNameOnTheCommandLineFailsWithTheNewOne) {
   SimulationOptions options;
   const Status set = ApplyOverride("shutter.tells=false", options);
   ASSERT_FALSE(set.ok());
-  EXPECT_THAT(set.message(), HasSubstr("It is called 'reports_shutter' now."));
-  EXPECT_TRUE(ApplyOverride("shutter.reports_shutter=false", options).ok());
-  EXPECT_FALSE(options.shutter().reports_shutter());
+  EXPECT_THAT(set.message(), HasSubstr("It is called 'shutter.expert.reports_shutter' now."));
+  EXPECT_TRUE(ApplyOverride("shutter.expert.reports_shutter=false", options).ok());
+  EXPECT_FALSE(options.shutter().expert().reports_shutter());
+}
+
+TEST(RenamedOptionsTest, OldNamesAreFoundWhereverTheyStand) {
+  SimulationOptions options;
+  const Status read = ParseTextProto(
+      "# tells: 1\nscene < hot_celsius: -5 >;\nshutter: { tells: -1.5 interval_s: 1\n"
+      "obeys: false }\nrig_file: 'tells: 1'\ndepth_clock { impulse_share: 1 nonsense { tells: 1 } "
+      "}",
+      "old", options);
+  ASSERT_FALSE(read.ok());
+  for (const char* place :
+       {"old:3:12: unknown field 'tells'", "old:4:1: unknown field 'obeys'",
+        "old:6:15: unknown field 'impulse_share'", "old:6:32: unknown field 'nonsense'"}) {
+    EXPECT_THAT(read.message(), HasSubstr(place));
+  }
+  EXPECT_EQ(std::ranges::count(read.message(), '\n'), 3) << read.message();
 }
 
 TEST(RenamedOptionsTest, OnlyTheMessageThatHadTheNameKnowsItsNewOne) {
-  EXPECT_EQ(NameSinceRenaming(*ShutterOptions::descriptor(), "tells"), "reports_shutter");
-  EXPECT_EQ(NameSinceRenaming(*ClockOptions::descriptor(), "tells"), "");
-  EXPECT_EQ(NameSinceRenaming(*ShutterOptions::descriptor(), "interval_s"), "");
-}
-
-TEST(RenamedOptionsTest, WhatAnOlderProgramWroteDownIsReadWithThePresentNames) {
-  SimulationOptions before;
-  before.mutable_shutter()->set_reports_shutter(false);
-  before.mutable_depth_clock()->set_impulse_fraction(0.25);
-  std::string text = ToTextProto(before);
-  for (const auto& [now, old] :
-       {std::pair{"reports_shutter", "tells"}, std::pair{"impulse_fraction", "impulse_share"}}) {
-    for (auto at = text.find(now); at != std::string::npos; at = text.find(now, at + 1))
-      text.replace(at, std::string_view(now).size(), old);
-  }
-  SimulationOptions after;
-  ASSERT_FALSE(ParseTextProto(text, "stats.json", after).ok());
-  const Status read = ParseTextProto(WithPresentNames(text), "stats.json", after);
-  ASSERT_TRUE(read.ok()) << read.message();
-  EXPECT_EQ(ToTextProto(after), ToTextProto(before));
+  ASSERT_NE(FindRenamed(*ShutterOptions::descriptor(), "tells"), nullptr);
+  EXPECT_EQ(FindRenamed(*ShutterOptions::descriptor(), "tells")->now, "expert.reports_shutter");
+  EXPECT_EQ(FindRenamed(*ClockOptions::descriptor(), "tells"), nullptr);
+  EXPECT_EQ(FindRenamed(*ShutterOptions::descriptor(), "interval_s"), nullptr);
 }
 
 }  // namespace

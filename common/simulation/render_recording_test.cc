@@ -180,7 +180,7 @@ TEST_F(RenderRecordingTest, FramesAreFlaggedAndFrozenWhileTheShutterIsClosed) {
 }
 
 TEST_F(RenderRecordingTest, ACameraMayShowItsShutterInstead) {
-  options_.mutable_shutter()->set_appearance(ShutterOptions::SHUTTER);
+  options_.mutable_shutter()->mutable_expert()->set_appearance(ShutterOptions::SHUTTER);
   const auto scan = SimulatedScan::Create(options_);
   ASSERT_TRUE(scan);
   SimulatedScan::Scratch scratch;
@@ -216,11 +216,11 @@ TEST_F(RenderRecordingTest, ProgressRisesToOne) {
 }
 
 TEST_F(RenderRecordingTest, OptionsOutOfRangeAreNamed) {
-  options_.mutable_depth()->set_edge_dropout(1.5);
+  options_.mutable_depth()->mutable_expert()->set_edge_dropout(1.5);
   const Status status = Render(dir_ / "scan.mcap");
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
-  EXPECT_NE(status.message().find("depth.edge_dropout"), std::string::npos);
-  options_.mutable_depth()->clear_edge_dropout();
+  EXPECT_NE(status.message().find("depth.expert.edge_dropout"), std::string::npos);
+  options_.mutable_depth()->mutable_expert()->clear_edge_dropout();
   options_.set_rig_file("no/such/rig.textproto");
   EXPECT_NE(Render(dir_ / "scan.mcap").message().find("rig_file"), std::string::npos);
   EXPECT_FALSE(fs::exists(dir_ / "scan.mcap"));
@@ -241,7 +241,7 @@ TEST_F(RenderRecordingTest, TheSecondRequestIsAnsweredFromTheCache) {
 TEST_F(RenderRecordingTest, ChangedOptionsAreRenderedAgain) {
   const auto first = Cached();
   ASSERT_TRUE(first);
-  options_.mutable_thermal()->set_netd_kelvin(0.05);
+  options_.mutable_thermal()->mutable_expert()->set_netd_kelvin(0.05);
   int updates = 0;
   const auto second = Cached(&updates);
   ASSERT_TRUE(second);

@@ -48,7 +48,7 @@ SimulatedScan::SimulatedScan(const SimulationOptions& resolved, const Rig& rig, 
       staged_(std::move(staged)),
       depth_sensor_(*rig.depth, resolved.depth()),
       thermal_sensor_(*rig.thermal, resolved.thermal()),
-      start_(CaptureTimeFromNanoseconds(resolved.start_time_ns())) {
+      start_(CaptureTimeFromNanoseconds(resolved.expert().start_time_ns())) {
   ScheduleFrames();
   ScheduleShutter();
 }
@@ -67,21 +67,22 @@ void SimulatedScan::ScheduleFrames() {
   };
   depth_times_ =
       schedule(options_->depth_clock(), options_->depth().rate_hz(), start_, kDepthClock);
-  thermal_times_ = schedule(options_->thermal_clock(), options_->thermal().rate_hz(),
-                            start_ + FromSeconds(options_->thermal_phase_s()), kThermalClock);
+  thermal_times_ =
+      schedule(options_->thermal_clock(), options_->thermal().rate_hz(),
+               start_ + FromSeconds(options_->expert().thermal_phase_s()), kThermalClock);
 }
 
 void SimulatedScan::ScheduleShutter() {
   const ShutterOptions& shutter = options_->shutter();
   if (shutter.duration_s() <= 0.0) return;
   const double interval_s = std::max(shutter.interval_s(), shutter.duration_s());
-  const bool by_drift = shutter.drift_k() > 0.0;
+  const bool by_drift = shutter.expert().drift_k() > 0.0;
   if (!by_drift && shutter.interval_s() <= 0.0) return;
   double at_s = by_drift ? NextDrift(0.0) : shutter.first_s();
   while (at_s < options_->duration_s()) {
     const CaptureTime closed = start_ + FromSeconds(at_s);
-    const double duration_s =
-        shutter.duration_s() + shutter.duration_step_s() * static_cast<double>(nuc_events_.size());
+    const double duration_s = shutter.duration_s() + shutter.expert().duration_step_s() *
+                                                         static_cast<double>(nuc_events_.size());
     nuc_events_.push_back({closed, closed + FromSeconds(duration_s), NucSource::kInBand});
     const double next_s = at_s + interval_s;
     const double drifted_s = by_drift ? NextDrift(at_s + duration_s) : next_s;
@@ -100,7 +101,7 @@ double SimulatedScan::NextDrift(double after_s) const {
   const double reference = HousingCelsius(after_s);
   double at_s = after_s;
   while (at_s < options_->duration_s() &&
-         std::abs(HousingCelsius(at_s) - reference) < options_->shutter().drift_k()) {
+         std::abs(HousingCelsius(at_s) - reference) < options_->shutter().expert().drift_k()) {
     at_s += kStep_s;
   }
   return at_s;
@@ -168,13 +169,13 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
   const auto closed = [&](std::uint64_t number) {
     return IsShutterClosed(thermal_times_[number].exposure);
   };
-  const bool freeze = options_->shutter().appearance() == ShutterOptions::FREEZE;
+  const bool freeze = options_->shutter().expert().appearance() == ShutterOptions::FREEZE;
   // A frozen camera repeats the last image from before the shutter closed, noise included.
   std::uint64_t shown = frame_number;
   while (freeze && shown > 0 && closed(shown)) --shown;
   const std::uint64_t noise = NoiseStream(options_->seed(), kThermalPixels, shown);
   if (closed(shown)) {
-    return thermal_sensor_.RenderShutter(options_->shutter().shutter_celsius(), noise,
+    return thermal_sensor_.RenderShutter(options_->shutter().expert().shutter_celsius(), noise,
                                          scratch.thermal);
   }
   const CaptureTime time = thermal_times_[shown].exposure;
@@ -195,7 +196,7 @@ ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {
   ThermalHousekeeping housekeeping;
   housekeeping.housing_celsius = static_cast<float>(HousingCelsius(ToSeconds(time - start_)));
   housekeeping.fpa_celsius = housekeeping.housing_celsius + static_cast<float>(kFpaAboveHousing_k);
-  housekeeping.shutter_celsius = static_cast<float>(options_->shutter().shutter_celsius());
+  housekeeping.shutter_celsius = static_cast<float>(options_->shutter().expert().shutter_celsius());
   return housekeeping;
 }
 

@@ -73,7 +73,7 @@ StagedScene PlainWall() {
 TEST_F(SimulatedScanTest, AHousingThatWarmsUpFalsifiesTemperaturesUntilTheNextNuc) {
   // Fig. 3.4b: 5 K of the housing, 20 K of error. After 10 time constants nothing is left to come.
   options_.set_duration_s(20.0);
-  options_.mutable_thermal()->set_netd_kelvin(0.0);
+  options_.mutable_thermal()->mutable_expert()->set_netd_kelvin(0.0);
   options_.mutable_shutter()->set_interval_s(0.0);
   ThermalDriftOptions& drift = *options_.mutable_drift();
   drift.set_warm_up_k(5.0);
@@ -103,7 +103,7 @@ TEST_F(SimulatedScanTest, TheShutterClosesWheneverTheHousingHasDrifted) {
   ShutterOptions& shutter = *options_.mutable_shutter();
   shutter.set_interval_s(0.0);
   shutter.set_duration_s(0.1);
-  shutter.set_drift_k(0.8);
+  shutter.mutable_expert()->set_drift_k(0.8);
   const auto scan = Create(PlainWall());
   // The housing at t is 30 + 5 (1 - exp(-t / 4)). It is 0.8 K above h at -4 ln(1 - (h + 0.8 - 30) /
   // 5).
@@ -123,7 +123,7 @@ TEST_F(SimulatedScanTest, ClosingsCanBecomeLonger) {
   shutter.set_first_s(0.5);
   shutter.set_interval_s(1.0);
   shutter.set_duration_s(0.4);
-  shutter.set_duration_step_s(0.3);
+  shutter.mutable_expert()->set_duration_step_s(0.3);
   const auto scan = Create(PolishedWallAndOperator(false));
   ASSERT_EQ(scan->nuc_events().size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -133,10 +133,10 @@ TEST_F(SimulatedScanTest, ClosingsCanBecomeLonger) {
 }
 
 TEST_F(SimulatedScanTest, OptionsOutOfRangeAreRefusedWithASceneOfOnesOwnToo) {
-  options_.mutable_thermal()->set_time_constant_s(-0.01);
+  options_.mutable_thermal()->mutable_expert()->set_time_constant_s(-0.01);
   const auto scan = SimulatedScan::Create(options_, PolishedWallAndOperator(false));
   ASSERT_FALSE(scan.has_value());
-  EXPECT_NE(scan.error().message().find("thermal.time_constant_s"), std::string::npos);
+  EXPECT_NE(scan.error().message().find("thermal.expert.time_constant_s"), std::string::npos);
 }
 
 }  // namespace

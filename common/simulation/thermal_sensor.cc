@@ -55,11 +55,12 @@ double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, do
 
 ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOptions& options)
     : grid_(camera),
-      band_(SpectralBand{options.band_min_um(), options.band_max_um()}),
-      noise_radiance_(options.netd_kelvin() * PlanckBandRadianceSlope(kNetd_celsius, band_.band())),
-      readout_s_(options.readout_s()),
-      delays_s_(ResponseDelays(options.time_constant_s())),
-      blur_weights_(GaussianWeights(options.blur_px())) {}
+      band_(SpectralBand{options.expert().band_min_um(), options.expert().band_max_um()}),
+      noise_radiance_(options.expert().netd_kelvin() *
+                      PlanckBandRadianceSlope(kNetd_celsius, band_.band())),
+      readout_s_(options.expert().readout_s()),
+      delays_s_(ResponseDelays(options.expert().time_constant_s())),
+      blur_weights_(GaussianWeights(options.expert().blur_px())) {}
 
 Image<std::uint16_t> ThermalSensor::Render(const Scene& scene,
                                            const RigidTransform& T_world_thermal,

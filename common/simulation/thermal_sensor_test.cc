@@ -68,8 +68,8 @@ TEST_F(ThermalSensorTest, NoiseIsTheNetdAt30CelsiusAndLessWhereItIsHot) {
 }
 
 TEST_F(ThermalSensorTest, EachPixelShowsTheApparentTemperatureOfWhatItSees) {
-  options_.set_netd_kelvin(0.0);
-  options_.set_blur_px(0.0);
+  options_.mutable_expert()->set_netd_kelvin(0.0);
+  options_.mutable_expert()->set_blur_px(0.0);
   SceneOptions scene_options;
   const StagedScene staged = MakeScene(scene_options);
   const RigidTransform T_world_thermal = staged.path.PoseAt(5.0);
@@ -92,7 +92,7 @@ TEST_F(ThermalSensorTest, EachPixelShowsTheApparentTemperatureOfWhatItSees) {
 }
 
 TEST_F(ThermalSensorTest, PolishedPlatesShowTheHotDisc) {
-  options_.set_netd_kelvin(0.0);
+  options_.mutable_expert()->set_netd_kelvin(0.0);
   SceneBuilder builder(23.0);
   builder.UseMaterial({0.1, 12.0, 40.0, true});
   builder.RotatedBox("mirror", {0, 0, 0.5}, {2.0, 2.0, 0.01}, {0, 45, 0}).temperature =
@@ -107,14 +107,14 @@ TEST_F(ThermalSensorTest, PolishedPlatesShowTheHotDisc) {
 }
 
 TEST_F(ThermalSensorTest, BlurKeepsTheMeanRadianceAndSoftensEdges) {
-  options_.set_netd_kelvin(0.0);
+  options_.mutable_expert()->set_netd_kelvin(0.0);
   SceneBuilder builder(23.0);
   builder.UseMaterial({1.0, 1.0, 0.0, false});
   builder.Box("half", {0.0, -3, 0.5}, {3, 3, 0.6}).temperature = Uniform(100.0);
   const Scene scene = builder.Build("half");
-  options_.set_blur_px(0.0);
+  options_.mutable_expert()->set_blur_px(0.0);
   const Image<std::uint16_t> sharp = Render(scene, RigidTransform::Identity());
-  options_.set_blur_px(1.0);
+  options_.mutable_expert()->set_blur_px(1.0);
   const Image<std::uint16_t> soft = Render(scene, RigidTransform::Identity());
   const BandRadiance band;
   double sharp_sum = 0.0, soft_sum = 0.0;
@@ -140,8 +140,8 @@ class MovingThermalCameraTest : public ThermalSensorTest {
 
   MovingThermalCameraTest() : scene_(HalfWall()) {
     camera_ = camera_.WithoutDistortion();
-    options_.set_netd_kelvin(0.0);
-    options_.set_blur_px(0.0);
+    options_.mutable_expert()->set_netd_kelvin(0.0);
+    options_.mutable_expert()->set_blur_px(0.0);
   }
   static Scene HalfWall() {
     SceneBuilder builder(23.0);
@@ -181,7 +181,7 @@ TEST_F(MovingThermalCameraTest, SmearsAsAnExponentialAnswerDoes) {
   // A dozen exposures, a third of the time constant apart: the onset becomes a ramp as long as
   // that.
   constexpr double kDiscrete = 0.15;
-  options_.set_time_constant_s(kTimeConstant_s);
+  options_.mutable_expert()->set_time_constant_s(kTimeConstant_s);
   const Image<std::uint16_t> image = RenderMoving(kSpeed_m_s);
   constexpr int kRow = 100;
   double sum = 0.0;
@@ -201,7 +201,7 @@ TEST_F(MovingThermalCameraTest, SmearsAsAnExponentialAnswerDoes) {
 TEST_F(MovingThermalCameraTest, RowsThatAreReadLaterSeeTheEdgeLater) {
   constexpr double kReadout_s = 0.020;
   constexpr double kWithinAPixel = 1.0;
-  options_.set_readout_s(kReadout_s);
+  options_.mutable_expert()->set_readout_s(kReadout_s);
   const Image<std::uint16_t> image = RenderMoving(kSpeed_m_s);
   const double shift_px = kSpeed_m_s * kReadout_s * camera_.fx / kWall_m;
   EXPECT_GT(shift_px, 5.0);
@@ -212,8 +212,8 @@ TEST_F(MovingThermalCameraTest, RowsThatAreReadLaterSeeTheEdgeLater) {
 
 TEST_F(MovingThermalCameraTest, ACameraAtRestSmearsNothing) {
   const Image<std::uint16_t> sharp = Render(scene_, RigidTransform::Identity());
-  options_.set_time_constant_s(0.01);
-  options_.set_readout_s(0.02);
+  options_.mutable_expert()->set_time_constant_s(0.01);
+  options_.mutable_expert()->set_readout_s(0.02);
   EXPECT_TRUE(std::ranges::equal(RenderMoving(0.0).pixels(), sharp.pixels()));
   EXPECT_FALSE(std::ranges::equal(RenderMoving(kSpeed_m_s).pixels(), sharp.pixels()));
 }

@@ -68,6 +68,38 @@ std::optional<RefusalCause> FromWireMode(const isotherm_wire_StreamMode& from, S
   return std::nullopt;
 }
 
+void ToWireSensors(const Rig& rig, isotherm_wire_Rig* to) {
+  to->depth_sensor = {.near_range_m = rig.depth_sensor.near_range_m,
+                      .min_depth_m = rig.depth_sensor.min_depth_m,
+                      .max_depth_m = rig.depth_sensor.max_depth_m,
+                      .noise_at_1m_m = rig.depth_sensor.noise_at_1m_m};
+  const ThermalSensorModel& thermal = rig.thermal_sensor;
+  const LensModel lens = thermal.lens.value_or(LensModel());
+  to->thermal_sensor = {.time_constant_s = thermal.time_constant_s,
+                        .row_readout_s = thermal.row_readout_s,
+                        .has_pixel_pitch = thermal.pixel_pitch_m.has_value(),
+                        .pixel_pitch_m = thermal.pixel_pitch_m.value_or(0.0),
+                        .has_lens = thermal.lens.has_value(),
+                        .focal_length_m = lens.focal_length_m,
+                        .f_number = lens.f_number,
+                        .focus_m = lens.focus_m};
+  to->has_sensors = true;
+}
+
+void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
+  if (!from.has_sensors) return;
+  rig->depth_sensor = {.near_range_m = from.depth_sensor.near_range_m,
+                       .min_depth_m = from.depth_sensor.min_depth_m,
+                       .max_depth_m = from.depth_sensor.max_depth_m,
+                       .noise_at_1m_m = from.depth_sensor.noise_at_1m_m};
+  const isotherm_wire_ThermalSensor& thermal = from.thermal_sensor;
+  rig->thermal_sensor.time_constant_s = thermal.time_constant_s;
+  rig->thermal_sensor.row_readout_s = thermal.row_readout_s;
+  if (thermal.has_pixel_pitch) rig->thermal_sensor.pixel_pitch_m = thermal.pixel_pitch_m;
+  if (thermal.has_lens)
+    rig->thermal_sensor.lens = {thermal.focal_length_m, thermal.f_number, thermal.focus_m};
+}
+
 std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, Rig* rig) {
   if (from.has_depth) rig->depth = FromWireCamera(from.depth);
   if (from.has_thermal) rig->thermal = FromWireCamera(from.thermal);
@@ -81,6 +113,7 @@ std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, R
   rig->serial = ReadText(from.serial);
   rig->date = ReadText(from.date);
   rig->method = ReadText(from.method);
+  FromWireSensors(from, rig);
   return CheckRig(*rig);
 }
 
@@ -119,6 +152,7 @@ void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
   ToWireMode(from.depth, &to->depth_mode);
   ToWireMode(from.thermal, &to->thermal_mode);
   to->waits_for_ground = from.waits_for_ground;
+  ToWireSensors(rig, to);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to) {

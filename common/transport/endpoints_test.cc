@@ -61,6 +61,12 @@ Rig MakeRig() {
   rig.thermal_delay_s = 0.012;
   rig.serial = "RIG-1";
   rig.reprojection_error_px = 0.31;
+  rig.depth_sensor = {
+      .near_range_m = 0.5, .min_depth_m = 0.4, .max_depth_m = 6.0, .noise_at_1m_m = 0.01};
+  rig.thermal_sensor = {.time_constant_s = 0.012,
+                        .row_readout_s = 1e-4,
+                        .pixel_pitch_m = 25e-6,
+                        .lens = LensModel{.focal_length_m = 0.01, .f_number = 1.0, .focus_m = 0.5}};
   return rig;
 }
 
@@ -166,6 +172,17 @@ TEST_F(EndpointsTest, RigArrivesAsItWasWritten) {
   EXPECT_EQ(rig.rig.serial, "RIG-1");
   EXPECT_EQ(rig.rig.thermal_delay_s, 0.012);
   EXPECT_EQ(rig.rig.reprojection_error_px, 0.31);
+  EXPECT_EQ(rig.rig.depth_sensor.near_range_m, 0.5);
+  EXPECT_EQ(rig.rig.depth_sensor.min_depth_m, 0.4);
+  EXPECT_EQ(rig.rig.depth_sensor.max_depth_m, 6.0);
+  EXPECT_EQ(rig.rig.depth_sensor.noise_at_1m_m, 0.01);
+  EXPECT_EQ(rig.rig.thermal_sensor.time_constant_s, 0.012);
+  EXPECT_EQ(rig.rig.thermal_sensor.row_readout_s, 1e-4);
+  EXPECT_EQ(rig.rig.thermal_sensor.pixel_pitch_m, 25e-6);
+  ASSERT_TRUE(rig.rig.thermal_sensor.lens.has_value());
+  EXPECT_EQ(rig.rig.thermal_sensor.lens->focal_length_m, 0.01);
+  EXPECT_EQ(rig.rig.thermal_sensor.lens->f_number, 1.0);
+  EXPECT_EQ(rig.rig.thermal_sensor.lens->focus_m, 0.5);
   EXPECT_EQ(rig.depth.serial, "D1");
   EXPECT_EQ(rig.depth.model, "a, b");
   EXPECT_EQ(rig.depth.rate_hz, 30.0);

@@ -44,7 +44,7 @@ class SteadyCamera final : public FrameSource {
 TEST(CameraProcessPairTest, F14WhileOneLibraryCrashesAndHangsTheOtherCameraLosesNoFrame) {
   const SystemClock clock;
   FrameCheckOptions options;
-  options.set_retry_min_s(0.05);
+  options.mutable_expert()->set_retry_min_s(0.05);
   for (const char* what : {"crash", "hang"}) {
     const auto ignore = [](Sensor) {};
     int dropped = 0;

@@ -33,14 +33,13 @@ void AddPaths(const std::string& separated, std::vector<std::string>& paths) {
 }
 
 /// Those that somebody has named, so that a typing error is not silent.
-void AddNamedPaths(const std::string& separated, const char* option,
+void AddNamedPaths(const google::protobuf::RepeatedPtrField<std::string>& named, const char* option,
                    std::vector<std::string>& paths) {
-  const std::size_t before = paths.size();
-  AddPaths(separated, paths);
-  for (std::size_t i = before; i < paths.size(); ++i) {
+  for (const std::string& path : named) {
+    paths.push_back(path);
     std::error_code ignored;
-    if (std::filesystem::exists(paths[i], ignored)) continue;
-    LOG(Edge, Warning) << "source.camera_sandbox." << option << ": there is no " << paths[i]
+    if (std::filesystem::exists(path, ignored)) continue;
+    LOG(Edge, Warning) << "source.camera_sandbox.expert." << option << ": there is no " << path
                        << "; the camera's library will not have it";
   }
 }
@@ -77,12 +76,12 @@ std::optional<CameraSandbox> AccessFor(Sensor sensor, const SourceOptions& optio
   const CameraSandboxOptions& wanted = options.camera_sandbox();
   if (!wanted.enabled()) return std::nullopt;
   CameraSandbox sandbox;
-  sandbox.local_sockets = wanted.local_sockets();
+  sandbox.local_sockets = wanted.expert().local_sockets();
   sandbox.read.assign(std::begin(kSystem), std::end(kSystem));
   sandbox.write = {"/dev/null"};
   if (const char* libraries = std::getenv("LD_LIBRARY_PATH")) AddPaths(libraries, sandbox.read);
-  AddNamedPaths(wanted.read(), "read", sandbox.read);
-  AddNamedPaths(wanted.write(), "write", sandbox.write);
+  AddNamedPaths(wanted.expert().read(), "read", sandbox.read);
+  AddNamedPaths(wanted.expert().write(), "write", sandbox.write);
   const std::string& uri = options.depth_camera().uri();
   if (sensor == Sensor::kDepth && uri.ends_with(".oni")) {
     sandbox.read.push_back(uri);
@@ -90,8 +89,8 @@ std::optional<CameraSandbox> AccessFor(Sensor sensor, const SourceOptions& optio
   }
   if (sensor == Sensor::kThermal) {
     const ThermalCameraOptions& thermal = options.thermal_camera();
-    for (const std::string& path :
-         {thermal.optris_library(), thermal.optris_config(), thermal.optris_formats()}) {
+    for (const std::string& path : {thermal.expert().optris_library(), thermal.optris_config(),
+                                    thermal.expert().optris_formats()}) {
       if (path.find('/') != std::string::npos) sandbox.read.push_back(path);
     }
   }

@@ -74,11 +74,12 @@ void LogRig(const std::optional<Rig>& rig) {
 void LogCounts(const std::vector<CameraDescription>& cameras) {
   for (const CameraDescription& camera : cameras) {
     if (!camera.counts_only) continue;
-    LOG(Edge, Warning) << "the thermal camera (" << camera.driver
-                       << ") sends counts, not temperatures: they are recorded and published as "
-                          "that, and the surface will have no temperatures; "
-                          "source.thermal_camera.kelvin_per_count and offset_kelvin could say what "
-                          "counts mean";
+    LOG(Edge, Warning)
+        << "the thermal camera (" << camera.driver
+        << ") sends counts, not temperatures: they are recorded and published as "
+           "that, and the surface will have no temperatures; "
+           "source.thermal_camera.expert.kelvin_per_count and offset_kelvin could say what "
+           "counts mean";
   }
 }
 
@@ -159,9 +160,9 @@ RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options, con
       {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
       {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
       {"timing",
-       {{"depth_delay_s", fmt::format("{}", timing.depth_delay_s())},
+       {{"depth_delay_s", fmt::format("{}", timing.expert().depth_delay_s())},
         {"thermal_delay_s",
-         fmt::format("{}", timing.thermal_delay_s() + start.rig_thermal_delay_s)}}}};
+         fmt::format("{}", timing.expert().thermal_delay_s() + start.rig_thermal_delay_s)}}}};
   if (!start.cameras.empty()) metadata["cameras"] = CameraMetadata(start.cameras);
   return metadata;
 }
@@ -174,8 +175,8 @@ Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const Start
       RecordingPath(options.spool().record(), start.time, start.session());
   if (!path) return nullptr;
   const auto files = std::make_shared<RecordingFiles>(
-      RecordingDescription{*path, FromSeconds(options.spool().flush_interval_s()), start.rig,
-                           RecordingMetadata(options, start)});
+      RecordingDescription{*path, FromSeconds(options.spool().expert().flush_interval_s()),
+                           start.rig, RecordingMetadata(options, start)});
   auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
                                                   [path] { return FreeDiskBytes(*path); },
                                                   options.spool(), clock, counters});
@@ -208,7 +209,7 @@ bool Drain(Publisher& publisher, const LinkOptions& options, const Clock& clock,
            const std::stop_token& stop) {
   const SteadyTime start = clock.SteadyNow();
   while (!publisher.Drain(stop_limits::kTick)) {
-    const Nanoseconds configured = FromSeconds(options.linger_s());
+    const Nanoseconds configured = FromSeconds(options.expert().linger_s());
     const Nanoseconds limit =
         stop.stop_requested() ? std::min(configured, stop_limits::kLingerAfterSignal) : configured;
     if (clock.SteadyNow() - start >= limit) return false;
@@ -272,7 +273,7 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
   ending.deadline.Arm(stop_limits::kDisk, kExitRecording, "the disk", say);
   const int status = pipeline.StopRecording().ok() ? 0 : kExitRecording;
   const Nanoseconds linger =
-      stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().linger_s());
+      stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().expert().linger_s());
   ending.deadline.Arm(stop_limits::kLink + linger, status, "the network", say);
   static_cast<void>(pipeline.Stop());
   housekeeping.PublishEnd();

@@ -88,7 +88,7 @@ bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options) {
     // The other drivers are ours.
     return ThermalDriver_Name(options.thermal_camera().driver()) == "OPTRIS_SDK";
   }
-  return options.depth_camera().own_process();
+  return options.depth_camera().expert().own_process();
 }
 
 std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOptions& options,

@@ -57,7 +57,7 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
   }
   if (cameras.empty()) return Err(Unavailable("no camera can be used"));
   CameraPair::Queue queue;
-  queue.capacity = static_cast<std::size_t>(options.capture_queue_frames());
+  queue.capacity = static_cast<std::size_t>(options.source().expert().capture_queue_frames());
   queue.policy = source.rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
   queue.on_drop = [&counters = context.counters](Sensor sensor) {
     counters.Count(sensor, FrameFate::kRecordQueueFull);

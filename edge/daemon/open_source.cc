@@ -42,7 +42,8 @@ class Waiting {
 
   Opened UntilOpened(Opened source) {
     const FrameCheckOptions& pace = options_.frame_check();
-    BackOff back_off(FromSeconds(pace.retry_min_s()), FromSeconds(pace.retry_max_s()));
+    BackOff back_off(FromSeconds(pace.expert().retry_min_s()),
+                     FromSeconds(pace.expert().retry_max_s()));
     while (IsMissing(source) && !context_.stop.stop_requested()) {
       Report(source.error().message());
       Wait(back_off.Next());

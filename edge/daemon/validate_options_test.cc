@@ -29,17 +29,17 @@ TEST(ValidateEdgeOptionsTest, TheShippedFileLoadsAndIsValid) {
 TEST(ValidateEdgeOptionsTest, F59AllProblemsAreListed) {
   EdgeOptions options;
   options.mutable_source()->set_rate(-1);
-  options.mutable_timestamper()->set_depth_window(0);
+  options.mutable_timestamper()->mutable_expert()->set_depth_window(0);
   options.mutable_nuc()->set_settle_time_s(std::numeric_limits<double>::quiet_NaN());
-  options.mutable_nuc()->set_min_interval_s(0);
+  options.mutable_nuc()->mutable_expert()->set_min_interval_s(0);
   options.mutable_link()->set_domain(231);
   options.mutable_link()->set_edge_id("drone 1");
   const Status status = Validate(options);
   EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
   EXPECT_THAT(status.message(), HasSubstr("source.rate: is -1"));
-  EXPECT_THAT(status.message(), HasSubstr("timestamper.depth_window: is 0"));
+  EXPECT_THAT(status.message(), HasSubstr("timestamper.expert.depth_window: is 0"));
   EXPECT_THAT(status.message(), HasSubstr("nuc.settle_time_s: is nan"));
-  EXPECT_THAT(status.message(), HasSubstr("nuc.min_interval_s: is 0"));
+  EXPECT_THAT(status.message(), HasSubstr("nuc.expert.min_interval_s: is 0"));
   EXPECT_THAT(status.message(), HasSubstr("link.domain: is 231"));
   EXPECT_THAT(status.message(), HasSubstr("link.edge_id: is \"drone 1\""));
 }
@@ -72,19 +72,19 @@ TEST(ValidateEdgeOptionsTest, MeasuringRangeHasTwoEndsInOrder) {
 TEST(ValidateEdgeOptionsTest, PathsOfTheSandboxAreAbsolute) {
   EdgeOptions options;
   CameraSandboxOptions& sandbox = *options.mutable_source()->mutable_camera_sandbox();
-  sandbox.set_read("/usr/share/vendor::/opt/vendor");
+  sandbox.mutable_expert()->add_read("/usr/share/vendor");
   EXPECT_TRUE(Validate(options).ok());
-  sandbox.set_read("/usr/share/vendor:calibrations");
+  sandbox.mutable_expert()->add_read("calibrations");
   EXPECT_THAT(Validate(options).message(),
-              HasSubstr("source.camera_sandbox.read: names \"calibrations\""));
-  sandbox.set_write("./log");
-  EXPECT_THAT(Validate(options).message(), HasSubstr("source.camera_sandbox.write"));
+              HasSubstr("source.camera_sandbox.expert.read: names \"calibrations\""));
+  sandbox.mutable_expert()->add_write("./log");
+  EXPECT_THAT(Validate(options).message(), HasSubstr("source.camera_sandbox.expert.write"));
 }
 
 TEST(ValidateEdgeOptionsTest, TemperatureLimitsMustBeInOrder) {
   EdgeOptions options;
-  options.mutable_frame_check()->set_min_celsius(100);
-  options.mutable_frame_check()->set_max_celsius(50);
+  options.mutable_frame_check()->mutable_expert()->set_min_celsius(100);
+  options.mutable_frame_check()->mutable_expert()->set_max_celsius(50);
   EXPECT_THAT(Validate(options).message(), HasSubstr("must be above min_celsius, which is 100"));
 }
 
@@ -92,7 +92,7 @@ TEST(ValidateEdgeOptionsTest, BoundariesAreIncluded) {
   EdgeOptions options;
   options.mutable_source()->set_rate(0);
   options.mutable_source()->set_loops(0);
-  options.mutable_timestamper()->set_depth_window(1);
+  options.mutable_timestamper()->mutable_expert()->set_depth_window(1);
   options.mutable_link()->set_domain(230);
   options.mutable_nuc()->set_settle_time_s(0);
   EXPECT_TRUE(Validate(options).ok());

@@ -20,8 +20,8 @@ std::string_view NameOf(Sensor sensor) { return sensor == Sensor::kDepth ? "dept
 }  // namespace
 
 FrameCheck::FrameCheck(const FrameCheckOptions& options)
-    : min_centikelvin_(CelsiusToCentikelvin(options.min_celsius())),
-      max_centikelvin_(CelsiusToCentikelvin(options.max_celsius())) {}
+    : min_centikelvin_(CelsiusToCentikelvin(options.expert().min_celsius())),
+      max_centikelvin_(CelsiusToCentikelvin(options.expert().max_celsius())) {}
 
 void FrameCheck::Expect(const Rig& rig) {
   const auto size = [](const std::optional<CameraModel>& camera) {

@@ -72,8 +72,8 @@ TEST_F(FrameCheckTest, CountsAreNoTemperaturesAndStayAsTheyAre) {
 
 TEST_F(FrameCheckTest, F12TemperaturesAtTheLimitsAreKept) {
   FrameCheckOptions options;
-  options.set_min_celsius(0);
-  options.set_max_celsius(100);
+  options.mutable_expert()->set_min_celsius(0);
+  options.mutable_expert()->set_max_celsius(100);
   FrameCheck check(options);
   RawFrame frame = Frame(Sensor::kThermal, 4, 1, 0);
   frame.pixels.At(0, 0) = 27'314;

@@ -39,9 +39,9 @@ double ImageSpread(const Image<std::uint16_t>& centikelvin) {
 }
 
 ImageWatch::ImageWatch(const NucOptions& options)
-    : max_repeats_(kRepeatsPerNative * options.native_repeats()),
-      uniform_fraction_(options.shutter_like_spread()),
-      longest_(FromSeconds(options.max_duration_s())) {}
+    : max_repeats_(kRepeatsPerNative * options.expert().native_repeats()),
+      uniform_fraction_(options.expert().shutter_like_spread()),
+      longest_(FromSeconds(options.expert().max_duration_s())) {}
 
 ImageEvidence ImageWatch::Add(const Image<std::uint16_t>& centikelvin, CaptureTime time,
                               bool known_closed) {

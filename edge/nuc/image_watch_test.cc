@@ -64,7 +64,7 @@ TEST_F(ImageWatchTest, F05IsFoundWithinHalfASecondAtNineFramesPerSecond) {
 }
 
 TEST_F(ImageWatchTest, F06NativeRepeatsAreNotFrozen) {
-  options_.set_native_repeats(3);
+  options_.mutable_expert()->set_native_repeats(3);
   ImageWatch watch(options_);
   for (int i = 0; i < 50; ++i) {
     const ThermalImage image = Scene(10.0);
@@ -93,7 +93,7 @@ TEST_F(ImageWatchTest, WhatStaysUniformIsTheScene) {
   for (int i = 0; i < 10; ++i) Add(Scene(10.0));
   int taken_for_shutter = 0;
   for (int i = 0; i < 400; ++i) taken_for_shutter += Add(Scene(0.0)).is_like_shutter ? 1 : 0;
-  EXPECT_NEAR(0.025 * taken_for_shutter, options_.max_duration_s(), 0.1);
+  EXPECT_NEAR(0.025 * taken_for_shutter, options_.expert().max_duration_s(), 0.1);
 }
 
 TEST_F(ImageWatchTest, AColdUniformSceneCannotBeToldFromAShutterAndIsNot) {

@@ -47,7 +47,7 @@ TEST_F(NucAnswerTest, ACameraThatTellsNothingIsNotTrustedUntilItComes) {
 }
 
 TEST_F(NucAnswerTest, OkMeansThatTheShutterMustCloseFromThenOn) {
-  options_.set_max_attempts(1);
+  options_.mutable_expert()->set_max_attempts(1);
   RequestAndOrder();
   Frames(S::kSaysIdle, 1);
   supervisor_->OnAnswer(NucOrder::kTrigger, OkStatus());

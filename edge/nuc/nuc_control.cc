@@ -73,7 +73,7 @@ NucControl::NucControl(const EdgeOptions& options, FrameSource& source)
     : source_(source),
       supervisor_(Resolved(options), RoleFor(options)),
       images_(options.nuc()),
-      patience_(FromSeconds(options.nuc().answer_s())) {}
+      patience_(FromSeconds(options.nuc().expert().answer_s())) {}
 
 NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
   TakeCameraAnswers();

@@ -113,7 +113,7 @@ TEST_F(NucControlTest, CommandsThatComeBeforeTheAnswerShareIt) {
 
 TEST_F(NucControlTest, WithoutAnAnswerItIsRefusedInTimeAndALateOneChangesNothing) {
   camera_.control_answer = OkStatus();
-  camera_.answers_after_reads = 5 * kFramesPerSecond;  // Longer than nuc.answer_s.
+  camera_.answers_after_reads = 5 * kFramesPerSecond;  // Longer than nuc.expert.answer_s.
   Start();
   Frames(kFramesPerSecond);
   Trigger(1);

@@ -9,7 +9,7 @@
 namespace isotherm {
 
 NucHold::NucHold(const NucOptions& options, NucNotices& notices)
-    : max_hold_s_(options.max_hold_s()), notices_(notices) {}
+    : max_hold_s_(options.expert().max_hold_s()), notices_(notices) {}
 
 Result<std::string> NucHold::Hold(CaptureTime now, double seconds) {
   if (!(seconds >= 0.0)) return Err(InvalidArgument("a hold lasts 0 s or longer"));
@@ -30,7 +30,7 @@ Result<std::string> NucHold::Hold(CaptureTime now, double seconds) {
   const double longest_s = ToSeconds(last - now);
   until_ = now + FromSeconds(std::min(seconds, longest_s));
   std::string text = fmt::format("corrections are held for {:.0f} s", ToSeconds(left(now)));
-  if (seconds > longest_s) text += ", the most that nuc.max_hold_s allows";
+  if (seconds > longest_s) text += ", the most that nuc.expert.max_hold_s allows";
   notices_.Add(LogLevel::kInfo, text);
   return text;
 }

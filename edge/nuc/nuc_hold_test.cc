@@ -19,7 +19,7 @@ class NucHoldTest : public testing::Test {
  protected:
   static NucOptions Options() {
     NucOptions options;
-    options.set_max_hold_s(60);
+    options.mutable_expert()->set_max_hold_s(60);
     return options;
   }
 

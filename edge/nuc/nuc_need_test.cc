@@ -25,7 +25,7 @@ class NucNeedTest : public testing::Test {
  protected:
   NucNeedTest() {
     options_.set_max_housing_drift_k(0.5);
-    options_.set_max_fpa_drift_k(1);
+    options_.mutable_expert()->set_max_fpa_drift_k(1);
     options_.set_max_interval_s(180);
   }
   NucNeed Make(bool is_ordered = true) {
@@ -63,7 +63,7 @@ TEST_F(NucNeedTest, ATemperatureThatTheCameraDoesNotTellIsNoReason) {
 
 TEST_F(NucNeedTest, ALimitOfZeroIsNone) {
   options_.set_max_housing_drift_k(0);
-  options_.set_max_fpa_drift_k(0);
+  options_.mutable_expert()->set_max_fpa_drift_k(0);
   options_.set_max_interval_s(0);
   EXPECT_EQ(Make().Reason(At(90.0F, 95.0F), std::chrono::hours(9)), "");
 }
@@ -99,7 +99,7 @@ TEST_F(NucNeedTest, OneThatDoesNotComeIsWaivedAndSaidOnce) {
 }
 
 TEST_F(NucNeedTest, ARequiredOneIsNeverWaived) {
-  options_.set_require_initial_nuc(true);
+  options_.mutable_expert()->set_require_initial_nuc(true);
   NucNeed need = Make();
   need.OnGivenUp();
   EXPECT_TRUE(need.WaitsForFirst());
@@ -124,7 +124,7 @@ TEST_F(NucNeedTest, ACameraThatWasAwayNeedsItsFirstAgain) {
 TEST_F(NucNeedTest, ARecordingWaitsOnlyForWhatIsRequired) {
   options_.set_before_scan(true);
   EXPECT_FALSE(Make(false).WaitsForFirst());
-  options_.set_require_initial_nuc(true);
+  options_.mutable_expert()->set_require_initial_nuc(true);
   EXPECT_TRUE(Make(false).WaitsForFirst());
 }
 

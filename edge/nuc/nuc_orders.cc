@@ -10,9 +10,9 @@
 namespace isotherm {
 
 NucOrders::NucOrders(const NucOptions& options, NucNotices& notices)
-    : limits_{.min_interval = FromSeconds(options.min_interval_s()),
-              .answer = FromSeconds(options.answer_s()),
-              .max_attempts = options.max_attempts()},
+    : limits_{.min_interval = FromSeconds(options.expert().min_interval_s()),
+              .answer = FromSeconds(options.expert().answer_s()),
+              .max_attempts = options.expert().max_attempts()},
       notices_(notices) {}
 
 void NucOrders::Request() {

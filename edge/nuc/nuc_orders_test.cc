@@ -18,9 +18,9 @@ class NucOrdersTest : public testing::Test {
  protected:
   static NucOptions Options() {
     NucOptions options;
-    options.set_min_interval_s(10);
-    options.set_answer_s(3);
-    options.set_max_attempts(2);
+    options.mutable_expert()->set_min_interval_s(10);
+    options.mutable_expert()->set_answer_s(3);
+    options.mutable_expert()->set_max_attempts(2);
     return options;
   }
   /// An attempt that the camera refuses for now.

@@ -63,7 +63,7 @@ TEST(NucProperties, F07NoFrameFromClosingToTheEndOfSettlingIsValidAndOrdersKeepT
     NucSupervisor supervisor(options, NucSupervisor::Role::kSupervise);
     WilfulCamera camera(random, scan % 2 == 0);
     const Nanoseconds settle = FromSeconds(options.settle_time_s());
-    const Nanoseconds apart = FromSeconds(options.min_interval_s());
+    const Nanoseconds apart = FromSeconds(options.expert().min_interval_s());
     CaptureTime now{std::chrono::hours(1)};
     CaptureTime last_closed{}, last_order{};
     struct Answer {

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(NucSupervisorTest, TransitionTest, testing::ValuesIn(kT
                          [](const auto& row) { return std::string(row.param.name); });
 
 TEST_F(NucSupervisorTest, ARequiredFirstNucMakesFramesInvalidUntilThen) {
-  options_.set_require_initial_nuc(true);
+  options_.mutable_expert()->set_require_initial_nuc(true);
   Start(NucSupervisor::Role::kFollow);
   EXPECT_EQ(Frames(S::kScene, 10).state, kUnknown);
   EXPECT_FALSE(last_.valid);

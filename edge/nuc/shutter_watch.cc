@@ -18,20 +18,20 @@ bool FoundFrozenByDriver(const NucObservation& seen) {
 
 /// Frozen frames are acted upon before a shutter that stays closed is.
 double LongestFrozen_s(const NucOptions& options) {
-  if (options.frozen_restart_s() <= 0.0) return options.max_duration_s();
-  return std::min(options.max_duration_s(), options.frozen_restart_s());
+  if (options.expert().frozen_restart_s() <= 0.0) return options.expert().max_duration_s();
+  return std::min(options.expert().max_duration_s(), options.expert().frozen_restart_s());
 }
 
 }  // namespace
 
 ShutterWatch::ShutterWatch(const NucOptions& options, NucNotices& notices)
     : limits_{.settle_time = FromSeconds(options.settle_time_s()),
-              .longest = FromSeconds(options.max_duration_s()),
+              .longest = FromSeconds(options.expert().max_duration_s()),
               .longest_frozen = FromSeconds(LongestFrozen_s(options)),
-              .commanded = FromSeconds(options.commanded_duration_s()),
-              .restart_pause = FromSeconds(options.min_interval_s()),
-              .restarts_frozen = options.frozen_restart_s() > 0.0,
-              .max_closings_per_minute = options.max_closings_per_minute()},
+              .commanded = FromSeconds(options.expert().commanded_duration_s()),
+              .restart_pause = FromSeconds(options.expert().min_interval_s()),
+              .restarts_frozen = options.expert().frozen_restart_s() > 0.0,
+              .max_closings_per_minute = options.expert().max_closings_per_minute()},
       notices_(notices) {}
 
 void ShutterWatch::Update(CaptureTime now, const NucObservation& seen, bool ordered) {
@@ -76,8 +76,9 @@ void ShutterWatch::NoteStuck() {
   notices_.Add(
       LogLevel::kError,
       fmt::format("{} for {:.1f} s: no temperatures are taken, geometry goes on",
-                  is_frozen_ ? "thermal frames are frozen (or nuc.native_repeats is too small)"
-                             : "the correction does not end: the shutter is closed",
+                  is_frozen_
+                      ? "thermal frames are frozen (or nuc.expert.native_repeats is too small)"
+                      : "the correction does not end: the shutter is closed",
                   ToSeconds(log_.closed_for())));
 }
 

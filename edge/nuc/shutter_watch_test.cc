@@ -18,11 +18,11 @@ class ShutterWatchTest : public testing::Test {
   static NucOptions Options() {
     NucOptions options;
     options.set_settle_time_s(0.5);
-    options.set_max_duration_s(5);
-    options.set_frozen_restart_s(2);
-    options.set_commanded_duration_s(1);
-    options.set_min_interval_s(10);
-    options.set_max_closings_per_minute(2);
+    options.mutable_expert()->set_max_duration_s(5);
+    options.mutable_expert()->set_frozen_restart_s(2);
+    options.mutable_expert()->set_commanded_duration_s(1);
+    options.mutable_expert()->set_min_interval_s(10);
+    options.mutable_expert()->set_max_closings_per_minute(2);
     return options;
   }
   /// Frames at 40 Hz; the time is that of the newest one afterwards.

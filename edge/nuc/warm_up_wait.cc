@@ -10,7 +10,7 @@ namespace isotherm {
 
 WarmUpWait::WarmUpWait(const NucOptions& options, bool is_camera, NucNotices& notices)
     : mode_(ModeOf(options, is_camera)),
-      warm_rate_k_per_min_(options.warm_up_rate_k_per_min()),
+      warm_rate_k_per_min_(options.expert().warm_up_rate_k_per_min()),
       notices_(notices),
       watch_(options) {}
 

@@ -18,7 +18,7 @@ class WarmUpWaitTest : public testing::Test {
   WarmUpWait Make(NucOptions::WarmUp mode, bool is_camera = true) {
     NucOptions options;
     options.set_warm_up(mode);
-    options.set_warm_up_time_s(180);
+    options.mutable_expert()->set_warm_up_time_s(180);
     return WarmUpWait(options, is_camera, notices_);
   }
   /// At `seconds` after the first frame of a camera that tells no temperature.

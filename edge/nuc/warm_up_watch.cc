@@ -14,9 +14,9 @@ constexpr double kSecondsPerMinute = 60.0;
 }  // namespace
 
 WarmUpWatch::WarmUpWatch(const NucOptions& options)
-    : limit_k_per_min_(options.warm_up_rate_k_per_min()),
-      window_(FromSeconds(options.warm_up_stable_s())),
-      blind_(FromSeconds(options.warm_up_time_s())) {}
+    : limit_k_per_min_(options.expert().warm_up_rate_k_per_min()),
+      window_(FromSeconds(options.expert().warm_up_stable_s())),
+      blind_(FromSeconds(options.expert().warm_up_time_s())) {}
 
 WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeeping& housekeeping) {
   if (state_ == State::kWarm) return state_;

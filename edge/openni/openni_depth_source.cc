@@ -81,7 +81,7 @@ void OpenniDepthSource::PlaceInTime(RawFrame& raw) {
 
 Status OpenniDepthSource::CheckStall() const {
   const Nanoseconds silent = clock_.SteadyNow() - last_frame_at_;
-  if (silent < FromSeconds(options_->stall_timeout_s())) return OkStatus();
+  if (silent < FromSeconds(options_->expert().stall_timeout_s())) return OkStatus();
   return Unavailable(fmt::format("no frame for {:.1f} s", ToSeconds(silent)));
 }
 

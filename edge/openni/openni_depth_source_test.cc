@@ -109,8 +109,8 @@ TEST_F(OpenniDepthSourceTest, UndoesMirroringThatTheCameraDoesNotSwitchOff) {
 }
 
 TEST_F(OpenniDepthSourceTest, ReportsWhatItReadBack) {
-  options_.set_close_range(true);
-  options_.set_registration(true);
+  options_.mutable_expert()->set_close_range(true);
+  options_.mutable_expert()->set_registration(true);
   ASSERT_TRUE(Open().ok());
   ASSERT_EQ(source_->cameras().size(), 1U);
   const CameraDescription camera = source_->cameras()[0];
@@ -125,7 +125,7 @@ TEST_F(OpenniDepthSourceTest, ReportsWhatItReadBack) {
 
 TEST_F(OpenniDepthSourceTest, TenthMillimetresAreScaledAsSuch) {
   options_.set_rate_hz(30);
-  options_.set_unit(TENTH_MILLIMETRE);
+  options_.mutable_expert()->set_unit(TENTH_MILLIMETRE);
   ASSERT_TRUE(Open().ok());
   const std::vector<RawFrame> frames = Read(1);
   ASSERT_EQ(frames.size(), 1U);
@@ -183,10 +183,10 @@ TEST_F(OpenniDepthSourceTest, SettingsThatTheCameraLacksAreRefused) {
   ASSERT_TRUE(Open().ok());
   EXPECT_THAT(source_->cameras()[0].settings, HasSubstr("close range not there"));
   source_->Close();
-  options_.set_close_range(true);
+  options_.mutable_expert()->set_close_range(true);
   EXPECT_EQ(Open().code(), StatusCode::kInvalidArgument);
-  options_.clear_close_range();
-  options_.set_registration(true);
+  options_.mutable_expert()->clear_close_range();
+  options_.mutable_expert()->set_registration(true);
   EXPECT_EQ(Open().code(), StatusCode::kInvalidArgument);
 }
 
@@ -302,7 +302,7 @@ TEST_F(OpenniDepthSourceTest, F01UnpluggingIsAFailureAndF02ReopeningGoesOn) {
 
 TEST_F(OpenniDepthSourceTest, AStallIsAFailure) {
   camera_.script.faults[3] = {FakeDepthFault::kStall, 1, 0};
-  options_.set_stall_timeout_s(0.3);
+  options_.mutable_expert()->set_stall_timeout_s(0.3);
   ASSERT_TRUE(Open().ok());
   const Status stalled = ReadToFailure();
   EXPECT_EQ(stalled.code(), StatusCode::kUnavailable);

@@ -40,8 +40,9 @@ openni::VideoMode WantedMode(const DepthCameraOptions& options) {
   openni::VideoMode mode;
   mode.setResolution(options.width(), options.height());
   mode.setFps(options.rate_hz());
-  mode.setPixelFormat(options.unit() == TENTH_MILLIMETRE ? openni::PIXEL_FORMAT_DEPTH_100_UM
-                                                         : openni::PIXEL_FORMAT_DEPTH_1_MM);
+  mode.setPixelFormat(options.expert().unit() == TENTH_MILLIMETRE
+                          ? openni::PIXEL_FORMAT_DEPTH_100_UM
+                          : openni::PIXEL_FORMAT_DEPTH_1_MM);
   return mode;
 }
 
@@ -63,7 +64,8 @@ Status SetMode(const DepthCameraOptions& options, openni::VideoStream& stream) {
 Status SetRegistration(bool on, openni::Device& device) {
   const auto mode = on ? openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR : openni::IMAGE_REGISTRATION_OFF;
   if (on && !device.isImageRegistrationModeSupported(mode)) {
-    return InvalidArgument("source.depth_camera.registration: the camera cannot register depth");
+    return InvalidArgument(
+        "source.depth_camera.expert.registration: the camera cannot register depth");
   }
   if (device.isPropertySupported(openni::DEVICE_PROPERTY_IMAGE_REGISTRATION)) {
     device.setImageRegistrationMode(mode);
@@ -76,7 +78,7 @@ Status SetRegistration(bool on, openni::Device& device) {
 Status SetCloseRange(bool on, openni::VideoStream& stream) {
   if (!stream.isPropertySupported(XN_STREAM_PROPERTY_CLOSE_RANGE)) {
     return InvalidArgument(
-        "source.depth_camera.close_range: the camera has no such setting; leave it out");
+        "source.depth_camera.expert.close_range: the camera has no such setting; leave it out");
   }
   const std::uint64_t value = on ? 1 : 0;
   if (stream.setProperty(XN_STREAM_PROPERTY_CLOSE_RANGE, value) != openni::STATUS_OK) {
@@ -157,11 +159,11 @@ std::vector<std::string> DepthModes(const openni::VideoStream& stream) {
 Result<ActiveSettings> Configure(const DepthCameraOptions& options, openni::Device& device,
                                  openni::VideoStream& stream) {
   if (Status set = SetMode(options, stream); !set.ok()) return Err(std::move(set));
-  if (Status set = SetRegistration(options.registration(), device); !set.ok()) {
+  if (Status set = SetRegistration(options.expert().registration(), device); !set.ok()) {
     return Err(std::move(set));
   }
-  if (options.has_close_range()) {
-    if (Status set = SetCloseRange(options.close_range(), stream); !set.ok()) {
+  if (options.expert().has_close_range()) {
+    if (Status set = SetCloseRange(options.expert().close_range(), stream); !set.ok()) {
       return Err(std::move(set));
     }
   }

@@ -63,11 +63,11 @@ EdgePipeline::EdgePipeline(const EdgeOptions& options, EdgeParts parts)
       time_base_(TimeBaseOf(options.source())),
       feedback_(time_base_),
       codec_queue_(kCodecQueueFrames, OverflowPolicy::kBlock),
-      spool_capacity_(static_cast<std::size_t>(options.spool().queue_frames())),
+      spool_capacity_(static_cast<std::size_t>(options.spool().expert().queue_frames())),
       spool_queue_(spool_capacity_, PolicyFor(options),
                    CountDropsAs(FrameFate::kRecordQueueFull, counters_)),
-      publish_queue_(static_cast<std::size_t>(options.link().queue_frames()), PolicyFor(options),
-                     CountDropsAs(FrameFate::kPublishQueueFull, counters_)) {}
+      publish_queue_(static_cast<std::size_t>(options.link().expert().queue_frames()),
+                     PolicyFor(options), CountDropsAs(FrameFate::kPublishQueueFull, counters_)) {}
 
 EdgePipeline::~EdgePipeline() { static_cast<void>(Stop()); }
 

@@ -174,7 +174,7 @@ TEST_F(EdgePipelineTest, CountsAreRecordedAndPublishedAsCountsAndNeverValid) {
 
 TEST_F(EdgePipelineTest, ThermalDelayIsTheOptionsPlusTheRigs) {
   rig_thermal_delay_s_ = 0.040;
-  options_.mutable_timestamper()->set_thermal_delay_s(0.002);
+  options_.mutable_timestamper()->mutable_expert()->set_thermal_delay_s(0.002);
   Start("d t");
   EXPECT_TRUE(RunToTheEnd().ok());
   EXPECT_EQ(publisher_.depth().at(0).header.capture_time, FakeSource::kFakeEpoch);
@@ -253,8 +253,8 @@ TEST_F(EdgePipelineTest, ABrokenLinkStopsThePublishingOnly) {
 TEST_F(EdgePipelineTest, LiveCaptureDoesNotWaitForASlowLink) {
   constexpr int kQueue = 5;
   options_.mutable_source()->set_rate(1);
-  options_.mutable_link()->set_queue_frames(kQueue);
-  options_.mutable_spool()->set_queue_frames(1000);
+  options_.mutable_link()->mutable_expert()->set_queue_frames(kQueue);
+  options_.mutable_spool()->mutable_expert()->set_queue_frames(1000);
   publisher_.Hold();
   Start("300*d");
   // The source must come to its end although nothing is taken from the link.
@@ -270,8 +270,8 @@ TEST_F(EdgePipelineTest, LiveCaptureDoesNotWaitForASlowLink) {
 }
 
 TEST_F(EdgePipelineTest, UnpacedPlaybackWaitsInsteadOfDropping) {
-  options_.mutable_link()->set_queue_frames(1);
-  options_.mutable_spool()->set_queue_frames(1);
+  options_.mutable_link()->mutable_expert()->set_queue_frames(1);
+  options_.mutable_spool()->mutable_expert()->set_queue_frames(1);
   Start("200*d 200*t");
   EXPECT_TRUE(RunToTheEnd().ok());
   EXPECT_EQ(publisher_.depth().size(), 200U);

@@ -7,7 +7,7 @@ namespace isotherm {
 TimeBase TimeBaseOf(const SourceOptions& options) {
   if (options.kind() == CAMERAS) return TimeBase::kWallClock;
   if (options.rate() != 1.0) return TimeBase::kOther;
-  return options.rebase() ? TimeBase::kWallClock : TimeBase::kShifted;
+  return options.expert().rebase() ? TimeBase::kWallClock : TimeBase::kShifted;
 }
 
 }  // namespace isotherm

@@ -5,8 +5,8 @@
 namespace isotherm {
 
 BlindDetector::BlindDetector(const FrameCheckOptions& options)
-    : min_valid_ratio_(options.min_valid_ratio()),
-      blind_after_(FromSeconds(options.blind_after_s())) {}
+    : min_valid_ratio_(options.expert().min_valid_ratio()),
+      blind_after_(FromSeconds(options.expert().blind_after_s())) {}
 
 bool BlindDetector::Update(const RawFrame& frame) {
   if (ValidRatio(frame.pixels) >= min_valid_ratio_) {

@@ -82,8 +82,8 @@ class FakeCameraSource final : public FrameSource {
 class CameraPairTest : public ::testing::Test {
  protected:
   CameraPairTest() {
-    options_.set_retry_min_s(0.01);
-    options_.set_retry_max_s(0.02);
+    options_.mutable_expert()->set_retry_min_s(0.01);
+    options_.mutable_expert()->set_retry_max_s(0.02);
     std::vector<CameraPair::Camera> cameras;
     cameras.push_back(Supervise(Sensor::kDepth, depth_));
     cameras.push_back(Supervise(Sensor::kThermal, thermal_));

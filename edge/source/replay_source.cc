@@ -40,7 +40,7 @@ ReplaySource::ReplaySource(const SourceOptions& options, std::filesystem::path r
       clock_(clock),
       rate_(options.rate()),
       loops_(options.loops()),
-      rebase_(options.rebase() && options.rate() > 0.0),
+      rebase_(options.expert().rebase() && options.rate() > 0.0),
       longest_pause_(longest_pause) {}
 
 Status ReplaySource::Open() {

@@ -232,7 +232,7 @@ TEST_F(ReplaySourceTest, RebasedArrivalsStartNow) {
 
 TEST_F(ReplaySourceTest, WithoutRebaseTheRecordingsTimeBaseIsKept) {
   options_.set_rate(1);
-  options_.set_rebase(false);
+  options_.mutable_expert()->set_rebase(false);
   WriteDepth(milliseconds(0));
   Open();
   const Result<SourceItem> first = source_->Read({});

@@ -14,11 +14,11 @@ SimulatedShutter::~SimulatedShutter() = default;
 Status SimulatedShutter::Control(const CameraControl& control) {
   const ShutterOptions& shutter = options_->shutter();
   if (std::holds_alternative<TriggerNuc>(control)) {
-    ordered_ = shutter.follows_orders();
+    ordered_ = shutter.expert().follows_orders();
     return OkStatus();
   }
   if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
-    const bool has_own = shutter.interval_s() > 0.0 || shutter.drift_k() > 0.0;
+    const bool has_own = shutter.interval_s() > 0.0 || shutter.expert().drift_k() > 0.0;
     if (automatic->on || !has_own) return OkStatus();
     return FailedPrecondition(
         "they are part of the rendered scan (simulation.shutter.interval_s, drift_k)");
@@ -46,7 +46,7 @@ void SimulatedShutter::Apply(RawFrame& frame) {
 }
 
 void SimulatedShutter::FollowOrder(CaptureTime time) {
-  if (ordered_) closes_at_ = time + FromSeconds(options_->shutter().order_delay_s());
+  if (ordered_) closes_at_ = time + FromSeconds(options_->shutter().expert().order_delay_s());
   ordered_ = false;
   if (closes_at_ && time >= *closes_at_) {
     opens_at_ = time + FromSeconds(options_->shutter().duration_s());
@@ -68,15 +68,15 @@ void SimulatedShutter::Correct(const RawFrame& frame) {
 
 void SimulatedShutter::ShowShutter(RawFrame& frame) const {
   const ShutterOptions& shutter = options_->shutter();
-  if (shutter.appearance() == ShutterOptions::FREEZE) {
+  if (shutter.expert().appearance() == ShutterOptions::FREEZE) {
     if (!last_open_.empty()) frame.pixels = last_open_;
     return;
   }
-  const double celsius = shutter.shutter_celsius();
+  const double celsius = shutter.expert().shutter_celsius();
   const auto pixels = frame.pixels.pixels();
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const double noise_k =
-        options_->thermal().netd_kelvin() *
+        options_->thermal().expert().netd_kelvin() *
         static_cast<double>(NormalNoise(NoiseStream(options_->seed(), 0, frame.frame_number), i));
     pixels[i] = static_cast<std::uint16_t>(
         (celsius + noise_k + kCelsiusZero_k) * kCentikelvinPerKelvin + 0.5);
@@ -84,7 +84,7 @@ void SimulatedShutter::ShowShutter(RawFrame& frame) const {
 }
 
 void SimulatedShutter::Say(RawFrame& frame, bool closed) {
-  if (!options_->shutter().reports_shutter()) {
+  if (!options_->shutter().expert().reports_shutter()) {
     frame.shutter_closed = false;
     frame.camera_nuc.reset();
     return;

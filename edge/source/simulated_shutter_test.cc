@@ -17,7 +17,7 @@ class SimulatedShutterTest : public testing::Test {
     ShutterOptions& shutter = *options_.mutable_shutter();
     shutter.set_interval_s(0);
     shutter.set_duration_s(0.4);
-    shutter.set_order_delay_s(0.1);
+    shutter.mutable_expert()->set_order_delay_s(0.1);
     options_.mutable_drift()->set_error_per_kelvin(4.0);
   }
   void Start() { shutter_ = std::make_unique<SimulatedShutter>(options_); }
@@ -81,8 +81,8 @@ TEST_F(SimulatedShutterTest, AClosedCameraShowsTheLastImageOrTheShutter) {
   EXPECT_EQ(frame.pixels, open.pixels);
   EXPECT_NE(frame.pixels, last.pixels);
 
-  options_.mutable_shutter()->set_appearance(ShutterOptions::SHUTTER);
-  options_.mutable_shutter()->set_shutter_celsius(60.0);
+  options_.mutable_shutter()->mutable_expert()->set_appearance(ShutterOptions::SHUTTER);
+  options_.mutable_shutter()->mutable_expert()->set_shutter_celsius(60.0);
   Start();
   Frame(30.0F);
   ASSERT_TRUE(shutter_->Control(TriggerNuc{}).ok());
@@ -106,14 +106,14 @@ TEST_F(SimulatedShutterTest, ACorrectionTakesTheErrorOfTheHousingAway) {
 }
 
 TEST_F(SimulatedShutterTest, CanKeepSilent) {
-  options_.mutable_shutter()->set_reports_shutter(false);
+  options_.mutable_shutter()->mutable_expert()->set_reports_shutter(false);
   Start();
   EXPECT_FALSE(Frame(30.0F, true).shutter_closed);
   EXPECT_FALSE(Frame(30.0F).camera_nuc.has_value());
 }
 
 TEST_F(SimulatedShutterTest, CanIgnoreOrders) {
-  options_.mutable_shutter()->set_follows_orders(false);
+  options_.mutable_shutter()->mutable_expert()->set_follows_orders(false);
   Start();
   EXPECT_TRUE(shutter_->Control(TriggerNuc{}).ok());
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(Frame(30.0F).shutter_closed);

@@ -32,9 +32,10 @@ Status SyntheticSource::Open() {
 }
 
 Result<std::filesystem::path> SyntheticSource::RenderOrFind() const {
-  const std::filesystem::path cache_dir = options_->cache_dir().empty()
-                                              ? DefaultCacheDir()
-                                              : std::filesystem::path(options_->cache_dir());
+  const std::filesystem::path cache_dir =
+      options_->expert().cache_dir().empty()
+          ? DefaultCacheDir()
+          : std::filesystem::path(options_->expert().cache_dir());
   ThreadPool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   // No bar for a scan that is in the cache.
   std::optional<ProgressBar> progress;

@@ -16,7 +16,7 @@ constexpr double kBytesPerMb = 1e6;
 DiskWatch::DiskWatch(const SpoolOptions& options)
     : max_reserve_bytes_(options.reserve_mb() * kBytesPerMb),
       reserve_s_(options.reserve_s()),
-      warn_s_(options.warn_s()) {}
+      warn_s_(options.expert().warn_s()) {}
 
 void DiskWatch::Measure(SteadyTime now, std::uint64_t recorded_bytes) {
   if (!mark_ || recorded_bytes < mark_->bytes) mark_ = {now, recorded_bytes};

@@ -12,7 +12,7 @@ class SpoolOptions;
 
 enum class DiskLevel : std::uint8_t {
   kEnough,
-  kLow,      ///< Within spool.warn_s the reserve will be reached.
+  kLow,      ///< Within spool.expert.warn_s the reserve will be reached.
   kReserve,  ///< Only the reserve is left.
 };
 

@@ -51,8 +51,8 @@ std::unique_ptr<ThermalCamera> MakeSeek(const DeviceDescription& device,
 
 std::unique_ptr<ThermalCamera> MakeOptris(const DeviceDescription& device,
                                           const ThermalCameraOptions& options, const Clock& clock) {
-  OptrisSettings settings{options.optris_library(), options.optris_config(),
-                          options.optris_formats(), std::nullopt};
+  OptrisSettings settings{options.expert().optris_library(), options.optris_config(),
+                          options.expert().optris_formats(), std::nullopt};
   if (options.has_optris_min_celsius() && options.has_optris_max_celsius()) {
     settings.range = {options.optris_min_celsius(), options.optris_max_celsius()};
   }
@@ -147,15 +147,16 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
     // The vendor's library is used only by those who ask for it.
     const bool right_driver =
         driver.empty() ? device.driver != OptrisCamera::kDriver : device.driver == driver;
-    const bool fits =
-        right_driver && (options.bus_port().empty() || device.bus_port == options.bus_port());
+    const bool fits = right_driver && (options.expert().bus_port().empty() ||
+                                       device.bus_port == options.expert().bus_port());
     if (fits) fitting.push_back(device);
   }
   if (fitting.empty()) {
     return Err(Unavailable(
         fmt::format("no thermal camera{}{} is connected; connected are: {}",
                     driver.empty() ? "" : " for the driver " + driver,
-                    options.bus_port().empty() ? "" : " at " + options.bus_port(), Text(devices))));
+                    options.expert().bus_port().empty() ? "" : " at " + options.expert().bus_port(),
+                    Text(devices))));
   }
   const std::string& serial = options.serial().empty() ? pinned_serial : options.serial();
   if (serial.empty()) return fitting.front();

@@ -136,7 +136,7 @@ TEST_F(P1Test, SizeFollowsFromTheProductAndNothingElse) {
 
 TEST_F(P1Test, CorrectionIsInferredFromImagesThatStandStill) {
   // On a busy computer 0.8 s may last longer.
-  options_.set_stall_timeout_s(30.0);
+  options_.mutable_expert()->set_stall_timeout_s(30.0);
   Plug<EmulatedP1>("5*f 20*f:nuc f");
   const auto source = Open();
   const std::vector<RawFrame> frames = ReadFrames(*source, 30);

@@ -196,7 +196,7 @@ TEST_F(EmulatedCameraTest, RefusedOrdersAreFailuresAndTheStreamGoesOn) {
 }
 
 TEST_F(EmulatedCameraTest, SilentCameraIsGivenUp) {
-  options_.set_stall_timeout_s(0.5);
+  options_.mutable_expert()->set_stall_timeout_s(0.5);
   Plug<EmulatedLepton>("2*f -");
   const auto source = Open();
   EXPECT_EQ(ReadFrames(*source, 3).size(), 2U);
@@ -233,7 +233,7 @@ TEST_F(EmulatedCameraTest, P2ProStreamsAtHighSpeedAndIsToldNotToCorrectForEmissi
 
 TEST_F(EmulatedCameraTest, P2ProFreezesSilentlyWhenItCorrectsItself) {
   // 0.8 s, on a busy computer longer.
-  options_.set_stall_timeout_s(30.0);
+  options_.mutable_expert()->set_stall_timeout_s(30.0);
   Plug<EmulatedP2Pro>("5*f 20*f:silent f");
   const auto source = Open();
   const std::vector<RawFrame> frames = ReadFrames(*source, 30);

@@ -82,8 +82,8 @@ TEST_F(EmulatedSeekTest, BothModelsSendCountsWithoutTemperatures) {
 }
 
 TEST_F(EmulatedSeekTest, OptionsMayRelateCountsToTemperatures) {
-  options_.set_kelvin_per_count(0.02);
-  options_.set_offset_kelvin(-30.0);
+  options_.mutable_expert()->set_kelvin_per_count(0.02);
+  options_.mutable_expert()->set_offset_kelvin(-30.0);
   PlugSeek("f");
   const auto source = Open();
   EXPECT_FALSE(source->cameras().front().counts_only);
@@ -124,7 +124,7 @@ TEST_F(EmulatedSeekTest, FirstFrameWithoutBeginningStartsItAgain) {
 }
 
 TEST_F(EmulatedSeekTest, CameraThatNeverSendsItsFirstFrameIsGivenUp) {
-  options_.set_stall_timeout_s(10.0);
+  options_.mutable_expert()->set_stall_timeout_s(10.0);
   const auto camera = PlugSeek("f", {kSeekCompact, false, 99});
   EXPECT_TRUE(ReadFrames(*Open(), 1).empty());
   EXPECT_EQ(failure_.code(), StatusCode::kDataLoss);
@@ -158,7 +158,7 @@ TEST_F(EmulatedSeekTest, FramesOfTheCamerasOwnBusinessAreNoLoss) {
 }
 
 TEST_F(EmulatedSeekTest, F11ShortAndCutFramesComeWithoutPixelsAndTheNextIsWhole) {
-  options_.set_stall_timeout_s(10.0);
+  options_.mutable_expert()->set_stall_timeout_s(10.0);
   for (const char* fault : {"short", "cut"}) {
     SCOPED_TRACE(fault);
     PlugSeek(std::string("2*f f:") + fault + " f");
@@ -176,7 +176,7 @@ TEST_F(EmulatedSeekTest, F11ShortAndCutFramesComeWithoutPixelsAndTheNextIsWhole)
 }
 
 TEST_F(EmulatedSeekTest, F11LateRestOfAFrameDoesNotShiftTheNextOnes) {
-  options_.set_stall_timeout_s(10.0);
+  options_.mutable_expert()->set_stall_timeout_s(10.0);
   PlugSeek("2*f f:late f");
   const auto source = Open();
   const std::vector<RawFrame> frames = ReadFrames(*source, 8);
@@ -233,7 +233,7 @@ TEST_F(EmulatedSeekTest, StalledControlEndsTheStreamWithASentence) {
 }
 
 TEST_F(EmulatedSeekTest, SilentCameraIsGivenUp) {
-  options_.set_stall_timeout_s(0.5);
+  options_.mutable_expert()->set_stall_timeout_s(0.5);
   PlugSeek("2*f -");
   const auto source = Open();
   EXPECT_EQ(ReadFrames(*source, 10).size(), 3U);

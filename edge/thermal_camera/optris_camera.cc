@@ -110,7 +110,7 @@ Status OptrisCamera::Load() {
   if (!library->handle) {
     return FailedPrecondition(fmt::format(
         "the Optris library cannot be loaded: {}; install the vendor's package, or name "
-        "it in source.thermal_camera.optris_library",
+        "it in source.thermal_camera.expert.optris_library",
         dlerror()));
   }
   if (const char* missing = library->FindAll()) {

@@ -105,7 +105,7 @@ Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
     return Check(std::move(**raw));
   }
   const Nanoseconds silence = clock_.SteadyNow() - last_frame_at_;
-  if (ToSeconds(silence) < options_->stall_timeout_s()) return NothingYet{};
+  if (ToSeconds(silence) < options_->expert().stall_timeout_s()) return NothingYet{};
   return Err(Hangs("sends nothing", silence));
 }
 
@@ -124,7 +124,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
     return Err(
         FailedPrecondition(name_ +
                            " sends counts that it does not relate to temperatures; say how in "
-                           "source.thermal_camera.kelvin_per_count and offset_kelvin"));
+                           "source.thermal_camera.expert.kelvin_per_count and offset_kelvin"));
   }
   const Novelty novelty = novelty_->Process(raw);
   // Incomplete frames have their numbers already.
@@ -138,7 +138,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
     return NothingYet{};
   }
   const bool frozen = novelty.kind == Novelty::Kind::kFrozen && !IsCorrecting(raw);
-  if (frozen && ToSeconds(novelty.frozen_for) >= options_->stall_timeout_s()) {
+  if (frozen && ToSeconds(novelty.frozen_for) >= options_->expert().stall_timeout_s()) {
     return Err(Hangs("sends the same image", novelty.frozen_for));
   }
   if (frozen) {
@@ -181,8 +181,8 @@ RawFrame ThermalCameraSource::Convert(const RawThermalFrame& raw) {
 }
 
 PixelEncoding ThermalCameraSource::EncodingOf(const RawThermalFrame& raw) const {
-  if (raw.encoding.radiometric || options_->kelvin_per_count() == 0.0) return raw.encoding;
-  return {true, options_->kelvin_per_count(), options_->offset_kelvin()};
+  if (raw.encoding.radiometric || options_->expert().kelvin_per_count() == 0.0) return raw.encoding;
+  return {true, options_->expert().kelvin_per_count(), options_->expert().offset_kelvin()};
 }
 
 void ThermalCameraSource::UpdateTable(const PixelEncoding& encoding) {
@@ -216,7 +216,7 @@ std::vector<CameraDescription> ThermalCameraSource::cameras() const {
   description.rate_hz = info.rate_hz;
   description.settings = "port " + info.bus_port;
   if (!info.settings.empty()) description.settings += ", " + info.settings;
-  description.counts_only = info.counts_only && options_->kelvin_per_count() == 0.0;
+  description.counts_only = info.counts_only && options_->expert().kelvin_per_count() == 0.0;
   return {description};
 }
 

@@ -170,8 +170,8 @@ TEST_F(ThermalCameraSourceTest, CountsWithoutTemperatureAreRefusedUnlessTheOptio
   EXPECT_EQ(failure_.code(), StatusCode::kFailedPrecondition);
   EXPECT_THAT(failure_.message(), HasSubstr("kelvin_per_count"));
 
-  options_.set_kelvin_per_count(0.04);
-  options_.set_offset_kelvin(-20.0);
+  options_.mutable_expert()->set_kelvin_per_count(0.04);
+  options_.mutable_expert()->set_offset_kelvin(-20.0);
   Send(sent);
   EXPECT_EQ(ReadFrame(*Open()).pixels.At(0, 0), 30'000);
 }
@@ -256,7 +256,7 @@ TEST_F(ThermalCameraSourceTest, F11IncompleteFramesComeWithoutPixels) {
 }
 
 TEST_F(ThermalCameraSourceTest, F04SilentCameraFailsAfterTheTimeout) {
-  options_.set_stall_timeout_s(1.0);
+  options_.mutable_expert()->set_stall_timeout_s(1.0);
   const auto source = Open();
   for (int i = 0; i < 9; ++i) EXPECT_TRUE(std::holds_alternative<NothingYet>(Read(*source)));
   Read(*source);
@@ -308,7 +308,7 @@ TEST_F(ThermalCameraSourceTest, CameraWithoutTemperaturesSendsCountsUnlessTheOpt
   const auto source = Open();
   EXPECT_TRUE(source->cameras().front().counts_only);
   EXPECT_EQ(ReadFrame(*source).pixels.At(0, 0), 8'000);
-  options_.set_kelvin_per_count(0.04);
+  options_.mutable_expert()->set_kelvin_per_count(0.04);
   Send(sent);
   const auto related = Open();
   EXPECT_FALSE(related->cameras().front().counts_only);
@@ -316,7 +316,7 @@ TEST_F(ThermalCameraSourceTest, CameraWithoutTemperaturesSendsCountsUnlessTheOpt
 }
 
 TEST_F(ThermalCameraSourceTest, NoCameraIsUnavailable) {
-  options_.set_bus_port("2-1");
+  options_.mutable_expert()->set_bus_port("2-1");
   const Status opened = Make()->Open();
   EXPECT_EQ(opened.code(), StatusCode::kUnavailable);
   EXPECT_THAT(opened.message(), HasSubstr("no thermal camera at 2-1"));

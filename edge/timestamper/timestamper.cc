@@ -6,26 +6,27 @@ namespace isotherm {
 namespace {
 
 int MedianWindow(const TimestamperOptions& options, Sensor sensor) {
-  return sensor == Sensor::kDepth ? options.depth_window() : options.thermal_window();
+  return sensor == Sensor::kDepth ? options.expert().depth_window()
+                                  : options.expert().thermal_window();
 }
 
 EnvelopeOptions ToEnvelopeOptions(const TimestamperOptions& options, Sensor sensor) {
   return {.median_window = MedianWindow(options, sensor),
-          .window_s = options.envelope_window_s(),
-          .max_skew_ppm = options.max_skew_ppm(),
-          .max_slew_ppm = options.max_slew_ppm(),
-          .early_limit_s = options.early_limit_s(),
-          .residual_limit_s = options.residual_limit_s(),
-          .residual_window_s = options.residual_window_s(),
-          .relearn_after_s = options.relearn_after_s()};
+          .window_s = options.expert().envelope_window_s(),
+          .max_skew_ppm = options.expert().max_skew_ppm(),
+          .max_slew_ppm = options.expert().max_slew_ppm(),
+          .early_limit_s = options.expert().early_limit_s(),
+          .residual_limit_s = options.expert().residual_limit_s(),
+          .residual_window_s = options.expert().residual_window_s(),
+          .relearn_after_s = options.expert().relearn_after_s()};
 }
 
 }  // namespace
 
 Timestamper::Timestamper(const TimestamperOptions& options, Sensor sensor, Nanoseconds rig_delay)
     : use_envelope_(options.estimator() == ENVELOPE),
-      constant_delay_(FromSeconds(sensor == Sensor::kDepth ? options.depth_delay_s()
-                                                           : options.thermal_delay_s()) +
+      constant_delay_(FromSeconds(sensor == Sensor::kDepth ? options.expert().depth_delay_s()
+                                                           : options.expert().thermal_delay_s()) +
                       rig_delay),
       median_(MedianWindow(options, sensor)),
       envelope_(ToEnvelopeOptions(options, sensor)),

@@ -34,7 +34,7 @@ class TimestamperTest : public testing::TestWithParam<StampEstimator> {
 };
 
 TEST_P(TimestamperTest, ConstantDelaysAreAdded) {
-  options_.set_thermal_delay_s(-0.042);
+  options_.mutable_expert()->set_thermal_delay_s(-0.042);
   Timestamper timestamper = Make(milliseconds(2));
   EXPECT_EQ(Process(timestamper, seconds(1), kEpoch).time, kEpoch - milliseconds(40));
 }

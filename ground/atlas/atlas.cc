@@ -29,15 +29,17 @@ constexpr double kNearView_rad = 30.0 * kRadPerDeg;
 }  // namespace
 
 Status Validate(const SubMapOptions& o) {
-  if (!(o.max_rotation_deg() >= 0.0 && o.max_rotation_deg() <= 180.0 && o.max_travel_m() >= 0.0 &&
-        o.start_after_lost_s() >= 0.0)) {
+  if (!(o.expert().max_rotation_deg() >= 0.0 && o.expert().max_rotation_deg() <= 180.0 &&
+        o.expert().max_travel_m() >= 0.0 && o.expert().start_after_lost_s() >= 0.0)) {
     return InvalidArgument(fmt::format(
-        "submaps: max_rotation_deg must be 0..180 degrees, max_travel_m and start_after_lost_s not "
+        "submaps.expert: max_rotation_deg must be 0..180 degrees, max_travel_m and "
+        "start_after_lost_s not "
         "negative, got {}, {} m and {} s",
-        o.max_rotation_deg(), o.max_travel_m(), o.start_after_lost_s()));
+        o.expert().max_rotation_deg(), o.expert().max_travel_m(), o.expert().start_after_lost_s()));
   }
-  if (o.max_maps() < 1 || o.max_maps() > 1000)
-    return InvalidArgument(fmt::format("submaps.max_maps must be 1..1000, got {}", o.max_maps()));
+  if (o.expert().max_maps() < 1 || o.expert().max_maps() > 1000)
+    return InvalidArgument(
+        fmt::format("submaps.expert.max_maps must be 1..1000, got {}", o.expert().max_maps()));
   return OkStatus();
 }
 
@@ -57,7 +59,7 @@ std::unique_ptr<SubMap> Atlas::MakeMap() const {
   map->tsdf = std::make_unique<TsdfVolume>(
       grid_, TruncationDistance(options_.tsdf(), options_.volume()), max_blocks, spill_dir);
   map->thermal =
-      std::make_unique<ThermalVolume>(max_blocks, spill_dir, options_.thermal().records());
+      std::make_unique<ThermalVolume>(max_blocks, spill_dir, options_.thermal().expert().records());
   map->relocaliser = std::make_unique<Relocaliser>(options_.relocaliser(), depth_camera_);
   return map;
 }
@@ -73,15 +75,15 @@ std::int32_t Atlas::BlocksLeft() const {
 bool Atlas::IsFar(int index, const RigidTransform& T_map_depth) const {
   const SubMapOptions& limits = options_.submaps();
   return std::ranges::all_of(map(index).anchors, [&](const RigidTransform& anchor) {
-    return (limits.max_rotation_deg() > 0.0 &&
-            RotationAngle(anchor, T_map_depth) > limits.max_rotation_deg() * kRadPerDeg) ||
-           (limits.max_travel_m() > 0.0 &&
-            TranslationDistance(anchor, T_map_depth) > limits.max_travel_m());
+    return (limits.expert().max_rotation_deg() > 0.0 &&
+            RotationAngle(anchor, T_map_depth) > limits.expert().max_rotation_deg() * kRadPerDeg) ||
+           (limits.expert().max_travel_m() > 0.0 &&
+            TranslationDistance(anchor, T_map_depth) > limits.expert().max_travel_m());
   });
 }
 
 bool Atlas::Split(const RigidTransform& T_map_depth, std::span<const std::int32_t> blocks_in_view) {
-  if (size() >= options_.submaps().max_maps()) return false;
+  if (size() >= options_.submaps().expert().max_maps()) return false;
   const int before = active_;
   std::unique_ptr<SubMap> map = MakeMap();
   map->T_world_map = active().T_world_map;
@@ -104,7 +106,7 @@ bool Atlas::Split(const RigidTransform& T_map_depth, std::span<const std::int32_
 }
 
 bool Atlas::BeginElsewhere() {
-  if (size() >= options_.submaps().max_maps()) return false;
+  if (size() >= options_.submaps().expert().max_maps()) return false;
   maps_.push_back(MakeMap());
   Activate(size() - 1);
   return true;

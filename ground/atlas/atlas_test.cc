@@ -24,8 +24,8 @@ class AtlasTest : public ::testing::Test {
  protected:
   AtlasTest() {
     options_.mutable_tsdf()->set_truncation_distance_m(testing::kTruncation_m);
-    options_.mutable_submaps()->set_max_rotation_deg(60.0);
-    options_.mutable_submaps()->set_max_travel_m(1.0);
+    options_.mutable_submaps()->mutable_expert()->set_max_rotation_deg(60.0);
+    options_.mutable_submaps()->mutable_expert()->set_max_travel_m(1.0);
   }
   Atlas Make() const {
     return Atlas(options_, DefaultSimulatedRig().depth->WithoutDistortion(), SmallGrid());
@@ -56,8 +56,8 @@ TEST_F(AtlasTest, ASubMapEndsFarFromAllItsAnchors) {
 }
 
 TEST_F(AtlasTest, ZeroTurnsALimitOff) {
-  options_.mutable_submaps()->set_max_rotation_deg(0.0);
-  options_.mutable_submaps()->set_max_travel_m(0.0);
+  options_.mutable_submaps()->mutable_expert()->set_max_rotation_deg(0.0);
+  options_.mutable_submaps()->mutable_expert()->set_max_travel_m(0.0);
   Atlas atlas = Make();
   atlas.active().anchors = {Rotated(0.0)};
   EXPECT_FALSE(atlas.IsFar(0, Rotated(179.0, {100.0, 0, 0})));
@@ -98,7 +98,7 @@ TEST_F(AtlasTest, AllSubMapsShareOneMemoryLimit) {
 }
 
 TEST_F(AtlasTest, NoMoreSubMapsThanTheOptionAllows) {
-  options_.mutable_submaps()->set_max_maps(2);
+  options_.mutable_submaps()->mutable_expert()->set_max_maps(2);
   Atlas atlas = Make();
   EXPECT_TRUE(atlas.BeginElsewhere());
   EXPECT_FALSE(atlas.BeginElsewhere());

@@ -46,17 +46,19 @@ std::string WhatToDo() {
 }  // namespace
 
 Status Validate(const DelayCheckOptions& o) {
-  if (!(o.max_shift_s() > 0.0 && o.max_shift_s() <= 0.1)) {
-    return InvalidArgument(fmt::format(
-        "delay_check.max_shift_s must be above 0 and at most 0.1 s, got {}", o.max_shift_s()));
-  }
-  if (!(o.max_sigma_s() > 0.0 && o.max_sigma_s() <= 0.1)) {
-    return InvalidArgument(fmt::format(
-        "delay_check.max_sigma_s must be above 0 and at most 0.1 s, got {}", o.max_sigma_s()));
-  }
-  if (o.max_frames() < 50 || o.max_frames() > 2000) {
+  if (!(o.expert().max_shift_s() > 0.0 && o.expert().max_shift_s() <= 0.1)) {
     return InvalidArgument(
-        fmt::format("delay_check.max_frames must be 50..2000, got {}", o.max_frames()));
+        fmt::format("delay_check.expert.max_shift_s must be above 0 and at most 0.1 s, got {}",
+                    o.expert().max_shift_s()));
+  }
+  if (!(o.expert().max_sigma_s() > 0.0 && o.expert().max_sigma_s() <= 0.1)) {
+    return InvalidArgument(
+        fmt::format("delay_check.expert.max_sigma_s must be above 0 and at most 0.1 s, got {}",
+                    o.expert().max_sigma_s()));
+  }
+  if (o.expert().max_frames() < 50 || o.expert().max_frames() > 2000) {
+    return InvalidArgument(fmt::format("delay_check.expert.max_frames must be 50..2000, got {}",
+                                       o.expert().max_frames()));
   }
   return OkStatus();
 }
@@ -102,7 +104,7 @@ DelayCheck::DelayCheck(const DelayCheckOptions& options, const Rig& rig,
     : options_(options),
       rig_(rig),
       calibrated_s_(calibrated_s),
-      selection_(static_cast<std::size_t>(std::max(2, options.max_frames()))) {}
+      selection_(static_cast<std::size_t>(std::max(2, options.expert().max_frames()))) {}
 
 void DelayCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) {
   if (!options_.enabled() || !rig_.thermal || !frame->valid ||
@@ -129,7 +131,7 @@ DelayReport DelayCheck::Finish(const ScanModel& scan, ThreadPool& pool,
     return report;
   }
   report.off_by = *estimate;
-  report.verdict = Assess(*estimate, options_.max_shift_s());
+  report.verdict = Assess(*estimate, options_.expert().max_shift_s());
   if (report.verdict == DelayVerdict::kMoved) {
     LOG(Calibrate, Warning) << "the delay between depth and thermal camera has changed: "
                             << Describe(report);
@@ -141,7 +143,7 @@ Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan, ThreadPool& po
                                            const std::function<void(double)>& progress) const {
   if (Status status = CheckThermalFusion(rig_); !status.ok()) return Err(status);
   FindDelayOptions options;
-  options.search.max_sigma_s = options_.max_sigma_s();
+  options.search.max_sigma_s = options_.expert().max_sigma_s();
   options.search.resamplings = kResamplings;
   options.coarse_points = kCoarsePoints;
   options.fine_points = kFinePoints;

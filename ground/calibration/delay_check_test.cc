@@ -37,7 +37,7 @@ T_thermal_depth { tx: 0.05 ty: 0.01 tz: 0 qx: 0 qy: 0 qz: 0 qw: 1 })";
     SimulationOptions simulation;
     const Status parsed = ParseTextProto(R"(
 duration_s: 12
-depth { depth_scale: 4000 disparity_noise_px: 0.03 disparity_step_px: 0.03125 }
+depth { expert { depth_scale: 4000 disparity_noise_px: 0.03 disparity_step_px: 0.03125 } }
 shutter { first_s: 5 })",
                                          "simulation", simulation);
     ASSERT_TRUE(parsed.ok()) << parsed.message();
@@ -177,7 +177,7 @@ TEST_F(DelayCheckTest, OffKeepsAndSaysNothing) {
 
 TEST_F(DelayCheckTest, ABoundedNumberOfFramesIsKept) {
   DelayCheckOptions options;
-  options.set_max_frames(50);
+  options.mutable_expert()->set_max_frames(50);
   DelayCheck check(options, *rig_, 0.0);
   for (const std::shared_ptr<ThermalFrame>& frame : frames_) check.Add(frame, pipeline_->model());
   long kept = 0;
@@ -200,14 +200,14 @@ TEST(DelayAssessmentTest, MovedIsWhatIsBothLargeAndCertain) {
 TEST(DelayAssessmentTest, OptionsAreChecked) {
   EXPECT_TRUE(Validate(DelayCheckOptions()).ok());
   DelayCheckOptions options;
-  options.set_max_shift_s(0.0);
-  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.max_shift_s"));
+  options.mutable_expert()->set_max_shift_s(0.0);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.expert.max_shift_s"));
   options = DelayCheckOptions();
-  options.set_max_sigma_s(1.0);
-  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.max_sigma_s"));
+  options.mutable_expert()->set_max_sigma_s(1.0);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.expert.max_sigma_s"));
   options = DelayCheckOptions();
-  options.set_max_frames(10);
-  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.max_frames"));
+  options.mutable_expert()->set_max_frames(10);
+  EXPECT_THAT(Validate(options).message(), HasSubstr("delay_check.expert.max_frames"));
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ stamps. The depth camera is tracked through the recording; then thermal images a
 surface at the poses that a delay puts them at, and the delay is sought at which they agree. The recording
 should show a surface with clear thermal contrast for 10 s or more while the rig is moved back and forth.
 Parts of the scan are resampled to say how certain the result is; nothing is written if it is not, or
-if the calibration's delay agrees with it (delay_check.max_shift_s).
+if the calibration's delay agrees with it (delay_check.expert.max_shift_s).
 
 --rig names the calibration that the scan was made with. Only --apply changes it: that one number, comments
 and all else stay, and the file as it was is kept beside it (FILE.bak).
@@ -173,10 +173,10 @@ int Run(const Arguments& arguments) {
   Print(*scan, *estimate, *change);
   DelayEstimate moved_by = *estimate;
   moved_by.delay_s = change->after_s - change->before_s;
-  if (Assess(moved_by, options.delay_check().max_shift_s()) != DelayVerdict::kMoved) {
+  if (Assess(moved_by, options.delay_check().expert().max_shift_s()) != DelayVerdict::kMoved) {
     fmt::print(
         "agrees with the calibration (within {:g} ms or its uncertainty): nothing to write\n",
-        1e3 * options.delay_check().max_shift_s());
+        1e3 * options.delay_check().expert().max_shift_s());
     return 0;
   }
   if (arguments.output.empty() && !arguments.apply) {

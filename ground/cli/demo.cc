@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "common/base/progress.h"
 #include "common/concurrency/thread_pool.h"
@@ -15,6 +16,8 @@
 #include "ground/cli/child_process.h"
 #include "ground/cli/simulation_files.h"
 #include "ground/cli/truth.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -63,9 +66,9 @@ std::vector<std::string> EdgeArguments(const DemoRequest& request, const fs::pat
           "--wait-for-ground",
           "--exit-at-end",
           "--set",
-          "source.rebase=false",
+          "source.expert.rebase=false",
           "--set",
-          "link.linger_s=600"};
+          "link.expert.linger_s=600"};
 }
 
 Result<std::vector<std::string>> GroundArguments(const DemoRequest& request,
@@ -73,22 +76,24 @@ Result<std::vector<std::string>> GroundArguments(const DemoRequest& request,
                                                  const std::string& edge_id) {
   const auto poses = ReadTruePoses(recording);
   if (!poses) return Err(poses.error());
-  const RigidTransform& first = poses->front().T_world_depth;
-  const Eigen::Vector3d t = first.translation();
-  const Eigen::Quaterniond q(Eigen::Matrix3d(first.linear()));
-  const std::string pose =
-      fmt::format("{} {} {} {} {} {} {}", t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w());
-  return std::vector<std::string>{"--once",
-                                  "--output",
-                                  request.output.string(),
-                                  "--edge-id",
-                                  edge_id,
-                                  "--domain",
-                                  std::to_string(request.domain),
-                                  "--set",
-                                  "live.record_viewable=false",
-                                  "--set",
-                                  "volume.initial_pose=" + pose};
+  const PoseOptions first = ToOptions(poses->front().T_world_depth);
+  std::vector<std::string> arguments{"--once",
+                                     "--output",
+                                     request.output.string(),
+                                     "--edge-id",
+                                     edge_id,
+                                     "--domain",
+                                     std::to_string(request.domain),
+                                     "--set",
+                                     "live.expert.record_viewable=false"};
+  for (const auto& [name, value] :
+       {std::pair("x_m", first.x_m()), std::pair("y_m", first.y_m()), std::pair("z_m", first.z_m()),
+        std::pair("qx", first.qx()), std::pair("qy", first.qy()), std::pair("qz", first.qz()),
+        std::pair("qw", first.qw())}) {
+    arguments.emplace_back("--set");
+    arguments.push_back(fmt::format("volume.expert.initial_pose.{}={}", name, value));
+  }
+  return arguments;
 }
 
 Status ExplainFailure(const std::string& name, int exit_status, const fs::path& log) {

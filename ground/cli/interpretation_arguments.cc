@@ -8,6 +8,7 @@
 #include "common/config/text_proto.h"
 #include "common/dataset/text_lines.h"
 #include "ground/cli/numbers.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -46,7 +47,9 @@ Status AddBox(const std::string& text, InterpretationOptions& options) {
   const auto numbers = ParseNumbers(corners, {6}, "--box");
   if (!numbers) return numbers.error();
   InterpretedRegion& region = *options.add_region();
-  region.set_box(corners);
+  const std::vector<double>& v = *numbers;
+  *region.mutable_box() = ToOptions(
+      Eigen::AlignedBox3d(Eigen::Vector3d(v[0], v[1], v[2]), Eigen::Vector3d(v[3], v[4], v[5])));
   region.set_name(fmt::format("box {}", corners));
   return ReadValues(colon == std::string::npos ? "" : std::string_view(text).substr(colon + 1),
                     fmt::format("--box \"{}\"", text), region);
@@ -81,8 +84,8 @@ Status ApplyArguments(const InterpretationArguments& arguments, InterpretationOp
   if (!arguments.band.empty()) {
     const auto band = ParseNumbers(arguments.band, {2}, "--band");
     if (!band) return band.error();
-    options.set_band_min_um(band->front());
-    options.set_band_max_um(band->back());
+    options.mutable_expert()->set_band_min_um(band->front());
+    options.mutable_expert()->set_band_max_um(band->back());
   }
   for (const std::string& label : arguments.labels)
     ISOTHERM_RETURN_IF_ERROR(ChangeLabel(label, options));

@@ -26,8 +26,8 @@ class InterpretationArgumentsTest : public ::testing::Test {
 
 TEST_F(InterpretationArgumentsTest, CommandLineHoldsOverTheFileAndBoxesComeLast) {
   UseRegions(R"(emissivity: 0.9 reflected_celsius: 20
-    region { name: "hot pipe: left" box: "0 0 0 1 1 1" emissivity: 0.3 }
-    region { name: "glass" box: "0 0 0 2 2 2" })");
+    region { name: "hot pipe: left" box { min { x_m: 0 y_m: 0 z_m: 0 } max { x_m: 1 y_m: 1 z_m: 1 } } emissivity: 0.3 }
+    region { name: "glass" box { min { x_m: 0 y_m: 0 z_m: 0 } max { x_m: 2 y_m: 2 z_m: 2 } } })");
   arguments_.emissivity = 0.8;
   arguments_.band = "3 5";
   arguments_.labels = {"hot pipe: left: emissivity=0.4 reflected=30"};
@@ -37,11 +37,12 @@ TEST_F(InterpretationArgumentsTest, CommandLineHoldsOverTheFileAndBoxesComeLast)
   ASSERT_TRUE(status.ok()) << status.message();
   EXPECT_EQ(options.emissivity(), 0.8);
   EXPECT_EQ(options.reflected_celsius(), 20.0);
-  EXPECT_EQ(options.band_min_um(), 3.0);
+  EXPECT_EQ(options.expert().band_min_um(), 3.0);
   ASSERT_EQ(options.region_size(), 4);
   EXPECT_EQ(options.region(0).emissivity(), 0.4);
   EXPECT_EQ(options.region(0).reflected_celsius(), 30.0);
-  EXPECT_EQ(options.region(2).box(), "1 2 3 4 5 6");
+  EXPECT_EQ(options.region(2).box().min().x_m(), 1.0);
+  EXPECT_EQ(options.region(2).box().max().z_m(), 6.0);
   EXPECT_EQ(options.region(2).emissivity(), 0.5);
   EXPECT_FALSE(options.region(2).has_reflected_celsius());
   EXPECT_EQ(options.region(3).name(), "window");
@@ -63,7 +64,8 @@ TEST_F(InterpretationArgumentsTest, WhatCannotBeReadIsSaid) {
 TEST_F(InterpretationArgumentsTest, UnknownLabelsAreSaidWithTheKnownOnes) {
   arguments_.labels = {"pipe: emissivity=0.4"};
   EXPECT_NE(Problem().find("--regions FILE brings them"), std::string::npos) << Problem();
-  UseRegions(R"(region { name: "pipes" box: "0 0 0 1 1 1" })");
+  UseRegions(
+      R"(region { name: "pipes" box { min { x_m: 0 y_m: 0 z_m: 0 } max { x_m: 1 y_m: 1 z_m: 1 } } })");
   EXPECT_NE(Problem().find("Did you mean 'pipes'?"), std::string::npos) << Problem();
 }
 

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "common/radiometry/materials.h"
 
@@ -95,18 +98,34 @@ std::string DescribeOptions(const LimitOptions& limits) {
   constexpr double kStep_deg = 0.1;
   constexpr double kStep_m = 0.001;
   std::string set, config;
-  const auto add = [&](const char* field, double value, int digits) {
-    set += fmt::format("{}--set thermal.{}={:.{}f}", set.empty() ? "" : " ", field, value, digits);
-    config += fmt::format("  {}: {:.{}f}\n", field, value, digits);
+  // A line of the file and the overrides for one group of the thermal options.
+  const auto add = [&](const char* group,
+                       std::initializer_list<std::pair<const char*, std::optional<double>>> values,
+                       int digits) {
+    std::string fields;
+    for (const auto& [name, value] : values) {
+      if (!value) continue;
+      set += fmt::format("{}--set thermal.{}.{}={:.{}f}", set.empty() ? "" : " ", group, name,
+                         *value, digits);
+      fields += fmt::format(" {}: {:.{}f}", name, *value, digits);
+    }
+    if (!fields.empty()) config += fmt::format("  {} {{{} }}\n", group, fields);
   };
-  if (limits.distance_min_m) add("distance_min_m", RoundUp(*limits.distance_min_m, kStep_m), 3);
-  if (limits.distance_good_m)
-    add("distance_good_m", RoundDown(*limits.distance_good_m, kStep_m), 3);
-  if (limits.distance_max_m) add("distance_max_m", RoundDown(*limits.distance_max_m, kStep_m), 3);
+  const auto round = [](std::optional<double> value, double (*direction)(double, double),
+                        double step) {
+    return value ? std::optional(direction(*value, step)) : std::nullopt;
+  };
+  add("distance",
+      {{"min_m", round(limits.distance_min_m, RoundUp, kStep_m)},
+       {"good_m", round(limits.distance_good_m, RoundDown, kStep_m)},
+       {"max_m", round(limits.distance_max_m, RoundDown, kStep_m)}},
+      3);
   if (limits.angle) {
-    add("angle_min_deg", RoundUp(limits.angle->min_rad / kDegree, kStep_deg), 1);
-    add("angle_good_deg", RoundDown(limits.angle->good_rad / kDegree, kStep_deg), 1);
-    add("angle_max_deg", RoundDown(limits.angle->max_rad / kDegree, kStep_deg), 1);
+    add("angle",
+        {{"min_deg", RoundUp(limits.angle->min_rad / kDegree, kStep_deg)},
+         {"good_deg", RoundDown(limits.angle->good_rad / kDegree, kStep_deg)},
+         {"max_deg", RoundDown(limits.angle->max_rad / kDegree, kStep_deg)}},
+        1);
   }
   if (set.empty()) return {};
   return fmt::format("\non the command line\n  {}\nin the configuration file\nthermal {{\n{}}}\n",

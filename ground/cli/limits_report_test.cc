@@ -32,12 +32,12 @@ TEST(LimitsReportTest, SnippetIsAConfigurationThatValidates) {
   ASSERT_TRUE(parsed.ok()) << parsed.message();
   EXPECT_TRUE(Validate(options.thermal()).ok());
   // Cut to the safe side.
-  EXPECT_EQ(options.thermal().angle_min_deg(), 15.5);
-  EXPECT_EQ(options.thermal().angle_good_deg(), 41.2);
-  EXPECT_EQ(options.thermal().angle_max_deg(), 55.0);
-  EXPECT_EQ(options.thermal().distance_min_m(), 0.446);
-  EXPECT_EQ(options.thermal().distance_good_m(), 0.533);
-  EXPECT_EQ(options.thermal().distance_max_m(), 0.57);
+  EXPECT_EQ(options.thermal().angle().min_deg(), 15.5);
+  EXPECT_EQ(options.thermal().angle().good_deg(), 41.2);
+  EXPECT_EQ(options.thermal().angle().max_deg(), 55.0);
+  EXPECT_EQ(options.thermal().distance().min_m(), 0.446);
+  EXPECT_EQ(options.thermal().distance().good_m(), 0.533);
+  EXPECT_EQ(options.thermal().distance().max_m(), 0.57);
 }
 
 TEST(LimitsReportTest, OverridesSayTheSame) {
@@ -53,7 +53,7 @@ TEST(LimitsReportTest, OverridesSayTheSame) {
     ++count;
   }
   EXPECT_EQ(count, 6);
-  EXPECT_EQ(options.thermal().distance_good_m(), 0.533);
+  EXPECT_EQ(options.thermal().distance().good_m(), 0.533);
 }
 
 TEST(LimitsReportTest, WhatIsUnknownIsLeftOut) {
@@ -61,9 +61,9 @@ TEST(LimitsReportTest, WhatIsUnknownIsLeftOut) {
   EXPECT_EQ(DescribeOptions(limits), "");
   limits.distance_max_m = 2.0;
   const std::string text = DescribeOptions(limits);
-  EXPECT_NE(text.find("distance_max_m: 2.000"), std::string::npos);
+  EXPECT_NE(text.find("distance { max_m: 2.000 }"), std::string::npos);
   EXPECT_EQ(text.find("angle"), std::string::npos);
-  EXPECT_EQ(text.find("distance_min_m"), std::string::npos);
+  EXPECT_EQ(text.find("min_m"), std::string::npos);
 }
 
 TEST(LimitsReportTest, EveryMaterialIsDocumented) {

@@ -20,7 +20,7 @@ std::optional<SurfaceMaps> CastLastView(const LoadedModel& model, const GroundOp
   if (!model.rig.depth || model.known_poses.empty()) return std::nullopt;
   SurfaceMaps maps;
   Raycaster().Cast(*model.tsdf, model.rig.depth->WithoutDistortion(), model.known_poses.back(),
-                   static_cast<float>(options.raycast().min_weight()), pool, maps);
+                   static_cast<float>(options.raycast().expert().min_weight()), pool, maps);
   return maps;
 }
 

@@ -21,9 +21,11 @@ bool IsPng(const fs::path& path) { return path.extension() == ".png"; }
 }  // namespace
 
 ModelSurface SurfaceOf(const LoadedModel& model, const GroundOptions& options, ThreadPool& pool) {
-  const Surface surface = ExtractSurface(
-      *model.tsdf, *model.thermal,
-      {.min_weight = static_cast<float>(options.export_().min_weight()), .triangles = false}, pool);
+  const Surface surface =
+      ExtractSurface(*model.tsdf, *model.thermal,
+                     {.min_weight = static_cast<float>(options.export_().expert().min_weight()),
+                      .triangles = false},
+                     pool);
   ModelSurface result;
   result.points_m.reserve(surface.points.size());
   result.celsius.reserve(surface.points.size());
@@ -86,7 +88,7 @@ Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& optio
   int empty = 0;
   for (const RigidTransform& T_world_camera : request.views) {
     raycaster.Cast(*model.tsdf, request.camera, T_world_camera,
-                   static_cast<float>(options.export_().min_weight()), pool, maps);
+                   static_cast<float>(options.export_().expert().min_weight()), pool, maps);
     SampleView(maps, T_world_camera.translation(), *model.tsdf, *model.thermal, pool, view);
     empty += std::ranges::all_of(view.cos_view.pixels(), [](float c) { return std::isnan(c); });
     if (std::ranges::count(request.layers, RenderLayer::kAge) > 0)
@@ -94,7 +96,7 @@ Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& optio
     std::optional<ContourField> contours;
     if (thermal && renderer.draws_lines()) {
       contours = SampleContours(maps, *model.tsdf, *model.thermal,
-                                options.renderer().isotherm_smoothing_px(), pool);
+                                options.renderer().expert().isotherm_smoothing_px(), pool);
     }
     for (const RenderLayer layer : request.layers) {
       const RgbImage rendering = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);

@@ -2,18 +2,14 @@
 
 #include <fmt/format.h>
 #include <google/protobuf/descriptor.h>
-#include <google/protobuf/descriptor.pb.h>
 
 #include <algorithm>
 #include <memory>
 
 #include "common/config/nearest_name.h"
+#include "ground/cli/option_tree.h"
 
 namespace isotherm {
-
-/// The .proto files of all options with their comments, a serialized FileDescriptorSet.
-std::string OptionDescriptors();
-
 namespace {
 
 namespace pb = google::protobuf;
@@ -25,97 +21,122 @@ struct Program {
 };
 
 constexpr Program kPrograms[] = {
-    {"edge", "isotherm.EdgeOptions", "isotherm-edge"},
     {"ground", "isotherm.GroundOptions",
      "isotherm-ground and isotherm reconstruct, render, export, calibrate"},
+    {"edge", "isotherm.EdgeOptions", "isotherm-edge"},
     {"simulate", "isotherm.SimulationOptions", "isotherm simulate"},
 };
 
-std::unique_ptr<pb::DescriptorPool> LoadDescriptors() {
-  pb::FileDescriptorSet files;
-  if (!files.ParseFromString(OptionDescriptors())) return nullptr;
-  auto pool = std::make_unique<pb::DescriptorPool>();
-  for (const pb::FileDescriptorProto& file : files.file()) {
-    if (pool->BuildFile(file) == nullptr) return nullptr;
+/// What stands before the page's tables.
+constexpr const char* kPageHead = R"(# Options
+
+<!-- Made from the comments of the .proto files; option_list_test compares. To update it:
+     isotherm options --markdown > docs/options.md -->
+
+Every option of every program, in two rings: first what a person sets for a scan, then what is there for experts, in
+the `expert` block of each stage. What belongs to a camera (near range, noise, time constant, lens) is in the
+[rig file](data.md#rig-file). Names are those that `--set` takes. In a configuration file (protobuf text format) dots are
+braces: `tsdf.expert.max_weight=100` is `tsdf { expert { max_weight: 100 } }`. `isotherm options` lists the same.
+)";
+
+std::string Indented(const std::string& text, std::string_view indent) {
+  std::string indented;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::string_view line = rest.substr(0, rest.find('\n'));
+    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+    indented += fmt::format("{}{}\n", indent, line);
   }
-  return pool;
+  return indented;
 }
 
-/// The comment in front, indented; nothing if there is none.
-template <typename Descriptor>
-std::string Comment(const Descriptor& descriptor, std::string_view indent) {
-  pb::SourceLocation location;
-  if (!descriptor.GetSourceLocation(&location)) return {};
+std::string DefaultOf(const pb::FieldDescriptor& field) {
+  if (field.is_repeated() && field.message_type() != nullptr) return "   (several; in a file only)";
+  if (field.is_repeated()) return "   (several)";
+  const std::string value = DefaultText(field);
+  return value.empty() ? "   (none)" : " = " + value;
+}
+
+/// What may stand for an option: the names of an enumeration, the fields of each of several groups.
+std::string Choices(const pb::FieldDescriptor& field) {
   std::string text;
-  std::string_view rest = location.leading_comments;
-  while (!rest.empty()) {
-    std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(line.size() + 1, rest.size()));
-    if (line.starts_with(' ')) line.remove_prefix(1);
-    text += fmt::format("{}{}\n", indent, line);
+  if (const pb::EnumDescriptor* type = field.enum_type()) {
+    for (int i = 0; i < type->value_count(); ++i) {
+      const std::string comment = Indented(Comment(*type->value(i)), "        ");
+      text += fmt::format("      {}{}\n{}", type->value(i)->name(), comment.empty() ? "" : ":",
+                          comment);
+    }
+  }
+  if (field.message_type() == nullptr) return text;
+  for (const OptionGroup& group : GroupsOf(*field.message_type(), "", OptionRing::kEveryday)) {
+    for (const pb::FieldDescriptor* part : group.options) {
+      text += fmt::format("      {}{}{}\n{}", group.name, group.name.empty() ? "" : ".",
+                          part->name() + DefaultOf(*part), Indented(Comment(*part), "        "));
+    }
   }
   return text;
 }
 
-std::string DefaultOf(const pb::FieldDescriptor& field) {
-  if (field.is_repeated()) return "   (several; in a file only)";
-  if (!field.has_default_value()) return "   (none)";
-  pb::FieldDescriptorProto proto;
-  field.CopyTo(&proto);
-  if (field.cpp_type() == pb::FieldDescriptor::CPPTYPE_STRING)
-    return fmt::format(" = \"{}\"", proto.default_value());
-  return " = " + proto.default_value();
-}
-
-void ListEnum(const pb::EnumDescriptor& type, std::string& text) {
-  for (int i = 0; i < type.value_count(); ++i) {
-    const pb::EnumValueDescriptor& value = *type.value(i);
-    const std::string comment = Comment(value, "        ");
-    text += fmt::format("      {}{}\n{}", value.name(), comment.empty() ? "" : ":", comment);
-  }
-}
-
-void ListMessage(const pb::Descriptor& type, const std::string& prefix, std::string& text) {
-  for (int i = 0; i < type.field_count(); ++i) {
-    const pb::FieldDescriptor& field = *type.field(i);
-    const std::string name = prefix + field.name();
-    const bool is_group = field.message_type() != nullptr && !field.is_repeated();
-    if (is_group) {
-      std::string comment = Comment(field, "  ");
-      if (comment.empty()) comment = Comment(*field.message_type(), "  ");
-      text += fmt::format("\n{}:\n{}", name, comment);
-      ListMessage(*field.message_type(), name + ".", text);
-      continue;
+std::string List(const std::vector<OptionGroup>& groups) {
+  std::string text;
+  for (const OptionGroup& group : groups) {
+    if (!group.name.empty())
+      text += fmt::format("\n{}:\n{}", group.name, Indented(group.comment, "  "));
+    for (const pb::FieldDescriptor* field : group.options) {
+      text +=
+          fmt::format("  {}{}{}{}\n{}{}", group.name, group.name.empty() ? "" : ".", field->name(),
+                      DefaultOf(*field), Indented(Comment(*field), "      "), Choices(*field));
     }
-    text += fmt::format("  {}{}\n{}", name, DefaultOf(field), Comment(field, "      "));
-    if (field.enum_type() != nullptr) ListEnum(*field.enum_type(), text);
-    if (field.message_type() != nullptr) text += Comment(*field.message_type(), "      ");
   }
+  return text;
 }
 
-std::vector<std::string> Groups(const pb::Descriptor& type) {
-  std::vector<std::string> names;
-  for (int i = 0; i < type.field_count(); ++i) {
-    if (type.field(i)->message_type() != nullptr) names.push_back(type.field(i)->name());
+/// In a cell of a table.
+std::string Cell(std::string text) {
+  std::string cell;
+  for (const char c : text) {
+    if (c == '|') cell += '\\';
+    cell += c == '\n' ? ' ' : c;
   }
-  return names;
+  while (cell.ends_with(' ')) cell.pop_back();
+  return cell;
 }
 
-/// The message behind "tracker.external_odometry".
-Result<const pb::Descriptor*> FindStage(const pb::Descriptor& program, std::string_view stage) {
-  const pb::Descriptor* type = &program;
-  while (!stage.empty()) {
-    const std::string name(stage.substr(0, stage.find('.')));
-    const pb::FieldDescriptor* field = type->FindFieldByName(name);
-    if (field == nullptr || field->message_type() == nullptr) {
-      const std::vector<std::string> known = Groups(*type);
-      return Err(InvalidArgument(fmt::format("there is no group of options '{}'.{} There are: {}",
-                                             name, DidYouMean(name, known), JoinNames(known))));
+std::string Meaning(const pb::FieldDescriptor& field) {
+  std::string text = Comment(field);
+  if (const pb::EnumDescriptor* type = field.enum_type()) {
+    for (int i = 0; i < type->value_count(); ++i) {
+      const std::string comment = Cell(Comment(*type->value(i)));
+      text +=
+          fmt::format(" `{}`{}{}", type->value(i)->name(), comment.empty() ? "" : ": ", comment);
     }
-    type = field->message_type();
-    stage.remove_prefix(std::min(name.size() + 1, stage.size()));
   }
-  return type;
+  if (field.message_type() != nullptr) {
+    std::vector<std::string> parts;
+    for (const OptionGroup& group : GroupsOf(*field.message_type(), "", OptionRing::kEveryday)) {
+      for (const pb::FieldDescriptor* part : group.options)
+        parts.push_back(
+            fmt::format("`{}{}{}`", group.name, group.name.empty() ? "" : ".", part->name()));
+    }
+    text += "Each has " + JoinNames(parts) + ".";
+  }
+  return Cell(text);
+}
+
+std::string Tables(const std::vector<OptionGroup>& groups) {
+  std::string text;
+  for (const OptionGroup& group : groups) {
+    if (!group.name.empty()) text += fmt::format("\n#### {}\n", group.name);
+    if (!group.comment.empty()) text += "\n" + group.comment;
+    if (group.options.empty()) continue;
+    text += "\n| option | default | meaning |\n|---|---|---|\n";
+    for (const pb::FieldDescriptor* field : group.options) {
+      const std::string value = DefaultText(*field);
+      text += fmt::format("| `{}{}{}` | {} | {} |\n", group.name, group.name.empty() ? "" : ".",
+                          field->name(), value.empty() ? "" : "`" + value + "`", Meaning(*field));
+    }
+  }
+  return text;
 }
 
 }  // namespace
@@ -126,7 +147,8 @@ std::vector<std::string> ProgramsWithOptions() {
   return names;
 }
 
-Result<std::string> ListOptions(std::string_view program_name, std::string_view stage) {
+Result<std::string> ListOptions(std::string_view program_name, std::string_view stage,
+                                bool with_expert) {
   const auto* program = std::ranges::find(kPrograms, program_name, &Program::name);
   if (program == std::end(kPrograms)) {
     const std::vector<std::string> known = ProgramsWithOptions();
@@ -134,16 +156,38 @@ Result<std::string> ListOptions(std::string_view program_name, std::string_view 
                                            program_name, DidYouMean(program_name, known),
                                            JoinNames(known))));
   }
-  const std::unique_ptr<pb::DescriptorPool> pool = LoadDescriptors();
+  const std::unique_ptr<pb::DescriptorPool> pool = LoadOptionDescriptors();
   const pb::Descriptor* type = pool ? pool->FindMessageTypeByName(program->message) : nullptr;
   if (type == nullptr) return Err(Internal("the descriptions of options cannot be read"));
   const Result<const pb::Descriptor*> listed = FindStage(*type, stage);
   if (!listed) return Err(listed.error());
+  const std::string prefix(stage);
   std::string text = fmt::format(
       "Options of {}, with their defaults: --set NAME=VALUE, or in the file of --config\n",
       program->used_by);
-  const std::string prefix = stage.empty() ? "" : std::string(stage) + ".";
-  ListMessage(**listed, prefix, text);
+  text += List(GroupsOf(**listed, prefix, OptionRing::kEveryday));
+  const std::vector<OptionGroup> expert = GroupsOf(**listed, prefix, OptionRing::kExpert);
+  if (with_expert || IsExpert(stage)) return text + List(expert);
+  std::size_t left_out = 0;
+  for (const OptionGroup& group : expert) left_out += group.options.size();
+  if (left_out > 0) text += fmt::format("\n{} more for experts: --expert\n", left_out);
+  return text;
+}
+
+Result<std::string> OptionsPage() {
+  const std::unique_ptr<pb::DescriptorPool> pool = LoadOptionDescriptors();
+  if (!pool) return Err(Internal("the descriptions of options cannot be read"));
+  std::string text = kPageHead;
+  for (const auto& [ring, title] : {std::pair(OptionRing::kEveryday, "Everyday options"),
+                                    std::pair(OptionRing::kExpert, "Expert options")}) {
+    text += fmt::format("\n## {}\n", title);
+    for (const Program& program : kPrograms) {
+      const pb::Descriptor* type = pool->FindMessageTypeByName(program.message);
+      if (type == nullptr) return Err(Internal("the descriptions of options cannot be read"));
+      text += fmt::format("\n### {}: {}\n", title, program.used_by);
+      text += Tables(GroupsOf(*type, "", ring));
+    }
+  }
   return text;
 }
 

@@ -6,12 +6,14 @@
 
 #include "common/base/progress.h"
 #include "common/config/text_proto.h"
+#include "common/geometry/pose_text.h"
 #include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"
 #include "ground/configuration/validate_options.h"
 #include "ground/export/results.h"
 #include "ground/offline/reconstruct.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -68,15 +70,21 @@ std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
   }
   if (!arguments.volume_min.empty()) {
     if (const auto corner = ParseNumbers(arguments.volume_min, {3}, "--volume-min")) {
-      volume.set_min_x_m((*corner)[0]);
-      volume.set_min_y_m((*corner)[1]);
-      volume.set_min_z_m((*corner)[2]);
+      volume.mutable_expert()->set_min_x_m((*corner)[0]);
+      volume.mutable_expert()->set_min_y_m((*corner)[1]);
+      volume.mutable_expert()->set_min_z_m((*corner)[2]);
     } else {
       add(corner.error());
     }
   }
   if (arguments.voxel) volume.set_voxel_size_m(*arguments.voxel);
-  if (!arguments.initial_pose.empty()) volume.set_initial_pose(arguments.initial_pose);
+  if (!arguments.initial_pose.empty()) {
+    if (const auto pose = ParsePose(arguments.initial_pose)) {
+      *volume.mutable_expert()->mutable_initial_pose() = ToOptions(*pose);
+    } else {
+      add(pose.error().WithContext("--initial-pose"));
+    }
+  }
   if (arguments.threads) options.set_threads(*arguments.threads);
   if (problems.empty()) {
     for (const Status& status : ValidateAll(options)) add(status);

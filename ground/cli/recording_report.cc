@@ -9,9 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/printable.h"
+#include "common/config/rig_calibration.h"
+#include "common/config/rig_calibration.pb.h"
 #include "common/dataset/text_lines.h"
 #include "common/recording/clock_record.h"
 #include "ground/cli/recording_damage.h"
+#include "ground/export/message_json.h"
 
 namespace isotherm {
 namespace {
@@ -165,6 +168,24 @@ void AppendCamera(std::string_view name, const std::optional<CameraModel>& camer
                       camera->HasDistortion() ? ", with distortion" : "");
 }
 
+void AppendSensors(const Rig& rig, std::string& text) {
+  const DepthSensorModel& depth = rig.depth_sensor;
+  text += fmt::format(
+      "{:<14}depth: {:g} to {:g} m, nothing seen nearer than {:g} m, noise {:g} mm at 1 m\n", "",
+      depth.min_depth_m, depth.max_depth_m, depth.near_range_m, 1e3 * depth.noise_at_1m_m);
+  const ThermalSensorModel& thermal = rig.thermal_sensor;
+  text += fmt::format("{:<14}thermal: time constant {:g} ms, {:g} us from row to row", "",
+                      1e3 * thermal.time_constant_s, 1e6 * thermal.row_readout_s);
+  if (thermal.pixel_pitch_m)
+    text += fmt::format(", pixels of {:g} um", 1e6 * *thermal.pixel_pitch_m);
+  if (thermal.lens) {
+    text += fmt::format(", lens of {:g} mm f/{:g} focused at {:g} m",
+                        1e3 * thermal.lens->focal_length_m, thermal.lens->f_number,
+                        thermal.lens->focus_m);
+  }
+  text += "\n";
+}
+
 void AppendRig(const RecordingReport& report, std::string& text) {
   text += fmt::format("{:<14}", "calibration");
   if (!report.rig) {
@@ -188,6 +209,7 @@ void AppendRig(const RecordingReport& report, std::string& text) {
   } else {
     text += fmt::format("{:<14}no T_thermal_depth: temperatures cannot be fused\n", "");
   }
+  AppendSensors(rig, text);
 }
 
 void AppendLog(const RecordingSummary& summary, std::string& text) {
@@ -355,6 +377,9 @@ Json ToJson(const RecordingReport& report) {
     json["calibration"]["thermal"] = report.rig->thermal.has_value();
     json["calibration"]["T_thermal_depth"] = report.rig->T_thermal_depth.has_value();
     json["calibration"]["thermal_delay_s"] = report.rig->thermal_delay_s;
+    const RigCalibration calibration = ToProto(*report.rig);
+    json["calibration"]["depth_sensor"] = ToJson(calibration.depth_sensor());
+    json["calibration"]["thermal_sensor"] = ToJson(calibration.thermal_sensor());
   }
   return json;
 }

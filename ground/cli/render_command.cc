@@ -46,7 +46,7 @@ Examples:
   isotherm render out -o hot.png --bands "150.." --unit fahrenheit
   isotherm render out -o side.png --view-from "0.6 -0.2 -0.8" --look-at "0 0 0"
   isotherm render out -o orbit --orbit 36 --layer thermal,coverage
-  isotherm render out/model.iso -o last.png --view last --set renderer.shading=false)";
+  isotherm render out/model.iso -o last.png --view last --set renderer.expert.shading=false)";
 
 struct Arguments {
   std::string model, output, config;
@@ -98,10 +98,12 @@ void SetLook(const Arguments& arguments, RendererOptions& options, Problems& pro
   }
   if (!arguments.scale.empty())
     problems.Add(ParseScale(arguments.scale, options).WithContext("--scale"));
-  if (!arguments.isotherms.empty()) options.set_isotherms(arguments.isotherms);
-  if (!arguments.bands.empty()) options.set_bands(arguments.bands);
+  if (!arguments.isotherms.empty())
+    problems.Add(ParseIsotherms(arguments.isotherms, options).WithContext("--isotherms"));
+  if (!arguments.bands.empty())
+    problems.Add(ParseBands(arguments.bands, options).WithContext("--bands"));
   if (arguments.no_legend) options.set_legend(false);
-  if (arguments.no_shading) options.set_shading(false);
+  if (arguments.no_shading) options.mutable_expert()->set_shading(false);
 }
 
 /// Takes the options of the result folder, then of the configuration file, then of the command
@@ -276,7 +278,7 @@ int Run(const Arguments& arguments) {
   const ModelSurface surface = SurfaceOf(*model, options, pool);
   if (surface.points_m.empty()) {
     return Fail(DataLoss(file->string() + ": the model has no surface that was seen often enough "
-                                          "(export.min_weight)"));
+                                          "(export.expert.min_weight)"));
   }
   const auto views = ChooseViews(arguments, *model, surface.points_m, *camera);
   if (!views) return Fail(views.error());

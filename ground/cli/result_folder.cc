@@ -5,10 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/config/renamed_options.h"
-#include "common/config/text_proto.h"
 #include "common/dataset/text_lines.h"
 #include "common/dataset/trajectory.h"
+#include "ground/cli/older_configuration.h"
 #include "ground/export/message_json.h"
 
 namespace isotherm {
@@ -45,13 +44,12 @@ std::optional<GroundOptions> ConfigurationOf(const fs::path& folder) {
   const Json stats = Json::parse(*text, is_shallow, /*allow_exceptions=*/false);
   const auto found = stats.find("configuration");
   if (found == stats.end()) return std::nullopt;
-  GroundOptions options;
   // Before version 0.2 it was text format in a string.
-  const Status parsed =
-      found->is_string()
-          ? ParseTextProto(WithPresentNames(found->get<std::string>()), "stats.json", options)
-          : FromJson(*found, "stats.json", options);
-  if (!parsed.ok()) return std::nullopt;
+  const Json written =
+      found->is_string() ? OptionsFromLines(found->get<std::string>()) : Json(*found);
+  GroundOptions options;
+  const Json present = WithPresentNames(written, *GroundOptions::descriptor());
+  if (!FromJson(present, "stats.json", options).ok()) return std::nullopt;
   return options;
 }
 

@@ -64,7 +64,7 @@ Status WriteTrueSurface(const SimulationOptions& options, const std::filesystem:
   if (!scan) return scan.error();
   std::vector<SurfaceSample> samples = SampleSurface((*scan)->scene(), kSampleSpacing_m);
   const Rig& rig = (*scan)->rig();
-  const double max_depth_m = options.depth().max_depth_m();
+  const double max_depth_m = options.depth().expert().max_depth_m();
   const auto& times = (*scan)->depth_times();
   for (std::size_t i = 0; i < times.size(); i += kPoseStep) {
     if (stop.stop_requested()) return Unavailable("writing the true surface was interrupted");

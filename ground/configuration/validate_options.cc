@@ -4,12 +4,12 @@
 
 #include <utility>
 
-#include "common/geometry/pose_text.h"
 #include "ground/calibration/delay_check.h"
 #include "ground/export/interpretation.h"
 #include "ground/export/results.h"
 #include "ground/feedback/advice.h"
 #include "ground/options/ground_options.pb.h"
+#include "ground/options/option_geometry.h"
 #include "ground/relocaliser/relocaliser.h"
 #include "ground/renderer/renderer.h"
 #include "ground/surface/depth_preprocessor.h"
@@ -26,28 +26,30 @@ Status Validate(const LiveOptions& o) {
     return InvalidArgument(
         fmt::format("live.domain must be 0..{}, got {}", kMaxDomain, o.domain()));
   }
-  if (o.queue_frames() < 1 || o.queue_frames() > 4096) {
+  if (o.expert().queue_frames() < 1 || o.expert().queue_frames() > 4096) {
     return InvalidArgument(
-        fmt::format("live.queue_frames must be 1..4096, got {}", o.queue_frames()));
+        fmt::format("live.expert.queue_frames must be 1..4096, got {}", o.expert().queue_frames()));
   }
-  if (!(o.feedback_hz() > 0.0 && o.feedback_hz() <= 100.0)) {
+  if (!(o.expert().feedback_hz() > 0.0 && o.expert().feedback_hz() <= 100.0)) {
+    return InvalidArgument(
+        fmt::format("live.expert.feedback_hz must be above 0 and at most 100 Hz, got {}",
+                    o.expert().feedback_hz()));
+  }
+  if (!(o.expert().reorder_window_s() >= 0.0 && o.expert().reorder_window_s() <= 0.2)) {
+    return InvalidArgument(fmt::format("live.expert.reorder_window_s must be 0..0.2 s, got {}",
+                                       o.expert().reorder_window_s()));
+  }
+  if (!(o.expert().max_wait_s() == 0.0 ||
+        (o.expert().max_wait_s() >= 0.05 && o.expert().max_wait_s() <= 10.0))) {
     return InvalidArgument(fmt::format(
-        "live.feedback_hz must be above 0 and at most 100 Hz, got {}", o.feedback_hz()));
+        "live.expert.max_wait_s must be 0 (never leave work out) or 0.05 to 10 s, got {}",
+        o.expert().max_wait_s()));
   }
-  if (!(o.reorder_window_s() >= 0.0 && o.reorder_window_s() <= 0.2)) {
-    return InvalidArgument(
-        fmt::format("live.reorder_window_s must be 0..0.2 s, got {}", o.reorder_window_s()));
-  }
-  if (!(o.max_wait_s() == 0.0 || (o.max_wait_s() >= 0.05 && o.max_wait_s() <= 10.0))) {
-    return InvalidArgument(
-        fmt::format("live.max_wait_s must be 0 (never leave work out) or 0.05 to 10 s, got {}",
-                    o.max_wait_s()));
-  }
-  if (!(o.max_clock_offset_s() == 0.0 ||
-        (o.max_clock_offset_s() >= 0.001 && o.max_clock_offset_s() <= 3600.0))) {
-    return InvalidArgument(
-        fmt::format("live.max_clock_offset_s must be 0 (no alarm) or 0.001 to 3600 s, got {}",
-                    o.max_clock_offset_s()));
+  if (!(o.expert().max_clock_offset_s() == 0.0 ||
+        (o.expert().max_clock_offset_s() >= 0.001 && o.expert().max_clock_offset_s() <= 3600.0))) {
+    return InvalidArgument(fmt::format(
+        "live.expert.max_clock_offset_s must be 0 (no alarm) or 0.001 to 3600 s, got {}",
+        o.expert().max_clock_offset_s()));
   }
   if (o.output_dir().empty()) return InvalidArgument("live.output_dir must name a folder");
   return OkStatus();
@@ -75,9 +77,9 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
     check(InvalidArgument(
         fmt::format("threads must be 0 (one per core) to 256, got {}", options.threads())));
   }
-  if (!options.volume().initial_pose().empty()) {
-    if (const auto pose = ParsePose(options.volume().initial_pose()); !pose) {
-      check(pose.error().WithContext("volume.initial_pose"));
+  if (options.volume().expert().has_initial_pose()) {
+    if (const auto pose = ToTransform(options.volume().expert().initial_pose()); !pose) {
+      check(pose.error().WithContext("volume.expert.initial_pose"));
     }
   }
   return problems;

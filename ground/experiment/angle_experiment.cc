@@ -50,18 +50,18 @@ StagedScene Calibrator() {
 GroundOptions WithAngleLimits(bool validation) {
   GroundOptions options;
   // The simulated depth camera has no shutter of rows: faster motion is good enough here.
-  options.mutable_tsdf()->set_max_step_m(0.03);
-  options.mutable_tsdf()->set_max_step_deg(3.0);
+  options.mutable_tsdf()->mutable_expert()->set_max_step_m(0.03);
+  options.mutable_tsdf()->mutable_expert()->set_max_step_deg(3.0);
   ThermalOptions& thermal = *options.mutable_thermal();
   // The rim stands 8 mm above the disc: less than what counts as hiding by default.
-  thermal.set_parallax_tolerance_m(0.004);
+  thermal.mutable_expert()->mutable_occlusion()->set_parallax_tolerance_m(0.004);
   // The experiment asks for this accuracy.
-  thermal.set_max_gradient_error_k(1.0);
+  thermal.mutable_expert()->set_max_gradient_error_k(1.0);
   // As in the thesis.
-  thermal.set_angle_min_deg(15.0);
-  thermal.set_angle_good_deg(30.0);
-  thermal.set_angle_max_deg(45.0);
-  thermal.set_validation(validation);
+  thermal.mutable_angle()->set_min_deg(15.0);
+  thermal.mutable_angle()->set_good_deg(30.0);
+  thermal.mutable_angle()->set_max_deg(45.0);
+  thermal.mutable_expert()->set_validation(validation);
   thermal.set_keep_bad(!validation);
   return options;
 }

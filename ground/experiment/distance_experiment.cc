@@ -98,10 +98,10 @@ GroundOptions FineModel(bool validation) {
   // of their contrast with them, 99.2 % with this.
   options.mutable_tsdf()->set_truncation_distance_m(0.008);
   ThermalOptions& thermal = *options.mutable_thermal();
-  thermal.set_distance_min_m(0.30);
-  thermal.set_distance_good_m(0.45);
-  thermal.set_distance_max_m(0.60);
-  thermal.set_validation(validation);
+  thermal.mutable_distance()->set_min_m(0.30);
+  thermal.mutable_distance()->set_good_m(0.45);
+  thermal.mutable_distance()->set_max_m(0.60);
+  thermal.mutable_expert()->set_validation(validation);
   thermal.set_keep_bad(!validation);
   return options;
 }

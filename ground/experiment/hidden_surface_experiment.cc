@@ -38,9 +38,9 @@ double CoveragePercent(const SimulatedScan& scan, const std::vector<CheckedPoint
   for (std::size_t i = 0; i < points.size(); i += kEvery) {
     const auto conditions = TrueConditions(scan, frames, points[i].truth);
     const bool acceptable = std::ranges::any_of(conditions, [&](const TrueCondition& c) {
-      return c.surely_seen && c.distance_m >= limits.distance_min_m() &&
-             c.distance_m <= limits.distance_max_m() && c.angle_deg >= limits.angle_min_deg() &&
-             c.angle_deg <= limits.angle_max_deg();
+      return c.surely_seen && c.distance_m >= limits.distance().min_m() &&
+             c.distance_m <= limits.distance().max_m() && c.angle_deg >= limits.angle().min_deg() &&
+             c.angle_deg <= limits.angle().max_deg();
     });
     if (!acceptable) continue;
     ++visible;

@@ -44,18 +44,17 @@ StagedScene SweepAlongBars() {
 
 SimulationOptions CamerasWithInertia() {
   SimulationOptions options = ExperimentCameras(kDuration_s);
-  options.mutable_thermal()->set_time_constant_s(kTimeConstant_s);
+  options.mutable_thermal()->mutable_expert()->set_time_constant_s(kTimeConstant_s);
   return options;
 }
 
 GroundOptions WithSmearLimits(bool limited) {
   GroundOptions options;
   // The simulated depth camera has no shutter of rows: faster motion is good enough here.
-  options.mutable_tsdf()->set_max_step_m(0.04);
-  options.mutable_thermal()->set_time_constant_s(kTimeConstant_s);
+  options.mutable_tsdf()->mutable_expert()->set_max_step_m(0.04);
   if (!limited) {
-    options.mutable_thermal()->set_smear_good_px(kAnySmear_px);
-    options.mutable_thermal()->set_smear_max_px(kAnySmear_px);
+    options.mutable_thermal()->mutable_expert()->mutable_motion()->set_smear_good_px(kAnySmear_px);
+    options.mutable_thermal()->mutable_expert()->mutable_motion()->set_smear_max_px(kAnySmear_px);
   }
   return options;
 }
@@ -105,7 +104,7 @@ Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool) {
   report.table.columns = {"points",           "assigned",         "smeared pixels left out",
                           "median error [K]", "99.9 % error [K]", "largest error [K]"};
   RendererOptions renderer_options = FixedScale(kCold_celsius, kHot_celsius);
-  renderer_options.set_shading(false);
+  renderer_options.mutable_expert()->set_shading(false);
   const Renderer renderer(renderer_options, ThermalOptions());
   constexpr const char* kLabels[] = {"believed", "left out"};
   constexpr const char* kRenderings[] = {"believed", "left_out"};

@@ -35,7 +35,7 @@ SimulationOptions CameraWith(Camera camera) {
   drift.set_time_constant_s(kTimeConstant_s);
   drift.set_error_per_kelvin(kErrorPerKelvin);
   if (camera == Camera::kNeverCorrected) return options;
-  options.mutable_shutter()->set_drift_k(kAllowedDrift_k);
+  options.mutable_shutter()->mutable_expert()->set_drift_k(kAllowedDrift_k);
   options.mutable_shutter()->set_duration_s(kShutterClosed_s);
   return options;
 }

@@ -24,9 +24,9 @@ SimulationOptions CamerasWithShutter() {
   shutter.set_first_s(0.8);
   shutter.set_interval_s(1.4);
   shutter.set_duration_s(0.4);
-  shutter.set_duration_step_s(0.3);
-  shutter.set_appearance(ShutterOptions::SHUTTER);
-  shutter.set_shutter_celsius(kShutter_celsius);
+  shutter.mutable_expert()->set_duration_step_s(0.3);
+  shutter.mutable_expert()->set_appearance(ShutterOptions::SHUTTER);
+  shutter.mutable_expert()->set_shutter_celsius(kShutter_celsius);
   return options;
 }
 

@@ -83,7 +83,7 @@ ExperimentTable::Row DescribeDetection(const char* label, const Detection& detec
 
 Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
   GroundOptions lowest;
-  lowest.mutable_thermal()->set_policy(LOWEST_GOOD);
+  lowest.mutable_thermal()->mutable_expert()->set_policy(LOWEST_GOOD);
   const auto played = Play(ExperimentCameras(kDuration_s), DoorWithPolishedPatch(),
                            {GroundOptions(), lowest}, pool);
   if (!played) return Err(played.error());

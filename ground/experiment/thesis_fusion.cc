@@ -43,7 +43,7 @@ Eigen::Vector3f VertexAt(const SurfaceMaps& maps, int x, int y) {
 ThesisFuser::ThesisFuser(const ThermalOptions& options, const Rig& rig, float min_weight,
                          ParallaxFilter filter)
     : options_(options),
-      limits_(options),
+      limits_(options, rig.thermal_sensor),
       depth_camera_(rig.depth->WithoutDistortion()),
       min_weight_(min_weight),
       filter_(filter),
@@ -65,7 +65,7 @@ ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_world,
   if (!pixel || !nearest || cosine <= 0.0F) return vertex;
   if (filter_ == ParallaxFilter::kAlgorithm4 &&
       distance_m - nearest_m_.At(nearest->x(), nearest->y()) >=
-          static_cast<float>(options_.parallax_tolerance_m())) {
+          static_cast<float>(options_.expert().occlusion().parallax_tolerance_m())) {
     return vertex;
   }
   vertex.celsius = Bilinear(celsius_, *pixel);
@@ -99,7 +99,8 @@ void ThesisFuser::FindVertices(const RigidTransform& T_world_thermal, ThreadPool
 void ThesisFuser::UpdateBlock(std::int32_t block, const RigidTransform& T_depth_world,
                               const TsdfVolume& tsdf, ThermalVolume& thermal) const {
   const VoxelGrid& grid = tsdf.grid();
-  const auto reach_m = static_cast<float>(options_.vertex_distance_vox() * grid.voxel_size_m);
+  const auto reach_m =
+      static_cast<float>(options_.expert().vertex_distance_vox() * grid.voxel_size_m);
   const std::span<const TsdfVoxel, kBlockVoxels> distances = tsdf.voxels(block);
   const std::span<ThermalVoxel, kBlockVoxels> voxels = thermal.voxels(block);
   const GridIndex first = tsdf.block_coordinates(block) * kBlockSide;
@@ -137,7 +138,8 @@ ThesisFusion::ThesisFusion(const GroundOptions& options, const Rig& rig, const S
                            ParallaxFilter filter)
     : rig_(rig),
       model_(model),
-      fuser_(options.thermal(), rig, static_cast<float>(options.raycast().min_weight()), filter),
+      fuser_(options.thermal(), rig, static_cast<float>(options.raycast().expert().min_weight()),
+             filter),
       thermal_(model.tsdf().max_blocks()) {}
 
 void ThesisFusion::AfterDepth(ThreadPool& pool) {

@@ -51,9 +51,9 @@ TrueClasses Classify(const TrueCondition& condition, const ThermalOptions& o, co
     return value <= good ? ConditionClass::kGood : ConditionClass::kAcceptable;
   };
   const double angle_deg = std::abs(condition.angle_deg + shift.angle_deg);
-  return {classify(condition.distance_m + shift.distance_m, o.distance_min_m(), o.distance_good_m(),
-                   o.distance_max_m()),
-          classify(angle_deg, o.angle_min_deg(), o.angle_good_deg(), o.angle_max_deg())};
+  return {classify(condition.distance_m + shift.distance_m, o.distance().min_m(),
+                   o.distance().good_m(), o.distance().max_m()),
+          classify(angle_deg, o.angle().min_deg(), o.angle().good_deg(), o.angle().max_deg())};
 }
 
 /// Algorithm 6: the best of the valid conditions; the last one if none was valid.

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "ground/options/ground_options.pb.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -35,40 +34,12 @@ std::string RegionPrefix(const std::string& name) {
 
 Status CheckBand(const InterpretationOptions& options) {
   constexpr double kShortestUm = 0.5, kLongestUm = 1000.0;
-  const double from = options.band_min_um(), to = options.band_max_um();
+  const double from = options.expert().band_min_um(), to = options.expert().band_max_um();
   if (from >= kShortestUm && to > from && to <= kLongestUm) return OkStatus();
-  return InvalidArgument(fmt::format(
-      "interpretation.band_min_um and band_max_um must rise within {} to {} um, got {} and {}",
-      kShortestUm, kLongestUm, from, to));
-}
-
-Result<Eigen::AlignedBox3f> ParseBox(const std::string& text, const std::string& name) {
-  std::array<float, 6> v{};
-  std::size_t count = 0;
-  const char* place = text.data();
-  const char* const end = text.data() + text.size();
-  bool complete = true;
-  while (true) {
-    while (place != end && (*place == ' ' || *place == '\t' || *place == ',')) ++place;
-    if (place == end) break;
-    float number = 0.0F;
-    const auto [next, error] = std::from_chars(place, end, number);
-    complete = error == std::errc() && count < v.size();
-    if (!complete) break;
-    v[count++] = number;
-    place = next;
-  }
-  complete = complete && count == v.size();
-  const bool in_order = v[0] < v[3] && v[1] < v[4] && v[2] < v[5];
-  if (complete && in_order &&
-      std::ranges::all_of(v, [](float number) { return std::isfinite(number); })) {
-    return Eigen::AlignedBox3f(Eigen::Vector3f(v[0], v[1], v[2]),
-                               Eigen::Vector3f(v[3], v[4], v[5]));
-  }
-  return Err(InvalidArgument(
-      fmt::format("{}box must be two corners in metres, \"x0 y0 z0 x1 y1 z1\", each number of the "
-                  "second larger than that of the first; got '{}'",
-                  RegionPrefix(name), text)));
+  return InvalidArgument(
+      fmt::format("interpretation.expert.band_min_um and band_max_um must rise within {} to {} um, "
+                  "got {} and {}",
+                  kShortestUm, kLongestUm, from, to));
 }
 
 }  // namespace
@@ -83,7 +54,8 @@ Status Validate(const InterpretationOptions& options) {
 
 Result<Interpretation> Interpretation::Create(const InterpretationOptions& options) {
   if (Status status = CheckBand(options); !status.ok()) return Err(status);
-  Interpretation interpretation(SpectralBand{options.band_min_um(), options.band_max_um()});
+  Interpretation interpretation(
+      SpectralBand{options.expert().band_min_um(), options.expert().band_max_um()});
   InterpretedPart whole{kWholeModel, {}, options.emissivity(), options.reflected_celsius(), {}};
   if (std::string problem = FindProblem(whole, "interpretation."); !problem.empty())
     return Err(InvalidArgument(std::move(problem)));
@@ -92,9 +64,9 @@ Result<Interpretation> Interpretation::Create(const InterpretationOptions& optio
     InterpretedPart part;
     part.name =
         region.has_name() ? region.name() : fmt::format("region {}", interpretation.parts_.size());
-    const Result<Eigen::AlignedBox3f> box = ParseBox(region.box(), part.name);
-    if (!box) return Err(box.error());
-    part.box_world = *box;
+    const Result<Eigen::AlignedBox3d> box = ToBox(region.box());
+    if (!box) return Err(InvalidArgument(RegionPrefix(part.name) + box.error().message()));
+    part.box_world = box->cast<float>();
     part.emissivity = region.has_emissivity() ? region.emissivity() : options.emissivity();
     part.reflected_celsius =
         region.has_reflected_celsius() ? region.reflected_celsius() : options.reflected_celsius();

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ground/options/ground_options.pb.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -16,6 +18,10 @@ using ::testing::HasSubstr;
 
 constexpr double kTable_k = 2e-3;  // Twice BandRadiance's interpolation error.
 
+Eigen::AlignedBox3d Box(const Eigen::Vector3d& min_m, const Eigen::Vector3d& max_m) {
+  return {min_m, max_m};
+}
+
 class InterpretationTest : public ::testing::Test {
  protected:
   InterpretationTest() {
@@ -23,10 +29,11 @@ class InterpretationTest : public ::testing::Test {
     options_.set_reflected_celsius(23.0);
   }
 
-  void AddRegion(const char* name, const char* box, double emissivity, double reflected_celsius) {
+  void AddRegion(const char* name, const Eigen::AlignedBox3d& box, double emissivity,
+                 double reflected_celsius) {
     InterpretedRegion& region = *options_.add_region();
     region.set_name(name);
-    region.set_box(box);
+    *region.mutable_box() = ToOptions(box);
     region.set_emissivity(emissivity);
     region.set_reflected_celsius(reflected_celsius);
   }
@@ -64,8 +71,8 @@ TEST_F(InterpretationTest, GivesBackTheTemperatureThatLooksLikeThat) {
 
 TEST_F(InterpretationTest, OtherBandsGiveOtherTemperatures) {
   const float long_wave = Make().ObjectCelsius(0, 200.0F);
-  options_.set_band_min_um(3.0);
-  options_.set_band_max_um(5.0);
+  options_.mutable_expert()->set_band_min_um(3.0);
+  options_.mutable_expert()->set_band_max_um(5.0);
   const BandRadiance mid_wave({3.0, 5.0});
   const float celsius = Make().ObjectCelsius(0, 200.0F);
   EXPECT_NEAR(ApparentCelsius(mid_wave, celsius, 0.85, 23.0), 200.0, kTable_k);
@@ -73,9 +80,9 @@ TEST_F(InterpretationTest, OtherBandsGiveOtherTemperatures) {
 }
 
 TEST_F(InterpretationTest, LaterRegionsHoldWhereTheyOverlap) {
-  AddRegion("left", "0 -1 -1 2 1 1", 0.5, 30.0);
-  AddRegion("right", "1 -1 -1 3 1 1", 0.3, 40.0);
-  AddRegion("apart", "4 4 4 5 5 5", 0.3, 40.0);
+  AddRegion("left", Box({0, -1, -1}, {2, 1, 1}), 0.5, 30.0);
+  AddRegion("right", Box({1, -1, -1}, {3, 1, 1}), 0.3, 40.0);
+  AddRegion("apart", Box({4, 4, 4}, {5, 5, 5}), 0.3, 40.0);
   const Interpretation interpretation = Make();
   EXPECT_EQ(interpretation.PartAt({-0.5F, 0, 0}), 0U);
   EXPECT_EQ(interpretation.PartAt({0.5F, 0, 0}), 1U);
@@ -88,7 +95,7 @@ TEST_F(InterpretationTest, LaterRegionsHoldWhereTheyOverlap) {
 
 TEST_F(InterpretationTest, RegionsTakeWhatTheyDoNotSetFromTheWholeModel) {
   InterpretedRegion& region = *options_.add_region();
-  region.set_box("0 0 0 1 1 1");
+  *region.mutable_box() = ToOptions(Box({0, 0, 0}, {1, 1, 1}));
   region.set_emissivity(0.4);
   const Interpretation interpretation = Make();
   EXPECT_EQ(interpretation.parts()[1].reflected_celsius, 23.0);
@@ -96,7 +103,7 @@ TEST_F(InterpretationTest, RegionsTakeWhatTheyDoNotSetFromTheWholeModel) {
 }
 
 TEST_F(InterpretationTest, PointsKeepWhatWasMeasured) {
-  AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
+  AddRegion("pipe", Box({0, -1, -1}, {1, 1, 1}), 0.5, 25.0);
   const Interpretation interpretation = Make();
   Surface surface = SurfaceOf({{-0.5F, 80.0F}, {0.5F, 80.0F}, {0.6F, NAN}});
   const std::vector<PartReport> reports = interpretation.Apply(surface);
@@ -113,7 +120,7 @@ TEST_F(InterpretationTest, PointsKeepWhatWasMeasured) {
 }
 
 TEST_F(InterpretationTest, WhatReflectsMoreThanWasMeasuredIsAnErrorOfItsRegionOnly) {
-  AddRegion("mirror", "0 -1 -1 1 1 1", 0.1, 200.0);
+  AddRegion("mirror", Box({0, -1, -1}, {1, 1, 1}), 0.1, 200.0);
   const Interpretation interpretation = Make();
   Surface surface = SurfaceOf({{-0.5F, 50.0F}, {0.2F, 50.0F}, {0.3F, 60.0F}, {0.4F, 300.0F}});
   const std::vector<PartReport> reports = interpretation.Apply(surface);
@@ -130,7 +137,7 @@ TEST_F(InterpretationTest, WhatReflectsMoreThanWasMeasuredIsAnErrorOfItsRegionOn
 }
 
 TEST_F(InterpretationTest, TemperaturesBeyondTheRangeAreSaidToBe) {
-  AddRegion("tiny", "0 -1 -1 1 1 1", 0.05, 20.0);
+  AddRegion("tiny", Box({0, -1, -1}, {1, 1, 1}), 0.05, 20.0);
   const Interpretation interpretation = Make();
   Surface surface = SurfaceOf({{0.5F, 900.0F}});
   const std::vector<PartReport> reports = interpretation.Apply(surface);
@@ -139,7 +146,7 @@ TEST_F(InterpretationTest, TemperaturesBeyondTheRangeAreSaidToBe) {
 }
 
 TEST_F(InterpretationTest, ARegionWithWrongValuesIsLeftOutAndTheRestGoesOn) {
-  AddRegion("wrong", "0 -1 -1 1 1 1", 1.2, 25.0);
+  AddRegion("wrong", Box({0, -1, -1}, {1, 1, 1}), 1.2, 25.0);
   const Interpretation interpretation = Make();
   Surface surface = SurfaceOf({{-0.5F, 50.0F}, {0.5F, 50.0F}});
   const std::vector<PartReport> reports = interpretation.Apply(surface);
@@ -161,17 +168,21 @@ TEST_F(InterpretationTest, WrongValuesForTheWholeModelAreRefusedByName) {
   options_.set_reflected_celsius(-101.0);
   EXPECT_THAT(Refusal(), HasSubstr("interpretation.reflected_celsius"));
   options_.set_reflected_celsius(23.0);
-  options_.set_band_max_um(7.0);
-  EXPECT_THAT(Refusal(), HasSubstr("interpretation.band_min_um"));
+  options_.mutable_expert()->set_band_max_um(7.0);
+  EXPECT_THAT(Refusal(), HasSubstr("interpretation.expert.band_min_um"));
 }
 
 TEST_F(InterpretationTest, BoxesThatAreNoneAreRefusedByName) {
-  for (const char* wrong : {"", "0 0 0 1 1", "0 0 0 1 1 1 1", "0 0 0 1 one 1", "0 0 0 -1 1 1",
-                            "0 0 0 0 1 1", "nan 0 0 1 1 1", "0 0 0 inf 1 1"}) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const auto& wrong :
+       {Box({0, 0, 0}, {-1, 1, 1}), Box({0, 0, 0}, {0, 1, 1}), Box({std::nan(""), 0, 0}, {1, 1, 1}),
+        Box({0, 0, 0}, {kInfinity, 1, 1})}) {
     options_.clear_region();
     AddRegion("pipe", wrong, 0.5, 25.0);
-    EXPECT_THAT(Refusal(), HasSubstr("interpretation.region 'pipe': box must be")) << wrong;
+    EXPECT_THAT(Refusal(), HasSubstr("interpretation.region 'pipe': box must")) << wrong.max();
   }
+  options_.mutable_region(0)->clear_box();
+  EXPECT_THAT(Refusal(), HasSubstr("interpretation.region 'pipe': box must"));
 }
 
 TEST_F(InterpretationTest, EmissivityOneChangesNothing) {
@@ -179,12 +190,12 @@ TEST_F(InterpretationTest, EmissivityOneChangesNothing) {
   options_.set_emissivity(1.0);
   EXPECT_TRUE(Make().changes_nothing());
   EXPECT_EQ(Make().ObjectCelsius(0, 1530.0F), 1530.0F);  // Beyond the tables.
-  AddRegion("pipe", "0 0 0 1 1 1", 0.5, 25.0);
+  AddRegion("pipe", Box({0, 0, 0}, {1, 1, 1}), 0.5, 25.0);
   EXPECT_FALSE(Make().changes_nothing());
 }
 
 TEST_F(InterpretationTest, RenderingsShowTheSameAsThePoints) {
-  AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
+  AddRegion("pipe", Box({0, -1, -1}, {1, 1, 1}), 0.5, 25.0);
   const Interpretation interpretation = Make();
   SurfaceMaps maps;
   maps.Resize(2, 1);
@@ -200,7 +211,7 @@ TEST_F(InterpretationTest, RenderingsShowTheSameAsThePoints) {
 }
 
 TEST_F(InterpretationTest, StatsSayWhatWasAppliedAndToHowMuch) {
-  AddRegion("pipe", "0 -1 -1 1 1 1", 0.5, 25.0);
+  AddRegion("pipe", Box({0, -1, -1}, {1, 1, 1}), 0.5, 25.0);
   const Interpretation interpretation = Make();
   Surface surface = SurfaceOf({{-0.5F, 80.0F}, {0.5F, 80.0F}});
   const std::string json = JsonText(interpretation.Describe(interpretation.Apply(surface)));

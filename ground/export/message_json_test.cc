@@ -9,6 +9,7 @@
 #include "common/config/rig_calibration.pb.h"
 #include "common/config/text_proto.h"
 #include "ground/options/ground_options.pb.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -30,8 +31,11 @@ TEST(MessageJsonTest, DefaultsEnumsAndNumbersAreWhatAReaderExpects) {
 TEST(MessageJsonTest, OptionsReadBackAsTheyWere) {
   GroundOptions options;
   options.mutable_volume()->set_voxel_size_m(0.1 + 0.2);
-  options.mutable_volume()->set_initial_pose("0 0 \"1\"\n\t\\ 0 0 0 1");
-  options.mutable_thermal()->set_time_constant_s(std::numeric_limits<double>::infinity());
+  options.mutable_tracker()->mutable_external_odometry()->set_source("0 0 \"1\"\n\t\\ 0");
+  *options.mutable_volume()->mutable_expert()->mutable_initial_pose() =
+      ToOptions(MakeTransform({0.1, 0.2, 1.0 / 3.0}, Eigen::Quaterniond(0.6, 0.8, 0, 0)));
+  options.mutable_thermal()->mutable_expert()->set_max_footprint_m(
+      std::numeric_limits<double>::infinity());
   GroundOptions read;
   const Status status = FromJson(Json::parse(JsonText(ToJson(options))), "stats.json", read);
   ASSERT_TRUE(status.ok()) << status.message();

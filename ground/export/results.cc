@@ -93,7 +93,7 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
   std::optional<ContourField> contours;
   if (renderer.draws_lines()) {
     contours = SampleContours(*inputs.view, inputs.tsdf, inputs.thermal,
-                              inputs.renderer_options.isotherm_smoothing_px(), threads);
+                              inputs.renderer_options.expert().isotherm_smoothing_px(), threads);
     if (inputs.interpretation != nullptr)
       inputs.interpretation->Apply(*inputs.view, contours->celsius);
   }
@@ -140,10 +140,11 @@ void ForEachResult(const fs::path& dir, const std::function<void(const fs::path&
 }  // namespace
 
 Status Validate(const ExportOptions& options) {
-  constexpr double kMax = 1000.0;  // As tsdf.max_weight.
-  if (!(options.min_weight() > 0.0 && options.min_weight() <= kMax)) {
-    return InvalidArgument(fmt::format("export.min_weight is {}, must be above 0 and at most {}",
-                                       options.min_weight(), kMax));
+  constexpr double kMax = 1000.0;  // As tsdf.expert.max_weight.
+  if (!(options.expert().min_weight() > 0.0 && options.expert().min_weight() <= kMax)) {
+    return InvalidArgument(
+        fmt::format("export.expert.min_weight is {}, must be above 0 and at most {}",
+                    options.expert().min_weight(), kMax));
   }
   return OkStatus();
 }
@@ -192,10 +193,11 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
   announce("surface", 0.05);
   ResultSummary summary;
   {
-    Surface surface = ExtractSurface(
-        inputs.tsdf, inputs.thermal,
-        {.min_weight = static_cast<float>(options.min_weight()), .triangles = options.mesh()},
-        threads);
+    Surface surface =
+        ExtractSurface(inputs.tsdf, inputs.thermal,
+                       {.min_weight = static_cast<float>(options.expert().min_weight()),
+                        .triangles = options.mesh()},
+                       threads);
     std::vector<PartReport> reports;
     if (inputs.interpretation != nullptr) reports = inputs.interpretation->Apply(surface);
     summary = SummarizeSurface(surface, inputs.renderer_options);

@@ -285,10 +285,10 @@ TEST_F(ResultsTest, PreparingTwiceKeepsOlderResults) {
 TEST(ExportOptionsTest, LeastWeightMustBeAPossibleWeight) {
   ExportOptions options;
   EXPECT_TRUE(Validate(options).ok());
-  options.set_min_weight(1000.0);
+  options.mutable_expert()->set_min_weight(1000.0);
   EXPECT_TRUE(Validate(options).ok());
   for (const double wrong : {0.0, -1.0, 1000.5, std::numeric_limits<double>::quiet_NaN()}) {
-    options.set_min_weight(wrong);
+    options.mutable_expert()->set_min_weight(wrong);
     EXPECT_EQ(Validate(options).code(), StatusCode::kInvalidArgument) << wrong;
   }
 }

@@ -63,34 +63,38 @@ Status Validate(const FeedbackOptions& o) {
         fmt::format("feedback.done_fraction must be above 0 and at most 1 (a fraction), got {}",
                     o.done_fraction()));
   }
-  if (!(o.withdraw_fraction() >= 0.0 && o.withdraw_fraction() <= o.advise_fraction() &&
-        o.advise_fraction() <= 1.0)) {
-    return InvalidArgument(
-        fmt::format("feedback: need 0 <= withdraw_fraction <= advise_fraction <= 1, got {} and {}",
-                    o.withdraw_fraction(), o.advise_fraction()));
+  if (!(o.expert().withdraw_fraction() >= 0.0 &&
+        o.expert().withdraw_fraction() <= o.expert().advise_fraction() &&
+        o.expert().advise_fraction() <= 1.0)) {
+    return InvalidArgument(fmt::format(
+        "feedback.expert: need 0 <= withdraw_fraction <= advise_fraction <= 1, got {} and {}",
+        o.expert().withdraw_fraction(), o.expert().advise_fraction()));
   }
-  if (!(o.settle_s() >= 0.0 && o.settle_s() <= 10.0 && o.show_s() >= 0.0 && o.show_s() <= 10.0)) {
-    return InvalidArgument(
-        fmt::format("feedback.settle_s and feedback.show_s must be 0..10 s, got {} and {}",
-                    o.settle_s(), o.show_s()));
+  if (!(o.expert().settle_s() >= 0.0 && o.expert().settle_s() <= 10.0 &&
+        o.expert().show_s() >= 0.0 && o.expert().show_s() <= 10.0)) {
+    return InvalidArgument(fmt::format(
+        "feedback.expert.settle_s and feedback.expert.show_s must be 0..10 s, got {} and {}",
+        o.expert().settle_s(), o.expert().show_s()));
   }
-  if (o.blocks_per_message() < 1 || o.blocks_per_message() > 1'000'000) {
-    return InvalidArgument(fmt::format("feedback.blocks_per_message must be 1..1000000, got {}",
-                                       o.blocks_per_message()));
-  }
-  if (o.views_per_message() < 0 || o.views_per_message() > 100) {
+  if (o.expert().blocks_per_message() < 1 || o.expert().blocks_per_message() > 1'000'000) {
     return InvalidArgument(
-        fmt::format("feedback.views_per_message must be 0 (no next view) to 100, got {}",
-                    o.views_per_message()));
+        fmt::format("feedback.expert.blocks_per_message must be 1..1000000, got {}",
+                    o.expert().blocks_per_message()));
   }
-  if (!(o.min_gain_m2() > 0.0)) {
+  if (o.expert().views_per_message() < 0 || o.expert().views_per_message() > 100) {
     return InvalidArgument(
-        fmt::format("feedback.min_gain_m2 must be positive, got {} m2", o.min_gain_m2()));
+        fmt::format("feedback.expert.views_per_message must be 0 (no next view) to 100, got {}",
+                    o.expert().views_per_message()));
   }
-  if (o.image_width_px() != 0 && (o.image_width_px() < 40 || o.image_width_px() > 640)) {
+  if (!(o.expert().min_gain_m2() > 0.0)) {
+    return InvalidArgument(fmt::format("feedback.expert.min_gain_m2 must be positive, got {} m2",
+                                       o.expert().min_gain_m2()));
+  }
+  if (o.expert().image_width_px() != 0 &&
+      (o.expert().image_width_px() < 40 || o.expert().image_width_px() > 640)) {
     return InvalidArgument(
-        fmt::format("feedback.image_width_px must be 0 (no image) or 40..640 pixels, got {}",
-                    o.image_width_px()));
+        fmt::format("feedback.expert.image_width_px must be 0 (no image) or 40..640 pixels, got {}",
+                    o.expert().image_width_px()));
   }
   return OkStatus();
 }
@@ -116,7 +120,8 @@ void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSitu
   }
   if (!s.tracking_lost) Trigger(AdviceKind::kSlower, Hurry(s), 1.0, kSlowEnough);
   for (const AdviceKind kind : kHindrances) {
-    Trigger(kind, Fraction(kind, view), options_.advise_fraction(), options_.withdraw_fraction());
+    Trigger(kind, Fraction(kind, view), options_.expert().advise_fraction(),
+            options_.expert().withdraw_fraction());
   }
 }
 
@@ -145,9 +150,9 @@ OperatorAdvice OperatorAdviser::Update(CaptureTime now, const CoverageSummary& v
     candidate_ = candidate;
     candidate_since_ = now;
   }
-  const bool settled = now - *candidate_since_ >= FromSeconds(options_.settle_s());
+  const bool settled = now - *candidate_since_ >= FromSeconds(options_.expert().settle_s());
   const bool shown = !said_since_ || said_ == AdviceKind::kNone ||
-                     now - *said_since_ >= FromSeconds(options_.show_s());
+                     now - *said_since_ >= FromSeconds(options_.expert().show_s());
   // Hindrances come and go as the rig moves; what makes them pointless need not wait for them.
   const bool overrides = !IsHindrance(candidate) && candidate < said_;
   if (candidate != said_ && (IsAlarm(candidate) || (settled && (shown || overrides)))) {
@@ -180,16 +185,16 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
                          s.rotation_rate_deg_s, s.max_rotation_rate_deg_s);
     case AdviceKind::kCloser:
       return fmt::format("{:.0f} % of the surface is farther than {:.2f} m", Percent(view.too_far),
-                         limits_.distance_good_m());
+                         limits_.distance().good_m());
     case AdviceKind::kFarther:
       return fmt::format("{:.0f} % of the surface is nearer than {:.2f} m", Percent(view.too_near),
-                         limits_.distance_min_m());
+                         limits_.distance().min_m());
     case AdviceKind::kLessOblique:
       return fmt::format("{:.0f} % of the surface is seen at more than {:.0f} deg",
-                         Percent(view.too_oblique), limits_.angle_good_deg());
+                         Percent(view.too_oblique), limits_.angle().good_deg());
     case AdviceKind::kMoreOblique:
       return fmt::format("{:.0f} % of the surface is seen at less than {:.0f} deg and reflects you",
-                         Percent(view.too_frontal), limits_.angle_min_deg());
+                         Percent(view.too_frontal), limits_.angle().min_deg());
     case AdviceKind::kNone:
       break;
   }

@@ -159,7 +159,7 @@ TEST_F(AdviceTest, NoiseAroundAThresholdDoesNotFlicker) {
     if (said[static_cast<std::size_t>(i)] == said[static_cast<std::size_t>(i - 1)]) continue;
     const bool withdrawn = said[static_cast<std::size_t>(i)] == AdviceKind::kNone;
     if (withdrawn) {
-      EXPECT_GE((i - last) * kPeriod, FromSeconds(options_.show_s()));
+      EXPECT_GE((i - last) * kPeriod, FromSeconds(options_.expert().show_s()));
     }
     last = i;
   }
@@ -171,7 +171,7 @@ TEST_F(AdviceTest, SmallNoiseAroundAThresholdChangesNothing) {
   std::minstd_rand random(kSeed);
   std::uniform_real_distribution<double> noise(-0.02, 0.02);
   const std::vector<AdviceKind> closer =
-      Messages(600, [&] { view_.too_far = options_.advise_fraction() + noise(random); });
+      Messages(600, [&] { view_.too_far = options_.expert().advise_fraction() + noise(random); });
   EXPECT_LE(Changes(closer), 1);
   EXPECT_EQ(closer.back(), AdviceKind::kCloser);
   view_.too_far = 0.0;
@@ -218,13 +218,18 @@ TEST(FeedbackOptionsTest, WhatMakesNoSenseIsSaid) {
   };
   EXPECT_THAT(message([](auto& o) { o.set_done_fraction(1.5); }),
               HasSubstr("feedback.done_fraction"));
-  EXPECT_THAT(message([](auto& o) { o.set_withdraw_fraction(0.5); }),
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_withdraw_fraction(0.5); }),
               HasSubstr("withdraw_fraction"));
-  EXPECT_THAT(message([](auto& o) { o.set_settle_s(-1); }), HasSubstr("settle_s"));
-  EXPECT_THAT(message([](auto& o) { o.set_blocks_per_message(0); }), HasSubstr("blocks"));
-  EXPECT_THAT(message([](auto& o) { o.set_views_per_message(-1); }), HasSubstr("views"));
-  EXPECT_THAT(message([](auto& o) { o.set_min_gain_m2(0); }), HasSubstr("min_gain_m2"));
-  EXPECT_THAT(message([](auto& o) { o.set_image_width_px(10); }), HasSubstr("image_width_px"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_settle_s(-1); }),
+              HasSubstr("settle_s"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_blocks_per_message(0); }),
+              HasSubstr("blocks"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_views_per_message(-1); }),
+              HasSubstr("views"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_min_gain_m2(0); }),
+              HasSubstr("min_gain_m2"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_image_width_px(10); }),
+              HasSubstr("image_width_px"));
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace isotherm {
 
 CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& limits) {
   constexpr double kRadPerDeg = std::numbers::pi / 180.0;
-  const double cos_min = std::cos(limits.angle_min_deg() * kRadPerDeg);
-  const double cos_good = std::cos(limits.angle_good_deg() * kRadPerDeg);
+  const double cos_min = std::cos(limits.angle().min_deg() * kRadPerDeg);
+  const double cos_good = std::cos(limits.angle().good_deg() * kRadPerDeg);
   CoverageSummary counts;
   for (int y = 0; y < view.height(); ++y) {
     for (int x = 0; x < view.width(); ++x) {
@@ -24,8 +24,8 @@ CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& li
       if (quality == MeasurementQuality::kGood) continue;
       const double distance_m = view.distance_m.At(x, y);
       const double cosine = view.cos_view.At(x, y);
-      counts.too_near += distance_m < limits.distance_min_m() ? 1.0 : 0.0;
-      counts.too_far += distance_m > limits.distance_good_m() ? 1.0 : 0.0;
+      counts.too_near += distance_m < limits.distance().min_m() ? 1.0 : 0.0;
+      counts.too_far += distance_m > limits.distance().good_m() ? 1.0 : 0.0;
       counts.too_oblique += cosine < cos_good ? 1.0 : 0.0;
       counts.too_frontal += cosine > cos_min ? 1.0 : 0.0;
     }

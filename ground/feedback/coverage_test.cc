@@ -62,7 +62,7 @@ TEST(CoverageTest, IsZeroWithoutASurface) {
 
 TEST(CoverageTest, WhatHindersIsSaidOfWhatIsNotYetGood) {
   ThermalOptions limits;  // 0.30 to 0.60 m, up to 40 degrees.
-  limits.set_angle_min_deg(10);
+  limits.mutable_angle()->set_min_deg(10);
   EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.61, 20.0), limits).too_far, 1.0);
   EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.59, 20.0), limits).too_far, 0.0);
   EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.29, 20.0), limits).too_near, 1.0);

@@ -61,9 +61,9 @@ bool IsInside(const TsdfVolume& tsdf, const Eigen::Vector3d& p_map) {
 ViewPlanner::ViewPlanner(const FeedbackOptions& options, const ThermalOptions& limits,
                          const Rig& rig, float min_weight)
     : options_(options),
-      limits_(limits),
-      angle_min_rad_(limits.angle_min_deg() * std::numbers::pi / 180.0),
-      angle_good_rad_(limits.angle_good_deg() * std::numbers::pi / 180.0),
+      limits_(limits, rig.thermal_sensor),
+      angle_min_rad_(limits.angle().min_deg() * std::numbers::pi / 180.0),
+      angle_good_rad_(limits.angle().good_deg() * std::numbers::pi / 180.0),
       min_weight_(min_weight),
       depth_camera_(rig.depth->WithoutDistortion()),
       thermal_camera_(Coarse(*rig.thermal)),
@@ -174,12 +174,12 @@ bool ViewPlanner::IsExhausted(const RigidTransform& T_map_depth) const {
 void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                        const ModelCoverage& coverage, const RigidTransform& T_map_depth,
                        ThreadPool& pool) {
-  if (options_.views_per_message() == 0) return;
+  if (options_.expert().views_per_message() == 0) return;
   NotePose(T_map_depth);
-  int left = options_.views_per_message();
+  int left = options_.expert().views_per_message();
   if (best_) {
     best_->gain_m2 = Gain(best_->T_map_depth, tsdf, thermal, pool);
-    if (best_->gain_m2 < options_.min_gain_m2()) best_.reset();
+    if (best_->gain_m2 < options_.expert().min_gain_m2()) best_.reset();
     --left;
   }
   if (candidates_.empty()) MakeCandidates(coverage, T_map_depth);
@@ -188,7 +188,8 @@ void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
     if (IsExhausted(candidate)) continue;
     --left;
     const double gain_m2 = Gain(candidate, tsdf, thermal, pool);
-    const double needed_m2 = best_ ? kClearlyBetter * best_->gain_m2 : options_.min_gain_m2();
+    const double needed_m2 =
+        best_ ? kClearlyBetter * best_->gain_m2 : options_.expert().min_gain_m2();
     if (gain_m2 < needed_m2) continue;
     best_ = NextView{candidate, gain_m2};
     steps_at_best_ = 0;

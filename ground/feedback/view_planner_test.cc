@@ -27,7 +27,7 @@ class ViewPlannerTest : public ::testing::Test {
     rig_.depth = camera;
     rig_.thermal = camera;
     rig_.T_thermal_depth = MakeTransform({-0.05, 0, 0}, Eigen::Quaterniond::Identity());
-    options_.set_views_per_message(4);
+    options_.mutable_expert()->set_views_per_message(4);
   }
 
   static VoxelGrid Grid() {
@@ -81,8 +81,8 @@ TEST_F(ViewPlannerTest, TheBestViewLooksAtTheSideThatIsMissing) {
     EXPECT_LT(AngleDeg(T_map_thermal.translation() - centre_, side), 30.0) << side.transpose();
     EXPECT_LT(AngleDeg(-T_map_thermal.linear().col(2), side), 30.0) << side.transpose();
     const double distance_m = (T_map_thermal.translation() - (centre_ + 0.2 * side)).norm();
-    EXPECT_GT(distance_m, limits_.distance_min_m());
-    EXPECT_LT(distance_m, limits_.distance_good_m());
+    EXPECT_GT(distance_m, limits_.distance().min_m());
+    EXPECT_LT(distance_m, limits_.distance().good_m());
   }
 }
 
@@ -147,7 +147,7 @@ TEST_F(ViewPlannerTest, AViewThatWasTakenInVainIsNotProposedAgain) {
 }
 
 TEST_F(ViewPlannerTest, WhereTheOperatorWouldBeReflectedViewsAreAskew) {
-  limits_.set_angle_min_deg(15);
+  limits_.mutable_angle()->set_min_deg(15);
   testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
   Measure([](const Vector3d& p) { return (p - Vector3d(0.5, 0.5, 0.7)).norm() < 0.05; });
   ViewPlanner planner = Planner();

@@ -17,7 +17,7 @@ class LoadModelTest : public ::testing::Test {
     volume.set_size_x_m(0.24);
     volume.set_size_y_m(0.24);
     volume.set_size_z_m(0.24);
-    volume.set_min_x_m(-0.1);
+    volume.mutable_expert()->set_min_x_m(-0.1);
     volume.set_voxel_size_m(0.005);
     const VoxelGrid grid = MakeVoxelGrid(volume).value();
     const std::int32_t max_blocks = MaxBlocks(volume, grid);

@@ -288,9 +288,9 @@ Status ModelFile::AdoptVolume(GroundOptions& options) const {
   volume.set_size_x_m(header.blocks_x() * block_m);
   volume.set_size_y_m(header.blocks_y() * block_m);
   volume.set_size_z_m(header.blocks_z() * block_m);
-  volume.set_min_x_m(header.min_x_m());
-  volume.set_min_y_m(header.min_y_m());
-  volume.set_min_z_m(header.min_z_m());
+  volume.mutable_expert()->set_min_x_m(header.min_x_m());
+  volume.mutable_expert()->set_min_y_m(header.min_y_m());
+  volume.mutable_expert()->set_min_z_m(header.min_z_m());
   tsdf.set_truncation_distance_m(header.truncation_distance_m());
   return OkStatus();
 }

@@ -28,7 +28,7 @@ class ModelFileTest : public ::testing::Test {
     options_.mutable_volume()->set_size_x_m(0.32);
     options_.mutable_volume()->set_size_y_m(0.32);
     options_.mutable_volume()->set_size_z_m(0.32);
-    options_.mutable_volume()->set_min_z_m(-0.1);
+    options_.mutable_volume()->mutable_expert()->set_min_z_m(-0.1);
     options_.mutable_volume()->set_voxel_size_m(0.004);
     options_.mutable_tsdf()->set_truncation_distance_m(0.016);
     rig_.depth = CameraModel{640, 480, 575.0, 576.0, 320.0, 240.0};

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/log.h"
-#include "common/geometry/pose_text.h"
+#include "ground/options/option_geometry.h"
 #include "ground/pipeline/saved_model.h"
 
 namespace isotherm {
@@ -35,15 +35,19 @@ Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
         FailedPrecondition("the rig calibration has no depth intrinsics: nothing can be "
                            "reconstructed without a depth camera"));
   }
+  for (const Status& status : {CheckRange(options.preprocessor(), rig.depth_sensor),
+                               CheckSharpness(options.thermal(), rig.thermal_sensor)}) {
+    if (!status.ok()) return Err(status);
+  }
   if (options.tracker().use_thermal()) {
     if (Status status = CheckThermalFusion(rig); !status.ok())
       return Err(status.WithContext("tracker.use_thermal"));
   }
   if (initial_pose && !IsRigid(*initial_pose))
     return Err(InvalidArgument("the first frame's pose is not a rigid motion with finite numbers"));
-  if (!initial_pose && !options.volume().initial_pose().empty()) {
-    const Result<RigidTransform> pose = ParsePose(options.volume().initial_pose());
-    if (!pose) return Err(pose.error().WithContext("volume.initial_pose"));
+  if (!initial_pose && options.volume().expert().has_initial_pose()) {
+    const Result<RigidTransform> pose = ToTransform(options.volume().expert().initial_pose());
+    if (!pose) return Err(pose.error().WithContext("volume.expert.initial_pose"));
     initial_pose = *pose;
   }
   const Result<VoxelGrid> grid = MakeVoxelGrid(options.volume());
@@ -58,14 +62,15 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       thermal_status_(CheckThermalFusion(rig)),
       pool_(ThreadCount(options)),
       atlas_(options, rig.depth->WithoutDistortion(), grid),
-      preprocessor_(options.preprocessor(), *rig.depth),
+      preprocessor_(options.preprocessor(), *rig.depth, rig.depth_sensor),
       tracker_(options, rig.depth->WithoutDistortion(), initial_pose, atlas_, stages_),
       integrator_(options.tsdf()),
       gate_(options.tsdf()),
       spiller_(MaxResidentBlocks(options.volume(), grid)) {
   if (!thermal_status_.ok()) return;
-  thermal_stage_.emplace(options.thermal(), rig, static_cast<float>(options.raycast().min_weight()),
-                         counts_, stages_[Stage::kThermalFrame]);
+  thermal_stage_.emplace(options.thermal(), rig,
+                         static_cast<float>(options.raycast().expert().min_weight()), counts_,
+                         stages_[Stage::kThermalFrame]);
   if (options.tracker().use_thermal()) tracker_.UseThermal(*rig.thermal, *rig.T_thermal_depth);
 }
 
@@ -256,7 +261,8 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   if (is_counts && counts_.thermal_left_out[LeftOutReason::kCounts]++ == 0) {
     thermal_status_ = FailedPrecondition(
         "the thermal camera sends counts, which nothing relates to temperatures: none are fused, "
-        "geometry goes on (source.thermal_camera.kelvin_per_count and offset_kelvin of the rig "
+        "geometry goes on (source.thermal_camera.expert.kelvin_per_count and offset_kelvin of the "
+        "rig "
         "could say what counts mean)");
     LOG(Ground, Warning) << thermal_status_.message();
   }
@@ -301,7 +307,7 @@ void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
   const StageTimer timer(stages_[Stage::kMerge]);
   const RigidTransform T_world_map = atlas_.active().T_world_map;
   const bool joined = atlas_.active().joined;
-  if (!atlas_.Merge(options_.tsdf().max_weight(), pool_, progress)) {
+  if (!atlas_.Merge(options_.tsdf().expert().max_weight(), pool_, progress)) {
     LOG(Ground, Warning) << "volume.spill_dir is full: temperatures of some sub-maps are left out";
   }
   const std::vector<StampedPose>& poses = tracker_.trajectory().poses();

@@ -39,8 +39,8 @@ enum class LoadShedding : std::uint8_t {
 class GroundPipeline {
  public:
   /// `rig` must have depth intrinsics. `initial_pose` is T_world_depth of the first depth frame;
-  /// without one it comes from options.volume.initial_pose, and without that the volume's centre is
-  /// put on the first frame's optical axis at its median depth.
+  /// without one it comes from options.volume.expert.initial_pose, and without that the volume's
+  /// centre is put on the first frame's optical axis at its median depth.
   static Result<std::unique_ptr<GroundPipeline>> Create(const GroundOptions& options,
                                                         const Rig& rig,
                                                         std::optional<RigidTransform> initial_pose);

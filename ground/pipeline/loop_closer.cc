@@ -38,7 +38,7 @@ std::optional<RigidTransform> LoopCloser::VerifyIn(int other, const PreparedDept
   // Its place is not known, or the rig has drifted further than the tracker can pull it back.
   if (!options_.relocaliser().enabled()) return std::nullopt;
   const auto guess = map.relocaliser->Find(
-      depth, *map.tsdf, static_cast<float>(options_.raycast().min_weight()), pool);
+      depth, *map.tsdf, static_cast<float>(options_.raycast().expert().min_weight()), pool);
   if (!guess) return std::nullopt;
   const TrackingResult result = tracker_.Verify(depth, *guess, map, pool);
   if (!result.tracked()) return std::nullopt;
@@ -110,8 +110,9 @@ LoopCloser::Change LoopCloser::Update(const PreparedDepth& depth, const RigidTra
   change.switched = atlas_.Split(T_map_depth, blocks_in_view);
   if (!change.switched && !reported_full_) {
     reported_full_ = true;
-    LOG(Ground, Warning) << "no sub-map can be begun (submaps.max_maps or memory is reached): the "
-                            "scan goes on in the last one, with more drift";
+    LOG(Ground, Warning)
+        << "no sub-map can be begun (submaps.expert.max_maps or memory is reached): the "
+           "scan goes on in the last one, with more drift";
   }
   return change;
 }

@@ -21,7 +21,7 @@ constexpr int kLookEvery = 10;  ///< Frames between two looks at other sub-maps.
 class LoopCloserTest : public testing::SubMapTest {
  protected:
   LoopCloserTest() {
-    options_.mutable_submaps()->set_max_travel_m(0.5);
+    options_.mutable_submaps()->mutable_expert()->set_max_travel_m(0.5);
     atlas_ = std::make_unique<Atlas>(options_, camera_, Grid());
     tracker_ = std::make_unique<RigTracker>(options_, camera_);
     closer_ = std::make_unique<LoopCloser>(options_, *atlas_, *tracker_);
@@ -126,7 +126,7 @@ TEST_F(LoopCloserTest, WhereALinkedSubMapShowsWhatIsInViewTheRigGoesBackToIt) {
 }
 
 TEST_F(LoopCloserTest, WithoutRoomForAnotherTheScanGoesOnInTheLastOne) {
-  options_.mutable_submaps()->set_max_maps(1);
+  options_.mutable_submaps()->mutable_expert()->set_max_maps(1);
   Atlas atlas(options_, camera_, Grid());
   atlas.active().anchors = {FirstPose()};
   LoopCloser closer(options_, atlas, *tracker_);

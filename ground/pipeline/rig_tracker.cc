@@ -28,10 +28,10 @@ constexpr int kFramesToKnow = 5;  ///< Until what is usual is known.
 RigTracker::RigTracker(const GroundOptions& options, const CameraModel& depth_camera)
     : options_(options.tracker()),
       relocaliser_options_(options.relocaliser()),
-      min_weight_(static_cast<float>(options.raycast().min_weight())),
+      min_weight_(static_cast<float>(options.raycast().expert().min_weight())),
       tracker_(options.tracker()),
       odometry_(options.tracker().external_odometry()) {
-  view_.camera = depth_camera.Downscaled(options.raycast().halvings());
+  view_.camera = depth_camera.Downscaled(options.raycast().expert().halvings());
   candidate_.camera = view_.camera;
 }
 
@@ -40,8 +40,8 @@ RigTracker::~RigTracker() = default;
 void RigTracker::UseThermal(const CameraModel& thermal_camera,
                             const RigidTransform& T_thermal_depth) {
   alignment_ = std::make_unique<ThermalAlignment>(thermal_camera, T_thermal_depth,
-                                                  options_.thermal_min_gradient_k_m(),
-                                                  options_.prior_sigma_m_s());
+                                                  options_.expert().thermal_min_gradient_k_m(),
+                                                  options_.expert().prior_sigma_m_s());
 }
 
 void RigTracker::AddThermal(ThermalFramePtr frame) {
@@ -65,14 +65,14 @@ TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
 
 IcpTracker::Start RigTracker::Predict(CaptureTime time) const {
   const RigidTransform& last = view_.T_map_depth;
-  if (!options_.predict_motion()) return {last, last};
+  if (!options_.expert().predict_motion()) return {last, last};
   return {motion_.Predict(time).value_or(last), motion_.PredictSmoothly(time).value_or(last)};
 }
 
 PriorError RigTracker::InertialError(CaptureTime time, double mean_depth_m) const {
   const double seconds = has_trusted_pose_ ? ToSeconds(time - trusted_time_) : 0.0;
-  return ConstantVelocityError(speed_is_known_ ? options_.prior_sigma_m_s() : kUnknownSpeed,
-                               seconds, mean_depth_m);
+  return ConstantVelocityError(
+      speed_is_known_ ? options_.expert().prior_sigma_m_s() : kUnknownSpeed, seconds, mean_depth_m);
 }
 
 TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
@@ -123,8 +123,8 @@ LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
 bool RigTracker::IsConvincing(const TrackingResult& result) const {
   // In front of a plane or a cylinder the rig may be anywhere along it.
   if (result.verdict() != Verdict::kTracked || !result.motion.measured) return false;
-  if (result.agreement < relocaliser_options_.min_agreement() ||
-      result.overlap_ratio < relocaliser_options_.min_overlap()) {
+  if (result.agreement < relocaliser_options_.expert().min_agreement() ||
+      result.overlap_ratio < relocaliser_options_.expert().min_overlap()) {
     return false;
   }
   return usual_.frames < kFramesToKnow ||
@@ -175,7 +175,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
     if (found_elsewhere_) Forget();
     odometry_.Note(result, time, uncertainty_.covariance(), /*used=*/false);
     state_ = State::kConfirming;
-    to_confirm_ = relocaliser_options_.confirming_frames();
+    to_confirm_ = relocaliser_options_.expert().confirming_frames();
   } else {
     result = Follow(depth, time, *here.tsdf, pool);
     if (result.tracked() && state_ == State::kConfirming) {

@@ -99,7 +99,7 @@ TEST_F(RigTrackerTest, WithinAllLimitsButUnlikeTheFramesBeforeIsLost) {
   Begin();
   for (int i = 1; i < 10; ++i) ASSERT_TRUE(Show(i).tracked()) << i;
   const TrackingResult wavy = Track(Prepare(Wavy, TruePose(10)), 10);
-  EXPECT_LT(wavy.residual_m, options_.tracker().max_residual_m());
+  EXPECT_LT(wavy.residual_m, options_.tracker().expert().max_residual_m());
   EXPECT_EQ(wavy.lost, LostReason::kResidual);
 }
 

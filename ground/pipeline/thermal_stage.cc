@@ -13,9 +13,10 @@ ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float 
       T_depth_thermal_(rig.T_thermal_depth->inverse()),
       counts_(counts),
       timing_(timing),
-      fuser_(options, *rig.thermal, min_weight),
-      near_range_occlusion_(options, fuser_.ideal_camera()),
-      line_of_sight_occlusion_(options, fuser_.ideal_camera()) {}
+      fuser_(options, *rig.thermal, rig.thermal_sensor, min_weight),
+      near_range_occlusion_(options.expert().occlusion(), rig.depth_sensor, fuser_.ideal_camera()),
+      line_of_sight_occlusion_(options.expert().occlusion(), rig.depth_sensor,
+                               fuser_.ideal_camera()) {}
 
 bool ThermalStage::Add(ThermalFramePtr frame) {
   const NucAge nuc = nuc_epochs_.Follow(*frame);
@@ -28,7 +29,7 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
     LeaveOut(LeftOutReason::kWrongSize);
     return false;
   }
-  if (ToSeconds(frame->header.capture_sigma) > options_.max_time_sigma_s()) {
+  if (ToSeconds(frame->header.capture_sigma) > options_.expert().max_time_sigma_s()) {
     LeaveOut(LeftOutReason::kTimeUncertain);
     return false;
   }
@@ -50,10 +51,10 @@ std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,
                                                       const TrackedDepth& depth) const {
   if (depth.refusal) return depth.refusal;
   if (!depth.before || time < depth.before->time) return LeftOutReason::kPoseUnknown;
-  if (RegistrationSigmaPx(depth) > options_.max_registration_px())
+  if (RegistrationSigmaPx(depth) > options_.expert().max_registration_px())
     return LeftOutReason::kPoseUncertain;
   const double interval_s = ToSeconds(depth.now.time - depth.before->time);
-  if (interval_s > options_.max_wait_s()) return LeftOutReason::kDepthGap;
+  if (interval_s > options_.expert().max_wait_s()) return LeftOutReason::kDepthGap;
   return std::nullopt;
 }
 

@@ -114,11 +114,11 @@ TEST_F(ThermalStageTest, OfAnotherSizeThanTheCalibrations) {
 
 TEST_F(ThermalStageTest, F10DatedTooUncertainly) {
   auto frame = Frame(0.5);
-  frame->header.capture_sigma = FromSeconds(options_.max_time_sigma_s()) + 1us;
+  frame->header.capture_sigma = FromSeconds(options_.expert().max_time_sigma_s()) + 1us;
   EXPECT_FALSE(stage_->Add(frame));
   EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kTimeUncertain, 1}}));
   frame = Frame(0.5);
-  frame->header.capture_sigma = FromSeconds(options_.max_time_sigma_s()) - 1us;
+  frame->header.capture_sigma = FromSeconds(options_.expert().max_time_sigma_s()) - 1us;
   EXPECT_TRUE(stage_->Add(frame));
 }
 
@@ -144,7 +144,7 @@ TEST_F(ThermalStageTest, FromBeforeTheRigWasFoundAgain) {
 }
 
 TEST_F(ThermalStageTest, WhereThePoseMovesTheImageTooFar) {
-  const double limit_rad = options_.max_registration_px() / rig_.thermal->fx;
+  const double limit_rad = options_.expert().max_registration_px() / rig_.thermal->fx;
   stage_->Add(Frame(0.5));
   TrackedDepth depth = Depth(0.0, 1.0);
   depth.surface_sigma_rad = 1.01 * limit_rad;
@@ -158,7 +158,7 @@ TEST_F(ThermalStageTest, WhereThePoseMovesTheImageTooFar) {
 }
 
 TEST_F(ThermalStageTest, WhereDepthFramesAreTooFarApart) {
-  const double frames = 30.0 * options_.max_wait_s();
+  const double frames = 30.0 * options_.expert().max_wait_s();
   stage_->Add(Frame(0.5));
   Fuse(Depth(0.0, frames + 0.1));
   EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDepthGap, 1}}));

@@ -65,7 +65,7 @@ TrackingResult Tracker::TrackInModel(const PreparedDepth& depth, CaptureTime tim
 }
 
 bool Tracker::BeginElsewhere(const PreparedDepth& depth, CaptureTime time) {
-  const double limit_s = options_.start_after_lost_s();
+  const double limit_s = options_.expert().start_after_lost_s();
   // A hand before the camera is no place to begin at.
   constexpr int kFewestPixels = 10 * kMinTrackedPixels;
   if (limit_s <= 0.0 || ToSeconds(time - *lost_since_) < limit_s ||

@@ -22,7 +22,7 @@ class TrackerTest : public testing::SubMapTest {
   static constexpr double kLostForLong_s = 0.1;
 
   TrackerTest() {
-    options_.mutable_submaps()->set_start_after_lost_s(kLostForLong_s);
+    options_.mutable_submaps()->mutable_expert()->set_start_after_lost_s(kLostForLong_s);
     Restart(FirstPose());
   }
   void Restart(std::optional<RigidTransform> initial_pose) {

@@ -26,22 +26,24 @@ constexpr RefinementStage kLastStage = {2, 0.025F, 30.0, 4};
 }  // namespace
 
 Status Validate(const RelocaliserOptions& o) {
-  if (!(o.min_agreement() > 0.0 && o.min_agreement() <= 1.0 && o.min_overlap() > 0.0 &&
-        o.min_overlap() <= 1.0)) {
+  if (!(o.expert().min_agreement() > 0.0 && o.expert().min_agreement() <= 1.0 &&
+        o.expert().min_overlap() > 0.0 && o.expert().min_overlap() <= 1.0)) {
+    return InvalidArgument(
+        fmt::format("relocaliser.expert: min_agreement and min_overlap must be above 0 and at most "
+                    "1, got {} and {}",
+                    o.expert().min_agreement(), o.expert().min_overlap()));
+  }
+  if (o.expert().max_views() < 1 || o.expert().max_views() > 100'000 ||
+      o.expert().guesses_per_frame() < 1 || o.expert().guesses_per_frame() > 100) {
     return InvalidArgument(fmt::format(
-        "relocaliser: min_agreement and min_overlap must be above 0 and at most 1, got {} and {}",
-        o.min_agreement(), o.min_overlap()));
+        "relocaliser.expert: max_views must be 1..100000 and guesses_per_frame 1..100, got {} "
+        "and {}",
+        o.expert().max_views(), o.expert().guesses_per_frame()));
   }
-  if (o.max_views() < 1 || o.max_views() > 100'000 || o.guesses_per_frame() < 1 ||
-      o.guesses_per_frame() > 100) {
+  if (o.expert().confirming_frames() < 0 || o.expert().confirming_frames() > 100) {
     return InvalidArgument(
-        fmt::format("relocaliser: max_views must be 1..100000 and guesses_per_frame 1..100, got {} "
-                    "and {}",
-                    o.max_views(), o.guesses_per_frame()));
-  }
-  if (o.confirming_frames() < 0 || o.confirming_frames() > 100) {
-    return InvalidArgument(
-        fmt::format("relocaliser.confirming_frames must be 0..100, got {}", o.confirming_frames()));
+        fmt::format("relocaliser.expert.confirming_frames must be 0..100, got {}",
+                    o.expert().confirming_frames()));
   }
   return OkStatus();
 }
@@ -99,7 +101,9 @@ class Relocaliser::Refinement {
 };
 
 Relocaliser::Relocaliser(const RelocaliserOptions& options, const CameraModel& depth_camera)
-    : options_(options), camera_(depth_camera), keyframes_(depth_camera, options.max_views()) {}
+    : options_(options),
+      camera_(depth_camera),
+      keyframes_(depth_camera, options.expert().max_views()) {}
 
 std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
                                                 const TsdfVolume& volume, float min_weight,
@@ -111,8 +115,8 @@ std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
   }
   Refinement refinement(*this, depth, volume, min_weight, pool);
   Refinement::Fit best;
-  for (const PoseGuess& guess :
-       keyframes_.Guess(MakeThumbnail(depth.depth_m), options_.guesses_per_frame(), pool)) {
+  for (const PoseGuess& guess : keyframes_.Guess(MakeThumbnail(depth.depth_m),
+                                                 options_.expert().guesses_per_frame(), pool)) {
     const Refinement::Fit fit = refinement.Run(kFirstStage, guess.T_map_depth);
     if (fit.score() > best.score()) best = fit;
   }
@@ -121,7 +125,8 @@ std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
     if (best.agreement < kHopeless) return std::nullopt;
     best = refinement.Run(stage, best.pose);
   }
-  if (best.agreement < options_.min_agreement() || best.overlap < options_.min_overlap())
+  if (best.agreement < options_.expert().min_agreement() ||
+      best.overlap < options_.expert().min_overlap())
     return std::nullopt;
   return best.pose;
 }

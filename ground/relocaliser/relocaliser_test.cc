@@ -156,7 +156,7 @@ class BallInCornerTest : public ::testing::Test {
   CameraModel camera_ = testing::SmallDepthCamera();
   ThreadPool pool_{2};
   TsdfVolume volume_ = MakeVolume();
-  DepthPreprocessor preprocessor_{PreprocessorOptions(), camera_};
+  DepthPreprocessor preprocessor_{PreprocessorOptions(), camera_, DepthSensorModel()};
 };
 
 class KeyframeDatabaseTest : public BallInCornerTest {
@@ -239,23 +239,23 @@ TEST(RelocaliserOptionsTest, BoundariesAreNamed) {
       {"min_agreement",
        {1e-3, 1.0},
        {0.0, -0.1, 1.001, nan},
-       [](auto& o, double v) { o.set_min_agreement(v); }},
+       [](auto& o, double v) { o.mutable_expert()->set_min_agreement(v); }},
       {"min_overlap",
        {1e-3, 1.0},
        {0.0, -0.1, 1.001, nan},
-       [](auto& o, double v) { o.set_min_overlap(v); }},
+       [](auto& o, double v) { o.mutable_expert()->set_min_overlap(v); }},
       {"max_views",
        {1, 100'000},
        {0, -1, 100'001},
-       [](auto& o, double v) { o.set_max_views(static_cast<int>(v)); }},
+       [](auto& o, double v) { o.mutable_expert()->set_max_views(static_cast<int>(v)); }},
       {"guesses_per_frame",
        {1, 100},
        {0, -1, 101},
-       [](auto& o, double v) { o.set_guesses_per_frame(static_cast<int>(v)); }},
+       [](auto& o, double v) { o.mutable_expert()->set_guesses_per_frame(static_cast<int>(v)); }},
       {"confirming_frames",
        {0, 100},
        {-1, 101},
-       [](auto& o, double v) { o.set_confirming_frames(static_cast<int>(v)); }},
+       [](auto& o, double v) { o.mutable_expert()->set_confirming_frames(static_cast<int>(v)); }},
   };
   EXPECT_TRUE(Validate(RelocaliserOptions()).ok());
   for (const Case& c : cases) {

@@ -187,10 +187,10 @@ TEST_F(ContoursTest, ImageHasTheLineInItsColour) {
   FillGradient({500.0, 0.0});
   RendererOptions options;
   options.set_legend(false);
-  options.set_shading(false);
+  options.mutable_expert()->set_shading(false);
   options.set_scale(FIXED);
-  options.set_isotherms("60#00ff00");
-  options.set_isotherm_width_px(3.0);
+  ASSERT_TRUE(ParseIsotherms("60#00ff00", options).ok());
+  options.mutable_expert()->set_isotherm_width_px(3.0);
   const Renderer renderer(options, ThermalOptions());
   ASSERT_TRUE(renderer.draws_lines());
   const SurfaceMaps maps = Cast(Frontal());

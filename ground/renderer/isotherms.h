@@ -9,6 +9,8 @@
 
 namespace isotherm {
 
+class RendererOptions;
+
 /// A line of equal temperature.
 struct IsothermLine {
   double celsius = 0.0;
@@ -24,11 +26,15 @@ struct TemperatureBand {
   bool Contains(double celsius) const { return celsius >= from_celsius && celsius <= to_celsius; }
 };
 
-/// "60, 80#00ff00, 212F": at most 32 lines, white unless said otherwise. Empty text: none. Numbers
-/// as in ParseCelsius.
-Result<std::vector<IsothermLine>> ParseIsotherms(std::string_view text);
+/// Fails if there are more than 32 lines or 8 bands, or if a number or a colour of one is none.
+Result<std::vector<IsothermLine>> IsothermsOf(const RendererOptions& options);
+Result<std::vector<TemperatureBand>> BandsOf(const RendererOptions& options);
 
-/// "80..100#ff00ff, 200.." : at most 8 bands, in which one end may be missing.
-Result<std::vector<TemperatureBand>> ParseBands(std::string_view text);
+/// Replaces the isotherms by those of a command line: "60, 80#00ff00, 212F", white unless said
+/// otherwise. Empty text: none. Numbers as in ParseCelsius.
+Status ParseIsotherms(std::string_view text, RendererOptions& options);
+
+/// The same with bands: "80..100#ff00ff, 200..", in which one end may be missing.
+Status ParseBands(std::string_view text, RendererOptions& options);
 
 }  // namespace isotherm

@@ -132,45 +132,52 @@ Status CheckRange(const char* low_name, double low, const char* high_name, doubl
 
 }  // namespace
 
+Status Validate(const RendererExpertOptions& o) {
+  ISOTHERM_RETURN_IF_ERROR(CheckRange("expert.percentile_low", o.percentile_low(),
+                                      "expert.percentile_high", o.percentile_high()));
+  if (o.percentile_low() < 0.0 || o.percentile_high() > 100.0) {
+    return InvalidArgument(fmt::format(
+        "renderer.expert: percentile_low ({}) and percentile_high ({}) must be 0..100 %",
+        o.percentile_low(), o.percentile_high()));
+  }
+  constexpr double kWidest = 50.0;
+  if (!(o.isotherm_width_px() > 0.0 && o.isotherm_width_px() <= kWidest)) {
+    return InvalidArgument(
+        fmt::format("renderer.expert.isotherm_width_px is {}, must be above 0 and at most {} px",
+                    o.isotherm_width_px(), kWidest));
+  }
+  constexpr double kSmoothest = 10.0;
+  if (!(o.isotherm_smoothing_px() >= 0.0 && o.isotherm_smoothing_px() <= kSmoothest)) {
+    return InvalidArgument(
+        fmt::format("renderer.expert.isotherm_smoothing_px is {}, must be 0..{} px",
+                    o.isotherm_smoothing_px(), kSmoothest));
+  }
+  return OkStatus();
+}
+
 Status Validate(const RendererOptions& options) {
   ISOTHERM_RETURN_IF_ERROR(CheckRange("scale_min_celsius", options.scale_min_celsius(),
                                       "scale_max_celsius", options.scale_max_celsius()));
-  ISOTHERM_RETURN_IF_ERROR(CheckRange("percentile_low", options.percentile_low(), "percentile_high",
-                                      options.percentile_high()));
-  if (options.percentile_low() < 0.0 || options.percentile_high() > 100.0) {
-    return InvalidArgument(fmt::format(
-        "renderer.percentile_low ({}) and renderer.percentile_high ({}) must be 0..100 %",
-        options.percentile_low(), options.percentile_high()));
-  }
-  constexpr double kWidest = 50.0;
-  if (!(options.isotherm_width_px() > 0.0 && options.isotherm_width_px() <= kWidest)) {
-    return InvalidArgument(
-        fmt::format("renderer.isotherm_width_px is {}, must be above 0 and at most {} px",
-                    options.isotherm_width_px(), kWidest));
-  }
-  constexpr double kSmoothest = 10.0;
-  if (!(options.isotherm_smoothing_px() >= 0.0 && options.isotherm_smoothing_px() <= kSmoothest)) {
-    return InvalidArgument(fmt::format("renderer.isotherm_smoothing_px is {}, must be 0..{} px",
-                                       options.isotherm_smoothing_px(), kSmoothest));
-  }
-  if (const auto lines = ParseIsotherms(options.isotherms()); !lines)
-    return lines.error().WithContext("renderer.isotherms");
-  if (const auto bands = ParseBands(options.bands()); !bands)
-    return bands.error().WithContext("renderer.bands");
+  ISOTHERM_RETURN_IF_ERROR(Validate(options.expert()));
+  if (const auto lines = IsothermsOf(options); !lines)
+    return lines.error().WithContext("renderer.isotherm");
+  if (const auto bands = BandsOf(options); !bands)
+    return bands.error().WithContext("renderer.band");
   return OkStatus();
 }
 
 Renderer::Renderer(const RendererOptions& options, const ThermalOptions& thermal)
     : options_(options), thermal_(thermal), colours_(options) {
-  auto lines = ParseIsotherms(options.isotherms());
-  auto bands = ParseBands(options.bands());
+  auto lines = IsothermsOf(options);
+  auto bands = BandsOf(options);
   CHECK(lines && bands);
   lines_ = std::move(*lines);
   bands_ = std::move(*bands);
-  if (options.palette() == GREY && options.shading()) {
-    LOG(Renderer, Warning) << "palette grey with shading: brightness stands for temperature and "
-                              "for the angle to the viewer; renderer.shading=false removes the "
-                              "latter";
+  if (options.palette() == GREY && options.expert().shading()) {
+    LOG(Renderer, Warning)
+        << "palette grey with shading: brightness stands for temperature and "
+           "for the angle to the viewer; renderer.expert.shading=false removes the "
+           "latter";
   }
 }
 
@@ -218,7 +225,7 @@ ScaleLegend Renderer::ThermalLegend(const std::optional<TemperatureScale>& scale
   legend.scale = scale;
   legend.rule = "scale: " + ScaleRuleName(options_);
   legend.unit = DisplayUnitOf(options_.unit());
-  if (options_.palette() == GREY && options_.shading()) {
+  if (options_.palette() == GREY && options_.expert().shading()) {
     legend.notes = {"grey: shading darkens", "too, do not read values"};
   }
   if (!scale) return legend;
@@ -241,7 +248,7 @@ ScaleLegend Renderer::ThermalLegend(const std::optional<TemperatureScale>& scale
 
 RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<TemperatureScale>& scale,
                            const ContourField* contours) const {
-  const bool shading = options_.shading();
+  const bool shading = options_.expert().shading();
   RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     const double cos_view = shading ? view.cos_view.At(x, y) : 1.0;
     const double celsius = view.celsius.At(x, y);
@@ -250,7 +257,7 @@ RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<Temperature
   });
   if (contours != nullptr) {
     for (const IsothermLine& line : lines_) {
-      const double width = options_.isotherm_width_px();
+      const double width = options_.expert().isotherm_width_px();
       DrawLine(IsothermCover(*contours, line.celsius, width + 2.0 * kCasing_px), kCasingColour,
                kCasingOpacity, rendering);
       DrawLine(IsothermCover(*contours, line.celsius, width), line.colour, 1.0, rendering);
@@ -270,7 +277,7 @@ RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& clas
     return unchecked ? kUncheckedColour : ClassColour(condition);
   };
   const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
-    return Shaded(colour(x, y), options_.shading() ? view.cos_view.At(x, y) : 1.0);
+    return Shaded(colour(x, y), options_.expert().shading() ? view.cos_view.At(x, y) : 1.0);
   });
   if (!options_.legend()) return rendering;
   ClassLegend counted = legend;
@@ -279,8 +286,8 @@ RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& clas
 }
 
 RgbImage Renderer::Distance(const ViewMaps& view) const {
-  const double min = thermal_.distance_min_m(), good = thermal_.distance_good_m(),
-               max = thermal_.distance_max_m();
+  const double min = thermal_.distance().min_m(), good = thermal_.distance().good_m(),
+               max = thermal_.distance().max_m();
   return Classes(view, view.distance_class,
                  LegendOfClasses("measurement distance", fmt::format("{:g}-{:g} m", min, good),
                                  fmt::format("{:g}-{:g} m", good, max),
@@ -288,8 +295,8 @@ RgbImage Renderer::Distance(const ViewMaps& view) const {
 }
 
 RgbImage Renderer::Angle(const ViewMaps& view) const {
-  const double min = thermal_.angle_min_deg(), good = thermal_.angle_good_deg(),
-               max = thermal_.angle_max_deg();
+  const double min = thermal_.angle().min_deg(), good = thermal_.angle().good_deg(),
+               max = thermal_.angle().max_deg();
   const std::string too_frontal = min > 0.0 ? fmt::format("< {:g}\u00B0 or ", min) : "";
   return Classes(view, view.angle_class,
                  LegendOfClasses("emission angle", fmt::format("{:g}-{:g}\u00B0", min, good),
@@ -317,7 +324,7 @@ RgbImage Renderer::NucAge(const ViewMaps& view) const {
   const double longest_s = std::max(ages.max_celsius, kShortest_s);
   const auto colour = [longest_s](double age_s) { return InfernoColour(1.0 - age_s / longest_s); };
   const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
-    const double cos_view = options_.shading() ? view.cos_view.At(x, y) : 1.0;
+    const double cos_view = options_.expert().shading() ? view.cos_view.At(x, y) : 1.0;
     const double age_s = view.nuc_age_s.At(x, y);
     if (!std::isnan(age_s)) return Shaded(colour(age_s), cos_view);
     return std::isnan(view.celsius.At(x, y)) ? NeverMeasuredColour(x, y, cos_view)
@@ -342,7 +349,7 @@ RgbImage Renderer::Coverage(const ViewMaps& view) const {
     return legend.rows[static_cast<std::size_t>(QualityAt(view, x, y))].colour;
   };
   const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
-    return Shaded(colour(x, y), options_.shading() ? view.cos_view.At(x, y) : 1.0);
+    return Shaded(colour(x, y), options_.expert().shading() ? view.cos_view.At(x, y) : 1.0);
   });
   if (!options_.legend()) return rendering;
   CountFractions(view, colour, legend);

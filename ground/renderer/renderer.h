@@ -18,6 +18,7 @@ namespace isotherm {
 /// Fixed limits and percentiles must be finite and in order, whatever the scale rule, so that
 /// switching rules is safe; isotherms and bands must be readable.
 Status Validate(const RendererOptions& options);
+Status Validate(const RendererExpertOptions& options);
 
 /// Draws what a view of the model shows (algorithms 7-9), each layer x cos_view:
 ///   thermal    palette colour; never measured surface dim grey with diagonal lines; isotherms

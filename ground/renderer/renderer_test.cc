@@ -61,7 +61,7 @@ TEST(RendererTest, WithoutShadingTheAngleDoesNotMatter) {
   view.celsius.At(0, 0) = 20.0F;
   view.cos_view.At(0, 0) = 0.1F;
   RendererOptions options = FixedScale(false);
-  options.set_shading(false);
+  options.mutable_expert()->set_shading(false);
   EXPECT_EQ(MakeRenderer(options).Thermal(view).At(0, 0), (Rgb8{59, 76, 192}));
 }
 
@@ -203,11 +203,11 @@ TEST(RendererTest, BandsPaintOrTakeColourFromTheRest) {
   }
   RendererOptions options = FixedScale(false);
   const RgbImage plain = MakeRenderer(options).Thermal(view);
-  options.set_bands("75..85#12ab34");
+  ASSERT_TRUE(ParseBands("75..85#12ab34", options).ok());
   const RgbImage painted = MakeRenderer(options).Thermal(view);
   EXPECT_EQ(painted.At(2, 0), (Rgb8{0x12, 0xab, 0x34}));
   for (const int x : {0, 1, 3}) EXPECT_EQ(painted.At(x, 0), plain.At(x, 0));
-  options.set_bands("75..85#12ab34, 90..");
+  ASSERT_TRUE(ParseBands("75..85#12ab34, 90..", options).ok());
   const RgbImage highlighted = MakeRenderer(options).Thermal(view);
   EXPECT_EQ(highlighted.At(2, 0), (Rgb8{0x12, 0xab, 0x34}));
   EXPECT_EQ(highlighted.At(3, 0), plain.At(3, 0));
@@ -245,7 +245,7 @@ TEST(RendererTest, ShadedGreyWarnsInTheLegend) {
   RendererOptions options = FixedScale(true);
   options.set_palette(GREY);
   const RgbImage shaded = MakeRenderer(options).Thermal(view);
-  options.set_shading(false);
+  options.mutable_expert()->set_shading(false);
   const RgbImage flat = MakeRenderer(options).Thermal(view);
   EXPECT_GT(DifferingPixels(shaded, flat, 64), 50U);
 }

@@ -68,7 +68,7 @@ TEST_F(RenderingTest, DiscOfKnownTemperatureIsWhereItBelongs) {
     return ThermalVoxel::Make(static_cast<float>(in_disc ? kHot_celsius : kCold_celsius),
                               ConditionClass::kGood, ConditionClass::kGood);
   });
-  options_.set_shading(false);
+  options_.mutable_expert()->set_shading(false);
   const Eigen::Quaterniond rotation(Eigen::AngleAxisd(0.5, Eigen::Vector3d(0.6, 0.8, 0.0)));
   const RigidTransform T_world_camera = MakeTransform(
       Eigen::Vector3d(0.128, 0.128, 0.12) - rotation * Eigen::Vector3d(0, 0, 0.3), rotation);

@@ -66,8 +66,8 @@ std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
     scale.min_celsius = statistics.min_celsius;
     scale.max_celsius = statistics.max_celsius;
     if (options.scale() == PERCENTILE) {
-      scale.min_celsius = *Percentile(celsius, options.percentile_low());
-      scale.max_celsius = *Percentile(celsius, options.percentile_high());
+      scale.min_celsius = *Percentile(celsius, options.expert().percentile_low());
+      scale.max_celsius = *Percentile(celsius, options.expert().percentile_high());
     } else if (options.scale() != MIN_MAX) {
       const double reach = (options.scale() == ONE_SIGMA ? 1.0 : 3.0) * statistics.sigma_kelvin;
       scale.min_celsius = std::max(scale.min_celsius, statistics.mean_celsius - reach);
@@ -95,7 +95,8 @@ std::string ScaleRuleName(const RendererOptions& options) {
     case FIXED:
       return "fixed";
     case PERCENTILE:
-      return fmt::format("{:g} to {:g} %", options.percentile_low(), options.percentile_high());
+      return fmt::format("{:g} to {:g} %", options.expert().percentile_low(),
+                         options.expert().percentile_high());
   }
   return "";
 }
@@ -125,8 +126,8 @@ Status ParseScale(std::string_view text, RendererOptions& options) {
   if (!high) return high.error();
   options.set_scale(percent ? PERCENTILE : FIXED);
   if (percent) {
-    options.set_percentile_low(*low);
-    options.set_percentile_high(*high);
+    options.mutable_expert()->set_percentile_low(*low);
+    options.mutable_expert()->set_percentile_high(*high);
   } else {
     options.set_scale_min_celsius(*low);
     options.set_scale_max_celsius(*high);

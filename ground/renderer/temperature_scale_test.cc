@@ -104,8 +104,8 @@ TEST(PercentileTest, IsExactOnARamp) {
 
 TEST(TemperatureScaleTest, PercentilesCutBothEnds) {
   RendererOptions options = Options(PERCENTILE);
-  options.set_percentile_low(10);
-  options.set_percentile_high(75);
+  options.mutable_expert()->set_percentile_low(10);
+  options.mutable_expert()->set_percentile_high(75);
   const auto scale = ChooseScale(options, Ramp());
   ASSERT_TRUE(scale);
   EXPECT_NEAR(scale->min_celsius, 11.0, kExact);
@@ -124,8 +124,8 @@ TEST(ParseScaleTest, OneTextSetsRuleAndLimits) {
   EXPECT_NEAR(options.scale_max_celsius(), 20.0, kExact);
   ASSERT_TRUE(ParseScale("5..99.5%", options).ok());
   EXPECT_EQ(options.scale(), PERCENTILE);
-  EXPECT_EQ(options.percentile_low(), 5.0);
-  EXPECT_EQ(options.percentile_high(), 99.5);
+  EXPECT_EQ(options.expert().percentile_low(), 5.0);
+  EXPECT_EQ(options.expert().percentile_high(), 99.5);
   for (const char* wrong : {"", "wide", "20", "20..", "a..b"}) {
     EXPECT_EQ(ParseScale(wrong, options).code(), StatusCode::kInvalidArgument) << wrong;
   }
@@ -157,13 +157,14 @@ TEST(RendererOptionsTest, EachNewOptionIsChecked) {
     EXPECT_EQ(status.code(), StatusCode::kInvalidArgument) << field;
     EXPECT_NE(status.message().find(field), std::string::npos) << status.message();
   };
-  refused([](auto& o) { o.set_percentile_low(98); }, "percentile_low");
-  refused([](auto& o) { o.set_percentile_low(-1); }, "percentile_low");
-  refused([](auto& o) { o.set_percentile_high(101); }, "percentile_high");
-  refused([](auto& o) { o.set_isotherm_width_px(0); }, "isotherm_width_px");
-  refused([](auto& o) { o.set_isotherm_smoothing_px(-0.1); }, "isotherm_smoothing_px");
-  refused([](auto& o) { o.set_isotherms("60, warm"); }, "isotherms");
-  refused([](auto& o) { o.set_bands("80..60"); }, "bands");
+  refused([](auto& o) { o.mutable_expert()->set_percentile_low(98); }, "percentile_low");
+  refused([](auto& o) { o.mutable_expert()->set_percentile_low(-1); }, "percentile_low");
+  refused([](auto& o) { o.mutable_expert()->set_percentile_high(101); }, "percentile_high");
+  refused([](auto& o) { o.mutable_expert()->set_isotherm_width_px(0); }, "isotherm_width_px");
+  refused([](auto& o) { o.mutable_expert()->set_isotherm_smoothing_px(-0.1); },
+          "isotherm_smoothing_px");
+  refused([](auto& o) { o.add_isotherm()->set_colour("warm"); }, "isotherm");
+  refused([](auto& o) { o.add_band(); }, "band");
 }
 
 TEST(RendererOptionsTest, DefaultsAreValidAndLimitsMustBeInOrder) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ground/results/outcome_text.h"
+#include "ground/surface/depth_preprocessor.h"
 
 namespace isotherm {
 namespace {
@@ -24,12 +25,13 @@ std::string NotFoundInModel(const ScanOutcome& outcome) {
 std::string CauseOfNoPose(const ScanOutcome& outcome) {
   const std::optional<LostReason> reason = MainReason(outcome.counts.depth_lost);
   if (reason == LostReason::kTooFewPixels) {
-    const PreprocessorOptions& range = outcome.options.preprocessor();
+    const DepthRange range = RangeOf(outcome.options.preprocessor(), outcome.depth_sensor);
     return fmt::format(
-        "nearly all depths lie outside of preprocessor.min_depth_m to max_depth_m ({:g} to {:g} "
+        "nearly all depths lie outside of the depth camera's range or of preprocessor.min_depth_m "
+        "to max_depth_m ({:g} to {:g} "
         "m): "
         "is depth_scale (raw units per metre) of the calibration right?",
-        range.min_depth_m(), range.max_depth_m());
+        range.min_m, range.max_m);
   }
   if (reason == LostReason::kOutsideVolume) {
     return "at the first pose nothing in view lies in the scan volume: correct --initial-pose "
@@ -56,9 +58,9 @@ std::string NoTemperature(const ScanOutcome& outcome) {
   return fmt::format(
       "{} thermal frames were used, but no temperature was measured under acceptable conditions: "
       "go "
-      "nearer than thermal.distance_max_m ({:g} m) and less oblique than thermal.angle_max_deg "
+      "nearer than thermal.distance.max_m ({:g} m) and less oblique than thermal.angle.max_deg "
       "({:g} degrees), or keep such temperatures with thermal.keep_bad",
-      counts.thermal_fused, limits.distance_max_m(), limits.angle_max_deg());
+      counts.thermal_fused, limits.distance().max_m(), limits.angle().max_deg());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ namespace isotherm {
 struct ScanOutcome {
   const PipelineCounts& counts;
   const GroundOptions& options;
+  DepthSensorModel depth_sensor{};  ///< Of the rig.
   bool continued = false;           ///< It went on with a saved model.
   bool can_fuse = false;            ///< The calibration and the camera allow temperatures.
   std::size_t poses = 0;            ///< In `world`.

@@ -94,6 +94,7 @@ void AddResultDoubts(const ScanModel& scan, const GroundOptions& options,
                      const ResultSummary& summary, Doubts& doubts) {
   const Doubts more = DoubtsAboutResult({.counts = scan.counts,
                                          .options = options,
+                                         .depth_sensor = scan.rig.depth_sensor,
                                          .continued = scan.is_continued,
                                          .can_fuse = scan.thermal_status.ok(),
                                          .poses = scan.trajectory.poses().size(),
@@ -235,7 +236,7 @@ Result<WrittenScan> WriteScan(
   stats["delay_check"] = DescribeDelay(delay);
   const bool has_view = scan.view.maps.width() > 0;
   const SurfaceMaps view =
-      has_view ? CastFullView(scan, options.raycast().min_weight(), pool) : SurfaceMaps();
+      has_view ? CastFullView(scan, options.raycast().expert().min_weight(), pool) : SurfaceMaps();
   const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
   if (!interpretation) return Err(interpretation.error());
   const ResultInputs inputs{scan.tsdf(),

@@ -114,7 +114,8 @@ SurfaceAreas FeedbackMaker::areas() const {
 
 ModelCoverage& FeedbackMaker::ActiveCoverage(const ScanModel& scan) {
   return coverages_
-      .try_emplace(scan.atlas.active_index(), static_cast<float>(options_.export_().min_weight()))
+      .try_emplace(scan.atlas.active_index(),
+                   static_cast<float>(options_.export_().expert().min_weight()))
       .first->second;
 }
 
@@ -123,7 +124,7 @@ ViewPlanner* FeedbackMaker::Planner(const ScanModel& scan) {
   if (!planner_ || planned_map_ != scan.atlas.active_index()) {
     planned_map_ = scan.atlas.active_index();
     planner_.emplace(options_.feedback(), options_.thermal(), rig_,
-                     static_cast<float>(options_.raycast().min_weight()));
+                     static_cast<float>(options_.raycast().expert().min_weight()));
   }
   return &*planner_;
 }
@@ -132,7 +133,7 @@ CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan, ThreadPool& poo
   const ModelView& model = scan.view;
   view_.Resize(0, 0);
   if (model.maps.width() == 0) return {};
-  const int columns = std::max(kMinColumns, options_.feedback().image_width_px());
+  const int columns = std::max(kMinColumns, options_.feedback().expert().image_width_px());
   Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
   // Distances and angles are limits of the thermal camera.
   SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), scan.tsdf(),
@@ -147,8 +148,9 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   situation.speed_m_s = moment.speed_m_s;
   situation.rotation_rate_deg_s = moment.rotation_rate_deg_s;
   if (moment.frame_interval_s > 0.0) {
-    situation.max_speed_m_s = options_.tsdf().max_step_m() / moment.frame_interval_s;
-    situation.max_rotation_rate_deg_s = options_.tsdf().max_step_deg() / moment.frame_interval_s;
+    situation.max_speed_m_s = options_.tsdf().expert().max_step_m() / moment.frame_interval_s;
+    situation.max_rotation_rate_deg_s =
+        options_.tsdf().expert().max_step_deg() / moment.frame_interval_s;
   }
   const bool complete = !coverages_.empty() && std::ranges::all_of(coverages_, [](const auto& c) {
     return c.second.complete();
@@ -194,7 +196,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
   feedback.advice_reason = std::move(advice.reason);
   feedback.done = adviser_.done();
   AddNextPose(moment.report, scan, feedback);
-  if (options_.feedback().image_width_px() > 0 && view_.width() > 0) {
+  if (options_.feedback().expert().image_width_px() > 0 && view_.width() > 0) {
     feedback.image =
         EncodeWithin(DrawConfidence(view_, feedback.tracking_state == TrackingState::kLost),
                      kMaxConfidenceImageBytes);
@@ -216,7 +218,7 @@ void FeedbackMaker::ThinkAhead(const ScanModel& scan, ThreadPool& pool) {
         const GridIndex first = scan.tsdf().block_coordinates(block) * kBlockSide;
         return has_spilled && (first.cast<double>() - rig_vox).norm() > reach_vox;
       },
-      options_.feedback().blocks_per_message(), pool);
+      options_.feedback().expert().blocks_per_message(), pool);
   ViewPlanner* planner = Planner(scan);
   if (planner == nullptr || scan.view.maps.width() == 0 || adviser_.done()) return;
   planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, pool);

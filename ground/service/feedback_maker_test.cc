@@ -36,12 +36,13 @@ class FeedbackMakerTest : public ::testing::Test {
     volume.set_size_z_m(0.64);
     volume.set_voxel_size_m(0.004);
     options_.mutable_tsdf()->set_truncation_distance_m(0.016);
-    options_.mutable_tsdf()->set_max_step_deg(10.0);
-    options_.mutable_tsdf()->set_min_step_m(0.0);  // Each frame counts for the loop closer.
-    options_.mutable_tsdf()->set_min_step_deg(0.0);
-    options_.mutable_submaps()->set_start_after_lost_s(0.1);
-    options_.mutable_submaps()->set_max_rotation_deg(0.0);
-    options_.mutable_feedback()->set_image_width_px(0);
+    options_.mutable_tsdf()->mutable_expert()->set_max_step_deg(10.0);
+    options_.mutable_tsdf()->mutable_expert()->set_min_step_m(
+        0.0);  // Each frame counts for the loop closer.
+    options_.mutable_tsdf()->mutable_expert()->set_min_step_deg(0.0);
+    options_.mutable_submaps()->mutable_expert()->set_start_after_lost_s(0.1);
+    options_.mutable_submaps()->mutable_expert()->set_max_rotation_deg(0.0);
+    options_.mutable_feedback()->mutable_expert()->set_image_width_px(0);
     options_.set_threads(2);
     Start();
   }

@@ -68,7 +68,7 @@ class GroundService {
         clock_(clock),
         signal_(signal),
         health_(DiskLimit()),
-        to_reconstruction_(static_cast<std::size_t>(options.live().queue_frames()),
+        to_reconstruction_(static_cast<std::size_t>(options.live().expert().queue_frames()),
                            OverflowPolicy::kBlock),
         to_recording_(kRecordingLimits),
         distributor_(options, mode.single_scan, clock, to_reconstruction_, to_recording_, board_,
@@ -112,8 +112,8 @@ SubscriberOptions GroundService::LinkOptions() const {
   SubscriberOptions link;
   link.edge_id = options_.live().edge_id();
   link.software_version = ISOTHERM_VERSION;
-  link.reorder_window = FromSeconds(options_.live().reorder_window_s());
-  link.max_clock_offset = FromSeconds(options_.live().max_clock_offset_s());
+  link.reorder_window = FromSeconds(options_.live().expert().reorder_window_s());
+  link.max_clock_offset = FromSeconds(options_.live().expert().max_clock_offset_s());
   return link;
 }
 

@@ -42,7 +42,7 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       options_(options),
       session_(rig.session),
       rig_(rig.rig),
-      keeps_up_(options.live().max_wait_s() > 0.0 && !rig.waits_for_ground),
+      keeps_up_(options.live().expert().max_wait_s() > 0.0 && !rig.waits_for_ground),
       pipeline_(std::move(pipeline)),
       assembler_(rig.rig.thermal.has_value()),
       delay_check_(options.delay_check(), rig.rig, std::nullopt),
@@ -110,7 +110,7 @@ void LiveScan::KeepUp(Nanoseconds queued) {
   // The rest is for the other stream's next frame.
   constexpr double kThermalFraction = 0.4;
   constexpr double kIntegrationFraction = 0.7;
-  const double fraction = ToSeconds(queued) / options_.live().max_wait_s();
+  const double fraction = ToSeconds(queued) / options_.live().expert().max_wait_s();
   is_behind_ = fraction > kThermalFraction;
   pipeline_->set_load_shedding(fraction > kIntegrationFraction ? LoadShedding::kEverySecond
                                : fraction > kThermalFraction   ? LoadShedding::kNoThermal
@@ -141,7 +141,7 @@ void LiveScan::Process(const Assembler::Frame& frame) {
   if (next_feedback_ && time < *next_feedback_) return;
   feedback_waiting_ = true;
   // From the deadline before, so that jitter does not lower the rate; after a gap, from now.
-  const Nanoseconds period = FromSeconds(1.0 / options_.live().feedback_hz());
+  const Nanoseconds period = FromSeconds(1.0 / options_.live().expert().feedback_hz());
   const CaptureTime due = next_feedback_.value_or(time) + period;
   next_feedback_ = due > time ? due : time + period;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "ground/options/option_geometry.h"
 #include "ground/surface/testing/analytic_views.h"
 
 namespace isotherm {
@@ -25,11 +26,11 @@ class LiveScanTest : public ::testing::Test {
     volume.set_size_y_m(0.64);
     volume.set_size_z_m(0.64);
     volume.set_voxel_size_m(0.004);
-    volume.set_initial_pose("0.30 0.26 0 0 0 0 1");  // FirstPose().
+    *volume.mutable_expert()->mutable_initial_pose() = ToOptions(testing::FirstPose());
     options_.mutable_tsdf()->set_truncation_distance_m(0.016);
-    options_.mutable_live()->set_max_wait_s(0.1);
+    options_.mutable_live()->mutable_expert()->set_max_wait_s(0.1);
     options_.set_threads(2);
-    options_.mutable_thermal()->set_time_constant_s(0.001);  // What is near moves fast.
+    rig_.rig.thermal_sensor.time_constant_s = 0.001;  // What is near moves fast.
   }
   void Start() {
     auto created = LiveScan::Create(clock_, options_, rig_);
@@ -143,7 +144,7 @@ TEST_F(LiveScanTest, WhatWaitsForTheOtherStreamIsNotBehind) {
 }
 
 TEST_F(LiveScanTest, AnImageThatComesTwiceIsNotALoss) {
-  options_.mutable_live()->set_feedback_hz(30.0);
+  options_.mutable_live()->mutable_expert()->set_feedback_hz(30.0);
   Start();
   Run(0, 3, 10ms);
   scan_->FinishFrames();
@@ -166,7 +167,7 @@ TEST_F(LiveScanTest, AReplayThatWaitsForTheGroundLosesNothing) {
 }
 
 TEST_F(LiveScanTest, ALongestWaitOfZeroNeverLeavesAnythingOut) {
-  options_.mutable_live()->set_max_wait_s(0.0);
+  options_.mutable_live()->mutable_expert()->set_max_wait_s(0.0);
   Start();
   Run(0, 6, 10s);
   scan_->FinishFrames();
@@ -176,7 +177,7 @@ TEST_F(LiveScanTest, ALongestWaitOfZeroNeverLeavesAnythingOut) {
 }
 
 TEST_F(LiveScanTest, FeedbackKeepsItsRateWhenFramesJitter) {
-  options_.mutable_live()->set_feedback_hz(10.0);
+  options_.mutable_live()->mutable_expert()->set_feedback_hz(10.0);
   Start();
   int messages = 0;
   constexpr int kFrames = 31;  // One second.
@@ -190,7 +191,7 @@ TEST_F(LiveScanTest, FeedbackKeepsItsRateWhenFramesJitter) {
 }
 
 TEST_F(LiveScanTest, FeedbackSaysHowWellViewAndModelAreMeasured) {
-  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  options_.mutable_live()->mutable_expert()->set_feedback_hz(60.0);  // On each frame.
   Start();
   std::optional<Feedback> feedback;
   for (int i = 0; i < 8; ++i) {
@@ -219,7 +220,7 @@ TEST_F(LiveScanTest, FeedbackSaysHowWellViewAndModelAreMeasured) {
 }
 
 TEST_F(LiveScanTest, TheNextViewIsGivenInWorldAndFromTheRig) {
-  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  options_.mutable_live()->mutable_expert()->set_feedback_hz(60.0);  // On each frame.
   Start();
   std::optional<Feedback> feedback;
   for (int i = 0; i < 12; ++i) {
@@ -230,16 +231,16 @@ TEST_F(LiveScanTest, TheNextViewIsGivenInWorldAndFromTheRig) {
   }
   ASSERT_TRUE(feedback.has_value());
   ASSERT_TRUE(feedback->T_world_depth_next.has_value());
-  EXPECT_GT(feedback->next_gain_m2, options_.feedback().min_gain_m2());
+  EXPECT_GT(feedback->next_gain_m2, options_.feedback().expert().min_gain_m2());
   ASSERT_TRUE(feedback->T_depth_next.has_value());
   EXPECT_TRUE((*feedback->T_world_depth * *feedback->T_depth_next)
                   .isApprox(*feedback->T_world_depth_next, 1e-9));
 }
 
 TEST_F(LiveScanTest, EnoughOfTheSurfaceMeasuredWellIsDone) {
-  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  options_.mutable_live()->mutable_expert()->set_feedback_hz(60.0);  // On each frame.
   options_.mutable_feedback()->set_done_fraction(0.01);
-  options_.mutable_feedback()->set_settle_s(0.0);
+  options_.mutable_feedback()->mutable_expert()->set_settle_s(0.0);
   Start();
   std::optional<Feedback> feedback;
   for (int i = 0; i < 10; ++i) {
@@ -256,7 +257,7 @@ TEST_F(LiveScanTest, EnoughOfTheSurfaceMeasuredWellIsDone) {
 }
 
 TEST_F(LiveScanTest, ALostTrackIsSentBackToWhereItWorked) {
-  options_.mutable_live()->set_feedback_hz(60.0);  // On each frame.
+  options_.mutable_live()->mutable_expert()->set_feedback_hz(60.0);  // On each frame.
   Start();
   Run(0, 6, 1ms);
   scan_->FinishFrames();

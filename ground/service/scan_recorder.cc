@@ -20,7 +20,7 @@ constexpr Nanoseconds kProven = std::chrono::seconds(3);
 ScanRecorder::CreateWriter OnDisk(const GroundOptions& options) {
   RecordingOptions recording;
   recording.image_storage =
-      options.live().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
+      options.live().expert().record_viewable() ? ImageStorage::kViewable : ImageStorage::kCompact;
   return [recording](const std::filesystem::path& path) {
     return RecordingWriter::Create(path, recording);
   };

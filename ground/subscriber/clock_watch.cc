@@ -83,7 +83,8 @@ void ClockWatch::LogAlarm(const KernelClock& own, SteadyTime now) {
   reported_ = true;
   reported_at_ = now;
   LOG(Subscriber, Warning) << fmt::format(
-      "CLOCK ALARM: the rig's clock is {}; {:.0f} ms are allowed (live.max_clock_offset_s). The "
+      "CLOCK ALARM: the rig's clock is {}; {:.0f} ms are allowed (live.expert.max_clock_offset_s). "
+      "The "
       "rig says "
       "that it is {}; ours is {}. One of them follows a wrong time server, or none: look at "
       "chronyc "

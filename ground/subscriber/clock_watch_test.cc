@@ -72,7 +72,7 @@ TEST_F(ClockWatchTest, F18TheAlarmIsToldAtMostOnceAMinute) {
     ++lines;
   }
   EXPECT_EQ(lines, 1U) << told;
-  EXPECT_THAT(told, HasSubstr("live.max_clock_offset_s"));
+  EXPECT_THAT(told, HasSubstr("live.expert.max_clock_offset_s"));
   EXPECT_THAT(told, HasSubstr("agrees with ours again"));
   EXPECT_EQ(clock().alarms, 30U) << "counted all the same";
 }

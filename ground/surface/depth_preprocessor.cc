@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "ground/surface/filter_kernel.h"
@@ -44,28 +45,50 @@ Image<std::int32_t> MakeRectification(const CameraModel& camera) {
 }  // namespace
 
 Status Validate(const PreprocessorOptions& o) {
-  if (!(o.min_depth_m() >= 0.0 && o.max_depth_m() > o.min_depth_m() && o.max_depth_m() <= 100.0)) {
-    return InvalidArgument(
-        fmt::format("preprocessor: need 0 <= min_depth_m < max_depth_m <= 100 m, got {} m and {} m",
-                    o.min_depth_m(), o.max_depth_m()));
+  for (const auto& [name, is_set, depth_m] :
+       {std::tuple("min_depth_m", o.has_min_depth_m(), o.min_depth_m()),
+        std::tuple("max_depth_m", o.has_max_depth_m(), o.max_depth_m())}) {
+    if (is_set && !(depth_m >= 0.0 && depth_m <= 100.0))
+      return InvalidArgument(
+          fmt::format("preprocessor.{} must be 0..100 m, got {}", name, depth_m));
   }
+  if (o.has_min_depth_m() && o.has_max_depth_m())
+    ISOTHERM_RETURN_IF_ERROR(CheckRange(o, DepthSensorModel()));
+  return Validate(o.expert());
+}
+
+Status Validate(const PreprocessorExpertOptions& o) {
   if (o.bilateral_radius_px() < 0 || o.bilateral_radius_px() > kMaxBilateralRadius) {
     return InvalidArgument(
-        fmt::format("preprocessor.bilateral_radius_px must be 0..{} pixels, got {}",
+        fmt::format("preprocessor.expert.bilateral_radius_px must be 0..{} pixels, got {}",
                     kMaxBilateralRadius, o.bilateral_radius_px()));
   }
-  if (!(o.bilateral_sigma_px() > 0.0 && o.bilateral_sigma_depth_m() > 0.0 &&
-        o.max_surface_angle_deg() > 0.0 && o.max_surface_angle_deg() < 90.0)) {
-    return InvalidArgument(
-        "preprocessor: bilateral_sigma_px and bilateral_sigma_depth_m must be positive, "
-        "max_surface_angle_deg in (0, 90) "
-        "be positive");
+  if (!(o.bilateral_sigma_px() > 0.0 && o.max_surface_angle_deg() > 0.0 &&
+        o.max_surface_angle_deg() < 90.0)) {
+    return InvalidArgument(fmt::format(
+        "preprocessor.expert: bilateral_sigma_px must be positive and max_surface_angle_deg "
+        "between 0 and 90, got {} px and {} degrees",
+        o.bilateral_sigma_px(), o.max_surface_angle_deg()));
   }
   return OkStatus();
 }
 
-void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
-                     ThreadPool& pool, Image<float>& filtered_m) {
+DepthRange RangeOf(const PreprocessorOptions& o, const DepthSensorModel& sensor) {
+  return {.min_m = o.has_min_depth_m() ? o.min_depth_m() : sensor.min_depth_m,
+          .max_m = o.has_max_depth_m() ? o.max_depth_m() : sensor.max_depth_m};
+}
+
+Status CheckRange(const PreprocessorOptions& o, const DepthSensorModel& sensor) {
+  const DepthRange range = RangeOf(o, sensor);
+  if (range.min_m < range.max_m) return OkStatus();
+  return InvalidArgument(fmt::format(
+      "preprocessor: need min_depth_m < max_depth_m, got {} m and {} m (what is not set "
+      "is the depth camera's)",
+      range.min_m, range.max_m));
+}
+
+void BilateralFilter(const Image<float>& depth_m, const PreprocessorExpertOptions& options,
+                     double noise_at_1m, ThreadPool& pool, Image<float>& filtered_m) {
   const int width = depth_m.width();
   const int height = depth_m.height();
   const int radius = options.bilateral_radius_px();
@@ -84,7 +107,7 @@ void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& opt
     }
   }
   // The biweight with tau = sqrt(7) sigma has the variance of a Gaussian with that sigma.
-  const auto tau_at_1m = static_cast<float>(options.bilateral_sigma_depth_m() * std::sqrt(7.0));
+  const auto tau_at_1m = static_cast<float>(noise_at_1m * std::sqrt(7.0));
   ForRows(pool, height, [&](int y) {
     std::array<const float*, 2 * kMaxBilateralRadius + 1> rows{};
     for (int k = 0; k < side; ++k) {
@@ -124,11 +147,15 @@ void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int
 }
 
 DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options,
-                                     const CameraModel& depth_camera)
-    : options_(options), camera_(depth_camera.WithoutDistortion()) {
+                                     const CameraModel& depth_camera,
+                                     const DepthSensorModel& sensor)
+    : options_(options),
+      range_(RangeOf(options, sensor)),
+      noise_at_1m_m_(sensor.noise_at_1m_m),
+      camera_(depth_camera.WithoutDistortion()) {
   if (depth_camera.HasDistortion()) rectification_ = MakeRectification(depth_camera);
   prepared_.camera = camera_;
-  prepared_.noise_at_1m = static_cast<float>(options.bilateral_sigma_depth_m());
+  prepared_.noise_at_1m = static_cast<float>(sensor.noise_at_1m_m);
 }
 
 void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
@@ -144,8 +171,8 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
     raw = &rectified_raw_;
   }
   const auto metres_per_unit = static_cast<float>(1.0 / frame.depth_scale);
-  const auto min_depth = static_cast<float>(options_.min_depth_m());
-  const auto max_depth = static_cast<float>(options_.max_depth_m());
+  const auto min_depth = static_cast<float>(range_.min_m);
+  const auto max_depth = static_cast<float>(range_.max_m);
   std::atomic<int> valid{0};
   ForRows(pool, camera_.height, [&](int y) {
     valid += MetresRow({raw->Row(y).data(), metres_per_unit, min_depth, max_depth},
@@ -157,12 +184,12 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
 const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadPool& pool) {
   CHECK(frame.depth_raw.width() == camera_.width && frame.depth_raw.height() == camera_.height);
   ToMetres(frame, pool);
-  BilateralFilter(prepared_.depth_m, options_, pool, filtered_m_[0]);
+  BilateralFilter(prepared_.depth_m, options_.expert(), noise_at_1m_m_, pool, filtered_m_[0]);
   float finer_step = 0.0F;
   for (int level = 0; level < kPyramidLevels; ++level) {
     if (level > 0) HalveDepth(filtered_m_[level - 1], finer_step, pool, filtered_m_[level]);
     const CameraModel camera = camera_.Downscaled(level);
-    const float step = StepPerPixel(camera, options_.max_surface_angle_deg());
+    const float step = StepPerPixel(camera, options_.expert().max_surface_angle_deg());
     MakeSurfaceMaps(filtered_m_[level], camera, kNormalReach[level], step, prepared_.noise_at_1m,
                     pool, prepared_.maps[level]);
     finer_step = step;

@@ -23,12 +23,24 @@ struct PreparedDepth {
 };
 
 Status Validate(const PreprocessorOptions& options);
+Status Validate(const PreprocessorExpertOptions& options);
+
+/// Holds the depths of use, metres: those of the depth camera, or what the options say instead.
+struct DepthRange {
+  double min_m;
+  double max_m;
+};
+DepthRange RangeOf(const PreprocessorOptions& options, const DepthSensorModel& sensor);
+
+/// Fails if the options and the depth camera together leave no depth.
+Status CheckRange(const PreprocessorOptions& options, const DepthSensorModel& sensor);
 
 /// Algorithm 1, lines 2-3: range check, rectification, bilateral filter, depth pyramid, vertex and
 /// normal maps. Keeps its images, so a stream of equal frames allocates nothing. Thread-compatible.
 class DepthPreprocessor {
  public:
-  DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera);
+  DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera,
+                    const DepthSensorModel& sensor);
 
   /// `frame` must have the camera's size (CHECK). The result stays valid until the next call.
   const PreparedDepth& Process(const DepthFrame& frame, ThreadPool& pool);
@@ -37,6 +49,8 @@ class DepthPreprocessor {
   void ToMetres(const DepthFrame& frame, ThreadPool& pool);
 
   const PreprocessorOptions options_;
+  const DepthRange range_;
+  const double noise_at_1m_m_;
   const CameraModel camera_;
   Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside;
                                        ///< empty: no distortion.
@@ -47,9 +61,9 @@ class DepthPreprocessor {
 
 /// Bilateral filter with a Gaussian over pixels and a compact biweight (1 - (d/tau)^2)^2 over
 /// depth, tau growing with depth squared as the noise of a triangulating sensor does. 0 = no
-/// return, in and out.
-void BilateralFilter(const Image<float>& depth_m, const PreprocessorOptions& options,
-                     ThreadPool& pool, Image<float>& filtered_m);
+/// return, in and out. `noise_at_1m` (metres) is the standard deviation over depth there.
+void BilateralFilter(const Image<float>& depth_m, const PreprocessorExpertOptions& options,
+                     double noise_at_1m, ThreadPool& pool, Image<float>& filtered_m);
 
 /// Difference in depth between neighbouring pixels, as a fraction of the depth, on a surface whose
 /// normal is turned away from the line of sight by `angle_deg`.

@@ -93,9 +93,9 @@ Status Validate(const VolumeOptions& o) {
     return InvalidArgument(
         fmt::format("volume.voxel_size_m must be at least 0.0001 m, got {} m", o.voxel_size_m()));
   }
-  for (const double corner : {o.min_x_m(), o.min_y_m(), o.min_z_m()}) {
+  for (const double corner : {o.expert().min_x_m(), o.expert().min_y_m(), o.expert().min_z_m()}) {
     if (!std::isfinite(corner))
-      return InvalidArgument("volume: min_x_m, min_y_m and min_z_m must be finite");
+      return InvalidArgument("volume.expert: min_x_m, min_y_m and min_z_m must be finite");
   }
   if (Status status = CheckSpillDir(o.spill_dir()); !status.ok()) return status;
   const Result<VoxelGrid> grid = MakeVoxelGrid(o);
@@ -116,7 +116,7 @@ Result<VoxelGrid> MakeVoxelGrid(const VolumeOptions& o) {
         FittingVoxel(o, allowed_bytes))));
   }
   VoxelGrid grid;
-  grid.min_m = {o.min_x_m(), o.min_y_m(), o.min_z_m()};
+  grid.min_m = {o.expert().min_x_m(), o.expert().min_y_m(), o.expert().min_z_m()};
   grid.voxel_size_m = o.voxel_size_m();
   grid.blocks = blocks.cast<int>();
   return grid;

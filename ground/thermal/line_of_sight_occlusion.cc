@@ -14,9 +14,10 @@ constexpr int kSteps = 12;
 
 }  // namespace
 
-LineOfSightOcclusion::LineOfSightOcclusion(const ThermalOptions& options,
+LineOfSightOcclusion::LineOfSightOcclusion(const ThermalOcclusionOptions& options,
+                                           const DepthSensorModel& depth_sensor,
                                            const CameraModel& thermal_camera)
-    : near_range_m_(static_cast<float>(options.near_range_m())),
+    : near_range_m_(static_cast<float>(depth_sensor.near_range_m)),
       tolerance_m_(static_cast<float>(options.parallax_tolerance_m())),
       thermal_camera_(thermal_camera) {}
 

@@ -20,7 +20,8 @@ namespace isotherm {
 class LineOfSightOcclusion {
  public:
   /// `thermal_camera` without distortion.
-  LineOfSightOcclusion(const ThermalOptions& options, const CameraModel& thermal_camera);
+  LineOfSightOcclusion(const ThermalOcclusionOptions& options, const DepthSensorModel& depth_sensor,
+                       const CameraModel& thermal_camera);
 
   /// `model`: the model's surface in `map` as seen by the depth camera (`model_camera`, perhaps
   /// halved) from `T_map_depth`.

@@ -43,7 +43,7 @@ class LineOfSightOcclusionTest : public ::testing::Test {
     pixel.depth_m = static_cast<float>(depth_m);
     pixel.flags = ThermalPixel::kSeen | ThermalPixel::kAssignable;
     image_.assign(160 * 120, pixel);
-    LineOfSightOcclusion lines(options_, thermal_camera_);
+    LineOfSightOcclusion lines(options_, sensor_, thermal_camera_);
     lines.Update(model_, depth_camera_, T_map_depth_);
     lines.Aim(T_depth_thermal_);
     std::int64_t count = 0;
@@ -59,7 +59,8 @@ class LineOfSightOcclusionTest : public ::testing::Test {
   }
 
   static constexpr double kBeside_m = 0.06;
-  ThermalOptions options_;
+  const ThermalOcclusionOptions options_;
+  DepthSensorModel sensor_;
   CameraModel depth_camera_, thermal_camera_;
   RigidTransform T_depth_thermal_ =
       MakeTransform({-kBeside_m, 0.0, 0.0}, Eigen::Quaterniond::Identity());
@@ -126,7 +127,7 @@ TEST_F(LineOfSightOcclusionTest, WhereTheDepthCameraSeesNothingNothingIsInTheWay
 }
 
 TEST_F(LineOfSightOcclusionTest, ANearRangeOfZeroTurnsItOff) {
-  options_.set_near_range_m(0.0);
+  sensor_.near_range_m = 0.0;
   EXPECT_EQ(LeaveOut(kWall_m), 0);
 }
 

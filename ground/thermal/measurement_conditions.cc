@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "common/radiometry/optics.h"
 
@@ -18,119 +19,119 @@ float CosineOfDegrees(double degrees) { return static_cast<float>(std::cos(degre
 /// Smaller is better: good before acceptable before unchecked.
 int Rank(ConditionClass c) { return static_cast<int>(c); }
 
-DepthOfField SharpDistances(const ThermalLens& lens) {
-  return ComputeDepthOfField(1e-3 * lens.focal_length_mm(), lens.f_number(),
-                             1e-6 * lens.pixel_pitch_um(), lens.focus_m());
-}
-
-/// Options that were written out have all numbers, 0 where none was given.
-bool IsKnown(const ThermalLens& lens) {
-  return lens.focal_length_mm() != 0.0 || lens.f_number() != 0.0 || lens.focus_m() != 0.0 ||
-         lens.pixel_pitch_um() != 0.0;
-}
-
-Status ValidateLens(const ThermalOptions& o) {
-  const ThermalLens& lens = o.lens();
-  if (!(lens.focal_length_mm() > 0.0 && lens.f_number() > 0.0 && lens.pixel_pitch_um() > 0.0 &&
-        lens.focus_m() > 1e-3 * lens.focal_length_mm())) {
-    return InvalidArgument(
-        "thermal.lens: focal_length_mm, f_number and pixel_pitch_um must be positive, and focus_m "
-        "beyond the focal length");
-  }
-  const DepthOfField sharp = SharpDistances(lens);
-  if (sharp.near_m >= o.distance_max_m() || sharp.far_m <= o.distance_min_m()) {
-    return InvalidArgument(
-        fmt::format("thermal.lens: sharp from {:.3f} to {:.3f} m only, outside distance_min_m {} m "
-                    "to distance_max_m {} m: nothing could be measured",
-                    sharp.near_m, sharp.far_m, o.distance_min_m(), o.distance_max_m()));
-  }
-  return OkStatus();
+/// Nothing if the lens is not known.
+std::optional<DepthOfField> SharpDistances(const ThermalSensorModel& sensor) {
+  if (!sensor.lens || !sensor.pixel_pitch_m) return std::nullopt;
+  return ComputeDepthOfField(sensor.lens->focal_length_m, sensor.lens->f_number,
+                             *sensor.pixel_pitch_m, sensor.lens->focus_m);
 }
 
 }  // namespace
 
-Status Validate(const ThermalOptions& o) {
-  if (!(o.distance_min_m() >= 0.0 && o.distance_min_m() < o.distance_good_m() &&
-        o.distance_good_m() <= o.distance_max_m())) {
-    return InvalidArgument(
-        fmt::format("thermal: need 0 <= distance_min_m < distance_good_m <= distance_max_m, got {} "
-                    "m, {} m, {} m",
-                    o.distance_min_m(), o.distance_good_m(), o.distance_max_m()));
+Status Validate(const ThermalDistanceOptions& o) {
+  if (o.min_m() >= 0.0 && o.min_m() < o.good_m() && o.good_m() <= o.max_m()) return OkStatus();
+  return InvalidArgument(
+      fmt::format("thermal.distance: need 0 <= min_m < good_m <= max_m, got {} m, {} m, {} m",
+                  o.min_m(), o.good_m(), o.max_m()));
+}
+
+Status Validate(const ThermalAngleOptions& o) {
+  if (o.min_deg() >= 0.0 && o.min_deg() < o.good_deg() && o.good_deg() <= o.max_deg() &&
+      o.max_deg() <= 90.0) {
+    return OkStatus();
   }
-  if (!(o.angle_min_deg() >= 0.0 && o.angle_min_deg() < o.angle_good_deg() &&
-        o.angle_good_deg() <= o.angle_max_deg() && o.angle_max_deg() <= 90.0)) {
-    return InvalidArgument(
-        fmt::format("thermal: need 0 <= angle_min_deg < angle_good_deg <= angle_max_deg <= 90, got "
-                    "{}, {}, {} degrees",
-                    o.angle_min_deg(), o.angle_good_deg(), o.angle_max_deg()));
-  }
-  if (!(o.parallax_tolerance_m() > 0.0 && o.vertex_distance_vox() > 0.0 && o.max_wait_s() >= 0.0 &&
-        o.max_wait_s() <= 10.0)) {
-    return InvalidArgument(
-        "thermal: parallax_tolerance_m and vertex_distance_vox must be positive, max_wait_s 0..10 "
-        "s");
+  return InvalidArgument(fmt::format(
+      "thermal.angle: need 0 <= min_deg < good_deg <= max_deg <= 90, got {}, {}, {} degrees",
+      o.min_deg(), o.good_deg(), o.max_deg()));
+}
+
+Status Validate(const ThermalOcclusionOptions& o) {
+  constexpr const char* kGroup = "thermal.expert.occlusion";
+  if (!(o.parallax_tolerance_m() > 0.0)) {
+    return InvalidArgument(fmt::format("{}.parallax_tolerance_m must be positive, got {} m", kGroup,
+                                       o.parallax_tolerance_m()));
   }
   if (o.edge_margin_px() < 0 || o.edge_margin_px() > 16) {
     return InvalidArgument(
-        fmt::format("thermal.edge_margin_px must be 0..16 pixels, got {}", o.edge_margin_px()));
-  }
-  if (!(o.max_time_sigma_s() > 0.0)) {
-    return InvalidArgument(
-        fmt::format("thermal.max_time_sigma_s must be positive, got {} s", o.max_time_sigma_s()));
-  }
-  if (!(o.max_registration_px() > 0.0)) {
-    return InvalidArgument(fmt::format("thermal.max_registration_px must be positive, got {} px",
-                                       o.max_registration_px()));
+        fmt::format("{}.edge_margin_px must be 0..16 pixels, got {}", kGroup, o.edge_margin_px()));
   }
   if (o.visibility_halvings() != 0 && o.visibility_halvings() != 1) {
-    return InvalidArgument(
-        fmt::format("thermal.visibility_halvings must be 0 or 1, got {}", o.visibility_halvings()));
+    return InvalidArgument(fmt::format("{}.visibility_halvings must be 0 or 1, got {}", kGroup,
+                                       o.visibility_halvings()));
   }
-  if (!(o.time_constant_s() >= 0.0 && o.time_constant_s() <= 1.0 && o.row_readout_s() >= 0.0 &&
-        o.row_readout_s() <= 0.01)) {
+  if (o.hole_px() < 4 || o.hole_px() > 256) {
+    return InvalidArgument(
+        fmt::format("{}.hole_px must be 4..256 pixels, got {}", kGroup, o.hole_px()));
+  }
+  return OkStatus();
+}
+
+Status Validate(const ThermalMotionOptions& o) {
+  if (o.smear_good_px() > 0.0 && o.smear_good_px() <= o.smear_max_px()) return OkStatus();
+  return InvalidArgument(fmt::format(
+      "thermal.expert.motion: need 0 < smear_good_px <= smear_max_px, got {} px and {} px",
+      o.smear_good_px(), o.smear_max_px()));
+}
+
+Status Validate(const ThermalDisagreementOptions& o) {
+  if (o.noise_k() >= 0.0 && o.good_k() > 0.0 && o.good_k() <= o.max_k()) return OkStatus();
+  return InvalidArgument(
+      fmt::format("thermal.expert.disagreement: need noise_k >= 0 and 0 < good_k <= max_k, got {}, "
+                  "{} and {} K",
+                  o.noise_k(), o.good_k(), o.max_k()));
+}
+
+Status Validate(const ThermalExpertOptions& o) {
+  if (!(o.vertex_distance_vox() > 0.0 && o.max_wait_s() >= 0.0 && o.max_wait_s() <= 10.0)) {
+    return InvalidArgument(
+        "thermal.expert: vertex_distance_vox must be positive, max_wait_s 0..10 s");
+  }
+  if (!(o.max_time_sigma_s() > 0.0)) {
+    return InvalidArgument(fmt::format("thermal.expert.max_time_sigma_s must be positive, got {} s",
+                                       o.max_time_sigma_s()));
+  }
+  if (!(o.max_registration_px() > 0.0)) {
     return InvalidArgument(fmt::format(
-        "thermal: time_constant_s must be 0..1 s and row_readout_s 0..0.01 s, got {} and {}",
-        o.time_constant_s(), o.row_readout_s()));
-  }
-  if (!(o.smear_good_px() > 0.0 && o.smear_good_px() <= o.smear_max_px())) {
-    return InvalidArgument(
-        fmt::format("thermal: need 0 < smear_good_px <= smear_max_px, got {} px and {} px",
-                    o.smear_good_px(), o.smear_max_px()));
-  }
-  if (!(o.disagreement_noise_k() >= 0.0 && o.disagreement_good_k() > 0.0 &&
-        o.disagreement_good_k() <= o.disagreement_max_k())) {
-    return InvalidArgument(
-        fmt::format("thermal: need disagreement_noise_k >= 0 and 0 < disagreement_good_k <= "
-                    "disagreement_max_k, got {}, {} and {} K",
-                    o.disagreement_noise_k(), o.disagreement_good_k(), o.disagreement_max_k()));
+        "thermal.expert.max_registration_px must be positive, got {} px", o.max_registration_px()));
   }
   if (!(o.max_gradient_error_k() >= 0.0 && o.max_footprint_m() >= 0.0)) {
     return InvalidArgument(
-        fmt::format("thermal: max_gradient_error_k and max_footprint_m must not be negative, got "
-                    "{} K and {} m",
+        fmt::format("thermal.expert: max_gradient_error_k and max_footprint_m must not be "
+                    "negative, got {} K and {} m",
                     o.max_gradient_error_k(), o.max_footprint_m()));
   }
-  if (!(o.near_range_m() >= 0.0 && o.near_range_m() <= 10.0) || o.hole_px() < 4 ||
-      o.hole_px() > 256) {
-    return InvalidArgument(
-        fmt::format("thermal: near_range_m must be 0..10 m and hole_px 4..256 pixels, got {} and "
-                    "{}",
-                    o.near_range_m(), o.hole_px()));
-  }
-  return IsKnown(o.lens()) ? ValidateLens(o) : OkStatus();
+  ISOTHERM_RETURN_IF_ERROR(Validate(o.occlusion()));
+  ISOTHERM_RETURN_IF_ERROR(Validate(o.motion()));
+  return Validate(o.disagreement());
 }
 
-ConditionLimits::ConditionLimits(const ThermalOptions& o)
-    : distance_min_m(static_cast<float>(o.distance_min_m())),
-      distance_good_m(static_cast<float>(o.distance_good_m())),
-      distance_max_m(static_cast<float>(o.distance_max_m())),
-      cosine_min_angle(CosineOfDegrees(o.angle_min_deg())),
-      cosine_good_angle(CosineOfDegrees(o.angle_good_deg())),
-      cosine_max_angle(CosineOfDegrees(o.angle_max_deg())) {
-  if (!IsKnown(o.lens())) return;
-  const DepthOfField sharp = SharpDistances(o.lens());
-  distance_min_m = std::max(distance_min_m, static_cast<float>(sharp.near_m));
-  distance_max_m = std::min(distance_max_m, static_cast<float>(sharp.far_m));
+Status Validate(const ThermalOptions& o) {
+  ISOTHERM_RETURN_IF_ERROR(Validate(o.distance()));
+  ISOTHERM_RETURN_IF_ERROR(Validate(o.angle()));
+  return Validate(o.expert());
+}
+
+Status CheckSharpness(const ThermalOptions& o, const ThermalSensorModel& sensor) {
+  const std::optional<DepthOfField> sharp = SharpDistances(sensor);
+  if (!sharp || (sharp->near_m < o.distance().max_m() && sharp->far_m > o.distance().min_m()))
+    return OkStatus();
+  return InvalidArgument(
+      fmt::format("the lens of the rig file is sharp from {:.3f} to {:.3f} m only, outside "
+                  "thermal.distance.min_m {} m to max_m {} m: nothing could be measured",
+                  sharp->near_m, sharp->far_m, o.distance().min_m(), o.distance().max_m()));
+}
+
+ConditionLimits::ConditionLimits(const ThermalOptions& o, const ThermalSensorModel& sensor)
+    : distance_min_m(static_cast<float>(o.distance().min_m())),
+      distance_good_m(static_cast<float>(o.distance().good_m())),
+      distance_max_m(static_cast<float>(o.distance().max_m())),
+      cosine_min_angle(CosineOfDegrees(o.angle().min_deg())),
+      cosine_good_angle(CosineOfDegrees(o.angle().good_deg())),
+      cosine_max_angle(CosineOfDegrees(o.angle().max_deg())) {
+  const std::optional<DepthOfField> sharp = SharpDistances(sensor);
+  if (!sharp) return;
+  distance_min_m = std::max(distance_min_m, static_cast<float>(sharp->near_m));
+  distance_max_m = std::min(distance_max_m, static_cast<float>(sharp->far_m));
   distance_good_m = std::min(distance_good_m, distance_max_m);
 }
 

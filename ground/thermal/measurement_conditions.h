@@ -9,13 +9,16 @@ namespace isotherm {
 
 Status Validate(const ThermalOptions& options);
 
+/// Fails if the lens (if it is known) is sharp nowhere between the distances that are not bad.
+Status CheckSharpness(const ThermalOptions& options, const ThermalSensorModel& sensor);
+
 /// The distances and angles of (6.3a-b) in metres and as cosines, ready for inner loops.
 struct ConditionLimits {
   float distance_min_m, distance_good_m, distance_max_m;
   float cosine_min_angle, cosine_good_angle, cosine_max_angle;
 
   /// Distances are narrowed by the depth of field if the lens is known.
-  explicit ConditionLimits(const ThermalOptions& options);
+  ConditionLimits(const ThermalOptions& options, const ThermalSensorModel& sensor);
   ConditionClass ClassifyDistance(float distance_m) const;
   /// `cosine` of the emission angle, 0..1.
   ConditionClass ClassifyAngle(float cosine) const;

@@ -17,10 +17,10 @@ constexpr double kNoiseRange = 6.0;
 ConditionClass ClassifyDisagreement(const ThermalOptions& options, float range_k, int count) {
   if (count < kMinGoodCount) return ConditionClass::kUnchecked;
   const double beyond_noise_k =
-      static_cast<double>(range_k) - kNoiseRange * options.disagreement_noise_k();
-  if (beyond_noise_k <= options.disagreement_good_k()) return ConditionClass::kGood;
-  return beyond_noise_k <= options.disagreement_max_k() ? ConditionClass::kAcceptable
-                                                        : ConditionClass::kBad;
+      static_cast<double>(range_k) - kNoiseRange * options.expert().disagreement().noise_k();
+  if (beyond_noise_k <= options.expert().disagreement().good_k()) return ConditionClass::kGood;
+  return beyond_noise_k <= options.expert().disagreement().max_k() ? ConditionClass::kAcceptable
+                                                                   : ConditionClass::kBad;
 }
 
 MeasurementRecorder::MeasurementRecorder(const ThermalOptions& options,

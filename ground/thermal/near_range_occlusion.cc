@@ -26,9 +26,10 @@ int Tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
 
 }  // namespace
 
-NearRangeOcclusion::NearRangeOcclusion(const ThermalOptions& options,
+NearRangeOcclusion::NearRangeOcclusion(const ThermalOcclusionOptions& options,
+                                       const DepthSensorModel& depth_sensor,
                                        const CameraModel& thermal_camera)
-    : near_range_m_(options.near_range_m()),
+    : near_range_m_(depth_sensor.near_range_m),
       hole_px_(options.hole_px()),
       thermal_camera_(thermal_camera),
       left_out_(Tiles(thermal_camera.width), Tiles(thermal_camera.height)) {}

@@ -22,7 +22,8 @@ namespace isotherm {
 class NearRangeOcclusion {
  public:
   /// `thermal_camera` without distortion.
-  NearRangeOcclusion(const ThermalOptions& options, const CameraModel& thermal_camera);
+  NearRangeOcclusion(const ThermalOcclusionOptions& options, const DepthSensorModel& depth_sensor,
+                     const CameraModel& thermal_camera);
 
   /// `depth_m`: the last depth image, 0 = no return. `model`: the model's surface at the same time
   /// from the same pose, seen by the depth camera at the same or a halved size.

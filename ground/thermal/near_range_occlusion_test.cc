@@ -20,7 +20,7 @@ class NearRangeOcclusionTest : public ::testing::Test {
   }
   /// Pixels that are left out of the whole thermal image.
   std::int64_t LeftOut() {
-    NearRangeOcclusion occlusion(options_, thermal_camera_);
+    NearRangeOcclusion occlusion(ThermalOcclusionOptions(), sensor_, thermal_camera_);
     occlusion.Update(depth_m_, model_, depth_camera_);
     occlusion.Aim(T_thermal_depth_.inverse());
     std::int64_t count = 0;
@@ -41,7 +41,7 @@ class NearRangeOcclusionTest : public ::testing::Test {
     }
   }
 
-  ThermalOptions options_;
+  DepthSensorModel sensor_;
   CameraModel depth_camera_, thermal_camera_;
   RigidTransform T_thermal_depth_ =
       MakeTransform({-0.05, 0.0, 0.0}, Eigen::Quaterniond::Identity());
@@ -113,7 +113,7 @@ TEST_F(NearRangeOcclusionTest, WhereNoSurfaceIsKnownThereIsNothingToMiss) {
 TEST_F(NearRangeOcclusionTest, ANearRangeOfZeroTurnsItOff) {
   depth_m_.Fill(0.0F);
   EXPECT_GT(LeftOut(), 10'000);
-  options_.set_near_range_m(0.0);
+  sensor_.near_range_m = 0.0;
   EXPECT_EQ(LeftOut(), 0);
 }
 

@@ -56,8 +56,9 @@ bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal,
          CosineOfDifference(cosine, record.cosine_seen()) >= kOtherFaceCosine;
 }
 
-TemperatureReview::TemperatureReview(const ThermalOptions& options)
-    : limits_(options), keep_bad_(options.keep_bad()) {}
+TemperatureReview::TemperatureReview(const ThermalOptions& options,
+                                     const ThermalSensorModel& sensor)
+    : limits_(options, sensor), keep_bad_(options.keep_bad()) {}
 
 bool TemperatureReview::IsBesideSteepFace(const ConditionRecord& record,
                                           const Eigen::Vector3f& normal, const TsdfVolume& tsdf,

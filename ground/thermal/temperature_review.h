@@ -23,7 +23,7 @@ bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal,
 /// Thread-safe for different blocks (immutable).
 class TemperatureReview {
  public:
-  explicit TemperatureReview(const ThermalOptions& options);
+  TemperatureReview(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
   /// Returns how many temperatures of the block were dropped. What is dropped keeps its classes.
   std::int64_t Review(std::int32_t block, const TsdfVolume& tsdf, ThermalVolume& thermal,

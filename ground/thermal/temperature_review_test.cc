@@ -69,7 +69,7 @@ class EdgeReviewTest : public ::testing::Test {
     });
   }
   std::int64_t ReviewAll(bool is_final) {
-    const TemperatureReview review{ThermalOptions()};
+    const TemperatureReview review{ThermalOptions(), ThermalSensorModel()};
     std::int64_t dropped = 0;
     for (std::int32_t block = 0; block < tsdf_.block_count(); ++block)
       dropped += review.Review(block, tsdf_, thermal_, is_final);

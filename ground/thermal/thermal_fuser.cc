@@ -59,12 +59,13 @@ FusionReport& FusionReport::operator+=(const FusionReport& other) {
 }
 
 ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera,
-                           float min_weight)
+                           const ThermalSensorModel& sensor, float min_weight)
     : options_(options),
-      limits_(options),
-      review_(options),
+      sensor_(sensor),
+      limits_(options, sensor),
+      review_(options, sensor),
       min_weight_(min_weight),
-      apron_(std::max(1, options.edge_margin_px())),
+      apron_(std::max(1, options.expert().occlusion().edge_margin_px())),
       rectifier_(thermal_camera) {
   const int width = thermal_camera.width;
   const int height = thermal_camera.height;
@@ -80,7 +81,7 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
 void ThermalFuser::CastSurface(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf,
                                ThreadPool& pool) {
   const CameraModel& camera = rectifier_.ideal_camera();
-  const bool halved = options_.visibility_halvings() == 1;
+  const bool halved = options_.expert().occlusion().visibility_halvings() == 1;
   if (halved) {
     raycaster_.Cast(tsdf, EverySecondPixel(camera), T_map_thermal, min_weight_, pool, coarse_);
     surface_.Resize(camera.width, camera.height);
@@ -90,7 +91,8 @@ void ThermalFuser::CastSurface(const RigidTransform& T_map_thermal, const TsdfVo
   UpsampleRowArgs args{};
   args.coarse = &coarse_;
   // Half of what counts as an occluder: a corner is bridged, an edge is not.
-  args.max_plane_distance_m = static_cast<float>(0.5 * options_.parallax_tolerance_m());
+  args.max_plane_distance_m =
+      static_cast<float>(0.5 * options_.expert().occlusion().parallax_tolerance_m());
   const Eigen::Vector3f position = T_map_thermal.translation().cast<float>();
   std::copy_n(position.data(), 3, args.position);
   ForRows(camera.height, pool, [&](int y) {
@@ -112,7 +114,7 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
   PixelRowArgs args{};
   args.distance_stride = distances_m_.width();
   args.celsius_stride = celsius_.width();
-  args.margin = options_.edge_margin_px();
+  args.margin = options_.expert().occlusion().edge_margin_px();
   args.width = camera.width;
   CopyVector(T_map_thermal.translation(), args.position);
   const Eigen::Vector4f z_axis = T_map_thermal.inverse().matrix().row(2).cast<float>();
@@ -127,7 +129,8 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
   args.depth_cy = static_cast<float>(depth_camera.cy);
   args.depth_width = static_cast<float>(depth_camera.width);
   args.depth_height = static_cast<float>(depth_camera.height);
-  args.occlusion_tolerance_m = static_cast<float>(options_.parallax_tolerance_m());
+  args.occlusion_tolerance_m =
+      static_cast<float>(options_.expert().occlusion().parallax_tolerance_m());
   args.distance_min_m = limits_.distance_min_m;
   args.distance_good_m = limits_.distance_good_m;
   args.distance_max_m = limits_.distance_max_m;
@@ -137,16 +140,16 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
   const auto or_none = [](double limit) {
     return limit > 0.0 ? static_cast<float>(limit) : kNoLimit;
   };
-  args.max_footprint_m = or_none(options_.max_footprint_m());
-  args.max_error_k = or_none(options_.max_gradient_error_k());
+  args.max_footprint_m = or_none(options_.expert().max_footprint_m());
+  args.max_error_k = or_none(options_.expert().max_gradient_error_k());
   args.uncertainty_px = static_cast<float>(std::max(kPixelUncertainty_px, capture.registration_px));
   args.fx = static_cast<float>(camera.fx);
   args.fy = static_cast<float>(camera.fy);
   args.cx = static_cast<float>(camera.cx);
   CopyVector(capture.motion.velocity_m_s, args.velocity_m_s);
   CopyVector(capture.motion.rate_rad_s, args.rate_rad_s);
-  args.smear_good_px = static_cast<float>(options_.smear_good_px());
-  args.smear_max_px = static_cast<float>(options_.smear_max_px());
+  args.smear_good_px = static_cast<float>(options_.expert().motion().smear_good_px());
+  args.smear_max_px = static_cast<float>(options_.expert().motion().smear_max_px());
   return args;
 }
 
@@ -174,8 +177,8 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
       row.distance_m = distances_m_.Row(y + apron_).data() + apron_;
       row.celsius = celsius_.Row(y + apron_).data() + apron_;
       row.y = static_cast<float>((y - camera.cy) / camera.fy);
-      row.smear_s = static_cast<float>(options_.time_constant_s() +
-                                       options_.row_readout_s() * std::abs(y - 0.5 * (height - 1)));
+      row.smear_s = static_cast<float>(sensor_.time_constant_s +
+                                       sensor_.row_readout_s * std::abs(y - 0.5 * (height - 1)));
       ThermalPixel* pixels =
           pixels_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
       const PixelRowCounts counts = MakePixelRow(row, pixels);
@@ -208,8 +211,8 @@ void ThermalFuser::SelectBlocks(const RigidTransform& T_map_thermal, const TsdfV
   const CameraModel& camera = rectifier_.ideal_camera();
   const BlockToCamera to_camera(tsdf.grid(), T_map_thermal.inverse());
   const float radius = BlockRadius(tsdf.grid());
-  const float reach =
-      radius + static_cast<float>(options_.vertex_distance_vox() * tsdf.grid().voxel_size_m);
+  const float reach = radius + static_cast<float>(options_.expert().vertex_distance_vox() *
+                                                  tsdf.grid().voxel_size_m);
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx);
@@ -252,16 +255,16 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_map,
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> axes =
       (T_thermal_map.linear() * voxel_m).cast<float>();
   std::copy_n(axes.data(), 9, args.axes);
-  const double max_distance_m = options_.vertex_distance_vox() * voxel_m;
+  const double max_distance_m = options_.expert().vertex_distance_vox() * voxel_m;
   args.max_distance_m = static_cast<float>(max_distance_m);
   // A distance measured along a normal is at most that to the vertex, but for noise.
   constexpr double kNoiseMargin = 1.25;
   args.max_tsdf_code = static_cast<std::int32_t>(
       TsdfVoxel::kTsdfScale *
       std::min(1.0, kNoiseMargin * max_distance_m / tsdf.truncation_distance_m()));
-  args.validate = options_.validation();
+  args.validate = options_.expert().validation();
   args.keep_bad = options_.keep_bad();
-  args.keep_lowest = options_.policy() == LOWEST_GOOD;
+  args.keep_lowest = options_.expert().policy() == LOWEST_GOOD;
   return args;
 }
 

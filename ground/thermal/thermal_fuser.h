@@ -55,7 +55,8 @@ struct CaptureConditions {
 class ThermalFuser {
  public:
   /// Voxels lighter than `min_weight` do not count as observed.
-  ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera, float min_weight);
+  ThermalFuser(const ThermalOptions& options, const CameraModel& thermal_camera,
+               const ThermalSensorModel& sensor, float min_weight);
 
   /// `T_map_thermal` is the thermal camera's pose when `frame` was captured, `T_map_depth` that
   /// of the depth camera at about the same time. `frame` must be valid and have the camera's size
@@ -83,6 +84,7 @@ class ThermalFuser {
   void SelectBlocks(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf);
 
   const ThermalOptions options_;
+  const ThermalSensorModel sensor_;
   const ConditionLimits limits_;
   const TemperatureReview review_;
   const float min_weight_;

@@ -53,8 +53,8 @@ TEST_F(ThermalRulesTest, ASweepIsGoodAcceptableOrLeftOutByItsSmear) {
 }
 
 TEST_F(ThermalRulesTest, RowsReadOneAfterTheOtherAreShiftedTheMoreTheFartherFromTheMiddle) {
-  options_.set_time_constant_s(0.0);
-  options_.set_row_readout_s(1e-4);  // 7 ms from the middle row to the last: 2.2 px at 1 m/s.
+  sensor_.time_constant_s = 0.0;
+  sensor_.row_readout_s = 1e-4;  // 7 ms from the middle row to the last: 2.2 px at 1 m/s.
   FuseFrame(options_, Even(20.0), Sweeping(1.0));
   int near_middle = 0;
   int far = 0;
@@ -93,8 +93,8 @@ TEST_F(ThermalRulesTest, BesideASteepStepOfTemperatureNothingIsAssigned) {
 }
 
 TEST_F(ThermalRulesTest, BadConditionsLeaveTheirClassesAndNoTemperature) {
-  options_.set_distance_good_m(0.35);
-  options_.set_distance_max_m(0.5);
+  options_.mutable_distance()->set_good_m(0.35);
+  options_.mutable_distance()->set_max_m(0.5);
   EXPECT_GT(FuseFrame(options_, Even(20.0)).considered, 1'000);
   int assessed = 0;
   ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
@@ -145,10 +145,10 @@ TEST_F(ThermalRulesTest, WithoutRecordsTemperaturesAreTheSame) {
 
 TEST_F(ThermalRulesTest, AReflectionThatMovesDisagreesAndTheLowestCanBeKept) {
   // Half of the image shows the same 20 °C always, the other at times 8 K more.
-  options_.set_distance_good_m(0.8);
+  options_.mutable_distance()->set_good_m(0.8);
   for (const bool lowest : {false, true}) {
     thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks());
-    if (lowest) options_.set_policy(LOWEST_GOOD);
+    if (lowest) options_.mutable_expert()->set_policy(LOWEST_GOOD);
     for (int i = 0; i < 8; ++i) {
       ThermalFrame frame = Even(20.0);
       for (int v = 0; v < thermal_camera_.height; ++v) {
@@ -190,7 +190,7 @@ TEST_F(ThermalRulesTest, WhatTurnsOutToBelongToAnotherFaceIsDropped) {
   const Eigen::Vector3d p(0.44, 0.36, 0.60);
   const auto frontal = MeasurementAt(*tsdf_, *thermal_, p);
   ASSERT_TRUE(frontal.voxel.measured());
-  const TemperatureReview review(options_);
+  const TemperatureReview review(options_, sensor_);
   const std::int32_t block =
       tsdf_->Find((tsdf_->grid().ToVoxel(p).array().round().cast<int>() / kBlockSide).matrix());
   EXPECT_EQ(review.Review(block, *tsdf_, *thermal_), 0) << "what was assessed right stays";
@@ -220,48 +220,59 @@ TEST(ValidateThermalTest, RefusesContradictionsByName) {
     return Validate(options).message();
   };
   EXPECT_EQ(message([](ThermalOptions&) {}), "");
-  EXPECT_NE(message([](ThermalOptions& o) { o.set_smear_good_px(3.0); }).find("smear_good_px"),
-            std::string::npos);
-  EXPECT_NE(message([](ThermalOptions& o) { o.set_time_constant_s(-1.0); }).find("time_constant_s"),
+  EXPECT_NE(message([](ThermalOptions& o) {
+              o.mutable_expert()->mutable_motion()->set_smear_good_px(3.0);
+            }).find("smear_good_px"),
             std::string::npos);
   EXPECT_NE(
-      message([](ThermalOptions& o) { o.set_disagreement_max_k(0.5); }).find("disagreement_max_k"),
+      message([](ThermalOptions& o) { o.mutable_angle()->set_max_deg(91.0); }).find("max_deg"),
       std::string::npos);
-  EXPECT_NE(message([](ThermalOptions& o) { o.set_hole_px(0); }).find("hole_px"),
+  EXPECT_NE(message([](ThermalOptions& o) {
+              o.mutable_distance()->set_good_m(1.0);
+            }).find("thermal.distance"),
             std::string::npos);
-  EXPECT_NE(message([](ThermalOptions& o) { o.mutable_lens()->set_f_number(1.0); }).find("lens"),
+  EXPECT_NE(message([](ThermalOptions& o) {
+              o.mutable_expert()->mutable_disagreement()->set_max_k(0.5);
+            }).find("thermal.expert.disagreement"),
+            std::string::npos);
+  EXPECT_NE(message([](ThermalOptions& o) {
+              o.mutable_expert()->mutable_occlusion()->set_hole_px(0);
+            }).find("hole_px"),
             std::string::npos);
 }
 
+ThermalSensorModel SharpAtHalfAMetre() {
+  ThermalSensorModel sensor;
+  sensor.pixel_pitch_m = 25e-6;
+  sensor.lens = LensModel{.focal_length_m = 0.01, .f_number = 1.0, .focus_m = 0.5};
+  return sensor;
+}
+
 TEST(DepthOfFieldTest, NarrowsTheDistancesAsEquation220Says) {
-  ThermalOptions options;
-  ThermalLens& lens = *options.mutable_lens();
-  lens.set_focal_length_mm(10.0);
-  lens.set_f_number(1.0);
-  lens.set_focus_m(0.5);
-  lens.set_pixel_pitch_um(25.0);
   // c N (D - f) = 12.25e-6 m2 against f2 = 100e-6 m2.
-  const ConditionLimits limits(options);
+  const ConditionLimits limits(ThermalOptions(), SharpAtHalfAMetre());
   EXPECT_NEAR(limits.distance_min_m, 0.5 * 100.0 / 112.25, 1e-6);
   EXPECT_NEAR(limits.distance_max_m, 0.5 * 100.0 / 87.75, 1e-6);
   EXPECT_LE(limits.distance_good_m, limits.distance_max_m);
 }
 
-/// As options that were written out and read again say it.
-TEST(DepthOfFieldTest, ALensOfZerosIsNotKnown) {
+TEST(DepthOfFieldTest, WithoutALensAllDistancesHold) {
+  const ConditionLimits limits{ThermalOptions(), ThermalSensorModel()};
+  EXPECT_FLOAT_EQ(limits.distance_max_m, 0.9F);
+}
+
+TEST(DepthOfFieldTest, ALensThatIsSharpNowhereInRangeIsRefused) {
   ThermalOptions options;
-  ThermalLens& lens = *options.mutable_lens();
-  lens.set_focal_length_mm(0.0);
-  lens.set_f_number(0.0);
-  lens.set_focus_m(0.0);
-  lens.set_pixel_pitch_um(0.0);
-  EXPECT_TRUE(Validate(options).ok());
-  EXPECT_FLOAT_EQ(ConditionLimits(options).distance_max_m,
-                  static_cast<float>(options.distance_max_m()));
+  EXPECT_TRUE(CheckSharpness(options, ThermalSensorModel()).ok());
+  EXPECT_TRUE(CheckSharpness(options, SharpAtHalfAMetre()).ok());
+  options.mutable_distance()->set_max_m(0.44);
+  EXPECT_NE(
+      CheckSharpness(options, SharpAtHalfAMetre()).message().find("nothing could be measured"),
+      std::string::npos);
 }
 
 TEST_F(ThermalRulesTest, APixelThatCoversTooMuchIsTooFar) {
-  options_.set_max_footprint_m(0.003);  // 0.6 m / 186 px is 3.2 mm.
+  options_.mutable_expert()->set_max_footprint_m(0.003);  // 0.6 m / 186 px is 3.2 mm.
   FuseFrame(options_, Even(20.0));
   ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d& p) {
     if (!OnWall(p)) return;

@@ -44,8 +44,8 @@ TEST(ThermalVoxelTest, MotionAndDisagreementHaveFourBitsEachOfWhichZeroIsUncheck
 
 TEST(ConditionLimitsTest, ClassesChangeAtTheLimitsOfEquation63) {
   ThermalOptions options;
-  options.set_angle_min_deg(15);
-  const ConditionLimits limits(options);
+  options.mutable_angle()->set_min_deg(15);
+  const ConditionLimits limits(options, ThermalSensorModel());
   EXPECT_EQ(limits.ClassifyDistance(0.299F), kBad);
   EXPECT_EQ(limits.ClassifyDistance(0.301F), kGood);
   EXPECT_EQ(limits.ClassifyDistance(0.599F), kGood);
@@ -170,14 +170,14 @@ TEST_F(ThermalFuserTest, Figures73And74AForegroundThatLeftTheDepthCamerasViewSti
 TEST_F(ThermalFuserTest, WithoutTheMarginTheSilhouetteIsAssigned) {
   ThermalOptions options;
   const int with_margin = Fuse(options).assigned;
-  options.set_edge_margin_px(0);
+  options.mutable_expert()->mutable_occlusion()->set_edge_margin_px(0);
   EXPECT_GT(Fuse(options).assigned, with_margin);
 }
 
 TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
   ThermalOptions options;
   Fuse(options);
-  const ConditionLimits limits(options);
+  const ConditionLimits limits(options, ThermalSensorModel());
   int checked = 0;
   for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
     testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
@@ -202,7 +202,7 @@ TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
   ThermalFrame frame = TakeFrame(T_map_thermal_);
   frame.centikelvin.Fill(0);
   const FusionReport report =
-      ThermalFuser(ThermalOptions(), thermal_camera_, 0.0F)
+      ThermalFuser(ThermalOptions(), thermal_camera_, sensor_, 0.0F)
           .Fuse(frame, T_map_thermal_, depth_camera_, T_map_depth_, *tsdf_, pool_, *thermal_);
   EXPECT_EQ(report.assigned, 0);
   EXPECT_GT(report.considered, 0);
@@ -215,7 +215,7 @@ TEST_F(ThermalFuserTest, APoseThatIsNoneIsTheCallersFault) {
       RigidTransform T_map_thermal = T_map_thermal_;
       RigidTransform T_map_depth = T_map_depth_;
       (of_thermal ? T_map_thermal : T_map_depth).matrix()(2, 2) = bad;
-      ThermalFuser fuser(ThermalOptions(), thermal_camera_, 0.0F);
+      ThermalFuser fuser(ThermalOptions(), thermal_camera_, sensor_, 0.0F);
       EXPECT_DEATH(
           fuser.Fuse(frame, T_map_thermal, depth_camera_, T_map_depth, *tsdf_, pool_, *thermal_),
           "IsRigid");

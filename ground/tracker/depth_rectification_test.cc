@@ -39,7 +39,7 @@ TEST(DepthRectificationTest, EachPixelShowsTheDepthThatOpencvFindsThere) {
     for (int x = 0; x < camera.width; ++x) frame.depth_raw.At(x, y) = RawAt(x, y);
   }
   ThreadPool pool(1);
-  DepthPreprocessor preprocessor(PreprocessorOptions(), camera);
+  DepthPreprocessor preprocessor(PreprocessorOptions(), camera, DepthSensorModel());
   const Image<float>& depth_m = preprocessor.Process(frame, pool).depth_m;
   const testing::OpencvRectification truth(camera);
   int compared = 0;

@@ -100,34 +100,41 @@ void ApplyTwist(const Vector6& twist, RigidTransform& T_map_depth) {
 std::string_view ToString(LostReason reason) { return kLostReasons[reason]; }
 
 Status Validate(const TrackerOptions& o) {
-  if (o.iterations_coarse() < 0 || o.iterations_middle() < 0 || o.iterations_fine() < 1 ||
-      o.iterations_coarse() + o.iterations_middle() + o.iterations_fine() > 1000) {
+  if (o.expert().iterations_coarse() < 0 || o.expert().iterations_middle() < 0 ||
+      o.expert().iterations_fine() < 1 ||
+      o.expert().iterations_coarse() + o.expert().iterations_middle() +
+              o.expert().iterations_fine() >
+          1000) {
     return InvalidArgument(
-        "tracker: iterations must not be negative, iterations_fine at least 1, 1000 in all");
+        "tracker.expert: iterations must not be negative, iterations_fine at least 1, 1000 in all");
   }
-  if (!(o.max_distance_m() > 0.0 && o.max_normal_angle_deg() > 0.0 &&
-        o.max_normal_angle_deg() <= 90.0)) {
+  if (!(o.expert().max_distance_m() > 0.0 && o.expert().max_normal_angle_deg() > 0.0 &&
+        o.expert().max_normal_angle_deg() <= 90.0)) {
     return InvalidArgument(
-        "tracker: max_distance_m must be positive and max_normal_angle_deg in (0, 90]");
+        "tracker.expert: max_distance_m must be positive and max_normal_angle_deg in (0, 90]");
   }
-  if (!(o.min_inlier_ratio() >= 0.0 && o.min_inlier_ratio() <= 1.0 && o.max_residual_m() > 0.0 &&
-        o.max_step_m() > 0.0 && o.max_step_deg() > 0.0)) {
+  if (!(o.expert().min_inlier_ratio() >= 0.0 && o.expert().min_inlier_ratio() <= 1.0 &&
+        o.expert().max_residual_m() > 0.0 && o.expert().max_step_m() > 0.0 &&
+        o.expert().max_step_deg() > 0.0)) {
     return InvalidArgument(
-        "tracker: min_inlier_ratio must be 0..1; max_residual_m, max_step_m and max_step_deg must "
+        "tracker.expert: min_inlier_ratio must be 0..1; max_residual_m, max_step_m and "
+        "max_step_deg must "
         "be positive");
   }
-  if (!(o.min_observed() >= 0.0 && o.min_observed() <= 0.1)) {
-    return InvalidArgument(fmt::format("tracker.min_observed must be 0 (never hold) to 0.1, got {}",
-                                       o.min_observed()));
-  }
-  if (!(o.prior_sigma_m_s() >= 0.0 && o.prior_sigma_m_s() <= 100.0)) {
+  if (!(o.expert().min_observed() >= 0.0 && o.expert().min_observed() <= 0.1)) {
     return InvalidArgument(
-        fmt::format("tracker.prior_sigma_m_s must be 0..100 m/s, got {}", o.prior_sigma_m_s()));
+        fmt::format("tracker.expert.min_observed must be 0 (never hold) to 0.1, got {}",
+                    o.expert().min_observed()));
   }
-  if (!(o.thermal_min_gradient_k_m() > 0.0 && o.thermal_min_gradient_k_m() <= 10'000.0)) {
+  if (!(o.expert().prior_sigma_m_s() >= 0.0 && o.expert().prior_sigma_m_s() <= 100.0)) {
+    return InvalidArgument(fmt::format("tracker.expert.prior_sigma_m_s must be 0..100 m/s, got {}",
+                                       o.expert().prior_sigma_m_s()));
+  }
+  if (!(o.expert().thermal_min_gradient_k_m() > 0.0 &&
+        o.expert().thermal_min_gradient_k_m() <= 10'000.0)) {
     return InvalidArgument(fmt::format(
-        "tracker.thermal_min_gradient_k_m must be above 0 and at most 10000 K/m, got {}",
-        o.thermal_min_gradient_k_m()));
+        "tracker.expert.thermal_min_gradient_k_m must be above 0 and at most 10000 K/m, got {}",
+        o.expert().thermal_min_gradient_k_m()));
   }
   return Validate(o.external_odometry());
 }
@@ -184,11 +191,12 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
     return result;
   }
   const IcpLimits limits{
-      static_cast<float>(options_.max_distance_m()),
-      static_cast<float>(std::cos(options_.max_normal_angle_deg() * kRadPerDeg))};
+      static_cast<float>(options_.expert().max_distance_m()),
+      static_cast<float>(std::cos(options_.expert().max_normal_angle_deg() * kRadPerDeg))};
   // The normals of a young model are rough, and quantised as the frame's are.
-  result.motion = MeasureObservability(depth.maps[kPyramidLevels - 1], start.guess, model, limits,
-                                       (model.is_young ? 2.0 : 1.0) * options_.min_observed());
+  result.motion =
+      MeasureObservability(depth.maps[kPyramidLevels - 1], start.guess, model, limits,
+                           (model.is_young ? 2.0 : 1.0) * options_.expert().min_observed());
   if (!result.motion.fully_observed()) {
     ApplyTwist(result.motion.UnobservablePart(TwistBetween(start.guess, start.prior)),
                result.T_map_depth);
@@ -196,8 +204,9 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
       start.alignment->Align(result.motion, model.maps, result.T_map_depth);
   }
   IcpSums last;
-  const std::array<int, kPyramidLevels> iterations = {
-      options_.iterations_fine(), options_.iterations_middle(), options_.iterations_coarse()};
+  const std::array<int, kPyramidLevels> iterations = {options_.expert().iterations_fine(),
+                                                      options_.expert().iterations_middle(),
+                                                      options_.expert().iterations_coarse()};
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
     for (int iteration = 0; iteration < iterations[level]; ++iteration) {
       const IcpSums sums =
@@ -216,8 +225,8 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
       }
       last = sums;
       ApplyTwist(*twist, result.T_map_depth);
-      if (twist->head<3>().norm() < options_.min_update_m() &&
-          twist->tail<3>().norm() < options_.min_update_deg() * kRadPerDeg) {
+      if (twist->head<3>().norm() < options_.expert().min_update_m() &&
+          twist->tail<3>().norm() < options_.expert().min_update_deg() * kRadPerDeg) {
         break;
       }
     }
@@ -234,7 +243,8 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   result.step_rad = RotationAngle(model.T_map_depth, result.T_map_depth);
   // The normals of a young model are too rough to reject correspondences fairly.
   constexpr double kYoungFraction = 1.0 / 3.0;
-  return Assess(result, options_.min_inlier_ratio() * (model.is_young ? kYoungFraction : 1.0));
+  return Assess(result,
+                options_.expert().min_inlier_ratio() * (model.is_young ? kYoungFraction : 1.0));
 }
 
 TrackingResult IcpTracker::Assess(TrackingResult result, double min_inlier_ratio) const {
@@ -242,10 +252,10 @@ TrackingResult IcpTracker::Assess(TrackingResult result, double min_inlier_ratio
     result.lost = LostReason::kSingular;
   } else if (result.inlier_ratio < min_inlier_ratio) {
     result.lost = LostReason::kTooFewInliers;
-  } else if (result.residual_m > options_.max_residual_m()) {
+  } else if (result.residual_m > options_.expert().max_residual_m()) {
     result.lost = LostReason::kResidual;
-  } else if (result.step_m > options_.max_step_m() ||
-             result.step_rad > options_.max_step_deg() * kRadPerDeg) {
+  } else if (result.step_m > options_.expert().max_step_m() ||
+             result.step_rad > options_.expert().max_step_deg() * kRadPerDeg) {
     result.lost = LostReason::kStep;
   }
   return result;

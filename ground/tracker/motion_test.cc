@@ -60,7 +60,7 @@ class MeasureObservabilityTest : public ::testing::Test {
     view_.camera = testing::SmallDepthCamera();
     view_.T_map_depth = testing::FirstPose();
     Raycaster().Cast(volume, view_.camera, view_.T_map_depth, 0.0F, pool_, view_.maps);
-    DepthPreprocessor preprocessor(PreprocessorOptions(), view_.camera);
+    DepthPreprocessor preprocessor(PreprocessorOptions(), view_.camera, DepthSensorModel());
     const DepthFrame frame = testing::RenderDepth(scene, view_.camera, view_.T_map_depth);
     current_ = preprocessor.Process(frame, pool_).maps[kPyramidLevels - 1];
   }

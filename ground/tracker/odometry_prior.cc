@@ -62,11 +62,12 @@ std::optional<OdometryPrior::Prediction> OdometryPrior::Predict(const StampedMap
   result.T_map_depth = last.T_map_depth * motion;
   result.error.continues = continues;
   result.error.rotation_growth_rad =
-      options_.drift_ratio() * RotationAngle(RigidTransform::Identity(), motion);
+      options_.expert().drift_ratio() * RotationAngle(RigidTransform::Identity(), motion);
   // Of the motion since the first such frame: of both its ends.
   result.error.rotation_noise_rad = std::numbers::sqrt2 * to->rotation_noise_rad;
   if (from->has_position && to->has_position) {
-    result.error.translation_growth_m = options_.drift_ratio() * motion.translation().norm();
+    result.error.translation_growth_m =
+        options_.expert().drift_ratio() * motion.translation().norm();
     result.error.translation_noise_m = std::numbers::sqrt2 * to->position_noise_m;
   } else {
     result.T_map_depth.translation() = inertial.translation();
@@ -98,9 +99,9 @@ bool OdometryPrior::Contradicts(const TrackingResult& result, CaptureTime time,
   }
   const double difference_m =
       (ObservedAxes(motion).transpose() * twist.cwiseQuotient(motion.scale)).norm();
-  return difference_m >
-         options_.max_disagreement_m() +
-             kSigmas * (noise_m + options_.drift_ratio() * way_m + ObservedSigma(motion, known));
+  return difference_m > options_.expert().max_disagreement_m() +
+                            kSigmas * (noise_m + options_.expert().drift_ratio() * way_m +
+                                       ObservedSigma(motion, known));
 }
 
 void OdometryPrior::Note(const TrackingResult& result, CaptureTime time, const Matrix6& known,

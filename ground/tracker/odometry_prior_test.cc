@@ -89,7 +89,7 @@ TEST_F(OdometryPriorTest, TheMotionCountsWhateverTheReferenceFrame) {
   EXPECT_LT(TranslationDistance(prediction->T_map_depth, elsewhere * True(0.34)), kRounding);
   EXPECT_LT(RotationAngle(prediction->T_map_depth, elsewhere * True(0.34)), 1e-7);
   const double way = (True(0.31).inverse() * True(0.34)).translation().norm();
-  EXPECT_NEAR(prediction->error.translation_growth_m, options_.drift_ratio() * way, 1e-7);
+  EXPECT_NEAR(prediction->error.translation_growth_m, options_.expert().drift_ratio() * way, 1e-7);
   EXPECT_NEAR(prediction->error.translation_noise_m, std::numbers::sqrt2 * position_sigma_m_, 1e-6);
   EXPECT_FALSE(prediction->error.continues);
 }
@@ -162,7 +162,7 @@ TEST_F(OdometryPriorTest, AContradictionInAnObservedDirectionIsNotBelieved) {
   const auto jumping = [](double t) {
     return Rotated(0.0, {1, 0, 0}, {t < 0.5 ? 0.0 : 0.06, 0, 0}) * True(t);
   };
-  options_.set_max_speed_m_s(20.0);  // Not a jump by itself.
+  options_.mutable_expert()->set_max_speed_m_s(20.0);  // Not a jump by itself.
   Restart();
   Feed(0.0, 2.0, jumping);
   for (int i = 1; i < 15; ++i) EXPECT_TRUE(Frame(i, True(kFrame_s * i))) << i;
@@ -176,7 +176,7 @@ TEST_F(OdometryPriorTest, AContradictionInAnObservedDirectionIsNotBelieved) {
 }
 
 TEST_F(OdometryPriorTest, InAnUnobservableDirectionNothingContradicts) {
-  options_.set_max_speed_m_s(20.0);
+  options_.mutable_expert()->set_max_speed_m_s(20.0);
   Restart();
   Feed(0.0, 2.0, [](double t) {
     return Rotated(0.0, {1, 0, 0}, {t < 0.5 ? 0.0 : 0.06, 0, 0}) * True(t);

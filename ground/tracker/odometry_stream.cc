@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "common/base/log.h"
-#include "common/geometry/pose_text.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -28,14 +28,19 @@ bool IsSigma(double sigma) { return std::isnan(sigma) || sigma >= 0.0; }
 }  // namespace
 
 Status Validate(const ExternalOdometryOptions& o) {
-  if (const Result<RigidTransform> pose = ParsePose(o.t_depth_body());
-      !o.t_depth_body().empty() && !pose) {
-    return pose.error().WithContext("tracker.external_odometry.T_depth_body");
+  if (o.has_t_depth_body()) {
+    if (const Result<RigidTransform> pose = ToTransform(o.t_depth_body()); !pose)
+      return pose.error().WithContext("tracker.external_odometry.T_depth_body");
   }
+  return Validate(o.expert());
+}
+
+Status Validate(const ExternalOdometryExpertOptions& o) {
   const auto check = [](const char* name, double value, double most) {
     if (value > 0.0 && value <= most) return OkStatus();
-    return InvalidArgument(fmt::format(
-        "tracker.external_odometry.{} must be above 0 and at most {}, got {}", name, most, value));
+    return InvalidArgument(
+        fmt::format("tracker.external_odometry.expert.{} must be above 0 and at most {}, got {}",
+                    name, most, value));
   };
   ISOTHERM_RETURN_IF_ERROR(check("max_gap_s", o.max_gap_s(), 10.0));
   ISOTHERM_RETURN_IF_ERROR(check("max_speed_m_s", o.max_speed_m_s(), 100.0));
@@ -45,20 +50,20 @@ Status Validate(const ExternalOdometryOptions& o) {
   ISOTHERM_RETURN_IF_ERROR(check("rotation_sigma_deg", o.rotation_sigma_deg(), 45.0));
   if (!(o.max_ahead_s() >= 0.0 && o.max_ahead_s() <= 1.0)) {
     return InvalidArgument(fmt::format(
-        "tracker.external_odometry.max_ahead_s must be 0 (wait for none) to 1 s, got {}",
+        "tracker.external_odometry.expert.max_ahead_s must be 0 (wait for none) to 1 s, got {}",
         o.max_ahead_s()));
   }
   if (!(o.drift_ratio() >= 0.0 && o.drift_ratio() <= 1.0)) {
     return InvalidArgument(fmt::format(
-        "tracker.external_odometry.drift_ratio must be 0 to 1, got {}", o.drift_ratio()));
+        "tracker.external_odometry.expert.drift_ratio must be 0 to 1, got {}", o.drift_ratio()));
   }
   return OkStatus();
 }
 
 OdometryStream::OdometryStream(const ExternalOdometryOptions& options)
     : options_(options), T_body_depth_(RigidTransform::Identity()), source_(options.source()) {
-  if (options.t_depth_body().empty()) return;
-  T_body_depth_ = ParsePose(options.t_depth_body())->inverse();
+  if (!options.has_t_depth_body()) return;
+  T_body_depth_ = ToTransform(options.t_depth_body())->inverse();
 }
 
 std::string OdometryStream::FindFault(const ExternalOdometry& sample) const {
@@ -87,9 +92,10 @@ OdometryStream::Sample OdometryStream::ToSample(const ExternalOdometry& pose) co
     return std::isnan(sigma) ? usual : sigma;
   };
   estimate.position_noise_m =
-      pose.has_position() ? known_or(pose.position_sigma_m, options_.position_sigma_m()) : 0.0;
+      pose.has_position() ? known_or(pose.position_sigma_m, options_.expert().position_sigma_m())
+                          : 0.0;
   estimate.rotation_noise_rad =
-      known_or(pose.rotation_sigma_rad, options_.rotation_sigma_deg() * kRadPerDeg);
+      known_or(pose.rotation_sigma_rad, options_.expert().rotation_sigma_deg() * kRadPerDeg);
   return sample;
 }
 
@@ -98,18 +104,19 @@ bool OdometryStream::IsTooFast(const Sample& before, const Sample& after) const 
   const Estimate& a = before.estimate;
   const Estimate& b = after.estimate;
   const double rotation = RotationAngle(a.T_reference_depth, b.T_reference_depth);
-  if (rotation > options_.max_rotation_deg_s() * kRadPerDeg * seconds +
+  if (rotation > options_.expert().max_rotation_deg_s() * kRadPerDeg * seconds +
                      kJitterSigmas * std::hypot(a.rotation_noise_rad, b.rotation_noise_rad)) {
     return true;
   }
   if (!a.has_position || !b.has_position) return false;
   return TranslationDistance(a.T_reference_depth, b.T_reference_depth) >
-         options_.max_speed_m_s() * seconds +
+         options_.expert().max_speed_m_s() * seconds +
              kJitterSigmas * std::hypot(a.position_noise_m, b.position_noise_m);
 }
 
 bool OdometryStream::Follows(const Sample& before, const Sample& after) const {
-  return after.time > before.time && ToSeconds(after.time - before.time) <= options_.max_gap_s() &&
+  return after.time > before.time &&
+         ToSeconds(after.time - before.time) <= options_.expert().max_gap_s() &&
          !IsTooFast(before, after);
 }
 
@@ -139,7 +146,7 @@ void OdometryStream::Add(const ExternalOdometry& pose) {
     const bool is_late = sample.time <= newest.time;
     // Late by less than a gap, it comes out of order, or twice: nothing follows from that.
     const bool is_out_of_order =
-        is_late && ToSeconds(newest.time - sample.time) <= options_.max_gap_s();
+        is_late && ToSeconds(newest.time - sample.time) <= options_.expert().max_gap_s();
     if (is_out_of_order) {
       Refuse("time");
       return;
@@ -153,7 +160,7 @@ void OdometryStream::Add(const ExternalOdometry& pose) {
       samples_.clear();
       ++counts_.restarts;
       LOG(Tracker, Warning) << "poses from \"" << source_ << "\" go on in another place or time";
-    } else if (ToSeconds(sample.time - newest.time) > options_.max_gap_s()) {
+    } else if (ToSeconds(sample.time - newest.time) > options_.expert().max_gap_s()) {
       ++counts_.gaps;
     }
   }
@@ -193,10 +200,10 @@ OdometryStream::Estimate OdometryStream::Between(const Sample& a, const Sample& 
 std::optional<OdometryStream::Estimate> OdometryStream::Ahead(CaptureTime time) const {
   const Sample& newest = samples_.back();
   const Nanoseconds ahead = time - newest.time;
-  if (ToSeconds(ahead) > options_.max_ahead_s()) return std::nullopt;
+  if (ToSeconds(ahead) > options_.expert().max_ahead_s()) return std::nullopt;
   // The velocity over as long as it is carried on, so that jitter does not grow much.
   for (auto before = std::next(samples_.rbegin()); before != samples_.rend(); ++before) {
-    if (ToSeconds(std::prev(before)->time - before->time) > options_.max_gap_s()) break;
+    if (ToSeconds(std::prev(before)->time - before->time) > options_.expert().max_gap_s()) break;
     if (newest.time - before->time >= ahead) return Between(*before, newest, time);
   }
   return std::nullopt;
@@ -208,8 +215,9 @@ std::optional<OdometryStream::Estimate> OdometryStream::At(CaptureTime time) con
   const auto after = std::lower_bound(
       samples_.begin(), samples_.end(), time,
       [](const Sample& sample, CaptureTime wanted) { return sample.time < wanted; });
-  const bool is_connected = after != samples_.begin() &&
-                            ToSeconds(after->time - std::prev(after)->time) <= options_.max_gap_s();
+  const bool is_connected =
+      after != samples_.begin() &&
+      ToSeconds(after->time - std::prev(after)->time) <= options_.expert().max_gap_s();
   if (is_connected) return Between(*std::prev(after), *after, time);
   return after->time == time ? std::optional(after->estimate) : std::nullopt;
 }

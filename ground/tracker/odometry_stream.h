@@ -14,6 +14,7 @@
 namespace isotherm {
 
 Status Validate(const ExternalOdometryOptions& options);
+Status Validate(const ExternalOdometryExpertOptions& options);
 
 /// Holds what became of the samples: in = accepted + all refused.
 struct OdometryStreamCounts {

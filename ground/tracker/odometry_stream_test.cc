@@ -9,6 +9,8 @@
 #include <numbers>
 #include <optional>
 
+#include "ground/options/option_geometry.h"
+
 namespace isotherm {
 namespace {
 
@@ -26,7 +28,7 @@ class OdometryStreamTest : public ::testing::Test {
   static constexpr milliseconds kPeriod{10};
 
   OdometryStreamTest() {
-    options_.set_max_ahead_s(0.0);
+    options_.mutable_expert()->set_max_ahead_s(0.0);
     Restart();
   }
 
@@ -71,7 +73,7 @@ TEST_F(OdometryStreamTest, BetweenSamplesThePoseIsLinearAndSlerp) {
 }
 
 TEST_F(OdometryStreamTest, AFrameSomewhatNewerGetsThePoseCarriedOn) {
-  options_.set_max_ahead_s(0.03);
+  options_.mutable_expert()->set_max_ahead_s(0.03);
   Restart();
   Feed(0, 10);
   ExpectAt(12.5, Pose(12.5));
@@ -80,8 +82,8 @@ TEST_F(OdometryStreamTest, AFrameSomewhatNewerGetsThePoseCarriedOn) {
 }
 
 TEST_F(OdometryStreamTest, AGapIsNotInterpolatedAcrossAndNeitherCarriedOnFrom) {
-  options_.set_max_gap_s(0.05);
-  options_.set_max_ahead_s(0.05);
+  options_.mutable_expert()->set_max_gap_s(0.05);
+  options_.mutable_expert()->set_max_ahead_s(0.05);
   Restart();
   Feed(0, 10);
   Feed(20, 20);
@@ -95,11 +97,11 @@ TEST_F(OdometryStreamTest, AGapIsNotInterpolatedAcrossAndNeitherCarriedOnFrom) {
 }
 
 TEST_F(OdometryStreamTest, TheBodyMayBeMountedAnywhereOnTheRig) {
-  options_.set_t_depth_body("0.1 0 -0.05 0 0 0.70710678 0.70710678");
-  Restart();
   const RigidTransform T_depth_body = MakeTransform(
       {0.1, 0.0, -0.05},
       Eigen::Quaterniond(Eigen::AngleAxisd(90 * kRadPerDeg, Eigen::Vector3d::UnitZ())));
+  *options_.mutable_t_depth_body() = ToOptions(T_depth_body);
+  Restart();
   Feed(0, 3);
   ExpectAt(2.0, Pose(2.0) * T_depth_body.inverse());
 }
@@ -177,7 +179,7 @@ TEST_F(OdometryStreamTest, AfterTimeWentBackTheSourceStartsAgain) {
 
 TEST_F(OdometryStreamTest, SigmasOfTheSourceGoBeforeThoseOfTheOptions) {
   Feed(0, 5);
-  EXPECT_EQ(stream_->At(At(3.0))->position_noise_m, options_.position_sigma_m());
+  EXPECT_EQ(stream_->At(At(3.0))->position_noise_m, options_.expert().position_sigma_m());
   ExternalOdometry pose = Sample(6);
   pose.position_sigma_m = 0.02;
   pose.rotation_sigma_rad = 0.03;
@@ -226,14 +228,19 @@ TEST(ExternalOdometryOptionsTest, WrongValuesNameTheirField) {
     EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
     return status.message();
   };
-  EXPECT_THAT(message([](auto& o) { o.set_t_depth_body("1 2 3"); }), HasSubstr("T_depth_body"));
-  EXPECT_THAT(message([](auto& o) { o.set_max_gap_s(0.0); }), HasSubstr("max_gap_s"));
-  EXPECT_THAT(message([](auto& o) { o.set_max_speed_m_s(kNan); }), HasSubstr("max_speed_m_s"));
-  EXPECT_THAT(message([](auto& o) { o.set_max_rotation_deg_s(-1.0); }),
+  EXPECT_THAT(message([](auto& o) { o.mutable_t_depth_body()->set_x_m(1); }),
+              HasSubstr("T_depth_body"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_max_gap_s(0.0); }),
+              HasSubstr("max_gap_s"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_max_speed_m_s(kNan); }),
+              HasSubstr("max_speed_m_s"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_max_rotation_deg_s(-1.0); }),
               HasSubstr("max_rotation_deg_s"));
-  EXPECT_THAT(message([](auto& o) { o.set_max_ahead_s(-0.1); }), HasSubstr("max_ahead_s"));
-  EXPECT_THAT(message([](auto& o) { o.set_drift_ratio(1.5); }), HasSubstr("drift_ratio"));
-  EXPECT_THAT(message([](auto& o) { o.set_max_disagreement_m(0.0); }),
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_max_ahead_s(-0.1); }),
+              HasSubstr("max_ahead_s"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_drift_ratio(1.5); }),
+              HasSubstr("drift_ratio"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_max_disagreement_m(0.0); }),
               HasSubstr("max_disagreement_m"));
 }
 

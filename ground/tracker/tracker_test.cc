@@ -19,7 +19,7 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 class DepthPreprocessorTest : public ::testing::Test {
  protected:
   const PreparedDepth& Process(const DepthFrame& frame) {
-    preprocessor_ = std::make_unique<DepthPreprocessor>(options_, camera_);
+    preprocessor_ = std::make_unique<DepthPreprocessor>(options_, camera_, DepthSensorModel());
     return preprocessor_->Process(frame, pool_);
   }
   DepthFrame Flat(std::uint16_t raw) const {
@@ -54,7 +54,7 @@ TEST_F(DepthPreprocessorTest, NormalsOfATiltedPlaneAreExactAtEachLevel) {
   const auto plane = [&](const Eigen::Vector3d& p) {
     return normal.dot(p - Eigen::Vector3d(0.3, 0.26, 0.5));
   };
-  options_.set_bilateral_radius_px(0);
+  options_.mutable_expert()->set_bilateral_radius_px(0);
   const PreparedDepth& depth = Process(testing::RenderDepth(plane, camera_, testing::FirstPose()));
   for (int level = 0; level < kPyramidLevels; ++level) {
     const SurfaceMaps& maps = depth.maps[static_cast<std::size_t>(level)];
@@ -127,7 +127,7 @@ class IcpTrackerTest : public ::testing::Test {
   }
   TrackingResult Track(const DepthFrame& frame, int threads = 2) {
     ThreadPool pool(threads);
-    DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
+    DepthPreprocessor preprocessor(PreprocessorOptions(), camera_, DepthSensorModel());
     return IcpTracker(options_).Track(preprocessor.Process(frame, pool), view_, grid_,
                                       {view_.T_map_depth, view_.T_map_depth}, pool);
   }
@@ -184,7 +184,7 @@ TEST_F(IcpTrackerTest, AnotherSceneIsLost) {
 
 TEST_F(IcpTrackerTest, APoseThatIsNoneIsLost) {
   const DepthFrame frame = Render(testing::FirstPose());
-  DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
+  DepthPreprocessor preprocessor(PreprocessorOptions(), camera_, DepthSensorModel());
   const PreparedDepth& depth = preprocessor.Process(frame, pool_);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e300, 1e30}) {
     for (int i = 0; i < 36; ++i) {  // Each entry of the guess, the prior and the model's pose.
@@ -208,7 +208,7 @@ TEST_F(IcpTrackerTest, AModelThatWasNeverCastIsLost) {
 }
 
 TEST_F(IcpTrackerTest, AJumpBeyondTheStepLimitIsLost) {
-  options_.set_max_step_m(0.005);
+  options_.mutable_expert()->set_max_step_m(0.005);
   EXPECT_EQ(Track(Render(Moved({0.012, 0.0, 0.0}, 0.0))).lost, LostReason::kStep);
 }
 
@@ -253,7 +253,7 @@ IcpSums ReferenceSums(const SurfaceMaps& current, const RigidTransform& T, const
 
 TEST_F(IcpTrackerTest, KernelMatchesTheScalarReference) {
   const RigidTransform guess = Moved({0.003, 0.004, -0.002}, 0.7);
-  DepthPreprocessor preprocessor(PreprocessorOptions(), camera_);
+  DepthPreprocessor preprocessor(PreprocessorOptions(), camera_, DepthSensorModel());
   const PreparedDepth& depth =
       preprocessor.Process(Render(Moved({0.006, -0.002, 0.004}, 0.2)), pool_);
   const IcpLimits limits{0.03F, 0.9F};

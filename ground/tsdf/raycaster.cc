@@ -106,9 +106,10 @@ std::optional<float> InterpolateTsdf(const TsdfVolume& volume, const Eigen::Vect
 }
 
 Status Validate(const RaycastOptions& o) {
-  if (!(o.min_weight() >= 0.0 && o.min_weight() <= 1000.0) || o.halvings() < 0 ||
-      o.halvings() > 2) {
-    return InvalidArgument("raycast: min_weight must be 0..1000 observations and halvings 0..2");
+  if (!(o.expert().min_weight() >= 0.0 && o.expert().min_weight() <= 1000.0) ||
+      o.expert().halvings() < 0 || o.expert().halvings() > 2) {
+    return InvalidArgument(
+        "raycast.expert: min_weight must be 0..1000 observations and halvings 0..2");
   }
   return OkStatus();
 }

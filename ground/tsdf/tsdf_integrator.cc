@@ -58,17 +58,18 @@ Status Validate(const TsdfOptions& o, const VolumeOptions& volume) {
             : fmt::format("volume.voxel_size_m must be at most {:g} m, got {:g} m",
                           kMaxTruncation_m / kTruncationVoxels, volume.voxel_size_m()));
   }
-  if (!(o.max_weight() >= 1.0 && o.max_weight() <= 1000.0)) {
-    return InvalidArgument(
-        fmt::format("tsdf.max_weight must be 1..1000 observations, got {}", o.max_weight()));
+  if (!(o.expert().max_weight() >= 1.0 && o.expert().max_weight() <= 1000.0)) {
+    return InvalidArgument(fmt::format(
+        "tsdf.expert.max_weight must be 1..1000 observations, got {}", o.expert().max_weight()));
   }
-  for (const double bound : {o.min_step_m(), o.max_step_m(), o.min_step_deg(), o.max_step_deg()}) {
+  for (const double bound : {o.expert().min_step_m(), o.expert().max_step_m(),
+                             o.expert().min_step_deg(), o.expert().max_step_deg()}) {
     if (!(bound >= 0.0))
-      return InvalidArgument("tsdf: step bounds must not be negative (0 turns one off)");
+      return InvalidArgument("tsdf.expert: step bounds must not be negative (0 turns one off)");
   }
-  if ((o.max_step_m() > 0.0 && o.min_step_m() > o.max_step_m()) ||
-      (o.max_step_deg() > 0.0 && o.min_step_deg() > o.max_step_deg())) {
-    return InvalidArgument("tsdf: min_step must not exceed max_step");
+  if ((o.expert().max_step_m() > 0.0 && o.expert().min_step_m() > o.expert().max_step_m()) ||
+      (o.expert().max_step_deg() > 0.0 && o.expert().min_step_deg() > o.expert().max_step_deg())) {
+    return InvalidArgument("tsdf.expert: min_step must not exceed max_step");
   }
   return OkStatus();
 }
@@ -89,7 +90,7 @@ void TsdfIntegrator::MakeSamples(const PreparedDepth& depth, ThreadPool& pool) {
       MakeSampleRow(
           {row.data(), maps.nx.Row(y).data(), maps.ny.Row(y).data(), maps.nz.Row(y).data(),
            camera.width, camera.fx, camera.cx, (static_cast<float>(y) - camera.cy) / camera.fy,
-           options_.distance() == ALONG_RAY},
+           options_.expert().distance() == ALONG_RAY},
           samples_.data() + width * static_cast<std::size_t>(y));
       for (std::size_t tile = 0; tile < farthest.size(); ++tile) {
         const auto first = row.begin() + static_cast<std::ptrdiff_t>(tile * kTile);
@@ -196,7 +197,7 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
       (T_depth_map.linear() * grid.voxel_size_m).cast<float>();
   std::copy_n(axes.data(), 9, args.axes);
   args.truncation_m = static_cast<float>(volume.truncation_distance_m());
-  args.max_weight = static_cast<float>(options_.max_weight());
+  args.max_weight = static_cast<float>(options_.expert().max_weight());
   args.noise_at_1m = depth.noise_at_1m;
   constexpr int kBlocksPerTask = 32;
   const int count = static_cast<int>(updated_blocks_.size());
@@ -219,14 +220,18 @@ bool IntegrationGate::Accepts(const std::optional<RigidTransform>& previous,
   const bool young = bootstrapping();
   bool accept = true;
   if (previous && !young) {
-    accept = !exceeds(TranslationDistance(*previous, T_map_depth), options_.max_step_m()) &&
-             !exceeds(RotationAngle(*previous, T_map_depth), options_.max_step_deg() * kRadPerDeg);
+    accept =
+        !exceeds(TranslationDistance(*previous, T_map_depth), options_.expert().max_step_m()) &&
+        !exceeds(RotationAngle(*previous, T_map_depth),
+                 options_.expert().max_step_deg() * kRadPerDeg);
   } else if (!previous && last_integrated_) {
     accept = false;  // The motion since the frame before is not known.
   }
   if (accept && last_integrated_ && !young) {
-    accept = TranslationDistance(*last_integrated_, T_map_depth) >= options_.min_step_m() ||
-             RotationAngle(*last_integrated_, T_map_depth) >= options_.min_step_deg() * kRadPerDeg;
+    accept =
+        TranslationDistance(*last_integrated_, T_map_depth) >= options_.expert().min_step_m() ||
+        RotationAngle(*last_integrated_, T_map_depth) >=
+            options_.expert().min_step_deg() * kRadPerDeg;
   }
   if (accept) {
     last_integrated_ = T_map_depth;

@@ -71,8 +71,8 @@ class IntegrationGate {
   }
   /// Whether the model still has to become better than one frame's noise.
   bool bootstrapping() const {
-    return !bootstrap_ended_ &&
-           accepted_ < static_cast<std::uint64_t>(std::max(0, options_.bootstrap_frames()));
+    return !bootstrap_ended_ && accepted_ < static_cast<std::uint64_t>(
+                                                std::max(0, options_.expert().bootstrap_frames()));
   }
 
  private:

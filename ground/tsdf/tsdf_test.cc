@@ -219,9 +219,11 @@ TEST_F(RaycasterTest, FromAPoseThatIsNoneNothingIsSeen) {
 
 class TsdfIntegratorTest : public ::testing::Test {
  protected:
-  TsdfIntegratorTest() : volume_(MakeVolume()) { preprocessing_.set_bilateral_radius_px(0); }
+  TsdfIntegratorTest() : volume_(MakeVolume()) {
+    preprocessing_.mutable_expert()->set_bilateral_radius_px(0);
+  }
   void Integrate(const DepthFrame& frame, const RigidTransform& pose) {
-    DepthPreprocessor preprocessor(preprocessing_, camera_);
+    DepthPreprocessor preprocessor(preprocessing_, camera_, DepthSensorModel());
     TsdfIntegrator(options_).Integrate(preprocessor.Process(frame, pool_), pose, pool_, volume_);
   }
 
@@ -300,7 +302,7 @@ TEST_F(TsdfIntegratorTest, SeeingThroughAStrayVoxelClearsIt) {
 
 TEST(IntegrationGateTest, AcceptsMotionWithinBoundsAfterTheFirstFrames) {
   TsdfOptions options;
-  options.set_bootstrap_frames(1);
+  options.mutable_expert()->set_bootstrap_frames(1);
   IntegrationGate gate(options);
   const auto at = [](double x_m, double angle_deg = 0.0) {
     return MakeTransform({x_m, 0, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(

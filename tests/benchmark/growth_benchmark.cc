@@ -79,9 +79,9 @@ void BM_Growth(benchmark::State& state) {
   GroundOptions options;
   VolumeOptions& volume = *options.mutable_volume();
   volume.set_size_x_m(1e-2 * static_cast<double>(state.range(1)));
-  volume.set_min_x_m(-0.48);
-  volume.set_min_y_m(-0.48);
-  volume.set_min_z_m(0.24);
+  volume.mutable_expert()->set_min_x_m(-0.48);
+  volume.mutable_expert()->set_min_y_m(-0.48);
+  volume.mutable_expert()->set_min_z_m(0.24);
   if (state.range(2) > 0) {
     volume.set_max_memory_bytes(static_cast<std::uint64_t>(state.range(2)) << 20);
     volume.set_spill_dir(std::filesystem::temp_directory_path().string());

@@ -29,7 +29,7 @@ constexpr std::int32_t kMaxBlocks = 1 << 16;
 /// the last one.
 class Scene {
  public:
-  Scene() : preprocessor_(options.preprocessor(), *frames.rig.depth) {
+  Scene() : preprocessor_(options.preprocessor(), *frames.rig.depth, frames.rig.depth_sensor) {
     const Result<VoxelGrid> grid = MakeVoxelGrid(options.volume());
     CHECK(grid.has_value() && frames.rig.thermal && frames.rig.T_thermal_depth);
     volume = std::make_unique<TsdfVolume>(
@@ -42,11 +42,11 @@ class Scene {
     last = &preprocessor_.Process(frames.depth.back(), pool);
     T_world_depth = frames.truth.back().T_world_depth;
     const RigidTransform& before = frames.truth[frames.truth.size() - 2].T_world_depth;
-    view = {{}, last->camera.Downscaled(options.raycast().halvings()), before};
+    view = {{}, last->camera.Downscaled(options.raycast().expert().halvings()), before};
     Raycaster().Cast(*volume, view.camera, before, MinWeight(), pool, view.maps);
   }
 
-  float MinWeight() const { return static_cast<float>(options.raycast().min_weight()); }
+  float MinWeight() const { return static_cast<float>(options.raycast().expert().min_weight()); }
 
   const BenchmarkFrames& frames = FurnaceDoorFrames();
   const GroundOptions options;
@@ -72,7 +72,8 @@ benchmark::Counter PerItem(std::size_t items) {
 
 void Preprocess(benchmark::State& state, ThreadPool& pool) {
   const Scene& scene = SharedScene();
-  DepthPreprocessor preprocessor(scene.options.preprocessor(), *scene.frames.rig.depth);
+  DepthPreprocessor preprocessor(scene.options.preprocessor(), *scene.frames.rig.depth,
+                                 scene.frames.rig.depth_sensor);
   for (auto _ : state)
     benchmark::DoNotOptimize(preprocessor.Process(scene.frames.depth.back(), pool).valid_pixels);
   state.counters["per_pixel"] = PerItem(scene.last->depth_m.size());
@@ -82,7 +83,8 @@ void Bilateral(benchmark::State& state, ThreadPool& pool) {
   const Scene& scene = SharedScene();
   Image<float> filtered_m;
   for (auto _ : state) {
-    BilateralFilter(scene.last->depth_m, scene.options.preprocessor(), pool, filtered_m);
+    BilateralFilter(scene.last->depth_m, scene.options.preprocessor().expert(),
+                    scene.frames.rig.depth_sensor.noise_at_1m_m, pool, filtered_m);
     benchmark::DoNotOptimize(filtered_m.data());
   }
   state.counters["per_pixel"] = PerItem(filtered_m.size());
@@ -95,8 +97,8 @@ void MakeMaps(benchmark::State& state, ThreadPool& pool) {
   SurfaceMaps maps;
   for (auto _ : state) {
     MakeSurfaceMaps(scene.last->depth_m, scene.last->camera, kReach,
-                    StepPerPixel(scene.last->camera, options.max_surface_angle_deg()),
-                    static_cast<float>(options.bilateral_sigma_depth_m()), pool, maps);
+                    StepPerPixel(scene.last->camera, options.expert().max_surface_angle_deg()),
+                    scene.last->noise_at_1m, pool, maps);
     benchmark::DoNotOptimize(maps.nz.data());
   }
   state.counters["per_pixel"] = PerItem(maps.vx.size());
@@ -105,9 +107,9 @@ void MakeMaps(benchmark::State& state, ThreadPool& pool) {
 void Icp(benchmark::State& state, ThreadPool& pool, std::size_t level) {
   const Scene& scene = SharedScene();
   const TrackerOptions& options = scene.options.tracker();
-  const IcpLimits limits{
-      static_cast<float>(options.max_distance_m()),
-      static_cast<float>(std::cos(options.max_normal_angle_deg() * std::numbers::pi / 180.0))};
+  const IcpLimits limits{static_cast<float>(options.expert().max_distance_m()),
+                         static_cast<float>(std::cos(options.expert().max_normal_angle_deg() *
+                                                     std::numbers::pi / 180.0))};
   const SurfaceMaps& maps = scene.last->maps[level];
   for (auto _ : state) {
     benchmark::DoNotOptimize(
@@ -140,7 +142,7 @@ void FuseThermal(benchmark::State& state, ThreadPool& pool) {
   const Rig& rig = scene.frames.rig;
   const RigidTransform T_world_thermal = scene.view.T_map_depth * rig.T_thermal_depth->inverse();
   const ThermalFrame& frame = scene.frames.thermal.back();
-  ThermalFuser fuser(scene.options.thermal(), *rig.thermal, scene.MinWeight());
+  ThermalFuser fuser(scene.options.thermal(), *rig.thermal, rig.thermal_sensor, scene.MinWeight());
   ThermalVolume thermal(kMaxBlocks);
   FusionReport report;
   for (auto _ : state) {

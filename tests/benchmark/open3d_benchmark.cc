@@ -37,19 +37,19 @@ Result<GroundOptions> Options(const Arguments& arguments) {
   options.set_threads(arguments.threads);
   // Both integrate every frame.
   TsdfOptions& tsdf = *options.mutable_tsdf();
-  tsdf.set_min_step_m(0.0);
-  tsdf.set_max_step_m(0.0);
-  tsdf.set_min_step_deg(0.0);
-  tsdf.set_max_step_deg(0.0);
+  tsdf.mutable_expert()->set_min_step_m(0.0);
+  tsdf.mutable_expert()->set_max_step_m(0.0);
+  tsdf.mutable_expert()->set_min_step_deg(0.0);
+  tsdf.mutable_expert()->set_max_step_deg(0.0);
   for (const std::string& assignment : arguments.overrides) {
     if (Status status = ApplyOverride(assignment, options); !status.ok()) return Err(status);
   }
   if (!arguments.volume_min.empty()) {
     const auto corner = ParseNumbers(arguments.volume_min, {3}, "--volume-min");
     if (!corner) return Err(corner.error());
-    options.mutable_volume()->set_min_x_m((*corner)[0]);
-    options.mutable_volume()->set_min_y_m((*corner)[1]);
-    options.mutable_volume()->set_min_z_m((*corner)[2]);
+    options.mutable_volume()->mutable_expert()->set_min_x_m((*corner)[0]);
+    options.mutable_volume()->mutable_expert()->set_min_y_m((*corner)[1]);
+    options.mutable_volume()->mutable_expert()->set_min_z_m((*corner)[2]);
   }
   return options;
 }
@@ -89,8 +89,8 @@ Result<Comparison> Run(const GroundOptions& options, const BenchmarkFrames& fram
     if (!result.open3d) {
       const Open3dFusion::Options theirs{result.ours->tsdf().grid(),
                                          TruncationDistance(options.tsdf(), options.volume()),
-                                         options.preprocessor().min_depth_m(),
-                                         options.preprocessor().max_depth_m(), options.threads()};
+                                         frames.rig.depth_sensor.min_depth_m,
+                                         frames.rig.depth_sensor.max_depth_m, options.threads()};
       result.open3d =
           std::make_unique<Open3dFusion>(theirs, frames.rig.depth->WithoutDistortion(),
                                          result.ours->trajectory().front().T_world_depth);

@@ -128,7 +128,7 @@ void WriteModelSeed(const fs::path& root) {
   volume.set_size_x_m(0.064);
   volume.set_size_y_m(0.064);
   volume.set_size_z_m(0.064);
-  volume.set_min_z_m(0.0);
+  volume.mutable_expert()->set_min_z_m(0.0);
   volume.set_voxel_size_m(0.004);
   constexpr double kTruncation_m = 0.008;
   const VoxelGrid grid = MakeVoxelGrid(volume).value();

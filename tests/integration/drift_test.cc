@@ -104,7 +104,7 @@ TEST_F(DriftTest, AnOrbitIsClosedAndTheGapIsSpread) {
 
 /// The rig comes out of the dark somewhere else, goes on there, and later sees both.
 TEST_F(DriftTest, AScanThatGoesOnElsewhereIsJoinedWhenBothAreSeen) {
-  scan_.options().mutable_submaps()->set_start_after_lost_s(1.0);
+  scan_.options().mutable_submaps()->mutable_expert()->set_start_after_lost_s(1.0);
   scan_.Start(OrbitPose(0.0));
   const GroundPipeline& pipeline = scan_.pipeline();
   int i = 0;

@@ -145,9 +145,9 @@ Scene Wall(bool boxes) {
 void MakeRoom(RecoveryScan& scan) {
   VolumeOptions& volume = *scan.options().mutable_volume();
   volume.set_size_x_m(2.4);
-  volume.set_min_x_m(-0.6);
+  volume.mutable_expert()->set_min_x_m(-0.6);
   volume.set_size_y_m(1.4);
-  volume.set_min_y_m(-0.2);
+  volume.mutable_expert()->set_min_y_m(-0.2);
 }
 
 /// Along the wall at 0.2 m/s on average, with a velocity that never stays.
@@ -276,7 +276,11 @@ TEST_F(FurnaceDoorTest, F54BadPosesAreRefusedByReasonAndTheScanGoesOn) {
 /// 15 cm within a frame, in a stream that has no other flaw, and faster than any start of the
 /// tracker can bridge.
 TEST_F(FurnaceDoorTest, F52AStreamThatLeapsDoesNotTakeTheScanAlong) {
-  scan_.options().mutable_tracker()->mutable_external_odometry()->set_max_speed_m_s(50.0);
+  scan_.options()
+      .mutable_tracker()
+      ->mutable_external_odometry()
+      ->mutable_expert()
+      ->set_max_speed_m_s(50.0);
   int index = 0;
   const Outcome with = Scan(scan_, path(), kFrames, true, [&](ExternalOdometry& sample) {
     if (index++ >= 100) sample.translation_m.x() += 0.15;

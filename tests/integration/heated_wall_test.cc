@@ -98,18 +98,20 @@ struct Setting {
   double netd_k = 0.1;
   double nuc_from =
       1e9;  ///< Frames from here on for 0.4 s repeat the last image and are not valid.
-  double min_gradient_k_m = TrackerOptions().thermal_min_gradient_k_m();
+  double min_gradient_k_m = TrackerOptions().expert().thermal_min_gradient_k_m();
 };
 
 Outcome Run(const Scene& scene, const Setting& setting) {
   Rig rig = DefaultSimulatedRig();
   rig.depth = rig.depth->WithoutDistortion().Downscaled(1);
   SimulatedDepthOptions depth_options;
-  depth_options.set_disparity_noise_px(0.5 * depth_options.disparity_noise_px());
-  depth_options.set_disparity_step_px(0.5 * depth_options.disparity_step_px());
+  depth_options.mutable_expert()->set_disparity_noise_px(
+      0.5 * depth_options.expert().disparity_noise_px());
+  depth_options.mutable_expert()->set_disparity_step_px(0.5 *
+                                                        depth_options.expert().disparity_step_px());
   const DepthSensor depth_sensor(*rig.depth, depth_options);
   SimulatedThermalOptions thermal_options;
-  thermal_options.set_netd_kelvin(setting.netd_k);
+  thermal_options.mutable_expert()->set_netd_kelvin(setting.netd_k);
   const ThermalSensor thermal_sensor(*rig.thermal, thermal_options);
   DepthSensor::Scratch depth_scratch;
   ThermalSensor::Scratch thermal_scratch;
@@ -118,10 +120,11 @@ Outcome Run(const Scene& scene, const Setting& setting) {
   VolumeOptions& volume = *options.mutable_volume();
   volume.set_voxel_size_m(0.004);
   volume.set_size_x_m(2.4);
-  volume.set_min_x_m(-0.6);
+  volume.mutable_expert()->set_min_x_m(-0.6);
   options.mutable_tsdf()->set_truncation_distance_m(0.016);
   options.mutable_tracker()->set_use_thermal(setting.use_thermal);
-  options.mutable_tracker()->set_thermal_min_gradient_k_m(setting.min_gradient_k_m);
+  options.mutable_tracker()->mutable_expert()->set_thermal_min_gradient_k_m(
+      setting.min_gradient_k_m);
   options.set_threads(2);
   const Walk walk;
   auto created = GroundPipeline::Create(options, rig, walk.PoseAt(0.0));
@@ -274,10 +277,11 @@ TEST(HeatedWallOptionsTest, WhatTheRigOrTheOptionsLackIsSaid) {
   auto pipeline = GroundPipeline::Create(options, rig, {});
   ASSERT_FALSE(pipeline);
   EXPECT_NE(pipeline.error().message().find("tracker.use_thermal"), std::string::npos);
-  options.mutable_tracker()->set_thermal_min_gradient_k_m(0.0);
+  options.mutable_tracker()->mutable_expert()->set_thermal_min_gradient_k_m(0.0);
   pipeline = GroundPipeline::Create(options, DefaultSimulatedRig(), {});
   ASSERT_FALSE(pipeline);
-  EXPECT_NE(pipeline.error().message().find("tracker.thermal_min_gradient_k_m"), std::string::npos);
+  EXPECT_NE(pipeline.error().message().find("tracker.expert.thermal_min_gradient_k_m"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -104,9 +104,9 @@ class RecordedRecoveryTest : public ::testing::Test {
   static Outcome Run(const Script& script) {
     GroundOptions options;
     VolumeOptions& volume = *options.mutable_volume();
-    volume.set_min_x_m(-0.48);
-    volume.set_min_y_m(-0.48);
-    volume.set_min_z_m(-0.48);
+    volume.mutable_expert()->set_min_x_m(-0.48);
+    volume.mutable_expert()->set_min_y_m(-0.48);
+    volume.mutable_expert()->set_min_z_m(-0.48);
     volume.set_voxel_size_m(0.004);
     options.mutable_tsdf()->set_truncation_distance_m(0.016);
     options.set_threads(2);

@@ -20,8 +20,8 @@ RecoveryScan::RecoveryScan(Scene scene, std::uint64_t seed)
   options_.set_threads(2);
   SimulatedDepthOptions camera;
   // Half the focal length: half the disparity noise and steps in pixels for the same in metres.
-  camera.set_disparity_noise_px(0.5 * camera.disparity_noise_px());
-  camera.set_disparity_step_px(0.5 * camera.disparity_step_px());
+  camera.mutable_expert()->set_disparity_noise_px(0.5 * camera.expert().disparity_noise_px());
+  camera.mutable_expert()->set_disparity_step_px(0.5 * camera.expert().disparity_step_px());
   sensor_ = std::make_unique<DepthSensor>(*rig_.depth, camera);
 }
 

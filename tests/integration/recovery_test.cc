@@ -245,7 +245,7 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
   RecoveryScan scan(builder.Build("bare wall"), kSeed);
   VolumeOptions& volume = *scan.options().mutable_volume();
   volume.set_size_x_m(2.4);
-  volume.set_min_x_m(-0.6);
+  volume.mutable_expert()->set_min_x_m(-0.6);
   const auto pose = [](int i) {
     return MakeTransform({0.2 * kFrame * i, 0.5, 0.3}, Eigen::Quaterniond::Identity());
   };

@@ -62,8 +62,8 @@ TEST(SpillTest, AModelUnderALimitEqualsTheOneWithout) {
   GroundOptions options;
   VolumeOptions& volume = *options.mutable_volume();
   volume.set_size_x_m(2.4);
-  volume.set_min_x_m(-0.6);
-  volume.set_min_y_m(-0.48);
+  volume.mutable_expert()->set_min_x_m(-0.6);
+  volume.mutable_expert()->set_min_y_m(-0.48);
   volume.set_voxel_size_m(0.004);
   options.mutable_tsdf()->set_truncation_distance_m(0.016);
   options.set_threads(2);

@@ -112,8 +112,9 @@ TEST_F(BadInputTest, F71AHugeVolumeIsRefusedWithNumbers) {
 
 TEST_F(BadInputTest, WrongOptionsAreConfigurationErrors) {
   ImportGood();
-  for (const char* assignment : {"tsdf.no_such_field=1", "nowhere.field=1", "tsdf.max_weight=many",
-                                 "volume.voxel_size_m=-1", "tracker.min_inlier_ratio=nan"}) {
+  for (const char* assignment :
+       {"tsdf.no_such_field=1", "nowhere.field=1", "tsdf.expert.max_weight=many",
+        "volume.voxel_size_m=-1", "tracker.expert.min_inlier_ratio=nan"}) {
     const Finished reconstruct =
         RunTool({"reconstruct", Recording(), "-o", Results(), "--set", assignment});
     EXPECT_EQ(reconstruct.status, kConfiguration) << assignment << ": " << reconstruct.output;

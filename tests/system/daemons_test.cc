@@ -224,8 +224,8 @@ TEST_F(DaemonsTest, FeedbackReachesTheEdgeAndItsAgeIsKnown) {
 }
 
 TEST_F(DaemonsTest, TheEdgeRecordsEverythingWithoutAGround) {
-  const Finished edge =
-      RunToEnd(Edge({"--rate", "4", "--exit-at-end", "--set", "link.linger_s=0"}), kPatience);
+  const Finished edge = RunToEnd(
+      Edge({"--rate", "4", "--exit-at-end", "--set", "link.expert.linger_s=0"}), kPatience);
   EXPECT_EQ(edge.status, 0) << edge.output;
   const RecordingContent source = ReadRecording(Source());
   const RecordingContent recorded = ReadRecording(Path("edge.mcap"));

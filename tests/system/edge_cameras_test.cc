@@ -28,7 +28,7 @@ class CamerasTest : public ::testing::Test {
         "--source", "cameras", "--set", "source.thermal_camera.enabled=false", "--domain",
         std::to_string(TestDomain()),
         // The fake driver reads there what it shall do.
-        "--set", "source.camera_sandbox.read=\"" + folder_.path().string() + "\""};
+        "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\""};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), std::move(arguments), {"LD_LIBRARY_PATH=" FAKE_OPENNI}, {}};
   }
@@ -168,8 +168,8 @@ TEST_F(CamerasTest, F14TheCamerasProcessDoesNotOutliveTheDaemon) {
 TEST_F(CamerasTest, AStallIsFoundInTheCamerasProcess) {
   camera_.script.faults[40].fault = FakeDepthFault::kStall;
   camera_.Apply();
-  Process edge(
-      Edge({"--record", file_.string(), "--set", "source.depth_camera.stall_timeout_s=0.5"}));
+  Process edge(Edge(
+      {"--record", file_.string(), "--set", "source.depth_camera.expert.stall_timeout_s=0.5"}));
   ASSERT_TRUE(edge.WaitForOutput("no frame for 0.", kPatience)) << edge.output();
   End(edge);
 }

@@ -130,8 +130,9 @@ TEST_F(EdgeDaemonTest, F38ATerminalThatIsGoneLeavesACompleteRecordingToo) {
 TEST_F(EdgeDaemonTest, ADiskThatFillsUpEndsTheRecordingOnly) {
   // A limit on the file's size fails as a full disk does, and needs no file system of its own.
   const std::string script = "trap '' XFSZ; ulimit -f 200; exec \"$0\" \"$@\"";
-  Command command = Edge({"--recording", scan_, "--record", copy_, "--rate", "0", "--exit-at-end",
-                          "--set", "source.loops=3", "--set", "spool.flush_interval_s=0.05"});
+  Command command =
+      Edge({"--recording", scan_, "--record", copy_, "--rate", "0", "--exit-at-end", "--set",
+            "source.loops=3", "--set", "spool.expert.flush_interval_s=0.05"});
   command.arguments.insert(command.arguments.begin(), {"-c", script, command.program});
   command.program = "/bin/sh";
   const Finished edge = RunToEnd(command, kPatience);
@@ -176,12 +177,12 @@ TEST_F(EdgeDaemonTest, AMissingRecordingIsAnInputError) {
 }
 
 TEST_F(EdgeDaemonTest, F59AWrongConfigurationListsAllProblems) {
-  const Finished edge = RunToEnd(
-      Edge({"--set", "timestamper.depth_window=0", "--set", "link.queue_frames=0", "--rate", "-1"}),
-      kPatience);
+  const Finished edge = RunToEnd(Edge({"--set", "timestamper.expert.depth_window=0", "--set",
+                                       "link.expert.queue_frames=0", "--rate", "-1"}),
+                                 kPatience);
   EXPECT_EQ(edge.status, 78);
-  EXPECT_THAT(edge.output, HasSubstr("timestamper.depth_window"));
-  EXPECT_THAT(edge.output, HasSubstr("link.queue_frames"));
+  EXPECT_THAT(edge.output, HasSubstr("timestamper.expert.depth_window"));
+  EXPECT_THAT(edge.output, HasSubstr("link.expert.queue_frames"));
   EXPECT_THAT(edge.output, HasSubstr("source.rate"));
 }
 

@@ -69,8 +69,8 @@ TEST_F(EdgeFailureTest, F39WhenTheCamerasLibraryHangsInThisProcessTheWatchdogIsN
   camera_.script.faults[30] = {FakeDepthFault::kStall};
   camera_.Apply();
   // Nothing else notices within this test.
-  Process edge(OnCameras({"--set", "source.depth_camera.stall_timeout_s=60", "--set",
-                          "source.depth_camera.own_process=false"}));
+  Process edge(OnCameras({"--set", "source.depth_camera.expert.stall_timeout_s=60", "--set",
+                          "source.depth_camera.expert.own_process=false"}));
   ASSERT_TRUE(manager_.WaitFor(kFed, kPatience)) << edge.output();
   EXPECT_TRUE(manager_.WaitForSilence(kFed, kWatchdogSec, kPatience)) << edge.output();
   EXPECT_THAT(edge.output(), HasSubstr("sends nothing"));
@@ -104,7 +104,7 @@ TEST_F(EdgeFailureTest, F38AStopWhileItWaitsForACameraIsServed) {
 
 TEST_F(EdgeFailureTest, F38F39AnOpeningThatDoesNotComeBackIsNoSignOfLifeAndAStopIsServed) {
   camera_.Plug(false);
-  Process edge(OnCameras({"--set", "source.depth_camera.own_process=false"}));
+  Process edge(OnCameras({"--set", "source.depth_camera.expert.own_process=false"}));
   ASSERT_TRUE(manager_.WaitForText("STATUS=waiting for a camera", kPatience)) << edge.output();
   camera_.script.open_hangs = true;
   camera_.Plug(true);

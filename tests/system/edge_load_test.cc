@@ -157,7 +157,7 @@ class EdgeLoadTest : public ::testing::Test {
     settings.program = EdgeDaemon();
     settings.arguments = {
         "--camera-process", "depth", "--camera-options",
-        "kind: CAMERAS camera_sandbox { write: \"" + folder_.path().string() + "\" }"};
+        "kind: CAMERAS camera_sandbox { expert { write: \"" + folder_.path().string() + "\" } }"};
     auto depth = std::make_unique<CameraProcess>(settings, clock_);
     depth_ = depth.get();
     std::vector<CameraPair::Camera> cameras;
@@ -171,8 +171,9 @@ class EdgeLoadTest : public ::testing::Test {
     };
     return std::make_unique<CameraPair>(
         std::move(cameras),
-        CameraPair::Queue{static_cast<std::size_t>(options_.capture_queue_frames()),
-                          OverflowPolicy::kDropOldest, dropped});
+        CameraPair::Queue{
+            static_cast<std::size_t>(options_.source().expert().capture_queue_frames()),
+            OverflowPolicy::kDropOldest, dropped});
   }
   std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source) {
     auto supervised = std::make_unique<SupervisedSource>(
@@ -207,7 +208,7 @@ class EdgeLoadTest : public ::testing::Test {
   /// Captures, records and publishes for as long as the test lasts.
   void Run(CameraPair& cameras, Usage& usage) {
     const auto files = std::make_shared<RecordingFiles>(RecordingDescription{
-        file_, FromSeconds(options_.spool().flush_interval_s()), cameras.rig(), {}});
+        file_, FromSeconds(options_.spool().expert().flush_interval_s()), cameras.rig(), {}});
     auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
                                                     [this] { return FreeDiskBytes(file_); },
                                                     options_.spool(), clock_, counters_});

@@ -29,7 +29,7 @@ class NucTest : public ::testing::Test {
     edge.arguments.insert(edge.arguments.end(), {"--record", folder_.path() / "edge.mcap"});
     settings.insert(
         settings.begin(),
-        {"source.loops=0", "source.cache_dir=" + folder_.path().string(),
+        {"source.loops=0", "source.expert.cache_dir=" + folder_.path().string(),
          "source.simulation.duration_s=2", "source.simulation.depth.rate_hz=2",
          "source.simulation.thermal.rate_hz=20", "source.simulation.shutter.interval_s=0"});
     for (const std::string& setting : settings)
@@ -80,8 +80,8 @@ TEST_F(NucTest, F07ACorrectionThatIsAskedForClosesTheShutterAndEnds) {
 }
 
 TEST_F(NucTest, F07AShutterOfWhichTheCameraDoesNotTellIsFoundInItsImages) {
-  Process edge(
-      Edge({"source.simulation.shutter.reports_shutter=false", "nuc.commanded_duration_s=0"}));
+  Process edge(Edge({"source.simulation.shutter.expert.reports_shutter=false",
+                     "nuc.expert.commanded_duration_s=0"}));
   ASSERT_TRUE(edge.WaitForOutput("started", kPatience)) << edge.output();
   EXPECT_EQ(Nuc({"--now"}).status, 0);
   EXPECT_TRUE(edge.WaitForOutput("known by its images", kPatience)) << edge.output();
@@ -109,8 +109,8 @@ TEST_F(NucTest, F08AStormIsReportedWithWhatItCostsAndNothingIsOrderedOnTop) {
 }
 
 TEST_F(NucTest, F08AnOrderThatIsNotFollowedIsReported) {
-  Process edge(Edge({"source.simulation.shutter.follows_orders=false", "nuc.max_attempts=1",
-                     "nuc.answer_s=0.5"}));
+  Process edge(Edge({"source.simulation.shutter.expert.follows_orders=false",
+                     "nuc.expert.max_attempts=1", "nuc.expert.answer_s=0.5"}));
   ASSERT_TRUE(edge.WaitForOutput("started", kPatience)) << edge.output();
   EXPECT_EQ(Nuc({"--now"}).status, 0);
   EXPECT_TRUE(edge.WaitForOutput("did not close within 0.5 s (attempt 1 of 1)", kPatience))
@@ -120,7 +120,7 @@ TEST_F(NucTest, F08AnOrderThatIsNotFollowedIsReported) {
 }
 
 TEST_F(NucTest, F08AShutterThatStaysClosedIsReportedAndTheScanGoesOn) {
-  Process edge(Edge({"source.simulation.shutter.duration_s=1000", "nuc.max_duration_s=1"}));
+  Process edge(Edge({"source.simulation.shutter.duration_s=1000", "nuc.expert.max_duration_s=1"}));
   ASSERT_TRUE(edge.WaitForOutput("started", kPatience)) << edge.output();
   EXPECT_EQ(Nuc({"--now"}).status, 0);
   EXPECT_TRUE(edge.WaitForOutput("the correction does not end", kPatience)) << edge.output();

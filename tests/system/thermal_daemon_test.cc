@@ -42,7 +42,7 @@ class ThermalDaemonTest : public ::testing::Test {
     std::vector<std::string> arguments = {
         "--source", "cameras", "--set", "source.depth_camera.enabled=false",
         // Where a fake depth camera reads what it shall do.
-        "--set", "source.camera_sandbox.read=\"" + folder_.path().string() + "\"", "--set",
+        "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\"", "--set",
         // The emulated bus answers for /dev itself, also to those who only want to name it.
         "source.camera_sandbox.enabled=false", "--record", file_.string(), "--domain",
         std::to_string(TestDomain())};
@@ -176,8 +176,8 @@ TEST_F(ThermalDaemonTest, F05FrozenFramesAreNotValidAndTheCameraIsOpenedAgainAft
 /// restart goes through the camera's thread.
 TEST_F(ThermalDaemonTest, F05FrozenCameraIsRestartedByOrder) {
   bus_->Plug(std::make_shared<EmulatedLepton>("12*f 30*f:freeze f"));
-  Process edge(Edge({"--set", "nuc.before_scan=false", "--set", "nuc.frozen_restart_s=2", "--set",
-                     "source.thermal_camera.stall_timeout_s=60"}));
+  Process edge(Edge({"--set", "nuc.before_scan=false", "--set", "nuc.expert.frozen_restart_s=2",
+                     "--set", "source.thermal_camera.expert.stall_timeout_s=60"}));
   bus_->SetChild(edge.pid());
   ASSERT_TRUE(edge.WaitForOutput("thermal frames are frozen", kPatience)) << edge.output();
   ASSERT_TRUE(edge.WaitForOutput("the thermal camera is restarted", kPatience)) << edge.output();
@@ -192,7 +192,7 @@ TEST_F(ThermalDaemonTest, F08CorrectionThatNeverEndsIsReportedAndDoesNotEndTheSc
   bus_->Plug(camera);
   Process edge(Edge());
   bus_->SetChild(edge.pid());
-  // Within ten seconds: after nuc.max_duration_s.
+  // Within ten seconds: after nuc.expert.max_duration_s.
   ASSERT_TRUE(
       edge.WaitForOutput("the correction does not end: the shutter is closed for 5.", kPatience))
       << edge.output();
@@ -231,7 +231,7 @@ TEST_F(ThermalDaemonTest, AnOrderThatTheCameraRefusesIsAnsweredWithItsWords) {
 
 TEST_F(ThermalDaemonTest, ACameraThatTakesNoOrdersRefusesWithItsReason) {
   bus_->Plug(std::make_shared<EmulatedSeek>("f"));
-  Process edge(Edge({"--set", "nuc.before_scan=true", "--set", "nuc.min_interval_s=0.5"}));
+  Process edge(Edge({"--set", "nuc.before_scan=true", "--set", "nuc.expert.min_interval_s=0.5"}));
   bus_->SetChild(edge.pid());
   // It closes its shutter when it starts, and that is the correction before the scan.
   ASSERT_TRUE(edge.WaitForOutput("shutter open after", kPatience)) << edge.output();

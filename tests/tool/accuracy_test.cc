@@ -20,6 +20,7 @@
 #include "ground/cli/truth.h"
 #include "ground/evaluation/ply_reader.h"
 #include "ground/offline/reconstruct.h"
+#include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
@@ -167,7 +168,8 @@ shutter { interval_s: 0 first_s: 100 })",
   InterpretationOptions* interpretation = options.mutable_interpretation();
   interpretation->set_emissivity(0.96);
   InterpretedRegion* target = interpretation->add_region();
-  target->set_box("0.41 0.48 0.505 0.57 0.65 0.523");
+  *target->mutable_box() = ToOptions(
+      Eigen::AlignedBox3d(Eigen::Vector3d(0.41, 0.48, 0.505), Eigen::Vector3d(0.57, 0.65, 0.523)));
   target->set_emissivity(0.95);
   const auto summary =
       ExportModel(result_ / "model.iso", options, Interpretation::Create(*interpretation).value(),
@@ -207,7 +209,10 @@ T_thermal_depth { tx: 0.02 ty: -0.01 tz: 0 qx: 0 qy: 0 qz: 0 qw: 1 })";
   const Status parsed = ParseTextProto(R"(
 duration_s: 1.5
 scene { scene: CORNER_SPHERE }
-depth { rate_hz: 60 depth_scale: 4000 disparity_noise_px: 0.03 disparity_step_px: 0.03125 }
+depth {
+  rate_hz: 60
+  expert { depth_scale: 4000 disparity_noise_px: 0.03 disparity_step_px: 0.03125 }
+}
 thermal { rate_hz: 25 }
 shutter { first_s: 0.6 duration_s: 0.2 })",
                                        "simulation", simulation);

@@ -52,8 +52,8 @@ class CalibrateToolTest : public isotherm::testing::ToolRun {
     Write("rig.textproto", kRig);
     const Outcome outcome =
         Run("simulate -o scan.mcap --set rig_file=rig.textproto "
-            "--set depth.depth_scale=4000 --set depth.disparity_noise_px=0.03 "
-            "--set depth.disparity_step_px=0.03125 --set thermal.rate_hz=20 " +
+            "--set depth.expert.depth_scale=4000 --set depth.expert.disparity_noise_px=0.03 "
+            "--set depth.expert.disparity_step_px=0.03125 --set thermal.rate_hz=20 " +
             more);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }

@@ -56,7 +56,7 @@ class SubMapTest : public ::testing::Test {
   GroundOptions options_;
   const CameraModel camera_ = SmallDepthCamera();
   ThreadPool pool_{2};
-  DepthPreprocessor preprocessor_{options_.preprocessor(), camera_};
+  DepthPreprocessor preprocessor_{options_.preprocessor(), camera_, DepthSensorModel()};
 };
 
 }  // namespace isotherm::testing

@@ -83,7 +83,7 @@ class BallAndWallTest : public ::testing::Test {
   };
   FusionReport FuseFrame(const ThermalOptions& options, const ThermalFrame& frame,
                          const CaptureConditions& capture = {}) {
-    ThermalFuser fuser(options, thermal_camera_, 0.0F);
+    ThermalFuser fuser(options, thermal_camera_, sensor_, 0.0F);
     return fuser.Fuse(frame, T_map_thermal_, depth_camera_, T_map_depth_, *tsdf_, pool_, *thermal_,
                       capture);
   }
@@ -105,6 +105,7 @@ class BallAndWallTest : public ::testing::Test {
 
   CameraModel depth_camera_ = SmallDepthCamera();
   CameraModel thermal_camera_ = ThermalCameraModel();
+  ThermalSensorModel sensor_;
   RigidTransform T_map_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
   RigidTransform T_map_thermal_ = MakeTransform({0.40, 0.36, 0.0}, Eigen::Quaterniond::Identity());
   ThreadPool pool_{2};

@@ -1,0 +1,76 @@
+#include "ground/cli/older_configuration.h"
+
+#include <google/protobuf/descriptor.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string_view>
+#include <vector>
+
+#include "common/config/renamed_options.h"
+
+namespace isotherm {
+namespace {
+
+namespace pb = google::protobuf;
+
+/// Sets the field that is called `path` ("expert.max_step_m") from `type` on.
+void SetAt(std::string_view path, const Json& value, const pb::Descriptor& type, Json& options) {
+  const std::size_t dot = path.find('.');
+  const std::string name(path.substr(0, dot));
+  const pb::FieldDescriptor* field = type.FindFieldByName(name);
+  if (field == nullptr) return;
+  if (dot == std::string_view::npos) {
+    if (field->message_type() == nullptr || value.is_structured()) options[name] = value;
+  } else if (field->message_type() != nullptr) {
+    SetAt(path.substr(dot + 1), value, *field->message_type(), options[name]);
+  }
+}
+
+/// The value behind "name: " in text format.
+Json ValueOf(const std::string& text) {
+  Json value = Json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return value.is_discarded() ? Json(text) : value;  // Enums stand there without quotes.
+}
+
+}  // namespace
+
+Json WithPresentNames(const Json& options, const pb::Descriptor& type) {
+  if (!options.is_object()) return options;
+  Json present = Json::object();
+  for (const auto& [name, value] : options.items()) {
+    const pb::FieldDescriptor* field = type.FindFieldByName(name);
+    if (const RenamedOption* renamed = field == nullptr ? FindRenamed(type, name) : nullptr) {
+      if (renamed->place == RenamedOption::Place::kOptions)
+        SetAt(renamed->now, value, type, present);
+    } else if (field == nullptr || field->message_type() == nullptr) {
+      present[name] = value;
+    } else if (value.is_object()) {
+      present[name].update(WithPresentNames(value, *field->message_type()));
+    } else if (!value.is_string()) {
+      present[name] = value;
+    }
+  }
+  return present;
+}
+
+Json OptionsFromLines(const std::string& text) {
+  Json options = Json::object();
+  std::vector<std::string> groups;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    line.erase(0, line.find_first_not_of(' '));
+    if (line == "}") {
+      if (!groups.empty()) groups.pop_back();
+    } else if (line.ends_with(" {")) {
+      groups.push_back(line.substr(0, line.size() - 2));
+    } else if (const std::size_t colon = line.find(": "); colon != std::string::npos) {
+      Json* group = &options;
+      for (const std::string& name : groups) group = &(*group)[name];
+      (*group)[line.substr(0, colon)] = ValueOf(line.substr(colon + 2));
+    }
+  }
+  return options;
+}
+
+}  // namespace isotherm
