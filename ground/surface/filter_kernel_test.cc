@@ -9,7 +9,7 @@
 
 #include "common/frame/image.h"
 #include "common/testing/kernel_checks.h"
-#include "ground/tracker/reference/filter_reference.h"
+#include "ground/surface/reference/filter_reference.h"
 
 namespace isotherm {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "common/testing/kernel_checks.h"
-#include "ground/tracker/reference/surface_map_reference.h"
+#include "ground/surface/reference/surface_map_reference.h"
 
 namespace isotherm {
 namespace {
