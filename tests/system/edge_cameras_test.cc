@@ -28,7 +28,8 @@ class CamerasTest : public ::testing::Test {
         "--source", "cameras", "--set", "source.thermal_camera.enabled=false", "--domain",
         std::to_string(TestDomain()),
         // The fake driver reads there what it shall do.
-        "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\""};
+        "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\"", "--set",
+        "source.camera_sandbox.expert.read=\"" + camera_.folder().string() + "\""};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), std::move(arguments), {"LD_LIBRARY_PATH=" FAKE_OPENNI}, {}};
   }

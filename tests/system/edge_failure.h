@@ -42,7 +42,8 @@ class EdgeFailureTest : public ::testing::Test {
     std::vector<std::string> arguments = {
         "--source", "cameras",
         "--set",    "source.thermal_camera.enabled=false",
-        "--set",    "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\""};
+        "--set",    "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\"",
+        "--set",    "source.camera_sandbox.expert.read=\"" + camera_.folder().string() + "\""};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return Edge(std::move(arguments));
   }

@@ -155,9 +155,10 @@ class EdgeLoadTest : public ::testing::Test {
     CameraProcess::Settings settings;
     settings.name = "depth camera";
     settings.program = EdgeDaemon();
-    settings.arguments = {
-        "--camera-process", "depth", "--camera-options",
-        "kind: CAMERAS camera_sandbox { expert { write: \"" + folder_.path().string() + "\" } }"};
+    settings.arguments = {"--camera-process", "depth", "--camera-options",
+                          "kind: CAMERAS camera_sandbox { expert { write: \"" +
+                              folder_.path().string() + "\" read: \"" + camera_.folder().string() +
+                              "\" } }"};
     auto depth = std::make_unique<CameraProcess>(settings, clock_);
     depth_ = depth.get();
     std::vector<CameraPair::Camera> cameras;

@@ -29,6 +29,9 @@ class FakeDepthCamera {
     script.connected = in;
     Apply();
   }
+  /// The driver reads there: a sandbox must allow it.
+  std::filesystem::path folder() const { return path_.parent_path(); }
+
   FakeDepthScript script;
 
  private:
