@@ -110,9 +110,13 @@ class OpenedDevice final : public OpenniDevice {
 
  private:
   Status OpenFile(const std::string& path) {
-    if (!std::filesystem::exists(path)) return NotFound(path + ": no such file");
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (status.type() == std::filesystem::file_type::not_found)
+      return NotFound(path + ": no such file");
+    if (error) return InvalidArgument(fmt::format("{}: {}", path, error.message()));
     // A pipe would be waited for until somebody writes to it.
-    if (!std::filesystem::is_regular_file(path))
+    if (!std::filesystem::is_regular_file(status))
       return InvalidArgument(path + ": is a folder, a pipe or a device, expected an .oni file");
     if (device_.open(path.c_str()) != openni::STATUS_OK || !device_.isFile()) {
       return DataLoss(fmt::format("{}: not a recording of OpenNI2: {}", path, OpenniError()));

@@ -21,9 +21,38 @@ void SetAt(std::string_view path, const Json& value, const pb::Descriptor& type,
   const pb::FieldDescriptor* field = type.FindFieldByName(name);
   if (field == nullptr) return;
   if (dot == std::string_view::npos) {
-    if (field->message_type() == nullptr || value.is_structured()) options[name] = value;
+    if (field->message_type() == nullptr) {
+      options[name] = value;
+    } else if (value.is_structured()) {
+      options[name] = WithPresentNames(value, *field->message_type());
+    }
   } else if (field->message_type() != nullptr) {
     SetAt(path.substr(dot + 1), value, *field->message_type(), options[name]);
+  }
+}
+
+/// Of a repeated message; one that stands alone is a list of one. Text was another grammar.
+Json ListWithPresentNames(const Json& list, const pb::Descriptor& type) {
+  Json present = Json::array();
+  for (const Json& item : list.is_array() ? list : Json::array({list}))
+    if (item.is_object()) present.push_back(WithPresentNames(item, type));
+  return present;
+}
+
+/// The group that is called so last, within `parent`.
+Json& Newest(Json& parent, const std::string& name) {
+  Json& group = parent[name];
+  return group.is_array() ? group.back() : group;
+}
+
+/// Another group of that name makes it a list.
+void Open(Json& parent, const std::string& name) {
+  Json& group = parent[name];
+  if (group.is_object()) group = Json::array({group});
+  if (group.is_array()) {
+    group.push_back(Json::object());
+  } else {
+    group = Json::object();
   }
 }
 
@@ -45,10 +74,10 @@ Json WithPresentNames(const Json& options, const pb::Descriptor& type) {
         SetAt(renamed->now, value, type, present);
     } else if (field == nullptr || field->message_type() == nullptr) {
       present[name] = value;
+    } else if (field->is_repeated()) {
+      present[name] = ListWithPresentNames(value, *field->message_type());
     } else if (value.is_object()) {
       present[name].update(WithPresentNames(value, *field->message_type()));
-    } else if (!value.is_string()) {
-      present[name] = value;
     }
   }
   return present;
@@ -58,16 +87,21 @@ Json OptionsFromLines(const std::string& text) {
   Json options = Json::object();
   std::vector<std::string> groups;
   std::istringstream lines(text);
+  const auto current = [&]() -> Json& {
+    Json* group = &options;
+    for (const std::string& name : groups) group = &Newest(*group, name);
+    return *group;
+  };
   for (std::string line; std::getline(lines, line);) {
     line.erase(0, line.find_first_not_of(' '));
     if (line == "}") {
       if (!groups.empty()) groups.pop_back();
     } else if (line.ends_with(" {")) {
-      groups.push_back(line.substr(0, line.size() - 2));
+      const std::string name = line.substr(0, line.size() - 2);
+      Open(current(), name);
+      groups.push_back(name);
     } else if (const std::size_t colon = line.find(": "); colon != std::string::npos) {
-      Json* group = &options;
-      for (const std::string& name : groups) group = &(*group)[name];
-      (*group)[line.substr(0, colon)] = ValueOf(line.substr(colon + 2));
+      current()[line.substr(0, colon)] = ValueOf(line.substr(colon + 2));
     }
   }
   return options;

@@ -170,7 +170,10 @@ bool DdsSubscriber::TakeTurn() {
   // A description may end a session, whose last frames were sent before it on other topics: those
   // have arrived by now, and are taken first.
   const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerTurn;
-  if (!frames_are_left || ++turns_behind_frames_ == kMaxTurnsBehindFrames) AdmitDescriptions();
+  if (!descriptions_.empty() &&
+      (!frames_are_left || ++turns_behind_frames_ == kMaxTurnsBehindFrames)) {
+    AdmitDescriptions();
+  }
   return taken + depth_taken + thermal_taken > 0;
 }
 
