@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "ground/export/message_json.h"
 #include "ground/options/ground_options.pb.h"
 

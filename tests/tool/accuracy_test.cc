@@ -89,7 +89,7 @@ TEST_F(AccuracyTest, RenderedFurnaceDoorWithTruth) {
   if (!Import("furnace_dev")) GTEST_SKIP() << "no test data; set ISOTHERM_DATA_DIR";
   GroundOptions options;
   for (const char* axis : {"x", "y", "z"}) {
-    ASSERT_TRUE(ApplyOverride(std::string("volume.min_") + axis + "_m=-0.48", options).ok());
+    ASSERT_TRUE(ApplyOverride(std::string("volume.expert.min_") + axis + "_m=-0.48", options).ok());
   }
   const ReconstructSummary summary = Run(options, data_ / "groundtruth.txt");
   EXPECT_EQ(summary.tracked_frames, 300U);
@@ -111,7 +111,7 @@ TEST_F(AccuracyTest, ExcerptOfTheRenderedFurnaceDoorWithTruth) {
   ASSERT_TRUE(ImportFolder(ISOTHERM_SOURCE_DIR "/tests/data/furnace_excerpt"));
   GroundOptions options;
   for (const char* axis : {"x", "y", "z"}) {
-    ASSERT_TRUE(ApplyOverride(std::string("volume.min_") + axis + "_m=-0.48", options).ok());
+    ASSERT_TRUE(ApplyOverride(std::string("volume.expert.min_") + axis + "_m=-0.48", options).ok());
   }
   options.mutable_volume()->set_voxel_size_m(0.003);
   options.mutable_tsdf()->set_truncation_distance_m(0.012);
