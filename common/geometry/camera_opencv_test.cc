@@ -1,11 +1,15 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "common/geometry/camera.h"
+#include "common/geometry/rectified_camera.h"
 #include "common/testing/opencv_camera.h"
 
 namespace isotherm {
@@ -106,6 +110,61 @@ TEST_P(CameraAgainstOpencvTest, PixelsLookWhereUndistortPointsSays) {
     EXPECT_NEAR(ray.x(), truth[i].x, kIterations) << pixels[i];
     EXPECT_NEAR(ray.y(), truth[i].y, kIterations) << pixels[i];
   }
+}
+
+TEST_P(CameraAgainstOpencvTest, ARectifiedImageHoldsTheWholeBorderAndNoMore) {
+  const CameraModel ideal = RectifiedCamera(camera_);
+  EXPECT_FALSE(ideal.HasDistortion());
+  EXPECT_EQ(ideal.fx, camera_.fx) << "as sharp at the centre";
+  EXPECT_EQ(ideal.fy, camera_.fy);
+  EXPECT_NEAR(ideal.cx - camera_.cx, std::round(ideal.cx - camera_.cx), kRounding_px);
+  std::vector<cv::Point2d> border;
+  for (int v = 0; v < camera_.height; ++v) {
+    for (const int u : {0, camera_.width - 1}) border.emplace_back(u, v);
+  }
+  for (int u = 0; u < camera_.width; ++u) {
+    for (const int v : {0, camera_.height - 1}) border.emplace_back(u, v);
+  }
+  std::vector<cv::Point2d> truth;
+  const cv::TermCriteria to_the_end(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 500, 1e-12);
+  cv::undistortPoints(border, truth, testing::OpencvMatrix(camera_),
+                      testing::OpencvDistortion(camera_), cv::noArray(),
+                      testing::OpencvMatrix(ideal), to_the_end);
+  double left = ideal.width, right = 0.0, top = ideal.height, bottom = 0.0;
+  for (const cv::Point2d& pixel : truth) {
+    left = std::min(left, pixel.x);
+    right = std::max(right, pixel.x);
+    top = std::min(top, pixel.y);
+    bottom = std::max(bottom, pixel.y);
+  }
+  // Whole pixels are kept, so less than one remains beyond each side.
+  const auto just_inside = ::testing::AllOf(::testing::Ge(-1e-5), ::testing::Lt(1.0));
+  EXPECT_THAT(left, just_inside);
+  EXPECT_THAT(top, just_inside);
+  EXPECT_THAT(ideal.width - 1 - right, just_inside);
+  EXPECT_THAT(ideal.height - 1 - bottom, just_inside);
+}
+
+TEST_P(CameraAgainstOpencvTest, WhatIsInTheImageIsThereByProjectPointsToo) {
+  std::vector<cv::Point3d> points;
+  for (double y = -0.6; y <= 0.6; y += 0.05) {
+    for (double x = -0.7; x <= 0.7; x += 0.05) points.emplace_back(x, y, 1.0);
+  }
+  std::vector<cv::Point2d> truth;
+  cv::projectPoints(points, cv::Vec3d::zeros(), cv::Vec3d::zeros(), testing::OpencvMatrix(camera_),
+                    testing::OpencvDistortion(camera_), truth);
+  int inside = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto pixel = ProjectIntoImage(camera_, {points[i].x, points[i].y});
+    const bool expected = truth[i].x >= -0.5 && truth[i].x < camera_.width - 0.5 &&
+                          truth[i].y >= -0.5 && truth[i].y < camera_.height - 0.5;
+    ASSERT_EQ(pixel.has_value(), expected) << points[i];
+    if (!pixel) continue;
+    ++inside;
+    EXPECT_NEAR(pixel->x(), truth[i].x, kRounding_px);
+    EXPECT_NEAR(pixel->y(), truth[i].y, kRounding_px);
+  }
+  EXPECT_GT(inside, 250);
 }
 
 INSTANTIATE_TEST_SUITE_P(Lenses, CameraAgainstOpencvTest, ::testing::ValuesIn(Lenses()),

@@ -17,15 +17,14 @@ inline cv::Vec<double, 5> OpencvDistortion(const CameraModel& camera) {
   return {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3};
 }
 
-/// The distorted pixel that each pixel of the camera without distortion shows, by OpenCV, in single
-/// precision.
+/// The pixel of `camera` that each pixel of `ideal`, a camera without distortion, shows, by OpenCV,
+/// in single precision.
 struct OpencvRectification {
   cv::Mat1f x, y;
 
-  explicit OpencvRectification(const CameraModel& camera) {
-    const cv::Matx33d matrix = OpencvMatrix(camera);
-    cv::initUndistortRectifyMap(matrix, OpencvDistortion(camera), cv::noArray(), matrix,
-                                {camera.width, camera.height}, CV_32FC1, x, y);
+  OpencvRectification(const CameraModel& camera, const CameraModel& ideal) {
+    cv::initUndistortRectifyMap(OpencvMatrix(camera), OpencvDistortion(camera), cv::noArray(),
+                                OpencvMatrix(ideal), {ideal.width, ideal.height}, CV_32FC1, x, y);
   }
 };
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/noise.h"
+#include "common/geometry/rectified_camera.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -39,7 +40,7 @@ class PoseViewer {
       : views_(views),
         tsdf_(tsdf),
         pool_(pool),
-        ideal_(views.thermal_camera.WithoutDistortion().Downscaled(kHalvings)),
+        ideal_(RectifiedCamera(views.thermal_camera).Downscaled(kHalvings)),
         tolerance_per_m_(kNeighbourhood_px / ideal_.fx * std::sqrt(1.0 - kMinCosine * kMinCosine) /
                          kMinCosine) {
     const CameraModel& camera = views.thermal_camera;
@@ -155,7 +156,7 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
                                      std::size_t most, ThreadPool& pool) {
   std::vector<TexturePoint> points;
   if (views.frames.empty()) return points;
-  const CameraModel camera = views.thermal_camera.WithoutDistortion().Downscaled(kHalvings);
+  const CameraModel camera = RectifiedCamera(views.thermal_camera).Downscaled(kHalvings);
   const std::size_t count = std::min(kPointViews, views.frames.size());
   Raycaster raycaster;
   SurfaceMaps maps;

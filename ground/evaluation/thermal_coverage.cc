@@ -1,5 +1,6 @@
 #include "ground/evaluation/thermal_coverage.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "common/frame/image.h"
+#include "common/geometry/rectified_camera.h"
 
 namespace isotherm {
 namespace {
@@ -17,12 +19,24 @@ constexpr float kMinFacing = 0.05F;
 constexpr float kBehindSpacings = 3.0F;
 constexpr float kMinDepth_m = 0.05F;
 
+/// Where the pixels of a camera look: through its lens, so that what it distorts out of the image
+/// does not count, nor does what it draws in get lost.
+Image<Eigen::Vector2f> LinesOfSight(const CameraModel& camera) {
+  Image<Eigen::Vector2f> lines(camera.width, camera.height, Eigen::Vector2f::Zero());
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) lines.At(u, v) = Unproject(camera, {u, v}).cast<float>();
+  }
+  return lines;
+}
+
 /// One pose's view of the true points.
 class View {
  public:
-  View(const TrueSurface& truth, const CameraModel& camera, const RigidTransform& T_truth_camera)
+  View(const TrueSurface& truth, const CameraModel& camera,
+       const Image<Eigen::Vector2f>& lines_of_sight, const RigidTransform& T_truth_camera)
       : truth_(truth),
-        camera_(camera.WithoutDistortion()),
+        camera_(camera),
+        lines_of_sight_(lines_of_sight),
         R_(T_truth_camera.linear().transpose().cast<float>()),
         position_(T_truth_camera.translation().cast<float>()),
         depth_m_(camera.width, camera.height, std::numeric_limits<float>::max()) {
@@ -38,9 +52,10 @@ class View {
     }
     const float cosine = -(R_ * truth_.points().normals[i]).dot(p) / distance_m;
     if (cosine < std::cos(limits.max_angle_deg * std::numbers::pi / 180.0)) return false;
-    const auto u = static_cast<int>(std::floor(U(p) + 0.5F));
-    const auto v = static_cast<int>(std::floor(V(p) + 0.5F));
-    if (u < 0 || v < 0 || u >= camera_.width || v >= camera_.height) return false;
+    const auto pixel = ProjectIntoImage(camera_, Normalized(p));
+    if (!pixel) return false;
+    const auto u = static_cast<int>(std::floor(pixel->x() + 0.5));
+    const auto v = static_cast<int>(std::floor(pixel->y() + 0.5));
     return p.z() <= depth_m_.At(u, v) + kBehindSpacings * truth_.spacing_m();
   }
 
@@ -48,11 +63,25 @@ class View {
   Eigen::Vector3f Point(std::size_t i) const {
     return R_ * (truth_.points().positions_m[i] - position_);
   }
-  float U(const Eigen::Vector3f& p) const {
-    return static_cast<float>(camera_.fx) * p.x() / p.z() + static_cast<float>(camera_.cx);
+  static Eigen::Vector2d Normalized(const Eigen::Vector3f& p) {
+    return (p.head<2>() / p.z()).cast<double>();
   }
-  float V(const Eigen::Vector3f& p) const {
-    return static_cast<float>(camera_.fy) * p.y() / p.z() + static_cast<float>(camera_.cy);
+
+  /// Pixels that may see a disc of one spacing around `p`; empty outside the image.
+  Eigen::AlignedBox2i PixelsAround(const Eigen::Vector3f& p) const {
+    const float radius_m = truth_.spacing_m();
+    Eigen::AlignedBox2d place;
+    for (const float x : {-radius_m, radius_m}) {
+      for (const float y : {-radius_m, radius_m})
+        place.extend(ProjectNormalized(camera_, Normalized(p + Eigen::Vector3f(x, y, 0.0F))));
+    }
+    const Eigen::Vector2d last(camera_.width - 1, camera_.height - 1);
+    const Eigen::AlignedBox2d image(Eigen::Vector2d::Zero(), last);
+    // A point far outside has no place that an integer could hold.
+    if (!place.sizes().allFinite() || !image.intersects(place)) return {};
+    const Eigen::AlignedBox2d inside = image.intersection(place);
+    return {inside.min().array().floor().cast<int>().matrix(),
+            inside.max().array().ceil().cast<int>().matrix()};
   }
 
   void Draw(std::size_t i) {
@@ -60,15 +89,10 @@ class View {
     if (!(p.z() > kMinDepth_m)) return;
     const float radius_m = truth_.spacing_m();
     const Eigen::Vector3f n = R_ * truth_.points().normals[i];
-    const float extent_px =
-        std::ceil(static_cast<float>(std::max(camera_.fx, camera_.fy)) * radius_m / p.z());
-    const auto first = [&](float at) { return std::max(0, static_cast<int>(at - extent_px)); };
-    const auto last = [&](float at, int size) {
-      return std::min(size - 1, static_cast<int>(at + extent_px));
-    };
-    for (int y = first(V(p)); y <= last(V(p), camera_.height); ++y) {
-      for (int x = first(U(p)); x <= last(U(p), camera_.width); ++x) {
-        const Eigen::Vector3f ray = Unproject(camera_, {x, y}).homogeneous().cast<float>();
+    const Eigen::AlignedBox2i pixels = PixelsAround(p);
+    for (int y = pixels.min().y(); y <= pixels.max().y(); ++y) {
+      for (int x = pixels.min().x(); x <= pixels.max().x(); ++x) {
+        const Eigen::Vector3f ray = lines_of_sight_.At(x, y).homogeneous();
         const float facing = n.dot(ray);
         if (std::abs(facing) < kMinFacing) continue;
         const float z = n.dot(p) / facing;
@@ -79,7 +103,8 @@ class View {
   }
 
   const TrueSurface& truth_;
-  const CameraModel camera_;
+  const CameraModel& camera_;
+  const Image<Eigen::Vector2f>& lines_of_sight_;
   const Eigen::Matrix3f R_;
   const Eigen::Vector3f position_;
   Image<float> depth_m_;
@@ -92,8 +117,9 @@ ThermalCoverage EvaluateThermalCoverage(const TrueSurface& truth, const CameraMo
                                         const WellSeenLimits& limits,
                                         std::span<const Eigen::Vector3f> assigned, float radius_m) {
   std::vector<bool> seen(truth.points().positions_m.size(), false);
+  const Image<Eigen::Vector2f> lines_of_sight = LinesOfSight(camera);
   for (const RigidTransform& pose : T_truth_thermal) {
-    const View view(truth, camera, pose);
+    const View view(truth, camera, lines_of_sight, pose);
     for (std::size_t i = 0; i < seen.size(); ++i) {
       if (!seen[i]) seen[i] = view.SeesWell(i, limits);
     }

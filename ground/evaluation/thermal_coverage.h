@@ -22,8 +22,9 @@ struct ThermalCoverage {
 };
 
 /// `T_truth_thermal`: true poses of the thermal camera. A true point is seen by a pose if it
-/// projects into the image of `camera` and no other part of the true surface lies before it: the
-/// samples' discs are drawn into a depth image at the camera's resolution. It is covered if a point
+/// projects into the image that `camera` takes, through its lens, and no other part of the true
+/// surface lies before it: the samples' discs are drawn into a depth image at the camera's
+/// resolution. It is covered if a point
 /// of `assigned` (in the truth's world) lies within `radius_m`.
 ThermalCoverage EvaluateThermalCoverage(const TrueSurface& truth, const CameraModel& camera,
                                         std::span<const RigidTransform> T_truth_thermal,

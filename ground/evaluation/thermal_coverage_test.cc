@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <utility>
+#include <vector>
+
 namespace isotherm {
 namespace {
 
@@ -47,6 +51,32 @@ TEST_F(ThermalCoverageTest, WhatAForegroundHidesDoesNotCount) {
   poses_.push_back(MakeTransform(
       {0.5, 0.0, 0.2}, Eigen::Quaterniond(Eigen::AngleAxisd(-0.9, Eigen::Vector3d::UnitY()))));
   EXPECT_GT(Fraction(Evaluate().well_seen), 0.85) << "another pose sees behind it";
+}
+
+TEST_F(ThermalCoverageTest, ALensDecidesWhatIsInTheImage) {
+  // The wall ends at x = 0.15 m / 0.6 m = 0.25, the image without a lens at 79.5 / 360 = 0.22.
+  camera_.fx = 360.0;
+  camera_.fy = 280.0;
+  const auto seen = [&](double k1) {
+    camera_.k1 = k1;
+    return Fraction(Evaluate().well_seen);
+  };
+  const double without = seen(0.0);
+  EXPECT_NEAR(without, (0.28 - 2.0 * (0.15 - 0.6 * 0.221)) / 0.4, kEdges);
+  // 0.25 (1 - 2.2 * 0.25^2) = 0.216: all of the wall's width.
+  EXPECT_NEAR(seen(-2.2), 0.28 / 0.4, kEdges) << "a barrel lens sees more";
+  EXPECT_LT(seen(2.2), without - 2.0 * kEdges) << "and a pincushion lens less";
+}
+
+TEST_F(ThermalCoverageTest, WhatThePolynomialFoldsBackIsNotSeen) {
+  TruePoints wall;
+  AddPlate(0.15F, 0.6F, wall);
+  truth_.emplace(std::move(wall));
+  // x (1 - 20 x^2) is 79.5 / 1500 first at x = 0.057, and is 0 again at x = 0.22. In height it is
+  // 59.5 / 1500 at 0.041.
+  camera_.k1 = -20.0;
+  camera_.fx = camera_.fy = 1500.0;
+  EXPECT_NEAR(Fraction(Evaluate().well_seen), 4.0 * 0.034 * 0.025 / 0.06, kEdges);
 }
 
 TEST_F(ThermalCoverageTest, DistanceAndAngleLimitWhatCounts) {

@@ -48,7 +48,7 @@ ThesisFuser::ThesisFuser(const ThermalOptions& options, const Rig& rig, float mi
       min_weight_(min_weight),
       filter_(filter),
       rectifier_(*rig.thermal),
-      nearest_m_(rig.thermal->width, rig.thermal->height),
+      nearest_m_(rectifier_.ideal_camera().width, rectifier_.ideal_camera().height),
       vertices_(rig.depth->width, rig.depth->height) {}
 
 ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_world,

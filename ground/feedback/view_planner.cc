@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/base/check.h"
+#include "common/geometry/rectified_camera.h"
 
 namespace isotherm {
 namespace {
@@ -32,7 +33,7 @@ constexpr int kStepsAtView = 20;
 constexpr std::size_t kMaxExhausted = 64;
 
 CameraModel Coarse(CameraModel camera) {
-  camera = camera.WithoutDistortion();
+  camera = RectifiedCamera(camera);
   const double scale = static_cast<double>(kCastWidth) / camera.width;
   camera.width = kCastWidth;
   camera.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));

@@ -44,7 +44,7 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
 }
 
 double ThermalStage::RegistrationSigmaPx(const TrackedDepth& depth) const {
-  return camera_.fx * depth.surface_sigma_rad;
+  return fuser_.ideal_camera().fx * depth.surface_sigma_rad;
 }
 
 std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,

@@ -39,6 +39,13 @@ constexpr std::uint32_t kFramesBetweenReviews = 16;
 /// Stands for no limit; its square is finite.
 constexpr float kNoLimit = 1e18F;
 
+/// How far from the image's middle the row of `camera` is that sees normalised row `y` of the ideal
+/// camera, above or below its principal point.
+double RowsFromMiddle(const CameraModel& camera, double y) {
+  const double middle = 0.5 * (camera.height - 1);
+  return std::min(std::abs(ProjectNormalized(camera, {0.0, y}).y() - middle), middle);
+}
+
 template <typename Vector>
 void CopyVector(const Vector& from, float* to) {
   const Eigen::Vector3f single = from.template cast<float>();
@@ -67,8 +74,8 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
       min_weight_(min_weight),
       apron_(std::max(1, options.expert().occlusion().edge_margin_px())),
       rectifier_(thermal_camera) {
-  const int width = thermal_camera.width;
-  const int height = thermal_camera.height;
+  const int width = rectifier_.ideal_camera().width;
+  const int height = rectifier_.ideal_camera().height;
   distances_m_ =
       Image<float>(width + 2 * apron_, height + 2 * apron_, std::numeric_limits<float>::max());
   pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + 1);
@@ -177,8 +184,9 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
       row.distance_m = distances_m_.Row(y + apron_).data() + apron_;
       row.celsius = celsius_.Row(y + apron_).data() + apron_;
       row.y = static_cast<float>((y - camera.cy) / camera.fy);
-      row.smear_s = static_cast<float>(sensor_.time_constant_s +
-                                       sensor_.row_readout_s * std::abs(y - 0.5 * (height - 1)));
+      row.smear_s =
+          static_cast<float>(sensor_.time_constant_s +
+                             sensor_.row_readout_s * RowsFromMiddle(rectifier_.camera(), row.y));
       ThermalPixel* pixels =
           pixels_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
       const PixelRowCounts counts = MakePixelRow(row, pixels);
@@ -272,10 +280,8 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
                                 const CameraModel& depth_camera, const RigidTransform& T_map_depth,
                                 const TsdfVolume& tsdf, ThreadPool& pool, ThermalVolume& thermal,
                                 const CaptureConditions& capture) {
-  const CameraModel& camera = rectifier_.ideal_camera();
   CHECK(frame.valid);
   CHECK(IsRigid(T_map_thermal) && IsRigid(T_map_depth));
-  CHECK(frame.centikelvin.width() == camera.width && frame.centikelvin.height() == camera.height);
   rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
   CastSurface(T_map_thermal, tsdf, pool);
   FusionReport report;

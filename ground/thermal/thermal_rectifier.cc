@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
+#include "common/base/check.h"
+#include "common/geometry/rectified_camera.h"
 #include "ground/thermal/thermal_kernel.h"
 
 namespace isotherm {
@@ -11,25 +14,34 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRowsPerTask = 8;
 
+template <typename Row>
+void ForRows(int height, ThreadPool& pool, const Row& row) {
+  pool.ParallelFor((height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
+    const int end = std::min(height, (task + 1) * kRowsPerTask);
+    for (int y = task * kRowsPerTask; y < end; ++y) row(y);
+  });
+}
+
 }  // namespace
 
 ThermalRectifier::ThermalRectifier(const CameraModel& camera)
-    : ideal_(camera.WithoutDistortion()),
-      source_(camera.width, camera.height, -1),
-      fraction_x_(camera.width, camera.height),
-      fraction_y_(camera.width, camera.height) {
-  for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u) {
-      const Eigen::Vector2d pixel = ProjectNormalized(camera, Unproject(ideal_, {u, v}));
-      if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0 && pixel.x() <= camera.width - 1 &&
-            pixel.y() <= camera.height - 1)) {
+    : camera_(camera),
+      ideal_(RectifiedCamera(camera)),
+      source_(ideal_.width, ideal_.height, -1),
+      fraction_x_(ideal_.width, ideal_.height),
+      fraction_y_(ideal_.width, ideal_.height) {
+  for (int v = 0; v < ideal_.height; ++v) {
+    for (int u = 0; u < ideal_.width; ++u) {
+      const auto pixel = ProjectIntoImage(camera, Unproject(ideal_, {u, v}));
+      if (!pixel || !(pixel->x() >= 0.0 && pixel->y() >= 0.0 && pixel->x() <= camera.width - 1 &&
+                      pixel->y() <= camera.height - 1)) {
         continue;
       }
-      const int x = std::min(static_cast<int>(pixel.x()), camera.width - 2);
-      const int y = std::min(static_cast<int>(pixel.y()), camera.height - 2);
+      const int x = std::min(static_cast<int>(pixel->x()), camera.width - 2);
+      const int y = std::min(static_cast<int>(pixel->y()), camera.height - 2);
       source_.At(u, v) = y * camera.width + x;
-      fraction_x_.At(u, v) = static_cast<float>(pixel.x() - x);
-      fraction_y_.At(u, v) = static_cast<float>(pixel.y() - y);
+      fraction_x_.At(u, v) = static_cast<float>(pixel->x() - x);
+      fraction_y_.At(u, v) = static_cast<float>(pixel->y() - y);
     }
   }
 }
@@ -38,25 +50,20 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, int apro
                                Image<float>& celsius) {
   const int width = ideal_.width;
   const int height = ideal_.height;
-  image_.Resize(width, height);
+  CHECK(centikelvin.width() == camera_.width && centikelvin.height() == camera_.height);
+  image_.Resize(camera_.width, camera_.height);
   if (celsius.width() != width + 2 * apron || celsius.height() != height + 2 * apron)
     celsius = Image<float>(width + 2 * apron, height + 2 * apron, kNan);
-  const int tasks = (height + kRowsPerTask - 1) / kRowsPerTask;
-  pool.ParallelFor(tasks, [&](int task) {
-    const auto begin = static_cast<std::size_t>(task * kRowsPerTask * width);
-    const auto end =
-        std::min(image_.size(), begin + static_cast<std::size_t>(kRowsPerTask * width));
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::uint16_t raw = centikelvin.data()[i];
-      image_.data()[i] = raw == 0 ? kNan : static_cast<float>(raw) * 0.01F - 273.15F;
-    }
+  ForRows(camera_.height, pool, [&](int y) {
+    const std::span<const std::uint16_t> raw = centikelvin.Row(y);
+    const std::span<float> row = image_.Row(y);
+    for (std::size_t x = 0; x < row.size(); ++x)
+      row[x] = raw[x] == 0 ? kNan : static_cast<float>(raw[x]) * 0.01F - 273.15F;
   });
-  pool.ParallelFor(tasks, [&](int task) {
-    for (int v = task * kRowsPerTask; v < std::min(height, (task + 1) * kRowsPerTask); ++v) {
-      ResampleRow({image_.data(), width, source_.Row(v).data(), fraction_x_.Row(v).data(),
-                   fraction_y_.Row(v).data(), width},
-                  celsius.Row(v + apron).data() + apron);
-    }
+  ForRows(height, pool, [&](int v) {
+    ResampleRow({image_.data(), camera_.width, source_.Row(v).data(), fraction_x_.Row(v).data(),
+                 fraction_y_.Row(v).data(), width},
+                celsius.Row(v + apron).data() + apron);
   });
 }
 

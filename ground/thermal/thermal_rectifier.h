@@ -8,17 +8,21 @@
 
 namespace isotherm {
 
-/// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, NaN outside the
-/// image or where the frame has no value. Bilinear. Keeps scratch memory. Thread-compatible.
+/// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, which sees all
+/// that the frame shows (RectifiedCamera); NaN outside the frame or where it has no value.
+/// Bilinear. Keeps scratch memory. Thread-compatible.
 class ThermalRectifier {
  public:
   explicit ThermalRectifier(const CameraModel& camera);
-  /// Writes into `celsius` with `apron` pixels of NaN all around.
+  /// `centikelvin` has the camera's size (CHECK). Writes into `celsius` with `apron` pixels of NaN
+  /// all around.
   void Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
                Image<float>& celsius);
+  const CameraModel& camera() const { return camera_; }
   const CameraModel& ideal_camera() const { return ideal_; }
 
  private:
+  CameraModel camera_;
   CameraModel ideal_;
   Image<std::int32_t> source_;  ///< Upper left of the four source pixels, -1 = outside.
   Image<float> fraction_x_, fraction_y_;

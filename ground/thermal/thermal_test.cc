@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/geometry/rectified_camera.h"
 #include "ground/thermal/testing/ball_and_wall.h"
 
 namespace isotherm {
@@ -134,17 +135,19 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
   constexpr int kApron = 2;
   ThermalRectifier(camera).Rectify(image, kApron, pool, celsius);
   EXPECT_TRUE(std::isnan(celsius.At(1, 71)));
-  for (const Eigen::Vector2d& ideal :
-       {Eigen::Vector2d(95, 71), Eigen::Vector2d(50, 40), Eigen::Vector2d(150, 110)}) {
+  const CameraModel ideal_camera = RectifiedCamera(camera);
+  for (const Eigen::Vector2i& ideal :
+       {Eigen::Vector2i(95, 71), Eigen::Vector2i(50, 40), Eigen::Vector2i(150, 110)}) {
     const Eigen::Vector2d source =
-        ProjectNormalized(camera, Unproject(camera.WithoutDistortion(), ideal));
-    EXPECT_NEAR(
-        celsius.At(static_cast<int>(ideal.x()) + kApron, static_cast<int>(ideal.y()) + kApron),
-        CentikelvinToCelsius(raw(source.x(), source.y())), 0.001);
+        ProjectNormalized(camera, Unproject(ideal_camera, ideal.cast<double>()));
+    EXPECT_NEAR(celsius.At(ideal.x() + kApron, ideal.y() + kApron),
+                CentikelvinToCelsius(raw(source.x(), source.y())), 0.001);
   }
-  image.At(95, 71) = 0;
+  const auto middle_x = static_cast<int>(ideal_camera.cx),
+             middle_y = static_cast<int>(ideal_camera.cy);
+  image.At(static_cast<int>(camera.cx), static_cast<int>(camera.cy)) = 0;
   ThermalRectifier(camera).Rectify(image, kApron, pool, celsius);
-  EXPECT_TRUE(std::isnan(celsius.At(95 + kApron, 71 + kApron)))
+  EXPECT_TRUE(std::isnan(celsius.At(middle_x + kApron, middle_y + kApron)))
       << "a pixel without value stays without value";
 }
 

@@ -41,7 +41,7 @@ TEST(DepthRectificationTest, EachPixelShowsTheDepthThatOpencvFindsThere) {
   ThreadPool pool(1);
   DepthPreprocessor preprocessor(PreprocessorOptions(), camera, DepthSensorModel());
   const Image<float>& depth_m = preprocessor.Process(frame, pool).depth_m;
-  const testing::OpencvRectification truth(camera);
+  const testing::OpencvRectification truth(camera, camera.WithoutDistortion());
   int compared = 0;
   int outside = 0;
   for (int v = 0; v < camera.height; ++v) {
