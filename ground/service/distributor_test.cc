@@ -186,7 +186,7 @@ TEST_F(DistributorTest, F42WhatTheDiskDoesNotTakeIsCountedAndStillReconstructed)
   EXPECT_EQ(Names(items), "S7 0 1 2 3");
   const std::size_t kept = Recorded().size() - 1;  // Without the beginning.
   const RecordingProgress counters = std::get<SessionStart>(items[0]).recording->Get();
-  EXPECT_EQ(counters.depth_left_out[static_cast<std::size_t>(NotRecorded::kDiskTooSlow)], 4 - kept);
+  EXPECT_EQ(counters.depth_left_out[NotRecorded::kDiskTooSlow], 4 - kept);
   EXPECT_LT(kept, 4U);
   End();
   EXPECT_EQ(Names(Recorded()), "E7") << "an end is never left out";

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
 #include "ground/subscriber/clock_watch.h"
 
@@ -31,9 +30,8 @@ Json DescribeStream(const StreamCounters& counters, std::uint64_t recorded,
     json["refused_by_cause"][cause] = counters.refused_by_cause[i];
   }
   json["recorded"] = recorded;
-  for (std::size_t i = 0; i < left_out.size(); ++i) {
-    if (left_out[i] > 0)
-      json["not_recorded_by_reason"][ToString(static_cast<NotRecorded>(i))] = left_out[i];
+  for (const NotRecorded reason : AllValues<NotRecorded>()) {
+    if (left_out[reason] > 0) json["not_recorded_by_reason"][ToString(reason)] = left_out[reason];
   }
   return json;
 }
@@ -50,7 +48,7 @@ std::string RecordingText(const RecordingProgress& recording) {
                      LackText(recording.left_out(NotRecorded::kDiskNearlyFull),
                               ": what was left of the disk was kept for the results") +
                      LackText(recording.left_out(NotRecorded::kDiskFailed),
-                              ", because the disk failed: " + recording.status.message()) +
+                              ", because the disk failed: " + recording.disk_error.message()) +
                      LackText(recording.left_out(NotRecorded::kUnwritable),
                               ", because they are wrong; the log says how");
   if (recording.files.size() > 1) {
@@ -104,7 +102,7 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
   const bool waits = !recording.path.empty() && !recording.closed;
   const auto add_waiting = [&](const char* sensor, const StreamCounters& stream,
                                std::uint64_t recorded, const NotRecordedCounts& left_out) {
-    const std::uint64_t settled = std::accumulate(left_out.begin(), left_out.end(), recorded);
+    const std::uint64_t settled = recorded + Sum(left_out);
     if (waits && stream.received > settled)
       link[sensor]["not_recorded_by_reason"]["still_waiting"] = stream.received - settled;
   };

@@ -123,30 +123,22 @@ void RecordingLoop::LookAtDisk() {
 }
 
 void RecordingLoop::StopForReserve(std::uint64_t free_bytes, std::uint64_t reserve_bytes) {
-  recorder_->EndFile();
   const auto& files = recorder_->files();
-  Fail(ResourceExhausted(fmt::format(
+  const Status why = ResourceExhausted(fmt::format(
       "the recording {} stops here, because only {:.0f} MB are free on the disk and {:.0f} MB are "
       "kept for the results; the scan goes on. Free some space",
       (files.empty() ? start_.folder / "scan.mcap" : files.back()).string(),
-      static_cast<double>(free_bytes) / kMegabyte,
-      static_cast<double>(reserve_bytes) / kMegabyte)));
-  LOG(Ground, Warning) << status_.message();
-}
-
-void RecordingLoop::Fail(const Status& status) {
-  status_ = status;
-  start_.recording->Update([&](auto& progress) {
-    if (progress.status.ok()) progress.status = status;
-  });
+      static_cast<double>(free_bytes) / kMegabyte, static_cast<double>(reserve_bytes) / kMegabyte));
+  recorder_->EndFile(why);
+  LOG(Ground, Warning) << why.message();
 }
 
 void RecordingLoop::Enter() {
   const RecorderCounts depth = recorder_->counts(Sensor::kDepth);
   const RecorderCounts thermal = recorder_->counts(Sensor::kThermal);
   const auto enter = [](const RecorderCounts& counts, NotRecordedCounts& left_out) {
-    left_out[static_cast<std::size_t>(NotRecorded::kDiskFailed)] = counts.lost;
-    left_out[static_cast<std::size_t>(NotRecorded::kUnwritable)] = counts.unwritable;
+    left_out[NotRecorded::kDiskFailed] = counts.lost;
+    left_out[NotRecorded::kUnwritable] = counts.unwritable;
   };
   start_.recording->Update([&](auto& progress) {
     progress.files = recorder_->files();
@@ -156,13 +148,14 @@ void RecordingLoop::Enter() {
     enter(depth, progress.depth_left_out);
     enter(thermal, progress.thermal_left_out);
     progress.paused = !recorder_->is_recording();
-    if (progress.status.ok()) progress.status = recorder_->status();
+    progress.status = recorder_->status();
+    progress.disk_error = recorder_->disk_error();
   });
 }
 
 void RecordingLoop::End() {
   if (recorder_) {
-    if (const Status closed = recorder_->Close(); !closed.ok()) Fail(closed);
+    if (const Status closed = recorder_->Close(); !closed.ok()) status_ = closed;
     Enter();
     recorder_.reset();
   }

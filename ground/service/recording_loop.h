@@ -26,7 +26,7 @@ class RecordingLoop {
 
   /// Until stop is requested and the queue is empty.
   void Run(RecordingQueue& queue, const std::stop_token& stop);
-  /// The last failure. Not while it runs.
+  /// Returns the newest failure of all sessions. Not while it runs.
   const Status& status() const { return status_; }
 
  private:
@@ -43,7 +43,6 @@ class RecordingLoop {
   void LookAtDisk();
   std::uint64_t ReserveBytes(std::uint64_t capacity) const;
   void StopForReserve(std::uint64_t free_bytes, std::uint64_t reserve_bytes);
-  void Fail(const Status& status);
   /// Enters what was written so far into the recording's progress.
   void Enter();
   void End();

@@ -3,34 +3,33 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace isotherm {
 
-std::string_view ToString(NotRecorded reason) {
-  switch (reason) {
-    case NotRecorded::kDiskTooSlow:
-      return "disk_too_slow";
-    case NotRecorded::kDiskNearlyFull:
-      return "disk_nearly_full";
-    case NotRecorded::kDiskFailed:
-      return "disk_failed";
-    case NotRecorded::kUnwritable:
-      return "unwritable";
-  }
-  return "?";
+namespace {
+
+constexpr EnumArray<NotRecorded, std::string_view> kNames = {
+    {NotRecorded::kDiskTooSlow, "disk_too_slow"},
+    {NotRecorded::kDiskNearlyFull, "disk_nearly_full"},
+    {NotRecorded::kDiskFailed, "disk_failed"},
+    {NotRecorded::kUnwritable, "unwritable"}};
+
+}  // namespace
+
+std::string_view ToString(NotRecorded reason) { return kNames[reason]; }
+
+std::uint64_t Sum(const NotRecordedCounts& counts) {
+  std::uint64_t sum = 0;
+  for (const NotRecorded reason : AllValues<NotRecorded>()) sum += counts[reason];
+  return sum;
 }
 
 std::uint64_t RecordingProgress::left_out() const {
-  const auto sum = [](const NotRecordedCounts& counts) {
-    return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-  };
-  return sum(depth_left_out) + sum(thermal_left_out);
+  return Sum(depth_left_out) + Sum(thermal_left_out);
 }
 
 std::uint64_t RecordingProgress::left_out(NotRecorded reason) const {
-  const auto i = static_cast<std::size_t>(reason);
-  return depth_left_out[i] + thermal_left_out[i];
+  return depth_left_out[reason] + thermal_left_out[reason];
 }
 
 std::string DiskText(const RecordingProgress& progress) {
@@ -55,7 +54,7 @@ void RecordingTracker::CountLeftOut(Sensor sensor, NotRecorded reason) {
   MutexLock lock(mutex_);
   NotRecordedCounts& counts =
       sensor == Sensor::kDepth ? progress_.depth_left_out : progress_.thermal_left_out;
-  ++counts[static_cast<std::size_t>(reason)];
+  ++counts[reason];
 }
 
 }  // namespace isotherm

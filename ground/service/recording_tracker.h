@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -9,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/enum_array.h"
 #include "common/base/mutex.h"
 #include "common/base/status.h"
 #include "common/frame/frame.h"
@@ -17,17 +17,18 @@ namespace isotherm {
 
 /// Why a received frame is not in the recording.
 enum class NotRecorded : std::uint8_t {
-  kDiskTooSlow = 0,     ///< The queue to the disk was full.
-  kDiskNearlyFull = 1,  ///< What is left is for the results.
-  kDiskFailed = 2,      ///< Writing failed, or the disk was waited for after that.
-  kUnwritable = 3,      ///< The frame itself is wrong.
+  kDiskTooSlow,     ///< The queue to the disk was full.
+  kDiskNearlyFull,  ///< What is left is for the results.
+  kDiskFailed,      ///< Writing failed, or the disk was waited for after that.
+  kUnwritable,      ///< The frame itself is wrong.
+  kCount
 };
-inline constexpr std::size_t kNotRecordedReasons = 4;
 /// "disk_too_slow", as in stats.json.
 std::string_view ToString(NotRecorded reason);
 
 /// Frames of one stream that the recording does not have, by reason.
-using NotRecordedCounts = std::array<std::uint64_t, kNotRecordedReasons>;
+using NotRecordedCounts = EnumArray<NotRecorded, std::uint64_t>;
+std::uint64_t Sum(const NotRecordedCounts& counts);
 
 /// Holds what became of a session's recording, or what has so far.
 struct RecordingProgress {
@@ -39,7 +40,8 @@ struct RecordingProgress {
   NotRecordedCounts depth_left_out{};
   NotRecordedCounts thermal_left_out{};
   bool closed = false;  ///< Nothing more will be written: index and footer are on the disk.
-  Status status{};      ///< The first failure.
+  Status status{};      ///< The newest failure.
+  Status disk_error{};  ///< The newest failure of the disk itself, not for want of space kept free.
   bool paused = false;  ///< No frame is written at this moment: the disk fails or is nearly full.
   /// Room on the disk as of the newest look at it; 0 bytes per second = not known yet.
   std::uint64_t free_bytes = 0;

@@ -52,7 +52,11 @@ ScanRecorder::ScanRecorder(const std::filesystem::path& path, const GroundOption
 void ScanRecorder::Tend() {
   if (is_recording()) return NoteWorks();
   if (clock_.SteadyNow() < retry_at_) return;
-  if (const Status begun = BeginFile(); !begun.ok()) Fail(begun);
+  if (const Status begun = BeginFile(); !begun.ok()) return Fail(begun);
+  WriteBeginning();
+  if (is_recording() && part_ > 1) {
+    LOG(Ground, Info) << "recording to " << files_.back().string();
+  }
 }
 
 Status ScanRecorder::BeginFile() {
@@ -69,24 +73,19 @@ Status ScanRecorder::BeginFile() {
   files_.push_back(file);
   begun_at_ = clock_.SteadyNow();
   step_sum_s_ = 0.0;
-  ISOTHERM_RETURN_IF_ERROR(WriteBeginning());
-  if (part > 1) {
-    LOG(Ground, Info) << "recording to " << file.string();
-  }
   return OkStatus();
 }
 
-Status ScanRecorder::WriteBeginning() {
-  ISOTHERM_RETURN_IF_ERROR(writer_->WriteMetadata(
-      "configuration", {{"program", "isotherm-ground"}, {"options", options_text_}}));
-  ISOTHERM_RETURN_IF_ERROR(writer_->Write(rig_.rig));
+void ScanRecorder::WriteBeginning() {
+  Note(writer_->WriteMetadata("configuration",
+                              {{"program", "isotherm-ground"}, {"options", options_text_}}));
+  if (is_recording()) Note(writer_->Write(rig_.rig));
   std::map<std::string, std::string> cameras;
   AddCamera("depth", rig_.depth, cameras);
   AddCamera("thermal", rig_.thermal, cameras);
-  if (!cameras.empty()) ISOTHERM_RETURN_IF_ERROR(writer_->WriteMetadata("cameras", cameras));
-  if (!rig_clock_) return OkStatus();
-  ISOTHERM_RETURN_IF_ERROR(WriteClockStep());
-  return WriteClockMetadata();
+  if (is_recording() && !cameras.empty()) Note(writer_->WriteMetadata("cameras", cameras));
+  if (is_recording() && rig_clock_) Note(WriteClockStep());
+  if (is_recording() && rig_clock_) Note(WriteClockMetadata());
 }
 
 template <typename Frame>
@@ -148,29 +147,28 @@ void ScanRecorder::Flush() {
 void ScanRecorder::Note(const Status& status) {
   if (status.ok()) return;
   if (EndsFile(status)) return Fail(status);
-  if (!refusal_.ok()) return;
-  refusal_ = status;
-  LOG(Ground, Warning) << "not recorded: " << status.message();
+  if (std::exchange(refusal_, status).ok()) {
+    LOG(Ground, Warning) << "not recorded: " << status.message();
+  }
 }
 
 void ScanRecorder::Fail(const Status& status) {
-  if (disk_error_.ok()) disk_error_ = status;
+  end_ = disk_error_ = status;
   if (is_recording()) static_cast<void>(CloseFile());
   retry_at_ = clock_.SteadyNow() + back_off_.Next();
-  if (problem_.ok()) {
+  if (!std::exchange(failing_, true)) {
     LOG(Ground, Error) << "the recording stops here, the scan goes on: " << status.message()
                        << "; a new file is begun when the disk takes it";
   }
-  problem_ = status;
 }
 
 void ScanRecorder::NoteWorks() {
-  if (problem_.ok()) {
+  if (!failing_) {
     lost_before_ = Lost();
     return;
   }
   if (clock_.SteadyNow() - begun_at_ < kProven) return;
-  problem_ = OkStatus();
+  failing_ = false;
   back_off_.Reset();
   LOG(Ground, Warning) << "the disk works again, recording to " << files_.back().string()
                        << "; frames not recorded=" << Lost() - lost_before_;
@@ -192,12 +190,13 @@ Status ScanRecorder::CloseFile() {
   return closed;
 }
 
-void ScanRecorder::EndFile() {
-  if (is_recording()) Note(CloseFile());
+void ScanRecorder::EndFile(const Status& why) {
+  end_ = why;
+  static_cast<void>(Close());
 }
 
 Status ScanRecorder::Close() {
-  EndFile();
+  if (is_recording()) Note(CloseFile());
   return status();
 }
 

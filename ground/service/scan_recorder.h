@@ -38,7 +38,7 @@ struct RecorderCounts {
 ///
 /// After an error the file is closed as well as it can be and never touched again. Each file has
 /// the whole beginning; one that failed before it got a frame is removed. A message that is wrong
-/// ends nothing. Thread-compatible.
+/// ends nothing and is left out, also at a file's beginning. Thread-compatible.
 class ScanRecorder {
  public:
   using CreateWriter =
@@ -62,8 +62,9 @@ class ScanRecorder {
   void Write(const SessionClock& clock);
   /// Hands what was written so far to the operating system.
   void Flush();
-  /// Ends the file in order; the next frame begins another one.
-  void EndFile();
+  /// Ends the file in order because of `why`, the newest failure; the next frame begins another
+  /// one.
+  void EndFile(const Status& why);
   /// Writes index and footer, and returns status(). Idempotent.
   Status Close();
 
@@ -72,24 +73,26 @@ class ScanRecorder {
   std::uint64_t bytes() const;
   /// Returns the files in their order, the newest last; none that was removed.
   const std::vector<std::filesystem::path>& files() const { return files_; }
-  /// Returns the disk's first error, or without one the first message's that was wrong, or ok.
-  const Status& status() const { return disk_error_.ok() ? refusal_ : disk_error_; }
-  /// Returns why the disk is not trusted at this moment; ok while all is well.
-  const Status& problem() const { return problem_; }
+  /// Returns why the newest file that did not last ended, or if all did, the newest message that
+  /// was wrong, or ok.
+  const Status& status() const { return end_.ok() ? refusal_ : end_; }
+  /// Returns the disk's newest error, or ok.
+  const Status& disk_error() const { return disk_error_; }
   bool is_recording() const { return writer_ != nullptr; }
 
  private:
   template <typename Frame>
   void WriteFrame(Sensor sensor, const Frame& frame);
   Status BeginFile();
-  Status WriteBeginning();
+  void WriteBeginning();
   Status WriteClockStep();
   Status WriteClockMetadata();
+  /// An error of the disk ends the file; a message that was wrong ends nothing.
   void Note(const Status& status);
   /// The file cannot go on, or could not be begun: another one later.
   void Fail(const Status& status);
   void NoteWorks();
-  /// Returns the first error of closing it, or ok.
+  /// Returns the first error of the file up to its closing, or ok.
   Status CloseFile();
   std::uint64_t Lost() const;
 
@@ -104,10 +107,11 @@ class ScanRecorder {
   RecordingStats closed_{};                    ///< Sum over the files before.
   std::array<std::uint64_t, 2> offered_{};     ///< By Sensor.
   std::array<std::uint64_t, 2> unwritable_{};  ///< By Sensor.
-  Status disk_error_;
-  Status refusal_;
-  Status problem_;
-  std::uint64_t lost_before_ = 0;  ///< When all was well last.
+  Status end_;                                 ///< The newest end of a file that was not wanted.
+  Status disk_error_;                          ///< The newest.
+  Status refusal_;                             ///< The newest.
+  bool failing_ = false;                       ///< The disk has failed and not proven itself since.
+  std::uint64_t lost_before_ = 0;              ///< When all was well last.
   BackOff back_off_;
   SteadyTime retry_at_{};
   SteadyTime begun_at_{};                  ///< The newest file.

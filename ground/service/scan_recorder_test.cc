@@ -4,18 +4,23 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <map>
 #include <set>
 
 #include "common/recording/testing/recording_data.h"
+#include "common/testing/temporary_directory.h"
 
 namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::kScanStart;
+using ::testing::Not;
 
 constexpr Nanoseconds kLongerThanAnyBackOff = 6s;
 constexpr Nanoseconds kFrameInterval = 33ms;
@@ -31,6 +36,7 @@ class ScanRecorderTest : public ::testing::Test {
   Result<std::unique_ptr<RecordingWriter>> CreateFile(const std::filesystem::path& path) {
     ++tries_;
     if (!disk_works_) return Err(IoError("read-only file system"));
+    if (path.parent_path() == folder_.path()) std::ofstream(path).put('x');
     const auto disk = std::make_shared<MemorySink::Disk>();
     disk->capacity = room_;
     auto writer = MakeRecordingWriter(std::make_unique<MemorySink>(disk), kSmallChunks);
@@ -60,9 +66,17 @@ class ScanRecorderTest : public ::testing::Test {
     }
     return numbers;
   }
+  /// A clock whose steps are said to be older than time itself.
+  static SessionClock WrongClock() {
+    SessionClock clock;
+    clock.time = CaptureTimeFromNanoseconds(1);
+    clock.rig.step_sum_s = 2.0;
+    return clock;
+  }
   RecorderCounts counts() const { return recorder_.counts(Sensor::kDepth); }
 
   static constexpr RecordingOptions kSmallChunks{.flush_interval = 60ms};
+  const Status nearly_full_ = ResourceExhausted("the rest is for the results");
   FakeClock clock_{kScanStart};
   const RigDescription rig_ = MakeRig();
   std::size_t room_ = std::numeric_limits<std::size_t>::max();
@@ -70,6 +84,7 @@ class ScanRecorderTest : public ::testing::Test {
   int tries_ = 0;
   std::uint64_t number_ = 0;
   std::map<std::string, std::shared_ptr<MemorySink::Disk>> disks_;
+  const testing::TemporaryDirectory folder_;
   // Files of this name are not on the real disk, so no name is ever taken there.
   ScanRecorder recorder_{"not-there/scan.mcap", GroundOptions(), rig_, clock_,
                          [this](const std::filesystem::path& path) { return CreateFile(path); }};
@@ -107,9 +122,10 @@ TEST_F(ScanRecorderTest, EachFileHasTheRigTheOptionsAndTheClock) {
   recorder_.Tend();
   recorder_.Write(clock);
   Depths(2);
-  recorder_.EndFile();
+  recorder_.EndFile(nearly_full_);
   Depths(2);
-  EXPECT_TRUE(recorder_.Close().ok());
+  EXPECT_EQ(recorder_.Close().message(), nearly_full_.message());
+  EXPECT_TRUE(recorder_.disk_error().ok()) << "its end was in order";
   ASSERT_EQ(recorder_.files().size(), 2U);
   for (const std::filesystem::path& file : recorder_.files()) {
     const auto reader = Read(file.string());
@@ -146,12 +162,15 @@ TEST_F(ScanRecorderTest, F43OneFailureIsOneProblemUntilTheDiskHasProvenItself) {
   while (recorder_.status().ok()) Depth();
   room_ = std::numeric_limits<std::size_t>::max();
   clock_.Advance(kLongerThanAnyBackOff);
+  ::testing::internal::CaptureStderr();
   Depth();
   EXPECT_TRUE(recorder_.is_recording());
-  EXPECT_FALSE(recorder_.problem().ok()) << "it may fail again at once";
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), Not(HasSubstr("works again")))
+      << "it may fail again at once";
   clock_.Advance(3s);
+  ::testing::internal::CaptureStderr();
   Depth();
-  EXPECT_TRUE(recorder_.problem().ok());
+  EXPECT_THAT(::testing::internal::GetCapturedStderr(), HasSubstr("the disk works again"));
   EXPECT_FALSE(recorder_.status().ok()) << "the recording is not complete all the same";
 }
 
@@ -163,10 +182,52 @@ TEST_F(ScanRecorderTest, AFrameThatIsWrongIsNotTheDisksFault) {
   Depth();
   EXPECT_EQ(counts().unwritable, 1U);
   EXPECT_EQ(counts().lost, 0U);
-  EXPECT_TRUE(recorder_.problem().ok());
+  EXPECT_TRUE(recorder_.disk_error().ok());
   EXPECT_EQ(recorder_.Close().code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(recorder_.files().size(), 1U);
   EXPECT_THAT(NumbersRead(), ElementsAre(0, 1));
+}
+
+TEST_F(ScanRecorderTest, AClockThatIsWrongAtAFilesBeginningIsNotTheDisksFault) {
+  Depth();
+  recorder_.Write(WrongClock());
+  recorder_.EndFile(nearly_full_);
+  Depths(2);
+  EXPECT_TRUE(recorder_.is_recording());
+  EXPECT_EQ(tries_, 2);
+  EXPECT_EQ(counts().lost, 0U);
+  EXPECT_TRUE(recorder_.disk_error().ok()) << recorder_.disk_error().message();
+  static_cast<void>(recorder_.Close());
+  EXPECT_THAT(NumbersRead(), ElementsAre(0, 1, 2));
+}
+
+TEST_F(ScanRecorderTest, F43ABeginningThatFailsOnTheDiskLeavesNoFile) {
+  ScanRecorder recorder(folder_.path() / "scan.mcap", GroundOptions(), rig_, clock_,
+                        [this](const std::filesystem::path& path) { return CreateFile(path); });
+  recorder.Write(WrongClock());
+  room_ = 500;  // The file can be created, and no more.
+  recorder.Tend();
+  EXPECT_EQ(tries_, 1);
+  EXPECT_FALSE(recorder.is_recording());
+  EXPECT_EQ(recorder.disk_error().code(), StatusCode::kResourceExhausted);
+  EXPECT_THAT(recorder.files(), IsEmpty());
+  EXPECT_TRUE(std::filesystem::is_empty(folder_.path()));
+}
+
+TEST_F(ScanRecorderTest, TheNewestFailureIsTold) {
+  room_ = 12'000;
+  while (recorder_.status().ok()) Depth();
+  const std::string first = recorder_.status().message();
+  disk_works_ = false;
+  clock_.Advance(kLongerThanAnyBackOff);
+  Depth();
+  EXPECT_THAT(recorder_.status().message(), AllOf(HasSubstr("read-only"), Not(HasSubstr(first))));
+  recorder_.EndFile(nearly_full_);
+  EXPECT_EQ(recorder_.status().message(), nearly_full_.message());
+  EXPECT_THAT(recorder_.disk_error().message(), HasSubstr("read-only"));
+  clock_.Advance(kLongerThanAnyBackOff);
+  Depth();
+  EXPECT_THAT(recorder_.status().message(), HasSubstr("read-only"));
 }
 
 }  // namespace

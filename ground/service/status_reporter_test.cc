@@ -83,8 +83,8 @@ TEST(StatusReporterTest, F41TheRigsDiskIsSaidWhenItIsLowOrFull) {
 TEST(StatusReporterTest, F42AStuckDiskAndWhatTheRecordingLacksAreSaid) {
   GroundSituation situation = Scanning();
   situation.recording_at_it = seconds(12);
-  situation.recording.depth_left_out[0] = 30;
-  situation.recording.thermal_left_out[0] = 40;
+  situation.recording.depth_left_out[NotRecorded::kDiskTooSlow] = 30;
+  situation.recording.thermal_left_out[NotRecorded::kDiskTooSlow] = 40;
   EXPECT_THAT(StatusText(situation),
               HasSubstr(" | DISK STUCK for 12 s | RECORDING LACKS 70 frames"));
   situation.problem = "the recording has not gone on for 61 s";
@@ -119,7 +119,7 @@ TEST(StatusReporterTest, F43ARecordingThatPausesSaysSoAndThatGoesOnWhatItLacks) 
   RecordingProgress& recording = situation.recording;
   recording.status = ResourceExhausted("full");
   recording.paused = true;
-  recording.depth_left_out[static_cast<std::size_t>(NotRecorded::kDiskFailed)] = 7;
+  recording.depth_left_out[NotRecorded::kDiskFailed] = 7;
   EXPECT_THAT(StatusText(situation), HasSubstr(" | NOT RECORDING | RECORDING LACKS 7 frames"));
   recording.paused = false;
   EXPECT_THAT(StatusText(situation),

@@ -1,0 +1,46 @@
+#include "ground/service/link_counters.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace isotherm {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The disk failed, worked again, and was nearly full in the end.
+RecordingProgress TwoFailures() {
+  RecordingProgress progress;
+  progress.path = "scan.mcap";
+  progress.closed = true;
+  progress.disk_error = IoError("input/output error");
+  progress.status = ResourceExhausted("only 3 MB are free");
+  progress.depth_left_out[NotRecorded::kDiskFailed] = 7;
+  progress.depth_left_out[NotRecorded::kDiskNearlyFull] = 5;
+  return progress;
+}
+
+TEST(LinkCountersTest, F43WhatTheDiskLostIsToldInTheWordsOfTheDisk) {
+  EXPECT_THAT(CountersText({}, TwoFailures()),
+              AllOf(HasSubstr("7 frames are not in the recording, because the disk failed: "
+                              "input/output error\n"),
+                    HasSubstr("5 frames are not in the recording: what was left"),
+                    Not(HasSubstr("only 3 MB"))));
+}
+
+TEST(LinkCountersTest, F43StatsHaveTheNewestFailureAndTheFramesByReason) {
+  Json link;
+  DescribeCounters({}, TwoFailures(), link);
+  EXPECT_EQ(link["recording_failed_because"], "only 3 MB are free");
+  EXPECT_EQ(link["depth"]["not_recorded_by_reason"]["disk_failed"], 7);
+  EXPECT_EQ(link["depth"]["not_recorded_by_reason"]["disk_nearly_full"], 5);
+  EXPECT_FALSE(link["depth"]["not_recorded_by_reason"].contains("unwritable"));
+  EXPECT_EQ(link["recording_failed_frames"], 7);
+}
+
+}  // namespace
+}  // namespace isotherm
