@@ -12,7 +12,6 @@ namespace isotherm {
 /// for until somebody writes to it, a device may never end. Each failure names the path.
 /// kNotFound: it does not exist; kInvalidArgument: a folder, a pipe or a device; kDataLoss: it is
 /// larger than `max_bytes`; kIoError: anything else.
-Result<std::string> ReadFile(const std::filesystem::path& path,
-                             std::uint64_t max_bytes = UINT64_MAX);
+Result<std::string> ReadFile(const std::filesystem::path& path, std::uint64_t max_bytes);
 
 }  // namespace isotherm

@@ -11,6 +11,8 @@
 namespace isotherm {
 namespace {
 
+constexpr std::uint64_t kMaxBytes = 1000;
+
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
@@ -21,7 +23,7 @@ class ReadFileTest : public ::testing::Test {
     return path_;
   }
   void ExpectRefused(const std::filesystem::path& path, StatusCode code, const char* why) const {
-    const Result<std::string> read = ReadFile(path);
+    const Result<std::string> read = ReadFile(path, kMaxBytes);
     ASSERT_FALSE(read.has_value());
     EXPECT_EQ(read.error().code(), code);
     EXPECT_THAT(read.error().message(), AllOf(HasSubstr(path.string()), HasSubstr(why)));
@@ -33,13 +35,13 @@ class ReadFileTest : public ::testing::Test {
 
 TEST_F(ReadFileTest, ReturnsEveryByte) {
   const std::string content("a\0b\r\n\xff", 6);
-  EXPECT_EQ(ReadFile(Write(content)).value(), content);
-  EXPECT_EQ(ReadFile(Write("")).value(), "");
+  EXPECT_EQ(ReadFile(Write(content), kMaxBytes).value(), content);
+  EXPECT_EQ(ReadFile(Write(""), kMaxBytes).value(), "");
 }
 
 TEST_F(ReadFileTest, FollowsALinkToAFile) {
   std::filesystem::create_symlink(Write("content"), folder_.path() / "link");
-  EXPECT_EQ(ReadFile(folder_.path() / "link").value(), "content");
+  EXPECT_EQ(ReadFile(folder_.path() / "link", kMaxBytes).value(), "content");
 }
 
 TEST_F(ReadFileTest, APipeThatNobodyWritesToIsRefusedAtOnce) {
@@ -62,7 +64,9 @@ TEST_F(ReadFileTest, AMissingFileIsNotFound) {
 TEST_F(ReadFileTest, ALargerFileThanAskedForIsRefused) {
   Write("12345");
   EXPECT_TRUE(ReadFile(path_, 5).has_value());
-  EXPECT_EQ(ReadFile(path_, 4).error().code(), StatusCode::kDataLoss);
+  const Status refused = ReadFile(path_, 4).error();
+  EXPECT_EQ(refused.code(), StatusCode::kDataLoss);
+  EXPECT_EQ(refused.message(), path_.string() + ": has 5 bytes, more than are read (4 at most)");
 }
 
 }  // namespace

@@ -8,15 +8,12 @@
 #include <google/protobuf/text_format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <cstdint>
 #include <optional>
 #include <set>
-#include <system_error>
 #include <vector>
 
+#include "common/base/read_file.h"
 #include "common/config/nearest_name.h"
 #include "common/config/renamed_options.h"
 #include "common/config/reserved_fields.h"
@@ -26,7 +23,7 @@ namespace {
 
 namespace pb = google::protobuf;
 
-constexpr std::uintmax_t kMaxFileBytes = 1U << 20;  // Far above any configuration.
+constexpr std::uint64_t kMaxFileBytes = 1U << 20;  // Far above any configuration.
 constexpr std::size_t kMaxErrors = 50;
 constexpr std::size_t kMaxMessageBytes = 300;  // Protobuf quotes what it found, however long.
 // Text that is parsed again and again to list all errors: enough for any real file.
@@ -360,32 +357,11 @@ Status ParseTextProto(const std::string& text, std::string_view source_name, pb:
 }
 
 Status LoadTextProto(const std::filesystem::path& path, pb::Message& message) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    return InvalidArgument(fmt::format("{}: is a folder, not a file", path.string()));
-  }
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    return InvalidArgument(
-        fmt::format("{}: is a pipe or a device; a configuration is a regular file", path.string()));
-  }
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMaxFileBytes) {
-    return InvalidArgument(
-        fmt::format("{}: {} bytes are too many for a text file of this kind (at most {})",
-                    path.string(), size, kMaxFileBytes));
-  }
-  errno = 0;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) {
-    const int reason = errno;
-    std::string text =
-        fmt::format("{}: cannot be opened: {}", path.string(), std::strerror(reason));
-    return reason == ENOENT ? NotFound(std::move(text)) : IoError(std::move(text));
-  }
-  const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (file.bad()) return IoError(fmt::format("{}: cannot be read", path.string()));
-  return ParseTextProto(text, path.string(), message);
+  const Result<std::string> text = ReadFile(path, kMaxFileBytes);
+  if (text) return ParseTextProto(*text, path.string(), message);
+  // A file that is too large to be a configuration is not damaged: another one was meant.
+  if (text.error().code() == StatusCode::kDataLoss) return InvalidArgument(text.error().message());
+  return text.error();
 }
 
 std::string ToTextProto(const pb::Message& message) {

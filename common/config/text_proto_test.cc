@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <clocale>
+#include <filesystem>
 #include <fstream>
 #include <locale>
 
@@ -262,6 +263,17 @@ TEST(TextProtoTest, MissingFileAndFolderAreSaidInWords) {
   EXPECT_THAT(LoadTextProto(testing::TempDir(), rig).message(), HasSubstr("is a folder"));
   EXPECT_THAT(LoadTextProto("/dev/zero", rig).message(),
               HasSubstr("/dev/zero: is a pipe or a device"));
+}
+
+TEST(TextProtoTest, F65AFileThatIsTooLargeIsAnotherOneThanMeant) {
+  const std::filesystem::path large = std::filesystem::path(testing::TempDir()) / "large.textproto";
+  std::ofstream(large) << "serial: 'a'";
+  std::filesystem::resize_file(large, (1U << 20) + 1);
+  RigCalibration rig;
+  const Status refused = LoadTextProto(large, rig);
+  EXPECT_EQ(refused.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(refused.message(), HasSubstr("more than are read (1048576 at most)"));
+  std::filesystem::remove(large);
 }
 
 TEST(OverrideTest, SetsNestedNumbersAndStrings) {

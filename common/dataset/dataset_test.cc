@@ -87,6 +87,11 @@ TEST_F(DatasetTest, F57RigWithoutIntrinsics) {
   EXPECT_THAT(Error(), AllOf(HasSubstr("rig.textproto:1:1"), HasSubstr("'depth.cx' is missing")));
 }
 
+TEST_F(DatasetTest, AListThatIsTooLargeIsRefusedBeforeItIsRead) {
+  std::filesystem::resize_file(folder_.path() / "depth.txt", kMaxTextFileBytes + 1);
+  EXPECT_THAT(Error(), AllOf(HasSubstr("depth.txt"), HasSubstr("more than are read")));
+}
+
 TEST_F(DatasetTest, MissingOrMisspeltLists) {
   folder_.Rename("depth.txt", "dpeth.txt");
   EXPECT_THAT(Error(), AllOf(HasSubstr("depth.txt: no such file"), HasSubstr("'dpeth.txt'")));

@@ -48,7 +48,7 @@ bool ParseDecimal(std::string_view word, Nanoseconds& time) {
 }  // namespace
 
 Result<std::string> ReadTextFile(const std::filesystem::path& path) {
-  Result<std::string> text = ReadFile(path);
+  Result<std::string> text = ReadFile(path, kMaxTextFileBytes);
   if (text || text.error().code() != StatusCode::kNotFound) return text;
   std::error_code error;
   std::vector<std::string> names;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -17,7 +18,11 @@ struct TextLine {
   std::string_view text;
 };
 
-/// The file's content. If it is missing, the message names the most similar file beside it.
+/// The most that is read of a list: poses at 1 kHz for half an hour.
+inline constexpr std::uint64_t kMaxTextFileBytes = 256U << 20;
+
+/// The file's content, up to kMaxTextFileBytes. If it is missing, the message names the most
+/// similar file beside it.
 Result<std::string> ReadTextFile(const std::filesystem::path& path);
 
 /// Views into `text`. A `#` starts a comment only at the start of a line, so that file names may

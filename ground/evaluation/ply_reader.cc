@@ -226,7 +226,7 @@ Result<PlyVertices> ParsePly(std::string_view bytes) {
 }
 
 Result<PlyVertices> ReadPly(const std::filesystem::path& path) {
-  const Result<std::string> bytes = ReadFile(path);
+  const Result<std::string> bytes = ReadFile(path, kMaxPlyBytes);
   if (!bytes) return Err(bytes.error());
   Result<PlyVertices> vertices = ParsePly(*bytes);
   if (!vertices) return Err(vertices.error().WithContext(path.string()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -21,9 +22,12 @@ struct PlyVertices {
   const std::vector<float>* Find(std::string_view name) const;
 };
 
+/// The largest file that is read: a hundred million points of 40 bytes.
+inline constexpr std::uint64_t kMaxPlyBytes = 4'000'000'000;
+
 /// Reads the element `vertex` (which must come first and have no lists) of an ASCII or binary PLY
 /// file; what follows it is ignored. kDataLoss says what is wrong: not a PLY file, truncated,
-/// unknown types.
+/// unknown types, more than kMaxPlyBytes.
 Result<PlyVertices> ReadPly(const std::filesystem::path& path);
 Result<PlyVertices> ParsePly(std::string_view bytes);
 

@@ -6,6 +6,8 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 
 #include "common/testing/temporary_directory.h"
 #include "ground/evaluation/point_sets.h"
@@ -100,6 +102,16 @@ TEST(PlyReaderTest, APipeIsRefusedAtOnceAndNamed) {
   const Result<PlyVertices> read = ReadPly(pipe);
   ASSERT_FALSE(read.has_value());
   EXPECT_THAT(read.error().message(), HasSubstr(pipe + ": is a pipe or a device"));
+}
+
+TEST(PlyReaderTest, AFileThatIsTooLargeIsRefusedBeforeItIsRead) {
+  const testing::TemporaryDirectory folder;
+  const std::filesystem::path large = folder.path() / "cloud.ply";
+  std::ofstream(large) << "ply\n";
+  std::filesystem::resize_file(large, kMaxPlyBytes + 1);  // Takes no room on the disk.
+  const Result<PlyVertices> read = ReadPly(large);
+  ASSERT_FALSE(read.has_value());
+  EXPECT_THAT(read.error().message(), HasSubstr("more than are read (4000000000 at most)"));
 }
 
 }  // namespace
