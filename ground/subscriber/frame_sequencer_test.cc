@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "ground/subscriber/frame_stream.h"
-
 namespace isotherm {
 namespace {
 
@@ -165,31 +163,6 @@ TEST(ReceiptTrackerTest, TheOldestHoleIsGivenUpWhenThereAreTooMany) {
   EXPECT_FALSE(receipts.Add(0));
   EXPECT_EQ(receipts.received() + receipts.missing(), receipts.next());
   EXPECT_EQ(receipts.missing(), 5U);
-}
-
-TEST(FrameStreamTest, ANewSessionStartsFromZeroAndTheOldOneStaysOver) {
-  using Stream = FrameStream<int>;
-  Stream stream(kWindow);
-  EXPECT_EQ(stream.Classify(11), Stream::Session::kNew);
-  stream.BeginSession(11);
-  stream.Add(0, 100, {});
-  stream.Add(1, 101, {});
-  stream.BeginSession(7);  // Numbers of sessions need not grow.
-  EXPECT_EQ(stream.Classify(11), Stream::Session::kOver);
-  EXPECT_EQ(stream.Classify(7), Stream::Session::kCurrent);
-  EXPECT_EQ(stream.Add(0, 200, {}), Stream::Verdict::kInOrder);
-  EXPECT_EQ(stream.Next({}), 200);
-  EXPECT_EQ(stream.tally().received, 1U);
-  EXPECT_EQ(stream.tally(11).received, 2U);
-  EXPECT_EQ(stream.receipt(7).handled, 1U);
-  EXPECT_EQ(stream.receipt(11).handled, 0U);
-}
-
-TEST(FrameStreamTest, MemoryOfSessionsIsBounded) {
-  FrameStream<int> stream(kWindow);
-  for (std::uint64_t session = 0; session < 1000; ++session) stream.BeginSession(session);
-  EXPECT_EQ(stream.Classify(998), FrameStream<int>::Session::kOver);
-  EXPECT_EQ(stream.Classify(0), FrameStream<int>::Session::kNew);  // Forgotten.
 }
 
 }  // namespace

@@ -2,7 +2,7 @@
 
 namespace isotherm {
 
-Status GroundEndpoints::Open(const Participant& participant, const Refusals& refusals) {
+Status GroundEndpoints::Open(const Participant& participant, StreamRefusals& refusals) {
   ISOTHERM_RETURN_IF_ERROR(depth.Open(participant, &refusals.depth));
   ISOTHERM_RETURN_IF_ERROR(thermal.Open(participant, &refusals.thermal));
   ISOTHERM_RETURN_IF_ERROR(external_odometry.Open(participant, &refusals.all));

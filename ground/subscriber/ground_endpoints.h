@@ -5,20 +5,15 @@
 #include "common/messages/messages.h"
 #include "common/transport/endpoints.h"
 #include "common/transport/participant.h"
-#include "common/transport/refusal.h"
 #include "common/transport/wait_set.h"
+#include "ground/subscriber/stream_refusals.h"
 
 namespace isotherm {
 
 /// Holds a ground station's ends of all topics, and the wait set that wakes for each reader.
 struct GroundEndpoints {
-  /// The counters, which must outlive the readers, get the samples that cannot be decoded.
-  struct Refusals {
-    RefusalCounter& all;
-    RefusalCounter& depth;
-    RefusalCounter& thermal;
-  };
-  Status Open(const Participant& participant, const Refusals& refusals);
+  /// `refusals`, which must outlive the readers, get the samples that cannot be decoded.
+  Status Open(const Participant& participant, StreamRefusals& refusals);
 
   Reader<EncodedDepthFrame> depth;
   Reader<EncodedThermalFrame> thermal;

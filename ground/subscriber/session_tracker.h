@@ -7,8 +7,8 @@
 
 #include "common/messages/messages.h"
 #include "common/time/time_types.h"
-#include "ground/subscriber/frame_stream.h"
 #include "ground/subscriber/session_counters.h"
+#include "ground/subscriber/stream_tally.h"
 
 namespace isotherm {
 

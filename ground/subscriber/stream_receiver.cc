@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "common/base/log.h"
@@ -54,37 +55,31 @@ StreamReceiver<Item>::StreamReceiver(std::string_view name, Nanoseconds reorder_
       refusals_(refusals),
       deliver_(std::move(deliver)),
       deliver_late_(std::move(deliver_late)),
-      stream_(reorder_window) {}
+      reorder_window_(reorder_window),
+      sequencer_(std::in_place, reorder_window) {}
 
 template <typename Item>
-bool StreamReceiver<Item>::IsWanted(const FrameHeader& header, typename Stream::Session session) {
-  if (session == Stream::Session::kNew) return true;
-  if (session == Stream::Session::kOver) {
-    Refuse(RefusalCause::kOtherSession, header);
-    return false;
+bool StreamReceiver<Item>::IsWanted(const FrameHeader& header) {
+  if (!IsCurrent(header.session)) {
+    const bool is_new = std::ranges::find(over_, header.session) == over_.end();
+    if (!is_new) Refuse(RefusalCause::kOtherSession, header);
+    return is_new;
   }
-  switch (stream_.Check(header.frame_number)) {
-    case Stream::Verdict::kDuplicate:
-      stream_.CountDuplicate();
-      return false;
-    case Stream::Verdict::kInOrder:
-    case Stream::Verdict::kLate:
-      break;
-  }
-  return true;
+  if (sequencer_->Check(header.frame_number) != Verdict::kDuplicate) return true;
+  ++tally_.duplicates;
+  return false;
 }
 
 template <typename Item>
 bool StreamReceiver<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now) {
   const FrameHeader header = encoded.header;
-  const typename Stream::Session session = stream_.Classify(header.session);
-  if (!IsWanted(header, session)) return false;
+  if (!IsWanted(header)) return false;
   Result<Image<std::uint16_t>> pixels = PixelsOf(encoded);
   if (!pixels) {
     Refuse(RefusalCause::kUndecodable, header);
     return false;
   }
-  if (session == Stream::Session::kNew) BeginSession(header);
+  if (!IsCurrent(header.session)) BeginSession(header);
   const FrameMark mark{header.frame_number, header.capture_time, now};
   Item item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
   if (newest_) {
@@ -100,10 +95,16 @@ bool StreamReceiver<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTim
 template <typename Item>
 void StreamReceiver<Item>::BeginSession(const FrameHeader& header) {
   DeliverAll();
-  if (newest_) previous_ = tally(stream_.tally().session);
-  refused_before_ = newest_ ? refusals_->counts() : RefusalCounts{};
+  if (newest_) {
+    previous_ = tally(tally_.session);
+    refused_before_ = refusals_->counts();
+    over_.push_back(tally_.session);
+    if (over_.size() > kMaxRemembered) over_.pop_front();
+  }
   newest_.reset();
-  stream_.BeginSession(header.session);
+  tally_ = {};
+  tally_.session = header.session;
+  sequencer_.emplace(reorder_window_);
   LOG(Subscriber, Info) << "first " << name_ << " frame, session=" << header.session
                         << " frame_number=" << header.frame_number;
 }
@@ -111,9 +112,9 @@ void StreamReceiver<Item>::BeginSession(const FrameHeader& header) {
 template <typename Item>
 void StreamReceiver<Item>::Accept(Item&& item, const FrameMark& mark) {
   if (!newest_ || mark.number > newest_->number) newest_ = mark;
-  const auto verdict = stream_.Add(mark.number, std::move(item), mark.arrival);
-  // Add leaves a late item where it is.
-  if (verdict == Stream::Verdict::kLate && deliver_late_) deliver_late_(std::move(item));
+  if (sequencer_->Add(mark.number, std::move(item), mark.arrival) != Verdict::kLate) return;
+  ++tally_.late;
+  if (deliver_late_) deliver_late_(std::move(item));  // Add has left it where it was.
 }
 
 template <typename Item>
@@ -155,10 +156,8 @@ void StreamReceiver<Item>::BelieveAside() {
                              << " to " << first.number << ", capture time by " << advance_s
                              << " s; it goes on there: look at the clocks of rig and camera";
   }
-  while (std::optional<Item> waiting = stream_.Flush()) {
-    if (deliver_) deliver_(std::move(*waiting));
-  }
-  stream_.Resync(first.number);
+  Flush();
+  sequencer_->Resync(first.number);
   newest_.reset();
   for (Aside& next : believed) Accept(std::move(next.item), next.mark);
 }
@@ -177,19 +176,33 @@ void StreamReceiver<Item>::RefuseAside() {
 
 template <typename Item>
 StreamTally StreamReceiver<Item>::tally(std::uint64_t session) const {
-  if (previous_ && previous_->session == session) return *previous_;
-  StreamTally tally = stream_.tally(session);
-  if (newest_ && session == stream_.tally().session) {
-    tally.refused = refusals_->counts();
-    for (std::size_t i = 0; i < tally.refused.size(); ++i) tally.refused[i] -= refused_before_[i];
+  if (!IsCurrent(session)) {
+    StreamTally unknown;
+    unknown.session = session;
+    return previous_ && previous_->session == session ? *previous_ : unknown;
   }
+  StreamTally tally = tally_;
+  tally.next = sequencer_->receipts().next();
+  tally.received = sequencer_->receipts().received();
+  tally.refused = refusals_->counts();
+  for (std::size_t i = 0; i < tally.refused.size(); ++i) tally.refused[i] -= refused_before_[i];
   return tally;
+}
+
+template <typename Item>
+StreamReceipt StreamReceiver<Item>::receipt(std::uint64_t session) const {
+  if (!IsCurrent(session)) return {};
+  const ReceiptTracker& receipts = sequencer_->receipts();
+  return {.next = receipts.next(),
+          .handled = sequencer_->handled(),
+          .received = receipts.received(),
+          .holes = receipts.NewestHoles(kMaxHoles)};
 }
 
 template <typename Item>
 void StreamReceiver<Item>::DeliverDue(SteadyTime now) {
   if (!aside_.empty() && now >= aside_.front().mark.arrival + kMaxAside) SettleAside();
-  while (std::optional<Item> item = stream_.Next(now)) {
+  while (std::optional<Item> item = sequencer_->Next(now)) {
     if (deliver_) deliver_(std::move(*item));
   }
 }
@@ -197,7 +210,12 @@ void StreamReceiver<Item>::DeliverDue(SteadyTime now) {
 template <typename Item>
 void StreamReceiver<Item>::DeliverAll() {
   SettleAside();
-  while (std::optional<Item> item = stream_.Flush()) {
+  Flush();
+}
+
+template <typename Item>
+void StreamReceiver<Item>::Flush() {
+  while (std::optional<Item> item = sequencer_->Flush()) {
     if (deliver_) deliver_(std::move(*item));
   }
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <string_view>
@@ -7,14 +9,16 @@
 #include <vector>
 
 #include "common/transport/refusal.h"
-#include "ground/subscriber/frame_plausibility.h"
-#include "ground/subscriber/frame_stream.h"
+#include "ground/subscriber/frame_sequencer.h"
+#include "ground/subscriber/frame_succession.h"
 #include "ground/subscriber/received_frame.h"
+#include "ground/subscriber/stream_tally.h"
 
 namespace isotherm {
 
 /// The way of one stream from the link to its consumer: session, number and payload are checked,
-/// the payload is unpacked, the order is restored. A frame whose number or capture time cannot
+/// the payload is unpacked, the order is restored. A session that another one has followed does not
+/// come back. A frame whose number or capture time cannot
 /// follow those before is kept aside: when kConfirm in a row agree with each other, the stream has
 /// really jumped and goes on with them; otherwise they are refused, and one wild frame stops none
 /// behind it. A replay as fast as the ground takes it passes over the gaps of its recording: one
@@ -43,15 +47,21 @@ class StreamReceiver {
   /// Delivers everything that waits, in order.
   void DeliverAll();
 
-  const FrameStream<Item>& stream() const { return stream_; }
-  /// As FrameStream::tally, with what was refused.
+  /// When the first missing frame is given up; nullopt if no frame waits for one.
+  std::optional<SteadyTime> deadline() const { return sequencer_->deadline(); }
+  /// The tally of `session`, as far as it is remembered (the current one and the one before).
   StreamTally tally(std::uint64_t session) const;
+  /// What the edge is told of `session`; nothing but for the current one.
+  StreamReceipt receipt(std::uint64_t session) const;
 
  private:
-  using Stream = FrameStream<Item>;
+  using Sequencer = FrameSequencer<Item>;
+  using Verdict = typename Sequencer::Verdict;
+  static constexpr std::size_t kMaxRemembered = 32;  ///< Sessions that must not come back.
 
+  bool IsCurrent(std::uint64_t session) const { return newest_ && session == tally_.session; }
   /// True if a frame with this header would be taken; counts it if not.
-  bool IsWanted(const FrameHeader& header, typename Stream::Session session);
+  bool IsWanted(const FrameHeader& header);
   void BeginSession(const FrameHeader& header);
   void Accept(Item&& item, const FrameMark& mark);
   /// Keeps a frame aside that `cause` speaks against; true if it is believed now.
@@ -62,14 +72,16 @@ class StreamReceiver {
   /// No other frame will say whether those kept aside are right.
   void SettleAside();
   bool FollowsGap() const;  ///< What is aside.
+  void Flush();             ///< Delivers all that waits for its turn, and nothing that is aside.
   void Refuse(RefusalCause cause, const FrameHeader& header);
 
   const std::string_view name_;
   RefusalCounter* const refusals_;
   const Consumer deliver_;
   const Consumer deliver_late_;
-  Stream stream_;
-  std::optional<FrameMark> newest_;  ///< The newest of the frames that were taken.
+  const Nanoseconds reorder_window_;
+  std::optional<Sequencer> sequencer_;  ///< Never empty; a new one for each session.
+  std::optional<FrameMark> newest_;     ///< The newest of the session's frames that were taken.
   struct Aside {
     Item item;
     FrameMark mark;
@@ -77,8 +89,10 @@ class StreamReceiver {
   };
   bool replay_ = false;
   std::vector<Aside> aside_;        ///< Each follows the one before it.
+  StreamTally tally_;               ///< But for what sequencer_ and refusals_ count.
   RefusalCounts refused_before_{};  ///< When the session began.
   std::optional<StreamTally> previous_;
+  std::deque<std::uint64_t> over_;  ///< The last sessions that were left.
 };
 
 extern template class StreamReceiver<ReceivedDepth>;

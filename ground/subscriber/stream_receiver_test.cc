@@ -84,7 +84,7 @@ TEST_F(StreamReceiverTest, F20DuplicateIsDeliveredOnce) {
   EXPECT_TRUE(Add(MakeFrame(1, 0)));
   EXPECT_FALSE(Add(MakeFrame(1, 0)));
   EXPECT_EQ(delivered_.size(), 1U);
-  EXPECT_EQ(receiver_.stream().tally().duplicates, 1U);
+  EXPECT_EQ(receiver_.tally(1).duplicates, 1U);
   EXPECT_EQ(refusals_.total(), 0U);
 }
 
@@ -95,8 +95,8 @@ TEST_F(StreamReceiverTest, F21LateFrameGoesTheOtherWay) {
   EXPECT_TRUE(Add(MakeFrame(1, 0)));
   EXPECT_THAT(Numbers(delivered_), ElementsAre(1));
   EXPECT_THAT(Numbers(late_), ElementsAre(0));
-  EXPECT_EQ(receiver_.stream().tally().late, 1U);
-  EXPECT_EQ(receiver_.stream().tally().received, 2U);
+  EXPECT_EQ(receiver_.tally(1).late, 1U);
+  EXPECT_EQ(receiver_.tally(1).received, 2U);
 }
 
 TEST_F(StreamReceiverTest, F60UndecodablePayloadIsRefusedAndItsNumberStaysFree) {
@@ -122,7 +122,24 @@ TEST_F(StreamReceiverTest, F60FrameOfASessionThatIsOverIsRefused) {
   Add(MakeFrame(2, 0));
   EXPECT_FALSE(Add(MakeFrame(1, 1)));
   EXPECT_EQ(refusals_.count(RefusalCause::kOtherSession), 1U);
-  EXPECT_EQ(receiver_.stream().tally().session, 2U);
+  EXPECT_TRUE(Add(MakeFrame(2, 1))) << "the newer one goes on";
+}
+
+TEST_F(StreamReceiverTest, ANewSessionIsCountedFromZero) {
+  Add(MakeFrame(11, 0));
+  Add(MakeFrame(11, 1));
+  Add(MakeFrame(7, 0));  // Numbers of sessions need not grow.
+  EXPECT_EQ(receiver_.tally(11).received, 2U);
+  EXPECT_EQ(receiver_.tally(7).received, 1U);
+  EXPECT_EQ(receiver_.receipt(7).handled, 1U);
+  EXPECT_EQ(receiver_.receipt(11).handled, 0U) << "the edge is told of the current one only";
+}
+
+TEST_F(StreamReceiverTest, MemoryOfSessionsIsBounded) {
+  for (std::uint64_t session = 0; session < 1000; ++session)
+    EXPECT_TRUE(Add(MakeFrame(session, 0)));
+  EXPECT_FALSE(Add(MakeFrame(998, 1)));
+  EXPECT_TRUE(Add(MakeFrame(0, 1))) << "forgotten";
 }
 
 TEST_F(StreamReceiverTest, F60OneImpossibleNumberStopsNoneBehindIt) {

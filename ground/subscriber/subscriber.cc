@@ -1,7 +1,5 @@
 #include "ground/subscriber/subscriber.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 #include <variant>
@@ -13,6 +11,7 @@
 #include "common/transport/endpoints.h"
 #include "ground/subscriber/clock_comparison.h"
 #include "ground/subscriber/clock_watch.h"
+#include "ground/subscriber/followed_rig.h"
 #include "ground/subscriber/ground_endpoints.h"
 #include "ground/subscriber/peer_table.h"
 #include "ground/subscriber/rig_gate.h"
@@ -20,6 +19,7 @@
 #include "ground/subscriber/session_history.h"
 #include "ground/subscriber/session_tracker.h"
 #include "ground/subscriber/stream_receiver.h"
+#include "ground/subscriber/stream_refusals.h"
 
 namespace isotherm {
 namespace {
@@ -44,7 +44,7 @@ class DdsSubscriber final : public Subscriber {
   Result<std::uint64_t> Send(Command command) override;
   SubscriberStats stats() const override;
   SessionCounters counters(std::uint64_t session) const override;
-  const RefusalCounter& refusals() const override { return refusals_; }
+  const RefusalCounter& refusals() const override { return refusals_.all; }
 
  private:
   /// Takes some of what has arrived; false if there was nothing.
@@ -78,22 +78,17 @@ class DdsSubscriber final : public Subscriber {
   template <typename Item>
   void OnFrame(typename StreamReceiver<Item>::Encoded&& frame, StreamReceiver<Item>* receiver,
                CaptureTime arrival);
-  void Refuse(const RigSample& sample, RefusalCause cause);
   /// Who is there, who is the rig, and who only says so.
   void LookAround(SteadyTime now);
-  std::string followed() const;  ///< Empty before there is one.
-  /// True for the rig that is followed; without a choice that is the first one seen.
+  /// True for samples of the rig that is followed; counts those of others.
   bool IsFollowed(const std::string& edge_id);
-  /// Follows `edge_id` if no choice was made yet.
-  void FollowFirst(const std::string& edge_id);
 
   const Clock& clock_;
   const SubscriberOptions options_;
   const SubscriberHandlers handlers_;
   const Hello own_hello_;
-  RefusalCounter refusals_;  ///< Everything.
-  RefusalCounter depth_refusals_{&refusals_};
-  RefusalCounter thermal_refusals_{&refusals_};
+  FollowedRig followed_;
+  StreamRefusals refusals_;
   GroundEndpoints ends_;
 
   // Of the thread in Run().
@@ -113,7 +108,6 @@ class DdsSubscriber final : public Subscriber {
   int frames_since_receipt_ = 0;
 
   mutable Mutex mutex_;
-  std::string edge_id_ GUARDED_BY(mutex_);
   std::uint64_t next_command_ GUARDED_BY(mutex_);
   SubscriberStats stats_ GUARDED_BY(mutex_);
   SessionHistory history_ GUARDED_BY(mutex_);
@@ -126,26 +120,25 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
       handlers_(std::move(handlers)),
       own_hello_{
           .role = Role::kGround, .software_version = options.software_version, .host = HostName()},
-      depth_("depth", options.reorder_window, &depth_refusals_, handlers_.depth,
+      followed_(options.edge_id),
+      depth_("depth", options.reorder_window, &refusals_.depth, handlers_.depth,
              handlers_.late_depth),
-      thermal_("thermal", options.reorder_window, &thermal_refusals_, handlers_.thermal,
+      thermal_("thermal", options.reorder_window, &refusals_.thermal, handlers_.thermal,
                handlers_.late_thermal),
       gate_(
           [this](RigSample&& sample) {
             std::visit([&](auto&& message) { On(std::move(message), sample.arrival); },
                        std::move(sample.content));
           },
-          [this](const RigSample& sample, RefusalCause cause) { Refuse(sample, cause); }),
+          [this](const RigSample& sample, RefusalCause cause) { refusals_.Add(sample, cause); }),
       sessions_(options.end_grace),
       clock_comparison_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))),
       clock_watch_(options.max_clock_offset),
-      edge_id_(options.edge_id),
       // Not from 1, so that the result for an earlier run of this ground is not taken for ours.
       next_command_(static_cast<std::uint64_t>(ToNanoseconds(clock.Now()))) {}
 
 Status DdsSubscriber::Open(const Participant& participant) {
-  ISOTHERM_RETURN_IF_ERROR(
-      ends_.Open(participant, {refusals_, depth_refusals_, thermal_refusals_}));
+  ISOTHERM_RETURN_IF_ERROR(ends_.Open(participant, refusals_));
   return ends_.hello.Write(options_.ground_id, own_hello_);
 }
 
@@ -254,30 +247,9 @@ void DdsSubscriber::OnFrame(typename StreamReceiver<Item>::Encoded&& frame,
   receiver->DeliverDue(now);
 }
 
-void DdsSubscriber::Refuse(const RigSample& sample, RefusalCause cause) {
-  const std::uint64_t session = SessionOf(sample);
-  if (const auto* depth = std::get_if<EncodedDepthFrame>(&sample.content)) {
-    depth_refusals_.Add(cause, fmt::format("stream=depth session={} frame_number={}", session,
-                                           depth->header.frame_number));
-  } else if (const auto* thermal = std::get_if<EncodedThermalFrame>(&sample.content)) {
-    thermal_refusals_.Add(cause, fmt::format("stream=thermal session={} frame_number={}", session,
-                                             thermal->header.frame_number));
-  } else {
-    refusals_.Add(cause, fmt::format("a message of session={}", session));
-  }
-}
-
-void DdsSubscriber::FollowFirst(const std::string& edge_id) {
-  MutexLock lock(mutex_);
-  if (!edge_id_.empty()) return;
-  edge_id_ = edge_id;
-  LOG(Subscriber, Info) << "following the first rig seen, edge_id=" << edge_id;
-}
-
 bool DdsSubscriber::IsFollowed(const std::string& edge_id) {
-  FollowFirst(edge_id);
+  if (followed_.See(edge_id)) return true;
   MutexLock lock(mutex_);
-  if (edge_id == edge_id_) return true;
   ++stats_.other_edge;
   return false;
 }
@@ -285,10 +257,10 @@ bool DdsSubscriber::IsFollowed(const std::string& edge_id) {
 void DdsSubscriber::OnPeer(const Received<Hello>& peer) {
   if (peer.message.role != Role::kEdge) return;
   const Status compatible = CheckCompatible(own_hello_, peer.message);
-  if (!compatible.ok()) return refusals_.Add(RefusalCause::kOtherVersion, compatible.message());
+  if (!compatible.ok()) return refusals_.all.Add(RefusalCause::kOtherVersion, compatible.message());
   watch_.Add(peers_.Identify(ends_.peers, peer.writer), peer.edge_id, peer.message.host);
   // An edge that waits for a ground has sent nothing else.
-  FollowFirst(peer.edge_id);
+  followed_.See(peer.edge_id);
 }
 
 void DdsSubscriber::Housekeep() {
@@ -302,15 +274,15 @@ void DdsSubscriber::Housekeep() {
   KeepCounters();
   MutexLock lock(mutex_);
   stats_.counters = history_.Newest();
-  stats_.refusals = refusals_.counts();
-  stats_.refused = refusals_.total();
+  stats_.refusals = refusals_.all.counts();
+  stats_.refused = refusals_.all.total();
 }
 
 void DdsSubscriber::LookAround(SteadyTime now) {
   look_due_ = now + kIdleInterval;
   const auto is_present = [this](PeerHandle peer) { return peers_.IsPresent(peer); };
   gate_.Update(now, is_present);
-  const std::string edge_id = followed();
+  const std::string edge_id = followed_.edge_id();
   const RigSighting sighting =
       watch_.Look(now, edge_id, ends_.status.matched_writers() > 0, is_present);
   for (const std::uint64_t session : sighting.sessions_to_refuse) {
@@ -326,11 +298,6 @@ void DdsSubscriber::LookAround(SteadyTime now) {
   LOG(Subscriber, Info) << (sighting.present ? "rig found" : "rig lost");
 }
 
-std::string DdsSubscriber::followed() const {
-  MutexLock lock(mutex_);
-  return edge_id_;
-}
-
 void DdsSubscriber::KeepCounters() {
   const std::vector<std::uint64_t> sessions = sessions_.sessions();
   // The streams know no more than two; the counters of older ones are as they were.
@@ -339,7 +306,7 @@ void DdsSubscriber::KeepCounters() {
   for (std::size_t i = first; i < sessions.size(); ++i) {
     const std::uint64_t session = sessions[i];
     history_.Keep(sessions_.Counters(depth_.tally(session), thermal_.tally(session)),
-                  i + 1 == sessions.size(), refusals_.total());
+                  i + 1 == sessions.size(), refusals_.all.total());
   }
 }
 
@@ -347,7 +314,7 @@ void DdsSubscriber::CloseSessions(SteadyTime now) {
   while (const auto session = sessions_.oldest_open()) {
     auto counters = sessions_.TryClose(depth_.tally(*session), thermal_.tally(*session), now);
     if (!counters) return;
-    counters->refused_samples = refusals_.total();
+    counters->refused_samples = refusals_.all.total();
     gate_.OnClosed(*session);
     // Complete, but perhaps waiting for numbers that were never published.
     depth_.DeliverAll();
@@ -362,13 +329,13 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
   frames_since_receipt_ = 0;
   // From the deadline before, so that the rate does not drift; from now after a pause.
   receipt_due_ = std::max(receipt_due_ + options_.receipt_interval, now);
-  const std::string edge_id = followed();
+  const std::string edge_id = followed_.edge_id();
   if (edge_id.empty()) return;
   Receipt receipt;  // Without a session it says only which rig this ground follows.
   if (const auto session = sessions_.newest()) {
     receipt.session = *session;
-    receipt.depth = depth_.stream().receipt(*session);
-    receipt.thermal = thermal_.stream().receipt(*session);
+    receipt.depth = depth_.receipt(*session);
+    receipt.thermal = thermal_.receipt(*session);
   }
   receipt.clock_ping = clock_comparison_.Ping(clock_.SteadyNow());
   const Status sent = ends_.receipt.Write(edge_id, receipt);
@@ -380,24 +347,24 @@ void DdsSubscriber::SendReceipt(SteadyTime now) {
 Nanoseconds DdsSubscriber::TimeToNextDuty(SteadyTime now) const {
   SteadyTime next = now + kIdleInterval;
   next = std::min(next, receipt_due_);
-  for (const auto& deadline :
-       {depth_.stream().deadline(), thermal_.stream().deadline(), sessions_.deadline()}) {
+  for (const auto& deadline : {depth_.deadline(), thermal_.deadline(), sessions_.deadline()}) {
     if (deadline) next = std::min(next, *deadline);
   }
   return std::max(Nanoseconds(0), Nanoseconds(next - now));
 }
 
 Status DdsSubscriber::Publish(const Feedback& feedback) {
-  const std::string edge_id = followed();
+  const std::string edge_id = followed_.edge_id();
   if (edge_id.empty()) return Unavailable("no rig seen yet");
   return ends_.feedback.Write(edge_id, feedback);
 }
 
 Result<std::uint64_t> DdsSubscriber::Send(Command command) {
-  MutexLock lock(mutex_);
-  const std::string edge_id = edge_id_;
-  command.number = next_command_++;
-  lock.unlock();
+  const std::string edge_id = followed_.edge_id();
+  {
+    MutexLock lock(mutex_);
+    command.number = next_command_++;
+  }
   if (edge_id.empty()) return Err(Unavailable("no rig seen yet"));
   command.time = clock_.Now();
   if (const Status sent = ends_.command.Write(edge_id, command); !sent.ok()) return Err(sent);

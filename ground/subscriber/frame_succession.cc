@@ -1,4 +1,4 @@
-#include "ground/subscriber/frame_plausibility.h"
+#include "ground/subscriber/frame_succession.h"
 
 #include <algorithm>
 

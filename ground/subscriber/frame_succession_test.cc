@@ -1,4 +1,4 @@
-#include "ground/subscriber/frame_plausibility.h"
+#include "ground/subscriber/frame_succession.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class FramePlausibilityTest : public ::testing::Test {
+class FrameSuccessionTest : public ::testing::Test {
  protected:
   /// Checks a frame so much further on in numbers, capture time and arrival.
   std::optional<RefusalCause> Check(std::int64_t numbers, Nanoseconds time, Nanoseconds arrival) {
@@ -21,7 +21,7 @@ class FramePlausibilityTest : public ::testing::Test {
                     .time = CaptureTimeFromNanoseconds(1'700'000'000'000'000'000)};
 };
 
-TEST_F(FramePlausibilityTest, WhatCamerasAndLinksDoIsPlausible) {
+TEST_F(FrameSuccessionTest, WhatCamerasAndLinksDoIsPlausible) {
   EXPECT_EQ(Check(1, 33ms, 33ms), std::nullopt);
   EXPECT_EQ(Check(1, 33ms, 0ms), std::nullopt) << "a burst after an outage, or a replay";
   EXPECT_EQ(Check(1, 11ms, 5s), std::nullopt) << "an outage began";
@@ -32,7 +32,7 @@ TEST_F(FramePlausibilityTest, WhatCamerasAndLinksDoIsPlausible) {
   EXPECT_EQ(Check(-3, -100ms, 10ms), std::nullopt) << "a late frame";
 }
 
-TEST_F(FramePlausibilityTest, TimesThatAreNotInTheSessionAreNot) {
+TEST_F(FrameSuccessionTest, TimesThatAreNotInTheSessionAreNot) {
   EXPECT_EQ(Check(1, 1h, 33ms), RefusalCause::kImplausibleTime);
   EXPECT_EQ(Check(1, 1301ms, 33ms), RefusalCause::kImplausibleTime);
   EXPECT_EQ(Check(1, -1ns, 33ms), RefusalCause::kImplausibleTime);
@@ -40,7 +40,7 @@ TEST_F(FramePlausibilityTest, TimesThatAreNotInTheSessionAreNot) {
   EXPECT_EQ(Check(1'000'000, 500'000s, 33ms), RefusalCause::kImplausibleTime);
 }
 
-TEST_F(FramePlausibilityTest, AGapInARecordingIsForwardsAndInThePast) {
+TEST_F(FrameSuccessionTest, AGapInARecordingIsForwardsAndInThePast) {
   const auto may_follow = [&](std::int64_t numbers, Nanoseconds time) {
     FrameMark frame = before_;
     frame.number += static_cast<std::uint64_t>(numbers);
@@ -55,7 +55,7 @@ TEST_F(FramePlausibilityTest, AGapInARecordingIsForwardsAndInThePast) {
   EXPECT_FALSE(may_follow(5'600'000, 1h)) << "more than any camera";
 }
 
-TEST_F(FramePlausibilityTest, NumbersThatNoCameraReachesAreNot) {
+TEST_F(FrameSuccessionTest, NumbersThatNoCameraReachesAreNot) {
   EXPECT_EQ(Check(5'600'000, 33ms, 33ms), RefusalCause::kImpossibleNumber) << "one flipped bit";
   EXPECT_EQ(Check(100, 33ms, 33ms), RefusalCause::kImpossibleNumber);
   EXPECT_EQ(Check(60, 33ms, 33ms), std::nullopt);
