@@ -47,7 +47,7 @@ struct ThermalHousekeeping {
 struct FrameHeader {
   std::uint64_t session = 0;  ///< One per start of a scan on the edge.
   std::uint64_t frame_number =
-      0;  ///< Counts frames of this sensor within the session, from 0, without holes at the source.
+      0;  ///< The edge's source counts, from 0 per session, what it delivers or knows to be lost.
   DeviceTicks device_ticks{};    ///< The camera's own stamp.
   CaptureTime capture_time{};    ///< Middle of the exposure, edge wall clock.
   Nanoseconds capture_sigma{0};  ///< One-sigma uncertainty of capture_time; 0 = not estimated.

@@ -17,18 +17,20 @@ enum class NucOrder : std::uint8_t { kTrigger, kAutomaticOn, kAutomaticOff, kRes
 
 /// Keeps what was ordered of the camera and what became of it.
 ///
-///   kNone       --(order given)------------------------> kUnanswered
-///   kUnanswered --(accepted: the shutter must close)---> kAwaited
-///   kUnanswered --(refused)----------------------------> kNone
-///   kAwaited    --(the shutter did not close in time)--> kNone
-///   any         --(the shutter closes)-----------------> kNone
+///   kNone       --(order given)----------------------------> kUnanswered
+///   kUnanswered --(accepted: the shutter must close)-------> kAwaited
+///   kUnanswered --(accepted, but no shutter is reported)---> kNone
+///   kUnanswered --(refused)--------------------------------> kNone
+///   kUnanswered --(the camera was away)--------------------> kNone
+///   kAwaited    --(the shutter did not close in time)------> kNone
+///   any         --(the shutter closes)---------------------> kNone
 ///
 /// Orders to correct are at least min_interval_s apart, and max_attempts at most until the shutter
 /// has opened or somebody asks again. Times are those of frames. Thread-compatible.
 class NucOrders {
  public:
   enum class State : std::uint8_t { kNone, kUnanswered, kAwaited };
-  /// What follows from the camera's answer to an order to correct.
+  /// Says how to go on after the camera's answer to an order to correct.
   enum class Consequence : std::uint8_t {
     kNothing,       ///< The answer came after the shutter closed, or another attempt is left.
     kAwaitShutter,  ///< It was accepted, and the shutter has not closed yet.
