@@ -186,7 +186,12 @@ TEST_F(HousekeepingTest, TheGroundsImageReplacesTheFileAsSoonAsItComes) {
   publisher_.feedback = {{feedback, CaptureTime{}}};
   Make();
   pipeline_.StartReceiving();
-  while (pipeline_.feedback().latency().count == 0) std::this_thread::yield();
+  // The pipeline's thread hands it over; only a failure waits so long.
+  const auto deadline = std::chrono::steady_clock::now() + seconds(10);
+  while (pipeline_.feedback().latency().count == 0) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the feedback has not come";
+    std::this_thread::yield();
+  }
   housekeeping_->Tick();
   std::ifstream file(image_, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(file), {}};
