@@ -25,8 +25,8 @@ struct Profile {
 };
 
 constexpr std::int32_t kMinReaderHistory = 16;
-constexpr dds_duration_t kFrameBlocking = DDS_MSECS(100);
-constexpr dds_duration_t kSmallBlocking = DDS_MSECS(50);
+constexpr dds_duration_t kFrameBlocking = kMaxFrameBlocking.count();
+constexpr dds_duration_t kSmallBlocking = kMaxMessageBlocking.count();
 constexpr dds_duration_t kLease = DDS_SECS(1);
 
 // The major version is in the names, so that what a peer of another one sends is not even

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "common/time/time_types.h"
 #include "common/transport/topics.h"
 
 struct dds_qos;
@@ -15,6 +16,11 @@ inline constexpr int kFrameHistory = 32;
 inline constexpr int kMaxFlowWindowFrames = kFrameHistory - 4;
 /// Odometry poses that are kept per rig: more than two seconds at 200 Hz.
 inline constexpr int kExternalOdometryHistory = 512;
+
+/// The longest time that a write of a frame may wait for room in the middleware's buffers, ...
+inline constexpr Nanoseconds kMaxFrameBlocking = std::chrono::milliseconds(100);
+/// ... and a write of anything else.
+inline constexpr Nanoseconds kMaxMessageBlocking = std::chrono::milliseconds(50);
 
 struct DdsQosDeleter {
   void operator()(dds_qos* qos) const;

@@ -2,6 +2,8 @@
 
 #include "common/base/exit_deadline.h"
 #include "common/time/time_types.h"
+#include "common/transport/qos.h"
+#include "edge/publisher/stop_budget.h"
 
 namespace isotherm {
 
@@ -21,8 +23,10 @@ inline constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
 inline constexpr Nanoseconds kCameras = milliseconds(1750);
 /// ... then the recording: a disk may take this long to answer, ...
 inline constexpr Nanoseconds kDisk = milliseconds(3500);
-/// ... the link takes less than this by itself, if nothing in it hangs, ...
-inline constexpr Nanoseconds kLink = milliseconds(1450);
+/// ... the link takes no more than this by itself, if nothing in it hangs: the frames under way,
+/// the last status and the ground's confirmation, for which it is asked once a tick, ...
+inline constexpr Nanoseconds kLink =
+    StopBudget::kMaxTotal + kMaxMessageBlocking + kLingerAfterSignal + kTick;
 /// ... and with its network interface down the middleware never ends by itself.
 inline constexpr Nanoseconds kMiddleware = milliseconds(400);
 
@@ -33,7 +37,7 @@ inline constexpr Nanoseconds kMaxStop = kTotal + ExitDeadline::kTimeForLastWords
 /// The edge promises this while cameras and disk end at once, whatever the link does.
 inline constexpr Nanoseconds kPromise = milliseconds(2000);
 
-static_assert(kTick + kLink + kMiddleware < kPromise);
+static_assert(kTick + kLink + kMiddleware < kPromise, "also with the middleware left behind");
 static_assert(kTick + kLink + ExitDeadline::kTimeForLastWords < kPromise);
 static_assert(kTick + kCameras + kDisk < kTotal, "the disk gets its time behind slow cameras");
 static_assert(kMaxStop <= milliseconds(8000));

@@ -13,9 +13,9 @@
 #include "common/transport/endpoints.h"
 #include "common/transport/qos.h"
 #include "edge/publisher/edge_endpoints.h"
-#include "edge/publisher/flow_window.h"
 #include "edge/publisher/ground_watch.h"
-#include "edge/publisher/published_stream.h"
+#include "edge/publisher/outgoing_stream.h"
+#include "edge/publisher/stop_budget.h"
 
 namespace isotherm {
 namespace {
@@ -23,13 +23,8 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr Nanoseconds kPresenceInterval =
-    100ms;  // How often Run looks whether the ground is there.
-/// A ground that has just come may read before its hello is here.
-constexpr Nanoseconds kHelloGrace = 500ms;
-constexpr Nanoseconds kPollInterval = 20ms;   // For what the middleware does not signal.
-constexpr Nanoseconds kStopPatience = 500ms;  // Waiting for the ground after stop, in all.
-// Writing after stop, in all: without its peer, the middleware makes each write wait.
-constexpr Nanoseconds kStopWriting = 700ms;
+    100ms;                                   // How often Run looks whether the ground is there.
+constexpr Nanoseconds kPollInterval = 20ms;  // For what the middleware does not signal.
 
 Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link is too slow"); }
 
@@ -41,8 +36,8 @@ class DdsPublisher final : public Publisher {
         own_hello_{
             .role = Role::kEdge, .software_version = options.software_version, .host = HostName()},
         policy_(options.policy),
-        depth_{.counts = {}, .window = MakeWindow(options), .published = {}},
-        thermal_{.counts = {}, .window = MakeWindow(options), .published = {}},
+        depth_(MakeStream(options)),
+        thermal_(MakeStream(options)),
         grounds_(options.edge_id) {}
 
   Status Open(const Participant& participant);
@@ -70,25 +65,21 @@ class DdsPublisher final : public Publisher {
   std::optional<Receipt> receipt() const override { return receipt_.Get(); }
 
  private:
-  struct Stream {
-    StreamPublished counts;
-    FlowWindow window;
-    PublishedStream published;
-    int readers = 0;              // When last looked at.
-    SteadyTime reader_came_at{};  // The newest of them.
-  };
-
-  static FlowWindow MakeWindow(const PublisherOptions& options) {
+  static OutgoingStream MakeStream(const PublisherOptions& options) {
     return {static_cast<std::size_t>(options.flow_window_frames), options.flow_timeout};
   }
 
   template <typename Frame>
-  Status PublishFrame(const Frame& frame, Writer<Frame>* writer, Stream* stream,
+  Status PublishFrame(const Frame& frame, Writer<Frame>* writer, OutgoingStream* stream,
                       const std::stop_token& stop);
   template <typename Frame>
-  void WaitForRoom(const Writer<Frame>& writer, Stream* stream, const std::stop_token& stop);
+  void WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stream,
+                   const std::stop_token& stop);
   /// After stop was requested.
-  bool HasTimeLeft();
+  bool HasTimeLeft() {
+    MutexLock lock(mutex_);
+    return stop_budget_.MayWrite(clock_.SteadyNow());
+  }
   /// Messages for other rigs share the topics.
   bool IsOurs(std::string_view edge_id) const { return edge_id == options_.edge_id; }
   void TakeReceipts();
@@ -114,13 +105,10 @@ class DdsPublisher final : public Publisher {
   }
   /// As above, or somebody who has just come.
   template <typename Frame>
-  bool MayBeAwaited(const Writer<Frame>& writer, Stream* stream, SteadyTime now) const
+  bool MayBeAwaited(const Writer<Frame>& writer, OutgoingStream* stream, SteadyTime now) const
       REQUIRES(mutex_) {
     if (grounds_.IsRefused(now)) return false;
-    const int readers = writer.matched_readers();
-    if (readers > stream->readers) stream->reader_came_at = now;
-    stream->readers = readers;
-    return IsAwaited(writer) || (readers > 0 && now - stream->reader_came_at < kHelloGrace);
+    return stream->HasNewReader(writer.matched_readers(), now) || IsAwaited(writer);
   }
   bool HasNobodyToWaitFor() const;
   bool IsHandled() const;
@@ -138,14 +126,13 @@ class DdsPublisher final : public Publisher {
   mutable Mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<std::uint64_t> session_ GUARDED_BY(mutex_);
-  Stream depth_ GUARDED_BY(mutex_);
-  Stream thermal_ GUARDED_BY(mutex_);
+  OutgoingStream depth_ GUARDED_BY(mutex_);
+  OutgoingStream thermal_ GUARDED_BY(mutex_);
   std::uint64_t flow_waits_ GUARDED_BY(mutex_) = 0;
   std::uint64_t flow_timeouts_ GUARDED_BY(mutex_) = 0;
   std::optional<ClockEcho> clock_echo_ GUARDED_BY(mutex_);  // Not sent yet.
   GroundWatch grounds_ GUARDED_BY(mutex_);
-  // When it was first seen that stop was requested.
-  std::optional<SteadyTime> stopped_at_ GUARDED_BY(mutex_);
+  StopBudget stop_budget_ GUARDED_BY(mutex_);
 };
 
 Status DdsPublisher::Open(const Participant& participant) {
@@ -212,15 +199,15 @@ void DdsPublisher::OnReceipt(const Received<Receipt>& received) {
   if (echo.ping != 0) clock_echo_ = echo;
   if (session_ == receipt.session && accepted) {
     receipt_.Set(receipt);
-    depth_.window.OnReceipt(receipt.depth.handled, now);
-    thermal_.window.OnReceipt(receipt.thermal.handled, now);
+    depth_.window().OnReceipt(receipt.depth.handled, now);
+    thermal_.window().OnReceipt(receipt.thermal.handled, now);
   }
   changed_.notify_all();
 }
 
 std::optional<RefusalCause> DdsPublisher::RefusalOf(const Receipt& receipt) const {
-  if (const auto cause = depth_.published.Check(receipt.depth)) return cause;
-  return thermal_.published.Check(receipt.thermal);
+  if (const auto cause = depth_.sent().Check(receipt.depth)) return cause;
+  return thermal_.sent().Check(receipt.thermal);
 }
 
 void DdsPublisher::OnFeedback(const Received<Feedback>& received,
@@ -245,17 +232,18 @@ std::optional<RefusalCause> DdsPublisher::RefusalOf(const Feedback& feedback,
                                                     PeerHandle sender) const {
   if (!grounds_.Knows(sender)) return RefusalCause::kNotTheGround;
   if (feedback.session != session_) return RefusalCause::kOtherSession;
-  return depth_.published.Check(feedback);
+  return depth_.sent().Check(feedback);
 }
 
 void DdsPublisher::LookForGround() {
   MutexLock lock(mutex_);
   // The next one may be another version.
-  const bool left =
-      grounds_.Look(clock_.SteadyNow(), [this](std::uint64_t hello_writer) {
-        return ends_.peers.PeerOf(hello_writer) != 0;
-      });
-  if (left) depth_.readers = thermal_.readers = 0;  // Who reads now may be its successor.
+  const bool left = grounds_.Look(clock_.SteadyNow(), [this](std::uint64_t hello_writer) {
+    return ends_.peers.PeerOf(hello_writer) != 0;
+  });
+  if (!left) return;
+  depth_.ForgetReaders();
+  thermal_.ForgetReaders();
 }
 
 bool DdsPublisher::IsGroundReady() const {
@@ -278,11 +266,8 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
   {
     MutexLock lock(mutex_);
     session_ = rig.session;
-    for (Stream* stream : {&depth_, &thermal_}) {
-      stream->counts = {};
-      stream->window.BeginSession();
-      stream->published.BeginSession();
-    }
+    depth_.BeginSession();
+    thermal_.BeginSession();
     flow_waits_ = 0;
     flow_timeouts_ = 0;
   }
@@ -290,17 +275,14 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
 }
 
 template <typename Frame>
-void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
+void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stream,
                                const std::stop_token& stop) {
   MutexLock lock(mutex_);
   bool waited = false;
-  while (!stream->window.HasRoom() && MayBeAwaited(writer, stream, clock_.SteadyNow())) {
+  while (!stream->window().HasRoom() && MayBeAwaited(writer, stream, clock_.SteadyNow())) {
     const SteadyTime now = clock_.SteadyNow();
-    if (stop.stop_requested()) {
-      if (!stopped_at_) stopped_at_ = now;
-      if (now >= *stopped_at_ + kStopPatience) break;
-    }
-    if (stream->window.GiveUp(now)) {
+    if (stop.stop_requested() && !stop_budget_.MayWait(now)) break;
+    if (stream->window().GiveUp(now)) {
       ++flow_timeouts_;
       LOG(Publisher, Warning) << "no receipt from the ground, publishing without, timeout_s="
                               << ToSeconds(options_.flow_timeout);
@@ -311,15 +293,8 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, Stream* stream,
   if (waited) ++flow_waits_;
 }
 
-bool DdsPublisher::HasTimeLeft() {
-  const SteadyTime now = clock_.SteadyNow();
-  MutexLock lock(mutex_);
-  if (!stopped_at_) stopped_at_ = now;
-  return now < *stopped_at_ + kStopWriting;
-}
-
 template <typename Frame>
-Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Stream* stream,
+Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, OutgoingStream* stream,
                                   const std::stop_token& stop) {
   const std::uint64_t number = frame.header.frame_number;
   if (session() != frame.header.session) {
@@ -329,22 +304,20 @@ Status DdsPublisher::PublishFrame(const Frame& frame, Writer<Frame>* writer, Str
   if (policy_ == PublishPolicy::kLossless) WaitForRoom(*writer, stream, stop);
   if (stop.stop_requested() && !HasTimeLeft()) {
     MutexLock lock(mutex_);
-    ++stream->counts.failed;
+    stream->OnFailed();
     return NoTimeLeft();
   }
   {
     MutexLock lock(mutex_);
-    stream->published.Note(number, frame.header.capture_time);
+    stream->sent().Note(number, frame.header.capture_time);
   }
   const Status written = writer->Write(options_.edge_id, frame);
   MutexLock lock(mutex_);
   if (!written.ok()) {
-    ++stream->counts.failed;
+    stream->OnFailed();
     return written;
   }
-  ++stream->counts.published;
-  stream->window.OnPublished(number);
-  stream->counts.next_frame_number = std::max(stream->counts.next_frame_number, number + 1);
+  stream->OnPublished(number);
   return OkStatus();
 }
 
@@ -352,10 +325,10 @@ Status DdsPublisher::Publish(EdgeStatus status) {
   {
     MutexLock lock(mutex_);
     if (session_) status.session = *session_;
-    status.depth.published = depth_.counts.published;
-    status.depth.next_frame_number = depth_.counts.next_frame_number;
-    status.thermal.published = thermal_.counts.published;
-    status.thermal.next_frame_number = thermal_.counts.next_frame_number;
+    status.depth.published = depth_.counts().published;
+    status.depth.next_frame_number = depth_.counts().next_frame_number;
+    status.thermal.published = thermal_.counts().published;
+    status.thermal.next_frame_number = thermal_.counts().next_frame_number;
     status.clock_echo = clock_echo_;
   }
   status.publish_policy = policy_;
@@ -371,10 +344,10 @@ bool DdsPublisher::HasNobodyToWaitFor() const {
 bool DdsPublisher::IsHandled() const {
   MutexLock lock(mutex_);
   const std::optional<Receipt> receipt = receipt_.Get();
-  if (depth_.counts.published + thermal_.counts.published == 0) return true;
+  if (depth_.counts().published + thermal_.counts().published == 0) return true;
   return receipt && receipt->session == session_ &&
-         receipt->depth.handled >= depth_.counts.next_frame_number &&
-         receipt->thermal.handled >= thermal_.counts.next_frame_number;
+         receipt->depth.handled >= depth_.counts().next_frame_number &&
+         receipt->thermal.handled >= thermal_.counts().next_frame_number;
 }
 
 bool DdsPublisher::Drain(Nanoseconds timeout) {
@@ -391,15 +364,15 @@ bool DdsPublisher::Drain(Nanoseconds timeout) {
     if (HasNobodyToWaitFor()) return true;
     if (left() == Nanoseconds(0)) return false;
     MutexLock lock(mutex_);
-    changed_.wait_for(lock, kPollInterval);
+    changed_.wait_for(lock, std::min(kPollInterval, left()));
   }
   return true;
 }
 
 PublisherStats DdsPublisher::stats() const {
   MutexLock lock(mutex_);
-  return {.depth = depth_.counts,
-          .thermal = thermal_.counts,
+  return {.depth = depth_.counts(),
+          .thermal = thermal_.counts(),
           .flow_waits = flow_waits_,
           .flow_timeouts = flow_timeouts_,
           .refused = refusals_.total(),

@@ -63,9 +63,9 @@ class Publisher {
   /// Starts the counts of a session and announces its rig. Frames of other sessions must not
   /// follow.
   virtual Status BeginSession(const RigDescription& rig) = 0;
-  /// Writes a frame. With kLossless it first waits for room in the flow window; once
-  /// stop is requested, no longer than half a second over all frames that follow. An error: the
-  /// frame was not sent and is counted.
+  /// Writes a frame. With kLossless it first waits for room in the flow window. Once stop is
+  /// requested, all frames that follow have the time of one StopBudget. An error: the frame was not
+  /// sent and is counted.
   virtual Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) = 0;
   virtual Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) = 0;
   /// Never waits for the ground: a pose that comes late is worth little. Once stop is requested, it

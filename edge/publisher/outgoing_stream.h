@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "common/time/time_types.h"
+#include "edge/publisher/flow_window.h"
+#include "edge/publisher/published_stream.h"
+#include "edge/publisher/publisher.h"
+
+namespace isotherm {
+
+/// Keeps what the publisher knows of one stream: what it has sent of the session, what of it may be
+/// under way, and who reads. Thread-compatible.
+class OutgoingStream {
+ public:
+  OutgoingStream(std::size_t flow_window_frames, Nanoseconds flow_timeout)
+      : window_(flow_window_frames, flow_timeout) {}
+
+  void BeginSession() {
+    counts_ = {};
+    window_.BeginSession();
+    sent_.BeginSession();
+  }
+  /// The outcome of a write, whose frame was entered into sent() before it.
+  void OnPublished(std::uint64_t number) {
+    ++counts_.published;
+    window_.OnPublished(number);
+    counts_.next_frame_number = std::max(counts_.next_frame_number, number + 1);
+  }
+  void OnFailed() { ++counts_.failed; }
+
+  /// Whether one of the `readers` has just come, so that its hello may still be on its way.
+  bool HasNewReader(int readers, SteadyTime now) {
+    if (readers > readers_) reader_came_at_ = now;
+    readers_ = readers;
+    return readers > 0 && now - reader_came_at_ < kHelloGrace;
+  }
+  /// Who reads from now on may be the successor of who has left.
+  void ForgetReaders() { readers_ = 0; }
+
+  const StreamPublished& counts() const { return counts_; }
+  FlowWindow& window() { return window_; }
+  PublishedStream& sent() { return sent_; }
+  const PublishedStream& sent() const { return sent_; }
+
+ private:
+  /// A ground that has just come may read before its hello is here.
+  static constexpr Nanoseconds kHelloGrace = std::chrono::milliseconds(500);
+
+  StreamPublished counts_;
+  FlowWindow window_;
+  PublishedStream sent_;
+  int readers_ = 0;              ///< When last looked at.
+  SteadyTime reader_came_at_{};  ///< The newest of them.
+};
+
+}  // namespace isotherm
