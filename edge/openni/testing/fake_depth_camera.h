@@ -15,7 +15,10 @@ namespace isotherm {
 class FakeDepthCamera {
  public:
   FakeDepthCamera() { Apply(); }
-  ~FakeDepthCamera() { std::filesystem::remove(path_); }
+  ~FakeDepthCamera() {
+    std::filesystem::remove(path_);
+    std::filesystem::remove(hang_mark());
+  }
   FakeDepthCamera(const FakeDepthCamera&) = delete;
   FakeDepthCamera& operator=(const FakeDepthCamera&) = delete;
 
@@ -29,6 +32,8 @@ class FakeDepthCamera {
     script.connected = in;
     Apply();
   }
+  /// A file that is there as soon as the library hangs.
+  std::filesystem::path hang_mark() const { return HangMark(path_); }
   /// The driver reads there: a sandbox must allow it.
   std::filesystem::path folder() const { return path_.parent_path(); }
 

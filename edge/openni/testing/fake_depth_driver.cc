@@ -296,6 +296,7 @@ class FakeDriver final : public oni::driver::DriverBase {
   oni::driver::DeviceBase* deviceOpen(const char* uri, const char* /*mode*/) override {
     const std::optional<FakeDepthScript> script = ReadFakeDepthScript();
     if (!script || !script->connected || std::strcmp(uri, kUri) != 0) return nullptr;
+    if (script->open_hangs) MarkHang();
     while (script->open_hangs) pause();
     MutexLock lock(mutex_);
     device_ = new FakeDevice(*script);

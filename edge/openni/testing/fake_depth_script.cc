@@ -56,6 +56,14 @@ std::string FakeDepthScript::ToText() const {
   return text.str();
 }
 
+std::filesystem::path HangMark(const std::filesystem::path& path) {
+  return path.string() + ".hangs";
+}
+
+void MarkHang() {
+  if (const char* path = std::getenv("ISOTHERM_FAKE_DEPTH")) std::ofstream(HangMark(path)).put('x');
+}
+
 std::optional<FakeDepthScript> ReadFakeDepthScript() {
   const char* path = std::getenv("ISOTHERM_FAKE_DEPTH");
   if (path == nullptr) return std::nullopt;

@@ -33,7 +33,8 @@ struct FakeDepthScript {
   };
 
   bool connected = true;
-  bool open_hangs = false;  ///< The library never comes back from opening it.
+  /// The library never comes back from opening it. That it got there is seen by MarkHang's file.
+  bool open_hangs = false;
   std::string serial = "FAKE-1";
   bool has_field_of_view = true;
   bool has_zero_plane = true;
@@ -57,6 +58,11 @@ struct FakeDepthScript {
 
 /// Reads the file that ISOTHERM_FAKE_DEPTH names; nullopt if there is none.
 std::optional<FakeDepthScript> ReadFakeDepthScript();
+
+/// Makes the file that says that the library hangs, beside the script.
+void MarkHang();
+/// Returns the name of that file for a script at `path`.
+std::filesystem::path HangMark(const std::filesystem::path& path);
 
 /// The frames of a script: `width` x `height` each, row-major, in tenths of a millimetre or
 /// millimetres.
