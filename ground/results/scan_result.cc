@@ -64,7 +64,7 @@ Json DescribeOdometry(const OdometryPrior& odometry) {
   json["source"] = odometry.stream().source();
   json["in"] = samples.in;
   json["accepted"] = samples.accepted;
-  for (const auto& [reason, count] : samples.refused) json["refused_by_reason"][reason] = count;
+  DescribeReasons(samples.refused, "refused_by_reason", json);
   json["gaps"] = samples.gaps;
   json["restarts"] = samples.restarts;
   Json& frames = json["depth_frames"];

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string_view>
 
@@ -13,10 +12,14 @@
 namespace isotherm {
 namespace {
 
-std::string List(const std::map<std::string, std::uint64_t>& counts) {
+/// "", or ", refused: 2 jump, 1 time".
+std::string RefusedText(const EnumArray<OdometryFault, std::uint64_t>& counts) {
   std::string text;
-  for (const auto& [reason, count] : counts)
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, reason);
+  for (const OdometryFault fault : AllValues<OdometryFault>()) {
+    if (counts[fault] == 0) continue;
+    text +=
+        fmt::format("{}{} {}", text.empty() ? ", refused: " : ", ", counts[fault], ToString(fault));
+  }
   return text;
 }
 
@@ -24,10 +27,9 @@ std::string List(const std::map<std::string, std::uint64_t>& counts) {
 std::string OdometryText(const OdometryPrior& odometry) {
   const OdometryStreamCounts& samples = odometry.stream().counts();
   if (samples.in == 0) return {};
-  std::string text = fmt::format(
-      "odometry {} poses of \"{}\"{}{}; {} depth frames started from them", samples.in,
-      odometry.stream().source(),
-      samples.refused.empty() ? "" : ", refused: ", List(samples.refused), odometry.counts().used);
+  std::string text =
+      fmt::format("odometry {} poses of \"{}\"{}; {} depth frames started from them", samples.in,
+                  odometry.stream().source(), RefusedText(samples.refused), odometry.counts().used);
   if (odometry.counts().missing > 0)
     text += fmt::format(", {} had none", odometry.counts().missing);
   if (odometry.counts().contradicted > 0) {

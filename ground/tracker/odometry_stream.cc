@@ -23,9 +23,19 @@ constexpr double kJitterSigmas = 4.0;
 constexpr double kAcceleration = 2.0;         ///< m/s²
 constexpr double kAngularAcceleration = 4.0;  ///< rad/s²
 
+constexpr EnumArray<OdometryFault, std::string_view> kNames = {
+    {OdometryFault::kJump, "jump"},
+    {OdometryFault::kNotFinite, "not_finite"},
+    {OdometryFault::kOtherSource, "other_source"},
+    {OdometryFault::kQuaternion, "quaternion"},
+    {OdometryFault::kSigma, "sigma"},
+    {OdometryFault::kTime, "time"}};
+
 bool IsSigma(double sigma) { return std::isnan(sigma) || sigma >= 0.0; }
 
 }  // namespace
+
+std::string_view ToString(OdometryFault fault) { return kNames[fault]; }
 
 Status Validate(const ExternalOdometryOptions& o) {
   if (o.has_t_depth_body()) {
@@ -66,17 +76,18 @@ OdometryStream::OdometryStream(const ExternalOdometryOptions& options)
   T_body_depth_ = ToTransform(options.t_depth_body())->inverse();
 }
 
-std::string OdometryStream::FindFault(const ExternalOdometry& sample) const {
-  if (sample.source != source_) return "other_source";
+std::optional<OdometryFault> OdometryStream::FindFault(const ExternalOdometry& sample) const {
+  if (sample.source != source_) return OdometryFault::kOtherSource;
   const bool finite = (!sample.has_position() || sample.translation_m.allFinite()) &&
                       sample.rotation.coeffs().allFinite();
-  if (!finite) return "not_finite";
-  if (!(std::abs(sample.rotation.norm() - 1.0) <= kUnitTolerance)) return "quaternion";
+  if (!finite) return OdometryFault::kNotFinite;
+  if (!(std::abs(sample.rotation.norm() - 1.0) <= kUnitTolerance))
+    return OdometryFault::kQuaternion;
   if (!IsSigma(sample.position_sigma_m) || !IsSigma(sample.rotation_sigma_rad) ||
       std::isinf(sample.rotation_sigma_rad) || sample.time_sigma < Nanoseconds(0)) {
-    return "sigma";
+    return OdometryFault::kSigma;
   }
-  return {};
+  return std::nullopt;
 }
 
 OdometryStream::Sample OdometryStream::ToSample(const ExternalOdometry& pose) const {
@@ -120,9 +131,10 @@ bool OdometryStream::Follows(const Sample& before, const Sample& after) const {
          !IsTooFast(before, after);
 }
 
-void OdometryStream::Refuse(const std::string& reason) {
-  if (counts_.refused[reason]++ == 0) {
-    LOG(Tracker, Warning) << "a pose from \"" << source_ << "\" is refused, reason=" << reason
+void OdometryStream::Refuse(OdometryFault fault) {
+  if (counts_.refused[fault]++ == 0) {
+    LOG(Tracker, Warning) << "a pose from \"" << source_
+                          << "\" is refused, reason=" << ToString(fault)
                           << " (counted in stats.json; said once)";
   }
 }
@@ -136,8 +148,8 @@ void OdometryStream::Append(const Sample& sample) {
 void OdometryStream::Add(const ExternalOdometry& pose) {
   ++counts_.in;
   if (source_.empty()) source_ = pose.source;
-  if (const std::string fault = FindFault(pose); !fault.empty()) {
-    Refuse(fault);
+  if (const auto fault = FindFault(pose)) {
+    Refuse(*fault);
     return;
   }
   const Sample sample = ToSample(pose);
@@ -148,12 +160,12 @@ void OdometryStream::Add(const ExternalOdometry& pose) {
     const bool is_out_of_order =
         is_late && ToSeconds(newest.time - sample.time) <= options_.expert().max_gap_s();
     if (is_out_of_order) {
-      Refuse("time");
+      Refuse(OdometryFault::kTime);
       return;
     }
     if (is_late || IsTooFast(newest, sample)) {
       if (!suspect_ || !Follows(*suspect_, sample)) {
-        Refuse(is_late ? "time" : "jump");
+        Refuse(is_late ? OdometryFault::kTime : OdometryFault::kJump);
         suspect_ = sample;
         return;
       }

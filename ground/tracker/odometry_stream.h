@@ -2,10 +2,11 @@
 
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
+#include "common/base/enum_array.h"
 #include "common/base/status.h"
 #include "common/geometry/external_odometry.h"
 #include "common/geometry/rigid_transform.h"
@@ -16,11 +17,24 @@ namespace isotherm {
 Status Validate(const ExternalOdometryOptions& options);
 Status Validate(const ExternalOdometryExpertOptions& options);
 
+/// Why a sample is refused, in the order of the names, as in stats.json.
+enum class OdometryFault : std::uint8_t {
+  kJump,  ///< Farther from the one before than the rig can go.
+  kNotFinite,
+  kOtherSource,
+  kQuaternion,  ///< Not a rotation.
+  kSigma,       ///< An uncertainty that cannot be.
+  kTime,        ///< Not later than the one before.
+  kCount
+};
+/// "jump", as in stats.json.
+std::string_view ToString(OdometryFault fault);
+
 /// Holds what became of the samples: in = accepted + all refused.
 struct OdometryStreamCounts {
   std::uint64_t in = 0;
   std::uint64_t accepted = 0;
-  std::map<std::string, std::uint64_t> refused;  ///< By reason.
+  EnumArray<OdometryFault, std::uint64_t> refused;
   std::uint64_t gaps = 0;      ///< Between accepted samples, longer than max_gap_s.
   std::uint64_t restarts = 0;  ///< The source went on in another reference frame or time.
 };
@@ -54,12 +68,12 @@ class OdometryStream {
     Estimate estimate;
     double time_sigma_s = 0.0;
   };
-  /// Why the sample is of no use by itself; empty: it is.
-  std::string FindFault(const ExternalOdometry& sample) const;
+  /// Why the sample is of no use by itself; nullopt: it is.
+  std::optional<OdometryFault> FindFault(const ExternalOdometry& sample) const;
   Sample ToSample(const ExternalOdometry& pose) const;
   bool IsTooFast(const Sample& before, const Sample& after) const;
   bool Follows(const Sample& before, const Sample& after) const;
-  void Refuse(const std::string& reason);
+  void Refuse(OdometryFault fault);
   void Append(const Sample& sample);
   Estimate Between(const Sample& a, const Sample& b, CaptureTime time) const;
   std::optional<Estimate> Ahead(CaptureTime time) const;

@@ -258,18 +258,20 @@ TEST_F(FurnaceDoorTest, F54BadPosesAreRefusedByReasonAndTheScanGoesOn) {
     if (i >= 120 && i < 150) sample.source = "another";  // And so a gap of 0.3 s.
   });
   Print("with", with);
-  for (const auto& [reason, count] : with.samples.refused)
-    std::cout << reason << ' ' << count << '\n';
+  std::uint64_t refused = 0;
+  for (const OdometryFault fault : AllValues<OdometryFault>()) {
+    std::cout << ToString(fault) << ' ' << with.samples.refused[fault] << '\n';
+    refused += with.samples.refused[fault];
+  }
   EXPECT_EQ(with.lost, 0);
   EXPECT_LT(with.largest_error_m, without.largest_error_m + kRepeatability);
-  for (const char* reason : {"not_finite", "quaternion", "jump", "time"})
-    EXPECT_GE(with.samples.refused.count(reason), 1U) << reason;
-  EXPECT_EQ(with.samples.refused.at("other_source"), 30U);
+  for (const OdometryFault fault : {OdometryFault::kNotFinite, OdometryFault::kQuaternion,
+                                    OdometryFault::kJump, OdometryFault::kTime})
+    EXPECT_GE(with.samples.refused[fault], 1U) << ToString(fault);
+  EXPECT_EQ(with.samples.refused[OdometryFault::kOtherSource], 30U);
   EXPECT_EQ(with.samples.gaps, 1U);
   EXPECT_GE(with.used.missing, 5U);
   EXPECT_EQ(with.samples.restarts, 0U);
-  std::uint64_t refused = 0;
-  for (const auto& [reason, count] : with.samples.refused) refused += count;
   EXPECT_EQ(with.samples.in, with.samples.accepted + refused);
 }
 
