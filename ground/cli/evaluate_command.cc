@@ -17,8 +17,8 @@ constexpr const char* kFooter =
 (no scale) and with the first poses made equal. Surface: distance of each point of cloud.ply to
 the true surface, discs around its samples, with the first poses made equal and after a rigid
 fit of the cloud. Temperature: measured minus the apparent temperature that the true
-temperature, the emissivity and the surroundings imply, by class: good in distance and angle,
-acceptable, bad in either. Edges are places where true temperatures differ by more than 5 K
+temperature, the emissivity and the surroundings imply, by class: good in distance, angle and
+motion, acceptable, bad in one of them. Edges are places where true temperatures differ by more than 5 K
 within 5 mm.
 
 Example:

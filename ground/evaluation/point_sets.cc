@@ -53,6 +53,7 @@ Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path) {
   cloud.celsius = Converted<float>(vertices->Find("scalar_temperature"));
   cloud.distance_class = Converted<std::uint8_t>(vertices->Find("scalar_distance_class"));
   cloud.angle_class = Converted<std::uint8_t>(vertices->Find("scalar_angle_class"));
+  cloud.motion_class = Converted<std::uint8_t>(vertices->Find("scalar_motion_class"));
   cloud.measured_angle_deg = Converted<float>(vertices->Find("scalar_measured_angle"));
   return cloud;
 }

@@ -16,9 +16,10 @@ struct MeasuredCloud {
   std::vector<float> celsius;  ///< NaN = never measured. Empty: the file has no temperatures.
   std::vector<std::uint8_t>
       distance_class;  ///< 0 bad, 1 good, 2 acceptable, 255 never measured; or empty.
-  std::vector<std::uint8_t> angle_class;  ///< The same.
-  std::vector<float> measured_angle_deg;  ///< Emission angle of the measurement; NaN = not known,
-                                          ///< or empty.
+  std::vector<std::uint8_t> angle_class;   ///< The same.
+  std::vector<std::uint8_t> motion_class;  ///< The same, 255 also = not checked.
+  std::vector<float> measured_angle_deg;   ///< Emission angle of the measurement; NaN = not known,
+                                           ///< or empty.
 };
 
 /// Samples of the true surface, in the truth's world.
@@ -33,7 +34,7 @@ struct TruePoints {
 };
 
 /// Properties are found by their names: x y z, scalar_temperature, scalar_distance_class,
-/// scalar_angle_class, scalar_measured_angle.
+/// scalar_angle_class, scalar_motion_class, scalar_measured_angle.
 Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path);
 /// x y z nx ny nz, scalar_temperature, seen, primitive. Normals must have unit length.
 Result<TruePoints> ReadTruePoints(const std::filesystem::path& path);

@@ -4,22 +4,20 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "common/base/check.h"
 #include "common/radiometry/radiometry.h"
+#include "ground/thermal/measurement_quality.h"
 
 namespace isotherm {
 namespace {
 
-constexpr std::uint8_t kBad = 0;
-constexpr std::uint8_t kGood = 1;
-
-enum Class { kClassGood, kClassAcceptable, kClassBad, kClassCount };
-
-Class ClassOf(std::uint8_t distance, std::uint8_t angle) {
-  if (distance == kBad || angle == kBad) return kClassBad;
-  return distance == kGood && angle == kGood ? kClassGood : kClassAcceptable;
+/// Results of before smear was assessed have no motion class: it counts as unchecked.
+MeasurementQuality QualityOfPoint(const MeasuredCloud& cloud, std::size_t i) {
+  return QualityOf(cloud.distance_class[i], cloud.angle_class[i],
+                   cloud.motion_class.empty() ? kNeverMeasured : cloud.motion_class[i]);
 }
 
 struct Errors {
@@ -106,7 +104,7 @@ Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
   CHECK(positions.size() == cloud.celsius.size());
   const BandRadiance band;
   TemperatureReport report;
-  Errors by_class[kClassCount];
+  std::map<MeasurementQuality, Errors> by_quality;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const auto foot = truth.Project(positions[i]);
     if (!std::isfinite(cloud.celsius[i]) || !foot) {
@@ -118,17 +116,17 @@ Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
                                             options.ambient_celsius);
     const double error = cloud.celsius[i] - expected;
     if (!std::isfinite(error)) continue;
-    Errors& errors = by_class[ClassOf(cloud.distance_class[i], cloud.angle_class[i])];
+    Errors& errors = by_quality[QualityOfPoint(cloud, i)];
     errors.all.push_back(error);
     const Eigen::Vector3f& q = truth.points().positions_m[foot->nearest];
     if (truth.CelsiusSpread(q, options.edge_radius_m) <= options.edge_kelvin)
       errors.away_from_edges.push_back(error);
   }
   Errors any;
-  for (const Errors& errors : by_class) any.Append(errors);
-  report.good = Describe(by_class[kClassGood], options.gross_kelvin);
-  report.acceptable = Describe(by_class[kClassAcceptable], options.gross_kelvin);
-  report.bad = Describe(by_class[kClassBad], options.gross_kelvin);
+  for (const auto& [quality, errors] : by_quality) any.Append(errors);
+  report.good = Describe(by_quality[MeasurementQuality::kGood], options.gross_kelvin);
+  report.acceptable = Describe(by_quality[MeasurementQuality::kAcceptable], options.gross_kelvin);
+  report.bad = Describe(by_quality[MeasurementQuality::kBad], options.gross_kelvin);
   report.any = Describe(any, options.gross_kelvin);
   return report;
 }

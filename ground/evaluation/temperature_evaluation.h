@@ -37,9 +37,10 @@ struct ClassErrors {
 /// The three classes have no point in common; `any` is all of them together.
 struct TemperatureReport {
   std::size_t never_measured = 0;
-  ClassErrors good;        ///< Good in distance and angle.
-  ClassErrors acceptable;  ///< Not bad in either, not good in both.
-  ClassErrors bad;         ///< Bad in distance or angle.
+  // By MeasurementQuality.
+  ClassErrors good;
+  ClassErrors acceptable;
+  ClassErrors bad;
   ClassErrors any;
 };
 

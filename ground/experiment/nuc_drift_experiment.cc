@@ -48,13 +48,13 @@ struct Outcome {
 };
 
 Outcome Measure(const PlayedScan& played, ThreadPool& pool) {
-  constexpr auto kGood = static_cast<std::uint8_t>(ConditionClass::kGood);
   const SimulatedScan& scan = *played.scan;
   const ScanModel model = played.pipelines.front()->model();
   std::vector<CheckedPoint> points =
       CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool);
   std::erase_if(points, [](const CheckedPoint& point) {
-    return point.point.distance_class != kGood || point.point.angle_class != kGood;
+    return QualityOf(point.point.distance_class, point.point.angle_class,
+                     point.point.motion_class) != MeasurementQuality::kGood;
   });
   Outcome outcome;
   outcome.good = SummarizeErrors(points);

@@ -38,7 +38,6 @@ class FirstFailure {
 };
 
 ResultSummary SummarizeSurface(const Surface& surface, const RendererOptions& options) {
-  constexpr auto kGood = static_cast<std::uint8_t>(ConditionClass::kGood);
   ResultSummary summary;
   summary.points = surface.points.size();
   summary.triangles = surface.triangles.size();
@@ -48,7 +47,9 @@ ResultSummary SummarizeSurface(const Surface& surface, const RendererOptions& op
     celsius.push_back(point.celsius);
     if (std::isnan(point.celsius)) continue;
     ++summary.measured_points;
-    if (point.distance_class == kGood && point.angle_class == kGood) ++summary.good_points;
+    if (QualityOf(point.distance_class, point.angle_class, point.motion_class) ==
+        MeasurementQuality::kGood)
+      ++summary.good_points;
   }
   summary.temperatures = Summarize(celsius);
   summary.scale = ChooseScale(options, celsius);

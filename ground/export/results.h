@@ -63,7 +63,7 @@ struct ResultInputs {
 struct ResultSummary {
   std::size_t points = 0;
   std::size_t measured_points = 0;  ///< Points with a temperature.
-  std::size_t good_points = 0;      ///< ... of class good in distance and angle.
+  std::size_t good_points = 0;      ///< ... that is measured well (MeasurementQuality).
   std::size_t triangles = 0;
   std::optional<TemperatureScale> scale;  ///< The scale of renderings and colours alike.
   TemperatureStatistics temperatures;

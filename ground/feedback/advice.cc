@@ -16,6 +16,8 @@ constexpr double kSlowEnough = 0.8;
 // The stop criterion is given up when the fraction falls so far below it: new surface came into
 // view.
 constexpr double kDoneSlack = 0.03;
+// What ends "done" because nothing was left: a view would add so many times what was too little.
+constexpr double kGainSlack = 3.0;
 // A hindrance takes the place of another one that is still due when it is so much larger.
 constexpr double kClearlyLarger = 1.3;
 
@@ -90,6 +92,12 @@ Status Validate(const FeedbackOptions& o) {
     return InvalidArgument(fmt::format("feedback.expert.min_gain_m2 must be positive, got {} m2",
                                        o.expert().min_gain_m2()));
   }
+  if (!(o.expert().done_gain_fraction() >= 0.0 && o.expert().done_gain_fraction() < 1.0)) {
+    return InvalidArgument(
+        fmt::format("feedback.expert.done_gain_fraction must be at least 0 (never) and below 1 (a "
+                    "fraction), got {}",
+                    o.expert().done_gain_fraction()));
+  }
   if (o.expert().image_width_px() != 0 &&
       (o.expert().image_width_px() < 40 || o.expert().image_width_px() > 640)) {
     return InvalidArgument(
@@ -117,8 +125,16 @@ void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSitu
   if (s.model_good) {
     Trigger(AdviceKind::kDone, *s.model_good, options_.done_fraction(),
             options_.done_fraction() - kDoneSlack);
+    const double gain = s.max_gain.value_or(1.0);
+    const double least = options_.expert().done_gain_fraction();
+    nothing_left_ = gain < (nothing_left_ ? kGainSlack * least : least);
+    Due(AdviceKind::kDone) = Due(AdviceKind::kDone) || nothing_left_;
   }
-  if (!s.tracking_lost) Trigger(AdviceKind::kSlower, Hurry(s), 1.0, kSlowEnough);
+  if (!s.tracking_lost) {
+    const double smeared = view.too_fast / options_.expert().advise_fraction();
+    const double behind = s.ground_is_behind ? 1.0 : 0.0;
+    Trigger(AdviceKind::kSlower, std::max({Hurry(s), smeared, behind}), 1.0, kSlowEnough);
+  }
   for (const AdviceKind kind : kHindrances) {
     Trigger(kind, Fraction(kind, view), options_.expert().advise_fraction(),
             options_.expert().withdraw_fraction());
@@ -165,6 +181,31 @@ OperatorAdvice OperatorAdviser::Update(CaptureTime now, const CoverageSummary& v
   return {said_, reason_};
 }
 
+std::string OperatorAdviser::ReasonToSlowDown(const CoverageSummary& view,
+                                              const ScanSituation& s) const {
+  if (s.ground_is_behind && Hurry(s) < 1.0)
+    return "the ground is behind and leaves thermal frames out: hold still";
+  if (Hurry(s) < 1.0 && view.too_fast > 0.0) {
+    const double good_px = limits_.expert().motion().smear_good_px();
+    const double slow_enough = std::min(1.0, good_px / view.smear_px);
+    // A turn of so many degrees moves the image as that many metres do half a metre away.
+    constexpr double kDegPerMetre = 115.0;
+    if (s.rotation_rate_deg_s > kDegPerMetre * s.speed_m_s) {
+      return fmt::format(
+          "turning at {:.0f} deg/s smears {:.1f} px, {:.1f} px are good: {:.0f} deg/s",
+          s.rotation_rate_deg_s, view.smear_px, good_px, slow_enough * s.rotation_rate_deg_s);
+    }
+    return fmt::format("{:.2f} m/s smears {:.1f} px, {:.1f} px are good: {:.2f} m/s", s.speed_m_s,
+                       view.smear_px, good_px, slow_enough * s.speed_m_s);
+  }
+  if (s.max_speed_m_s > 0.0 && s.speed_m_s / s.max_speed_m_s >= Hurry(s)) {
+    return fmt::format("{:.2f} m/s, the model follows up to {:.2f} m/s", s.speed_m_s,
+                       s.max_speed_m_s);
+  }
+  return fmt::format("turning at {:.0f} deg/s, the model follows up to {:.0f} deg/s",
+                     s.rotation_rate_deg_s, s.max_rotation_rate_deg_s);
+}
+
 std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view,
                                     const ScanSituation& s) const {
   switch (kind) {
@@ -174,15 +215,15 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
     case AdviceKind::kHoldForNuc:
       return "the thermal camera is correcting itself: hold still";
     case AdviceKind::kDone:
+      if (s.model_good.value_or(0.0) < options_.done_fraction() - kDoneSlack) {
+        return fmt::format("{:.0f} % of the surface is measured well, no view would add {:.1f} %",
+                           Percent(s.model_good.value_or(0.0)),
+                           Percent(options_.expert().done_gain_fraction()));
+      }
       return fmt::format("{:.0f} % of the surface is measured well, {:.0f} % were asked for",
                          Percent(s.model_good.value_or(0.0)), Percent(options_.done_fraction()));
     case AdviceKind::kSlower:
-      if (s.max_speed_m_s > 0.0 && s.speed_m_s / s.max_speed_m_s >= Hurry(s)) {
-        return fmt::format("{:.2f} m/s, the model follows up to {:.2f} m/s", s.speed_m_s,
-                           s.max_speed_m_s);
-      }
-      return fmt::format("turning at {:.0f} deg/s, the model follows up to {:.0f} deg/s",
-                         s.rotation_rate_deg_s, s.max_rotation_rate_deg_s);
+      return ReasonToSlowDown(view, s);
     case AdviceKind::kCloser:
       return fmt::format("{:.0f} % of the surface is farther than {:.2f} m", Percent(view.too_far),
                          limits_.distance().good_m());

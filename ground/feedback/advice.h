@@ -16,8 +16,8 @@ namespace isotherm {
 enum class AdviceKind {
   kGoBack,      ///< Tracking is lost, or nothing of the model is in view.
   kHoldForNuc,  ///< No temperature is valid now.
-  kDone,        ///< Enough of the whole surface is measured well.
-  kSlower,
+  kDone,        ///< Enough of the whole surface is measured well, or all that can be.
+  kSlower,      ///< The model cannot follow, the thermal image is smeared, or the ground is behind.
   kCloser,
   kFarther,
   kLessOblique,
@@ -33,8 +33,11 @@ struct ScanSituation {
   double rotation_rate_deg_s = 0.0;
   double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.
   double max_rotation_rate_deg_s = 0.0;
+  bool ground_is_behind = false;  ///< Thermal frames are left out to keep up.
   /// Fraction of the whole surface that is measured well; nullopt while that is not yet known.
   std::optional<double> model_good;
+  /// The most that one more view would add to it; nullopt while that is not yet known.
+  std::optional<double> max_gain;
 };
 
 /// One thing to do, and the sentence that says why, with its numbers.
@@ -65,6 +68,7 @@ class OperatorAdviser {
   bool& Due(AdviceKind kind) { return due_[static_cast<std::size_t>(kind)]; }
   /// Due from `on`, until below `off`.
   void Trigger(AdviceKind kind, double value, double on, double off);
+  std::string ReasonToSlowDown(const CoverageSummary& view, const ScanSituation& situation) const;
   void UpdateTriggers(const CoverageSummary& view, const ScanSituation& situation);
   /// Returns what would be said without regard to time.
   AdviceKind MostUrgent(const CoverageSummary& view) const;
@@ -74,6 +78,7 @@ class OperatorAdviser {
   const FeedbackOptions options_;
   const ThermalOptions limits_;
   std::array<bool, kKinds> due_{};
+  bool nothing_left_ = false;  ///< No view would add enough.
   AdviceKind said_ = AdviceKind::kNone;
   std::string reason_;
   AdviceKind candidate_ = AdviceKind::kNone;

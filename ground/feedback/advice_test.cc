@@ -107,6 +107,28 @@ TEST_F(AdviceTest, TurningTooFastIsTooFast) {
   EXPECT_EQ(Settled().reason, "turning at 30 deg/s, the model follows up to 18 deg/s");
 }
 
+TEST_F(AdviceTest, MotionThatSmearsTheThermalImageIsTooFast) {
+  view_.too_fast = 0.4;
+  view_.smear_px = 1.25;
+  situation_.speed_m_s = 0.2;
+  EXPECT_EQ(Settled().kind, AdviceKind::kSlower);
+  EXPECT_EQ(Settled().reason, "0.20 m/s smears 1.2 px, 0.5 px are good: 0.08 m/s");
+  situation_.speed_m_s = 0.01;
+  situation_.rotation_rate_deg_s = 15.0;
+  EXPECT_EQ(Settled().reason, "turning at 15 deg/s smears 1.2 px, 0.5 px are good: 6 deg/s");
+  view_.too_fast = 0.05;
+  situation_ = {};
+  EXPECT_EQ(Settled().kind, AdviceKind::kNone) << "nothing much would be gained";
+}
+
+TEST_F(AdviceTest, AGroundThatIsBehindIsWaitedFor) {
+  situation_.ground_is_behind = true;
+  EXPECT_EQ(Settled().kind, AdviceKind::kSlower);
+  EXPECT_THAT(Settled().reason, HasSubstr("hold still"));
+  situation_.ground_is_behind = false;
+  EXPECT_EQ(Settled().kind, AdviceKind::kNone);
+}
+
 TEST_F(AdviceTest, AViewWithoutTheObjectIsSaid) {
   view_ = {};
   EXPECT_EQ(Settled().kind, AdviceKind::kGoBack);
@@ -131,6 +153,21 @@ TEST_F(AdviceTest, TheScanIsDoneFromTheAskedFractionOnAndNotBefore) {
   situation_.model_good = options_.done_fraction() - 0.04;
   EXPECT_NE(Settled().kind, AdviceKind::kDone);
   EXPECT_FALSE(adviser_.done());
+}
+
+TEST_F(AdviceTest, TheScanIsDoneWhenNoViewWouldAddMuch) {
+  situation_.model_good = 0.66;  // Grooves and steep edges are the rest.
+  situation_.max_gain = 0.02;
+  EXPECT_NE(Settled().kind, AdviceKind::kDone);
+  situation_.max_gain = 0.009;
+  EXPECT_EQ(Settled().kind, AdviceKind::kDone);
+  EXPECT_EQ(Settled().reason, "66 % of the surface is measured well, no view would add 1.0 %");
+  situation_.max_gain = 0.02;
+  EXPECT_EQ(Settled().kind, AdviceKind::kDone) << "it does not flicker";
+  situation_.max_gain = 0.04;  // New surface.
+  EXPECT_NE(Settled().kind, AdviceKind::kDone);
+  situation_.max_gain.reset();
+  EXPECT_NE(Settled().kind, AdviceKind::kDone) << "not known";
 }
 
 TEST_F(AdviceTest, WhileTheModelIsNotCountedTheScanIsNotDone) {
@@ -226,6 +263,8 @@ TEST(FeedbackOptionsTest, WhatMakesNoSenseIsSaid) {
               HasSubstr("blocks"));
   EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_views_per_message(-1); }),
               HasSubstr("views"));
+  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_done_gain_fraction(1.0); }),
+              HasSubstr("done_gain_fraction"));
   EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_min_gain_m2(0); }),
               HasSubstr("min_gain_m2"));
   EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_image_width_px(10); }),

@@ -21,9 +21,14 @@ struct CoverageSummary {
   double too_far = 0.0;
   double too_oblique = 0.0;
   double too_frontal = 0.0;  ///< The operator would be reflected.
+  /// Nothing but the rig's motion hinders: the thermal image would be smeared.
+  double too_fast = 0.0;
+  double smear_px = 0.0;  ///< Median smear of that part; 0 if there is none.
 };
 
-/// `view`'s distances and angles are those of the thermal camera, to which `limits` apply.
-CoverageSummary SummarizeCoverage(const ViewMaps& view, const ThermalOptions& limits);
+/// `view`'s distances and angles are those of the thermal camera, to which `limits` apply (within
+/// the depth of field). `smear_px` is SmearInView() of the same pixels; empty = not known.
+CoverageSummary SummarizeCoverage(const ViewMaps& view, const Image<float>& smear_px,
+                                  const ThermalOptions& limits);
 
 }  // namespace isotherm

@@ -45,7 +45,7 @@ TEST(CoverageTest, FractionsAreOfTheSurfaceAndAddUpToOne) {
   Measure(view, 3, kAcceptable, kAcceptable);
   Measure(view, 4, kAcceptable, kGood);
   Measure(view, 5, kBad, kGood);
-  const CoverageSummary coverage = SummarizeCoverage(view, ThermalOptions());
+  const CoverageSummary coverage = SummarizeCoverage(view, {}, ThermalOptions());
   EXPECT_DOUBLE_EQ(coverage.surface, 0.8);
   EXPECT_DOUBLE_EQ(coverage.good, 2.0 / 8.0);
   EXPECT_DOUBLE_EQ(coverage.acceptable, 3.0 / 8.0);
@@ -54,26 +54,52 @@ TEST(CoverageTest, FractionsAreOfTheSurfaceAndAddUpToOne) {
 }
 
 TEST(CoverageTest, IsZeroWithoutASurface) {
-  const CoverageSummary coverage = SummarizeCoverage(Row(0, 5, 0.5, 0.0), ThermalOptions());
+  const CoverageSummary coverage = SummarizeCoverage(Row(0, 5, 0.5, 0.0), {}, ThermalOptions());
   EXPECT_EQ(coverage.surface, 0.0);
   EXPECT_EQ(coverage.never_measured, 0.0);
-  EXPECT_EQ(SummarizeCoverage(ViewMaps(), ThermalOptions()).surface, 0.0);
+  EXPECT_EQ(SummarizeCoverage(ViewMaps(), {}, ThermalOptions()).surface, 0.0);
 }
 
 TEST(CoverageTest, WhatHindersIsSaidOfWhatIsNotYetGood) {
   ThermalOptions limits;  // 0.30 to 0.60 m, up to 40 degrees.
   limits.mutable_angle()->set_min_deg(10);
-  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.61, 20.0), limits).too_far, 1.0);
-  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.59, 20.0), limits).too_far, 0.0);
-  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.29, 20.0), limits).too_near, 1.0);
-  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 41.0), limits).too_oblique, 1.0);
-  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 39.0), limits).too_oblique, 0.0);
-  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 9.0), limits).too_frontal, 1.0);
-  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 11.0), limits).too_frontal, 0.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.61, 20.0), {}, limits).too_far, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.59, 20.0), {}, limits).too_far, 0.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.29, 20.0), {}, limits).too_near, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 41.0), {}, limits).too_oblique, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 39.0), {}, limits).too_oblique, 0.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 9.0), {}, limits).too_frontal, 1.0);
+  EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.50, 11.0), {}, limits).too_frontal, 0.0);
   ViewMaps view = Row(4, 0, 0.61, 20.0);
   Measure(view, 0, kGood, kGood);
   Measure(view, 1, kAcceptable, kGood);
-  EXPECT_DOUBLE_EQ(SummarizeCoverage(view, limits).too_far, 3.0 / 4.0);
+  EXPECT_DOUBLE_EQ(SummarizeCoverage(view, {}, limits).too_far, 3.0 / 4.0);
+}
+
+TEST(CoverageTest, MotionHindersWhereNothingElseDoes) {
+  const ThermalOptions limits;  // Up to 0.5 px of smear are good.
+  ViewMaps view = Row(6, 0, 0.5, 20.0);
+  Measure(view, 0, kGood, kGood);
+  view.distance_m.At(1, 0) = 0.7F;  // Too far.
+  Image<float> smear_px(6, 1, 1.2F);
+  smear_px.At(2, 0) = 0.4F;
+  smear_px.At(3, 0) = NAN;  // The thermal camera does not see it.
+  smear_px.At(4, 0) = 2.0F;
+  const CoverageSummary coverage = SummarizeCoverage(view, smear_px, limits);
+  EXPECT_DOUBLE_EQ(coverage.too_fast, 2.0 / 6.0);
+  EXPECT_NEAR(coverage.smear_px, 1.6, 0.41);
+  EXPECT_EQ(SummarizeCoverage(view, {}, limits).too_fast, 0.0) << "the motion is not known";
+}
+
+TEST(CoverageTest, WhatWasMeasuredWhileTheRigMovedTooFastIsNotGood) {
+  ViewMaps view = Row(2, 0, 0.5, 20.0);
+  Measure(view, 0, kGood, kGood);
+  Measure(view, 1, kGood, kGood);
+  view.motion_class.At(0, 0) = kGood;
+  view.motion_class.At(1, 0) = kAcceptable;
+  const CoverageSummary coverage = SummarizeCoverage(view, {}, ThermalOptions());
+  EXPECT_DOUBLE_EQ(coverage.good, 0.5);
+  EXPECT_DOUBLE_EQ(coverage.acceptable, 0.5);
 }
 
 }  // namespace

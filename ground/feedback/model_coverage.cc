@@ -161,7 +161,7 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
       const bool nearer = std::abs(distance) <= std::abs(distance + gradient[axis]);
       ThermalVoxel voxel = pairs.Thermal(nearer ? here : next[a]);
       if (!voxel.assessed()) voxel = pairs.Thermal(nearer ? next[a] : here);
-      const MeasurementQuality quality = QualityOf(voxel);
+      const MeasurementQuality quality = voxel.quality();
       surface.areas.Add(quality, area_m2);
       if (quality == MeasurementQuality::kGood) continue;
       surface.lacking_position +=

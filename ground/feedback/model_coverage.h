@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "common/concurrency/thread_pool.h"
-#include "ground/feedback/quality.h"
 #include "ground/thermal/thermal_volume.h"
 #include "ground/tsdf/tsdf_volume.h"
 

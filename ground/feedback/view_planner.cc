@@ -26,6 +26,13 @@ constexpr double kClearlyBetter = 1.2;
 /// A surface nearer to the camera than this fraction of the least distance is in its way.
 constexpr double kClearance = 0.7;
 
+/// From a view with less surface that the depth camera can measure than the first, as a fraction of
+/// the rays, or of what is in its view than the second, the rig would be lost.
+constexpr double kMinTrackable = 0.25, kMinTrackableOfView = 0.6;
+
+/// Targets are looked at from this much more than the nearest depth that the depth camera measures.
+constexpr double kDepthReserve = 1.15;
+
 /// A view counts as taken within this far of it, for so many steps.
 constexpr double kAtView_m = 0.10;
 constexpr double kAtView_rad = 15.0 * std::numbers::pi / 180.0;
@@ -66,6 +73,7 @@ ViewPlanner::ViewPlanner(const FeedbackOptions& options, const ThermalOptions& l
       angle_min_rad_(limits.angle().min_deg() * std::numbers::pi / 180.0),
       angle_good_rad_(limits.angle().good_deg() * std::numbers::pi / 180.0),
       min_weight_(min_weight),
+      min_depth_m_(std::max(rig.depth_sensor.near_range_m, rig.depth_sensor.min_depth_m)),
       depth_camera_(rig.depth->WithoutDistortion()),
       thermal_camera_(Coarse(*rig.thermal)),
       T_thermal_depth_(*rig.T_thermal_depth) {
@@ -75,7 +83,9 @@ ViewPlanner::ViewPlanner(const FeedbackOptions& options, const ThermalOptions& l
 RigidTransform ViewPlanner::LookAt(const Eigen::Vector3d& target,
                                    const Eigen::Vector3d& towards_camera,
                                    const RigidTransform& T_map_depth) const {
-  const double distance_m = 0.5 * (limits_.distance_min_m + limits_.distance_good_m);
+  const double middle_m = 0.5 * (limits_.distance_min_m + limits_.distance_good_m);
+  const double distance_m = std::clamp(kDepthReserve * min_depth_m_, middle_m,
+                                       std::max<double>(middle_m, limits_.distance_good_m));
   const Eigen::Vector3d z = -towards_camera;
   // As the rig is held now: x stays as level as it is.
   Eigen::Vector3d x = T_map_depth.linear().col(1).cross(z);
@@ -130,6 +140,7 @@ double ViewPlanner::Gain(const RigidTransform& T_map_depth, const TsdfVolume& ts
   const RigidTransform T_depth_map = T_map_depth.inverse();
   const Eigen::Vector3d forward = T_map_thermal.linear().col(2);
   double gain_m2 = 0.0;
+  int in_view = 0, trackable = 0;
   for (int y = 0; y < maps_.height(); ++y) {
     for (int x = 0; x < maps_.width(); ++x) {
       const Eigen::Vector3d p_map(maps_.vx.At(x, y), maps_.vy.At(x, y), maps_.vz.At(x, y));
@@ -137,21 +148,27 @@ double ViewPlanner::Gain(const RigidTransform& T_map_depth, const TsdfVolume& ts
       const double distance_m = to_viewer.norm();
       if (!std::isfinite(distance_m)) continue;
       if (distance_m <= 0.0 || distance_m < kClearance * limits_.distance_min_m) return 0.0;
+      const Eigen::Vector3d p_depth = T_depth_map * p_map;
+      const bool is_in_view = IsDepthInView(p_depth);
+      const bool has_depth = is_in_view && p_depth.z() >= min_depth_m_;
+      in_view += is_in_view ? 1 : 0;
+      trackable += has_depth ? 1 : 0;
       const Eigen::Vector3d n_map(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
       const double cosine = std::min(to_viewer.dot(n_map) / distance_m, 1.0);
       const bool would_be_good =
           cosine > 0.0 &&
           limits_.ClassifyDistance(static_cast<float>(distance_m)) == ConditionClass::kGood &&
           limits_.ClassifyAngle(static_cast<float>(cosine)) == ConditionClass::kGood;
-      if (!would_be_good || !IsDepthInView(T_depth_map * p_map)) continue;
-      if (QualityOf(ThermalVoxelAt(tsdf, thermal, p_map)) == MeasurementQuality::kGood) continue;
+      if (!would_be_good || !has_depth) continue;
+      if (ThermalVoxelAt(tsdf, thermal, p_map).quality() == MeasurementQuality::kGood) continue;
       // Solid angle of the pixel times the squared distance over the cosine.
       const double depth_m = -to_viewer.dot(forward);
       gain_m2 += depth_m * depth_m * depth_m /
                  (thermal_camera_.fx * thermal_camera_.fy * distance_m * cosine);
     }
   }
-  return gain_m2;
+  if (trackable < kMinTrackable * maps_.width() * maps_.height()) return 0.0;
+  return trackable < kMinTrackableOfView * in_view ? 0.0 : gain_m2;
 }
 
 void ViewPlanner::NotePose(const RigidTransform& T_map_depth) {
@@ -165,6 +182,11 @@ void ViewPlanner::NotePose(const RigidTransform& T_map_depth) {
   if (exhausted_.size() > kMaxExhausted) exhausted_.pop_front();
   best_.reset();
   steps_at_best_ = 0;
+}
+
+std::optional<double> ViewPlanner::max_gain_m2() const {
+  if (!last_round_gain_m2_) return std::nullopt;
+  return std::max({*last_round_gain_m2_, round_gain_m2_, best_ ? best_->gain_m2 : 0.0});
 }
 
 bool ViewPlanner::IsExhausted(const RigidTransform& T_map_depth) const {
@@ -183,12 +205,18 @@ void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
     if (best_->gain_m2 < options_.expert().min_gain_m2()) best_.reset();
     --left;
   }
-  if (candidates_.empty()) MakeCandidates(coverage, T_map_depth);
+  if (candidates_.empty()) {
+    if (has_round_) last_round_gain_m2_ = round_gain_m2_;
+    has_round_ = coverage.complete();
+    round_gain_m2_ = 0.0;
+    MakeCandidates(coverage, T_map_depth);
+  }
   for (; left > 0 && !candidates_.empty(); candidates_.pop_front()) {
     const RigidTransform& candidate = candidates_.front();
     if (IsExhausted(candidate)) continue;
     --left;
     const double gain_m2 = Gain(candidate, tsdf, thermal, pool);
+    round_gain_m2_ = std::max(round_gain_m2_, gain_m2);
     const double needed_m2 =
         best_ ? kClearlyBetter * best_->gain_m2 : options_.expert().min_gain_m2();
     if (gain_m2 < needed_m2) continue;

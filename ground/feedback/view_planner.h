@@ -38,9 +38,12 @@ class ViewPlanner {
             const RigidTransform& T_map_depth, ThreadPool& pool);
 
   const std::optional<NextView>& best() const { return best_; }
+  /// Most surface that any view would still measure well, square metres; nullopt until all
+  /// candidates were tried once.
+  std::optional<double> max_gain_m2() const;
 
-  /// Surface that a view would measure well and that is not yet, square metres; 0 where the camera
-  /// would be inside or too close to something.
+  /// Surface that a view would measure well and that is not yet, square metres; 0 where a camera
+  /// would be inside or too close to something, or the depth camera would see too little to follow.
   double Gain(const RigidTransform& T_map_depth, const TsdfVolume& tsdf,
               const ThermalVolume& thermal, ThreadPool& pool);
 
@@ -57,6 +60,7 @@ class ViewPlanner {
   const ConditionLimits limits_;
   const double angle_min_rad_, angle_good_rad_;
   const float min_weight_;
+  const double min_depth_m_;  ///< The depth camera measures nothing closer.
   const CameraModel depth_camera_;
   const CameraModel thermal_camera_;  ///< The camera of the coarse cast.
   const RigidTransform T_thermal_depth_;
@@ -64,8 +68,11 @@ class ViewPlanner {
   SurfaceMaps maps_;
   std::deque<RigidTransform> candidates_;  ///< T_map_depth.
   std::optional<NextView> best_;
-  int steps_at_best_ = 0;                 ///< That the rig has been there.
-  std::deque<RigidTransform> exhausted_;  ///< Views that were taken and gave nothing.
+  bool has_round_ = false;                    ///< The candidates were made of a known model.
+  double round_gain_m2_ = 0.0;                ///< The most of the candidates since they were made.
+  std::optional<double> last_round_gain_m2_;  ///< ... of those before.
+  int steps_at_best_ = 0;                     ///< That the rig has been there.
+  std::deque<RigidTransform> exhausted_;      ///< Views that were taken and gave nothing.
 };
 
 }  // namespace isotherm

@@ -130,6 +130,32 @@ TEST_F(ViewPlannerTest, WhatHidesTheSurfaceIsLookedAround) {
   EXPECT_GT(std::abs(Thermal(*view).translation().x() - 0.5), 0.09) << "beside the post";
 }
 
+TEST_F(ViewPlannerTest, AViewInWhichTheDepthCameraSeesTooLittleGainsNothing) {
+  testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
+  Measure([](const Vector3d&) { return true; });
+  const auto gain = [this] {
+    ViewPlanner planner = Planner();
+    return planner.Gain(MakeTransform({0.5, 0.5, 0.30}, Eigen::Quaterniond::Identity()), tsdf_,
+                        thermal_, pool_);
+  };
+  EXPECT_GT(gain(), 0.05) << "0.40 m away";
+  rig_.depth_sensor.near_range_m = 0.45;
+  EXPECT_EQ(gain(), 0.0) << "the rig would be lost";
+}
+
+TEST_F(ViewPlannerTest, WhatAViewWouldStillAddIsKnownWhenAllWereTried) {
+  testing::FillSphere(tsdf_, centre_, 0.2);
+  Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, {-1, 0, 0}) < 30.0; });
+  ViewPlanner planner = Planner();
+  EXPECT_FALSE(planner.max_gain_m2().has_value());
+  Plan(planner, 200);
+  ASSERT_TRUE(planner.max_gain_m2().has_value());
+  EXPECT_GE(*planner.max_gain_m2(), planner.best()->gain_m2);
+  Measure([](const Vector3d&) { return false; });
+  Plan(planner, 200);
+  EXPECT_EQ(planner.max_gain_m2(), 0.0);
+}
+
 TEST_F(ViewPlannerTest, AViewThatWasTakenInVainIsNotProposedAgain) {
   testing::FillSphere(tsdf_, centre_, 0.2);
   Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, {-1, 0, 0}) < 20.0; });

@@ -275,7 +275,7 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
 }
 
 std::optional<LeftOutReason> GroundPipeline::WhyNoThermal() const {
-  if (load_shedding_ != LoadShedding::kNone) return LeftOutReason::kBehind;
+  if (load_shedding_ >= LoadShedding::kNoThermal) return LeftOutReason::kBehind;
   if (!has_room_) return LeftOutReason::kDiskFull;
   return std::nullopt;
 }
@@ -291,7 +291,8 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
       .now = *tracker_.motion().last(),
       .surface_sigma_rad = uncertainty.surface_sigma_m() / uncertainty.mean_depth_m(),
       .tsdf = *map.tsdf,
-      .refusal = WhyNoThermal()};
+      .refusal = WhyNoThermal(),
+      .every_second = load_shedding_ == LoadShedding::kHalfThermal};
   thermal_stage_->FuseUpTo(tracked, *map.thermal, pool_);
 }
 

@@ -28,7 +28,8 @@ namespace isotherm {
 /// not see the same again.
 enum class LoadShedding : std::uint8_t {
   kNone,
-  kNoThermal,    ///< Thermal frames are left out ("behind").
+  kHalfThermal,  ///< Every second thermal frame is left out ("behind").
+  kNoThermal,    ///< All of them are.
   kEverySecond,  ///< And only every second depth frame is integrated; all are tracked.
 };
 

@@ -363,6 +363,19 @@ TEST_F(GroundPipelineTest, WithoutTimeForThermalItIsLeftOutAndCounted) {
   EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 1U);
 }
 
+TEST_F(GroundPipelineTest, WithHalfTheTimeForThermalEverySecondFrameIsLeftOut) {
+  constexpr int kFrames = 6;
+  Depth(0);
+  pipeline_->set_load_shedding(LoadShedding::kHalfThermal);
+  for (int i = 1; i <= kFrames; ++i) {
+    Thermal(i - 0.5);
+    Depth(i);
+    EXPECT_EQ(pipeline_->model().counts.thermal_fused, static_cast<std::uint64_t>((i + 1) / 2));
+  }
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 0U + kFrames / 2);
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, 1U + kFrames);
+}
+
 TEST_F(GroundPipelineTest, WithTimeForEverySecondFrameAllAreTracked) {
   constexpr double kMaxError = 0.002;  // Metres: half a voxel.
   constexpr int kFrames = 8;

@@ -67,6 +67,10 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
       LeaveOut(*reason);
       continue;
     }
+    if (depth.every_second && std::exchange(skip_next_, !skip_next_)) {
+      LeaveOut(LeftOutReason::kBehind);
+      continue;
+    }
     const StageTimer timer(timing_);
     if (!std::exchange(is_prepared, true)) {
       near_range_occlusion_.Update(depth.depth_m, depth.view.maps, depth.view.camera);

@@ -28,6 +28,7 @@ struct TrackedDepth {
   const TsdfVolume& tsdf;
   /// Why thermal frames cannot be fused now at all, if so.
   std::optional<LeftOutReason> refusal = std::nullopt;
+  bool every_second = false;  ///< There is time for every second thermal frame only.
 };
 
 /// Takes thermal frames from their arrival to the model: each waits for the depth frame behind it,
@@ -69,6 +70,7 @@ class ThermalStage {
   LineOfSightOcclusion line_of_sight_occlusion_;
   NucEpochs nuc_epochs_;
   std::deque<Waiting> waiting_;
+  bool skip_next_ = false;  ///< With TrackedDepth::every_second.
 };
 
 }  // namespace isotherm

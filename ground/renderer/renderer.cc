@@ -289,9 +289,9 @@ RgbImage Renderer::Distance(const ViewMaps& view) const {
   const double min = thermal_.distance().min_m(), good = thermal_.distance().good_m(),
                max = thermal_.distance().max_m();
   return Classes(view, view.distance_class,
-                 LegendOfClasses("measurement distance", fmt::format("{:g}-{:g} m", min, good),
-                                 fmt::format("{:g}-{:g} m", good, max),
-                                 fmt::format("< {:g} or > {:g} m", min, max)));
+                 LegendOfClasses("measurement distance", fmt::format("{:.3g}-{:.3g} m", min, good),
+                                 fmt::format("{:.3g}-{:.3g} m", good, max),
+                                 fmt::format("< {:.3g} or > {:.3g} m", min, max)));
 }
 
 RgbImage Renderer::Angle(const ViewMaps& view) const {

@@ -31,7 +31,8 @@ Status Validate(const RendererExpertOptions& options);
 /// the view itself always starts at column 0. Thread-compatible; drawing is const.
 class Renderer {
  public:
-  /// `options` are valid; `thermal` supplies the limits that the class layers' legends state.
+  /// `options` are valid; `thermal` supplies the limits that the class layers' legends
+  /// state (WithinDepthOfField).
   Renderer(const RendererOptions& options, const ThermalOptions& thermal);
 
   /// The scale for `view` alone; pass a scale of your own to keep several renderings comparable.

@@ -49,23 +49,8 @@ void ViewMaps::Resize(int width, int height) {
 }
 
 MeasurementQuality QualityAt(const ViewMaps& view, int x, int y) {
-  const auto quality = [](std::uint8_t condition) {
-    switch (static_cast<ConditionClass>(condition)) {
-      case ConditionClass::kGood:
-        return MeasurementQuality::kGood;
-      case ConditionClass::kAcceptable:
-        return MeasurementQuality::kAcceptable;
-      case ConditionClass::kUnchecked:
-        return MeasurementQuality::kNever;
-      case ConditionClass::kBad:
-        break;
-    }
-    return MeasurementQuality::kBad;
-  };
-  const auto measured =
-      std::max(quality(view.distance_class.At(x, y)), quality(view.angle_class.At(x, y)));
-  const auto motion = quality(view.motion_class.At(x, y));
-  return motion == MeasurementQuality::kNever ? measured : std::max(measured, motion);
+  return QualityOf(view.distance_class.At(x, y), view.angle_class.At(x, y),
+                   view.motion_class.At(x, y));
 }
 
 void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,

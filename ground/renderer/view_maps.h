@@ -36,12 +36,7 @@ struct ViewMaps {
   bool HasSurface(int x, int y) const { return cos_view.At(x, y) == cos_view.At(x, y); }
 };
 
-/// How well what a pixel shows has been measured, by all conditions together; in the order of what
-/// is left to do.
-enum class MeasurementQuality : std::uint8_t { kGood, kAcceptable, kBad, kNever };
-
-/// The quality of a pixel with a surface: good if distance, angle and, as far as it was checked,
-/// motion are; bad if one of them is.
+/// The quality of what a pixel with a surface shows.
 MeasurementQuality QualityAt(const ViewMaps& view, int x, int y);
 
 /// Looks up the surface in the thermal volume (algorithms 7-9, lines 4-7 and 9-10). `maps` in

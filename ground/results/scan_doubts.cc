@@ -7,6 +7,7 @@
 
 #include "ground/results/outcome_text.h"
 #include "ground/surface/depth_preprocessor.h"
+#include "ground/thermal/measurement_conditions.h"
 
 namespace isotherm {
 namespace {
@@ -54,11 +55,12 @@ std::string NoTemperature(const ScanOutcome& outcome) {
         "intrinsics?",
         counts.thermal_fused);
   }
-  const ThermalOptions& limits = outcome.options.thermal();
+  const ThermalOptions limits =
+      WithinDepthOfField(outcome.options.thermal(), outcome.thermal_sensor);
   return fmt::format(
       "{} thermal frames were used, but no temperature was measured under acceptable conditions: "
       "go "
-      "nearer than thermal.distance.max_m ({:g} m) and less oblique than thermal.angle.max_deg "
+      "nearer than thermal.distance.max_m ({:.3g} m) and less oblique than thermal.angle.max_deg "
       "({:g} degrees), or keep such temperatures with thermal.keep_bad",
       counts.thermal_fused, limits.distance().max_m(), limits.angle().max_deg());
 }

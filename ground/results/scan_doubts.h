@@ -13,6 +13,7 @@ struct ScanOutcome {
   const PipelineCounts& counts;
   const GroundOptions& options;
   DepthSensorModel depth_sensor{};  ///< Of the rig.
+  ThermalSensorModel thermal_sensor{};
   bool continued = false;           ///< It went on with a saved model.
   bool can_fuse = false;            ///< The calibration and the camera allow temperatures.
   std::size_t poses = 0;            ///< In `world`.

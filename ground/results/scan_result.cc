@@ -16,6 +16,7 @@
 #include "ground/results/scan_doubts.h"
 #include "ground/results/scan_text.h"
 #include "ground/results/sigma_figures.h"
+#include "ground/thermal/measurement_conditions.h"
 #include "ground/thermal/thermal_records.h"
 #include "ground/thermal/thermal_volume.h"
 
@@ -95,6 +96,7 @@ void AddResultDoubts(const ScanModel& scan, const GroundOptions& options,
   const Doubts more = DoubtsAboutResult({.counts = scan.counts,
                                          .options = options,
                                          .depth_sensor = scan.rig.depth_sensor,
+                                         .thermal_sensor = scan.rig.thermal_sensor,
                                          .continued = scan.is_continued,
                                          .can_fuse = scan.thermal_status.ok(),
                                          .poses = scan.trajectory.poses().size(),
@@ -245,7 +247,7 @@ Result<WrittenScan> WriteScan(
                             has_view ? &view : nullptr,
                             scan.view.T_map_depth.translation(),
                             options.renderer(),
-                            options.thermal(),
+                            WithinDepthOfField(options.thermal(), scan.rig.thermal_sensor),
                             options.export_(),
                             interpretation->changes_nothing() ? nullptr : &*interpretation,
                             stats,

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "ground/feedback/confidence_image.h"
+#include "ground/feedback/view_smear.h"
+#include "ground/thermal/measurement_conditions.h"
 
 namespace isotherm {
 namespace {
@@ -87,9 +89,16 @@ std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
   return pose->T_world_depth;
 }
 
-/// Where tracking last worked, in `world`; nullopt if that is not known.
-std::optional<RigidTransform> LastKnownPose(const ScanModel& scan) {
-  if (!scan.trajectory.poses().empty()) return scan.trajectory.poses().back().T_world_depth;
+/// Where tracking worked before `now`, in `world`; nullopt if that is not known. It is the last
+/// pose at first; who was not found there is sent back along the way they came.
+std::optional<RigidTransform> LastKnownPose(const ScanModel& scan, CaptureTime now) {
+  constexpr Nanoseconds kStay = std::chrono::seconds(2);
+  const std::vector<StampedPose>& poses = scan.trajectory.poses();
+  if (!poses.empty()) {
+    const Nanoseconds back = std::max(Nanoseconds(0), now - poses.back().time - kStay);
+    auto pose = std::ranges::lower_bound(poses, poses.back().time - back, {}, &StampedPose::time);
+    return pose->T_world_depth;
+  }
   const Atlas& atlas = scan.atlas;
   const std::vector<RigidTransform>& known = atlas.active().relocaliser->keyframes().poses();
   if (known.empty()) return std::nullopt;
@@ -104,7 +113,8 @@ FeedbackMaker::FeedbackMaker(const GroundOptions& options, const RigDescription&
       session_(rig.session),
       T_depth_thermal_(rig.rig.T_thermal_depth ? rig.rig.T_thermal_depth->inverse()
                                                : RigidTransform::Identity()),
-      adviser_(options.feedback(), options.thermal()) {}
+      limits_(WithinDepthOfField(options.thermal(), rig.rig.thermal_sensor)),
+      adviser_(options.feedback(), limits_) {}
 
 SurfaceAreas FeedbackMaker::areas() const {
   SurfaceAreas sum;
@@ -138,13 +148,25 @@ CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan, ThreadPool& poo
   // Distances and angles are limits of the thermal camera.
   SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), scan.tsdf(),
              scan.thermal(), pool, view_);
-  return SummarizeCoverage(view_, options_.thermal());
+  return SummarizeCoverage(view_, Smear(scan), limits_);
+}
+
+Image<float> FeedbackMaker::Smear(const ScanModel& scan) const {
+  const std::optional<StampedMapPose> before = scan.motion.before_last();
+  const std::optional<StampedMapPose> now = scan.motion.last();
+  if (!rig_.thermal || !before || !now) return {};
+  const RigidTransform T_map_thermal = now->T_map_depth * T_depth_thermal_;
+  const CameraMotion motion = MotionBetween(before->T_map_depth * T_depth_thermal_, T_map_thermal,
+                                            ToSeconds(now->time - before->time));
+  return SmearInView(maps_, T_map_thermal, motion, rig_.thermal->WithoutDistortion(),
+                     rig_.thermal_sensor);
 }
 
 ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   ScanSituation situation;
   situation.tracking_lost = !moment.report.tracked;
   situation.nuc_running = moment.nuc_running;
+  situation.ground_is_behind = moment.ground_is_behind;
   situation.speed_m_s = moment.speed_m_s;
   situation.rotation_rate_deg_s = moment.rotation_rate_deg_s;
   if (moment.frame_interval_s > 0.0) {
@@ -156,14 +178,17 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
     return c.second.complete();
   });
   const SurfaceAreas all = areas();
-  if (complete && all.total_m2() > 0.0) situation.model_good = all.good_m2 / all.total_m2();
+  if (!complete || !(all.total_m2() > 0.0)) return situation;
+  situation.model_good = all.good_m2 / all.total_m2();
+  const std::optional<double> gain_m2 = planner_ ? planner_->max_gain_m2() : std::nullopt;
+  if (gain_m2) situation.max_gain = *gain_m2 / all.total_m2();
   return situation;
 }
 
 void FeedbackMaker::AddNextPose(const DepthReport& report, const ScanModel& scan,
                                 Feedback& feedback) const {
   if (!report.tracked) {
-    feedback.T_world_depth_next = LastKnownPose(scan);
+    feedback.T_world_depth_next = LastKnownPose(scan, feedback.capture_time);
     return;
   }
   if (feedback.done || !planner_ || planned_map_ != report.pose.map) return;
@@ -220,7 +245,7 @@ void FeedbackMaker::ThinkAhead(const ScanModel& scan, ThreadPool& pool) {
       },
       options_.feedback().expert().blocks_per_message(), pool);
   ViewPlanner* planner = Planner(scan);
-  if (planner == nullptr || scan.view.maps.width() == 0 || adviser_.done()) return;
+  if (planner == nullptr || scan.view.maps.width() == 0) return;
   planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, pool);
 }
 

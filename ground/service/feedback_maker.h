@@ -23,6 +23,7 @@ struct FeedbackMoment {
   double speed_m_s = 0.0;
   double rotation_rate_deg_s = 0.0;
   double frame_interval_s = 0.0;
+  bool ground_is_behind = false;
 };
 
 /// Puts the feedback on a scan together from the model. What would take long is done a part at a
@@ -42,8 +43,12 @@ class FeedbackMaker {
   std::uint64_t messages() const { return messages_; }
 
  private:
-  /// The model as the depth camera saw it last, with what the thermal camera makes of it.
+  /// The model as the depth camera saw it last, with what the thermal camera makes of it while the
+  /// rig moves as it does.
   CoverageSummary LookAtView(const ScanModel& scan, ThreadPool& pool);
+  /// The smear of each pixel of that view if it were measured now; empty while the motion is not
+  /// known.
+  Image<float> Smear(const ScanModel& scan) const;
   ScanSituation Situation(const FeedbackMoment& moment) const;
   void AddNextPose(const DepthReport& report, const ScanModel& scan, Feedback& feedback) const;
   /// The coverage of the active sub-map, in whose coordinates the planner works too.
@@ -54,6 +59,7 @@ class FeedbackMaker {
   const Rig rig_;
   const std::uint64_t session_;
   const RigidTransform T_depth_thermal_;
+  const ThermalOptions limits_;  ///< Within the depth of field of this rig.
   OperatorAdviser adviser_;
   std::map<int, ModelCoverage> coverages_;  ///< By sub-map.
   int planned_map_ = 0;                     ///< The sub-map in whose coordinates views are planned.

@@ -108,13 +108,15 @@ void LiveScan::NoteQueueTime(const void* frame) {
 
 void LiveScan::KeepUp(Nanoseconds queued) {
   // The rest is for the other stream's next frame.
-  constexpr double kThermalFraction = 0.4;
+  constexpr double kHalfThermalFraction = 0.35;
+  constexpr double kThermalFraction = 0.45;
   constexpr double kIntegrationFraction = 0.7;
   const double fraction = ToSeconds(queued) / options_.live().expert().max_wait_s();
-  is_behind_ = fraction > kThermalFraction;
-  pipeline_->set_load_shedding(fraction > kIntegrationFraction ? LoadShedding::kEverySecond
-                               : fraction > kThermalFraction   ? LoadShedding::kNoThermal
-                                                               : LoadShedding::kNone);
+  is_behind_ = fraction > kHalfThermalFraction;
+  pipeline_->set_load_shedding(fraction > kIntegrationFraction   ? LoadShedding::kEverySecond
+                               : fraction > kThermalFraction     ? LoadShedding::kNoThermal
+                               : fraction > kHalfThermalFraction ? LoadShedding::kHalfThermal
+                                                                 : LoadShedding::kNone);
   if (fraction <= kIntegrationFraction || reported_behind_) return;
   reported_behind_ = true;
   LOG(Ground, Warning) << fmt::format(
@@ -167,6 +169,7 @@ std::optional<Feedback> LiveScan::TakeFeedback() {
   if (!feedback_waiting_) return std::nullopt;
   feedback_waiting_ = false;
   const SteadyTime start = clock_.SteadyNow();
+  moment_.ground_is_behind = is_behind_;
   Feedback feedback = feedback_.Make(moment_, model(), pool());
   making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
   motion_since_ = moment_.header.capture_time;

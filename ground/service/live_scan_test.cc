@@ -100,6 +100,19 @@ TEST_F(LiveScanTest, FeedbackSaysHowUncertainThePoseIs) {
   EXPECT_EQ(scan_->model().trajectory.sigmas().back().rotation_rad, sigma.rotation_rad);
 }
 
+TEST_F(LiveScanTest, EverySecondThermalFrameIsLeftOutBeforeAllAre) {
+  Start();
+  Run(0, 6, 40ms);
+  scan_->FinishFrames();
+  EXPECT_EQ(counts().depth_integrated, 7U);
+  EXPECT_EQ(counts().thermal_fused, 3U);
+  EXPECT_EQ(ThermalBehind(), 3U);
+  const std::optional<Feedback> feedback = scan_->TakeFeedback();
+  ASSERT_TRUE(feedback.has_value());
+  Run(7, 20, 40ms);
+  EXPECT_EQ(scan_->TakeFeedback()->advice, std::vector<Advice>{Advice::kSlower});
+}
+
 TEST_F(LiveScanTest, BeyondMostOfTheLongestWaitThermalFramesAreLeftOut) {
   Start();
   Run(0, 6, 50ms);

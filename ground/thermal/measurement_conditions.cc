@@ -121,19 +121,27 @@ Status CheckSharpness(const ThermalOptions& o, const ThermalSensorModel& sensor)
                   sharp->near_m, sharp->far_m, o.distance().min_m(), o.distance().max_m()));
 }
 
-ConditionLimits::ConditionLimits(const ThermalOptions& o, const ThermalSensorModel& sensor)
+ThermalOptions WithinDepthOfField(const ThermalOptions& o, const ThermalSensorModel& sensor) {
+  ThermalOptions narrowed = o;
+  const std::optional<DepthOfField> sharp = SharpDistances(sensor);
+  if (!sharp) return narrowed;
+  ThermalDistanceOptions& distance = *narrowed.mutable_distance();
+  distance.set_min_m(std::max(distance.min_m(), sharp->near_m));
+  distance.set_max_m(std::min(distance.max_m(), sharp->far_m));
+  distance.set_good_m(std::min(distance.good_m(), distance.max_m()));
+  return narrowed;
+}
+
+ConditionLimits::ConditionLimits(const ThermalOptions& options, const ThermalSensorModel& sensor)
+    : ConditionLimits(WithinDepthOfField(options, sensor)) {}
+
+ConditionLimits::ConditionLimits(const ThermalOptions& o)
     : distance_min_m(static_cast<float>(o.distance().min_m())),
       distance_good_m(static_cast<float>(o.distance().good_m())),
       distance_max_m(static_cast<float>(o.distance().max_m())),
       cosine_min_angle(CosineOfDegrees(o.angle().min_deg())),
       cosine_good_angle(CosineOfDegrees(o.angle().good_deg())),
-      cosine_max_angle(CosineOfDegrees(o.angle().max_deg())) {
-  const std::optional<DepthOfField> sharp = SharpDistances(sensor);
-  if (!sharp) return;
-  distance_min_m = std::max(distance_min_m, static_cast<float>(sharp->near_m));
-  distance_max_m = std::min(distance_max_m, static_cast<float>(sharp->far_m));
-  distance_good_m = std::min(distance_good_m, distance_max_m);
-}
+      cosine_max_angle(CosineOfDegrees(o.angle().max_deg())) {}
 
 ConditionClass ConditionLimits::ClassifyDistance(float d) const {
   if (!(d >= distance_min_m && d <= distance_max_m)) return ConditionClass::kBad;

@@ -12,6 +12,10 @@ Status Validate(const ThermalOptions& options);
 /// Fails if the lens (if it is known) is sharp nowhere between the distances that are not bad.
 Status CheckSharpness(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
+/// `options` with distances narrowed to those at which the rig's lens is sharp, as the fuser takes
+/// them: for everything that states or applies the limits. Unchanged if the lens is not known.
+ThermalOptions WithinDepthOfField(const ThermalOptions& options, const ThermalSensorModel& sensor);
+
 /// The distances and angles of (6.3a-b) in metres and as cosines, ready for inner loops.
 struct ConditionLimits {
   float distance_min_m, distance_good_m, distance_max_m;
@@ -19,6 +23,8 @@ struct ConditionLimits {
 
   /// Distances are narrowed by the depth of field if the lens is known.
   ConditionLimits(const ThermalOptions& options, const ThermalSensorModel& sensor);
+  /// `options` are within the depth of field.
+  explicit ConditionLimits(const ThermalOptions& options);
   ConditionClass ClassifyDistance(float distance_m) const;
   /// `cosine` of the emission angle, 0..1.
   ConditionClass ClassifyAngle(float cosine) const;

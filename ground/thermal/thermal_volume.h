@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 
+#include "ground/thermal/measurement_quality.h"
 #include "ground/thermal/thermal_records.h"
 #include "ground/thermal/voxel_layout.h"
 #include "ground/tsdf/tsdf_volume.h"
@@ -45,6 +46,11 @@ struct ThermalVoxel {
   /// How far measurements under good conditions contradict each other.
   ConditionClass disagreement_class() const {
     return ThermalLayout::Decode(bits >> ThermalLayout::kDisagreementShift);
+  }
+  /// kNever if it was not even tried.
+  MeasurementQuality quality() const {
+    return assessed() ? QualityOf(distance_class(), angle_class(), motion_class())
+                      : MeasurementQuality::kNever;
   }
   void set_disagreement_class(ConditionClass c) {
     bits = (bits & ~ThermalLayout::kDisagreementMask) |

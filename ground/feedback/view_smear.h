@@ -1,0 +1,19 @@
+#pragma once
+
+#include "common/frame/image.h"
+#include "common/geometry/camera.h"
+#include "ground/surface/surface_maps.h"
+#include "ground/thermal/camera_motion.h"
+
+namespace isotherm {
+
+/// How far each surface point of `maps` goes through the thermal image while a pixel follows a
+/// change of temperature, and with the shift by the read-out: the smear that a measurement taken
+/// now would have, thermal pixels. NaN where there is no surface or the thermal camera does not see
+/// it. `thermal` is the camera without distortion, `motion` its own (MotionOf). The rule is the
+/// fuser's (thermal.expert.motion).
+Image<float> SmearInView(const SurfaceMaps& maps, const RigidTransform& T_map_thermal,
+                         const CameraMotion& motion, const CameraModel& thermal,
+                         const ThermalSensorModel& sensor);
+
+}  // namespace isotherm
