@@ -37,6 +37,9 @@ constexpr double kDepthReserve = 1.15;
 constexpr double kAtView_m = 0.10;
 constexpr double kAtView_rad = 15.0 * std::numbers::pi / 180.0;
 constexpr int kStepsAtView = 20;
+/// Nor is it proposed for longer than this many steps (a quarter of a minute) if nobody goes there:
+/// there may be no way.
+constexpr int kStepsToView = 150;
 constexpr std::size_t kMaxExhausted = 64;
 
 CameraModel Coarse(CameraModel camera) {
@@ -172,16 +175,15 @@ double ViewPlanner::Gain(const RigidTransform& T_map_depth, const TsdfVolume& ts
 }
 
 void ViewPlanner::NotePose(const RigidTransform& T_map_depth) {
-  if (!best_ || !IsNear(best_->T_map_depth, T_map_depth)) {
-    steps_at_best_ = 0;
-    return;
-  }
-  if (++steps_at_best_ < kStepsAtView) return;
+  if (!best_) return;
+  ++steps_proposed_;
+  steps_at_best_ = IsNear(best_->T_map_depth, T_map_depth) ? steps_at_best_ + 1 : 0;
+  if (steps_at_best_ < kStepsAtView && steps_proposed_ < kStepsToView) return;
   // What was not measured well from there by now will not be.
   exhausted_.push_back(best_->T_map_depth);
   if (exhausted_.size() > kMaxExhausted) exhausted_.pop_front();
   best_.reset();
-  steps_at_best_ = 0;
+  steps_at_best_ = steps_proposed_ = 0;
 }
 
 std::optional<double> ViewPlanner::max_gain_m2() const {
@@ -221,7 +223,7 @@ void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
         best_ ? kClearlyBetter * best_->gain_m2 : options_.expert().min_gain_m2();
     if (gain_m2 < needed_m2) continue;
     best_ = NextView{candidate, gain_m2};
-    steps_at_best_ = 0;
+    steps_at_best_ = steps_proposed_ = 0;
   }
 }
 

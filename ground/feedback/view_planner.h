@@ -72,7 +72,8 @@ class ViewPlanner {
   double round_gain_m2_ = 0.0;                ///< The most of the candidates since they were made.
   std::optional<double> last_round_gain_m2_;  ///< ... of those before.
   int steps_at_best_ = 0;                     ///< That the rig has been there.
-  std::deque<RigidTransform> exhausted_;      ///< Views that were taken and gave nothing.
+  int steps_proposed_ = 0;                    ///< That it has been the best.
+  std::deque<RigidTransform> exhausted_;      ///< Views that gave nothing, or that nobody took.
 };
 
 }  // namespace isotherm

@@ -156,6 +156,16 @@ TEST_F(ViewPlannerTest, WhatAViewWouldStillAddIsKnownWhenAllWereTried) {
   EXPECT_EQ(planner.max_gain_m2(), 0.0);
 }
 
+TEST_F(ViewPlannerTest, AViewThatNobodyTakesMakesWay) {
+  testing::FillSphere(tsdf_, centre_, 0.2);
+  Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, {-1, 0, 0}) < 20.0; });
+  ViewPlanner planner = Planner();
+  const std::optional<NextView> first = Plan(planner);
+  ASSERT_TRUE(first.has_value());
+  const std::optional<NextView> later = Plan(planner, 200);  // The rig stays where it is.
+  EXPECT_TRUE(!later || TranslationDistance(first->T_map_depth, later->T_map_depth) > 0.05);
+}
+
 TEST_F(ViewPlannerTest, AViewThatWasTakenInVainIsNotProposedAgain) {
   testing::FillSphere(tsdf_, centre_, 0.2);
   Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, {-1, 0, 0}) < 20.0; });
