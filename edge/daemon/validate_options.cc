@@ -155,6 +155,10 @@ void CheckNuc(const NucOptions& options, Problems& problems) {
   problems.CheckRange("expert.warm_up_rate_k_per_min", options.expert().warm_up_rate_k_per_min(),
                       0.001, 100.0);
   problems.CheckRange("expert.warm_up_stable_s", options.expert().warm_up_stable_s(), 1.0, kHour);
+  problems.CheckRange("expert.warm_up_housing_rate_k_per_min",
+                      options.expert().warm_up_housing_rate_k_per_min(), 0.001, 100.0);
+  problems.CheckRange("expert.warm_up_housing_stable_s",
+                      options.expert().warm_up_housing_stable_s(), 1.0, kHour);
   problems.CheckRange("expert.warm_up_time_s", options.expert().warm_up_time_s(), 0.0,
                       24.0 * kHour);
   problems.CheckRange("expert.frozen_restart_s", options.expert().frozen_restart_s(), 0.0, 600.0);

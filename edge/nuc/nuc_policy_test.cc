@@ -133,11 +133,12 @@ TEST_F(NucSupervisorTest, WarmUpIsWarnedOfOrWaitedFor) {
   for (const auto warm_up : {NucOptions::WARN, NucOptions::WAIT}) {
     options_.set_warm_up(warm_up);
     options_.set_max_housing_drift_k(0);
+    options_.mutable_expert()->set_warm_up_housing_stable_s(30);
     notices_.clear();
     Start();
     for (int i = 0; i < 40 * 40; ++i, housing_celsius_ += 0.001F) Frame(Observe(S::kSaysIdle));
     EXPECT_TRUE(supervisor_->is_warming_up()) << "2.4 K/min";
-    EXPECT_THAT(notices_, HasSubstr("warms up by +2.4 K/min"));
+    EXPECT_THAT(notices_, HasSubstr("housing changes by +2.40 K/min"));
     EXPECT_EQ(last_.valid, warm_up == NucOptions::WARN);
     Frames(S::kSaysIdle, 40);
     EXPECT_TRUE(last_.valid);

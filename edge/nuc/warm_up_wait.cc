@@ -9,10 +9,7 @@
 namespace isotherm {
 
 WarmUpWait::WarmUpWait(const NucOptions& options, bool is_camera, NucNotices& notices)
-    : mode_(ModeOf(options, is_camera)),
-      warm_rate_k_per_min_(options.expert().warm_up_rate_k_per_min()),
-      notices_(notices),
-      watch_(options) {}
+    : mode_(ModeOf(options, is_camera)), notices_(notices), watch_(options) {}
 
 WarmUpWait::Mode WarmUpWait::ModeOf(const NucOptions& options, bool is_camera) {
   if (!is_camera || options.warm_up() == NucOptions::IGNORE) return Mode::kIgnore;
@@ -30,12 +27,13 @@ void WarmUpWait::Update(CaptureTime now, const ThermalHousekeeping& housekeeping
 }
 
 void WarmUpWait::NoteCold() {
-  const std::string what = watch_.rate_k_per_min()
-                               ? fmt::format("warms up by {:+.1f} K/min (warm below {:.1f})",
-                                             *watch_.rate_k_per_min(), warm_rate_k_per_min_)
-                               : fmt::format("tells no temperature: counted as warm in {:.0f} s",
-                                             ToSeconds(watch_.left()));
-  notices_.Add(LogLevel::kWarning, fmt::format("the thermal camera {}; {}", what,
+  const std::string what =
+      watch_.change()
+          ? fmt::format("'s {} changes by {:+.2f} K/min (warm below {:.2f})", watch_.change()->part,
+                        watch_.change()->k_per_min, watch_.change()->limit_k_per_min)
+          : fmt::format(" tells no temperature: counted as warm in {:.0f} s",
+                        ToSeconds(watch_.left()));
+  notices_.Add(LogLevel::kWarning, fmt::format("the thermal camera{}; {}", what,
                                                is_waiting() ? "no temperatures are taken until then"
                                                             : "temperatures may be off"));
 }

@@ -27,7 +27,6 @@ class WarmUpWait {
   void NoteCold();
 
   const Mode mode_;
-  const double warm_rate_k_per_min_;
   NucNotices& notices_;
   WarmUpWatch watch_;
   WarmUpWatch::State state_ = WarmUpWatch::State::kNotAssessed;

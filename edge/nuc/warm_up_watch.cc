@@ -13,35 +13,53 @@ constexpr double kSecondsPerMinute = 60.0;
 
 }  // namespace
 
-WarmUpWatch::WarmUpWatch(const NucOptions& options)
-    : limit_k_per_min_(options.expert().warm_up_rate_k_per_min()),
-      window_(FromSeconds(options.expert().warm_up_stable_s())),
-      blind_(FromSeconds(options.expert().warm_up_time_s())) {}
-
-WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeeping& housekeeping) {
-  if (state_ == State::kWarm) return state_;
-  if (!start_) start_ = time;
-  const float celsius = std::isfinite(housekeeping.fpa_celsius) ? housekeeping.fpa_celsius
-                                                                : housekeeping.housing_celsius;
-  if (std::isfinite(celsius)) {
-    left_ = Nanoseconds(0);
-    state_ = Assess(time, static_cast<double>(celsius));
-    return state_;
-  }
-  left_ = std::max(Nanoseconds(0), blind_ - (time - *start_));
-  state_ = left_ > Nanoseconds(0) ? State::kCold : State::kWarm;
-  return state_;
-}
-
-WarmUpWatch::State WarmUpWatch::Assess(CaptureTime time, double celsius) {
-  if (!samples_.empty() && time - samples_.back().time < kSampleInterval) return state_;
+void TemperatureRate::Add(CaptureTime time, double celsius) {
+  if (!samples_.empty() && time - samples_.back().time < kSampleInterval) return;
   samples_.push_back({time, celsius});
   // The oldest sample lies a window back, or a little more.
   while (samples_.size() > 2 && time - samples_[1].time >= window_) samples_.pop_front();
   const Nanoseconds span = time - samples_.front().time;
-  if (span < window_ || span <= Nanoseconds(0)) return State::kNotAssessed;
-  rate_k_per_min_ = kSecondsPerMinute * (celsius - samples_.front().celsius) / ToSeconds(span);
-  return std::abs(*rate_k_per_min_) <= limit_k_per_min_ ? State::kWarm : State::kCold;
+  if (span < window_ || span <= Nanoseconds(0)) return;
+  k_per_min_ = kSecondsPerMinute * (celsius - samples_.front().celsius) / ToSeconds(span);
+}
+
+WarmUpWatch::WarmUpWatch(const NucOptions& options)
+    : blind_(FromSeconds(options.expert().warm_up_time_s())),
+      detector_{"detector", options.expert().warm_up_rate_k_per_min(),
+                TemperatureRate(FromSeconds(options.expert().warm_up_stable_s()))},
+      housing_{"housing", options.expert().warm_up_housing_rate_k_per_min(),
+               TemperatureRate(FromSeconds(options.expert().warm_up_housing_stable_s()))} {}
+
+WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeeping& housekeeping) {
+  if (state_ == State::kWarm) return state_;
+  if (!start_) start_ = time;
+  const bool knows_detector = std::isfinite(housekeeping.fpa_celsius);
+  const bool knows_housing = std::isfinite(housekeeping.housing_celsius);
+  change_.reset();
+  if (!knows_detector && !knows_housing) {
+    left_ = std::max(Nanoseconds(0), blind_ - (time - *start_));
+    state_ = left_ > Nanoseconds(0) ? State::kCold : State::kWarm;
+    return state_;
+  }
+  left_ = Nanoseconds(0);
+  const State housing =
+      knows_housing ? Assess(housing_, time, housekeeping.housing_celsius) : State::kWarm;
+  const State detector =
+      knows_detector ? Assess(detector_, time, housekeeping.fpa_celsius) : State::kWarm;
+  const auto either = [&](State state) { return housing == state || detector == state; };
+  state_ = either(State::kCold)          ? State::kCold
+           : either(State::kNotAssessed) ? State::kNotAssessed
+                                         : State::kWarm;
+  return state_;
+}
+
+WarmUpWatch::State WarmUpWatch::Assess(Part& part, CaptureTime time, double celsius) {
+  part.rate.Add(time, celsius);
+  const std::optional<double> rate = part.rate.k_per_min();
+  if (!rate) return State::kNotAssessed;
+  if (std::abs(*rate) <= part.limit_k_per_min) return State::kWarm;
+  change_ = Change{part.name, *rate, part.limit_k_per_min};
+  return State::kCold;
 }
 
 }  // namespace isotherm

@@ -9,11 +9,32 @@ namespace isotherm {
 
 class NucOptions;
 
-/// Follows the warm-up of a thermal camera (thesis 3.2.3): it is warm when the temperature of its
-/// detector changes more slowly than an option says, measured over a time that is an option too. A
-/// camera that does not tell its detector's temperature is assessed by its housing's; one that
-/// tells neither is warm so many seconds after the first frame. Once warm, it stays so: what
-/// changes later is drift. Thread-compatible.
+/// Tells how fast a temperature changes, over a window of time. Thread-compatible.
+class TemperatureRate {
+ public:
+  explicit TemperatureRate(Nanoseconds window) : window_(window) {}
+
+  /// `time` must not decrease between calls. One sample a second is taken.
+  void Add(CaptureTime time, double celsius);
+  /// Kelvin per minute; nullopt until the window is full.
+  std::optional<double> k_per_min() const { return k_per_min_; }
+
+ private:
+  struct Sample {
+    CaptureTime time;
+    double celsius;
+  };
+
+  const Nanoseconds window_;
+  std::deque<Sample> samples_;  ///< About one a second, over the window.
+  std::optional<double> k_per_min_;
+};
+
+/// Follows the warm-up of a thermal camera (thesis 3.2.3): it is warm when its detector and its
+/// housing change more slowly than options say, as far as it tells their temperatures. The detector
+/// settles within minutes; the housing, whose radiation is measured with the scene's, drifts for
+/// some twenty. A camera that tells neither is warm so many seconds after the first frame. Once
+/// warm, it stays so: what changes later is drift. Thread-compatible.
 class WarmUpWatch {
  public:
   enum class State {
@@ -21,30 +42,35 @@ class WarmUpWatch {
     kCold,         ///< Still changing, or the time is not over.
     kWarm,
   };
+  /// What still changes: of the two, the detector if both do.
+  struct Change {
+    const char* part;  ///< "detector" or "housing".
+    double k_per_min;
+    double limit_k_per_min;
+  };
 
   explicit WarmUpWatch(const NucOptions& options);
 
   /// `time` must not decrease between calls.
   State Update(CaptureTime time, const ThermalHousekeeping& housekeeping);
 
-  /// Change of the temperature, kelvin per minute; nullopt = not known (yet).
-  std::optional<double> rate_k_per_min() const { return rate_k_per_min_; }
+  /// nullopt while nothing is known to change.
+  const std::optional<Change>& change() const { return change_; }
   /// Returns what a camera without temperatures still needs.
   Nanoseconds left() const { return left_; }
 
  private:
-  struct Sample {
-    CaptureTime time;
-    double celsius;
+  struct Part {
+    const char* name;
+    const double limit_k_per_min;
+    TemperatureRate rate;
   };
-  State Assess(CaptureTime time, double celsius);
+  State Assess(Part& part, CaptureTime time, double celsius);
 
-  const double limit_k_per_min_;
-  const Nanoseconds window_;
   const Nanoseconds blind_;  ///< For cameras that tell no temperature.
+  Part detector_, housing_;
   std::optional<CaptureTime> start_;
-  std::deque<Sample> samples_;  ///< About one a second, over the window.
-  std::optional<double> rate_k_per_min_;
+  std::optional<Change> change_;
   Nanoseconds left_{0};
   State state_ = State::kNotAssessed;
 };

@@ -43,7 +43,35 @@ TEST_F(WarmUpWatchTest, IsNotAssessedBeforeItsTime) {
 
 TEST_F(WarmUpWatchTest, CoolingIsNoEquilibriumEither) {
   for (int s = 0; s < 100; ++s) EXPECT_NE(Update(s, 50.0 - 0.05 * s), State::kWarm);
-  EXPECT_NEAR(watch_.rate_k_per_min().value(), -3.0, 0.01);
+  EXPECT_NEAR(watch_.change().value().k_per_min, -3.0, 0.01);
+}
+
+/// The housing goes on for 20 minutes when the detector has settled.
+TEST_F(WarmUpWatchTest, IsNotWarmBeforeItsHousingIs) {
+  // 5 K with 7 minutes; 0.1 K/min, measured over the two minutes behind, from the time on at which
+  // 5 K * (exp(-(t - 2) / 7) - exp(-t / 7)) = 0.2 K.
+  const double expected_min = 7.0 * std::log(25.0 * (std::exp(2.0 / 7.0) - 1.0));
+  ThermalHousekeeping housekeeping;
+  housekeeping.fpa_celsius = 35.0F;
+  int warm_s = 0;
+  for (; warm_s < 3600; ++warm_s) {
+    housekeeping.housing_celsius = static_cast<float>(33.0 - 5.0 * std::exp(-warm_s / 60.0 / 7.0));
+    if (watch_.Update(start_ + FromSeconds(warm_s), housekeeping) == State::kWarm) break;
+    if (warm_s == 180) {
+      ASSERT_TRUE(watch_.change().has_value());
+      EXPECT_STREQ(watch_.change()->part, "housing");
+    }
+  }
+  EXPECT_NEAR(warm_s / 60.0, expected_min, 0.1);
+  EXPECT_GT(warm_s, 10 * 60);
+}
+
+TEST_F(WarmUpWatchTest, ACameraThatTellsItsHousingOnlyIsAssessedByThat) {
+  ThermalHousekeeping housekeeping;
+  housekeeping.housing_celsius = 30.0F;
+  EXPECT_EQ(watch_.Update(start_, housekeeping), State::kNotAssessed);
+  EXPECT_EQ(watch_.Update(start_ + FromSeconds(119), housekeeping), State::kNotAssessed);
+  EXPECT_EQ(watch_.Update(start_ + FromSeconds(120), housekeeping), State::kWarm);
 }
 
 TEST_F(WarmUpWatchTest, WithoutTemperaturesTimeCounts) {
