@@ -150,7 +150,7 @@ Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan, ThreadPool& po
   ScanViews views;
   views.thermal_camera = *rig_.thermal;
   views.T_thermal_depth = *rig_.T_thermal_depth;
-  views.trajectory = scan.trajectory.poses();
+  views.trajectory = CertainPoses(scan, *rig_.thermal);
   for (const ThermalFramePtr& frame : selection_.frames()) {
     views.frames.push_back({frame->header.capture_time, {frame, &frame->centikelvin}, {}});
   }

@@ -3,16 +3,21 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
+#include <vector>
 
 #include "common/base/noise.h"
 #include "common/config/text_proto.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/testing/temporary_directory.h"
+#include "ground/calibration/texture_consistency.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/scan_model.h"
+#include "ground/pipeline/trajectory.h"
 
 namespace isotherm {
 namespace {
@@ -46,19 +51,27 @@ shutter { first_s: 5 })",
     Result<std::unique_ptr<SimulatedScan>> scan = SimulatedScan::Create(simulation);
     ASSERT_TRUE(scan) << scan.error().message();
     rig_ = std::make_unique<Rig>((*scan)->rig());
-    GroundOptions options;
-    options.mutable_volume()->set_voxel_size_m(0.004);
-    options.mutable_tsdf()->set_truncation_distance_m(0.016);
-    Result<std::unique_ptr<GroundPipeline>> pipeline =
-        GroundPipeline::Create(options, *rig_, (*scan)->PoseAt((*scan)->depth_times()[0].exposure));
-    ASSERT_TRUE(pipeline) << pipeline.error().message();
-    pipeline_ = std::move(*pipeline);
+    pipeline_ = MakePipeline((*scan)->PoseAt((*scan)->depth_times()[0].exposure));
+    with_gaps_ = MakePipeline((*scan)->PoseAt((*scan)->depth_times()[0].exposure));
     Reconstruct(**scan);
   }
   static void TearDownTestSuite() {
     frames_.clear();
     pipeline_.reset();
+    with_gaps_.reset();
     rig_.reset();
+  }
+
+  static std::unique_ptr<GroundPipeline> MakePipeline(const RigidTransform& initial_pose) {
+    GroundOptions options;
+    options.mutable_volume()->set_voxel_size_m(0.004);
+    options.mutable_tsdf()->set_truncation_distance_m(0.016);
+    return GroundPipeline::Create(options, *rig_, initial_pose).value();
+  }
+
+  /// For 0.4 s of each second but the first.
+  static bool IsDepthMissing(double scanned_s) {
+    return scanned_s > 1.0 && scanned_s - std::floor(scanned_s) > 0.6;
   }
 
   static void Reconstruct(const SimulatedScan& scan) {
@@ -71,8 +84,11 @@ shutter { first_s: 5 })",
       frame.depth_raw = std::move(raw.pixels);
       frame.depth_scale = raw.depth_scale;
       pipeline_->ProcessDepth(frame);
+      if (!IsDepthMissing(ToSeconds(frame.header.capture_time - scan.depth_times()[0].exposure)))
+        with_gaps_->ProcessDepth(frame);
     }
     pipeline_->Finish();
+    with_gaps_->Finish();
     for (std::uint64_t i = 0; i < scan.thermal_times().size(); i += 2) {
       auto frame = std::make_shared<ThermalFrame>();
       frame->header.frame_number = i;
@@ -85,16 +101,17 @@ shutter { first_s: 5 })",
 
   /// With thermal stamps late by `late_s`, each off by some more.
   static DelayReport Check(double late_s, std::optional<double> calibrated_s,
-                           const DelayCheckOptions& options = {}) {
+                           const DelayCheckOptions& options = {},
+                           const ScanModel& scan = pipeline_->model()) {
     constexpr double kJitter_s = 0.001;
     DelayCheck check(options, *rig_, calibrated_s);
     for (const std::shared_ptr<ThermalFrame>& frame : frames_) {
       auto late = std::make_shared<ThermalFrame>(*frame);
       late->header.capture_time +=
           FromSeconds(late_s + kJitter_s * NormalNoise(kSeed, frame->header.frame_number));
-      check.Add(std::move(late), pipeline_->model());
+      check.Add(std::move(late), scan);
     }
-    const DelayReport report = check.Finish(pipeline_->model(), pipeline_->pool(), {});
+    const DelayReport report = check.Finish(scan, pipeline_->pool(), {});
     std::printf("seed %d, stamps late by %+.1f ms, %.2f s: %s\n", static_cast<int>(kSeed),
                 1e3 * late_s, report.elapsed_s, Describe(report).c_str());
     return report;
@@ -102,6 +119,7 @@ shutter { first_s: 5 })",
 
   inline static std::unique_ptr<Rig> rig_;
   inline static std::unique_ptr<GroundPipeline> pipeline_;
+  inline static std::unique_ptr<GroundPipeline> with_gaps_;
   inline static std::vector<std::shared_ptr<ThermalFrame>> frames_;
 };
 
@@ -122,6 +140,48 @@ TEST_F(DelayCheckTest, AWrongDelayHasMoved) {
     EXPECT_NEAR(report.off_by->delay_s, -late_s, kTolerance_s);
     EXPECT_THAT(Describe(report), AllOf(HasSubstr("moved"), HasSubstr("isotherm calibrate time")));
   }
+}
+
+TEST_F(DelayCheckTest, GapsOfTheDepthStreamDoNotMoveADelayThatIsRight) {
+  const DelayReport report = Check(0.0, 0.0, {}, with_gaps_->model());
+  EXPECT_NE(report.verdict, DelayVerdict::kMoved) << "may be told, or not assessed";
+}
+
+/// In each third second depth frames are missing for 0.4 s. Behind that the tracker slides along
+/// what it cannot tell, and says how uncertain it is.
+TEST_F(DelayCheckTest, PosesThatSlideBehindAGapAreNotUsed) {
+  const ScanModel scan = pipeline_->model();
+  const std::vector<StampedPose>& poses = scan.trajectory.poses();
+  constexpr PoseSigma kCertain{.translation_m = 0.0002, .rotation_rad = 0.0003};
+  constexpr PoseSigma kSlides{.translation_m = 0.012, .rotation_rad = 0.02};
+  constexpr double kLags_s = 0.04;
+  Trajectory trajectory;
+  for (const StampedPose& pose : poses) {
+    const double scanned_s = ToSeconds(pose.time - poses.front().time);
+    const double in_third_s = std::fmod(scanned_s, 3.0) - 2.0;
+    if (in_third_s > 0.0 && in_third_s < 0.4) continue;
+    const bool slides = in_third_s >= 0.4;
+    const auto T_map_depth = slides
+                                 ? InterpolatePose(poses, pose.time - FromSeconds(kLags_s)).value()
+                                 : pose.T_world_depth;
+    trajectory.Add({pose.time, T_map_depth}, slides ? kSlides : kCertain, 0, scan.atlas);
+  }
+  const ScanModel with_slides{scan.rig,
+                              scan.atlas,
+                              trajectory,
+                              scan.view,
+                              scan.motion,
+                              scan.uncertainty,
+                              scan.external_odometry,
+                              scan.counts,
+                              scan.stages,
+                              scan.spiller,
+                              scan.thermal_status,
+                              scan.is_continued,
+                              scan.threads};
+  const DelayReport report = Check(0.0, 0.0, {}, with_slides);
+  ASSERT_EQ(report.verdict, DelayVerdict::kAgrees) << report.reason;
+  EXPECT_NEAR(report.off_by->delay_s, 0.0, kTolerance_s);
 }
 
 TEST_F(DelayCheckTest, WhatAnEdgeAddedIsNotClaimed) {

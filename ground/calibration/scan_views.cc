@@ -14,6 +14,7 @@
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/point_visibility.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/scan_model.h"
 
 namespace isotherm {
 namespace {
@@ -24,6 +25,10 @@ constexpr std::size_t kMinPoints = 500;
 constexpr std::size_t kMinFrames = 40;
 constexpr double kReadFraction = 0.8;
 constexpr double kMinTracked = 0.5;
+// A pose less certain than this does not place a thermal image. Twice what the fusion takes
+// (thermal.expert.max_registration_px): translation and rotation, which largely make up for each
+// other in the image, are taken apart here.
+constexpr double kMaxPoseSigma_px = 2.0;
 // Slower than this, a millisecond is lost in the noise of all pixels together.
 constexpr double kMinMotion_px_s = 4.0;
 
@@ -113,6 +118,19 @@ Status CheckTracked(const PipelineCounts& counts) {
 
 }  // namespace
 
+std::vector<StampedPose> CertainPoses(const ScanModel& scan, const CameraModel& thermal_camera) {
+  const std::vector<StampedPose>& poses = scan.trajectory.poses();
+  const std::vector<PoseSigma>& sigmas = scan.trajectory.sigmas();
+  std::vector<StampedPose> certain;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double sigma_px =
+        thermal_camera.fx * std::hypot(sigmas[i].translation_m / scan.uncertainty.mean_depth_m(),
+                                       sigmas[i].rotation_rad);
+    if (sigma_px <= kMaxPoseSigma_px) certain.push_back(poses[i]);
+  }
+  return certain;
+}
+
 double ImageSpeed(const ScanViews& views) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
   for (const TexturePoint& point : views.points)
@@ -194,7 +212,7 @@ Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
   scan.views.thermal_camera = *rig->thermal;
   scan.views.T_thermal_depth = *rig->T_thermal_depth;
   const ScanModel model = (*pipeline)->model();
-  scan.views.trajectory = model.trajectory.poses();
+  scan.views.trajectory = CertainPoses(model, *rig->thermal);
   scan.views.frames = frames.TakeFrames();
   Status fit = CheckTracked(model.counts);
   if (fit.ok()) {

@@ -287,9 +287,11 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
   const TrackedDepth tracked{
       .depth_m = depth.depth_m,
       .view = tracker_.view(),
+      .earlier = tracker_.motion().third_last(),
       .before = tracker_.motion().before_last(),
       .now = *tracker_.motion().last(),
       .surface_sigma_rad = uncertainty.surface_sigma_m() / uncertainty.mean_depth_m(),
+      .mean_depth_m = uncertainty.mean_depth_m(),
       .tsdf = *map.tsdf,
       .refusal = WhyNoThermal(),
       .every_second = load_shedding_ == LoadShedding::kHalfThermal};

@@ -1,10 +1,18 @@
 #include "ground/pipeline/thermal_stage.h"
 
+#include <array>
+#include <cmath>
 #include <utility>
 
 #include "ground/pipeline/stage_times.h"
 
 namespace isotherm {
+namespace {
+
+/// What a rig in the hand stays below for 95 % of the time is two standard deviations of it.
+constexpr double kSigmasOfBound = 2.0;
+
+}  // namespace
 
 ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight,
                            PipelineCounts& counts, StageStats& timing)
@@ -43,18 +51,42 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
   return true;
 }
 
-double ThermalStage::RegistrationSigmaPx(const TrackedDepth& depth) const {
-  return fuser_.ideal_camera().fx * depth.surface_sigma_rad;
+double ThermalStage::RegistrationSigmaPx(CaptureTime time, const TrackedDepth& depth) const {
+  const ThermalMotionOptions& motion = options_.expert().motion();
+  const double since_s = ToSeconds(time - depth.before->time);
+  const double until_s = ToSeconds(depth.now.time - time);
+  // A motion with acceleration a leaves the line between its ends by a t (T - t) / 2 at time t.
+  const double lever_s2 = 0.5 * since_s * until_s;
+  const double off_line_rad =
+      lever_s2 * std::hypot(motion.max_acceleration_m_s2() / depth.mean_depth_m,
+                            motion.max_angular_acceleration_rad_s2());
+  return fuser_.ideal_camera().fx *
+         std::hypot(depth.surface_sigma_rad, off_line_rad / kSigmasOfBound);
+}
+
+CameraMotion ThermalStage::MotionAround(const TrackedDepth& depth) const {
+  const auto between = [this](const StampedMapPose& a, const StampedMapPose& b) {
+    return MotionBetween(a.T_map_depth * T_depth_thermal_, b.T_map_depth * T_depth_thermal_,
+                         ToSeconds(b.time - a.time));
+  };
+  const CameraMotion mean = between(*depth.before, depth.now);
+  if (!depth.earlier) return mean;
+  const CameraMotion start = between(*depth.earlier, *depth.before);
+  const std::array motions = {
+      mean, start,
+      MotionAtEnd(start, ToSeconds(depth.before->time - depth.earlier->time), mean,
+                  ToSeconds(depth.now.time - depth.before->time))};
+  return FastestInImage(motions, fuser_.ideal_camera(), depth.mean_depth_m);
 }
 
 std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,
                                                       const TrackedDepth& depth) const {
   if (depth.refusal) return depth.refusal;
   if (!depth.before || time < depth.before->time) return LeftOutReason::kPoseUnknown;
-  if (RegistrationSigmaPx(depth) > options_.expert().max_registration_px())
-    return LeftOutReason::kPoseUncertain;
   const double interval_s = ToSeconds(depth.now.time - depth.before->time);
   if (interval_s > options_.expert().max_wait_s()) return LeftOutReason::kDepthGap;
+  if (RegistrationSigmaPx(time, depth) > options_.expert().max_registration_px())
+    return LeftOutReason::kPoseUncertain;
   return std::nullopt;
 }
 
@@ -93,13 +125,11 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
   const RigidTransform T_view_thermal = depth.view.T_map_depth.inverse() * T_map_thermal;
   near_range_occlusion_.Aim(T_view_thermal);
   line_of_sight_occlusion_.Aim(T_view_thermal);
-  const CaptureConditions capture{
-      .motion = MotionBetween(before.T_map_depth * T_depth_thermal_,
-                              now.T_map_depth * T_depth_thermal_, interval_s),
-      .registration_px = RegistrationSigmaPx(depth),
-      .near_range = &near_range_occlusion_,
-      .line_of_sight = &line_of_sight_occlusion_,
-      .nuc = waiting.nuc};
+  const CaptureConditions capture{.motion = MotionAround(depth),
+                                  .registration_px = RegistrationSigmaPx(time, depth),
+                                  .near_range = &near_range_occlusion_,
+                                  .line_of_sight = &line_of_sight_occlusion_,
+                                  .nuc = waiting.nuc};
   counts_.fusion += fuser_.Fuse(*waiting.frame, T_map_thermal, depth.view.camera,
                                 T_map_depth_at_capture, depth.tsdf, pool, thermal, capture);
   ++counts_.thermal_fused;

@@ -19,12 +19,14 @@ namespace isotherm {
 
 /// The rig at a tracked depth frame, in the coordinates of `tsdf`.
 struct TrackedDepth {
-  const Image<float>& depth_m;           ///< The frame itself; 0 = no return.
-  const ModelView& view;                 ///< The model from its pose.
-  std::optional<StampedMapPose> before;  ///< The frame before it; nullopt = not known.
+  const Image<float>& depth_m;            ///< The frame itself; 0 = no return.
+  const ModelView& view;                  ///< The model from its pose.
+  std::optional<StampedMapPose> earlier;  ///< The frame before that before it; nullopt = not known.
+  std::optional<StampedMapPose> before;   ///< The frame before it; nullopt = not known.
   StampedMapPose now;
   double surface_sigma_rad = 0.0;  ///< One standard deviation of the pose, as a shift of surface
                                    ///< over its mean depth.
+  double mean_depth_m = 1.0;       ///< Depth of the surface in view.
   const TsdfVolume& tsdf;
   /// Why thermal frames cannot be fused now at all, if so.
   std::optional<LeftOutReason> refusal = std::nullopt;
@@ -32,7 +34,9 @@ struct TrackedDepth {
 };
 
 /// Takes thermal frames from their arrival to the model: each waits for the depth frame behind it,
-/// since its pose lies between those of two depth frames (6.2.3). Thread-bound.
+/// since its pose lies between those of two depth frames (6.2.3). What the rig did between them is
+/// not known: the pose is as uncertain as the rig could accelerate, and the motion is the fastest
+/// that the poses around tell. Thread-bound.
 class ThermalStage {
  public:
   /// CheckThermalFusion(rig) is ok. Voxels lighter than `min_weight` do not count as observed.
@@ -53,7 +57,10 @@ class ThermalStage {
     NucAge nuc;
   };
 
-  double RegistrationSigmaPx(const TrackedDepth& depth) const;
+  /// One standard deviation of the pose at `time`, in the thermal image.
+  double RegistrationSigmaPx(CaptureTime time, const TrackedDepth& depth) const;
+  /// Motion of the thermal camera between the two depth frames.
+  CameraMotion MotionAround(const TrackedDepth& depth) const;
   /// nullopt: the frame can be fused.
   std::optional<LeftOutReason> WhyLeftOut(CaptureTime time, const TrackedDepth& depth) const;
   void Fuse(const Waiting& waiting, const TrackedDepth& depth, ThermalVolume& thermal,

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -55,9 +56,20 @@ class ThermalStageTest : public ::testing::Test {
   TrackedDepth Depth(double before, double at) const {
     return {.depth_m = depth_m_,
             .view = view_,
+            .earlier = std::nullopt,
             .before = StampedMapPose{Time(before), view_.T_map_depth},
             .now = {Time(at), view_.T_map_depth},
+            .mean_depth_m = 0.5,
             .tsdf = *tsdf_};
+  }
+  /// How many voxels have motion class `motion`.
+  int Count(ConditionClass motion) const {
+    int count = 0;
+    for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
+      for (const ThermalVoxel& voxel : std::as_const(*thermal_).voxels(block))
+        count += voxel.measured() && voxel.motion_class() == motion ? 1 : 0;
+    }
+    return count;
   }
   void Fuse(const TrackedDepth& depth) { stage_->FuseUpTo(depth, *thermal_, pool_); }
   int Measured() const {
@@ -165,6 +177,73 @@ TEST_F(ThermalStageTest, WhereDepthFramesAreTooFarApart) {
   stage_->Add(Frame(100.5));
   Fuse(Depth(100.0, 100.0 + frames - 0.1));
   EXPECT_EQ(counts_.thermal_fused, 1U);
+}
+
+/// The rig turns at 0.6 rad/s; in a gap of three frames it turns back, so that its mean motion is
+/// none.
+TEST_F(ThermalStageTest, AReversalInAGapIsNotRest) {
+  const RigidTransform turned =
+      view_.T_map_depth *
+      MakeTransform(Eigen::Vector3d::Zero(),
+                    Eigen::Quaterniond(Eigen::AngleAxisd(-0.02, Eigen::Vector3d::UnitY())));
+  TrackedDepth depth = Depth(1.0, 3.8);
+  stage_->Add(Frame(1.2));
+  Fuse(depth);
+  const int at_rest = Count(ConditionClass::kGood);
+  EXPECT_GT(at_rest, 1000) << "nothing is known of a motion";
+  EXPECT_EQ(Count(ConditionClass::kAcceptable), 0);
+  // Forgotten, so that the better class of before does not stay.
+  thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks());
+  ASSERT_TRUE(thermal_->Commit(tsdf_->block_count()));
+  depth.earlier = StampedMapPose{Time(0.0), turned};
+  stage_->Add(Frame(1.2));
+  Fuse(depth);
+  EXPECT_EQ(Count(ConditionClass::kGood), 0);
+  EXPECT_GT(Count(ConditionClass::kAcceptable), 1000);
+}
+
+TEST_F(ThermalStageTest, WhatComesToMoveInAGapIsFastAtItsEnd) {
+  // At rest, then 0.011 rad in 2.8 frames: 0.12 rad/s on the mean, 1.7 times that at the end.
+  TrackedDepth depth = Depth(1.0, 3.8);
+  depth.earlier = StampedMapPose{Time(0.0), view_.T_map_depth};
+  depth.before->T_map_depth =
+      view_.T_map_depth *
+      MakeTransform(Eigen::Vector3d::Zero(),
+                    Eigen::Quaterniond(Eigen::AngleAxisd(-0.011, Eigen::Vector3d::UnitY())));
+  depth.earlier->T_map_depth = depth.before->T_map_depth;
+  stage_->Add(Frame(3.6));
+  Fuse(depth);
+  EXPECT_EQ(Count(ConditionClass::kGood), 0);
+  EXPECT_GT(Count(ConditionClass::kAcceptable), 1000);
+}
+
+/// In the middle of a gap the rig may be off by a T^2 / 8, near its ends by little.
+TEST_F(ThermalStageTest, UncertaintyGrowsWithTheGapAndTowardsItsMiddle) {
+  const auto left_out = [this](double at, double frames) {
+    const std::uint64_t before = counts_.thermal_left_out[LeftOutReason::kPoseUncertain];
+    stage_->Add(Frame(at));
+    Fuse(Depth(0.0, frames));
+    return counts_.thermal_left_out[LeftOutReason::kPoseUncertain] > before;
+  };
+  // Half of hypot(2 / 0.5 m, 3) T^2 / 8 is a pixel of the thermal camera at T = 0.106 s.
+  const double pixel_s = std::sqrt(8.0 / (0.5 * 5.0 * rig_.thermal->fx));
+  options_.mutable_expert()->set_max_wait_s(1.0);
+  stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_, timing_);
+  const double frames = 30.0 * pixel_s;
+  EXPECT_FALSE(left_out(0.49 * frames, 0.98 * frames));
+  EXPECT_TRUE(left_out(0.51 * frames, 1.02 * frames));
+  EXPECT_FALSE(left_out(0.25 * frames, 1.02 * frames));
+  // t (T - t) = pixel_s^2 / 4 at t = 0.146 pixel_s for twice as long a gap.
+  EXPECT_FALSE(left_out(0.13 * frames, 2.0 * frames));
+  EXPECT_TRUE(left_out(0.16 * frames, 2.0 * frames));
+  EXPECT_FALSE(left_out(1.87 * frames, 2.0 * frames));
+}
+
+TEST_F(ThermalStageTest, ByDefaultATenthOfASecondIsBridged) {
+  EXPECT_EQ(options_.expert().max_wait_s(), 0.1);
+  stage_->Add(Frame(0.1));
+  Fuse(Depth(0.0, 12.0));
+  EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDepthGap, 1}}));
 }
 
 TEST_F(ThermalStageTest, ForThePipelinesReasonBeforeAnyOther) {

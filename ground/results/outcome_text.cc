@@ -29,7 +29,9 @@ constexpr EnumArray<LeftOutReason, std::string_view> kLeftOut = {
      "no depth frame came after them; many of these mean that the cameras' clocks differ"},
     {LeftOutReason::kPoseUnknown, "taken while the rig was lost or before the first depth frame"},
     {LeftOutReason::kPoseUncertain,
-     "the pose was less certain than thermal.expert.max_registration_px; keep edges in view"},
+     "the pose was less certain than thermal.expert.max_registration_px; keep edges in view, and "
+     "see "
+     "that no depth frames are lost"},
     {LeftOutReason::kDepthGap,
      "depth frames were missing around them for longer than thermal.expert.max_wait_s"},
     {LeftOutReason::kBehind,

@@ -1,6 +1,10 @@
 #include "ground/thermal/camera_motion.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+
+#include "common/base/check.h"
 
 namespace isotherm {
 
@@ -15,6 +19,32 @@ CameraMotion MotionBetween(const RigidTransform& T_map_before, const RigidTransf
   const Eigen::AngleAxisd half(-0.5 * rotation.angle(), rotation.axis());
   motion.velocity_m_s = half * T_before_after.translation() / interval_s;
   return motion;
+}
+
+CameraMotion MotionAtEnd(const CameraMotion& before, double before_s, const CameraMotion& mean,
+                         double interval_s) {
+  const double span_s = before_s + interval_s;
+  if (!(before_s > 0.0 && interval_s > 0.0)) return mean;
+  // Means are the motions in the middle of their intervals, which are half of span_s apart.
+  const double fraction = interval_s / span_s;
+  return {mean.velocity_m_s + fraction * (mean.velocity_m_s - before.velocity_m_s),
+          mean.rate_rad_s + fraction * (mean.rate_rad_s - before.rate_rad_s)};
+}
+
+CameraMotion FastestInImage(std::span<const CameraMotion> motions, const CameraModel& camera,
+                            double depth_m) {
+  CHECK(!motions.empty());
+  const double right = camera.width - 1.0, bottom = camera.height - 1.0;
+  const std::array<Eigen::Vector2d, 5> pixels = {
+      {{0.5 * right, 0.5 * bottom}, {0.0, 0.0}, {right, 0.0}, {0.0, bottom}, {right, bottom}}};
+  const auto speed = [&](const CameraMotion& motion) {
+    double fastest = 0.0;
+    for (const Eigen::Vector2d& pixel : pixels) {
+      fastest = std::max(fastest, ImageVelocity(motion, Unproject(camera, pixel), depth_m).norm());
+    }
+    return fastest;
+  };
+  return *std::ranges::max_element(motions, {}, speed);
 }
 
 CameraMotion MotionOf(const CameraMotion& motion, const RigidTransform& T_other_camera) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
+#include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 
 namespace isotherm {
@@ -15,6 +17,16 @@ struct CameraMotion {
 /// The motion, taken as even, between two poses `interval_s` apart; none for an interval of 0.
 CameraMotion MotionBetween(const RigidTransform& T_map_before, const RigidTransform& T_map_after,
                            double interval_s);
+
+/// The motion at the end of an interval of `interval_s` over which it was `mean`, if it has changed
+/// evenly since the interval of `before_s` just before, over which it was `before`.
+CameraMotion MotionAtEnd(const CameraMotion& before, double before_s, const CameraMotion& mean,
+                         double interval_s);
+
+/// The one of `motions`, of which there is at least one, at which the image of a surface `depth_m`
+/// away is the fastest, in its middle or in a corner.
+CameraMotion FastestInImage(std::span<const CameraMotion> motions, const CameraModel& camera,
+                            double depth_m);
 
 /// The same motion of another camera on the rig: T_other_camera maps into its coordinates.
 CameraMotion MotionOf(const CameraMotion& motion, const RigidTransform& T_other_camera);

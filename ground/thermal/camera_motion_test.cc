@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <initializer_list>
 
 namespace isotherm {
 namespace {
@@ -33,6 +34,31 @@ TEST(CameraMotionTest, ThePosesOfAnEvenMotionGiveItBack) {
   EXPECT_LT((found.velocity_m_s - kMotion.velocity_m_s).norm(), kCurvature);
   EXPECT_LT((found.rate_rad_s - kMotion.rate_rad_s).norm(), kCurvature);
   EXPECT_EQ(MotionBetween(kStart, kStart, 0.0).velocity_m_s.norm(), 0.0);
+}
+
+TEST(CameraMotionTest, AnEvenlyChangingMotionIsCarriedOnToTheEnd) {
+  // 1 m/s^2 and 2 rad/s^2 from rest, looked at over 0 .. 0.1 s and 0.1 .. 0.4 s.
+  const auto at = [](double t_s) {
+    return CameraMotion{{1.0 * t_s, 0.0, 0.0}, {0.0, 2.0 * t_s, 0.0}};
+  };
+  const CameraMotion end = MotionAtEnd(at(0.05), 0.1, at(0.25), 0.3);
+  constexpr double kRounding = 1e-12;
+  EXPECT_NEAR(end.velocity_m_s.x(), 0.4, kRounding);
+  EXPECT_NEAR(end.rate_rad_s.y(), 0.8, kRounding);
+  EXPECT_EQ(MotionAtEnd(at(0.05), 0.0, at(0.25), 0.3).velocity_m_s.x(), 0.25) << "not known";
+}
+
+TEST(CameraMotionTest, TheFastestIsTheOneThatMovesTheImageMost) {
+  CameraModel camera{101, 101, 100.0, 100.0, 50.0, 50.0};
+  const CameraMotion sideways{{0.1, 0.0, 0.0}, Eigen::Vector3d::Zero()};
+  const CameraMotion turning{Eigen::Vector3d::Zero(), {0.0, 0.2, 0.0}};
+  const CameraMotion rolling{Eigen::Vector3d::Zero(), {0.0, 0.0, 0.5}};
+  const auto fastest = [&](std::initializer_list<CameraMotion> motions, double depth_m) {
+    return FastestInImage({motions.begin(), motions.size()}, camera, depth_m);
+  };
+  EXPECT_EQ(fastest({sideways, turning}, 0.3).velocity_m_s, sideways.velocity_m_s);
+  EXPECT_EQ(fastest({sideways, turning}, 1.0).rate_rad_s, turning.rate_rad_s);
+  EXPECT_EQ(fastest({turning, rolling}, 1.0).rate_rad_s, rolling.rate_rad_s) << "in the corners";
 }
 
 TEST(CameraMotionTest, APointGoesThroughTheImageAsItsProjectionsDo) {

@@ -67,10 +67,20 @@ Status Validate(const ThermalOcclusionOptions& o) {
 }
 
 Status Validate(const ThermalMotionOptions& o) {
-  if (o.smear_good_px() > 0.0 && o.smear_good_px() <= o.smear_max_px()) return OkStatus();
-  return InvalidArgument(fmt::format(
-      "thermal.expert.motion: need 0 < smear_good_px <= smear_max_px, got {} px and {} px",
-      o.smear_good_px(), o.smear_max_px()));
+  if (!(o.smear_good_px() > 0.0 && o.smear_good_px() <= o.smear_max_px())) {
+    return InvalidArgument(fmt::format(
+        "thermal.expert.motion: need 0 < smear_good_px <= smear_max_px, got {} px and {} px",
+        o.smear_good_px(), o.smear_max_px()));
+  }
+  const auto is_acceleration = [](double a) { return a >= 0.0 && a <= 1000.0; };
+  if (!(is_acceleration(o.max_acceleration_m_s2()) &&
+        is_acceleration(o.max_angular_acceleration_rad_s2()))) {
+    return InvalidArgument(
+        fmt::format("thermal.expert.motion: max_acceleration_m_s2 and "
+                    "max_angular_acceleration_rad_s2 must be 0..1000, got {} m/s2 and {} rad/s2",
+                    o.max_acceleration_m_s2(), o.max_angular_acceleration_rad_s2()));
+  }
+  return OkStatus();
 }
 
 Status Validate(const ThermalDisagreementOptions& o) {

@@ -25,6 +25,10 @@ std::optional<StampedMapPose> MotionHistory::before_last() const {
   return poses_.size() < 2 ? std::nullopt : std::optional(poses_[poses_.size() - 2]);
 }
 
+std::optional<StampedMapPose> MotionHistory::third_last() const {
+  return poses_.size() < 3 ? std::nullopt : std::optional(poses_[poses_.size() - 3]);
+}
+
 std::optional<RigidTransform> MotionHistory::Predict(CaptureTime time) const {
   return poses_.size() < 2 ? std::nullopt : Extrapolate(*before_last(), time);
 }

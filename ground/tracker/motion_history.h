@@ -22,6 +22,8 @@ class MotionHistory {
   std::optional<StampedMapPose> last() const;
   /// The one before; nullopt if fewer than two were tracked since the last Clear.
   std::optional<StampedMapPose> before_last() const;
+  /// The one before that; nullopt if fewer than three were.
+  std::optional<StampedMapPose> third_last() const;
 
   /// The pose at `time` if the velocity between the last two poses goes on; nullopt if that is not
   /// known or `time` is too far away.

@@ -80,11 +80,13 @@ TEST_F(MotionHistoryTest, NothingIsPredictedWithFewerThanTwoPoses) {
   history_.Add({At(1), Sliding(1)});
   EXPECT_EQ(history_.before_last()->time, At(0));
   EXPECT_EQ(history_.last()->time, At(1));
+  EXPECT_FALSE(history_.third_last().has_value());
   EXPECT_TRUE(history_.Predict(At(2)).has_value());
 }
 
 TEST_F(MotionHistoryTest, NothingIsPredictedBeyondTwoFramesOrBackwards) {
   for (int frame = 0; frame < 5; ++frame) history_.Add({At(frame), Sliding(frame)});
+  EXPECT_EQ(history_.third_last()->time, At(2));
   EXPECT_TRUE(history_.Predict(At(6)).has_value());
   EXPECT_FALSE(history_.Predict(At(6) + Nanoseconds(1000)).has_value());
   EXPECT_FALSE(history_.PredictSmoothly(At(6) + Nanoseconds(1000)).has_value());
