@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kFooter =
     R"(A recording is compact (Isotherm's own lossless codes: small, and only Isotherm reads them) or viewable
 (plain 16-bit images and transforms: two to three times as large, and Foxglove and Lichtblick show them).
-Nothing is lost either way; every command reads both. `isotherm inspect` says which of them a file is.
+Nothing is lost either way, unless --spoil-depth says so; every command reads both. `isotherm inspect` says which of them a file is.
 
 A viewable recording has the topics /depth and /thermal (foxglove.RawImage, 16UC1), their camera_info
 (foxglove.CameraCalibration), and transforms (foxglove.FrameTransform) between world, depth and
@@ -31,11 +31,13 @@ the value range: thermal pixels are centi-kelvin (29300 is 19.85 °C).
 
 Examples:
   isotherm convert scan.mcap -o view.mcap --encoding viewable --trajectory out/scan
-  isotherm convert view.mcap -o small.mcap --encoding compact)";
+  isotherm convert view.mcap -o small.mcap --encoding compact
+  isotherm convert scan.mcap -o holes.mcap --encoding compact --spoil-depth grid)";
 
 struct Arguments {
   std::string recording, output, trajectory;
   int storage = static_cast<int>(ImageStorage::kViewable);
+  int defect = static_cast<int>(DepthDefect::kNone);
   bool force = false;
 };
 
@@ -80,6 +82,7 @@ int Run(const Arguments& arguments) {
   request.output = target->path();
   request.storage = static_cast<ImageStorage>(arguments.storage);
   request.poses = *poses;
+  request.defect = static_cast<DepthDefect>(arguments.defect);
   request.stop = signal.token();
   std::optional<ProgressBar> progress;
   request.progress = [&](double fraction) {
@@ -113,6 +116,21 @@ void AddConvertCommand(CLI::App& app, CommandBody& body) {
       ->type_name("KIND");
   command->add_option("--trajectory", arguments->trajectory,
                       "Poses of the rig: result folder, or trajectory.txt");
+  command
+      ->add_option("--spoil-depth", arguments->defect,
+                   "To try what a worse camera would give: grid (every third row and column empty, "
+                   "64 % of the pixels in all), coarse-grid (two of five rows and columns), random "
+                   "(60 %), rows, columns (every second) or flying (30 % of the pixels at edges "
+                   "lie between the surfaces)")
+      ->transform(
+          CLI::Validator(NumberOfName({{"grid", static_cast<int>(DepthDefect::kGrid)},
+                                       {"coarse-grid", static_cast<int>(DepthDefect::kCoarseGrid)},
+                                       {"random", static_cast<int>(DepthDefect::kRandom)},
+                                       {"rows", static_cast<int>(DepthDefect::kRows)},
+                                       {"columns", static_cast<int>(DepthDefect::kColumns)},
+                                       {"flying", static_cast<int>(DepthDefect::kFlyingPixels)}}),
+                         ""))
+      ->type_name("KIND");
   command->add_flag("--force", arguments->force, "Replace an existing recording");
   command->footer(kFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });

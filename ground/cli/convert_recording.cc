@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/noise.h"
 #include "common/codec/codec.h"
 #include "common/recording/feedback_record.h"
 #include "common/recording/mcap_message_stream.h"
@@ -194,7 +195,7 @@ class Converter {
 
   Status WriteItem(const RecordedDepth& depth) {
     EncodedDepthFrame frame = depth.frame;
-    if (!Store(frame.image, depth_encoder_)) return OkStatus();
+    if (!Store(frame.image, depth_encoder_) || !Spoil(frame)) return OkStatus();
     ++summary_.depth_frames;
     return writer_.Write(frame, depth.arrival);
   }
@@ -233,6 +234,18 @@ class Converter {
     }
     const bool is_plain = image.encoding == Encoding::kRaw16 || image.encoding == Encoding::kPng16;
     if (request_.storage == ImageStorage::kCompact && is_plain) image = encoder.Encode(*pixels);
+    return true;
+  }
+
+  bool Spoil(EncodedDepthFrame& frame) {
+    if (request_.defect == DepthDefect::kNone) return true;
+    Result<Image<std::uint16_t>> pixels = Decode(frame.image);
+    if (!pixels) {
+      LeaveOut(pixels.error());
+      return false;
+    }
+    AddDefect(request_.defect, NoiseStream(0, 0, frame.header.frame_number), *pixels);
+    frame.image = depth_encoder_.Encode(*pixels);
     return true;
   }
 

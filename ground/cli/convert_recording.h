@@ -10,6 +10,7 @@
 #include "common/base/status.h"
 #include "common/geometry/stamped_pose.h"
 #include "common/recording/recording.h"
+#include "common/simulation/depth_defects.h"
 
 namespace isotherm {
 
@@ -20,6 +21,7 @@ struct ConvertRequest {
   /// T_world_depth, in order of time. Empty: viewable recordings get those that the recording
   /// itself has, of a reconstruction or of the ground's feedback.
   std::vector<StampedPose> poses;
+  DepthDefect defect = DepthDefect::kNone;  ///< Done to each depth image.
   std::function<void(double fraction)> progress;
   std::stop_token stop;
 };
@@ -34,7 +36,7 @@ struct ConvertSummary {
 };
 
 /// Writes the recording anew with its images stored otherwise; frames, times and everything else
-/// that was recorded stay what they are.
+/// that was recorded stay what they are, but for the defect that is asked for.
 Result<ConvertSummary> ConvertRecording(const ConvertRequest& request);
 
 }  // namespace isotherm
