@@ -14,12 +14,13 @@ inline constexpr int kPyramidLevels = 3;
 
 /// A depth image made ready for tracking and integration. Depth camera coordinates, metres.
 struct PreparedDepth {
-  CameraModel camera;                            ///< Full resolution, without distortion.
-  Image<float> depth_m;                          ///< Measured depth along z, 0 = no return.
+  CameraModel camera;  ///< Full resolution, without distortion.
+  /// Depth along z as it was measured, 0 = no return; in an image full of holes, those are filled.
+  Image<float> depth_m;
   std::array<SurfaceMaps, kPyramidLevels> maps;  ///< Level 0 is full resolution, each next is half.
   /// Standard deviation of depth at 1 m, metres; it grows with the square of the depth.
   float noise_at_1m = 0.0F;
-  int valid_pixels = 0;  ///< Pixels of level 0 with a depth.
+  int valid_pixels = 0;  ///< Pixels of level 0 with a measured depth.
 };
 
 Status Validate(const PreprocessorOptions& options);
@@ -36,7 +37,8 @@ DepthRange RangeOf(const PreprocessorOptions& options, const DepthSensorModel& s
 Status CheckRange(const PreprocessorOptions& options, const DepthSensorModel& sensor);
 
 /// Algorithm 1, lines 2-3: range check, rectification, bilateral filter, depth pyramid, vertex and
-/// normal maps. Keeps its images, so a stream of equal frames allocates nothing. Thread-compatible.
+/// normal maps. Before the filter, holes of an image that is full of them are filled. Keeps its
+/// images, so a stream of equal frames allocates nothing. Thread-compatible.
 class DepthPreprocessor {
  public:
   DepthPreprocessor(const PreprocessorOptions& options, const CameraModel& depth_camera,
@@ -55,9 +57,20 @@ class DepthPreprocessor {
   Image<std::int32_t> rectification_;  ///< Source pixel index per rectified pixel, -1 = outside;
                                        ///< empty: no distortion.
   Image<std::uint16_t> rectified_raw_;
+  Image<float> filled_m_;
   std::array<Image<float>, kPyramidLevels> filtered_m_;
   PreparedDepth prepared_;
 };
+
+/// Whether the image is full of holes, as that of a camera that was registered to another one is:
+/// many of its pixels lack a neighbour. Looks at a sample of the rows.
+bool IsFullOfHoles(const Image<float>& depth_m);
+
+/// Gives pixels without return the depth of the plane through those at most two pixels away, where
+/// these lie around them on one surface. `max_step_ratio`: the largest difference in depth between
+/// neighbouring pixels of a surface, as a fraction; `noise_at_1m` metres.
+void FillHoles(const Image<float>& depth_m, float max_step_ratio, float noise_at_1m,
+               ThreadPool& pool, Image<float>& filled_m);
 
 /// Bilateral filter with a Gaussian over pixels and a compact biweight (1 - (d/tau)^2)^2 over
 /// depth, tau growing with depth squared as the noise of a triangulating sensor does. 0 = no

@@ -28,6 +28,28 @@ struct MetresRowArgs {
 };
 int MetresRow(const MetresRowArgs& args, std::span<float> depth_m);
 
+/// Holds how many pixels of a row have a depth, and how many of them lack that of the next pixel in
+/// the row or in the row below.
+struct GapCount {
+  int pixels = 0;
+  int beside_gap = 0;
+};
+GapCount CountGaps(const float* row, const float* below, int width);
+
+/// One row of depth with its holes filled. `rows` are the image rows from -radius to +radius around
+/// the centre row (null outside the image). A pixel without return gets the depth of the plane that
+/// fits those around it that lie within `max_step_ratio` of the nearest, if they lie on all sides
+/// of it and as near the plane as noise (`noise_at_1m` metres, growing with depth squared)
+/// explains. Measured depth stays. 0 = no return, in and out.
+struct FillRowArgs {
+  const float* const* rows;
+  int radius;
+  int width;
+  float max_step_ratio;
+  float noise_at_1m;
+};
+void FillRow(const FillRowArgs& args, std::span<float> filled_m);
+
 /// One row of a depth image of half the size: mean of those of the 2 x 2 pixels that lie within
 /// `max_step_ratio` of the nearest. 0 = no return, in and out.
 struct HalfRowArgs {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "common/frame/frame.h"
@@ -69,6 +72,64 @@ inline HalfPixel HalvePixel(const HalfRowArgs& a, int x) {
     result.means.push_back(sum / count);
   }
   return result;
+}
+
+/// The depth that FillRow must give a pixel, 0 = none; nullopt where rounding may decide.
+inline std::optional<double> FillPixel(const FillRowArgs& a, int x) {
+  using testing::AtLeastZero;
+  using testing::Both;
+  using testing::Verdict;
+  constexpr double kSlack = 1e-4;
+  const int side = 2 * a.radius + 1;
+  if (a.rows[a.radius][x] > 0.0F) return a.rows[a.radius][x];
+  if (x < a.radius || x >= a.width - a.radius) return 0.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto for_depths = [&](const auto& visit) {
+    for (int row = 0; row < side; ++row) {
+      for (int dx = -a.radius; a.rows[row] != nullptr && dx <= a.radius; ++dx) {
+        if (a.rows[row][x + dx] > 0.0F)
+          visit(double{a.rows[row][x + dx]}, Eigen::Vector3d(dx, row - a.radius, 1.0));
+      }
+    }
+  };
+  for_depths([&](double z, const Eigen::Vector3d&) { nearest = std::min(nearest, z); });
+  if (!std::isfinite(nearest)) return 0.0;
+  // The plane 1 / z = (1 + k . (dx, dy, 1)) / nearest, weighted by z.
+  Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  Verdict certain = Verdict::kYes;
+  const auto for_used = [&](const auto& visit) {
+    for_depths([&](double z, const Eigen::Vector3d& offset) {
+      const Verdict used = AtLeastZero(a.max_step_ratio - (z / nearest - 1.0), 1e-6);
+      if (used == Verdict::kEither) certain = Verdict::kEither;
+      if (used != Verdict::kNo) visit(z / nearest, offset);
+    });
+  };
+  for_used([&](double r, const Eigen::Vector3d& offset) {
+    M += r * r * offset * offset.transpose();
+    right += r * (1.0 - r) * offset;
+  });
+  const Eigen::Vector2d mean = M.block<2, 1>(0, 2) / M(2, 2);
+  const Eigen::Matrix2d scatter = M.topLeftCorner<2, 2>() - M(2, 2) * mean * mean.transpose();
+  const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues()(0);
+  Verdict good = AtLeastZero(least - 0.5 * a.radius * a.radius, kSlack);
+  good = Both(good, AtLeastZero(0.7 * a.radius - mean.cwiseAbs().maxCoeff(), kSlack));
+  good = Both(good, AtLeastZero(M(2, 2) - 4.5, kSlack));
+  if (certain == Verdict::kEither) return std::nullopt;
+  if (good == Verdict::kNo) return 0.0;
+  const Eigen::Vector3d k = M.fullPivLu().solve(right);
+  double squared_error = 0.0;
+  double squares = 0.0;  // The kernel subtracts sums of this size.
+  for_used([&](double r, const Eigen::Vector3d& offset) {
+    squared_error += std::pow(r * (1.0 + k.dot(offset)) - 1.0, 2);
+    squares += (1.0 - r) * (1.0 - r);
+  });
+  const double allowed = 1.3 * a.noise_at_1m * nearest;
+  good = Both(good, AtLeastZero(allowed * allowed - squared_error / M(2, 2),
+                                10.0 * testing::kSinglePrecision * (squares + allowed * allowed)));
+  if (good == Verdict::kNo) return 0.0;
+  if (good == Verdict::kEither) return std::nullopt;
+  return nearest / (1.0 + k.z());
 }
 
 }  // namespace isotherm::reference
