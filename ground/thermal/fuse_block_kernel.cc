@@ -66,15 +66,24 @@ HWY_INLINE ImagePlace ProjectVoxels(const FusionKernelArgs& a, const Vector3& p)
   return place;
 }
 
-/// Squared distance between voxels and the vertices that their pixels show (algorithm 5).
-HWY_INLINE VF SquaredToVertex(const FusionKernelArgs& a, const Vector3& p, const ImagePlace& place,
-                              VF depth) {
-  const VF ray_x = hn::Mul(hn::Sub(place.column, hn::Set(d, a.cx)), hn::Set(d, 1.0F / a.fx));
-  const VF ray_y = hn::Mul(hn::Sub(place.row, hn::Set(d, a.cy)), hn::Set(d, 1.0F / a.fy));
-  const VF dx = hn::NegMulAdd(ray_x, depth, p.x);
-  const VF dy = hn::NegMulAdd(ray_y, depth, p.y);
-  const VF dz = hn::Sub(p.z, depth);
-  return hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
+/// Where voxels lie within max_distance_m of their pixels' surfaces, along the line of sight. A
+/// plane stands for the surface (PixelPlane), so that neither the size of a pixel nor the angle at
+/// which it is seen is taken for a distance from it, as it is with the vertex at the pixel's centre
+/// alone (algorithm 5). With s = 1 + u du + v dv, the line of sight to voxel p meets the plane at
+/// depth / s p.z of the way: |p| |1 - depth / (s p.z)| is the distance.
+HWY_INLINE MF OnSurface(const FusionKernelArgs& a, const Vector3& p, const ImagePlace& place,
+                        VF depth, VI plane) {
+  constexpr int kVShift = PixelPlane::kVShift;
+  const VF per_u = hn::ConvertTo(d, hn::ShiftRight<kVShift>(hn::ShiftLeft<kVShift>(plane)));
+  const VF per_v = hn::ConvertTo(d, hn::ShiftRight<kVShift>(plane));
+  const VF change = hn::MulAdd(per_u, hn::Sub(place.u, place.column),
+                               hn::Mul(per_v, hn::Sub(place.v, place.row)));
+  const VF s = hn::MulAdd(change, hn::Set(d, 1.0F / PixelPlane::kScale), hn::Set(d, 1.0F));
+  const VF scaled_z = hn::Mul(s, p.z);
+  const VF off = hn::Sub(scaled_z, depth);
+  const VF squared = hn::MulAdd(p.x, p.x, hn::MulAdd(p.y, p.y, hn::Mul(p.z, p.z)));
+  const VF limit = hn::Mul(scaled_z, hn::Set(d, a.max_distance_m));
+  return hn::Lt(hn::Mul(hn::Mul(off, off), squared), hn::Mul(limit, limit));
 }
 
 /// The temperature at a place, as ThermalLayout's code: to first order between pixel centres.
@@ -105,13 +114,13 @@ HWY_INLINE void Note(int i, VI fresh, VI flags, MI noted, MI takes, BlockMeasure
 }
 
 // Gives the voxels near the surface the temperatures of the pixels they are seen in. A voxel takes
-// part if it lies within max_distance_m of the vertex that its pixel shows (algorithm 5), and takes
-// the temperature unless the one it has was measured under better conditions (algorithm 6) or, with
-// keep_lowest, is lower under conditions as good.
-// Rows: lanes are neighbours along x, then y, of a layer; words are TsdfLayout's and
-// ThermalLayout's of the same 512 voxels, pixels ThermalPixel. Fast: most vectors have no voxel
-// near the surface and end at their first load; a pixel is one load of 16 bytes; what was measured
-// is written packed, so that the slow part (MeasurementRecorder) meets these voxels only.
+// part if it lies within max_distance_m of the surface that its pixel shows (algorithm 5, with the
+// plane through the vertex), and takes the temperature unless the one it has was measured under
+// better conditions (algorithm 6) or, with keep_lowest, is lower under conditions as good. Rows:
+// lanes are neighbours along x, then y, of a layer; words are TsdfLayout's and ThermalLayout's of
+// the same 512 voxels, pixels ThermalPixel. Fast: most vectors have no voxel near the surface and
+// end at their first load; a pixel is one load of 16 bytes and a word; what was measured is written
+// packed, so that the slow part (MeasurementRecorder) meets these voxels only.
 void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
                std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured) {
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -127,7 +136,6 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
   const VF width = hn::Set(d, static_cast<float>(a.width));
   const VF height = hn::Set(d, static_cast<float>(a.height));
   const VI nowhere = hn::Set(di, a.width * a.height);
-  const VF max_squared = hn::Set(d, a.max_distance_m * a.max_distance_m);
   for (int i = 0; i < kBlockVoxels; i += lanes) {
     const VI word = hn::LoadU(di, distances + i);
     const MI near = NearSurface(word, max_code);
@@ -139,16 +147,18 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
                 hn::And(hn::And(hn::Ge(place.column, zero), hn::Lt(place.column, width)),
                         hn::And(hn::Ge(place.row, zero), hn::Lt(place.row, height))));
     // Exact in single precision: images have far less than 2^24 pixels.
-    const VI pixel = hn::ConvertTo(di, hn::MulAdd(place.row, width, place.column));
-    hn::Store(hn::IfThenElse(hn::RebindMask(di, inside), pixel, nowhere), di, pixels);
+    const VI in_image = hn::ConvertTo(di, hn::MulAdd(place.row, width, place.column));
+    const VI pixel = hn::IfThenElse(hn::RebindMask(di, inside), in_image, nowhere);
+    hn::Store(pixel, di, pixels);
     const RecordVectors record = GatherRecords(a.pixels, pixels);
     const VI flags = hn::BitCast(di, record.word[3]);
-    const VF squared = SquaredToVertex(a, p, place, record.word[0]);
+    const VI plane = hn::GatherIndex(di, a.planes, pixel);
     const auto has = [&](std::int32_t bit) {
       return hn::Ne(hn::And(flags, hn::Set(di, bit)), hn::Zero(di));
     };
-    const MI on_surface = hn::And(hn::RebindMask(di, hn::And(inside, hn::Lt(squared, max_squared))),
-                                  has(ThermalPixel::kSeen));
+    const MF near_plane = OnSurface(a, p, place, record.word[0], plane);
+    const MI on_surface =
+        hn::And(hn::RebindMask(di, hn::And(inside, near_plane)), has(ThermalPixel::kSeen));
     const VI old = hn::LoadU(di, temperatures + i);
     const VI classes = hn::And(flags, conditions);
     const MI assignable = hn::And(on_surface, has(ThermalPixel::kAssignable));

@@ -29,6 +29,11 @@ class FuseBlockTest : public ::testing::Test {
   /// A camera of any size before a bumpy wall half a metre away, of which a part is not seen.
   void RearrangeImage(int width, int height) {
     pixels_.assign(static_cast<std::size_t>(width * height) + 1, ThermalPixel{});
+    planes_.assign(pixels_.size(), 0);
+    for (std::int32_t& plane : planes_) {
+      const int limit = random_.Chance(0.1) ? 32767 : 500;
+      plane = (random_.Integer(-limit, limit) << 16) | (random_.Integer(-limit, limit) & 0xFFFF);
+    }
     for (std::size_t i = 0; i + 1 < pixels_.size(); ++i) {
       if (random_.Chance(0.1)) continue;
       ThermalPixel& pixel = pixels_[i];
@@ -43,6 +48,7 @@ class FuseBlockTest : public ::testing::Test {
         pixel.flags |= ThermalPixel::kAssignable;
     }
     args_.pixels = pixels_.data();
+    args_.planes = planes_.data();
     args_.width = width;
     args_.height = height;
     args_.fx = random_.Uniform(50.0F, 300.0F);
@@ -151,6 +157,7 @@ class FuseBlockTest : public ::testing::Test {
 
   Random random_;
   std::vector<ThermalPixel> pixels_;
+  std::vector<std::int32_t> planes_;
   FusionKernelArgs args_{};
   Eigen::Vector3f first_;
   Words tsdf_{}, thermal_{};

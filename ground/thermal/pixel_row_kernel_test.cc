@@ -84,6 +84,8 @@ class MakePixelRowTest : public ::testing::Test {
     std::copy_n(R.data(), 9, args_.R_depth);
     const Eigen::Matrix3f z = rotation();
     for (int i = 0; i < 3; ++i) {
+      args_.x_axis[i] = z(i, 0);
+      args_.y_axis[i] = z(i, 1);
       args_.z_axis[i] = z(i, 2);
       args_.t_depth[i] = 0.05F * uniform();
       args_.position[i] = 0.05F * uniform();
@@ -104,7 +106,8 @@ class MakePixelRowTest : public ::testing::Test {
     args_.max_footprint_m = random_.Chance(0.5) ? 1e18F : 0.004F;
     args_.max_error_k = random_.Chance(0.5) ? 1e18F : 12.0F;
     args_.uncertainty_px = random_.Chance(0.5) ? 0.5F : 0.9F;
-    args_.fx = args_.fy = 250.0F;
+    args_.fx = 250.0F;
+    args_.fy = 260.0F;
     args_.cx = 30.0F;
     args_.y = 0.5F * uniform();
     for (int i = 0; i < 3; ++i) {
@@ -119,9 +122,11 @@ class MakePixelRowTest : public ::testing::Test {
   void CompareRow() {
     const auto width = static_cast<std::size_t>(args_.width);
     std::vector<ThermalPixel> pixels(width + 1);
-    pixels.back().flags = testing::kCanary;
-    const PixelRowCounts counts = MakePixelRow(args_, pixels.data());
+    std::vector<std::int32_t> planes(width + 1);
+    pixels.back().flags = planes.back() = testing::kCanary;
+    const PixelRowCounts counts = MakePixelRow(args_, pixels.data(), planes.data());
     ASSERT_EQ(pixels.back().flags, testing::kCanary) << "wrote beyond a row of " << width;
+    ASSERT_EQ(planes.back(), testing::kCanary) << "wrote beyond a row of " << width;
     PixelRowCounts least, most;
     const auto tally = [](Verdict v, std::int64_t& low, std::int64_t& high) {
       low += v == Verdict::kYes ? 1 : 0;
@@ -135,6 +140,7 @@ class MakePixelRowTest : public ::testing::Test {
       tally(Both(visible, reference::Not(truth.sharp)), least.smeared, most.smeared);
       tally(Both(Both(visible, truth.sharp), reference::Not(truth.even)), least.steep, most.steep);
       ComparePixel(pixels[static_cast<std::size_t>(x)], truth, args_.celsius[x]);
+      ComparePlane(planes[static_cast<std::size_t>(x)], truth);
     }
     for (const auto reason :
          {&PixelRowCounts::occluded, &PixelRowCounts::smeared, &PixelRowCounts::steep}) {
@@ -147,6 +153,15 @@ class MakePixelRowTest : public ::testing::Test {
     if (truth != Verdict::kEither) {
       ASSERT_EQ((pixel.flags & flag) != 0, truth == Verdict::kYes) << "flag " << flag;
     }
+  }
+  static void ComparePlane(std::int32_t plane, const reference::Pixel& truth) {
+    if (truth.surface == Verdict::kNo) {
+      ASSERT_EQ(plane, 0);
+    }
+    constexpr double kNearEdgeOn = 1e-3;  // Cosine; the sign may go either way.
+    if (truth.surface != Verdict::kYes || std::abs(truth.cosine) < kNearEdgeOn) return;
+    ASSERT_NEAR(static_cast<std::int16_t>(plane & 0xFFFF), truth.plane_u, 0.51 + truth.plane_slack);
+    ASSERT_NEAR(plane >> 16, truth.plane_v, 0.51 + truth.plane_slack);
   }
   void ComparePixel(const ThermalPixel& pixel, const reference::Pixel& truth, float celsius) {
     constexpr double kStep = 0.51;  // Codes.
@@ -207,7 +222,8 @@ TEST_F(MakePixelRowTest, NothingIsSeenFromAPoseThatIsNone) {
       FillRow(70);
       for (int i = 0; i < 3; ++i) args_.t_depth[i] = args_.z_axis[i] = bad;
       std::vector<ThermalPixel> pixels(70);
-      EXPECT_EQ(MakePixelRow(args_, pixels.data()).occluded, 0);
+      std::vector<std::int32_t> planes(70);
+      EXPECT_EQ(MakePixelRow(args_, pixels.data(), planes.data()).occluded, 0);
       for (const ThermalPixel& pixel : pixels)
         ASSERT_EQ(pixel.flags & (ThermalPixel::kSeen | ThermalPixel::kAssignable), 0) << bad;
     }
@@ -221,7 +237,8 @@ TEST_F(MakePixelRowTest, AVertexAtInfinityIsNotSeen) {
       for (float& value : plane) value = random_.Chance(0.5) ? kInfinity : -kInfinity;
     }
     std::vector<ThermalPixel> pixels(70);
-    EXPECT_EQ(MakePixelRow(args_, pixels.data()).occluded, 0);
+    std::vector<std::int32_t> planes(70);
+    EXPECT_EQ(MakePixelRow(args_, pixels.data(), planes.data()).occluded, 0);
     for (const ThermalPixel& pixel : pixels)
       ASSERT_EQ(pixel.flags & (ThermalPixel::kSeen | ThermalPixel::kAssignable), 0);
   });

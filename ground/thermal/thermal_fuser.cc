@@ -79,6 +79,7 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
   distances_m_ =
       Image<float>(width + 2 * apron_, height + 2 * apron_, std::numeric_limits<float>::max());
   pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + 1);
+  planes_.resize(pixels_.size());
   const int tiles_x = (width + kTile - 1) / kTile;
   const int tiles_y = (height + kTile - 1) / kTile;
   nearest_m_.Resize(tiles_x, tiles_y);
@@ -126,6 +127,8 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
   CopyVector(T_map_thermal.translation(), args.position);
   const Eigen::Vector4f z_axis = T_map_thermal.inverse().matrix().row(2).cast<float>();
   std::copy_n(z_axis.data(), 4, args.z_axis);
+  CopyVector(T_map_thermal.linear().col(0), args.x_axis);
+  CopyVector(T_map_thermal.linear().col(1), args.y_axis);
   const RigidTransform T_depth_map = T_map_depth.inverse();
   const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_map.linear().cast<float>();
   std::copy_n(R.data(), 9, args.R_depth);
@@ -187,9 +190,9 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
       row.smear_s =
           static_cast<float>(sensor_.time_constant_s +
                              sensor_.row_readout_s * RowsFromMiddle(rectifier_.camera(), row.y));
-      ThermalPixel* pixels =
-          pixels_.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
-      const PixelRowCounts counts = MakePixelRow(row, pixels);
+      const auto first = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+      ThermalPixel* pixels = pixels_.data() + first;
+      const PixelRowCounts counts = MakePixelRow(row, pixels, planes_.data() + first);
       occluded += counts.occluded;
       smeared += counts.smeared;
       steep += counts.steep;
@@ -253,6 +256,7 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_map,
   const CameraModel& camera = rectifier_.ideal_camera();
   FusionKernelArgs args{};
   args.pixels = pixels_.data();
+  args.planes = planes_.data();
   args.width = camera.width;
   args.height = camera.height;
   args.fx = static_cast<float>(camera.fx);
@@ -265,7 +269,7 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_map,
   std::copy_n(axes.data(), 9, args.axes);
   const double max_distance_m = options_.expert().vertex_distance_vox() * voxel_m;
   args.max_distance_m = static_cast<float>(max_distance_m);
-  // A distance measured along a normal is at most that to the vertex, but for noise.
+  // A distance measured along a normal is at most that along the line of sight, but for noise.
   constexpr double kNoiseMargin = 1.25;
   args.max_tsdf_code = static_cast<std::int32_t>(
       TsdfVoxel::kTsdfScale *

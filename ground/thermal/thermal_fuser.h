@@ -96,6 +96,7 @@ class ThermalFuser {
   Image<float> distances_m_;          ///< Distances of its vertices from the camera, with an apron.
   Image<float> celsius_;              ///< With an apron.
   std::vector<ThermalPixel> pixels_;  ///< And one more that shows nothing.
+  std::vector<std::int32_t> planes_;  ///< Of the pixels (PixelPlane).
   Image<float> nearest_m_, farthest_m_;  ///< Depth of the surface per tile; farthest 0 = none.
   VisibleBlocks visible_;
   std::vector<std::int32_t> blocks_;

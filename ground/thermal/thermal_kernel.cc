@@ -144,16 +144,34 @@ HWY_INLINE VF NearestAround(const PixelRowArgs& a, const RowLoader& load, VF dis
   return nearest;
 }
 
-/// Cosine of the emission angle: between the normal and the direction to the camera.
-HWY_INLINE VF EmissionCosine(const PixelRowArgs& a, const RowLoader& load, const Vector3& p,
-                             VF distance) {
+/// Distance of the camera before the surface's plane: cosine of the emission angle times distance.
+HWY_INLINE VF BeforePlane(const PixelRowArgs& a, const Vector3& n, const Vector3& p) {
   const VF to_camera_x = hn::Sub(hn::Set(d, a.position[0]), p.x);
   const VF to_camera_y = hn::Sub(hn::Set(d, a.position[1]), p.y);
   const VF to_camera_z = hn::Sub(hn::Set(d, a.position[2]), p.z);
-  const VF along =
-      hn::MulAdd(load(a.nx), to_camera_x,
-                 hn::MulAdd(load(a.ny), to_camera_y, hn::Mul(load(a.nz), to_camera_z)));
-  return hn::Min(hn::Div(along, distance), hn::Set(d, 1.0F));
+  return hn::MulAdd(n.x, to_camera_x, hn::MulAdd(n.y, to_camera_y, hn::Mul(n.z, to_camera_z)));
+}
+
+/// The plane through a pixel's vertex (PixelPlane). With the plane's distance h = -n . p in camera
+/// coordinates, a ray r of depth 1 meets it at depth z = -h / n . r, so 1 / z changes by
+/// -n_x / (h fx) per pixel. None where the camera does not look at its front.
+HWY_INLINE VI PackPlane(const PixelRowArgs& a, const Vector3& n, VF depth, VF before_plane) {
+  const VF zero = hn::Zero(d);
+  const auto along = [&](const float* axis) {
+    return hn::MulAdd(n.x, hn::Set(d, axis[0]),
+                      hn::MulAdd(n.y, hn::Set(d, axis[1]), hn::Mul(n.z, hn::Set(d, axis[2]))));
+  };
+  const MF front = hn::Gt(before_plane, zero);
+  const VF scale = hn::IfThenElseZero(
+      front, hn::Div(hn::Mul(depth, hn::Set(d, -PixelPlane::kScale)), before_plane));
+  const auto code = [&](const float* axis, float focal_px) {
+    const VF limit = hn::Set(d, static_cast<float>(PixelPlane::kMaxCode));
+    const VF scaled = hn::Mul(hn::Mul(along(axis), hn::Set(d, 1.0F / focal_px)), scale);
+    const VF finite = hn::IfThenElseZero(front, scaled);
+    return hn::NearestInt(hn::Max(hn::Min(finite, limit), hn::Neg(limit)));
+  };
+  return hn::Or(hn::ShiftLeft<PixelPlane::kVShift>(code(a.y_axis, a.fy)),
+                hn::And(code(a.x_axis, a.fx), hn::Set(di, PixelPlane::kUMask)));
 }
 
 /// Classes of distance (eq. 6.3a) and angle (eq. 6.3b), where ThermalLayout has them. A distance
@@ -199,10 +217,10 @@ HWY_INLINE VI Flag(MF condition, std::int32_t bit) {
 // (algorithm 5: occluded), if motion smears it, or if the temperature is too steep for how well the
 // place is known; distance, angle and motion get their classes (eq. 6.3a-b).
 // Rows: vertices, normals, distances and temperatures are planes, one pixel per lane, the last two
-// with an apron; the result is records of 16 bytes (ThermalPixel). Fast: every question is a mask,
-// none a branch, so a pixel costs the same whatever it shows; FuseBlock then finds all of it in one
-// load.
-PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
+// with an apron; the result is records of 16 bytes (ThermalPixel) and a plane of words
+// (PixelPlane). Fast: every question is a mask, none a branch, so a pixel costs the same whatever
+// it shows; FuseBlock then finds all of it in one load.
+PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels, std::int32_t* planes) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   const VF zero = hn::Zero(d);
   const auto number = [](MF mask) { return static_cast<std::int64_t>(hn::CountTrue(d, mask)); };
@@ -224,7 +242,9 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
     counts.occluded += number(hn::And(seen, occluded));
     MF usable = hn::AndNot(occluded, seen);
 
-    const VF cosine = EmissionCosine(a, load, p, distance);
+    const Vector3 n{load(a.nx), load(a.ny), load(a.nz)};
+    const VF before_plane = BeforePlane(a, n, p);
+    const VF cosine = hn::Min(hn::Div(before_plane, distance), hn::Set(d, 1.0F));
     const VF celsius = load(a.celsius);
     const MF has_value = hn::Eq(celsius, celsius);
     const VF slope_u = Slope(load, a.celsius - 1, a.celsius + 1);
@@ -255,6 +275,9 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels) {
     StoreRecords({{hn::IfThenElseZero(surface, depth), hn::IfThenElseZero(has_value, celsius),
                    hn::BitCast(d, PackSlopes(slope_u, slope_v)), hn::BitCast(d, flags)}},
                  load.count, pixels + x);
+    const VI plane =
+        hn::IfThenElseZero(hn::RebindMask(di, surface), PackPlane(a, n, depth, before_plane));
+    StoreFirst(hn::BitCast(d, plane), load.count, reinterpret_cast<float*>(planes + x));
   }
   return counts;
 }
@@ -278,8 +301,8 @@ void DistanceRow(const float* vx, const float* vy, const float* vz, const float*
   HWY_DYNAMIC_DISPATCH(DistanceRow)(vx, vy, vz, position, width, distance_m);
 }
 
-PixelRowCounts MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels) {
-  return HWY_DYNAMIC_DISPATCH(MakePixelRow)(args, pixels);
+PixelRowCounts MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels, std::int32_t* planes) {
+  return HWY_DYNAMIC_DISPATCH(MakePixelRow)(args, pixels, planes);
 }
 
 }  // namespace isotherm

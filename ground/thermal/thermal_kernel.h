@@ -30,6 +30,17 @@ struct ThermalPixel {
                         ///< temperature, the cosine of the emission angle in 1 / kCosineScale.
 };
 static_assert(sizeof(ThermalPixel) == 16);
+
+/// Says how the plane through a pixel's vertex, across its normal, goes on within the pixel: along
+/// a line of sight du and dv pixels beside the pixel's centre it is at depth
+/// depth_m / (1 + u du + v dv), since the inverse depth of a plane is linear in the image. Packed
+/// like ThermalPixel::slopes, in 1 / kScale per pixel.
+struct PixelPlane {
+  static constexpr float kScale = 65536.0F;  ///< 1e-5 of the depth within a pixel.
+  static constexpr int kVShift = 16;
+  static constexpr std::int32_t kUMask = 0xFFFF;
+  static constexpr std::int32_t kMaxCode = 32767;  ///< Half the depth per pixel: all but edge-on.
+};
 static_assert(((ThermalPixel::kSeen | ThermalPixel::kAssignable) &
                ~static_cast<std::int32_t>(ThermalLayout::kDisagreementMask)) == 0,
               "flags must leave the classes alone");
@@ -63,9 +74,10 @@ struct PixelRowArgs {
   std::int32_t distance_stride, celsius_stride;
   std::int32_t margin;
   std::int32_t width;
-  float position[3];  ///< Position of the thermal camera in `map`.
-  float z_axis[4];    ///< Depth along the thermal camera's z = z_axis . (p, 1).
-  float R_depth[9];   ///< Depth camera from `map`.
+  float position[3];           ///< Position of the thermal camera in `map`.
+  float z_axis[4];             ///< Depth along the thermal camera's z = z_axis . (p, 1).
+  float x_axis[3], y_axis[3];  ///< The thermal camera's other axes in `map`.
+  float R_depth[9];            ///< Depth camera from `map`.
   float t_depth[3];
   float depth_fx, depth_fy, depth_cx, depth_cy;
   float depth_width, depth_height;
@@ -89,15 +101,18 @@ struct PixelRowCounts {
   std::int64_t smeared = 0;
   std::int64_t steep = 0;
 };
-PixelRowCounts MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels);
+/// `planes`: of each pixel (PixelPlane).
+PixelRowCounts MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels, std::int32_t* planes);
 
 struct FusionKernelArgs {
   const ThermalPixel* pixels;  ///< Row-major, and one more with depth 0.
+  const std::int32_t* planes;  ///< Of each of them (PixelPlane).
   std::int32_t width, height;
   float fx, fy, cx, cy;
   float axes[9];  ///< Columns: step of one voxel along x, y, z in thermal camera coordinates,
                   ///< metres; row-major.
-  float max_distance_m;        ///< Between a voxel and the vertex it takes its temperature from.
+  float max_distance_m;        ///< Along the line of sight, between a voxel and the plane of the
+                               ///< surface that it takes its temperature from.
   std::int32_t max_tsdf_code;  ///< Voxels farther from the surface are passed over.
   bool validate;               ///< Worse conditions do not replace better ones (algorithm 6).
   bool keep_bad;               ///< Bad conditions give a temperature, not only their classes.

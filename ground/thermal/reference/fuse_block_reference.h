@@ -45,11 +45,19 @@ inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
     return result;
   }
   if (!(column >= 0.0 && column < a.width && row >= 0.0 && row < a.height)) return result;
-  const ThermalPixel& pixel = a.pixels[static_cast<int>(row) * a.width + static_cast<int>(column)];
-  const Eigen::Vector3d vertex =
-      pixel.depth_m * Eigen::Vector3d((column - a.cx) / a.fx, (row - a.cy) / a.fy, 1.0);
+  const auto index = static_cast<int>(row) * a.width + static_cast<int>(column);
+  const ThermalPixel& pixel = a.pixels[index];
   if ((pixel.flags & ThermalPixel::kSeen) == 0) return result;
-  result.considered = AtLeastZero(double{a.max_distance_m} - (p - vertex).norm(), kSinglePrecision);
+  const double per_u = static_cast<std::int16_t>(a.planes[index] & PixelPlane::kUMask);
+  const double per_v = a.planes[index] >> PixelPlane::kVShift;
+  const double inverse =
+      1.0 + (per_u * (u - column) + per_v * (v - row)) / double{PixelPlane::kScale};
+  // Where the line of sight to the voxel meets the plane of the pixel's surface.
+  const Eigen::Vector3d foot = p * (pixel.depth_m / inverse / p.z());
+  constexpr double kPixelError = 1e-4;  // Of a projection.
+  const double slack = kSinglePrecision + kPixelError * (std::abs(per_u) + std::abs(per_v)) /
+                                              double{PixelPlane::kScale} * foot.norm() / inverse;
+  result.considered = AtLeastZero(double{a.max_distance_m} - (p - foot).norm(), slack);
   if ((pixel.flags & ThermalPixel::kAssignable) == 0) return result;
   result.classes = pixel.flags & ThermalLayout::kConditionMask;
   const ThermalVoxel conditions{static_cast<std::uint32_t>(result.classes)};
@@ -65,7 +73,6 @@ inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   const double celsius =
       pixel.celsius + (slope_u * (u - column) + slope_v * (v - row)) / kSlopeScale;
   result.code = std::clamp(1.0 + kStepsPerKelvin * (celsius + 100.0), 1.0, 65535.0);
-  constexpr double kPixelError = 1e-4;  // Of a projection.
   result.slack =
       0.52 + kPixelError * kStepsPerKelvin / kSlopeScale * (std::abs(slope_u) + std::abs(slope_v)) +
       1e-6 * result.code;

@@ -23,6 +23,8 @@ inline constexpr double kPixelPrecision = 2e-6;
 struct Pixel {
   double depth_m = 0.0;
   double slope_u = 0.0, slope_v = 0.0;  ///< Codes.
+  double plane_u = 0.0, plane_v = 0.0;  ///< Codes of PixelPlane.
+  double plane_slack = 0.0;
   double smear_px = 0.0;
   Verdict surface = Verdict::kNo, seen = Verdict::kNo;
   Verdict occluded = Verdict::kNo, assignable = Verdict::kNo;
@@ -64,6 +66,26 @@ inline double SlopeCode(float before, float after) {
   return std::isnan(half) ? 0.0 : std::clamp(half, -32767.0, 32767.0);
 }
 
+/// The plane through the pixel's vertex.
+inline void AssessPlane(const PixelRowArgs& a, const Eigen::Vector3d& p, const Eigen::Vector3d& n,
+                        Pixel& result) {
+  const auto vector = [](const float* v) {
+    return Eigen::Map<const Eigen::Vector3f>(v).cast<double>().eval();
+  };
+  const double before_plane = n.dot(vector(a.position) - p);
+  if (!(before_plane > 0.0)) return;
+  const auto per_pixel = [&](const float* axis, double focal_px) {
+    return -result.depth_m * n.dot(vector(axis)) / (focal_px * before_plane) *
+           double{PixelPlane::kScale};
+  };
+  const auto clamp = [](double code) { return std::clamp(code, -32767.0, 32767.0); };
+  result.plane_u = clamp(per_pixel(a.x_axis, a.fx));
+  result.plane_v = clamp(per_pixel(a.y_axis, a.fy));
+  // A plane seen nearly edge-on magnifies the rounding of its distance.
+  result.plane_slack =
+      kPixelPrecision * (std::abs(result.plane_u) + std::abs(result.plane_v)) / before_plane;
+}
+
 inline Pixel MakePixel(const PixelRowArgs& a, int x) {
   Pixel result;
   const Eigen::Vector3d p(a.vx[x], a.vy[x], a.vz[x]);
@@ -99,6 +121,7 @@ inline Pixel MakePixel(const PixelRowArgs& a, int x) {
   const Eigen::Vector3d to_camera =
       Eigen::Map<const Eigen::Vector3f>(a.position).cast<double>() - p;
   const Eigen::Vector3d n(a.nx[x], a.ny[x], a.nz[x]);
+  AssessPlane(a, p, n, result);
   const double cosine = std::min(n.dot(to_camera) / distance, 1.0);
   result.cosine = cosine;
   const double resolved = cosine * a.max_footprint_m - distance / a.fx;
