@@ -15,6 +15,7 @@
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/thermal/thermal_fuser.h"
 #include "ground/tracker/icp_tracker.h"
+#include "ground/tsdf/growing_arena.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
@@ -61,6 +62,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
     if (!status.ok()) problems.push_back(std::move(status));
   };
   check(Validate(options.volume()));
+  check(CheckSpillDir(options.volume().spill_dir()));
   check(Validate(options.preprocessor()));
   check(Validate(options.tracker()));
   check(Validate(options.relocaliser()));

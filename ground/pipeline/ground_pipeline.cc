@@ -8,6 +8,7 @@
 #include "common/base/log.h"
 #include "ground/options/option_geometry.h"
 #include "ground/pipeline/saved_model.h"
+#include "ground/tsdf/growing_arena.h"
 
 namespace isotherm {
 namespace {
@@ -22,7 +23,8 @@ int ThreadCount(const GroundOptions& options) {
 Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
     const GroundOptions& options, const Rig& rig, std::optional<RigidTransform> initial_pose) {
   for (const Status& status :
-       {Validate(options.volume()), Validate(options.preprocessor()), Validate(options.tracker()),
+       {Validate(options.volume()), CheckSpillDir(options.volume().spill_dir()),
+        Validate(options.preprocessor()), Validate(options.tracker()),
         Validate(options.relocaliser()), Validate(options.submaps()),
         Validate(options.tsdf(), options.volume()), Validate(options.raycast()),
         Validate(options.thermal())}) {

@@ -1,15 +1,9 @@
 #include "ground/surface/voxel_grid.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
 #include <limits>
 
 #include "ground/options/ground_options.pb.h"
@@ -68,18 +62,6 @@ std::string DescribeSize(const VolumeOptions& o) {
                      o.voxel_size_m());
 }
 
-/// Says whether the folder can take the files of the volumes' memory; empty is fine.
-Status CheckSpillDir(const std::filesystem::path& dir) {
-  if (dir.empty()) return OkStatus();
-  const int file = open(dir.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  if (file < 0) {
-    return IoError(fmt::format("volume.spill_dir: no file can be made in {}: {}", dir.string(),
-                               std::strerror(errno)));
-  }
-  close(file);
-  return OkStatus();
-}
-
 }  // namespace
 
 Status Validate(const VolumeOptions& o) {
@@ -97,7 +79,6 @@ Status Validate(const VolumeOptions& o) {
     if (!std::isfinite(corner))
       return InvalidArgument("volume.expert: min_x_m, min_y_m and min_z_m must be finite");
   }
-  if (Status status = CheckSpillDir(o.spill_dir()); !status.ok()) return status;
   const Result<VoxelGrid> grid = MakeVoxelGrid(o);
   return grid ? OkStatus() : grid.error();
 }

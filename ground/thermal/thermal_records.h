@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "common/base/mutex.h"
+#include "ground/surface/block_layout.h"
 #include "ground/thermal/thermal_record.h"
-#include "ground/tsdf/tsdf_volume.h"
+#include "ground/tsdf/growing_arena.h"
 
 namespace isotherm {
 

@@ -8,6 +8,7 @@
 #include "ground/thermal/measurement_quality.h"
 #include "ground/thermal/thermal_records.h"
 #include "ground/thermal/voxel_layout.h"
+#include "ground/tsdf/growing_arena.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {

@@ -1,10 +1,5 @@
 #include "ground/tsdf/tsdf_volume.h"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <new>
@@ -28,57 +23,6 @@ void TsdfVoxel::Update(float new_tsdf, float observation_weight, float max_weigh
   const auto weight_code =
       static_cast<std::uint32_t>(std::lrint(std::min(total, max_weight) * kWeightScale));
   bits = TsdfLayout::Pack(tsdf_code, weight_code);
-}
-
-GrowingArena::GrowingArena(std::size_t reserve_bytes, const std::filesystem::path& spill_dir)
-    : bytes_(reserve_bytes) {
-  int flags = MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE;
-  if (!spill_dir.empty()) {
-    file_ = open(spill_dir.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, S_IRUSR | S_IWUSR);
-    if (file_ < 0 || ftruncate(file_, static_cast<off_t>(bytes_)) != 0) throw std::bad_alloc();
-    flags = MAP_SHARED | MAP_NORESERVE;
-  }
-  void* memory = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, flags, file_, 0);
-  if (memory == MAP_FAILED) throw std::bad_alloc();
-  data_ = static_cast<std::byte*>(memory);
-  // Kernels look voxels up all over the arena: large pages save most misses of the address cache.
-  // Blocks are taken from the beginning, so they waste less than one such page.
-  madvise(memory, bytes_, MADV_HUGEPAGE);
-}
-
-GrowingArena::~GrowingArena() {
-  munmap(data_, bytes_);
-  if (file_ >= 0) close(file_);
-}
-
-bool GrowingArena::Commit(std::size_t bytes) {
-  constexpr std::size_t kStep = std::size_t{16} << 20;
-  if (file_ < 0 || bytes <= committed_bytes_) return true;
-  const std::size_t wanted = std::min(bytes_, (bytes + kStep - 1) / kStep * kStep);
-  if (posix_fallocate(file_, static_cast<off_t>(committed_bytes_),
-                      static_cast<off_t>(wanted - committed_bytes_)) != 0) {
-    return false;
-  }
-  committed_bytes_ = wanted;
-  return true;
-}
-
-void GrowingArena::Decommit(std::size_t offset, std::size_t bytes) const {
-  if (file_ < 0) return;
-  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  const std::size_t begin = (offset + page - 1) / page * page;
-  const std::size_t end = (offset + bytes) / page * page;
-  // Of a shared file mapping this drops the pages from the process only: the file keeps them.
-  if (begin < end) madvise(data_ + begin, end - begin, MADV_DONTNEED);
-}
-
-void GrowingArena::Fetch(std::size_t offset, std::size_t bytes) const {
-  if (file_ < 0) return;
-  const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-  const std::size_t begin = offset / page * page;
-  const std::size_t end = std::min(bytes_, offset + bytes);
-  // Advice: what cannot be read ahead is read when it is touched.
-  if (begin < end) madvise(data_ + begin, end - begin, MADV_WILLNEED);
 }
 
 TsdfVolume::TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std::int32_t max_blocks,

@@ -1,4 +1,5 @@
 // A model that outgrows its memory is the same as one that does not have to.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,11 +8,16 @@
 #include <memory>
 
 #include "common/testing/temporary_directory.h"
+#include "ground/configuration/validate_options.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
 
 namespace isotherm {
 namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Property;
 
 constexpr double kPeriod = 0.24;  // Metres along x after which the wall repeats itself.
 constexpr double kStep = 0.009;   // Metres per frame.
@@ -93,9 +99,13 @@ TEST(SpillTest, AModelUnderALimitEqualsTheOneWithout) {
 TEST(SpillTest, AFolderThatCannotTakeFilesIsNamed) {
   GroundOptions options;
   options.mutable_volume()->set_spill_dir("/does/not/exist");
-  const Status status = Validate(options.volume());
-  EXPECT_FALSE(status.ok());
-  EXPECT_NE(status.message().find("/does/not/exist"), std::string::npos) << status.message();
+  EXPECT_THAT(ValidateAll(options),
+              ElementsAre(Property(&Status::message, HasSubstr("/does/not/exist"))));
+  Rig rig;
+  rig.depth = testing::SmallDepthCamera();
+  const auto pipeline = GroundPipeline::Create(options, rig, std::nullopt);
+  ASSERT_FALSE(pipeline.has_value());
+  EXPECT_THAT(pipeline.error().message(), HasSubstr("/does/not/exist"));
 }
 
 }  // namespace
