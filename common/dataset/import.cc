@@ -7,6 +7,7 @@
 #include "common/base/partial_file.h"
 #include "common/codec/codec.h"
 #include "common/dataset/image_file.h"
+#include "common/doubts/plausibility_check.h"
 
 namespace isotherm {
 namespace {

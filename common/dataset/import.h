@@ -8,8 +8,8 @@
 
 #include "common/base/status.h"
 #include "common/dataset/dataset.h"
+#include "common/doubts/doubts.h"
 #include "common/frame/frame.h"
-#include "common/frame/plausibility.h"
 #include "common/recording/recording.h"
 
 namespace isotherm {

@@ -17,7 +17,7 @@
 #include "common/base/log.h"
 #include "common/codec/codec.h"
 #include "common/config/text_proto.h"
-#include "common/frame/plausibility.h"
+#include "common/doubts/doubts.h"
 #include "common/recording/clock_record.h"
 #include "common/transport/join_domain.h"
 #include "edge/daemon/edge_report.h"

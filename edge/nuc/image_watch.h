@@ -4,8 +4,8 @@
 #include <deque>
 #include <optional>
 
+#include "common/doubts/repeat_detector.h"
 #include "common/frame/image.h"
-#include "common/frame/repeat_detector.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {

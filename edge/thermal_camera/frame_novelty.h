@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "common/frame/repeat_detector.h"
+#include "common/doubts/repeat_detector.h"
 #include "edge/source/missed_frames.h"
 #include "edge/thermal_camera/thermal_camera.h"
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "common/doubts/doubts.h"
 #include "ground/cli/recording_summary.h"
 #include "ground/export/json.h"
 

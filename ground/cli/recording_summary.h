@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/frame/plausibility.h"
+#include "common/doubts/plausibility_check.h"
 #include "common/recording/recording.h"
 
 namespace isotherm {

@@ -10,6 +10,7 @@
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
+#include "common/doubts/plausibility_check.h"
 #include "common/recording/recording.h"
 #include "ground/assembler/assembler.h"
 #include "ground/calibration/delay_check.h"

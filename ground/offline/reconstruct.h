@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "common/base/status.h"
-#include "common/frame/plausibility.h"
+#include "common/doubts/doubts.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 #include "ground/options/ground_options.pb.h"

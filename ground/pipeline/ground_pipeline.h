@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "common/concurrency/thread_pool.h"
+#include "common/doubts/repeat_detector.h"
 #include "common/frame/frame.h"
-#include "common/frame/repeat_detector.h"
 #include "common/geometry/camera.h"
 #include "ground/atlas/atlas.h"
 #include "ground/model/model_file.h"

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "common/frame/plausibility.h"
+#include "common/doubts/doubts.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/pipeline_counts.h"
 

@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "common/base/status.h"
-#include "common/frame/plausibility.h"
+#include "common/doubts/doubts.h"
 #include "common/geometry/camera.h"
 #include "ground/calibration/delay_check.h"
 #include "ground/export/json.h"

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "common/frame/plausibility.h"
+#include "common/doubts/doubts.h"
 #include "ground/service/status_reporter.h"
 
 namespace isotherm {

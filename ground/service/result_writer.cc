@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/doubts/doubts.h"
 #include "ground/export/results.h"
 #include "ground/results/scan_result.h"
 #include "ground/service/link_counters.h"

@@ -21,9 +21,9 @@ const FolderArrows& AllowedArrows() {
   // simulation.
   static const Folders kCommon = {"common/base",        "common/time",     "common/simd",
                                   "common/concurrency", "common/geometry", "common/radiometry",
-                                  "common/stamping",    "common/frame",    "common/messages",
-                                  "common/png",         "common/codec",    "common/config",
-                                  "common/recording"};
+                                  "common/stamping",    "common/frame",    "common/doubts",
+                                  "common/messages",    "common/png",      "common/codec",
+                                  "common/config",      "common/recording"};
   static const FolderArrows kAllowed = {
       {"common/base", {}},
       {"common/time", {"common/base"}},
@@ -33,6 +33,7 @@ const FolderArrows& AllowedArrows() {
       {"common/radiometry", {"common/base", "common/geometry"}},
       {"common/stamping", {"common/base", "common/time"}},
       {"common/frame", {"common/base", "common/time", "common/geometry"}},
+      {"common/doubts", {"common/base", "common/time", "common/geometry", "common/frame"}},
       {"common/messages", {"common/base", "common/time", "common/geometry", "common/frame"}},
       {"common/png", {"common/base", "common/time", "common/geometry", "common/frame"}},
       {"common/codec",
@@ -42,8 +43,8 @@ const FolderArrows& AllowedArrows() {
        {"common/base", "common/time", "common/geometry", "common/frame", "common/messages",
         "common/codec", "common/config"}},
       {"common/dataset",
-       {"common/base", "common/time", "common/geometry", "common/frame", "common/png",
-        "common/codec", "common/config", "common/recording"}},
+       {"common/base", "common/time", "common/geometry", "common/frame", "common/doubts",
+        "common/png", "common/codec", "common/config", "common/recording"}},
       {"common/simulation",
        {"common/base", "common/time", "common/concurrency", "common/geometry", "common/frame",
         "common/radiometry", "common/codec", "common/config", "common/recording"}},

@@ -1,4 +1,4 @@
-#include "common/frame/plausibility.h"
+#include "common/doubts/doubts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,12 +35,12 @@ StreamTimes Times(int frames, double start_s, double period_s) {
   return MeasureTimes(times);
 }
 
-TEST(PlausibilityTest, ASoundRigIsNotDoubted) {
+TEST(DoubtsTest, ASoundRigIsNotDoubted) {
   EXPECT_THAT(DoubtsAbout(SoundRig()), IsEmpty());
   EXPECT_THAT(DoubtsAbout(Rig()), IsEmpty());
 }
 
-TEST(PlausibilityTest, ExtrinsicsInMillimetresAreNamedWithTheirLikelyValue) {
+TEST(DoubtsTest, ExtrinsicsInMillimetresAreNamedWithTheirLikelyValue) {
   Rig rig = SoundRig();
   rig.T_thermal_depth->translation() *= 1e3;
   EXPECT_THAT(DoubtsAbout(rig),
@@ -48,7 +48,7 @@ TEST(PlausibilityTest, ExtrinsicsInMillimetresAreNamedWithTheirLikelyValue) {
                                 HasSubstr("millimetres they would be 0.07071 m"))));
 }
 
-TEST(PlausibilityTest, UnitsOfDelayAndDepthScaleAreDoubted) {
+TEST(DoubtsTest, UnitsOfDelayAndDepthScaleAreDoubted) {
   Rig rig = SoundRig();
   rig.thermal_delay_s = -42.7;
   rig.depth_scale = 1.0;
@@ -56,7 +56,7 @@ TEST(PlausibilityTest, UnitsOfDelayAndDepthScaleAreDoubted) {
               ElementsAre(HasSubstr("thermal_delay_s is -42.7 s"), HasSubstr("depth_scale: 1000")));
 }
 
-TEST(PlausibilityTest, StampsInOtherUnitsAreRecognised) {
+TEST(DoubtsTest, StampsInOtherUnitsAreRecognised) {
   const auto doubts = [](double per_second) {
     return DoubtsAboutTimes(Times(30, 5.0 * per_second, per_second / 30.0), {});
   };
@@ -69,7 +69,7 @@ TEST(PlausibilityTest, StampsInOtherUnitsAreRecognised) {
               ElementsAre(AllOf(HasSubstr("every 1800 s"), HasSubstr("another unit?"))));
 }
 
-TEST(PlausibilityTest, StreamsOfTwoClocksAreRecognised) {
+TEST(DoubtsTest, StreamsOfTwoClocksAreRecognised) {
   const StreamTimes depth = Times(300, 100.0, 1.0 / 30.0);
   EXPECT_THAT(DoubtsAboutTimes(depth, Times(400, 99.9, 1.0 / 40.0)), IsEmpty());
   // The thermal camera was plugged in late, or gave up early.
@@ -80,7 +80,7 @@ TEST(PlausibilityTest, StreamsOfTwoClocksAreRecognised) {
               ElementsAre(HasSubstr("overlap for 1.975 s only")));
 }
 
-TEST(PlausibilityTest, WrongDepthScalesAreNamedWithTheRightOne) {
+TEST(DoubtsTest, WrongDepthScalesAreNamedWithTheRightOne) {
   EXPECT_THAT(DoubtsAboutDepths(800.0, 1000.0), IsEmpty());
   EXPECT_THAT(DoubtsAboutDepths(800.0, 1.0),
               ElementsAre(AllOf(HasSubstr("say 800 m"), HasSubstr("depth_scale 1000 would make it "
@@ -90,7 +90,7 @@ TEST(PlausibilityTest, WrongDepthScalesAreNamedWithTheRightOne) {
   EXPECT_THAT(DoubtsAboutDepths(0.0, 1000.0), ElementsAre(HasSubstr("covered")));
 }
 
-TEST(PlausibilityTest, ThermalImagesInOtherUnitsAreDoubted) {
+TEST(DoubtsTest, ThermalImagesInOtherUnitsAreDoubted) {
   EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 29615.0}), IsEmpty());
   EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 23400.0}), IsEmpty()) << "-39.15 °C";
   EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 17408.0}),
@@ -101,31 +101,6 @@ TEST(PlausibilityTest, ThermalImagesInOtherUnitsAreDoubted) {
   EXPECT_THAT(DoubtsAboutTemperatures({.none_ratio = 1.0}), ElementsAre(HasSubstr("all are 0")));
   EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 65535.0, .saturated_ratio = 1.0}),
               ElementsAre(HasSubstr("largest value")));
-}
-
-TEST(PlausibilityTest, AScanIsAssessedByItsStampsAndByFewOfItsFrames) {
-  PlausibilityCheck check(SoundRig());
-  int looked_at = 0;
-  for (const CaptureTime time : Stamps(1000, 100.0, 1.0 / 30.0)) {
-    if (!check.AddDepth(time)) continue;
-    ++looked_at;
-    check.LookAtDepth(Image<std::uint16_t>(64, 48, 900), 1000.0);
-  }
-  EXPECT_EQ(looked_at, 10) << "frames 1, 2, 4 ... 512";
-  for (const CaptureTime time : Stamps(1000, 100.05, 1.0 / 30.0)) {
-    if (check.AddThermal(time)) check.LookAtThermal(Image<std::uint16_t>(38, 28, 2300));
-  }
-  EXPECT_EQ(check.MedianDepthRaw(), 900.0);
-  EXPECT_THAT(check.Find(), ElementsAre(HasSubstr("as centi-degrees Celsius they would be 23.0")));
-}
-
-TEST(PlausibilityTest, TheCalibratedDelayCountsForTheOverlap) {
-  Rig rig = SoundRig();
-  rig.thermal_delay_s = -0.9;
-  PlausibilityCheck check(rig);
-  for (const CaptureTime time : Stamps(30, 100.0, 1.0 / 30.0)) check.AddDepth(time);
-  for (const CaptureTime time : Stamps(30, 100.9, 1.0 / 30.0)) check.AddThermal(time);
-  EXPECT_THAT(check.Find(), IsEmpty());
 }
 
 }  // namespace

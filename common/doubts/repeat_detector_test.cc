@@ -1,4 +1,4 @@
-#include "common/frame/repeat_detector.h"
+#include "common/doubts/repeat_detector.h"
 
 #include <gtest/gtest.h>
 
