@@ -68,12 +68,8 @@ std::string ExplainExtras(const CLI::App& app, int argc, char** argv, const std:
                      word, DidYouMean(word, names), JoinNames(names));
 }
 
-int Main(int argc, char** argv) {
-  CLI::App app(kDescription, "isotherm");
-  app.set_version_flag("--version", std::string(SoftwareName()));
-  app.require_subcommand(0, 1);
-  app.footer(kFooter);
-  CommandBody body;
+/// Adds all commands in the order in which --help shows them. The one that is named sets `body`.
+void AddCommands(CLI::App& app, CommandBody& body) {
   AddDemoCommand(app, body);
   AddDevicesCommand(app, body);
   AddImportCommand(app, body);
@@ -90,6 +86,25 @@ int Main(int argc, char** argv) {
   AddCalibrateCommand(app, body);
   AddNucCommand(app, body);
   AddOptionsCommand(app, body);
+}
+
+/// Runs a command and returns the exit status.
+int Run(const CommandBody& body) {
+  LimitProtobufLog();
+  const int status = body();
+  // A full disk behind a redirected output shows only here.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+    return Fail(IoError("standard output cannot be written"));
+  return status;
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app(kDescription, "isotherm");
+  app.set_version_flag("--version", std::string(SoftwareName()));
+  app.require_subcommand(0, 1);
+  app.footer(kFooter);
+  CommandBody body;
+  AddCommands(app, body);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError& error) {
@@ -102,17 +117,9 @@ int Main(int argc, char** argv) {
                                 " (isotherm --help explains the command line)" +
                                 ExplainRenamed(argc, argv)));
   }
-  if (!body) {
-    std::fputs(app.help().c_str(), stdout);
-    return 0;
-  }
-  LimitProtobufLog();
-  const int status = body();
-  // A full disk behind a redirected output shows only here.
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    return Fail(IoError("standard output cannot be written"));
-  }
-  return status;
+  if (body) return Run(body);
+  std::fputs(app.help().c_str(), stdout);
+  return 0;
 }
 
 }  // namespace

@@ -284,6 +284,62 @@ Json NucJson(const RecordingSummary& summary) {
   return json;
 }
 
+Json GapsJson(const std::vector<RecordingGap>& gaps) {
+  Json json;
+  for (const RecordingGap& gap : gaps) {
+    Json item;
+    item["offset"] = gap.offset;
+    item["bytes"] = gap.bytes;
+    for (const auto& [topic, count] : gap.messages_by_topic) item["messages"][topic] = count;
+    json.push_back(std::move(item));
+  }
+  return json;
+}
+
+Json ClockJson(const RecordingReport& report) {
+  Json json;
+  if (const std::string state = ClockState(report.info); !state.empty()) json["state"] = state;
+  for (const ClockStep& step : report.summary.clock_steps) {
+    Json item;
+    item["time"] = FormatStamp(step.time);
+    item["step_s"] = ToSeconds(step.step);
+    item["utc_minus_capture_time_s"] = ToSeconds(step.wall_minus_time);
+    json["steps"].push_back(std::move(item));
+  }
+  return json;
+}
+
+Json LogJson(const std::vector<RecordedLog>& log) {
+  Json json;
+  for (const RecordedLog& entry : log) {
+    Json line;
+    line["time"] = FormatStamp(entry.time);
+    line["level"] = entry.level;
+    line["text"] = entry.text;
+    json.push_back(std::move(line));
+  }
+  return json;
+}
+
+Json CalibrationJson(const std::optional<Rig>& rig) {
+  Json json;
+  json["present"] = rig.has_value();
+  if (!rig) return json;
+  json["depth"] = rig->depth.has_value();
+  json["thermal"] = rig->thermal.has_value();
+  json["T_thermal_depth"] = rig->T_thermal_depth.has_value();
+  json["thermal_delay_s"] = rig->thermal_delay_s;
+  const RigCalibration calibration = ToProto(*rig);
+  json["depth_sensor"] = ToJson(calibration.depth_sensor());
+  json["thermal_sensor"] = ToJson(calibration.thermal_sensor());
+  return json;
+}
+
+/// Sets json[key] if there is something to say.
+void SetUnlessEmpty(Json& json, const char* key, Json value) {
+  if (!value.empty()) json[key] = std::move(value);
+}
+
 }  // namespace
 
 RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path& path) {
@@ -334,53 +390,24 @@ Json ToJson(const RecordingReport& report) {
   json["bytes_ignored"] = report.info.bytes_ignored;
   json["depth_frames_lost"] = UnreadDepth(report);
   json["thermal_frames_lost"] = UnreadThermal(report);
-  for (const RecordingGap& gap : report.info.gaps) {
-    Json item;
-    item["offset"] = gap.offset;
-    item["bytes"] = gap.bytes;
-    for (const auto& [topic, count] : gap.messages_by_topic) item["messages"][topic] = count;
-    json["gaps"].push_back(std::move(item));
-  }
+  SetUnlessEmpty(json, "gaps", GapsJson(report.info.gaps));
   json["viewable"] = IsViewable(report.summary);
   json["unreadable_messages"] = report.summary.unreadable;
   json["depth"] = StreamJson(report.summary.depth);
   json["thermal"] = StreamJson(report.summary.thermal);
   json["nuc"] = NucJson(report.summary);
-  if (const std::string state = ClockState(report.info); !state.empty())
-    json["clock"]["state"] = state;
-  for (const ClockStep& step : report.summary.clock_steps) {
-    Json item;
-    item["time"] = FormatStamp(step.time);
-    item["step_s"] = ToSeconds(step.step);
-    item["utc_minus_capture_time_s"] = ToSeconds(step.wall_minus_time);
-    json["clock"]["steps"].push_back(std::move(item));
-  }
+  SetUnlessEmpty(json, "clock", ClockJson(report));
   for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
   for (const auto& [source, count] : report.summary.external_odometry)
     json["external_odometry"][source] = count;
-  for (const RecordedLog& log : report.summary.log) {
-    Json line;
-    line["time"] = FormatStamp(log.time);
-    line["level"] = log.level;
-    line["text"] = log.text;
-    json["log"].push_back(std::move(line));
-  }
+  SetUnlessEmpty(json, "log", LogJson(report.summary.log));
   json["log_left_out"] = report.summary.log_left_out;
   for (const auto& [topic, count] : report.info.messages_by_topic) json["messages"][topic] = count;
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) json["metadata"][name][key] = value;
   }
   for (const std::string& doubt : report.doubts) json["warnings"].push_back(doubt);
-  json["calibration"]["present"] = report.rig.has_value();
-  if (report.rig) {
-    json["calibration"]["depth"] = report.rig->depth.has_value();
-    json["calibration"]["thermal"] = report.rig->thermal.has_value();
-    json["calibration"]["T_thermal_depth"] = report.rig->T_thermal_depth.has_value();
-    json["calibration"]["thermal_delay_s"] = report.rig->thermal_delay_s;
-    const RigCalibration calibration = ToProto(*report.rig);
-    json["calibration"]["depth_sensor"] = ToJson(calibration.depth_sensor());
-    json["calibration"]["thermal_sensor"] = ToJson(calibration.thermal_sensor());
-  }
+  json["calibration"] = CalibrationJson(report.rig);
   return json;
 }
 
