@@ -190,47 +190,9 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
     result.lost = LostReason::kTooFewPixels;
     return result;
   }
-  const IcpLimits limits{
-      static_cast<float>(options_.expert().max_distance_m()),
-      static_cast<float>(std::cos(options_.expert().max_normal_angle_deg() * kRadPerDeg))};
-  // The normals of a young model are rough, and quantised as the frame's are.
-  result.motion =
-      MeasureObservability(depth.maps[kPyramidLevels - 1], start.guess, model, limits,
-                           (model.is_young ? 2.0 : 1.0) * options_.expert().min_observed());
-  if (!result.motion.fully_observed()) {
-    ApplyTwist(result.motion.UnobservablePart(TwistBetween(start.guess, start.prior)),
-               result.T_map_depth);
-    if (start.alignment != nullptr)
-      start.alignment->Align(result.motion, model.maps, result.T_map_depth);
-  }
-  IcpSums last;
-  const std::array<int, kPyramidLevels> iterations = {options_.expert().iterations_fine(),
-                                                      options_.expert().iterations_middle(),
-                                                      options_.expert().iterations_coarse()};
-  for (int level = kPyramidLevels - 1; level >= 0; --level) {
-    for (int iteration = 0; iteration < iterations[level]; ++iteration) {
-      const IcpSums sums =
-          AccumulateIcp(depth.maps[level], result.T_map_depth, model, grid, limits, pool);
-      ++result.iterations;
-      result.inlier_ratio = sums.inlier_ratio();
-      result.overlap_ratio = sums.overlap_ratio();
-      result.agreement = sums.agreement();
-      result.residual_m = std::sqrt(sums.squared_residuals_m2 /
-                                    static_cast<double>(std::max<std::int64_t>(sums.inliers, 1)));
-      const std::optional<Vector6> twist =
-          sums.inliers < 6 ? std::nullopt : result.motion.SolveObserved(sums.H, sums.g);
-      if (!twist) {
-        result.lost = sums.inliers < 6 ? LostReason::kTooFewInliers : LostReason::kSingular;
-        return result;
-      }
-      last = sums;
-      ApplyTwist(*twist, result.T_map_depth);
-      if (twist->head<3>().norm() < options_.expert().min_update_m() &&
-          twist->tail<3>().norm() < options_.expert().min_update_deg() * kRadPerDeg) {
-        break;
-      }
-    }
-  }
+  HoldUnobservable(depth, model, start, result);
+  const IcpSums last = Iterate(depth, model, grid, pool, result);
+  if (!result.tracked()) return result;
   result.T_map_depth.linear() =
       Eigen::Quaterniond(result.T_map_depth.linear()).normalized().toRotationMatrix();
   result.covariance = ObservedCovariance(last, result);
@@ -245,6 +207,57 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   constexpr double kYoungFraction = 1.0 / 3.0;
   return Assess(result,
                 options_.expert().min_inlier_ratio() * (model.is_young ? kYoungFraction : 1.0));
+}
+
+IcpLimits IcpTracker::Limits() const {
+  return {static_cast<float>(options_.expert().max_distance_m()),
+          static_cast<float>(std::cos(options_.expert().max_normal_angle_deg() * kRadPerDeg))};
+}
+
+void IcpTracker::HoldUnobservable(const PreparedDepth& depth, const ModelView& model,
+                                  const Start& start, TrackingResult& result) const {
+  // The normals of a young model are rough, and quantised as the frame's are.
+  result.motion =
+      MeasureObservability(depth.maps[kPyramidLevels - 1], start.guess, model, Limits(),
+                           (model.is_young ? 2.0 : 1.0) * options_.expert().min_observed());
+  if (result.motion.fully_observed()) return;
+  ApplyTwist(result.motion.UnobservablePart(TwistBetween(start.guess, start.prior)),
+             result.T_map_depth);
+  if (start.alignment != nullptr)
+    start.alignment->Align(result.motion, model.maps, result.T_map_depth);
+}
+
+IcpSums IcpTracker::Iterate(const PreparedDepth& depth, const ModelView& model,
+                            const VoxelGrid& grid, ThreadPool& pool, TrackingResult& result) const {
+  IcpSums last;
+  const std::array<int, kPyramidLevels> iterations = {options_.expert().iterations_fine(),
+                                                      options_.expert().iterations_middle(),
+                                                      options_.expert().iterations_coarse()};
+  for (int level = kPyramidLevels - 1; level >= 0; --level) {
+    for (int iteration = 0; iteration < iterations[level]; ++iteration) {
+      const IcpSums sums =
+          AccumulateIcp(depth.maps[level], result.T_map_depth, model, grid, Limits(), pool);
+      ++result.iterations;
+      result.inlier_ratio = sums.inlier_ratio();
+      result.overlap_ratio = sums.overlap_ratio();
+      result.agreement = sums.agreement();
+      result.residual_m = std::sqrt(sums.squared_residuals_m2 /
+                                    static_cast<double>(std::max<std::int64_t>(sums.inliers, 1)));
+      const std::optional<Vector6> twist =
+          sums.inliers < 6 ? std::nullopt : result.motion.SolveObserved(sums.H, sums.g);
+      if (!twist) {
+        result.lost = sums.inliers < 6 ? LostReason::kTooFewInliers : LostReason::kSingular;
+        return last;
+      }
+      last = sums;
+      ApplyTwist(*twist, result.T_map_depth);
+      if (twist->head<3>().norm() < options_.expert().min_update_m() &&
+          twist->tail<3>().norm() < options_.expert().min_update_deg() * kRadPerDeg) {
+        break;
+      }
+    }
+  }
+  return last;
 }
 
 TrackingResult IcpTracker::Assess(TrackingResult result, double min_inlier_ratio) const {

@@ -40,7 +40,7 @@ struct ModelView {
   bool is_young = false;  ///< Little more than one frame's noise: its normals are rough.
 };
 
-/// How far a frame's pose can be trusted.
+/// Tells how far a frame's pose can be trusted.
 enum class Verdict : std::uint8_t {
   kTracked,
   kDegraded,  ///< Not all directions are observed: the rest is held by the motion before.
@@ -64,15 +64,41 @@ struct TrackingResult {
   double step_rad = 0.0;
   int iterations = 0;
   Observability motion;  ///< What of the motion was measured.
-  /// How uncertain T_map_depth is, as a twist (translation, rotation about the camera's position)
-  /// in `map`, m and rad; what this frame measured, so nothing along axes that are not observed
-  /// (PoseUncertainty).
+  /// The covariance of T_map_depth as a twist (translation, rotation about the camera's position)
+  /// in `map`, m and rad. It is of what this frame measured, so 0 along axes that are not observed
+  /// (PoseUncertainty has the rest).
   Matrix6 covariance = Matrix6::Zero();
 
   bool tracked() const { return lost == LostReason::kNone; }
   Verdict verdict() const {
     if (!tracked()) return Verdict::kLost;
     return motion.fully_observed() ? Verdict::kTracked : Verdict::kDegraded;
+  }
+};
+
+struct IcpLimits {
+  float max_distance_m;
+  float min_normal_cosine;
+};
+
+/// Sums of one ICP iteration. H x = -g in the twist (translation, rotation) applied from the left
+/// in `map`, about the camera's position.
+struct IcpSums {
+  Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
+  double squared_residuals_m2 = 0.0;  ///< Unweighted.
+  std::int64_t inliers = 0;
+  std::int64_t candidates = 0;  ///< Valid pixels inside the volume, ...
+  std::int64_t overlap = 0;     ///< ... of which the model has a surface in the same direction.
+
+  double inlier_ratio() const { return Fraction(inliers, candidates); }
+  double overlap_ratio() const { return Fraction(overlap, candidates); }
+  double agreement() const { return Fraction(inliers, overlap); }
+  IcpSums& operator+=(const IcpSums& other);
+
+ private:
+  static double Fraction(std::int64_t part, std::int64_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
   }
 };
 
@@ -99,30 +125,18 @@ class IcpTracker {
                        const Start& start, ThreadPool& pool) const;
 
  private:
+  IcpLimits Limits() const;
+  /// Finds the directions that the geometry cannot measure (result.motion), and moves the pose
+  /// along them from the guess to where the prior or the thermal alignment holds it.
+  void HoldUnobservable(const PreparedDepth& depth, const ModelView& model, const Start& start,
+                        TrackingResult& result) const;
+  /// Improves the pose in the other directions, from coarse to fine; `result` is lost if they
+  /// cannot be solved. Returns the sums of the last iteration.
+  IcpSums Iterate(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
+                  ThreadPool& pool, TrackingResult& result) const;
   TrackingResult Assess(TrackingResult result, double min_inlier_ratio) const;
 
   const TrackerOptions options_;
-};
-
-/// Sums of one ICP iteration. H x = -g in the twist (translation, rotation) applied from the left
-/// in `map`, about the camera's position.
-struct IcpSums {
-  Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
-  Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
-  double squared_residuals_m2 = 0.0;  ///< Unweighted.
-  std::int64_t inliers = 0;
-  std::int64_t candidates = 0;  ///< Valid pixels inside the volume, ...
-  std::int64_t overlap = 0;     ///< ... of which the model has a surface in the same direction.
-
-  double inlier_ratio() const { return Fraction(inliers, candidates); }
-  double overlap_ratio() const { return Fraction(overlap, candidates); }
-  double agreement() const { return Fraction(inliers, overlap); }
-  IcpSums& operator+=(const IcpSums& other);
-
- private:
-  static double Fraction(std::int64_t part, std::int64_t whole) {
-    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
-  }
 };
 
 /// The twist that takes `from` to `to`, both T_map_depth.
@@ -130,11 +144,6 @@ Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to);
 
 /// Moves a pose by a twist in `map`: rotates about the camera's position, then translates.
 void ApplyTwist(const Vector6& twist, RigidTransform& T_map_depth);
-
-struct IcpLimits {
-  float max_distance_m;
-  float min_normal_cosine;
-};
 
 /// One pass over the current maps (camera coordinates): associates, rejects, accumulates.
 IcpSums AccumulateIcp(const SurfaceMaps& current, const RigidTransform& T_map_depth,
