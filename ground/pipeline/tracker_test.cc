@@ -165,25 +165,5 @@ TEST_F(TrackerTest, TimeIsSpentOnTrackingOrOnSearching) {
   EXPECT_EQ(stages_.Find(Stage::kRelocalise)->count(), 1U);
 }
 
-TEST(TrajectoryTest, PosesOfASubMapAreThereOnceItIsJoined) {
-  constexpr double kRounding = 1e-9;
-  GroundOptions options;
-  const CameraModel camera = testing::SmallDepthCamera();
-  Atlas atlas(options, camera, MakeVoxelGrid(options.volume()).value());
-  const RigidTransform pose = FirstPose();
-  const RigidTransform T_world_map = MakeTransform({1.0, 2.0, 3.0}, Eigen::Quaterniond::Identity());
-  Trajectory trajectory;
-  trajectory.Add({CaptureTime(FromSeconds(1.0)), pose}, {0.001, 0.01}, 0, atlas);
-  ASSERT_TRUE(atlas.BeginElsewhere());
-  trajectory.Add({CaptureTime(FromSeconds(2.0)), pose}, {0.002, 0.02}, 1, atlas);
-  EXPECT_EQ(trajectory.poses().size(), 1U);
-  atlas.Link(0, pose, T_world_map * pose);
-  EXPECT_EQ(trajectory.poses().size(), 1U) << "until it is told";
-  trajectory.Update(atlas);
-  ASSERT_EQ(trajectory.poses().size(), 2U);
-  EXPECT_TRUE(trajectory.poses()[1].T_world_depth.isApprox(T_world_map * pose, kRounding));
-  EXPECT_EQ(trajectory.sigmas()[1].translation_m, 0.002);
-}
-
 }  // namespace
 }  // namespace isotherm
