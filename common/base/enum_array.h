@@ -20,7 +20,7 @@ template <typename Enum, typename T>
 class EnumArray {
  public:
   constexpr EnumArray() = default;
-  /// What is not listed is T().
+  /// Sets what is not listed to T().
   constexpr EnumArray(std::initializer_list<std::pair<Enum, T>> values) {
     for (const auto& [key, value] : values) (*this)[key] = value;
   }

@@ -23,8 +23,8 @@ void NotifyStopping();
 /// or stops.
 void NotifyExtendTimeout(std::chrono::microseconds duration);
 
-/// How often NotifyWatchdog should be called (half of WatchdogSec); nullopt if the unit has no
-/// watchdog.
+/// Returns how often NotifyWatchdog should be called (half of WatchdogSec); nullopt if the unit has
+/// no watchdog.
 std::optional<std::chrono::microseconds> WatchdogInterval();
 
 /// From now on a pipe or terminal whose reader is gone makes writing fail instead of ending the

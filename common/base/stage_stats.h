@@ -5,8 +5,8 @@
 
 namespace isotherm {
 
-/// How long a stage took, over any number of calls in constant memory: a histogram with bins 1 %
-/// wide from 100 ns to about three hours. Percentiles are right to 0.5 %. Thread-compatible.
+/// Counts how long a stage took, over any number of calls in constant memory: a histogram with bins
+/// 1 % wide from 100 ns to about three hours. Percentiles are right to 0.5 %. Thread-compatible.
 class StageStats {
  public:
   /// Durations that are negative or not finite are bugs of the caller's clock; they are counted as

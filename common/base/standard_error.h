@@ -25,7 +25,7 @@ class UnblockedOutput {
 
   /// `text` is left out as a whole or not at all.
   void Write(std::string_view text);
-  /// How many texts were left out since the last call; 0 while there is no room for saying so.
+  /// Returns how many texts were left out since the last call; 0 while there is no room to say so.
   std::uint64_t TakeLeftOut();
   /// Offers what is kept for so long; for the end of the program.
   void Flush(int patience_ms);

@@ -4,9 +4,9 @@
 
 #include "common/codec/residual_token.h"
 
-/// How a pixel is predicted from its west, north, north-west and north-east neighbours, and which
-/// of a few contexts it is in. Each context has its own token frequencies: they tell flat areas,
-/// where the difference is the camera's noise, from edges.
+/// A pixel is predicted from its west, north, north-west and north-east neighbours, which also tell
+/// the one of a few contexts it is in. Each context has its own token frequencies: they tell flat
+/// areas, where the difference is the camera's noise, from edges.
 namespace isotherm::codec {
 
 /// Values that have been coded before; a hole has the value above it.
@@ -21,7 +21,7 @@ struct Neighbours {
 constexpr int Min(int a, int b) { return a < b ? a : b; }
 constexpr int Max(int a, int b) { return a > b ? a : b; }
 
-/// How much the neighbours differ.
+/// Returns how much the neighbours differ.
 constexpr int Activity(const Neighbours& pixels) {
   return std::abs(pixels.west - pixels.north_west) + std::abs(pixels.north - pixels.north_west) +
          std::abs(pixels.north - pixels.north_east);

@@ -114,7 +114,7 @@ struct RawFrame {
   ThermalHousekeeping housekeeping;
 };
 
-/// How an encoded image is packed. Values are on the wire and in recordings: never reuse one.
+/// The ways to pack an image. Values are on the wire and in recordings: never reuse one.
 enum class Encoding : std::uint8_t {
   kRaw16 = 0,      ///< Little-endian 16-bit samples, row-major.
   kPng16 = 1,      ///< PNG, 16-bit grey.

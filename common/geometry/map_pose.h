@@ -10,7 +10,7 @@ namespace isotherm {
 struct MapPose {
   int map = 0;  ///< The sub-map's index in the atlas.
   RigidTransform T_map_depth = RigidTransform::Identity();
-  /// Of T_map_depth, along the sub-map's axes. Zero for a pose that was chosen, not measured.
+  /// The covariance is along the sub-map's axes. It is 0 for a pose that was chosen, not measured.
   PoseCovariance covariance = PoseCovariance::Zero();
 };
 

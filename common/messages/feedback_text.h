@@ -9,8 +9,8 @@
 /// Feedback in the operator's words, the same on both sides of the link.
 namespace isotherm {
 
-/// How to get from the depth camera's pose to another, in the operator's words: "0.30 m left, 0.12
-/// m up, turn 25 deg right". Small parts are left out; "here" if all are.
+/// Returns how to get from the depth camera's pose to another, in the operator's words: "0.30 m
+/// left, 0.12 m up, turn 25 deg right". Small parts are left out; it is "here" if all are.
 std::string MoveText(const RigidTransform& T_depth_next);
 
 /// Returns what to do now and why: "closer (40 % of the surface is farther than 0.60 m)"; "go on"

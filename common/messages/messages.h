@@ -137,8 +137,8 @@ struct StreamStatus {
   std::vector<DropCount> dropped{};  ///< At most kMaxDropReasons.
 };
 
-/// How old depth frames were, from their capture time to the arrival of the feedback on them, both
-/// on the edge. NaN = no feedback yet, or the edge replays with times of its own.
+/// Tells how old depth frames were, from their capture time to the arrival of the feedback on them,
+/// both on the edge. NaN = no feedback yet, or the edge replays with times of its own.
 struct FeedbackLatency {
   std::uint64_t count = 0;  ///< Messages of feedback.
   double p50_s = std::numeric_limits<double>::quiet_NaN();
@@ -170,8 +170,8 @@ struct ClockReport {
   double offset_s = std::numeric_limits<double>::quiet_NaN();  ///< Still being corrected.
   double estimated_error_s = std::numeric_limits<double>::quiet_NaN();
   double max_error_s = std::numeric_limits<double>::quiet_NaN();  ///< Bound of the error.
-  /// How often it was set in this session, and by how much in all. Capture times do not follow:
-  /// the wall clock is ahead of them by the sum.
+  /// The clock was set this often in this session, and by this much in all. Capture times do not
+  /// follow: the wall clock is ahead of them by the sum.
   std::uint64_t steps = 0;
   double step_sum_s = 0.0;
   friend bool operator==(const ClockReport&, const ClockReport&) = default;
@@ -321,7 +321,7 @@ struct Feedback {
   std::vector<std::uint8_t>
       image;  ///< Confidence image, PNG or JPEG; at most kMaxConfidenceImageBytes.
   std::vector<StageLatency> latencies{};  ///< Optional; at most kMaxStageLatencies.
-  /// How uncertain T_world_depth is relative to the model, along the axes of `world`; present if
+  /// The covariance of T_world_depth relative to the model, along the axes of `world`; present if
   /// the pose is.
   std::optional<PoseCovariance> pose_covariance;
   std::string advice_reason{};  ///< Why, or what to do, with numbers; at most kMaxTextBytes.

@@ -14,8 +14,8 @@ struct EmissionConditions {
   double distance_m = 0.5;  ///< Between camera and surface.
 };
 
-/// How wrong a temperature is that was seen obliquely but interpreted with the emissivity along the
-/// normal, which is what an operator sets.
+/// Tells how wrong a temperature is that was seen obliquely but interpreted with the emissivity
+/// along the normal, which is what an operator sets.
 struct EmissionError {
   double emissivity;  ///< At this angle.
   double relative;    ///< emissivity / emissivity along the normal - 1; of the emitted radiance.

@@ -36,7 +36,7 @@ struct DistanceLimits {
   double max_m;
 };
 
-/// How many pixels a detail is wide at the good and at the last acceptable distance. Wherever it
+/// A detail is this many pixels wide at the good and at the last acceptable distance. Wherever it
 /// falls, one of 1 pixel fills at least half of some pixel, one of 1.5 three quarters, one of 2 a
 /// whole one; the thesis advises 3 for the most accurate results (3.3.1).
 struct DetailPixels {

@@ -17,8 +17,8 @@ inline constexpr std::size_t kMaxDefinitionsBytes = 16U << 20;
 /// Metadata beyond this is left out.
 inline constexpr std::size_t kMaxMetadataBytes = 4U << 20;
 
-/// How much one pass over a file may unpack, so that a small file cannot keep a program busy for
-/// long. Frames of real cameras pack to a tenth at best.
+/// Limits how much one pass over a file may unpack, so that a small file cannot keep a program busy
+/// for long. Frames of real cameras pack to a tenth at best.
 class UnpackBudget {
  public:
   static constexpr std::uint64_t kFloorBytes = 64U << 20;
@@ -35,7 +35,7 @@ class UnpackBudget {
   bool exhausted_ = false;
 };
 
-/// Whether a chunk of this compression can be read: none and zstd.
+/// Returns whether a chunk of this compression can be read: none and zstd.
 bool IsSupportedCompression(std::string_view compression);
 
 /// A stretch of the file that holds messages: a chunk record, or records that lie in no chunk.

@@ -32,10 +32,10 @@ struct ClockStep {
   Nanoseconds wall_minus_time{0};  ///< What to add to capture times from here on to get UTC.
 };
 
-/// How images are stored. kViewable: foxglove.RawImage and the place of the thermal camera as a
-/// transform, so that Foxglove and Lichtblick show the scan.
-/// kCompact: our lossless codes in messages that are field-compatible with foxglove.CompressedImage
-/// (about a third smaller).
+/// Tells how images are stored. kViewable stores foxglove.RawImage and the place of the thermal
+/// camera as a transform, so that Foxglove and Lichtblick show the scan. kCompact stores our
+/// lossless codes in messages that are field-compatible with foxglove.CompressedImage (about a
+/// third smaller).
 enum class ImageStorage { kViewable, kCompact };
 
 struct RecordingOptions {

@@ -61,8 +61,8 @@ Eigen::Vector3d HalfExtents(const Primitive& primitive);
 /// thickness give +z.
 Eigen::Vector3d NormalAt(const Primitive& primitive, const Eigen::Vector3d& p_primitive);
 
-/// Whether the point (primitive's coordinates) is inside the solid or within `tolerance_m` of it.
-/// Shapes without thickness contain nothing.
+/// Returns whether the point (primitive's coordinates) is inside the solid or within `tolerance_m`
+/// of it. Shapes without thickness contain nothing.
 bool Contains(const Primitive& primitive, const Eigen::Vector3d& p_primitive, double tolerance_m);
 
 }  // namespace isotherm

@@ -45,7 +45,8 @@ class Scene {
   /// True temperature of a point on `primitive`.
   double TrueCelsius(int primitive, const Eigen::Vector3d& p_world) const;
 
-  /// Whether the point is inside or within `tolerance_m` of a primitive other than `except`.
+  /// Returns whether the point is inside or within `tolerance_m` of a primitive other than
+  /// `except`.
   bool IsCovered(const Eigen::Vector3d& p_world, int except, double tolerance_m) const;
 
  private:

@@ -46,8 +46,8 @@ class SimulatedScan {
   /// The shutter's last opening before `time`, if it was closed before.
   std::optional<CaptureTime> LastOpening(CaptureTime time) const;
 
-  /// How much too warm an open shutter's image is at `time`, because the housing changed since
-  /// the last correction.
+  /// Returns how much too warm an open shutter's image is at `time`, because the housing changed
+  /// since the last correction.
   double DriftErrorKelvin(CaptureTime time) const;
 
   /// True T_world_depth.

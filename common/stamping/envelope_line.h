@@ -48,7 +48,7 @@ class EnvelopeLine {
   void TakeTurns(Point sample);
   void CloseGroup();
   void Fit();
-  /// How far above the hull's line a group may be.
+  /// Returns how far above the hull's line a group may be.
   double Reach(const LowerHull::Line& base) const;
 
   std::size_t group_;

@@ -57,7 +57,7 @@ class Random {
 /// Rounding of a sum of a few products in single precision, as a fraction of their magnitudes.
 inline constexpr double kSinglePrecision = 1e-6;
 
-/// Whether a decision falls one way, the other, or is so near its threshold that rounding decides.
+/// A decision falls one way, the other, or is so near its threshold that rounding decides.
 enum class Verdict { kNo, kYes, kEither };
 
 /// value >= 0; `slack` is the rounding of `value` in single precision. NaN is no.
@@ -66,7 +66,7 @@ inline Verdict AtLeastZero(double value, double slack) {
   return value > slack || slack == 0.0 ? Verdict::kYes : Verdict::kEither;
 }
 
-/// Whether both are so.
+/// Returns whether both are so.
 inline Verdict Both(Verdict a, Verdict b) {
   if (a == Verdict::kNo || b == Verdict::kNo) return Verdict::kNo;
   return a == Verdict::kYes && b == Verdict::kYes ? Verdict::kYes : Verdict::kEither;

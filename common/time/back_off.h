@@ -6,8 +6,8 @@
 
 namespace isotherm {
 
-/// How long to wait before something that failed is tried again: the first wait, doubled each time
-/// up to the last. Thread-compatible.
+/// Tells how long to wait before something that failed is tried again: the first wait, doubled each
+/// time up to the last. Thread-compatible.
 class BackOff {
  public:
   constexpr explicit BackOff(Nanoseconds first = std::chrono::milliseconds(500),

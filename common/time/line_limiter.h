@@ -20,8 +20,8 @@ class LineLimiter {
   LineLimiter() : LineLimiter(1, kInterval) {}
   LineLimiter(int max_lines, Nanoseconds interval) : max_lines_(max_lines), interval_(interval) {}
 
-  /// Whether this line may be written: how many were left out since the last one, or nullopt if it
-  /// is left out too.
+  /// Decides whether this line may be written: returns how many were left out since the last one,
+  /// or nullopt if it is left out too.
   std::optional<std::uint64_t> Admit(SteadyTime now) {
     if (!window_start_ || now - *window_start_ >= interval_) {
       window_start_ = now;

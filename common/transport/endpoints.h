@@ -33,7 +33,7 @@ class Writer {
   Status Write(std::string_view edge_id, const Message& message);
   /// Readers of this topic that are there now.
   int matched_readers() const;
-  /// Whether `peer` has such a reader, so that it gets what is written from now on.
+  /// Returns whether `peer` has such a reader, so that it gets what is written from now on.
   bool Reaches(PeerHandle peer) const;
   /// Waits until all readers have acknowledged everything written. False after `timeout`.
   bool WaitForAcknowledgments(Nanoseconds timeout) const;

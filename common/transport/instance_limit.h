@@ -17,7 +17,7 @@ class InstanceLimit {
   static constexpr std::size_t kPerWriter = 8;
   static constexpr std::size_t kInAll = 1024;
 
-  /// Whether a sample of `writer` for the key `instance` may be kept.
+  /// Returns whether a sample of `writer` for the key `instance` may be kept.
   bool Admit(std::uint64_t writer, std::uint64_t instance) {
     MutexLock lock(mutex_);
     if (writer_of_.contains(instance)) return true;

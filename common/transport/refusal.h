@@ -36,7 +36,7 @@ enum class RefusalCause : std::uint8_t {
 /// One or two words, e.g. "oversize payload".
 std::string_view ToString(RefusalCause cause);
 
-/// How many samples were refused, by cause.
+/// Counts how many samples were refused, by cause.
 using RefusalCounts = std::array<std::uint64_t, static_cast<std::size_t>(RefusalCause::kCount)>;
 
 /// Counts what was refused, per cause, and logs it: of each cause the first, then one in ten

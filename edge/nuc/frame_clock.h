@@ -7,8 +7,8 @@
 
 namespace isotherm {
 
-/// Counts time by frames: as they were captured, but it never goes back. When the wall clock jumps
-/// back, no time passes. Thread-compatible.
+/// Counts time by the capture times of frames, but never goes back: when the wall clock jumps back,
+/// no time passes. Thread-compatible.
 class FrameClock {
  public:
   /// Advances to a frame captured at `time`, and returns what has passed since the one before.
@@ -21,13 +21,13 @@ class FrameClock {
   }
 
   bool has_begun() const { return first_.has_value(); }
-  /// Of the first frame; `has_begun` must hold.
+  /// Returns when the first frame was captured; `has_begun` must hold.
   CaptureTime first() const { return *first_; }
   CaptureTime now() const { return now_; }
 
  private:
   std::optional<CaptureTime> first_;
-  CaptureTime newest_{};  ///< Of the newest frame, as it came.
+  CaptureTime newest_{};  ///< When the newest frame was captured, by the wall clock.
   CaptureTime now_{};
 };
 

@@ -36,10 +36,9 @@ class NucNeed {
   std::string Drift(const ThermalHousekeeping& now) const;
 
   struct Rules {
-    bool require_first;  ///< Whatever the camera says to it.
+    bool require_first;  ///< Nothing is valid before a first correction.
     bool before_scan;
-    double max_housing_drift_k, max_fpa_drift_k;  ///< 0 = no limit, like the next.
-    double max_interval_s;
+    double max_housing_drift_k, max_fpa_drift_k, max_interval_s;  ///< 0 = no limit.
   };
   const Rules rules_;
   NucNotices& notices_;

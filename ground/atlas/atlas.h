@@ -44,7 +44,7 @@ class Atlas {
   const SubMap& map(int index) const { return *maps_[index]; }
   SubMap& map(int index) { return *maps_[index]; }
 
-  /// Whether a pose is too far from all anchors of its sub-map to go on in that.
+  /// Returns whether a pose is too far from all anchors of its sub-map to go on in that.
   bool IsFar(int index, const RigidTransform& T_map_depth) const;
   /// Begins a sub-map at a tracked pose, in the same coordinates; the blocks in view go with it.
   /// False (and nothing changes) if there are too many.

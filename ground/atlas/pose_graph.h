@@ -17,8 +17,8 @@ struct MapLink {
   double sigma_rad = 0.0;
 };
 
-/// How far two sub-maps placed at `T_world_a` and `T_world_b` disagree about the link's view:
-/// T_a_b-like motion in the depth camera's coordinates.
+/// Returns how far two sub-maps placed at `T_world_a` and `T_world_b` disagree about the link's
+/// view, as a T_a_b-like motion in the depth camera's coordinates.
 RigidTransform Mismatch(const MapLink& link, const RigidTransform& T_world_a,
                         const RigidTransform& T_world_b);
 

@@ -18,7 +18,7 @@ struct ScanModel;
 
 Status Validate(const DelayCheckOptions& options);
 
-/// Whether the constant delay between depth and thermal camera is still what was calibrated.
+/// Tells whether the constant delay between depth and thermal camera is still what was calibrated.
 enum class DelayVerdict : std::uint8_t {
   kOff,          ///< Not to be checked.
   kNotAssessed,  ///< The scan cannot tell.

@@ -8,12 +8,12 @@
 
 namespace isotherm {
 
-/// How often each part of a scan counts. All ones is the scan as it is.
+/// Tells how often each part of a scan counts. All ones are the scan as it is.
 using PartWeights = std::vector<double>;
 
-/// How much the thermal images disagree at one delay in seconds, by resampling of the scan's
-/// parts. All delays must be compared by the same samples. `fine`: as exactly as possible,
-/// otherwise fast.
+/// Returns how much the thermal images disagree at one delay in seconds, by resampling of the
+/// scan's parts. All delays must be compared by the same samples. `fine` asks for the most exact
+/// figures, otherwise they are found fast.
 using DisagreementOf = std::function<std::vector<double>(
     double delay_s, bool fine, const std::vector<PartWeights>& resamplings)>;
 

@@ -9,7 +9,7 @@
 
 namespace isotherm {
 
-/// How `isotherm export` is told what to interpret.
+/// The arguments by which `isotherm export` is told what to interpret.
 struct InterpretationArguments {
   std::optional<double> emissivity, reflected_celsius;
   std::string band;                 ///< "min max", um; empty: as in the options.

@@ -16,9 +16,9 @@ enum class JitterShape : std::uint8_t {
   kNormal,       ///< Both sides of a mean, cut 4 sigmas below: no frame is ever quite undisturbed.
 };
 
-/// How a simulated camera's frames reach the computer: as in fig. 5.15 of the thesis, a baseline of
-/// some milliseconds with impulses of tens of milliseconds, and load bursts that hold up every
-/// frame.
+/// Describes how a simulated camera's frames reach the computer: as in fig. 5.15 of the thesis,
+/// after a baseline of some milliseconds with impulses of tens of milliseconds, and with load
+/// bursts that hold up every frame.
 struct StampingScenario {
   std::string_view name;
   JitterShape shape = JitterShape::kGamma;

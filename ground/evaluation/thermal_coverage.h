@@ -15,7 +15,7 @@ struct WellSeenLimits {
   double max_angle_deg = 60.0;
 };
 
-/// How much of what could be measured has a temperature.
+/// Counts how much of what could be measured has a temperature.
 struct ThermalCoverage {
   std::size_t well_seen = 0;  ///< True points that some pose saw under acceptable conditions.
   std::size_t covered = 0;    ///< Those with an assigned point of the cloud near by.

@@ -22,7 +22,7 @@ struct CheckedPoint {
   double expected_celsius;  ///< Apparent, at right angles, of the true temperature.
 
   bool measured() const { return point.celsius == point.celsius; }
-  /// How far a measured point is off: measured minus expected.
+  /// Returns how far a measured point is off: measured minus expected.
   double ErrorKelvin() const { return static_cast<double>(point.celsius) - expected_celsius; }
 };
 
@@ -45,8 +45,8 @@ struct AssignmentCheck {
 };
 AssignmentCheck CheckAssignment(const std::vector<CheckedPoint>& points);
 
-/// How far the temperatures of points that have one are off: of absolute errors, kelvin; NaN if no
-/// point has one.
+/// Tells how far the temperatures of points that have one are off: figures of the absolute errors,
+/// in kelvin; NaN if no point has one.
 struct ErrorSummary {
   std::size_t measured = 0;
   double within_1k_percent = std::numeric_limits<double>::quiet_NaN();

@@ -10,7 +10,7 @@
 
 namespace isotherm {
 
-/// How one thermal frame saw a point of the true surface, from true poses and exact geometry.
+/// Tells how one thermal frame saw a point of the true surface, by true poses and exact geometry.
 struct TrueCondition {
   double distance_m = 0.0;
   double angle_deg = 0.0;

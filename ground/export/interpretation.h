@@ -27,7 +27,7 @@ struct InterpretedPart {
   std::string problem;  ///< Why nothing can be interpreted here; empty if it can.
 };
 
-/// How the points of one part fared.
+/// Counts how the points of one part fared.
 struct PartReport {
   std::size_t points = 0;
   std::size_t measured = 0;           ///< Points with an apparent temperature.

@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-/// How points are coloured and what the header says about the scan.
+/// Tells how points are coloured and what the header says about the scan.
 struct PlyStyle {
   const ColourTable& colours;
   std::optional<TemperatureScale> scale;  ///< nullopt: nothing was measured.

@@ -32,7 +32,7 @@ Status Validate(const ExportOptions& options);
 /// place.
 Status PrepareOutputDir(const std::filesystem::path& dir);
 
-/// Whether results of a scan are in the folder.
+/// Returns whether results of a scan are in the folder.
 bool HoldsResults(const std::filesystem::path& dir);
 
 /// Removes files that bear names of results and are not among `written` (relative to `dir`): what

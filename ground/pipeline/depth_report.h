@@ -5,15 +5,18 @@
 
 namespace isotherm {
 
-/// What became of a depth frame.
+/// Tells what became of a depth frame.
 struct DepthReport {
   bool tracked = false;
-  bool unconfirmed = false;  ///< Has a pose that is not believed yet; counts as not tracked.
-  bool repeated = false;  ///< The same image as before: it says nothing new, and nothing was done.
+  /// The frame has a pose that is not believed yet; it counts as not tracked.
+  bool unconfirmed = false;
+  /// The image is the one before it again, so nothing was done with it.
+  bool repeated = false;
   bool integrated = false;
-  TrackingResult
-      tracking;  ///< In the coordinates of the sub-map that the frame was tracked against.
-  MapPose pose;  ///< If tracked: in the sub-map that is active after the frame.
+  /// The poses are in the coordinates of the sub-map that the frame was tracked against.
+  TrackingResult tracking;
+  /// The pose of a tracked frame, in the sub-map that is active after it.
+  MapPose pose;
 };
 
 }  // namespace isotherm

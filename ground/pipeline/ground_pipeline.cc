@@ -263,9 +263,8 @@ void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   if (is_counts && counts_.thermal_left_out[LeftOutReason::kCounts]++ == 0) {
     thermal_status_ = FailedPrecondition(
         "the thermal camera sends counts, which nothing relates to temperatures: none are fused, "
-        "geometry goes on (source.thermal_camera.expert.kelvin_per_count and offset_kelvin of the "
-        "rig "
-        "could say what counts mean)");
+        "geometry goes on (source.thermal_camera.expert.kelvin_per_count and offset_kelvin in the "
+        "configuration of isotherm-edge say what counts mean)");
     LOG(Ground, Warning) << thermal_status_.message();
   }
   if (is_counts) return;

@@ -63,7 +63,7 @@ class GroundPipeline {
   /// those that were never joined. `progress` gets a fraction 0..1.
   void Finish(const std::function<void(double)>& progress = {});
 
-  /// What all frames so far have given.
+  /// Returns what all frames so far have given.
   ScanModel model() const;
   /// For work between frames (views, results).
   ThreadPool& pool() { return pool_; }
@@ -85,7 +85,8 @@ class GroundPipeline {
   void FuseThermal(const PreparedDepth& depth, const TrackedFrame& frame);
   DepthReport Report(const TrackedFrame& frame, bool integrated) const;
 
-  /// Whether this frame's turn has come, and the rig has moved as it should.
+  /// Returns whether this frame is to be integrated: its turn has come, and the rig moved as it
+  /// should.
   bool IsDue(const TrackedFrame& frame);
   /// False if the model is still empty: nothing of the surface lies in the volume.
   bool AddSurface(const PreparedDepth& depth, const RigidTransform& T_map_depth);

@@ -55,8 +55,8 @@ class RigTracker {
   /// Goes on in another sub-map's coordinates. LookFrom must follow.
   void Rebase(const RigidTransform& T_new_old);
 
-  /// Whether a frame fits a sub-map near `T_map_depth` as well as frames usually do; the result is
-  /// not tracked if not. Changes nothing.
+  /// Tracks a frame against a sub-map near `T_map_depth`; the result is lost unless the frame fits
+  /// as well as frames usually do. Changes nothing.
   TrackingResult Verify(const PreparedDepth& depth, const RigidTransform& T_map_depth,
                         const SubMap& map, ThreadPool& pool);
 
@@ -76,7 +76,7 @@ class RigTracker {
   const OdometryPrior& external_odometry() const { return odometry_; }
 
  private:
-  /// How frames usually look: a frame that differs is not on the right surface.
+  /// Tells how frames usually look: one that differs is not on the right surface.
   struct Usual {
     double residual_per_m = 0.0;  ///< Over the square of the depth.
     double agreement = 0.0;

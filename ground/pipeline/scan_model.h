@@ -15,16 +15,16 @@
 
 namespace isotherm {
 
-/// What a scan has given so far, to be read between two frames: the model, where the rig was, and
-/// what became of the frames. It refers to what the pipeline goes on with, so it is valid as long
-/// as the pipeline is. Thread-bound, with the pipeline.
+/// Shows what a scan has given so far, to be read between two frames: the model, where the rig was,
+/// and what became of the frames. It refers to what the pipeline goes on with, so it is valid as
+/// long as the pipeline is. Thread-bound, with the pipeline.
 struct ScanModel {
   const Rig& rig;
   const Atlas& atlas;
   const Trajectory& trajectory;
   const ModelView& view;  ///< The model from the last pose; empty maps before the first frame.
   const MotionHistory& motion;         ///< The last poses, in the active sub-map.
-  const PoseUncertainty& uncertainty;  ///< Of the last tracked pose.
+  const PoseUncertainty& uncertainty;  ///< How uncertain the last tracked pose is.
   const OdometryPrior& external_odometry;
   const PipelineCounts& counts;
   const StageTimes& stages;

@@ -10,7 +10,7 @@
 
 namespace isotherm {
 
-/// What the pipeline spends time on, in the order of the names, as in stats.json.
+/// The stages that the pipeline spends time on, in the order of their names, as in stats.json.
 enum class Stage : std::uint8_t {
   kDepthFrame,  ///< All that a depth frame does to the geometric model; the next ones are parts.
   kIntegrate,

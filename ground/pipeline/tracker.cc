@@ -67,9 +67,9 @@ TrackingResult Tracker::TrackInModel(const PreparedDepth& depth, CaptureTime tim
 bool Tracker::BeginElsewhere(const PreparedDepth& depth, CaptureTime time) {
   const double limit_s = options_.expert().start_after_lost_s();
   // A hand before the camera is no place to begin at.
-  constexpr int kFewestPixels = 10 * kMinTrackedPixels;
+  constexpr int kMinPixels = 10 * kMinTrackedPixels;
   if (limit_s <= 0.0 || ToSeconds(time - *lost_since_) < limit_s ||
-      depth.valid_pixels < kFewestPixels || !atlas_.BeginElsewhere()) {
+      depth.valid_pixels < kMinPixels || !atlas_.BeginElsewhere()) {
     return false;
   }
   LOG(Ground, Warning) << fmt::format(

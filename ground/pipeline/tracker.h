@@ -19,7 +19,7 @@
 
 namespace isotherm {
 
-/// What the tracker made of a depth frame.
+/// Tells what the tracker made of a depth frame.
 struct TrackedFrame {
   enum class Outcome : std::uint8_t {
     kLost,

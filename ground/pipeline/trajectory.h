@@ -9,17 +9,18 @@
 
 namespace isotherm {
 
-/// Where the rig was at each tracked frame, in `world` as far as the sub-maps are joined. Closing a
-/// loop moves what came before. Thread-compatible.
+/// Keeps where the rig was at each tracked frame, in `world` as far as the sub-maps are joined.
+/// Closing a loop moves what came before. Thread-compatible.
 class Trajectory {
  public:
-  /// `sigma` may be in any axes, since it is along the least certain direction.
+  /// Adds a tracked frame's pose in sub-map `map`. `sigma` holds in any axes, since it is along the
+  /// least certain direction.
   void Add(const StampedMapPose& pose, const PoseSigma& sigma, int map, const Atlas& atlas);
-  /// Sub-maps were joined or moved: all poses are computed anew.
+  /// Computes all poses anew after sub-maps were joined or moved.
   void Update(const Atlas& atlas);
 
   const std::vector<StampedPose>& poses() const { return poses_; }
-  /// One standard deviation of each pose, relative to the model.
+  /// Returns one standard deviation of each pose, relative to the model.
   const std::vector<PoseSigma>& sigmas() const { return sigmas_; }
 
  private:
@@ -28,7 +29,7 @@ class Trajectory {
     PoseSigma sigma;
     int map = 0;
   };
-  /// If the sub-map is joined.
+  /// Appends the pose in `world` if its sub-map is joined.
   void Append(const TrackedPose& tracked, const Atlas& atlas);
 
   std::vector<TrackedPose> tracked_;

@@ -22,8 +22,8 @@ struct Thumbnail {
 /// than a thumbnail.
 Thumbnail MakeThumbnail(const Image<float>& depth_m);
 
-/// How badly two thumbnails agree: 0 = the same, 1 = nowhere. Of cells that only one of them sees,
-/// those of `image` count half: the other may not know what is there.
+/// Returns how badly two thumbnails agree: 0 = the same, 1 = nowhere. Of cells that only one of
+/// them sees, those of `image` count half: the other may not know what is there.
 float Disagreement(const Thumbnail& image, const Thumbnail& expected);
 
 /// A pose from which the model may look like an image.

@@ -38,7 +38,7 @@ class Renderer {
   /// The scale for `view` alone; pass a scale of your own to keep several renderings comparable.
   std::optional<TemperatureScale> ScaleFor(const ViewMaps& view) const;
 
-  /// Whether the thermal layer needs a ContourField, for isotherm lines.
+  /// Returns whether the thermal layer needs a ContourField, for isotherm lines.
   bool draws_lines() const { return !lines_.empty(); }
 
   RgbImage Draw(RenderLayer layer, const ViewMaps& view,

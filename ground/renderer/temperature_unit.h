@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// How a legend writes values: shown = factor * value + offset.
+/// A unit in which a legend writes values: shown = factor * value + offset.
 struct DisplayUnit {
   std::string name = "\u00B0C";
   double factor = 1.0;

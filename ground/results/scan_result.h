@@ -15,7 +15,7 @@
 
 namespace isotherm {
 
-/// How long a stage took, as it goes into stats.json.
+/// Returns how long a stage took, as it goes into stats.json.
 Json DescribeStage(const StageStats& stats);
 
 /// Frames, stages, volume and calibration of a scan as they go into stats.json.

@@ -10,7 +10,7 @@
 
 namespace isotherm {
 
-/// What a finished scan is about on one screen, for the user: frames, surface, temperatures, time.
+/// Returns a finished scan on one screen, for the user: frames, surface, temperatures, time.
 std::string SummaryText(const ScanModel& scan, const GroundOptions& options,
                         const DelayReport& delay, const ResultSummary& summary,
                         const Interpretation& interpretation);

@@ -16,7 +16,7 @@ struct SigmaFigures {
   std::array<double, 3> rotation_deg{};
 };
 
-/// nullopt without a trajectory.
+/// Returns the figures of these poses; nullopt if there are none.
 std::optional<SigmaFigures> Figures(const std::vector<PoseSigma>& sigmas);
 
 }  // namespace isotherm

@@ -67,7 +67,7 @@ class LiveScan {
   std::uint64_t odometry_poses_missing() const {
     return next_odometry_pose_ - std::min(next_odometry_pose_, odometry_poses_received_);
   }
-  /// What all frames so far have given.
+  /// Returns what all frames so far have given.
   ScanModel model() const { return pipeline_->model(); }
   /// For the results.
   ThreadPool& pool() { return pipeline_->pool(); }

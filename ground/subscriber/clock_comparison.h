@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-/// How the rig's wall clock compares with ours.
+/// Tells how the rig's wall clock compares with ours.
 struct ClockOffset {
   double offset_s = 0.0;       ///< Rig minus ground.
   double uncertainty_s = 0.0;  ///< The true difference is no farther from it than this.

@@ -21,7 +21,7 @@ inline constexpr Nanoseconds kMaxFramePeriod = std::chrono::seconds(1);
 inline constexpr double kMaxFrameRate_hz = 200.0;
 /// Numbers that may be missing whatever the times say.
 inline constexpr std::uint64_t kFreeNumbers = 64;
-/// How much sooner than the frame before a frame may arrive.
+/// A frame may arrive this much sooner than the frame before.
 inline constexpr Nanoseconds kMaxJitter = std::chrono::milliseconds(250);
 
 /// Why `frame` cannot be in one stream with `before`, nullopt if it can: capture times rise with
@@ -30,9 +30,9 @@ inline constexpr Nanoseconds kMaxJitter = std::chrono::milliseconds(250);
 /// cameras do. The wall clocks of both sides need not agree.
 std::optional<RefusalCause> CheckFollows(const FrameMark& before, const FrameMark& frame);
 
-/// Whether `frame` can follow a gap in a recording that is played as fast as the ground takes it:
-/// the ground's clock did not see the gap. What was recorded was so before it is played, so that
-/// `now`, the ground's wall clock, is not before it.
+/// Returns whether `frame` can follow a gap in a recording that is played as fast as the ground
+/// takes it: the ground's clock did not see the gap. A frame is recorded before it is played, so it
+/// cannot be later than `now`, the ground's wall clock.
 bool MayFollowGap(const FrameMark& before, const FrameMark& frame, CaptureTime now);
 
 }  // namespace isotherm

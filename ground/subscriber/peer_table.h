@@ -30,7 +30,7 @@ class PeerTable {
     return peer;
   }
 
-  /// Whether a writer of `peer` that was seen is still there.
+  /// Returns whether a writer of `peer` that was seen is still there.
   bool IsPresent(PeerHandle peer) const {
     for (const auto& [writer, entry] : writers_)
       if (entry.peer == peer && entry.is_there()) return true;

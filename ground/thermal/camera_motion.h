@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// How a camera moves, in its own coordinates: m/s and rad/s.
+/// The motion of a camera in its own coordinates: m/s and rad/s.
 struct CameraMotion {
   Eigen::Vector3d velocity_m_s = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();

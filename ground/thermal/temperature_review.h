@@ -9,8 +9,8 @@
 
 namespace isotherm {
 
-/// Whether what was measured belongs to a surface with this unit normal: the surface that was seen
-/// then had the same direction, and this one faces the camera at no more than an angle.
+/// Returns whether what was measured belongs to a surface with this unit normal: the surface that
+/// was seen then had the same direction, and this one faces the camera at no more than an angle.
 bool BelongsToFace(const ConditionRecord& record, const Eigen::Vector3f& normal, float min_cosine);
 
 /// Assesses kept temperatures again by the surface as it is known now. A measurement's angle was

@@ -40,11 +40,11 @@ struct ThermalVoxel {
     return static_cast<ConditionClass>(bits >> ThermalLayout::kAngleShift &
                                        ThermalLayout::kClassMask);
   }
-  /// How much the image was smeared when the temperature was measured.
+  /// Returns how much the image was smeared when the temperature was measured.
   ConditionClass motion_class() const {
     return ThermalLayout::Decode(bits >> ThermalLayout::kMotionShift);
   }
-  /// How far measurements under good conditions contradict each other.
+  /// Returns how far measurements under good conditions contradict each other.
   ConditionClass disagreement_class() const {
     return ThermalLayout::Decode(bits >> ThermalLayout::kDisagreementShift);
   }

@@ -7,9 +7,9 @@ namespace isotherm {
 
 struct TrackingResult;
 
-/// How uncertain the tracked pose is: what the last frame measured, and along directions that it
-/// left free, what was known before, growing with the error of what held them. Relative to the
-/// model. Thread-compatible.
+/// Keeps how uncertain the tracked pose is relative to the model: by what the last frame measured,
+/// and along directions that it left free by what was known before, growing with the error of what
+/// held them. Thread-compatible.
 class PoseUncertainty {
  public:
   /// After each tracked frame, with the error of the prior that held its unobservable directions.
@@ -18,8 +18,8 @@ class PoseUncertainty {
   /// Goes on in coordinates whose axes are rotated.
   void Rotate(const Eigen::Matrix3d& R_new_old);
 
-  /// How uncertain T_map_depth is, as a twist (translation, rotation about the camera's position)
-  /// in `map`, m and rad.
+  /// Returns the covariance of T_map_depth as a twist (translation, rotation about the camera's
+  /// position) in `map`, m and rad.
   const Matrix6& covariance() const { return covariance_; }
   /// One standard deviation of the least certain motion, as the shift of the surface in view,
   /// metres.

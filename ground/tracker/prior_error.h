@@ -4,7 +4,7 @@
 
 namespace isotherm {
 
-/// How far off the motion may be that holds unobservable directions, one sigma.
+/// Tells how far off the motion may be that holds unobservable directions, one sigma.
 struct PriorError {
   /// Error of the motion since the frame before, in the same sense each time: adds up frame by
   /// frame.

@@ -38,7 +38,7 @@ class RangeMap {
   std::vector<float> near_vox_, far_vox_;
 };
 
-/// How exactly a ray's end is found.
+/// Tells how exactly a ray's end is to be found.
 enum class RaycastPrecision : std::uint8_t {
   kSurface,     ///< To a small fraction of a voxel: for tracking and results.
   kVisibility,  ///< To about a tenth of a voxel, a fifth faster: for what hides what.

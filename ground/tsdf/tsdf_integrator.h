@@ -69,7 +69,7 @@ class IntegrationGate {
     accepted_ = 0;
     bootstrap_ended_ = false;
   }
-  /// Whether the model still has to become better than one frame's noise.
+  /// Returns whether the model still has to become better than one frame's noise.
   bool bootstrapping() const {
     return !bootstrap_ended_ && accepted_ < static_cast<std::uint64_t>(
                                                 std::max(0, options_.expert().bootstrap_frames()));

@@ -89,8 +89,8 @@ class TsdfVolume {
   /// The voxel at voxel coordinates; a never observed voxel where there is no block.
   TsdfVoxel VoxelAt(const GridIndex& voxel) const;
 
-  /// Whether a block can hold observed voxels behind the surface (distance <= 0), so that a ray may
-  /// end there. True until said otherwise.
+  /// Returns whether a block can hold observed voxels behind the surface (distance <= 0), so that a
+  /// ray may end there. It can until said otherwise.
   bool may_end_rays(std::int32_t block) const { return may_end_rays_[block] != 0; }
   void set_may_end_rays(std::int32_t block, bool value) { may_end_rays_[block] = value ? 1 : 0; }
 

@@ -14,7 +14,7 @@ using testing::AtLeastZero;
 using testing::Both;
 using testing::Verdict;
 
-/// Whether CullBlocks keeps a block. `precision` 0: all sums are exact.
+/// Returns whether CullBlocks keeps a block. With `precision` 0 all sums are exact.
 inline Verdict CullBlock(const float (&planes)[kFrustumPlanes][4], const std::int32_t* block,
                          double precision) {
   Verdict inside = Verdict::kYes;
