@@ -38,8 +38,8 @@ StagedScene SlantedBoards() {
 
 /// Per cent. It was 99 (measured 99.2) as long as the rim of the thermal image was cut off. All but
 /// one of the 65 wrong ones of 6272 have a wrong angle: at a board's end and on the wall a metre
-/// away, which the rim sees, the model's normals are off by more than the 5 degrees that are allowed
-/// for.
+/// away, which the rim sees, the model's normals are off by more than the 5 degrees that are
+/// allowed for.
 constexpr double kMinTrueClasses = 98.5;
 
 /// The thermal frames that lie between depth frames, so that their poses are known.
