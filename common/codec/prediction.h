@@ -31,7 +31,7 @@ constexpr int Activity(const Neighbours& pixels) {
 /// the western and northern neighbours are holes.
 struct DepthModel {
   static constexpr bool kHasHoles = true;
-  static constexpr int kActivities = 6;
+  static constexpr int kActivityLevels = 6;
   /// Most differences are so small that their token says it all.
   static constexpr bool kRawBitsAreRare = true;
 
@@ -44,7 +44,7 @@ struct DepthModel {
 /// plane through the neighbours or, at an edge, the neighbour on the pixel's side.
 struct ThermalModel {
   static constexpr bool kHasHoles = false;
-  static constexpr int kActivities = 12;
+  static constexpr int kActivityLevels = 12;
   static constexpr bool kRawBitsAreRare = false;
 
   static constexpr int Predict(const Neighbours& pixels) {
@@ -55,17 +55,17 @@ struct ThermalModel {
 };
 
 template <typename Model>
-inline constexpr int kContexts = Model::kActivities*(Model::kHasHoles ? 4 : 1);
+inline constexpr int kContexts = Model::kActivityLevels*(Model::kHasHoles ? 4 : 1);
 template <typename Model>
 inline constexpr int kTokens = kResidualTokens + (Model::kHasHoles ? 1 : 0);
 
 /// `activity_bits` is the number of bits of the activity.
 template <typename Model>
 constexpr int Context(int activity_bits, bool hole_west, bool hole_north) {
-  const int activity = Min(activity_bits, Model::kActivities - 1);
+  const int activity = Min(activity_bits, Model::kActivityLevels - 1);
   if constexpr (!Model::kHasHoles) return activity;
-  return activity + (hole_west ? Model::kActivities : 0) +
-         (hole_north ? 2 * Model::kActivities : 0);
+  return activity + (hole_west ? Model::kActivityLevels : 0) +
+         (hole_north ? 2 * Model::kActivityLevels : 0);
 }
 
 }  // namespace isotherm::codec

@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "ground/export/interpretation.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {

@@ -11,7 +11,7 @@
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"
 #include "ground/configuration/validate_options.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 #include "ground/offline/reconstruct.h"
 #include "ground/options/option_geometry.h"
 

@@ -6,15 +6,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <ctime>
-#include <nlohmann/json.hpp>
 
 #include "common/base/printable.h"
 #include "common/config/rig_calibration.h"
-#include "common/config/rig_calibration.pb.h"
 #include "common/dataset/text_lines.h"
 #include "common/recording/clock_record.h"
 #include "ground/cli/recording_damage.h"
-#include "ground/export/message_json.h"
 
 namespace isotherm {
 namespace {
@@ -38,10 +35,6 @@ std::string Size(const StreamSummary& stream) {
   return text;
 }
 
-double Ratio(std::uint64_t part, std::uint64_t whole) {
-  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
-}
-
 std::string Encodings(const StreamSummary& stream) {
   std::string text;
   for (const auto& [name, count] : stream.encodings) {
@@ -61,8 +54,7 @@ void AppendStream(std::string_view name, const StreamSummary& stream, std::strin
   text += fmt::format(" over {:.3f} s\n", ToSeconds(stream.last - stream.first));
   constexpr std::string_view kIndent = "              ";
   text += fmt::format("{}stored as {}, {:.1f} % of {:.1f} MB raw\n", kIndent, Encodings(stream),
-                      100.0 * Ratio(stream.payload_bytes, stream.raw_bytes),
-                      1e-6 * static_cast<double>(stream.raw_bytes));
+                      100.0 * stream.compression(), 1e-6 * static_cast<double>(stream.raw_bytes));
   text += fmt::format("{}{} missing", kIndent, stream.missing);
   if (stream.holes > 0) text += fmt::format(" in {} holes", stream.holes);
   text += fmt::format(", {} duplicate, {} out of order, {} repeat the image before\n",
@@ -78,18 +70,6 @@ void AppendStream(std::string_view name, const StreamSummary& stream, std::strin
     text += fmt::format("{}capture time +-{:.3f} ms\n", kIndent, 1e3 * stream.sigma_s);
   if (stream.sessions.size() > 1)
     text += fmt::format("{}{} sessions\n", kIndent, stream.sessions.size());
-}
-
-/// Whether programs that know only the common schemas show the images.
-bool IsViewable(const RecordingSummary& summary) {
-  const auto is_plain = [](const StreamSummary& stream) {
-    return std::ranges::all_of(stream.encodings, [](const auto& counted) {
-      return counted.first == EncodingName(Encoding::kRaw16) ||
-             counted.first == EncodingName(Encoding::kPng16) ||
-             counted.first == EncodingName(Encoding::kCounts16);
-    });
-  };
-  return is_plain(summary.depth) && is_plain(summary.thermal);
 }
 
 void AppendFormat(const RecordingReport& report, std::string& text) {
@@ -119,30 +99,6 @@ void AppendNuc(const RecordingSummary& summary, std::string& text) {
     text += fmt::format("{:<14}event from {} to {} ({:.3f} s)\n", "", FormatStamp(event.start),
                         FormatStamp(event.end), ToSeconds(event.end - event.start));
   }
-}
-
-/// The state of the clock that stamped the frames; empty if the recording does not say.
-std::string ClockState(const RecordingInfo& info) {
-  const auto found = info.metadata.find(std::string(kClockMetadata));
-  if (found == info.metadata.end()) return "";
-  const auto value = [&found](const char* key) {
-    const auto at = found->second.find(key);
-    return at == found->second.end() ? std::string() : at->second;
-  };
-  std::string state = value("time_base");
-  if (value("synchronised") == "yes") {
-    state = fmt::format("synchronised, off by about {} s, at most {} s", value("estimated_error_s"),
-                        value("max_error_s"));
-  } else if (!value("synchronised").empty()) {
-    state = "NOT SYNCHRONISED: capture times are right among themselves, but not as UTC";
-  }
-  if (!value("minus_ground_clock_s").empty()) {
-    state += fmt::format("; minus the ground's {} s (+-{} s)", value("minus_ground_clock_s"),
-                         value("minus_ground_clock_uncertainty_s"));
-  }
-  if (const std::string alarms = value("alarms"); !alarms.empty() && alarms != "0")
-    state += ", CLOCK ALARM";
-  return state;
 }
 
 /// How good the clock was that stamped the frames, and what to add to their times to get UTC.
@@ -238,109 +194,41 @@ void AppendOther(const RecordingReport& report, std::string& text) {
   }
 }
 
-Json StreamJson(const StreamSummary& stream) {
-  Json json;
-  json["frames"] = stream.frames;
-  if (stream.frames == 0) return json;
-  json["width"] = stream.sizes.begin()->first;
-  json["height"] = stream.sizes.begin()->second;
-  json["sizes"] = stream.sizes.size();
-  json["first"] = FormatStamp(stream.first);
-  json["last"] = FormatStamp(stream.last);
-  json["rate_hz"] = stream.rate_hz();
-  json["missing"] = stream.missing;
-  json["holes"] = stream.holes;
-  json["duplicates"] = stream.duplicates;
-  json["out_of_order"] = stream.out_of_order;
-  json["gaps"] = stream.gaps;
-  json["longest_gap_s"] = stream.longest_gap_s;
-  json["repeats"] = stream.repeats;
-  json["sessions"] = stream.sessions.size();
-  json["capture_sigma_s"] = stream.sigma_s;
-  for (const auto& [name, count] : stream.encodings) json["encodings"][name] = count;
-  json["raw_bytes"] = stream.raw_bytes;
-  json["payload_bytes"] = stream.payload_bytes;
-  json["compression"] = Ratio(stream.payload_bytes, stream.raw_bytes);
-  return json;
-}
-
-Json NucJson(const RecordingSummary& summary) {
-  Json json;
-  json["valid_frames"] = summary.valid_thermal;
-  for (const auto& [name, count] : summary.nuc_states) json["states"][name] = count;
-  for (const NucRun& run : summary.nuc_runs) {
-    Json closed;
-    closed["start"] = FormatStamp(run.start);
-    closed["end"] = FormatStamp(run.end);
-    closed["frames"] = run.frames;
-    json["closed"].push_back(std::move(closed));
-  }
-  for (const NucEvent& event : summary.nuc_events) {
-    Json item;
-    item["start"] = FormatStamp(event.start);
-    item["end"] = FormatStamp(event.end);
-    json["events"].push_back(std::move(item));
-  }
-  return json;
-}
-
-Json GapsJson(const std::vector<RecordingGap>& gaps) {
-  Json json;
-  for (const RecordingGap& gap : gaps) {
-    Json item;
-    item["offset"] = gap.offset;
-    item["bytes"] = gap.bytes;
-    for (const auto& [topic, count] : gap.messages_by_topic) item["messages"][topic] = count;
-    json.push_back(std::move(item));
-  }
-  return json;
-}
-
-Json ClockJson(const RecordingReport& report) {
-  Json json;
-  if (const std::string state = ClockState(report.info); !state.empty()) json["state"] = state;
-  for (const ClockStep& step : report.summary.clock_steps) {
-    Json item;
-    item["time"] = FormatStamp(step.time);
-    item["step_s"] = ToSeconds(step.step);
-    item["utc_minus_capture_time_s"] = ToSeconds(step.wall_minus_time);
-    json["steps"].push_back(std::move(item));
-  }
-  return json;
-}
-
-Json LogJson(const std::vector<RecordedLog>& log) {
-  Json json;
-  for (const RecordedLog& entry : log) {
-    Json line;
-    line["time"] = FormatStamp(entry.time);
-    line["level"] = entry.level;
-    line["text"] = entry.text;
-    json.push_back(std::move(line));
-  }
-  return json;
-}
-
-Json CalibrationJson(const std::optional<Rig>& rig) {
-  Json json;
-  json["present"] = rig.has_value();
-  if (!rig) return json;
-  json["depth"] = rig->depth.has_value();
-  json["thermal"] = rig->thermal.has_value();
-  json["T_thermal_depth"] = rig->T_thermal_depth.has_value();
-  json["thermal_delay_s"] = rig->thermal_delay_s;
-  const RigCalibration calibration = ToProto(*rig);
-  json["depth_sensor"] = ToJson(calibration.depth_sensor());
-  json["thermal_sensor"] = ToJson(calibration.thermal_sensor());
-  return json;
-}
-
-/// Sets json[key] if there is something to say.
-void SetUnlessEmpty(Json& json, const char* key, Json value) {
-  if (!value.empty()) json[key] = std::move(value);
-}
-
 }  // namespace
+
+bool IsViewable(const RecordingSummary& summary) {
+  const auto is_plain = [](const StreamSummary& stream) {
+    return std::ranges::all_of(stream.encodings, [](const auto& counted) {
+      return counted.first == EncodingName(Encoding::kRaw16) ||
+             counted.first == EncodingName(Encoding::kPng16) ||
+             counted.first == EncodingName(Encoding::kCounts16);
+    });
+  };
+  return is_plain(summary.depth) && is_plain(summary.thermal);
+}
+
+std::string ClockState(const RecordingInfo& info) {
+  const auto found = info.metadata.find(std::string(kClockMetadata));
+  if (found == info.metadata.end()) return "";
+  const auto value = [&found](const char* key) {
+    const auto at = found->second.find(key);
+    return at == found->second.end() ? std::string() : at->second;
+  };
+  std::string state = value("time_base");
+  if (value("synchronised") == "yes") {
+    state = fmt::format("synchronised, off by about {} s, at most {} s", value("estimated_error_s"),
+                        value("max_error_s"));
+  } else if (!value("synchronised").empty()) {
+    state = "NOT SYNCHRONISED: capture times are right among themselves, but not as UTC";
+  }
+  if (!value("minus_ground_clock_s").empty()) {
+    state += fmt::format("; minus the ground's {} s (+-{} s)", value("minus_ground_clock_s"),
+                         value("minus_ground_clock_uncertainty_s"));
+  }
+  if (const std::string alarms = value("alarms"); !alarms.empty() && alarms != "0")
+    state += ", CLOCK ALARM";
+  return state;
+}
 
 RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path& path) {
   RecordingReport report;
@@ -379,36 +267,6 @@ std::string ToText(const RecordingReport& report) {
   AppendLog(report.summary, text);
   AppendOther(report, text);
   return text;
-}
-
-Json ToJson(const RecordingReport& report) {
-  Json json;
-  json["file"] = report.file;
-  json["bytes"] = report.file_bytes;
-  json["complete"] = report.info.complete;
-  json["damaged"] = IsDamaged(report);
-  json["bytes_ignored"] = report.info.bytes_ignored;
-  json["depth_frames_lost"] = UnreadDepth(report);
-  json["thermal_frames_lost"] = UnreadThermal(report);
-  SetUnlessEmpty(json, "gaps", GapsJson(report.info.gaps));
-  json["viewable"] = IsViewable(report.summary);
-  json["unreadable_messages"] = report.summary.unreadable;
-  json["depth"] = StreamJson(report.summary.depth);
-  json["thermal"] = StreamJson(report.summary.thermal);
-  json["nuc"] = NucJson(report.summary);
-  SetUnlessEmpty(json, "clock", ClockJson(report));
-  for (const auto& [stream, count] : report.summary.poses) json["poses"][stream] = count;
-  for (const auto& [source, count] : report.summary.external_odometry)
-    json["external_odometry"][source] = count;
-  SetUnlessEmpty(json, "log", LogJson(report.summary.log));
-  json["log_left_out"] = report.summary.log_left_out;
-  for (const auto& [topic, count] : report.info.messages_by_topic) json["messages"][topic] = count;
-  for (const auto& [name, values] : report.info.metadata) {
-    for (const auto& [key, value] : values) json["metadata"][name][key] = value;
-  }
-  for (const std::string& doubt : report.doubts) json["warnings"].push_back(doubt);
-  json["calibration"] = CalibrationJson(report.rig);
-  return json;
 }
 
 }  // namespace isotherm

@@ -6,7 +6,7 @@
 
 #include "ground/calibration/delay_check.h"
 #include "ground/export/interpretation.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 #include "ground/feedback/advice.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/options/option_geometry.h"

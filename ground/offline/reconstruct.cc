@@ -15,7 +15,7 @@
 #include "ground/assembler/assembler.h"
 #include "ground/calibration/delay_check.h"
 #include "ground/calibration/scan_views.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/pipeline/pipeline_counts.h"
 #include "ground/results/scan_result.h"

@@ -10,7 +10,7 @@
 #include "common/config/rig_calibration.h"
 #include "common/config/rig_calibration.pb.h"
 #include "ground/export/message_json.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 #include "ground/pipeline/saved_model.h"
 #include "ground/renderer/layers.h"
 #include "ground/results/scan_doubts.h"

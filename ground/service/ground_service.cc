@@ -14,7 +14,7 @@
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/transport/join_domain.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 #include "ground/service/distributor.h"
 #include "ground/service/health.h"
 #include "ground/service/reconstruction_loop.h"

@@ -30,7 +30,7 @@ std::filesystem::path SessionFolder(const GroundOptions& options, bool single_sc
                                     std::uint64_t session, CaptureTime start);
 
 /// One session of the live driver: the same stages as the inline one, fed by the link. Owns no
-/// thread. Thread-bound to the reconstruction thread.
+/// thread. Thread-compatible: the reconstruction thread's, then the results' from FinishFrames on.
 class LiveScan {
  public:
   /// `clock` must outlive the scan; it is only asked how long frames waited.

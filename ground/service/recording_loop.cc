@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 
 namespace isotherm {
 namespace {

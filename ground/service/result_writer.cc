@@ -10,7 +10,7 @@
 
 #include "common/base/log.h"
 #include "common/doubts/doubts.h"
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 #include "ground/results/scan_result.h"
 #include "ground/service/link_counters.h"
 

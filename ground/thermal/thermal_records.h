@@ -7,7 +7,7 @@
 
 #include "common/base/mutex.h"
 #include "ground/surface/block_layout.h"
-#include "ground/thermal/thermal_record.h"
+#include "ground/thermal/condition_record.h"
 #include "ground/tsdf/growing_arena.h"
 
 namespace isotherm {

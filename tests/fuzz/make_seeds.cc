@@ -18,7 +18,7 @@
 #include "common/recording/testing/recording_data.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/export/ply.h"
-#include "ground/export/trajectory.h"
+#include "ground/export/trajectory_text.h"
 #include "ground/model/model_file.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/renderer/palette.h"

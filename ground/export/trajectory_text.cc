@@ -1,4 +1,4 @@
-#include "ground/export/trajectory.h"
+#include "ground/export/trajectory_text.h"
 
 #include <fmt/format.h>
 

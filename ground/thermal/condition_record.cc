@@ -1,4 +1,4 @@
-#include "ground/thermal/thermal_record.h"
+#include "ground/thermal/condition_record.h"
 
 #include <algorithm>
 #include <bit>

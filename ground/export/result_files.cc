@@ -1,4 +1,4 @@
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "ground/export/ply.h"
 #include "ground/export/png_file.h"
 #include "ground/export/surface.h"
-#include "ground/export/trajectory.h"
+#include "ground/export/trajectory_text.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/renderer/renderer.h"
 

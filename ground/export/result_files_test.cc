@@ -1,4 +1,4 @@
-#include "ground/export/results.h"
+#include "ground/export/result_files.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/testing/temporary_directory.h"
 #include "common/testing/volume_shapes.h"
-#include "ground/export/trajectory.h"
+#include "ground/export/trajectory_text.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
