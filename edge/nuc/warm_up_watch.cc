@@ -33,28 +33,30 @@ WarmUpWatch::WarmUpWatch(const NucOptions& options)
 WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeeping& housekeeping) {
   if (state_ == State::kWarm) return state_;
   if (!start_) start_ = time;
-  const bool knows_detector = std::isfinite(housekeeping.fpa_celsius);
-  const bool knows_housing = std::isfinite(housekeeping.housing_celsius);
+  detector_.is_told = detector_.is_told || std::isfinite(housekeeping.fpa_celsius);
+  housing_.is_told = housing_.is_told || std::isfinite(housekeeping.housing_celsius);
   change_.reset();
-  if (!knows_detector && !knows_housing) {
+  if (!detector_.is_told && !housing_.is_told) {
     left_ = std::max(Nanoseconds(0), blind_ - (time - *start_));
     state_ = left_ > Nanoseconds(0) ? State::kCold : State::kWarm;
     return state_;
   }
   left_ = Nanoseconds(0);
-  const State housing =
-      knows_housing ? Assess(housing_, time, housekeeping.housing_celsius) : State::kWarm;
-  const State detector =
-      knows_detector ? Assess(detector_, time, housekeeping.fpa_celsius) : State::kWarm;
+  const State housing = Assess(housing_, time, housekeeping.housing_celsius);
+  const State detector = Assess(detector_, time, housekeeping.fpa_celsius);
   const auto either = [&](State state) { return housing == state || detector == state; };
-  state_ = either(State::kCold)          ? State::kCold
-           : either(State::kNotAssessed) ? State::kNotAssessed
-                                         : State::kWarm;
+  // Who was cold stays so until all is known to be warm.
+  if (either(State::kCold)) {
+    state_ = State::kCold;
+  } else if (!either(State::kNotAssessed)) {
+    state_ = State::kWarm;
+  }
   return state_;
 }
 
 WarmUpWatch::State WarmUpWatch::Assess(Part& part, CaptureTime time, double celsius) {
-  part.rate.Add(time, celsius);
+  if (!part.is_told) return State::kWarm;
+  if (std::isfinite(celsius)) part.rate.Add(time, celsius);
   const std::optional<double> rate = part.rate.k_per_min();
   if (!rate) return State::kNotAssessed;
   if (std::abs(*rate) <= part.limit_k_per_min) return State::kWarm;

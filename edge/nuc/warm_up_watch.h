@@ -64,7 +64,9 @@ class WarmUpWatch {
     const char* name;
     const double limit_k_per_min;
     TemperatureRate rate;
+    bool is_told = false;  ///< Once told, a value that is missing leaves what was known.
   };
+  /// Warm if the camera does not tell the part's temperature.
   State Assess(Part& part, CaptureTime time, double celsius);
 
   const Nanoseconds blind_;  ///< For cameras that tell no temperature.

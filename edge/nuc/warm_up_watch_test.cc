@@ -74,6 +74,31 @@ TEST_F(WarmUpWatchTest, ACameraThatTellsItsHousingOnlyIsAssessedByThat) {
   EXPECT_EQ(watch_.Update(start_ + FromSeconds(120), housekeeping), State::kWarm);
 }
 
+TEST_F(WarmUpWatchTest, AColdCameraIsColdUntilAllIsWarm) {
+  ThermalHousekeeping housekeeping;
+  housekeeping.housing_celsius = 30.0F;
+  State state = State::kNotAssessed;
+  for (int s = 0; s <= 130; ++s) {
+    // The detector is cold for a minute, and settles before the housing could be assessed.
+    housekeeping.fpa_celsius = static_cast<float>(30.0 + 0.1 * std::min(s, 60));
+    state = watch_.Update(start_ + FromSeconds(s), housekeeping);
+    if (s >= 30 && s < 120) {
+      EXPECT_EQ(state, State::kCold) << s;
+    }
+  }
+  EXPECT_EQ(state, State::kWarm);
+}
+
+TEST_F(WarmUpWatchTest, ATemperatureThatIsMissingOnceDoesNotMakeItWarm) {
+  ThermalHousekeeping housekeeping;
+  housekeeping.fpa_celsius = 35.0F;
+  for (int s = 0; s < 300; ++s) {
+    housekeeping.housing_celsius = 30.0F + 0.01F * static_cast<float>(s);
+    if (s == 250) housekeeping.housing_celsius = static_cast<float>(kUnknown_celsius);
+    ASSERT_NE(watch_.Update(start_ + FromSeconds(s), housekeeping), State::kWarm) << s;
+  }
+}
+
 TEST_F(WarmUpWatchTest, WithoutTemperaturesTimeCounts) {
   EXPECT_EQ(Update(0, kUnknown_celsius), State::kCold);
   EXPECT_EQ(Update(179, kUnknown_celsius), State::kCold);

@@ -150,11 +150,10 @@ Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan, ThreadPool& po
   ScanViews views;
   views.thermal_camera = *rig_.thermal;
   views.T_thermal_depth = *rig_.T_thermal_depth;
-  views.trajectory = CertainPoses(scan, *rig_.thermal);
   for (const ThermalFramePtr& frame : selection_.frames()) {
     views.frames.push_back({frame->header.capture_time, {frame, &frame->centikelvin}, {}});
   }
-  const Status surface = AddSurface(scan.tsdf(), kMaxPoints, options.search.range_s, pool, views,
+  const Status surface = AddSurface(scan, kMaxPoints, options.search.range_s, pool, views,
                                     PartOf(progress, 0.0, kVisibilityFraction));
   if (!surface.ok()) return Err(surface);
   return FindDelay(views, options, pool, PartOf(progress, kVisibilityFraction, 1.0));

@@ -29,6 +29,8 @@ constexpr double kMinTracked = 0.5;
 // (thermal.expert.max_registration_px): translation and rotation, which largely make up for each
 // other in the image, are taken apart here.
 constexpr double kMaxPoseSigma_px = 2.0;
+// The least fraction of poses that must be certain.
+constexpr double kMinCertain = 0.25;
 // Slower than this, a millisecond is lost in the noise of all pixels together.
 constexpr double kMinMotion_px_s = 4.0;
 
@@ -116,8 +118,9 @@ Status CheckTracked(const PipelineCounts& counts) {
                   counts.depth_tracked, counts.depth_in));
 }
 
-}  // namespace
-
+/// The poses of a scan that place its thermal images well enough to compare them. Where the depth
+/// image did not tell the whole motion, as after a gap of its stream, tracked poses may be off by
+/// as much as their uncertainty says; thermal frames are not fused there either.
 std::vector<StampedPose> CertainPoses(const ScanModel& scan, const CameraModel& thermal_camera) {
   const std::vector<StampedPose>& poses = scan.trajectory.poses();
   const std::vector<PoseSigma>& sigmas = scan.trajectory.sigmas();
@@ -130,6 +133,8 @@ std::vector<StampedPose> CertainPoses(const ScanModel& scan, const CameraModel& 
   }
   return certain;
 }
+
+}  // namespace
 
 double ImageSpeed(const ScanViews& views) {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -168,13 +173,14 @@ std::optional<double> AppliedDelay(const RecordingInfo& info) {
   return 0.0;
 }
 
-Status AddSurface(const TsdfVolume& tsdf, std::size_t max_points, double range_s, ThreadPool& pool,
+Status AddSurface(const ScanModel& scan, std::size_t max_points, double range_s, ThreadPool& pool,
                   ScanViews& views, const std::function<void(double)>& progress) {
+  views.trajectory = scan.trajectory.poses();
   if (views.frames.size() < kMinFrames) {
     return FailedPrecondition(
         fmt::format("{} thermal frames are valid, {} are needed", views.frames.size(), kMinFrames));
   }
-  views.points = DrawPoints(tsdf, views, max_points, pool);
+  views.points = DrawPoints(scan.tsdf(), views, max_points, pool);
   if (views.points.size() < kMinPoints) {
     return FailedPrecondition(
         fmt::format("the thermal camera sees {} points of the surface, {} are needed",
@@ -187,7 +193,15 @@ Status AddSurface(const TsdfVolume& tsdf, std::size_t max_points, double range_s
                     "pixels a second, {:.0f} are needed; move it back and forth",
                     speed_px_s, kMinMotion_px_s));
   }
-  FindVisiblePoints(tsdf, range_s, pool, views, progress);
+  const auto poses = static_cast<double>(views.trajectory.size());
+  views.trajectory = CertainPoses(scan, views.thermal_camera);
+  if (static_cast<double>(views.trajectory.size()) < kMinCertain * poses) {
+    return FailedPrecondition(
+        fmt::format("only {} of {:.0f} poses are certain to {:.0f} thermal pixels: scan something "
+                    "with more shape",
+                    views.trajectory.size(), poses, kMaxPoseSigma_px));
+  }
+  FindVisiblePoints(scan.tsdf(), range_s, pool, views, progress);
   return OkStatus();
 }
 
@@ -212,11 +226,10 @@ Result<ScanForCalibration> ReadScan(const std::filesystem::path& recording,
   scan.views.thermal_camera = *rig->thermal;
   scan.views.T_thermal_depth = *rig->T_thermal_depth;
   const ScanModel model = (*pipeline)->model();
-  scan.views.trajectory = CertainPoses(model, *rig->thermal);
   scan.views.frames = frames.TakeFrames();
   Status fit = CheckTracked(model.counts);
   if (fit.ok()) {
-    fit = AddSurface(model.tsdf(), kMaxPoints, range_s, (*pipeline)->pool(), scan.views,
+    fit = AddSurface(model, kMaxPoints, range_s, (*pipeline)->pool(), scan.views,
                      PartOf(progress, kReadFraction, 1.0));
   }
   if (!fit.ok()) return Err(fit.WithContext(recording.string()));

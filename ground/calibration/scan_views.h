@@ -16,17 +16,12 @@ class GroundOptions;
 struct RecordingInfo;
 struct ScanModel;
 
-/// Adds up to `max_points` points of the surface of `tsdf` (in the trajectory's `world`) to
-/// thermal frames and a trajectory, and which of them the frames show at all delays in [-range_s,
+/// Adds the certain poses of `scan` and up to `max_points` points of its surface (in `world`) to
+/// thermal frames, and which of them the frames show at all delays in [-range_s,
 /// range_s]. Fails with what is missing: frames, surface, motion. `progress` gets the fraction
 /// done, 0..1.
-Status AddSurface(const TsdfVolume& tsdf, std::size_t max_points, double range_s, ThreadPool& pool,
+Status AddSurface(const ScanModel& scan, std::size_t max_points, double range_s, ThreadPool& pool,
                   ScanViews& views, const std::function<void(double)>& progress);
-
-/// The poses of a scan that place its thermal images well enough to compare them. Where the depth
-/// image did not tell the whole motion, as after a gap of its stream, tracked poses may be off by
-/// as much as their uncertainty says; thermal frames are not fused there either.
-std::vector<StampedPose> CertainPoses(const ScanModel& scan, const CameraModel& thermal_camera);
 
 /// RMS speed of the surface's middle in the thermal image, pixels per second.
 double ImageSpeed(const ScanViews& views);

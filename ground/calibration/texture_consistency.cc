@@ -11,7 +11,7 @@ namespace isotherm {
 namespace {
 
 // Poses further apart are not interpolated between (thermal.expert.max_wait_s).
-constexpr double kLongestGap_s = 0.1;
+constexpr double kLongestGap_s = 0.12;
 constexpr double kNoise_k = 0.1;
 constexpr double kMisalignment_px = 0.5;
 constexpr double kMinFrames = 8.0;

@@ -16,8 +16,6 @@ constexpr double kSlowEnough = 0.8;
 // The stop criterion is given up when the fraction falls so far below it: new surface came into
 // view.
 constexpr double kDoneSlack = 0.03;
-// What ends "done" because nothing was left: a view would add so many times what was too little.
-constexpr double kGainSlack = 3.0;
 // A hindrance takes the place of another one that is still due when it is so much larger.
 constexpr double kClearlyLarger = 1.3;
 
@@ -92,12 +90,6 @@ Status Validate(const FeedbackOptions& o) {
     return InvalidArgument(fmt::format("feedback.expert.min_gain_m2 must be positive, got {} m2",
                                        o.expert().min_gain_m2()));
   }
-  if (!(o.expert().done_gain_fraction() >= 0.0 && o.expert().done_gain_fraction() < 1.0)) {
-    return InvalidArgument(
-        fmt::format("feedback.expert.done_gain_fraction must be at least 0 (never) and below 1 (a "
-                    "fraction), got {}",
-                    o.expert().done_gain_fraction()));
-  }
   if (o.expert().image_width_px() != 0 &&
       (o.expert().image_width_px() < 40 || o.expert().image_width_px() > 640)) {
     return InvalidArgument(
@@ -125,15 +117,15 @@ void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSitu
   if (s.model_good) {
     Trigger(AdviceKind::kDone, *s.model_good, options_.done_fraction(),
             options_.done_fraction() - kDoneSlack);
-    const double gain = s.max_gain.value_or(1.0);
-    const double least = options_.expert().done_gain_fraction();
-    nothing_left_ = gain < (nothing_left_ ? kGainSlack * least : least);
-    Due(AdviceKind::kDone) = Due(AdviceKind::kDone) || nothing_left_;
   }
   if (!s.tracking_lost) {
-    const double smeared = view.too_fast / options_.expert().advise_fraction();
-    const double behind = s.ground_is_behind ? 1.0 : 0.0;
-    Trigger(AdviceKind::kSlower, std::max({Hurry(s), smeared, behind}), 1.0, kSlowEnough);
+    const auto stays = [](bool due, double value, double on, double off) {
+      return value >= (due ? off : on);
+    };
+    hurries_ = stays(hurries_, Hurry(s), 1.0, kSlowEnough);
+    smears_ = stays(smears_, view.too_fast, options_.expert().advise_fraction(),
+                    options_.expert().withdraw_fraction());
+    Due(AdviceKind::kSlower) = hurries_ || smears_ || s.ground_is_behind;
   }
   for (const AdviceKind kind : kHindrances) {
     Trigger(kind, Fraction(kind, view), options_.expert().advise_fraction(),
@@ -188,7 +180,7 @@ std::string OperatorAdviser::ReasonToSlowDown(const CoverageSummary& view,
   if (Hurry(s) < 1.0 && view.too_fast > 0.0) {
     const double good_px = limits_.expert().motion().smear_good_px();
     const double slow_enough = std::min(1.0, good_px / view.smear_px);
-    // A turn of so many degrees moves the image as that many metres do half a metre away.
+    // Turning by so many degrees moves the image as far as a metre does, half a metre away.
     constexpr double kDegPerMetre = 115.0;
     if (s.rotation_rate_deg_s > kDegPerMetre * s.speed_m_s) {
       return fmt::format(
@@ -215,11 +207,6 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
     case AdviceKind::kHoldForNuc:
       return "the thermal camera is correcting itself: hold still";
     case AdviceKind::kDone:
-      if (s.model_good.value_or(0.0) < options_.done_fraction() - kDoneSlack) {
-        return fmt::format("{:.0f} % of the surface is measured well, no view would add {:.1f} %",
-                           Percent(s.model_good.value_or(0.0)),
-                           Percent(options_.expert().done_gain_fraction()));
-      }
       return fmt::format("{:.0f} % of the surface is measured well, {:.0f} % were asked for",
                          Percent(s.model_good.value_or(0.0)), Percent(options_.done_fraction()));
     case AdviceKind::kSlower:

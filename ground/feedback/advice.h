@@ -16,7 +16,7 @@ namespace isotherm {
 enum class AdviceKind {
   kGoBack,      ///< Tracking is lost, or nothing of the model is in view.
   kHoldForNuc,  ///< No temperature is valid now.
-  kDone,        ///< Enough of the whole surface is measured well, or all that can be.
+  kDone,        ///< Enough of the whole surface is measured well.
   kSlower,      ///< The model cannot follow, the thermal image is smeared, or the ground is behind.
   kCloser,
   kFarther,
@@ -36,8 +36,6 @@ struct ScanSituation {
   bool ground_is_behind = false;  ///< Thermal frames are left out to keep up.
   /// Fraction of the whole surface that is measured well; nullopt while that is not yet known.
   std::optional<double> model_good;
-  /// The most that one more view would add to it; nullopt while that is not yet known.
-  std::optional<double> max_gain;
 };
 
 /// One thing to do, and the sentence that says why, with its numbers.
@@ -78,7 +76,7 @@ class OperatorAdviser {
   const FeedbackOptions options_;
   const ThermalOptions limits_;
   std::array<bool, kKinds> due_{};
-  bool nothing_left_ = false;  ///< No view would add enough.
+  bool hurries_ = false, smears_ = false;  ///< Why it should go slower.
   AdviceKind said_ = AdviceKind::kNone;
   std::string reason_;
   AdviceKind candidate_ = AdviceKind::kNone;

@@ -155,21 +155,6 @@ TEST_F(AdviceTest, TheScanIsDoneFromTheAskedFractionOnAndNotBefore) {
   EXPECT_FALSE(adviser_.done());
 }
 
-TEST_F(AdviceTest, TheScanIsDoneWhenNoViewWouldAddMuch) {
-  situation_.model_good = 0.66;  // Grooves and steep edges are the rest.
-  situation_.max_gain = 0.02;
-  EXPECT_NE(Settled().kind, AdviceKind::kDone);
-  situation_.max_gain = 0.009;
-  EXPECT_EQ(Settled().kind, AdviceKind::kDone);
-  EXPECT_EQ(Settled().reason, "66 % of the surface is measured well, no view would add 1.0 %");
-  situation_.max_gain = 0.02;
-  EXPECT_EQ(Settled().kind, AdviceKind::kDone) << "it does not flicker";
-  situation_.max_gain = 0.04;  // New surface.
-  EXPECT_NE(Settled().kind, AdviceKind::kDone);
-  situation_.max_gain.reset();
-  EXPECT_NE(Settled().kind, AdviceKind::kDone) << "not known";
-}
-
 TEST_F(AdviceTest, WhileTheModelIsNotCountedTheScanIsNotDone) {
   view_.good = 1.0;
   EXPECT_NE(Settled().kind, AdviceKind::kDone);
@@ -263,8 +248,6 @@ TEST(FeedbackOptionsTest, WhatMakesNoSenseIsSaid) {
               HasSubstr("blocks"));
   EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_views_per_message(-1); }),
               HasSubstr("views"));
-  EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_done_gain_fraction(1.0); }),
-              HasSubstr("done_gain_fraction"));
   EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_min_gain_m2(0); }),
               HasSubstr("min_gain_m2"));
   EXPECT_THAT(message([](auto& o) { o.mutable_expert()->set_image_width_px(10); }),

@@ -28,7 +28,7 @@ constexpr double kClearance = 0.7;
 
 /// From a view with less surface that the depth camera can measure than the first, as a fraction of
 /// the rays, or of what is in its view than the second, the rig would be lost.
-constexpr double kMinTrackable = 0.25, kMinTrackableOfView = 0.6;
+constexpr double kMinTrackable = 0.05, kMinTrackableOfView = 0.6;
 
 /// Targets are looked at from this much more than the nearest depth that the depth camera measures.
 constexpr double kDepthReserve = 1.15;
@@ -186,11 +186,6 @@ void ViewPlanner::NotePose(const RigidTransform& T_map_depth) {
   steps_at_best_ = steps_proposed_ = 0;
 }
 
-std::optional<double> ViewPlanner::max_gain_m2() const {
-  if (!last_round_gain_m2_) return std::nullopt;
-  return std::max({*last_round_gain_m2_, round_gain_m2_, best_ ? best_->gain_m2 : 0.0});
-}
-
 bool ViewPlanner::IsExhausted(const RigidTransform& T_map_depth) const {
   return std::ranges::any_of(exhausted_,
                              [&](const RigidTransform& view) { return IsNear(view, T_map_depth); });
@@ -198,27 +193,21 @@ bool ViewPlanner::IsExhausted(const RigidTransform& T_map_depth) const {
 
 void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                        const ModelCoverage& coverage, const RigidTransform& T_map_depth,
-                       ThreadPool& pool) {
+                       bool is_measuring, ThreadPool& pool) {
   if (options_.expert().views_per_message() == 0) return;
-  NotePose(T_map_depth);
+  if (is_measuring) NotePose(T_map_depth);
   int left = options_.expert().views_per_message();
   if (best_) {
     best_->gain_m2 = Gain(best_->T_map_depth, tsdf, thermal, pool);
     if (best_->gain_m2 < options_.expert().min_gain_m2()) best_.reset();
     --left;
   }
-  if (candidates_.empty()) {
-    if (has_round_) last_round_gain_m2_ = round_gain_m2_;
-    has_round_ = coverage.complete();
-    round_gain_m2_ = 0.0;
-    MakeCandidates(coverage, T_map_depth);
-  }
+  if (candidates_.empty()) MakeCandidates(coverage, T_map_depth);
   for (; left > 0 && !candidates_.empty(); candidates_.pop_front()) {
     const RigidTransform& candidate = candidates_.front();
     if (IsExhausted(candidate)) continue;
     --left;
     const double gain_m2 = Gain(candidate, tsdf, thermal, pool);
-    round_gain_m2_ = std::max(round_gain_m2_, gain_m2);
     const double needed_m2 =
         best_ ? kClearlyBetter * best_->gain_m2 : options_.expert().min_gain_m2();
     if (gain_m2 < needed_m2) continue;

@@ -33,14 +33,13 @@ class ViewPlanner {
               float min_weight);
 
   /// `T_map_depth` is where the rig is: views are turned as it is held, and one that it has
-  /// reached without any gain is not proposed again.
+  /// reached without any gain is not proposed again, nor is one that it did not go to in 150 steps
+  /// (there may be no way). Only steps count that are `is_measuring`: the rig is tracked, and
+  /// temperatures are taken.
   void Step(const TsdfVolume& tsdf, const ThermalVolume& thermal, const ModelCoverage& coverage,
-            const RigidTransform& T_map_depth, ThreadPool& pool);
+            const RigidTransform& T_map_depth, bool is_measuring, ThreadPool& pool);
 
   const std::optional<NextView>& best() const { return best_; }
-  /// Most surface that any view would still measure well, square metres; nullopt until all
-  /// candidates were tried once.
-  std::optional<double> max_gain_m2() const;
 
   /// Surface that a view would measure well and that is not yet, square metres; 0 where a camera
   /// would be inside or too close to something, or the depth camera would see too little to follow.
@@ -68,12 +67,9 @@ class ViewPlanner {
   SurfaceMaps maps_;
   std::deque<RigidTransform> candidates_;  ///< T_map_depth.
   std::optional<NextView> best_;
-  bool has_round_ = false;                    ///< The candidates were made of a known model.
-  double round_gain_m2_ = 0.0;                ///< The most of the candidates since they were made.
-  std::optional<double> last_round_gain_m2_;  ///< ... of those before.
-  int steps_at_best_ = 0;                     ///< That the rig has been there.
-  int steps_proposed_ = 0;                    ///< That it has been the best.
-  std::deque<RigidTransform> exhausted_;      ///< Views that gave nothing, or that nobody took.
+  int steps_at_best_ = 0;                 ///< How long the rig has been there,
+  int steps_proposed_ = 0;                ///< ... and how long it has been proposed.
+  std::deque<RigidTransform> exhausted_;  ///< Views that gave nothing, or that nobody took.
 };
 
 }  // namespace isotherm

@@ -239,8 +239,8 @@ TEST_F(ThermalStageTest, UncertaintyGrowsWithTheGapAndTowardsItsMiddle) {
   EXPECT_FALSE(left_out(1.87 * frames, 2.0 * frames));
 }
 
-TEST_F(ThermalStageTest, ByDefaultATenthOfASecondIsBridged) {
-  EXPECT_EQ(options_.expert().max_wait_s(), 0.1);
+TEST_F(ThermalStageTest, ByDefaultAStreamOfTenHertzIsBridgedJitterIncluded) {
+  EXPECT_EQ(options_.expert().max_wait_s(), 0.12);
   stage_->Add(Frame(0.1));
   Fuse(Depth(0.0, 12.0));
   EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kDepthGap, 1}}));

@@ -180,8 +180,6 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   const SurfaceAreas all = areas();
   if (!complete || !(all.total_m2() > 0.0)) return situation;
   situation.model_good = all.good_m2 / all.total_m2();
-  const std::optional<double> gain_m2 = planner_ ? planner_->max_gain_m2() : std::nullopt;
-  if (gain_m2) situation.max_gain = *gain_m2 / all.total_m2();
   return situation;
 }
 
@@ -220,6 +218,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
   feedback.advice = ToWire(advice.kind);
   feedback.advice_reason = std::move(advice.reason);
   feedback.done = adviser_.done();
+  is_measuring_ = moment.report.tracked && !moment.nuc_running && !feedback.done;
   AddNextPose(moment.report, scan, feedback);
   if (options_.feedback().expert().image_width_px() > 0 && view_.width() > 0) {
     feedback.image =
@@ -245,8 +244,8 @@ void FeedbackMaker::ThinkAhead(const ScanModel& scan, ThreadPool& pool) {
       },
       options_.feedback().expert().blocks_per_message(), pool);
   ViewPlanner* planner = Planner(scan);
-  if (planner == nullptr || scan.view.maps.width() == 0) return;
-  planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, pool);
+  if (planner == nullptr || scan.view.maps.width() == 0 || adviser_.done()) return;
+  planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, is_measuring_, pool);
 }
 
 }  // namespace isotherm

@@ -66,6 +66,7 @@ class FeedbackMaker {
   std::optional<ViewPlanner> planner_;      ///< Not without a calibrated thermal camera.
   SurfaceMaps maps_;                        ///< Every n-th pixel of the model's view.
   ViewMaps view_;
+  bool is_measuring_ = false;  ///< With the last message: views can be gone to and measured.
   std::uint64_t messages_ = 0;
 };
 

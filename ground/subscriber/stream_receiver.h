@@ -38,7 +38,7 @@ class StreamReceiver {
   StreamReceiver(std::string_view name, Nanoseconds reorder_window, RefusalCounter* refusals,
                  Consumer deliver, Consumer deliver_late);
 
-  /// Returns whether the frames of this session come as fast as the ground takes them.
+  /// Says whether the frames of this session come as fast as the ground takes them.
   void SetReplay(bool replay) { replay_ = replay; }
   /// Takes a frame that has passed the transport's checks; true if it was good and new.
   bool Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now);

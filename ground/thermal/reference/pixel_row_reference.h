@@ -36,7 +36,7 @@ struct Pixel {
   bool certain_distance = true;
 };
 
-/// Tells whether the row is smeared by less than its limits here.
+/// Notes whether the row is smeared by less than its limits here.
 inline void AssessSmear(const PixelRowArgs& a, int x, Pixel& result) {
   const auto vector = [](const float* v) {
     return Eigen::Map<const Eigen::Vector3f>(v).cast<double>().eval();
