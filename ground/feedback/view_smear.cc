@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "common/geometry/rectified_camera.h"
 
 namespace isotherm {
 
@@ -17,11 +20,10 @@ Image<float> SmearInView(const SurfaceMaps& maps, const RigidTransform& T_map_th
       const Eigen::Vector3d p_thermal = T_thermal_map * p_map;
       if (!(p_thermal.z() > 0.0)) continue;  // Nor if it is NaN.
       const Eigen::Vector2d xy = p_thermal.head<2>() / p_thermal.z();
-      const double u = thermal.fx * xy.x() + thermal.cx;
-      const double v = thermal.fy * xy.y() + thermal.cy;
-      if (u < -0.5 || v < -0.5 || u >= thermal.width - 0.5 || v >= thermal.height - 0.5) continue;
+      const std::optional<Eigen::Vector2d> pixel = ProjectIntoImage(thermal, xy);
+      if (!pixel) continue;
       const double smear_s =
-          sensor.time_constant_s + sensor.row_readout_s * std::abs(v - middle_row);
+          sensor.time_constant_s + sensor.row_readout_s * std::abs(pixel->y() - middle_row);
       const Eigen::Vector2d speed = ImageVelocity(motion, xy, p_thermal.z());
       smear_px.At(x, y) =
           static_cast<float>(smear_s * std::hypot(thermal.fx * speed.x(), thermal.fy * speed.y()));

@@ -38,9 +38,9 @@ SurfaceMaps Showing(const Eigen::Vector3f& p_map) {
 }
 
 float Smear(const Eigen::Vector3f& p_map, const CameraMotion& motion,
-            const ThermalSensorModel& sensor = Sensor(0.010, 0.0)) {
-  return SmearInView(Showing(p_map), RigidTransform::Identity(), motion, Thermal(), sensor)
-      .At(0, 0);
+            const ThermalSensorModel& sensor = Sensor(0.010, 0.0),
+            const CameraModel& camera = Thermal()) {
+  return SmearInView(Showing(p_map), RigidTransform::Identity(), motion, camera, sensor).At(0, 0);
 }
 
 /// How far the projection of a resting point moves within the time constant, by finite difference.
@@ -77,6 +77,16 @@ TEST(SmearInViewTest, RowsThatAreReadLateAreShiftedByTheReadOut) {
   // Row 119.5 + 80.
   const float smear = Smear({0, 0.12F, 0.6F}, {{0.3, 0, 0}, {0, 0, 0}}, sensor);
   EXPECT_NEAR(smear, 80 * 1e-4 * 0.3 / 0.6 * kFocal_px, 1e-3);
+}
+
+TEST(SmearInViewTest, IsKnownWhereABarrelLensDrawsASurfaceIn) {
+  // 0.25 m aside at 0.6 m: 167 px from the middle without distortion, beyond the border at 160.
+  const Eigen::Vector3f p(0.25F, 0, 0.6F);
+  const CameraMotion motion{{0.3, 0, 0}, {0, 0, 0}};
+  EXPECT_TRUE(std::isnan(Smear(p, motion)));
+  CameraModel barrel = Thermal();
+  barrel.k1 = -0.3;
+  EXPECT_NEAR(Smear(p, motion, Sensor(0.010, 0.0), barrel), 2.0, 1e-3);
 }
 
 TEST(SmearInViewTest, IsNotKnownWhereTheThermalCameraSeesNothing) {

@@ -158,8 +158,7 @@ Image<float> FeedbackMaker::Smear(const ScanModel& scan) const {
   const RigidTransform T_map_thermal = now->T_map_depth * T_depth_thermal_;
   const CameraMotion motion = MotionBetween(before->T_map_depth * T_depth_thermal_, T_map_thermal,
                                             ToSeconds(now->time - before->time));
-  return SmearInView(maps_, T_map_thermal, motion, rig_.thermal->WithoutDistortion(),
-                     rig_.thermal_sensor);
+  return SmearInView(maps_, T_map_thermal, motion, *rig_.thermal, rig_.thermal_sensor);
 }
 
 ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {

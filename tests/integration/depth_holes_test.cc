@@ -14,8 +14,8 @@
 #include "common/dataset/image_file.h"
 #include "common/simulation/depth_defects.h"
 #include "ground/evaluation/surface_evaluation.h"
-#include "ground/export/surface.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "tests/integration/surface_check.h"
 
 namespace isotherm {
 namespace {
@@ -91,17 +91,7 @@ class DepthHolesTest : public ::testing::Test {
           std::pow(TranslationDistance(report.pose.T_map_depth, truth[i].T_world_depth), 2);
     }
     outcome.rms_m = std::sqrt(squared_m2 / std::max(1, outcome.tracked));
-    SurfaceOptions surface_options;
-    surface_options.min_weight = 1.0F;
-    surface_options.triangles = false;
-    std::vector<Eigen::Vector3f> cloud;
-    for (const CloudPoint& point :
-         ExtractSurface(pipeline.model().tsdf(), pipeline.model().thermal(), surface_options,
-                        pipeline.pool())
-             .points) {
-      cloud.push_back(point.position_m);
-    }
-    outcome.surface = EvaluateSurface(cloud, *scan_->surface, {});
+    outcome.surface = testing::CheckSurface(pipeline, *scan_->surface);
     return outcome;
   }
 

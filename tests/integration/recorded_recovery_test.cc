@@ -15,8 +15,8 @@
 #include "common/dataset/image_file.h"
 #include "common/dataset/testing/dataset_folder.h"
 #include "ground/evaluation/surface_evaluation.h"
-#include "ground/export/surface.h"
 #include "ground/pipeline/ground_pipeline.h"
+#include "tests/integration/surface_check.h"
 
 namespace isotherm {
 namespace {
@@ -122,17 +122,7 @@ class RecordedRecoveryTest : public ::testing::Test {
       const DepthReport report = pipeline.ProcessDepth(Frame(shot, i, seconds));
       Assess(script, i, report, outcome);
     }
-    SurfaceOptions surface_options;
-    surface_options.min_weight = 1.0F;
-    surface_options.triangles = false;
-    std::vector<Eigen::Vector3f> cloud;
-    for (const CloudPoint& point :
-         ExtractSurface(pipeline.model().tsdf(), pipeline.model().thermal(), surface_options,
-                        pipeline.pool())
-             .points) {
-      cloud.push_back(point.position_m);
-    }
-    outcome.surface = EvaluateSurface(cloud, *recording_->surface, {});
+    outcome.surface = testing::CheckSurface(pipeline, *recording_->surface);
     return outcome;
   }
 
