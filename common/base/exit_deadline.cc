@@ -16,8 +16,13 @@ namespace isotherm {
 namespace {
 
 [[noreturn]] void LeaveNow(ExitDeadline::Duration limit, int status, const std::string& what) {
-  LOG(Service, Warning) << what << " did not end within "
-                        << std::chrono::duration<double>(limit).count() << " s; leaving without it";
+  if (limit > ExitDeadline::Duration::zero()) {
+    LOG(Service, Warning) << what << " did not end within "
+                          << std::chrono::duration<double>(limit).count()
+                          << " s; leaving without it";
+  } else {  // The bound over all stages had passed when this one began.
+    LOG(Service, Warning) << "no time was left for " << what << "; leaving without it";
+  }
   _exit(status);
 }
 

@@ -78,7 +78,21 @@ TEST(ExitDeadlineTest, StagesCannotAddUpToMoreThanTheBound) {
         }
         _exit(0);  // A second after the beginning.
       },
-      testing::ExitedWithCode(kStatus), "stage [0-9]* did not end within 0\\.0");
+      testing::ExitedWithCode(kStatus),
+      "stage [0-9]* did not end within 0\\.0|no time was left for stage");
+}
+
+TEST(ExitDeadlineTest, AStageThatBeginsBehindTheBoundIsSaidToHaveHadNoTime) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_EXIT(
+      {
+        ExitDeadline deadline;
+        deadline.Bound(milliseconds(0));
+        std::this_thread::sleep_for(milliseconds(5));
+        deadline.Arm(hours(1), kStatus, "the network");
+        Hang();
+      },
+      testing::ExitedWithCode(kStatus), "no time was left for the network");
 }
 
 TEST(ExitDeadlineTest, ABoundMovesUpADeadlineThatIsThere) {
