@@ -17,7 +17,7 @@ class PartialFile {
   PartialFile(PartialFile&& other) noexcept;
   PartialFile& operator=(PartialFile&&) = delete;
 
-  /// Where to write; nothing is there yet.
+  /// Returns where to write; nothing is there yet.
   const std::filesystem::path& path() const { return path_; }
   /// Gives the file its name.
   Status Commit() const;

@@ -7,7 +7,8 @@
 
 namespace isotherm {
 
-/// Why an operation failed. The message says what, with which numbers, and what to do about it.
+/// Says what kind of failure it was. The message says what failed, with which numbers, and what to
+/// do about it.
 enum class StatusCode {
   kOk,
   kInvalidArgument,     ///< An argument, option or configuration is wrong.

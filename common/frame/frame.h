@@ -13,7 +13,7 @@ namespace isotherm {
 
 enum class Sensor : std::uint8_t { kDepth = 0, kThermal = 1 };
 
-/// Where the knowledge about the shutter comes from.
+/// Says where the knowledge about the shutter comes from.
 enum class NucSource : std::uint8_t {
   kUnknown = 0,
   kInBand = 1,

@@ -93,7 +93,7 @@ Status Validate(const ThermalSensorModel& sensor);
 /// the stage that needs them.
 Status Validate(const Rig& rig);
 
-/// Why thermal frames cannot be fused with this rig (one sentence), or ok.
+/// Says why thermal frames cannot be fused with this rig (one sentence), or ok.
 Status CheckThermalFusion(const Rig& rig);
 
 }  // namespace isotherm

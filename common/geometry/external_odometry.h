@@ -8,9 +8,9 @@
 
 namespace isotherm {
 
-/// Where something else says the rig is: visual-inertial odometry, a flight controller, motion
-/// capture. Untrusted, as it came: numbers may be anything. The reference's coordinate frame is
-/// unknown to us, so only the difference between two poses of one source means something.
+/// Holds where something else says the rig is: visual-inertial odometry, a flight controller,
+/// motion capture. Untrusted, as it came: numbers may be anything. The reference's coordinate frame
+/// is unknown to us, so only the difference between two poses of one source means something.
 struct ExternalOdometry {
   /// NaN = the source does not say.
   static constexpr double kUnknownSigma = std::numeric_limits<double>::quiet_NaN();

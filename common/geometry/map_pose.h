@@ -6,7 +6,7 @@
 
 namespace isotherm {
 
-/// Where the depth camera is in the coordinates of a sub-map (`map`), and how certain that is.
+/// Says where the depth camera is in the coordinates of a sub-map (`map`), and how certain that is.
 struct MapPose {
   int map = 0;  ///< The sub-map's index in the atlas.
   RigidTransform T_map_depth = RigidTransform::Identity();

@@ -40,8 +40,8 @@ inline constexpr std::size_t kMaxConfidenceImageBytes = 20'000;  ///< Confidence
 
 enum class Role : std::uint8_t { kEdge = 0, kGround = 1 };
 
-/// Who a process is and what it speaks. Its own wire type is frozen. Written once at start, kept
-/// for late joiners.
+/// Says who a process is and what it speaks. Its wire type is frozen. It is written once at start
+/// and kept for late joiners.
 struct Hello {
   Role role = Role::kEdge;
   std::uint16_t wire_major = kWireMajor;
@@ -316,7 +316,7 @@ struct Feedback {
   CoverageFractions model;       ///< The whole surface.
   CoverageFractions view;        ///< The surface in view.
   std::vector<Advice> advice{};  ///< Most urgent first; at most kMaxAdvice.
-  /// Where to go next; while lost, where tracking last worked.
+  /// The pose to go to next; while lost, the one where tracking last worked.
   std::optional<RigidTransform> T_world_depth_next;
   std::vector<std::uint8_t>
       image;  ///< Confidence image, PNG or JPEG; at most kMaxConfidenceImageBytes.

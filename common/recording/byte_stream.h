@@ -9,7 +9,7 @@
 
 namespace isotherm {
 
-/// Where a recording is written. Thread-compatible.
+/// Takes the bytes of a recording that is written. Thread-compatible.
 class ByteSink {
  public:
   virtual ~ByteSink() = default;
@@ -20,7 +20,7 @@ class ByteSink {
   virtual Status Close() = 0;
 };
 
-/// Where a recording is read from. Thread-compatible.
+/// Gives the bytes of a recording that is read. Thread-compatible.
 class ByteSource {
  public:
   virtual ~ByteSource() = default;

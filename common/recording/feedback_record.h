@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// Where feedback lies in a recording, and its images beside it.
+/// Feedback lies in a recording under the first name, its images beside it under the second.
 inline constexpr std::string_view kFeedbackRecordTopic = "/feedback";
 inline constexpr std::string_view kFeedbackImageTopic = "/feedback/image";
 

@@ -31,7 +31,7 @@ class MessageStream {
   void Seek(std::uint64_t log_time);
 
  private:
-  /// Where the next message of an open segment is.
+  /// Points to the next message of an open segment.
   struct Cursor {
     std::size_t segment = 0;
     std::vector<SegmentContent::Entry> entries;

@@ -22,7 +22,7 @@ void SetImageData(EncodedImage&& image, foxglove::RawImage& message);
 foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_id,
                                       const CameraModel& camera);
 foxglove::FrameTransform ToMessage(const StampedPose& pose);
-/// Where the thermal camera is on the rig, for viewers: depth -> thermal.
+/// Tells viewers where the thermal camera is on the rig: depth -> thermal.
 foxglove::FrameTransform ThermalTransform(CaptureTime time, const RigidTransform& T_thermal_depth);
 foxglove::PoseInFrame ToMessage(const ExternalOdometry& pose);
 NucRecord ToMessage(const NucEvent& event);

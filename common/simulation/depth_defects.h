@@ -6,7 +6,8 @@
 
 namespace isotherm {
 
-/// What depth cameras and their drivers leave out or get wrong, done to an image afterwards.
+/// Names what depth cameras and their drivers leave out or get wrong. It is done to a finished
+/// image.
 enum class DepthDefect : std::uint8_t {
   kNone,
   /// Every third row and column is empty, as after registration to a camera of more pixels, and

@@ -74,8 +74,8 @@ ISOTHERM_ALWAYS_INLINE T IntersectSphere(const LocalRay<T>& ray, const LocalSize
   return t > T(0) ? t : kNoHit<T>;
 }
 
-/// Where a ray meets an endless cylinder around z: closest - half_chord and closest + half_chord;
-/// NaN if it does not.
+/// Says where a ray meets an endless cylinder around z: at closest - half_chord and closest +
+/// half_chord; NaN if it does not.
 template <typename T>
 struct Chord {
   T closest, half_chord;

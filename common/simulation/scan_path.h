@@ -18,8 +18,8 @@ struct Swing {
   double At(double time_s) const;
 };
 
-/// Where the rig is during a scan: on an arc around a point of the scene that it looks at, as an
-/// operator moves it. Smooth; starts from rest and reaches full speed within about a second.
+/// Says where the rig is during a scan: on an arc around a point of the scene that it looks at, as
+/// an operator moves it. Smooth; starts from rest and reaches full speed within about a second.
 /// Thread-safe (immutable).
 struct ScanPath {
   Swing target_x_m, target_y_m, target_z_m;  ///< The point looked at, in `world`.

@@ -19,7 +19,7 @@ struct SurfacePoint {
   int primitive = 0;        ///< Index into Scene::primitives().
 };
 
-/// Where a ray meets the scene first.
+/// Describes the first place where a ray meets the scene.
 struct SurfaceHit {
   double distance = 0.0;  ///< In lengths of the ray's direction.
   SurfacePoint point;

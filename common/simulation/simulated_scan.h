@@ -40,7 +40,7 @@ class SimulatedScan {
   /// True exposure, device ticks and arrival of each frame, by frame number.
   const std::vector<SimulatedFrameTime>& depth_times() const { return depth_times_; }
   const std::vector<SimulatedFrameTime>& thermal_times() const { return thermal_times_; }
-  /// When the shutter was closed, within the scan.
+  /// Returns when the shutter was closed, within the scan.
   const std::vector<NucEvent>& nuc_events() const { return nuc_events_; }
   bool IsShutterClosed(CaptureTime time) const;
   /// The shutter's last opening before `time`, if it was closed before.
@@ -64,7 +64,8 @@ class SimulatedScan {
   void ScheduleShutter();
   /// So many seconds after the start.
   double HousingCelsius(double seconds) const;
-  /// When the housing has changed by the shutter's drift_k since then, seconds after the start.
+  /// Returns when the housing has changed by the shutter's drift_k since `after_s`, both in seconds
+  /// after the start.
   double NextDrift(double after_s) const;
   Image<std::uint16_t> ThermalPixels(std::uint64_t frame_number, Scratch& scratch) const;
   ThermalHousekeeping HousekeepingAt(CaptureTime time) const;

@@ -10,7 +10,7 @@
 
 namespace isotherm {
 
-/// Why a sample from the link is not used.
+/// Says why a sample from the link is not used.
 enum class RefusalCause : std::uint8_t {
   kIncomplete,       ///< It ends before what each version of our major has.
   kOversizePayload,  ///< More bytes than such an image can need.

@@ -70,7 +70,7 @@ class CameraProcess final : public FrameSource {
   void LogSandbox(const Status& sandbox);
   Result<SourceItem> Take(const FromCamera& message);
   void TakeAnswer(const Status& status);
-  /// Why nothing more comes.
+  /// Returns why nothing more comes.
   Status Ended();
   /// Waits for the end of the process, at most so long, and kills it then. Its wait status; nullopt
   /// if it does not end even so.
@@ -96,7 +96,7 @@ class CameraProcess final : public FrameSource {
   std::uint64_t next_number_ = 0;
 };
 
-/// How a camera's process goes about it.
+/// Says how a camera's process serves it.
 struct ServeSettings {
   std::optional<CameraSandbox> sandbox = std::nullopt;  ///< Absent: not confined.
   /// The source waits until there is room for its next frame; otherwise that is left out.

@@ -37,8 +37,8 @@ void AddHostStatus(const HostStatus& host, EdgeStatus& status);
 /// "working", "lost, the scan goes on without it", ...
 std::string_view CameraText(CameraState state);
 
-/// How often the cameras failed and how soon their frames were stamped, printed at exit; empty if
-/// there are none.
+/// Says how often the cameras failed and how soon their frames were stamped, to be printed at exit;
+/// empty if there are none.
 std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal);
 
 /// Returns what is wrong with the wall clock and what to do about it; nullopt if nothing is.

@@ -21,8 +21,8 @@
 
 namespace isotherm {
 
-/// Housekeeping asks this of the computer, and tells this to the service manager. Functions, so that
-/// tests play both.
+/// Housekeeping asks this of the computer, and tells this to the service manager. Functions, so
+/// that tests play both.
 struct HousekeepingHost {
   std::function<HostStatus()> read;
   std::function<void(std::string_view)> notify_status;
@@ -58,7 +58,7 @@ class Housekeeping {
   std::vector<std::string> Problems() const;
   /// To the service manager, at once if something became wrong or right.
   void ReportStatus();
-  /// Whether the program makes progress, with or without cameras.
+  /// Returns whether the program makes progress, with or without cameras.
   bool GetsOn(SteadyTime now);
   /// Logs what became of the cameras since the last status.
   void LogCameras(const EdgeStatus& before) const;

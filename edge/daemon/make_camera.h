@@ -17,7 +17,7 @@ class SourceOptions;
 Result<std::unique_ptr<FrameSource>> MakeCamera(Sensor sensor, const SourceOptions& options,
                                                 const Clock& clock);
 
-/// Whether the camera's library may crash or hang without taking the edge along.
+/// Returns whether the camera's library may crash or hang without taking the edge along.
 bool RunsInOwnProcess(Sensor sensor, const SourceOptions& options);
 /// The same camera in a process of its own: this program again, with --camera-process. `stop`
 /// ends an opening early.

@@ -27,7 +27,7 @@ struct SourceContext {
   std::stop_token stop;  ///< Ends the rendering of a simulated scan, or the opening of a camera.
 };
 
-/// Why a camera cannot be used at all, as last logged.
+/// Keeps why a camera cannot be used at all, as last logged.
 using ToldProblems = std::map<Sensor, std::string>;
 
 /// The source that the options ask for, supervised: a recording, a simulated scan, or the cameras,

@@ -7,14 +7,14 @@
 
 namespace isotherm {
 
-/// How long the parts of an edge may take to end once it was told to leave. With healthy cameras
-/// and a disk that answers, it leaves within two seconds in every state of the link; whatever
-/// hangs, it leaves within kMaxStop.
+/// These say how long the parts of an edge may take to end once it was told to leave. With healthy
+/// cameras and a disk that answers, it leaves within two seconds in every state of the link;
+/// whatever hangs, it leaves within kMaxStop.
 namespace stop_limits {
 
 using std::chrono::milliseconds;
 
-/// How often the main thread looks around.
+/// The main thread looks around this often.
 inline constexpr Nanoseconds kTick = milliseconds(50);
 /// Time to let the ground confirm the last frames when a signal says to leave.
 inline constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);

@@ -47,7 +47,8 @@ class NucOrders {
   /// Nothing is asked for any more.
   void Withdraw() { requested_ = false; }
 
-  /// Whether a correction may be ordered at `now`, if the shutter opened last at `opened_at`.
+  /// Returns whether a correction may be ordered at `now`, if the shutter opened last at
+  /// `opened_at`.
   bool MayTrigger(CaptureTime now, std::optional<CaptureTime> opened_at) const;
   CaptureTime EarliestTrigger(CaptureTime now, std::optional<CaptureTime> opened_at) const;
   /// A correction is ordered, `why` in words.

@@ -23,7 +23,7 @@ struct NucFacts {
 /// Returns the state that follows from `facts`: that of the first row of a table that applies.
 NucState StateFrom(const NucFacts& facts);
 
-/// Whether temperatures of a frame in `state` may reach the model.
+/// Returns whether temperatures of a frame in `state` may reach the model.
 bool IsValid(NucState state, const NucFacts& facts);
 
 }  // namespace isotherm

@@ -96,7 +96,7 @@ class NucSupervisor {
   const ShutterLog& shutter() const { return shutter_.log(); }
   bool is_storm() const { return shutter_.is_storm(); }
   bool is_warming_up() const { return warm_up_.is_cold(); }
-  /// Why the state is what it is, one sentence; empty if there is nothing to say.
+  /// Says in one sentence why the state is what it is; empty if there is nothing to say.
   const std::string& reason() const { return reason_; }
   /// Since the last call.
   std::vector<NucNotice> TakeNotices() { return notices_.Take(); }
@@ -106,7 +106,7 @@ class NucSupervisor {
   void FollowShutter(const NucObservation& seen);
   void GiveUp();
   void OnTriggerAnswered(const Status& answer);
-  /// Why a NUC is wanted now; empty = it is not.
+  /// Says why a NUC is wanted now; empty = it is not.
   std::string DueReason(const NucObservation& seen) const;
   std::optional<NucOrder> NextOrder();
   /// kUnavailable: there is nothing to command yet, or at all.

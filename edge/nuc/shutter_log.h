@@ -8,7 +8,8 @@
 
 namespace isotherm {
 
-/// When the shutter closed and opened, and how much of the last minute it took. Thread-compatible.
+/// Keeps when the shutter closed and opened, and how much of the last minute it was closed.
+/// Thread-compatible.
 class ShutterLog {
  public:
   /// `closed_by`: how a closed shutter is known; nullopt = it is open. `time` must not decrease
@@ -18,9 +19,9 @@ class ShutterLog {
   bool is_closed() const { return closed_at_.has_value(); }
   bool just_closed() const { return just_closed_; }
   bool just_opened() const { return just_opened_; }
-  /// Who noticed or ordered the newest closing; kUnknown before the first.
+  /// Returns who noticed or ordered the newest closing; kUnknown before the first.
   NucSource source() const { return source_; }
-  /// So far, or, when it is open, of the last time.
+  /// Returns for how long it has been closed or, when it is open, was closed the last time.
   Nanoseconds closed_for() const { return closed_for_; }
   std::optional<CaptureTime> opened_at() const { return opened_at_; }
 

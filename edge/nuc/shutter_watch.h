@@ -33,7 +33,8 @@ class ShutterWatch {
   /// The camera takes an order at `now`. If it tells nothing of its shutter, that counts as closed
   /// for the time that a correction takes, from the next frame on.
   void CloseBlindly(CaptureTime now);
-  /// Whether the camera is to be opened again because it is frozen; it is then taken as done.
+  /// Returns whether the camera is to be opened again because it is frozen; it is then taken as
+  /// done.
   bool TakeRestart(CaptureTime now);
 
   bool just_closed() const { return log_.just_closed(); }
@@ -45,7 +46,7 @@ class ShutterWatch {
   bool is_frozen() const { return is_frozen_; }
   bool is_settling(CaptureTime now) const;
   bool is_storm() const { return is_storm_; }
-  /// Why nothing is ordered in a storm.
+  /// Says why nothing is ordered in a storm.
   std::string StormText() const;
   /// The camera says when its shutter is closed.
   bool is_reported() const { return is_reported_; }

@@ -42,7 +42,7 @@ class WarmUpWatch {
     kCold,         ///< Still changing, or the time is not over.
     kWarm,
   };
-  /// What still changes: of the two, the detector if both do.
+  /// Says what still changes: of the two, the detector if both do.
   struct Change {
     const char* part;  ///< "detector" or "housing".
     double k_per_min;

@@ -14,7 +14,7 @@
 
 namespace isotherm {
 
-/// How the cameras are: their threads and the capture thread write it, the status reads it.
+/// Knows how the cameras are: their threads and the capture thread write it, the status reads it.
 /// Thread-safe.
 class CameraHealth {
  public:
@@ -22,7 +22,7 @@ class CameraHealth {
   void SetWorks(Sensor sensor, bool works);
   /// The image shows (almost) nothing.
   void SetBlind(Sensor sensor, bool blind) { At(sensor).blind = blind; }
-  /// How long a frame took from its arrival to its capture time.
+  /// Enters how long a frame took from its arrival to its capture time.
   void AddStamping(Sensor sensor, Nanoseconds latency);
   /// Takes note of a frame's stamp.
   void NoteStamp(Sensor sensor, const Stamp& stamp);

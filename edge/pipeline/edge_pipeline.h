@@ -85,9 +85,9 @@ class EdgePipeline {
   Nanoseconds clock_step_total() const { return Nanoseconds(clock_step_total_ns_.load()); }
   /// Returns what the ground says. Thread-safe.
   const FeedbackMonitor& feedback() const { return feedback_; }
-  /// How full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
+  /// Returns how full the queue to the disk is, 0..1; 0 without a recording. Thread-safe.
   double spool_fill_ratio() const;
-  /// How the recording is doing; nullopt without one. Thread-safe.
+  /// Returns the state of the recording; nullopt without one. Thread-safe.
   std::optional<SpoolStatus> recording() const;
   /// Returns what a thread of the line is stuck in, in words; nullopt if all get on. Thread-safe.
   std::optional<std::string> StuckIn(SteadyTime now) const;
@@ -107,7 +107,7 @@ class EdgePipeline {
   void Forward(UncodedFrame uncoded, const std::stop_token& stop);
   void Encode(const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
-  /// How certain the stamp is, and how long it took from arrival to here.
+  /// Notes how certain the stamp is, and how long it took from arrival to here.
   void NoteStamped(const RawFrame& raw, const Stamp& stamp);
   FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
   void Record(const std::stop_token& stop);

@@ -6,7 +6,7 @@ namespace isotherm {
 
 class SourceOptions;
 
-/// How capture times relate to the edge's wall clock.
+/// Says how capture times relate to the edge's wall clock.
 enum class TimeBase : std::uint8_t {
   kWallClock,  ///< They are on it.
   kShifted,    ///< A recording's own, played in real time: off by a constant that is not known.

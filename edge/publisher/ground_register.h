@@ -9,9 +9,9 @@
 
 namespace isotherm {
 
-/// Who of the domain is a ground station, and which of them follow this rig. A ground station has
-/// said so in its hello, in our wire version; whoever else reads the frames is an onlooker. Pure.
-/// Thread-compatible.
+/// Knows who of the domain is a ground station, and which of them follow this rig. A ground station
+/// has said so in its hello, in our wire version; whoever else reads the frames is an onlooker.
+/// Pure. Thread-compatible.
 class GroundRegister {
  public:
   enum class Follows : std::uint8_t { kNotSaid, kThisRig, kAnotherRig };

@@ -22,7 +22,7 @@ class OutgoingStream {
     window_.BeginSession();
     sent_.BeginSession();
   }
-  /// The outcome of a write, whose frame was entered into sent() before it.
+  /// Enters that a frame was written. It must have been entered into sent() before the write.
   void OnPublished(std::uint64_t number) {
     ++counts_.published;
     window_.OnPublished(number);
@@ -30,13 +30,13 @@ class OutgoingStream {
   }
   void OnFailed() { ++counts_.failed; }
 
-  /// Whether one of the `readers` has just come, so that its hello may still be on its way.
+  /// Returns whether one of the `readers` has just come, so that its hello may still be on its way.
   bool HasNewReader(int readers, SteadyTime now) {
     if (readers > readers_) reader_came_at_ = now;
     readers_ = readers;
     return readers > 0 && now - reader_came_at_ < kHelloGrace;
   }
-  /// Who reads from now on may be the successor of who has left.
+  /// From now on every reader counts as new: it may be the successor of one that has left.
   void ForgetReaders() { readers_ = 0; }
 
   const StreamPublished& counts() const { return counts_; }

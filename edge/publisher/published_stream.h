@@ -17,7 +17,7 @@ class PublishedStream {
  public:
   void BeginSession() { *this = {}; }
 
-  /// Before the frame is written: the ground may have answered before writing returns.
+  /// To be called before the frame is written: the ground may answer before writing returns.
   void Note(std::uint64_t frame_number, CaptureTime capture_time) {
     next_ = std::max(next_, frame_number + 1);
     ++count_;
@@ -25,12 +25,13 @@ class PublishedStream {
     if (newest_.size() > kRemembered) newest_.pop_front();
   }
 
-  /// More than there was cannot have been received or handled.
+  /// Says why the receipt cannot be true: more than was published cannot have been received.
   std::optional<RefusalCause> Check(const StreamReceipt& receipt) const {
     if (receipt.next <= next_ && receipt.received <= count_) return std::nullopt;
     return RefusalCause::kImpossibleNumber;
   }
-  /// It must be about a frame that was published not long ago, and know its capture time.
+  /// Says why the feedback cannot be true: it must be about a frame that was published not long
+  /// ago, and know its capture time.
   std::optional<RefusalCause> Check(const Feedback& feedback) const {
     if (feedback.frame_number >= next_) return RefusalCause::kImpossibleNumber;
     const auto found = std::ranges::lower_bound(newest_, feedback.frame_number, {}, &Frame::number);

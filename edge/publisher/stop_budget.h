@@ -11,9 +11,9 @@ namespace isotherm {
 /// runs from the first question on. Thread-compatible.
 class StopBudget {
  public:
-  /// For the ground to make room in the flow window, ...
+  /// This long the ground may take to make room in the flow window.
   static constexpr Nanoseconds kWaiting = std::chrono::milliseconds(500);
-  /// ... and for writing: without its peer, the middleware makes each write wait.
+  /// This long writing may go on: without its peer, the middleware makes each write wait.
   static constexpr Nanoseconds kWriting = std::chrono::milliseconds(700);
   static_assert(kWaiting < kWriting, "what was waited for is written");
   /// From the stop to the end of the last write: one may block when stop is requested, before

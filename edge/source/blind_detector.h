@@ -16,7 +16,8 @@ class BlindDetector {
  public:
   explicit BlindDetector(const FrameCheckOptions& options);
 
-  /// Whether the camera is blind as of `frame`, whose arrival must not be before the last one's.
+  /// Returns whether the camera is blind as of `frame`, whose arrival must not be before the last
+  /// one's.
   bool Update(const RawFrame& frame);
 
  private:

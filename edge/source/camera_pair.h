@@ -62,7 +62,7 @@ class CameraPair final : public FrameSource {
   std::vector<CameraDescription> cameras() const override { return descriptions_; }
 
  private:
-  /// How a camera's first Open went.
+  /// Holds how a camera's first Open went.
   struct Opened {
     Status status;
     std::optional<Rig> rig;

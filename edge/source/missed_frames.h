@@ -5,7 +5,7 @@
 
 namespace isotherm {
 
-/// How many frames a camera counted and did not deliver, from the counter that comes with each
+/// Tells how many frames a camera counted and did not deliver, by the counter that comes with each
 /// frame. The same rule for all cameras:
 ///
 /// - A counter that goes on by at most kMaxMissed frames tells how many are missing. More cannot

@@ -44,7 +44,7 @@ class ReplaySource final : public FrameSource {
   using Item = std::variant<RawFrame, ExternalOdometry>;
 
   Result<std::optional<Item>> NextItem();
-  /// Whether the item belongs to the same scan as the first one, by its time.
+  /// Returns whether the item belongs to the same scan as the first one, by its time.
   bool IsInTime(const RecordedItem& item) const;
   RawFrame ToRawFrame(RecordedDepth recorded);
   RawFrame ToRawFrame(RecordedThermal recorded);

@@ -32,7 +32,7 @@ class SupervisedSource final : public FrameSource {
   using FrameCallback = std::function<void(Sensor)>;
   /// True: frames come (again). False: the source failed and waits to be opened again.
   using WorksCallback = std::function<void(bool works)>;
-  /// How frames that the camera counted did not get here.
+  /// Says how frames that the camera counted were lost on their way here.
   enum class Loss {
     kLeftOut,   ///< Captured, and left out because the source was not read in time.
     kInCamera,  ///< Only their numbers are missing: lost in the camera or its library.

@@ -41,7 +41,7 @@ struct SpoolParts {
   FrameCounters& counters;
 };
 
-/// How the recording is doing.
+/// Holds the state of the recording.
 struct SpoolStatus {
   std::filesystem::path path;                                ///< The newest file's.
   std::optional<std::uint64_t> free_bytes;                   ///< Absent: not known.

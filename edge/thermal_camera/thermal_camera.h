@@ -55,7 +55,7 @@ struct ThermalCameraInfo {
   std::string settings;  ///< What it was set to or found at, for people: "gain low".
   /// It measures no temperatures: no frame is radiometric.
   bool counts_only = false;
-  /// How much the device counter grows from image to image; 0 = there is no counter, and
+  /// The device counter grows by this much from image to image; 0 = there is no counter, and
   /// images are told apart by their pixels.
   int counter_step = 0;
   int native_repeats = 1;     ///< How often each image is sent: 1 = once.

@@ -14,7 +14,7 @@ namespace isotherm {
 
 class TimestamperOptions;
 
-/// How often something had to be done about a camera's clock.
+/// Counts how often something had to be done about a camera's clock.
 struct StampingCounts {
   std::uint64_t resets = 0;          ///< Counter reset, jumped, or given up.
   std::uint64_t moved = 0;           ///< Stamps that had to be moved to stay increasing.

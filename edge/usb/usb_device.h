@@ -24,7 +24,7 @@ struct UsbDeviceInfo {
   std::string problem;
 };
 
-/// Whether a device is of interest; called before it is opened.
+/// Says whether a device is of interest; it is asked before the device is opened.
 using UsbFilter = std::function<bool(std::uint16_t vendor_id, std::uint16_t product_id)>;
 
 /// The devices that `filter` takes, opened for a moment to read their strings. One that may not be
@@ -46,7 +46,7 @@ struct UsbPacket {
   bool lost = false;  ///< The bus reports an error; data may be missing.
 };
 
-/// How to stream from an endpoint.
+/// Says how to stream from an endpoint.
 struct UsbStreamPlan {
   UsbEndpoint endpoint;
   int transfers = 8;             ///< In flight together.

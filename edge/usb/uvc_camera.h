@@ -13,7 +13,7 @@
 
 namespace isotherm {
 
-/// Which of a camera's images to stream.
+/// Says which of a camera's images to stream.
 struct UvcMode {
   std::string_view four_characters;  ///< Beginning of the format's GUID, e.g. "Y16 ".
   int width = 0;
@@ -28,7 +28,7 @@ class UvcCamera {
   static Result<std::unique_ptr<UvcCamera>> Make(std::unique_ptr<UsbDevice> device);
   ~UvcCamera();
 
-  /// Whether the camera offers `mode`.
+  /// Returns whether the camera offers `mode`.
   bool Has(const UvcMode& mode) const;
   /// Agrees on the mode with the camera and starts the stream.
   Status Start(const UvcMode& mode);

@@ -21,7 +21,7 @@ struct RecordingReport {
 
 RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path& path);
 
-/// Whether programs that know only the common schemas show the images.
+/// Returns whether programs that know only the common schemas show the images.
 bool IsViewable(const RecordingSummary& summary);
 /// The state of the clock that stamped the frames; empty if the recording does not say.
 std::string ClockState(const RecordingInfo& info);

@@ -32,7 +32,7 @@ struct StreamSummary {
   double sigma_s = 0.0;          ///< Median uncertainty of the capture time; 0 = not estimated.
 
   double rate_hz() const { return period_s > 0.0 ? 1.0 / period_s : 0.0; }
-  /// What encoding left of the pixels' bytes, as a ratio.
+  /// Returns what encoding left of the pixels' bytes, as a ratio.
   double compression() const {
     return raw_bytes == 0 ? 0.0
                           : static_cast<double>(payload_bytes) / static_cast<double>(raw_bytes);

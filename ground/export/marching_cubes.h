@@ -20,11 +20,11 @@ struct CubeEdge {
 /// Three edge numbers, counter-clockwise seen from outside.
 using CubeTriangle = std::array<std::uint8_t, 3>;
 
-/// Which triangles cut a cube, for each of the 256 ways its corners can be inside (negative) or
-/// outside. Derived from one rule instead of a printed table: on a face with two diagonal corners
-/// inside, each is cut off by itself. Both cubes at a face see the same face, so the surface is
-/// closed; no triangle side lies across a face unless it bounds the surface there, so exactly two
-/// triangles meet at each side. Immutable after construction.
+/// Lists which triangles cut a cube, for each of the 256 ways its corners can be inside (negative)
+/// or outside. Derived from one rule instead of a printed table: on a face with two diagonal
+/// corners inside, each is cut off by itself. Both cubes at a face see the same face, so the
+/// surface is closed; no triangle side lies across a face unless it bounds the surface there, so
+/// exactly two triangles meet at each side. Immutable after construction.
 class MarchingCubesTable {
  public:
   MarchingCubesTable();

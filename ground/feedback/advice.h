@@ -12,7 +12,8 @@
 
 namespace isotherm {
 
-/// In the order of urgency: what comes first makes the rest useless.
+/// Names what the operator can be told to do, most urgent first: an earlier one makes the later
+/// ones useless.
 enum class AdviceKind {
   kGoBack,      ///< Tracking is lost, or nothing of the model is in view.
   kHoldForNuc,  ///< No temperature is valid now.
@@ -34,11 +35,11 @@ struct ScanSituation {
   double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.
   double max_rotation_rate_deg_s = 0.0;
   bool ground_is_behind = false;  ///< Thermal frames are left out to keep up.
-  /// Fraction of the whole surface that is measured well; nullopt while that is not yet known.
+  /// The fraction of the whole surface that is measured well; nullopt while it is not known.
   std::optional<double> model_good;
 };
 
-/// One thing to do, and the sentence that says why, with its numbers.
+/// Holds one thing to do, and the sentence that says why, with its numbers.
 struct OperatorAdvice {
   AdviceKind kind = AdviceKind::kNone;
   std::string reason;
@@ -46,25 +47,25 @@ struct OperatorAdvice {
 
 Status Validate(const FeedbackOptions& options);
 
-/// Chooses the one advice that the operator gets, and keeps it from flickering: each cause becomes
-/// due above one threshold and stays so until a lower one; it must be due for a while before it is
+/// Chooses the one advice that the operator gets, and keeps it from flickering. A cause becomes due
+/// above one threshold and stays due until a lower one. It must be due for a while before it is
 /// said, and what is said stays for a while. A lost track and a closed shutter are said at once.
 /// Thread-compatible.
 class OperatorAdviser {
  public:
   OperatorAdviser(const FeedbackOptions& options, const ThermalOptions& limits);
 
-  /// `now` must not go back.
+  /// Returns the advice for this view and situation. `now` must not go back.
   OperatorAdvice Update(CaptureTime now, const CoverageSummary& view,
                         const ScanSituation& situation);
-  /// The stop criterion is met.
+  /// Returns whether the stop criterion is met.
   bool done() const { return due_[static_cast<std::size_t>(AdviceKind::kDone)]; }
 
  private:
   static constexpr std::size_t kKinds = static_cast<std::size_t>(AdviceKind::kNone);
 
   bool& Due(AdviceKind kind) { return due_[static_cast<std::size_t>(kind)]; }
-  /// Due from `on`, until below `off`.
+  /// Makes `kind` due once `value` reaches `on`, until it falls below `off`.
   void Trigger(AdviceKind kind, double value, double on, double off);
   std::string ReasonToSlowDown(const CoverageSummary& view, const ScanSituation& situation) const;
   void UpdateTriggers(const CoverageSummary& view, const ScanSituation& situation);

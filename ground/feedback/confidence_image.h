@@ -9,13 +9,13 @@
 
 namespace isotherm {
 
-/// How well what is in view has been measured: green good, yellow acceptable, red bad, blue never,
-/// dark where there is no surface; darker where the surface turns away. With `lost` a red frame
-/// around it: the view is the last one that was tracked.
+/// Shows how well what is in view has been measured: green good, yellow acceptable, red bad, blue
+/// never, dark where there is no surface; darker where the surface turns away. With `lost` there is
+/// a red frame around it: the view is the last one that was tracked.
 RgbImage DrawConfidence(const ViewMaps& view, bool lost);
 
-/// `image` as a PNG of at most `max_bytes`: halved in both directions as often as that takes.
-/// Nothing if not even a few pixels fit, or if the image is empty.
+/// Returns `image` as a PNG of at most `max_bytes`: it is halved in both directions as often as
+/// that takes. Returns nothing if not even a few pixels fit, or if the image is empty.
 std::vector<std::uint8_t> EncodeWithin(RgbImage image, std::size_t max_bytes);
 
 }  // namespace isotherm

@@ -6,8 +6,9 @@ namespace isotherm {
 
 class ThermalOptions;
 
-/// How well the surface in a view has been measured so far, and how well it could be measured from
-/// where the view is taken now. Fractions are of the pixels with a surface and 0 if there are none.
+/// Says how well the surface in a view has been measured so far, and how well it could be measured
+/// from where the view is taken now. Fractions are of the pixels with a surface and 0 if there are
+/// none.
 struct CoverageSummary {
   double surface = 0.0;  ///< Pixels with a surface, fraction of the image.
   // These are fractions by what is stored (MeasurementQuality). The four add up to 1 if there is a
@@ -16,18 +17,20 @@ struct CoverageSummary {
   double acceptable = 0.0;
   double bad = 0.0;
   double never_measured = 0.0;
-  // Of what is not yet good, why another measurement from here would not be good. May overlap.
+  // These say why another measurement from here would not be good, for what is not good yet. They
+  // may overlap.
   double too_near = 0.0;
   double too_far = 0.0;
   double too_oblique = 0.0;
   double too_frontal = 0.0;  ///< The operator would be reflected.
-  /// Nothing but the rig's motion hinders: the thermal image would be smeared.
+  /// Only the rig's motion stands in the way: the thermal image would be smeared.
   double too_fast = 0.0;
   double smear_px = 0.0;  ///< Median smear of that part; 0 if there is none.
 };
 
-/// `view`'s distances and angles are those of the thermal camera, to which `limits` apply (within
-/// the depth of field). `smear_px` is SmearInView() of the same pixels; empty = not known.
+/// Sums up a view. `view`'s distances and angles are those of the thermal camera, to which `limits`
+/// apply (within the depth of field). `smear_px` is SmearInView() of the same pixels; empty = not
+/// known.
 CoverageSummary SummarizeCoverage(const ViewMaps& view, const Image<float>& smear_px,
                                   const ThermalOptions& limits);
 

@@ -12,7 +12,7 @@
 
 namespace isotherm {
 
-/// Surface by MeasurementQuality, square metres.
+/// Holds areas of surface by MeasurementQuality, square metres.
 struct SurfaceAreas {
   double good_m2 = 0.0;
   double acceptable_m2 = 0.0;
@@ -25,9 +25,9 @@ struct SurfaceAreas {
   SurfaceAreas& operator-=(const SurfaceAreas& other);
 };
 
-/// The surface within one block: where the distance changes sign between neighbouring voxels of
-/// which at least the first is the block's. What is not measured well is summed up with its area as
-/// weight, to know where it is and which way it faces.
+/// Describes the surface within one block. It is where the distance changes sign between
+/// neighbouring voxels of which at least the first is the block's. What is not measured well is
+/// summed up with its area as weight, to know where it is and which way it faces.
 struct BlockSurface {
   SurfaceAreas areas;
   Eigen::Vector3d lacking_position = Eigen::Vector3d::Zero();  ///< m2 times `map`.
@@ -36,21 +36,22 @@ struct BlockSurface {
   double lacking_m2() const { return areas.total_m2() - areas.good_m2; }
 };
 
-/// Voxels lighter than `min_weight` do not count as observed. By the slope of the distances, the
-/// border between free space and what lies unseen behind an edge is told from a surface, as in the
-/// exported cloud.
+/// Measures the surface within `block`. Voxels lighter than `min_weight` do not count as observed.
+/// By the slope of the distances, the border between free space and what lies unseen behind an edge
+/// is told from a surface, as in the exported cloud.
 BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, std::int32_t block,
                           float min_weight);
 
-/// Surface that is not yet measured well and faces the same way, about a hand in size.
+/// Describes a piece of surface, about a hand in size, that is not yet measured well and faces one
+/// way.
 struct LackingSurface {
   Eigen::Vector3d position_map;
   Eigen::Vector3d normal_map;  ///< Unit, towards the free side.
   double area_m2 = 0.0;
 };
 
-/// How well the whole model is measured, brought up to date a part at a time so that it costs the
-/// same whatever the model's size. Thread-compatible.
+/// Knows how well the whole model is measured. It is brought up to date a part at a time, so that
+/// it costs the same whatever the model's size. Thread-compatible.
 class ModelCoverage {
  public:
   explicit ModelCoverage(float min_weight) : min_weight_(min_weight) {}
@@ -62,9 +63,9 @@ class ModelCoverage {
               ThreadPool& pool);
 
   const SurfaceAreas& areas() const { return areas_; }
-  /// Each block was measured at least once since the model was empty.
+  /// Returns whether each block was measured at least once since the model was empty.
   bool complete() const { return turns_ > 0; }
-  /// Where most is lacking, largest first.
+  /// Returns where most is lacking, largest first.
   std::vector<LackingSurface> Lacking(std::size_t max_count) const;
 
  private:

@@ -14,16 +14,16 @@
 
 namespace isotherm {
 
-/// A view worth taking.
+/// Describes a view that is worth taking.
 struct NextView {
   RigidTransform T_map_depth;
-  double gain_m2 = 0.0;  ///< Surface that it would measure well and that is not yet.
+  double gain_m2 = 0.0;  ///< Surface that it would measure well and that is not measured well yet.
 };
 
-/// Finds the next best view: the pose from which most surface would be measured well that is not
-/// yet. Candidates look at what is lacking from a good distance along its normal and from askew;
-/// what each would see is decided by casting the model coarsely from there. A few candidates are
-/// tried per step; the best so far is tried again each time, as the model grows.
+/// Finds the next best view: the pose from which the most surface would be measured well that is
+/// not measured well yet. Candidates look at lacking surface from a good distance, along its normal
+/// and at an angle. What each would see is found by casting the model coarsely from there. A few
+/// candidates are tried per step; the best so far is tried again each time, as the model grows.
 /// Thread-compatible.
 class ViewPlanner {
  public:
@@ -32,23 +32,24 @@ class ViewPlanner {
   ViewPlanner(const FeedbackOptions& options, const ThermalOptions& limits, const Rig& rig,
               float min_weight);
 
-  /// `T_map_depth` is where the rig is: views are turned as it is held, and one that it has
-  /// reached without any gain is not proposed again, nor is one that it did not go to in 150 steps
-  /// (there may be no way). Only steps count that are `is_measuring`: the rig is tracked, and
-  /// temperatures are taken.
+  /// Tries some candidates. `T_map_depth` is where the rig is: views are turned as it is held. A
+  /// view that the rig has reached without any gain is not proposed again, nor is one that it did
+  /// not go to in 150 steps (there may be no way). Only steps with `is_measuring` count: the rig is
+  /// tracked, and temperatures are taken.
   void Step(const TsdfVolume& tsdf, const ThermalVolume& thermal, const ModelCoverage& coverage,
             const RigidTransform& T_map_depth, bool is_measuring, ThreadPool& pool);
 
   const std::optional<NextView>& best() const { return best_; }
 
-  /// Surface that a view would measure well and that is not yet, square metres; 0 where a camera
-  /// would be inside or too close to something, or the depth camera would see too little to follow.
+  /// Returns the surface that a view would measure well and that is not measured well yet, square
+  /// metres; 0 where a camera would be inside or too close to something, or the depth camera would
+  /// see too little to follow.
   double Gain(const RigidTransform& T_map_depth, const TsdfVolume& tsdf,
               const ThermalVolume& thermal, ThreadPool& pool);
 
  private:
   void MakeCandidates(const ModelCoverage& coverage, const RigidTransform& T_map_depth);
-  /// Looks at `target` from the direction `towards_camera` (unit).
+  /// Returns a pose that looks at `target` from the direction `towards_camera` (unit).
   RigidTransform LookAt(const Eigen::Vector3d& target, const Eigen::Vector3d& towards_camera,
                         const RigidTransform& T_map_depth) const;
   bool IsDepthInView(const Eigen::Vector3d& p_depth) const;

@@ -7,12 +7,12 @@
 
 namespace isotherm {
 
-/// How far each surface point of `maps` goes through the thermal image while a pixel follows a
-/// change of temperature, and with the shift by the read-out: the smear that a measurement taken
-/// now would have, thermal pixels. NaN where there is no surface or the thermal camera does not see
-/// it through its lens. `thermal` is the camera as calibrated, `motion` its own (MotionOf). Pixels
-/// are those of the middle of the image, and rows those in which the lens shows a point, as for the
-/// fuser (thermal.expert.motion).
+/// Returns the smear that a measurement taken now would have, in thermal pixels: how far each
+/// surface point of `maps` goes through the thermal image while a pixel follows a change of
+/// temperature, with the shift by the read-out. It is NaN where there is no surface or the thermal
+/// camera does not see it through its lens. `thermal` is the camera as calibrated, `motion` its own
+/// (MotionOf). Pixels are those of the middle of the image, and rows those in which the lens shows
+/// a point, as for the fuser (thermal.expert.motion).
 Image<float> SmearInView(const SurfaceMaps& maps, const RigidTransform& T_map_thermal,
                          const CameraMotion& motion, const CameraModel& thermal,
                          const ThermalSensorModel& sensor);

@@ -54,8 +54,8 @@ class GroundPipeline {
   DepthReport ProcessDepth(const DepthFrame& frame);
   /// Keeps the frame until the next tracked depth frame tells where the rig was (6.2.3).
   void ProcessThermal(ThermalFramePtr frame);
-  /// Where an odometry source says that the rig was. In order of capture time, ideally before the
-  /// first depth frame that is not older; late ones help the frames to come.
+  /// Takes where an odometry source says that the rig was. Poses come in order of capture time,
+  /// ideally before the first depth frame that is not older; late ones help the frames to come.
   void ProcessExternalOdometry(const ExternalOdometry& pose) { tracker_.AddExternalOdometry(pose); }
   /// For the frames to come, until said otherwise.
   void set_load_shedding(LoadShedding load_shedding) { load_shedding_ = load_shedding; }
@@ -92,7 +92,7 @@ class GroundPipeline {
   bool AddSurface(const PreparedDepth& depth, const RigidTransform& T_map_depth);
   /// Has what was spilled and comes into view read in the background.
   void FetchNearView(const RigidTransform& T_map_depth);
-  /// Why no thermal frame can be fused now, if so.
+  /// Returns why no thermal frame can be fused now, if so.
   std::optional<LeftOutReason> WhyNoThermal() const;
   void LookFrom(const RigidTransform& T_map_depth);
   /// At the end: all sub-maps into the first.

@@ -17,10 +17,9 @@
 
 namespace isotherm {
 
-/// Where the rig is, frame by frame: follows it against a sub-map, says when it is lost, and looks
-/// for it until it is found again. All poses are in the coordinates of the sub-map that is tracked
-/// against. Never changes a sub-map's surface.
-/// Thread-bound.
+/// Knows where the rig is, frame by frame: follows it against a sub-map, says when it is lost, and
+/// looks for it until it is found again. All poses are in the coordinates of the sub-map that is
+/// tracked against. Never changes a sub-map's surface. Thread-bound.
 class RigTracker {
  public:
   enum class State : std::uint8_t {

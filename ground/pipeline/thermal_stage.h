@@ -28,7 +28,7 @@ struct TrackedDepth {
                                    ///< over its mean depth.
   double mean_depth_m = 1.0;       ///< Depth of the surface in view.
   const TsdfVolume& tsdf;
-  /// Why thermal frames cannot be fused now at all, if so.
+  /// Says why thermal frames cannot be fused now at all, if so.
   std::optional<LeftOutReason> refusal = std::nullopt;
   bool every_second = false;  ///< There is time for every second thermal frame only.
 };

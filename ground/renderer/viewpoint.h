@@ -19,7 +19,7 @@ std::optional<RigidTransform> LookAt(const Eigen::Vector3d& from_world,
                                      const Eigen::Vector3d& at_world,
                                      const Eigen::Vector3d& up_world);
 
-/// Where a model lies, and from where it was looked at when it was scanned.
+/// Says where a model lies, and from where it was looked at when it was scanned.
 struct ModelAspect {
   Eigen::Vector3d centre_world;     ///< Centre of the box around its points, metres.
   Eigen::Vector3d to_viewer_world;  ///< Unit: from the centre to where it was seen from.

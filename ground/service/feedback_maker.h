@@ -19,7 +19,7 @@ struct FeedbackMoment {
   FrameHeader header;  ///< The newest depth frame's.
   DepthReport report;  ///< What became of it.
   bool nuc_running = false;
-  /// How the rig moved since the message before, and the time between two frames.
+  /// Say how the rig moved since the message before, and the time between two frames.
   double speed_m_s = 0.0;
   double rotation_rate_deg_s = 0.0;
   double frame_interval_s = 0.0;

@@ -11,7 +11,7 @@ namespace isotherm {
 /// A thread of the service whose end is waited for.
 enum class GroundThread : std::uint8_t { kReception, kReconstruction, kResults, kRecording };
 
-/// Where the service's threads are with their work. Thread-safe.
+/// Knows where the service's threads are with their work. Thread-safe.
 class Health {
  public:
   /// A thread that writes to the disk may be at one piece of work for `disk_limit`.

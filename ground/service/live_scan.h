@@ -25,7 +25,7 @@
 
 namespace isotherm {
 
-/// Where the results of a session go.
+/// Returns where the results of a session go.
 std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
                                     std::uint64_t session, CaptureTime start);
 

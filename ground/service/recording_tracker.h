@@ -15,7 +15,7 @@
 
 namespace isotherm {
 
-/// Why a received frame is not in the recording.
+/// Says why a received frame is not in the recording.
 enum class NotRecorded : std::uint8_t {
   kDiskTooSlow,     ///< The queue to the disk was full.
   kDiskNearlyFull,  ///< What is left is for the results.

@@ -60,7 +60,7 @@ class FrameSequencer {
   /// The numbers go on at `number`, above or below. What waits must have been flushed.
   void Resync(std::uint64_t number) { handled_ = number; }
 
-  /// When the first missing frame is given up; nullopt if nothing waits.
+  /// Returns when the first missing frame is given up; nullopt if nothing waits.
   std::optional<SteadyTime> deadline() const {
     if (waiting_.empty()) return std::nullopt;
     const auto first = std::ranges::min_element(

@@ -24,8 +24,8 @@ inline constexpr std::uint64_t kFreeNumbers = 64;
 /// A frame may arrive this much sooner than the frame before.
 inline constexpr Nanoseconds kMaxJitter = std::chrono::milliseconds(250);
 
-/// Why `frame` cannot be in one stream with `before`, nullopt if it can: capture times rise with
-/// the numbers; they advance no more than the ground's clock did, or than the frames between
+/// Says why `frame` cannot be in one stream with `before`, nullopt if it can: capture times rise
+/// with the numbers; they advance no more than the ground's clock did, or than the frames between
 /// explain (a replay is faster, a burst after an outage too); numbers advance no faster than
 /// cameras do. The wall clocks of both sides need not agree.
 std::optional<RefusalCause> CheckFollows(const FrameMark& before, const FrameMark& frame);

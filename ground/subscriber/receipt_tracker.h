@@ -9,9 +9,9 @@
 
 namespace isotherm {
 
-/// Which frame numbers of one stream have arrived. received() + missing() = next(), always. Memory
-/// is bounded: when there are too many holes, the oldest is given up, its frames stay missing for
-/// good. Thread-compatible.
+/// Knows which frame numbers of one stream have arrived. received() + missing() = next(), always.
+/// Memory is bounded: when there are too many holes, the oldest is given up, its frames stay
+/// missing for good. Thread-compatible.
 class ReceiptTracker {
  public:
   explicit ReceiptTracker(std::size_t max_holes = 1024) : max_holes_(max_holes) {}

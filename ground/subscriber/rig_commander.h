@@ -43,7 +43,7 @@ class RigCommander {
       : clock_(clock), edge_id_(std::move(edge_id)) {}
   Status Open(const Participant& participant);
   void TakeStatuses();
-  /// Which rigs are there, or what to check if none is.
+  /// Says which rigs are there, or what to check if none is.
   std::string KnownNames() const;
   bool WaitUntil(Nanoseconds timeout, const std::function<bool()>& done);
 

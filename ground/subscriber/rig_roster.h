@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-/// Which rigs are there, by their hellos. Bounded. Thread-compatible.
+/// Knows which rigs are there, by their hellos. Bounded. Thread-compatible.
 class RigRoster {
  public:
   static constexpr std::size_t kMaxRigs = 32;

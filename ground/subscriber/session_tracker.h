@@ -41,7 +41,7 @@ class SessionTracker {
   /// Closes the oldest open session if it is time; returns its final counters.
   std::optional<SessionCounters> TryClose(const StreamTally& depth, const StreamTally& thermal,
                                           SteadyTime now);
-  /// When the grace time of the oldest open session ends, if it is running.
+  /// Returns when the grace time of the oldest open session ends, if it is running.
   std::optional<SteadyTime> deadline() const;
 
  private:

@@ -47,11 +47,11 @@ class StreamReceiver {
   /// Delivers everything that waits, in order.
   void DeliverAll();
 
-  /// When the first missing frame is given up; nullopt if no frame waits for one.
+  /// Returns when the first missing frame is given up; nullopt if no frame waits for one.
   std::optional<SteadyTime> deadline() const { return sequencer_->deadline(); }
   /// The tally of `session`, as far as it is remembered (the current one and the one before).
   StreamTally tally(std::uint64_t session) const;
-  /// What the edge is told of `session`; nothing but for the current one.
+  /// Returns what the edge is told of `session`; nothing but for the current one.
   StreamReceipt receipt(std::uint64_t session) const;
 
  private:

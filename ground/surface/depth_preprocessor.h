@@ -62,8 +62,8 @@ class DepthPreprocessor {
   PreparedDepth prepared_;
 };
 
-/// Whether the image is full of holes, as that of a camera that was registered to another one is:
-/// many of its pixels lack a neighbour. Looks at a sample of the rows.
+/// Returns whether the image is full of holes, as that of a camera that was registered to another
+/// one is: many of its pixels lack a neighbour. Looks at a sample of the rows.
 bool IsFullOfHoles(const Image<float>& depth_m);
 
 /// Gives pixels without return the depth of the plane through those at most two pixels away, where

@@ -13,7 +13,7 @@ class VolumeOptions;
 /// Block coordinates, or voxel coordinates where said.
 using GridIndex = Eigen::Vector3i;
 
-/// Where the voxels of the scan volume are. Voxel (i, j, k) has its centre at
+/// Says where the voxels of the scan volume are. Voxel (i, j, k) has its centre at
 /// min_m + (i + 0.5, j + 0.5, k + 0.5) * voxel_size_m in `map`.
 struct VoxelGrid {
   Eigen::Vector3d min_m = Eigen::Vector3d::Zero();

@@ -64,7 +64,7 @@ class FakePublisher final : public Publisher {
   std::vector<std::pair<Feedback, CaptureTime>> feedback;
 
   void Break() { broken_ = true; }
-  /// Why there is no network; empty if there is one.
+  /// Sets why there is no network; empty if there is one.
   void SetProblem(std::string problem) {
     MutexLock lock(mutex_);
     problem_ = std::move(problem);

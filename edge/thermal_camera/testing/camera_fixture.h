@@ -68,7 +68,7 @@ class EmulatedCameraTest : public testing::Test {
   Status failure_;
 };
 
-/// Whether each pixel is the emulated camera's ramp plus its noise, in centi-kelvin.
+/// Returns whether each pixel is the emulated camera's ramp plus its noise, in centi-kelvin.
 inline void ExpectRamp(const RawFrame& frame, double kelvin_per_count, int first, int noise) {
   ASSERT_FALSE(frame.pixels.empty());
   for (int y = 0; y < frame.pixels.height(); ++y) {

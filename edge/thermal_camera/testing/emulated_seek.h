@@ -41,12 +41,12 @@ class EmulatedSeek final : public EmulatedDevice {
                                                 std::size_t most) override;
   std::optional<Unplugged> TakeUnplugged() override;
 
-  /// Whether it is awake, and how often it was started. Thread-safe.
+  /// Say whether it is awake, and how often it was started. Thread-safe.
   bool running() const { return running_; }
   int starts() const { return starts_; }
   /// The opcodes that came since it was plugged in, in order; not thread-safe.
   const std::vector<int>& opcodes() const { return opcodes_; }
-  /// Whether a detector is dead in all frames.
+  /// Returns whether a detector is dead in all frames.
   static bool IsDead(int x, int y);
 
  private:

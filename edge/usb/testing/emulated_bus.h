@@ -18,7 +18,7 @@ namespace isotherm {
 /// packet, cancelled ones given back, all ended when the device is unplugged. Thread-safe.
 class EmulatedBus {
  public:
-  /// Why buses cannot be emulated here; nullopt if they can.
+  /// Returns why buses cannot be emulated here; nullopt if they can.
   static std::optional<std::string> Missing();
 
   EmulatedBus();
@@ -37,7 +37,7 @@ class EmulatedBus {
   /// The same if it is not always the same process: `find` is asked at each request.
   void FindChild(std::function<std::optional<pid_t>()> find);
 
-  /// Where the device is plugged in.
+  /// The device is plugged in here.
   static constexpr const char* kBusPort = "1-1";
 
  private:

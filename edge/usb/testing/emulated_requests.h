@@ -30,7 +30,7 @@ class EmulatedRequests {
 
   /// Serves what is due at `now`.
   void Serve(Nanoseconds now);
-  /// When something may be due; nullopt = nothing is in flight.
+  /// Returns when something may be due; nullopt = nothing is in flight.
   std::optional<Nanoseconds> NextDue(Nanoseconds now) const;
   /// The cable came off: ends everything.
   void EndAll();

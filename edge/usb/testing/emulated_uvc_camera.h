@@ -35,8 +35,8 @@ class EmulatedUvcCamera : public EmulatedDevice {
   /// Frames begun so far, and the alternate setting that is active. Thread-safe.
   int frames_sent() const { return frames_sent_; }
   int alternate() const { return alternate_; }
-  /// Whether a camera with bulk transfers streams: between agreement on a mode and ClearHalt.
-  /// Thread-safe.
+  /// Returns whether a camera with bulk transfers streams: it does between agreement on a mode and
+  /// ClearHalt. Thread-safe.
   bool bulk_streaming() const { return bulk_streaming_; }
 
  protected:
