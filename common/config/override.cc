@@ -20,7 +20,8 @@ bool IsListOfTexts(const FieldDescriptor& field) {
   return field.is_repeated() && field.cpp_type() == FieldDescriptor::CPPTYPE_STRING;
 }
 
-/// What an assignment can name: a value is added to a list of texts, other lists are for files.
+/// Returns what an assignment can name: a value is added to a list of texts, other lists are for
+/// files.
 std::vector<std::string> FieldNames(const pb::Descriptor& type) {
   std::vector<std::string> names;
   for (int i = 0; i < type.field_count(); ++i) {

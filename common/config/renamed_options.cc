@@ -214,7 +214,7 @@ constexpr RenamedOption kRenamed[] = {
     {"SimulationOptions", "thermal_phase_s", "expert.thermal_phase_s"},
 };
 
-/// Where the options of a message and of what is in its expert block stand, by their names.
+/// Collects where the options of a message and of its expert block stand, by their names.
 void CollectPlaces(const google::protobuf::Descriptor& type, const std::string& prefix,
                    std::map<std::string, std::string>& places) {
   for (int i = 0; i < type.field_count(); ++i) {

@@ -71,7 +71,7 @@ class Walker {
       if (!at_end_) Next();
     }
   }
-  /// Of a list.
+  /// Reads one element of a list.
   void Element(const pb::Descriptor* type, int depth) {
     if (Is("{") || Is("<")) {
       Value(type, depth);

@@ -14,7 +14,7 @@ constexpr double kMaxGrowth = 1.5;
 /// polynomial has folded or the iteration has not ended.
 constexpr double kSamePoint = 1e-3;
 
-/// What the centres of the border's pixels see, in normalised image coordinates.
+/// Returns what the centres of the border's pixels see, in normalised image coordinates.
 Eigen::AlignedBox2d UndistortedBorder(const CameraModel& camera) {
   Eigen::AlignedBox2d border;
   const auto extend = [&](int u, int v) {

@@ -21,8 +21,8 @@ double IntersectPrimitive(const Primitive& primitive, const Vector3d& origin,
                     [&]<Shape shape>() { return IntersectShape<shape, double>(ray, size); });
 }
 
-/// Whether a ray comes closer than `radius` to the centre. `center_to_origin` points at the ray's
-/// origin.
+/// Returns whether a ray comes closer than `radius` to the centre. `center_to_origin` points at the
+/// ray's origin.
 bool PassesNear(const Vector3d& center_to_origin, const Vector3d& direction, double radius) {
   const double along = center_to_origin.dot(direction);
   const double outside = center_to_origin.squaredNorm() - radius * radius;

@@ -8,8 +8,8 @@
 namespace isotherm {
 namespace {
 
-/// How one topic is carried. All are reliable and keep-last: keep-all would let an outage block the
-/// writer.
+/// Says how one topic is carried. All are reliable and keep-last: keep-all would let an outage
+/// block the writer.
 struct Profile {
   const char* name;
   /// Samples kept per rig, on both sides.

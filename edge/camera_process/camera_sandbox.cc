@@ -44,8 +44,8 @@ struct RulesetAttributes {
   std::uint64_t scoped = 0;
 };
 
-/// Which Landlock the kernel has; 0: none. kFailedPrecondition: this process would be ended if it
-/// asked, as a service's filter of system calls does it: so a child asks.
+/// Returns which version of Landlock the kernel has; 0: none. kFailedPrecondition: this process
+/// would be ended if it asked, as a service's filter of system calls does it: so a child asks.
 Result<int> LandlockVersion() {
   const pid_t child = ::fork();
   if (child == 0) {

@@ -87,7 +87,7 @@ class DdsPublisher final : public Publisher {
   void OnFeedback(const Received<Feedback>& received, const PublisherHandlers& handlers);
   void OnPeer(const Received<Hello>& peer);
   void LookForGround();
-  /// Why what the ground says of this session cannot be.
+  /// Says why the ground's word about this session cannot be true.
   std::optional<RefusalCause> RefusalOf(const Receipt& receipt) const REQUIRES(mutex_);
   std::optional<RefusalCause> RefusalOf(const Feedback& feedback, PeerHandle sender) const
       REQUIRES(mutex_);
@@ -96,14 +96,14 @@ class DdsPublisher final : public Publisher {
     return session_;
   }
   bool IsGroundReady() const;
-  /// Whether the ground that follows this rig, or may, reads what `writer` writes: an onlooker is
-  /// not waited for.
+  /// Returns whether the ground that follows this rig, or may, reads what `writer` writes: an
+  /// onlooker is not waited for.
   template <typename Frame>
   bool IsAwaited(const Writer<Frame>& writer) const REQUIRES(mutex_) {
     return grounds_.IsAwaited([&](PeerHandle peer) { return writer.Reaches(peer); },
                               clock_.SteadyNow());
   }
-  /// As above, or somebody who has just come.
+  /// Returns the same, or whether somebody reads who has just come.
   template <typename Frame>
   bool MayBeAwaited(const Writer<Frame>& writer, OutgoingStream* stream, SteadyTime now) const
       REQUIRES(mutex_) {

@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-// How long a Read waits for a frame.
+// A Read waits for a frame at most so long.
 constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
 
 std::string_view NameOf(Sensor sensor) {

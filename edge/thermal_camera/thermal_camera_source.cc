@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Of one Read.
+// One Read waits for an image at most so long.
 constexpr Nanoseconds kWait = milliseconds(50);
 
 ThermalGain GainOf(ThermalGainOption gain) {

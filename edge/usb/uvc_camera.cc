@@ -24,7 +24,7 @@ constexpr int kTransfers = 8;
 // A transfer spans this much time on the bus: what a frame may wait for its completion, against
 // wake-ups.
 constexpr Nanoseconds kTransferTime = milliseconds(8);
-// Of a bulk transfer: small, so that the first bytes of a frame are stamped soon.
+// A bulk transfer is so small that the first bytes of a frame are stamped soon.
 constexpr std::size_t kBulkTransferBytes = 16'384;
 // The longest header is 255 bytes.
 constexpr std::size_t kMaxHeaderBytes = 256;

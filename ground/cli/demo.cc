@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of painted surfaces in the simulated scenes.
+// Emissivity of painted surfaces in the simulated scenes.
 constexpr double kEmissivity = 0.96;
 // Less than half a frame period, more than the stamping error.
 constexpr double kStampTolerance_ms = 10.0;
@@ -101,7 +101,8 @@ Status ExplainFailure(const std::string& name, int exit_status, const fs::path& 
                                  exit_status, log.string(), LastLines(log, 5)));
 }
 
-// How far the scan is, by the size of the ground's recording against that of the simulated one.
+// Returns how far the scan is, by the size of the ground's recording against that of the simulated
+// one.
 double ScanFraction(const fs::path& received, const fs::path& simulated) {
   std::error_code error;
   const auto got = fs::file_size(received, error);

@@ -31,7 +31,8 @@ void SetAt(std::string_view path, const Json& value, const pb::Descriptor& type,
   }
 }
 
-/// Of a repeated message; one that stands alone is a list of one. Text was another grammar.
+/// Returns a repeated message with present names. An entry that stands alone is a list of one;
+/// text, which is of an older grammar, is left out.
 Json ListWithPresentNames(const Json& list, const pb::Descriptor& type) {
   Json present = Json::array();
   for (const Json& item : list.is_array() ? list : Json::array({list}))

@@ -27,7 +27,7 @@ constexpr Program kPrograms[] = {
     {"simulate", "isotherm.SimulationOptions", "isotherm simulate"},
 };
 
-/// What stands before the page's tables.
+/// This stands before the page's tables.
 constexpr const char* kPageHead = R"(# Options
 
 <!-- Made from the comments of the .proto files; option_list_test compares. To update it:
@@ -57,7 +57,8 @@ std::string DefaultOf(const pb::FieldDescriptor& field) {
   return value.empty() ? "   (none)" : " = " + value;
 }
 
-/// What may stand for an option: the names of an enumeration, the fields of each of several groups.
+/// Returns what may stand for an option: the names of an enumeration, the fields of each of several
+/// groups.
 std::string Choices(const pb::FieldDescriptor& field) {
   std::string text;
   if (const pb::EnumDescriptor* type = field.enum_type()) {

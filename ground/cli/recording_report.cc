@@ -101,7 +101,7 @@ void AppendNuc(const RecordingSummary& summary, std::string& text) {
   }
 }
 
-/// How good the clock was that stamped the frames, and what to add to their times to get UTC.
+/// Says how good the clock was that stamped the frames, and what to add to their times to get UTC.
 void AppendClock(const RecordingReport& report, std::string& text) {
   if (const std::string state = ClockState(report.info); !state.empty())
     text += fmt::format("{:<14}{}\n", "clock", Printable(state));

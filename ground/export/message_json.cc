@@ -66,7 +66,8 @@ bool HasRequiredFields(const pb::Descriptor& type) {
   return false;
 }
 
-/// Whether an absent field has a value all the same. A calibration that is absent stays absent.
+/// Returns whether an absent field has a value all the same. A calibration that is absent stays
+/// absent.
 bool HasDefault(const pb::FieldDescriptor* field) {
   const pb::Descriptor* type = field->message_type();
   return type != nullptr ? !HasRequiredFields(*type) : field->has_default_value();

@@ -170,8 +170,8 @@ class Extractor {
     return gradient;
   }
 
-  /// Whether the distance grows along `normal` no faster than a distance to a surface can, one
-  /// voxel to either side. Unobserved sides pass.
+  /// Returns whether the distance grows along `normal` no faster than a distance to a surface can,
+  /// one voxel to either side. Unobserved sides pass.
   bool IsGradual(const Eigen::Vector3f& p_voxel, const Eigen::Vector3f& normal) const {
     for (const float side : {-1.0F, 1.0F}) {
       const std::optional<float> tsdf =

@@ -11,7 +11,7 @@ namespace {
 // it does again from the second on.
 constexpr double kTooLittleSurface = 0.02;
 constexpr double kEnoughSurface = 0.04;
-// Of the fastest motion that the model follows, what ends "slower".
+// "Slower" ends at this fraction of the fastest motion that the model follows.
 constexpr double kSlowEnough = 0.8;
 // The stop criterion is given up when the fraction falls so far below it: new surface came into
 // view.

@@ -59,7 +59,7 @@ bool IsNear(const RigidTransform& a, const RigidTransform& b) {
          std::acos(std::clamp(a.linear().col(2).dot(b.linear().col(2)), -1.0, 1.0)) < kAtView_rad;
 }
 
-/// Whether a point lies behind an observed surface.
+/// Returns whether a point lies behind an observed surface.
 bool IsInside(const TsdfVolume& tsdf, const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d p = tsdf.grid().ToVoxel(p_map).array().round();
   if ((p.array() < 0.0).any()) return false;

@@ -18,7 +18,7 @@ constexpr double kUnusualAgreement = 0.5;  ///< ... or with this fraction of the
 constexpr double kConvincingResidual = 2.5;
 constexpr double kConvincingAgreement = 0.8;
 
-/// How fast a rig may be whose speed was never measured, m/s at the scene's depth.
+/// A rig whose speed was never measured may be this fast, m/s at the scene's depth.
 constexpr double kUnknownSpeed = 0.3;
 
 constexpr int kFramesToKnow = 5;  ///< Until what is usual is known.

@@ -42,8 +42,8 @@ CameraModel ThumbnailCamera(const CameraModel& depth) {
   return camera;
 }
 
-/// Where an operator may have come back to, seen from a known pose: beside, before and behind it,
-/// looking elsewhere; or around what was looked at there, at `distance_m`.
+/// Returns where an operator may have come back to, seen from a known pose: beside, before and
+/// behind it, looking elsewhere; or around what was looked at there, at `distance_m`.
 std::vector<RigidTransform> MakeOffsets(double distance_m) {
   const auto rotation = [](double yaw_deg, double pitch_deg) -> Eigen::Quaterniond {
     return Eigen::AngleAxisd(yaw_deg * kRadPerDeg, Eigen::Vector3d::UnitY()) *

@@ -58,7 +58,7 @@ class Relocaliser::Refinement {
         min_weight_(min_weight),
         pool_(pool) {}
 
-  /// How well the frame fits, and where.
+  /// Says how well the frame fits, and where.
   struct Fit {
     RigidTransform pose;
     double agreement = 0.0;

@@ -12,7 +12,7 @@ namespace {
 /// Width of a letter's stroke, in heights of a capital letter.
 constexpr double kStrokePerHeight = 0.125;
 
-/// How much of a pixel a shape covers whose edge is so many pixels from the pixel's centre,
+/// Returns how much of a pixel a shape covers whose edge is so many pixels from the pixel's centre,
 /// negative inside. Exact for an edge along a row or a column.
 double Cover(double distance_px) { return std::clamp(0.5 - distance_px, 0.0, 1.0); }
 

@@ -108,7 +108,7 @@ struct Segment {
   Eigen::Vector2d from, to;
 };
 
-/// Where the line crosses the cell whose upper left corner is the pixel (x, y).
+/// Adds where the line crosses the cell whose upper left corner is the pixel (x, y).
 void AddCell(const ContourField& field, double level, int x, int y, std::vector<Segment>& out) {
   constexpr auto kBoth = ContourField::kRight | ContourField::kBelow;
   if ((field.joined.At(x, y) & kBoth) != kBoth ||

@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-// Of the rendering that the model fills at most, so that it does not touch the edges.
+// The model fills at most this part of the rendering, so that it does not touch the edges.
 constexpr double kFill = 0.94;
 // Mean of the unit vectors towards the cameras: 1 = all on one spot, 0 = all around. Below it, a
 // scan went around its object (a half circle gives 0.64).

@@ -12,7 +12,7 @@
 namespace isotherm {
 namespace {
 
-/// Why the model that was gone on with is all there is.
+/// Says why there is nothing but the model that the scan went on with.
 std::string NotFoundInModel(const ScanOutcome& outcome) {
   const std::string elsewhere =
       outcome.maps > 1 ? "; what this scan saw is in model-2.iso and so on" : "";

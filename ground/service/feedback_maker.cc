@@ -89,8 +89,8 @@ std::optional<RigidTransform> InWorld(const Atlas& atlas, int map,
   return pose->T_world_depth;
 }
 
-/// Where tracking worked before `now`, in `world`; nullopt if that is not known. It is the last
-/// pose at first; who was not found there is sent back along the way they came.
+/// Returns where tracking worked before `now`, in `world`; nullopt if that is not known. It is the
+/// last pose at first; who was not found there is sent back along the way they came.
 std::optional<RigidTransform> LastKnownPose(const ScanModel& scan, CaptureTime now) {
   constexpr Nanoseconds kStay = std::chrono::seconds(2);
   const std::vector<StampedPose>& poses = scan.trajectory.poses();

@@ -43,7 +43,7 @@ Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCoun
   return stats;
 }
 
-/// Where results go that cannot be written where they belong.
+/// Returns where results go that cannot be written where they belong.
 fs::path SecondFolder(const fs::path& folder) {
   std::error_code error;
   const fs::path base = fs::temp_directory_path(error);

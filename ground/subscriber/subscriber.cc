@@ -78,7 +78,7 @@ class DdsSubscriber final : public Subscriber {
   template <typename Item>
   void OnFrame(typename StreamReceiver<Item>::Encoded&& frame, StreamReceiver<Item>* receiver,
                CaptureTime arrival);
-  /// Who is there, who is the rig, and who only says so.
+  /// Finds out who is there, who is the rig, and who only says so.
   void LookAround(SteadyTime now);
   /// True for samples of the rig that is followed; counts those of others.
   bool IsFollowed(const std::string& edge_id);

@@ -144,7 +144,7 @@ struct PlaneSums {
       : S(hn::Zero(d)), Sx(S), Sy(S), Sxx(S), Sxy(S), Syy(S), T(S), Tx(S), Ty(S), ee(S) {}
 };
 
-/// What must be so that a plane may fill a pixel; lengths in pixels over the radius.
+/// A plane may fill a pixel within these limits; lengths are in pixels over the radius.
 constexpr float kMinFillPixels = 4.5F;  ///< Sum of r r, which is hardly above 1 each.
 /// The depths must lie around the pixel: the middle of a surface's outermost two columns, seen from
 /// one pixel beside it, is 0.75 away.

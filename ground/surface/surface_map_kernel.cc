@@ -28,7 +28,7 @@ struct Cross {
   VF centre, left, right, up, down;
 };
 
-/// Whether a pixel and the four around it lie on one surface.
+/// Returns whether a pixel and the four around it lie on one surface.
 HWY_INLINE MF OnOneSurface(const SurfaceMapArgs& a, const Cross& depth) {
   const VF z = depth.centre;
   // A pixel without a return is as far away as the depth: no neighbour of any surface.
