@@ -17,7 +17,7 @@
 #include "ground/calibration/texture_consistency.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/pipeline/scan_model.h"
-#include "ground/pipeline/trajectory.h"
+#include "ground/tracker/trajectory.h"
 
 namespace isotherm {
 namespace {

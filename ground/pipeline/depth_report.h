@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/geometry/map_pose.h"
-#include "ground/tracker/icp_tracker.h"
+#include "ground/icp/icp_tracker.h"
 
 namespace isotherm {
 

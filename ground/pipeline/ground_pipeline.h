@@ -16,10 +16,10 @@
 #include "ground/pipeline/depth_report.h"
 #include "ground/pipeline/pipeline_counts.h"
 #include "ground/pipeline/scan_model.h"
-#include "ground/pipeline/stage_times.h"
 #include "ground/pipeline/thermal_stage.h"
-#include "ground/pipeline/tracker.h"
+#include "ground/stage_times/stage_times.h"
 #include "ground/surface/depth_preprocessor.h"
+#include "ground/tracker/tracker.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {

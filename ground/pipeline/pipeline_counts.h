@@ -4,8 +4,8 @@
 #include <string_view>
 
 #include "common/base/enum_array.h"
+#include "ground/icp/icp_tracker.h"
 #include "ground/thermal/thermal_fuser.h"
-#include "ground/tracker/icp_tracker.h"
 
 namespace isotherm {
 

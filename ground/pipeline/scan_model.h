@@ -4,14 +4,14 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
 #include "ground/atlas/atlas.h"
+#include "ground/icp/icp_tracker.h"
+#include "ground/icp/motion_history.h"
+#include "ground/icp/odometry_prior.h"
+#include "ground/icp/pose_uncertainty.h"
 #include "ground/pipeline/block_spiller.h"
 #include "ground/pipeline/pipeline_counts.h"
-#include "ground/pipeline/stage_times.h"
-#include "ground/pipeline/trajectory.h"
-#include "ground/tracker/icp_tracker.h"
-#include "ground/tracker/motion_history.h"
-#include "ground/tracker/odometry_prior.h"
-#include "ground/tracker/pose_uncertainty.h"
+#include "ground/stage_times/stage_times.h"
+#include "ground/tracker/trajectory.h"
 
 namespace isotherm {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ground/pipeline/stage_times.h"
+#include "ground/stage_times/stage_times.h"
 
 namespace isotherm {
 namespace {

@@ -8,12 +8,12 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/map_pose.h"
+#include "ground/icp/icp_tracker.h"
 #include "ground/pipeline/pipeline_counts.h"
 #include "ground/thermal/line_of_sight_occlusion.h"
 #include "ground/thermal/near_range_occlusion.h"
 #include "ground/thermal/nuc_epochs.h"
 #include "ground/thermal/thermal_fuser.h"
-#include "ground/tracker/icp_tracker.h"
 
 namespace isotherm {
 

@@ -3,10 +3,10 @@
 #include <optional>
 
 #include "common/concurrency/thread_pool.h"
+#include "ground/icp/icp_tracker.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/relocaliser/keyframe_database.h"
 #include "ground/surface/depth_preprocessor.h"
-#include "ground/tracker/icp_tracker.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_volume.h"
 

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "ground/pipeline/stage_times.h"
 #include "ground/results/outcome_text.h"
+#include "ground/stage_times/stage_times.h"
 
 namespace isotherm {
 namespace {

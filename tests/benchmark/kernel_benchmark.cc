@@ -11,10 +11,10 @@
 #include <string>
 
 #include "common/base/check.h"
+#include "ground/icp/icp_tracker.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/thermal/thermal_fuser.h"
-#include "ground/tracker/icp_tracker.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_integrator.h"
 #include "tests/benchmark/frames.h"

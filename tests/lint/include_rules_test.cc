@@ -51,8 +51,8 @@ TEST(IncludeRulesTest, LowerFoldersDoNotKnowHigherOnes) {
 }
 
 TEST(IncludeRulesTest, StagesDoNotIncludeTheirSiblings) {
-  EXPECT_THAT(MessagesFor("ground/tracker/icp.cc", "#include \"ground/renderer/palette.h\""),
-              ElementsAre(HasSubstr("ground/tracker must not include ground/renderer")));
+  EXPECT_THAT(MessagesFor("ground/icp/icp.cc", "#include \"ground/renderer/palette.h\""),
+              ElementsAre(HasSubstr("ground/icp must not include ground/renderer")));
   EXPECT_THAT(MessagesFor("ground/thermal/fuser.h", "#include \"ground/tsdf/tsdf_volume.h\""),
               IsEmpty());
   EXPECT_THAT(
@@ -124,15 +124,15 @@ TEST(IncludeRulesTest, NoFoldersStandOnEachOther) {
 }
 
 TEST(IncludeRulesTest, ACircleOfFoldersIsFound) {
-  const SourceFile tracker = {"ground/tracker/icp.h", {"#include \"ground/tsdf/grid.h\""}};
+  const SourceFile tracker = {"ground/icp/icp.h", {"#include \"ground/tsdf/grid.h\""}};
   const SourceFile tsdf = {"ground/tsdf/raycaster.cc", {"#include \"ground/surface/maps.h\""}};
-  const SourceFile surface = {"ground/surface/maps.cc", {"#include \"ground/tracker/icp.h\""}};
+  const SourceFile surface = {"ground/surface/maps.cc", {"#include \"ground/icp/icp.h\""}};
   EXPECT_THAT(CheckCircles({tracker, tsdf}), IsEmpty());
 
   const std::vector<Violation> violations = CheckCircles({tracker, tsdf, surface});
   ASSERT_EQ(violations.size(), 1U);
   EXPECT_THAT(violations[0].message,
-              HasSubstr("ground/surface -> ground/tracker -> ground/tsdf -> ground/surface"));
+              HasSubstr("ground/icp -> ground/tsdf -> ground/surface -> ground/icp"));
 
   // A test may look back at what stands on its folder.
   const SourceFile test = {"ground/surface/maps_test.cc", surface.lines};
@@ -140,14 +140,12 @@ TEST(IncludeRulesTest, ACircleOfFoldersIsFound) {
 }
 
 TEST(IncludeRulesTest, AStageKnowsItsOptionsAndItsInputButNeverThePipeline) {
-  EXPECT_THAT(
-      MessagesFor("ground/tracker/icp.cc", "#include \"ground/options/ground_options.pb.h\""),
-      IsEmpty());
-  EXPECT_THAT(MessagesFor("ground/tracker/icp.cc", "#include \"ground/surface/surface_maps.h\""),
+  EXPECT_THAT(MessagesFor("ground/icp/icp.cc", "#include \"ground/options/ground_options.pb.h\""),
               IsEmpty());
-  EXPECT_THAT(
-      MessagesFor("ground/tracker/icp.cc", "#include \"ground/pipeline/ground_pipeline.h\""),
-      ElementsAre(HasSubstr("ground/tracker must not include ground/pipeline")));
+  EXPECT_THAT(MessagesFor("ground/icp/icp.cc", "#include \"ground/surface/surface_maps.h\""),
+              IsEmpty());
+  EXPECT_THAT(MessagesFor("ground/icp/icp.cc", "#include \"ground/pipeline/ground_pipeline.h\""),
+              ElementsAre(HasSubstr("ground/icp must not include ground/pipeline")));
   EXPECT_THAT(MessagesFor("edge/nuc/nuc_control.h", "#include \"edge/pipeline/edge_pipeline.h\""),
               ElementsAre(HasSubstr("edge/nuc must not include edge/pipeline")));
   EXPECT_THAT(MessagesFor("ground/pipeline/x.h", "#include \"ground/service/live_scan.h\""),

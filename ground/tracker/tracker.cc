@@ -1,0 +1,109 @@
+#include "ground/tracker/tracker.h"
+
+#include <fmt/format.h>
+
+#include "common/base/log.h"
+#include "ground/tracker/initial_pose.h"
+
+namespace isotherm {
+
+Tracker::Tracker(const GroundOptions& options, const CameraModel& depth_camera,
+                 std::optional<RigidTransform> initial_pose, Atlas& atlas, StageTimes& stages)
+    : options_(options.submaps()),
+      initial_pose_(initial_pose),
+      atlas_(atlas),
+      stages_(stages),
+      rig_(options, depth_camera),
+      loop_closer_(options, atlas_, rig_) {}
+
+RigidTransform Tracker::FirstPose(const PreparedDepth& depth) const {
+  if (initial_pose_ && atlas_.size() == 1) return *initial_pose_;
+  return PoseFacingCentre(atlas_.active().tsdf->grid(), depth.depth_m);
+}
+
+TrackedFrame Tracker::Track(const PreparedDepth& depth, CaptureTime time, ThreadPool& pool) {
+  using Outcome = TrackedFrame::Outcome;
+  TrackedFrame frame;
+  frame.time = time;
+  const int map_before = atlas_.active_index();
+  bool is_first = atlas_.active().tsdf->block_count() == 0;
+  if (!is_first) {
+    frame.tracking = TrackInModel(depth, time, pool);
+    if (frame.tracking.tracked()) {
+      lost_since_.reset();
+    } else if (!lost_since_) {
+      lost_since_ = time;
+    } else {
+      is_first = BeginElsewhere(depth, time);
+    }
+  }
+  if (is_first) frame.tracking = rig_.Begin(depth, time, FirstPose(depth));
+  frame.switched = atlas_.active_index() != map_before;
+  if (!frame.tracking.tracked()) {
+    unconfirmed_.clear();
+  } else if (rig_.state() == RigTracker::State::kConfirming) {
+    unconfirmed_.push_back({time, frame.tracking.T_map_depth});
+    frame.outcome = Outcome::kUnconfirmed;
+  } else {
+    frame.outcome = is_first ? Outcome::kFirst : Outcome::kTracked;
+  }
+  return frame;
+}
+
+TrackingResult Tracker::TrackInModel(const PreparedDepth& depth, CaptureTime time,
+                                     ThreadPool& pool) {
+  const bool lost = rig_.state() == RigTracker::State::kLost;
+  const StageTimer timer(stages_[lost ? Stage::kRelocalise : Stage::kTrack]);
+  if (!lost) searched_ = atlas_.active_index();
+  TrackingResult result = rig_.Track(depth, time, atlas_.active(), atlas_.map(searched_), pool);
+  if (rig_.found_elsewhere()) {
+    atlas_.Activate(searched_);
+  } else if (lost) {
+    searched_ = (searched_ + 1) % atlas_.size();
+  }
+  return result;
+}
+
+bool Tracker::BeginElsewhere(const PreparedDepth& depth, CaptureTime time) {
+  const double limit_s = options_.expert().start_after_lost_s();
+  // A hand before the camera is no place to begin at.
+  constexpr int kMinPixels = 10 * kMinTrackedPixels;
+  if (limit_s <= 0.0 || ToSeconds(time - *lost_since_) < limit_s ||
+      depth.valid_pixels < kMinPixels || !atlas_.BeginElsewhere()) {
+    return false;
+  }
+  LOG(Ground, Warning) << fmt::format(
+      "lost for {:.1f} s: the scan goes on in sub-map {}, which is joined when the rig sees both",
+      ToSeconds(time - *lost_since_), atlas_.size());
+  lost_since_.reset();
+  return true;
+}
+
+void Tracker::Accept(const TrackedFrame& frame) {
+  const PoseSigma sigma = LargestSigma(uncertainty().covariance());
+  const int map = atlas_.active_index();
+  for (const StampedMapPose& pose : unconfirmed_) trajectory_.Add(pose, sigma, map, atlas_);
+  unconfirmed_.clear();
+  trajectory_.Add({frame.time, frame.tracking.T_map_depth}, sigma, map, atlas_);
+}
+
+bool Tracker::CloseLoops(const TrackedFrame& frame, const PreparedDepth& depth,
+                         std::span<const std::int32_t> blocks_in_view, ThreadPool& pool) {
+  atlas_.active().relocaliser->Add(frame.tracking.T_map_depth);
+  const StageTimer timer(stages_[Stage::kSubMaps]);
+  const LoopCloser::Change change =
+      loop_closer_.Update(depth, frame.tracking.T_map_depth, blocks_in_view, pool);
+  if (change.linked) trajectory_.Update(atlas_);
+  return change.switched;
+}
+
+void Tracker::LookFrom(const RigidTransform& T_map_depth, bool is_young, ThreadPool& pool) {
+  const StageTimer timer(stages_[Stage::kRaycast]);
+  rig_.LookFrom(T_map_depth, *atlas_.active().tsdf, is_young, pool);
+}
+
+MapPose Tracker::pose() const {
+  return {atlas_.active_index(), motion().last()->T_map_depth, uncertainty().covariance()};
+}
+
+}  // namespace isotherm

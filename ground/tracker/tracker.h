@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/frame.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/map_pose.h"
+#include "ground/atlas/atlas.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/stage_times/stage_times.h"
+#include "ground/tracker/loop_closer.h"
+#include "ground/tracker/rig_tracker.h"
+#include "ground/tracker/trajectory.h"
+
+namespace isotherm {
+
+/// Tells what the tracker made of a depth frame.
+struct TrackedFrame {
+  enum class Outcome : std::uint8_t {
+    kLost,
+    kUnconfirmed,  ///< Found again, but not believed yet: nothing may be fused.
+    kFirst,        ///< The active sub-map has no surface yet: the pose is given, not measured.
+    kTracked,
+  };
+  Outcome outcome = Outcome::kLost;
+  CaptureTime time;
+  TrackingResult tracking;  ///< In the coordinates of the sub-map it was tracked against.
+  bool switched = false;    ///< Another sub-map is active than before the frame.
+
+  bool is_believed() const { return outcome == Outcome::kFirst || outcome == Outcome::kTracked; }
+};
+
+/// Says for each depth frame where the rig is, in which sub-map, and whether that is believed. A
+/// rig that is lost is looked for in all sub-maps in turn; if that lasts, the scan goes on in a new
+/// one. Poses that are believed make the trajectory. It begins and joins sub-maps, but what is in
+/// them is changed by others, between Track and Accept. Thread-bound.
+class Tracker {
+ public:
+  /// `initial_pose` is T_world_depth of the first frame; without one the volume's centre is put on
+  /// its optical axis at its median depth. `atlas` and `stages` must outlive the tracker.
+  Tracker(const GroundOptions& options, const CameraModel& depth_camera,
+          std::optional<RigidTransform> initial_pose, Atlas& atlas, StageTimes& stages);
+  /// From now on, temperatures help where the geometry does not suffice.
+  void UseThermal(const CameraModel& thermal_camera, const RigidTransform& T_thermal_depth) {
+    rig_.UseThermal(thermal_camera, T_thermal_depth);
+  }
+  /// The active sub-map has a surface already, and the rig is anywhere near its known views.
+  void BeginLost() { rig_.BeginLost(); }
+
+  /// A valid thermal frame of the camera's size, before the first depth frame after it.
+  void AddThermal(ThermalFramePtr frame) { rig_.AddThermal(std::move(frame)); }
+  /// In order of capture time, ideally before the first depth frame that is not older.
+  void AddExternalOdometry(const ExternalOdometry& pose) { rig_.AddExternalOdometry(pose); }
+
+  /// Finds the pose of the next frame. Accept or Reject must follow if it is believed, and LookFrom
+  /// if it has a pose at all.
+  TrackedFrame Track(const PreparedDepth& depth, CaptureTime time, ThreadPool& pool);
+  /// The frame joins the trajectory, and with it those that led to its being believed.
+  void Accept(const TrackedFrame& frame);
+  /// A first frame that left no surface: the next one is the first again.
+  void Reject() { rig_.Forget(); }
+  /// After Accept of a fully observed frame that was integrated: it becomes a known view, and
+  /// sub-maps are joined and begun. `blocks_in_view` are those that the frame updated. True if
+  /// another sub-map is active now.
+  bool CloseLoops(const TrackedFrame& frame, const PreparedDepth& depth,
+                  std::span<const std::int32_t> blocks_in_view, ThreadPool& pool);
+  /// Casts the active sub-map from a pose: what the next frame is tracked against. `is_young`: it
+  /// is little more than one frame's noise.
+  void LookFrom(const RigidTransform& T_map_depth, bool is_young, ThreadPool& pool);
+  /// Goes on in other coordinates. LookFrom must follow.
+  void Rebase(const RigidTransform& T_new_old) { rig_.Rebase(T_new_old); }
+
+  /// The newest pose, in the active sub-map. Only while the motion is known.
+  MapPose pose() const;
+  const ModelView& view() const { return rig_.view(); }
+  /// The last poses, in the active sub-map; none while the rig is lost.
+  const MotionHistory& motion() const { return rig_.motion(); }
+  const PoseUncertainty& uncertainty() const { return rig_.uncertainty(); }
+  const OdometryPrior& external_odometry() const { return rig_.external_odometry(); }
+  const Trajectory& trajectory() const { return trajectory_; }
+  /// Times that the rig was found again.
+  std::uint64_t relocalisations() const { return rig_.relocalisations(); }
+
+ private:
+  RigidTransform FirstPose(const PreparedDepth& depth) const;
+  /// Follows the rig in the active sub-map, or looks for it in the next one whose turn it is.
+  TrackingResult TrackInModel(const PreparedDepth& depth, CaptureTime time, ThreadPool& pool);
+  /// Lost for long, with something in view: goes on in a sub-map of its own.
+  bool BeginElsewhere(const PreparedDepth& depth, CaptureTime time);
+
+  const SubMapOptions options_;
+  const std::optional<RigidTransform> initial_pose_;
+  Atlas& atlas_;
+  StageTimes& stages_;
+  RigTracker rig_;
+  LoopCloser loop_closer_;
+  Trajectory trajectory_;
+  std::optional<CaptureTime> lost_since_;
+  int searched_ = 0;                         ///< The sub-map a lost rig is looked for in.
+  std::vector<StampedMapPose> unconfirmed_;  ///< Part of the trajectory once believed.
+};
+
+}  // namespace isotherm
