@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -135,6 +137,65 @@ void CheckLinks(const SourceFile& file, const std::filesystem::path& root, Repor
   }
 }
 
+bool IsPathCharacter(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || Has("_./-", std::string_view(&c, 1));
+}
+
+/// The paths from the root that a line names: "ground/tsdf/x.cc", but not the end of a longer path.
+std::vector<std::string> NamedPaths(std::string_view line) {
+  std::vector<std::string> paths;
+  for (const std::string_view folder : {"cmake/", "common/", "deploy/", "docs/", "edge/", "ground/",
+                                        "idl/", "systemd/", "tests/"}) {
+    for (std::size_t at = line.find(folder); at != std::string_view::npos;
+         at = line.find(folder, at + 1)) {
+      // Links are relative, and checked as such.
+      if (at > 0 && (IsPathCharacter(line[at - 1]) || Has("$~(", line.substr(at - 1, 1)))) continue;
+      std::size_t end = at;
+      while (end < line.size() && IsPathCharacter(line[end])) ++end;
+      while (Has("./", line.substr(end - 1, 1))) --end;  // The end of a sentence, or of a folder.
+      paths.emplace_back(line.substr(at, end - at));
+    }
+  }
+  return paths;
+}
+
+void CheckNamedPaths(const SourceFile& file, const std::filesystem::path& root, Report& report) {
+  if (file.path == "CHANGELOG.md") return;  // It tells of what was.
+  for (std::size_t i = 0; i < file.lines.size(); ++i) {
+    for (const std::string& path : NamedPaths(file.lines[i])) {
+      // A program is named like its source.
+      if (std::filesystem::exists(root / path) || std::filesystem::exists(root / (path + ".cc")))
+        continue;
+      report.Add(i, "names a file that is not there: " + path);
+    }
+  }
+}
+
+std::set<std::string> TestSuites(const std::vector<SourceFile>& files) {
+  std::set<std::string> suites;
+  for (const SourceFile& file : files) {
+    if (!file.IsSource()) continue;
+    for (const std::string& line : file.lines) {
+      const std::size_t begin = line.find('(') + 1;
+      if (line.starts_with("TEST")) suites.insert(line.substr(begin, line.find(',') - begin));
+    }
+  }
+  return suites;
+}
+
+/// A page that says which test shows something names it in backticks.
+void CheckNamedTests(const SourceFile& file, const std::set<std::string>& suites, Report& report) {
+  for (std::size_t i = 0; i < file.lines.size(); ++i) {
+    const std::string& line = file.lines[i];
+    for (std::size_t end = line.find("Test`"); end != std::string::npos;
+         end = line.find("Test`", end + 1)) {
+      const std::size_t begin = line.rfind('`', end) + 1;
+      const std::string suite = line.substr(begin, end + 4 - begin);
+      if (!suites.contains(suite)) report.Add(i, "names a test that is not there: " + suite);
+    }
+  }
+}
+
 void CheckTrailingBlanks(const SourceFile& file, Report& report) {
   for (std::size_t i = 0; i < file.lines.size(); ++i) {
     const std::string& line = file.lines[i];
@@ -149,6 +210,7 @@ void CheckTrailingBlanks(const SourceFile& file, Report& report) {
 std::vector<Violation> CheckText(const std::vector<SourceFile>& files,
                                  const std::filesystem::path& root) {
   std::vector<Violation> violations;
+  const std::set<std::string> suites = TestSuites(files);
   for (const SourceFile& file : files) {
     Report report(file, violations);
     CheckMachineWords(file, report);
@@ -156,7 +218,10 @@ std::vector<Violation> CheckText(const std::vector<SourceFile>& files,
     if (file.IsHeader()) CheckHeader(file, report);
     if (file.IsCode()) CheckCode(file, report);
     if (IsCMake(file)) CheckCMake(file, report);
-    if (file.extension() == ".md") CheckLinks(file, root, report);
+    if (file.extension() != ".md") continue;
+    CheckLinks(file, root, report);
+    CheckNamedPaths(file, root, report);
+    CheckNamedTests(file, suites, report);
   }
   return violations;
 }

@@ -13,7 +13,8 @@ namespace isotherm::lint {
 ///   - tests are skipped with a reason, never disabled;
 ///   - CMake files list their sources, set no CPU flags, and say what their folder is for;
 ///   - no trailing blanks, no tabs in code;
-///   - relative links in Markdown lead to a file (`root` is where paths start).
+///   - relative links in Markdown lead to a file (`root` is where paths start), and files and tests
+///   that a page names are there.
 std::vector<Violation> CheckText(const std::vector<SourceFile>& files,
                                  const std::filesystem::path& root);
 

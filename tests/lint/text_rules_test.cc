@@ -72,6 +72,26 @@ TEST(TextRulesTest, LinksLeadSomewhere) {
               IsEmpty());
 }
 
+TEST(TextRulesTest, FilesThatAPageNamesAreThere) {
+  const auto found = [](const char* line) { return MessagesFor("docs/a.md", {line}); };
+  EXPECT_THAT(found("see `tests/lint/no_such_file.cc`."),
+              ElementsAre("names a file that is not there: tests/lint/no_such_file.cc"));
+  EXPECT_THAT(found("in tests/no_such_folder/, or deploy/no.sh"), ::testing::SizeIs(2));
+  EXPECT_THAT(found("`tests/lint`, tests/lint/text_rules.cc. `tests/lint/source_tree`"), IsEmpty());
+  EXPECT_THAT(found("/etc/edge/x, build/edge/x, $ISOTHERM/docs/x, [y](docs/../README.md)"),
+              ElementsAre(HasSubstr("link leads nowhere")))
+      << "places elsewhere; what a link leads to is relative";
+  EXPECT_THAT(MessagesFor("CHANGELOG.md", {"edge/what_was.cc is gone"}), IsEmpty());
+}
+
+TEST(TextRulesTest, TestsThatAPageNamesAreThere) {
+  const std::vector<SourceFile> files = {{"a_test.cc", {"TEST_F(HereTest, IsGreen) {}"}},
+                                         {"docs/a.md", {"| `HereTest`, `GoneTest` |"}}};
+  const std::vector<Violation> violations = CheckText(files, ISOTHERM_SOURCE_DIR);
+  ASSERT_EQ(violations.size(), 1U);
+  EXPECT_EQ(violations.front().message, "names a test that is not there: GoneTest");
+}
+
 TEST(TextRulesTest, LongFilesAreNoticed) {
   const std::vector<SourceFile> files = {
       {"a.cc", std::vector<std::string>(kLongFileLines + 1, "x")},
