@@ -1,0 +1,86 @@
+#include "edge/publisher/outgoing_stream.h"
+
+#include <gtest/gtest.h>
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+
+class OutgoingStreamTest : public ::testing::Test {
+ protected:
+  void Publish(std::uint64_t number) {
+    stream_.sent().Note(number, CaptureTime{});
+    stream_.OnPublished(number);
+  }
+  /// The ground says that it has received all frames below `next`.
+  std::optional<RefusalCause> Check(std::uint64_t next, std::uint64_t received) const {
+    return stream_.sent().Check(StreamReceipt{.next = next, .received = received});
+  }
+
+  OutgoingStream stream_{2, 10s};
+  SteadyTime now_{1h};
+};
+
+TEST_F(OutgoingStreamTest, CountsWhatWasPublishedAndTheHighestNumber) {
+  for (const std::uint64_t number : {0, 1, 7}) Publish(number);
+  EXPECT_EQ(stream_.counts().published, 3U);
+  EXPECT_EQ(stream_.counts().next_frame_number, 8U);
+  EXPECT_EQ(stream_.counts().failed, 0U);
+}
+
+TEST_F(OutgoingStreamTest, AFrameThatFailedIsNotPublishedAndTakesNoRoom) {
+  Publish(0);
+  stream_.sent().Note(1, CaptureTime{});
+  stream_.OnFailed();
+  EXPECT_EQ(stream_.counts().published, 1U);
+  EXPECT_EQ(stream_.counts().failed, 1U);
+  EXPECT_EQ(stream_.counts().next_frame_number, 1U) << "the ground must not be told to wait for it";
+  EXPECT_TRUE(stream_.window().HasRoom());
+  Publish(2);
+  EXPECT_FALSE(stream_.window().HasRoom()) << "two are under way";
+}
+
+TEST_F(OutgoingStreamTest, ANewSessionKnowsNothingOfTheOneBefore) {
+  for (const std::uint64_t number : {0, 1, 2}) Publish(number);
+  stream_.OnFailed();
+  ASSERT_FALSE(stream_.window().HasRoom());
+  ASSERT_EQ(Check(3, 3), std::nullopt);
+  stream_.BeginSession();
+  EXPECT_EQ(stream_.counts().published, 0U);
+  EXPECT_EQ(stream_.counts().failed, 0U);
+  EXPECT_EQ(stream_.counts().next_frame_number, 0U);
+  EXPECT_TRUE(stream_.window().HasRoom());
+  EXPECT_EQ(Check(3, 3), RefusalCause::kImpossibleNumber);
+}
+
+TEST_F(OutgoingStreamTest, AReaderIsNewForHalfASecond) {
+  EXPECT_FALSE(stream_.HasNewReader(0, now_));
+  EXPECT_TRUE(stream_.HasNewReader(1, now_));
+  EXPECT_TRUE(stream_.HasNewReader(1, now_ + 500ms - 1ns));
+  EXPECT_FALSE(stream_.HasNewReader(1, now_ + 500ms));
+}
+
+TEST_F(OutgoingStreamTest, ASecondReaderIsNewByItself) {
+  stream_.HasNewReader(1, now_);
+  EXPECT_FALSE(stream_.HasNewReader(1, now_ + 2s));
+  EXPECT_TRUE(stream_.HasNewReader(2, now_ + 3s));
+  EXPECT_FALSE(stream_.HasNewReader(2, now_ + 4s));
+  EXPECT_FALSE(stream_.HasNewReader(1, now_ + 5s)) << "who is left was there before";
+}
+
+TEST_F(OutgoingStreamTest, AReaderThatHasLeftIsNotNew) {
+  stream_.HasNewReader(1, now_);
+  EXPECT_FALSE(stream_.HasNewReader(0, now_ + 1ms));
+  EXPECT_TRUE(stream_.HasNewReader(1, now_ + 2s)) << "it is back";
+}
+
+TEST_F(OutgoingStreamTest, TheSuccessorOfAGroundThatLeftIsNewAlthoughTheNumberOfReadersIsTheSame) {
+  stream_.HasNewReader(1, now_);
+  ASSERT_FALSE(stream_.HasNewReader(1, now_ + 2s));
+  stream_.ForgetReaders();
+  EXPECT_TRUE(stream_.HasNewReader(1, now_ + 3s));
+}
+
+}  // namespace
+}  // namespace isotherm
