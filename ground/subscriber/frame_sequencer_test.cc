@@ -144,26 +144,5 @@ TEST_F(FrameSequencerTest, AnyMixtureIsDeliveredInOrderOnceAndAddsUp) {
   EXPECT_EQ(in_holes, receipts.missing());
 }
 
-TEST(ReceiptTrackerTest, HolesAreFilledFromBothEndsAndFromTheMiddle) {
-  ReceiptTracker receipts;
-  receipts.Add(0);
-  receipts.Add(10);
-  for (const std::uint64_t number : {1, 9, 5}) EXPECT_TRUE(receipts.Add(number));
-  EXPECT_THAT(receipts.NewestHoles(9), ElementsAre(FrameRange{2, 4}, FrameRange{6, 8}));
-  for (const std::uint64_t number : {2, 3, 4, 6, 7, 8}) EXPECT_TRUE(receipts.Add(number));
-  EXPECT_EQ(receipts.missing(), 0U);
-  EXPECT_THAT(receipts.NewestHoles(9), IsEmpty());
-}
-
-TEST(ReceiptTrackerTest, TheOldestHoleIsGivenUpWhenThereAreTooMany) {
-  ReceiptTracker receipts(3);
-  for (std::uint64_t number = 1; number <= 9; number += 2) receipts.Add(number);
-  EXPECT_THAT(receipts.NewestHoles(9),
-              ElementsAre(FrameRange{4, 4}, FrameRange{6, 6}, FrameRange{8, 8}));
-  EXPECT_FALSE(receipts.Add(0));
-  EXPECT_EQ(receipts.received() + receipts.missing(), receipts.next());
-  EXPECT_EQ(receipts.missing(), 5U);
-}
-
 }  // namespace
 }  // namespace isotherm

@@ -10,16 +10,17 @@
 
 namespace isotherm {
 
-/// Which process wrote a sample. Remembers the writers, because one that has left cannot be asked
-/// about, and its last samples may still come. Bounded. Thread-compatible.
+/// Tells which process wrote a sample. It remembers the writers, because one that has left cannot
+/// be asked about, and its last samples may still come. Bounded. Thread-compatible.
 class PeerTable {
  public:
   static constexpr std::size_t kMaxWriters = 512;
 
-  /// The process of `writer`, as Received::writer of `reader`, which must outlive the table; 0 if
-  /// it left before anything of it was seen, or if there are too many.
-  template <typename Message>
-  PeerHandle Identify(const Reader<Message>& reader, std::uint64_t writer) {
+  /// Returns the process of `writer`, which is the Received::writer of a sample of `reader`; 0 if
+  /// it left before anything of it was seen, or if there are too many. `reader` is a Reader of any
+  /// message and must outlive the table.
+  template <typename AnyReader>
+  PeerHandle Identify(const AnyReader& reader, std::uint64_t writer) {
     if (const auto known = writers_.find(writer); known != writers_.end())
       return known->second.peer;
     const PeerHandle peer = reader.PeerOf(writer);
