@@ -14,7 +14,7 @@ namespace isotherm {
 /// counted, and the next one that is admitted says how many. Thread-compatible.
 class LineLimiter {
  public:
-  /// Lines that a per-frame message may write: one at once, then one in so much time.
+  /// Lines that a per-frame message may write: one at once, then one in this much time.
   static constexpr Nanoseconds kInterval = std::chrono::seconds(10);
 
   LineLimiter() : LineLimiter(1, kInterval) {}

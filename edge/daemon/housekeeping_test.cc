@@ -72,7 +72,7 @@ class HousekeepingTest : public ::testing::Test {
   const std::filesystem::path image_ = folder_.path() / "confidence.png";
   std::optional<Housekeeping> housekeeping_;
   std::vector<std::string> told_;  ///< To the service manager.
-  int fed_ = 0;                    ///< Its watchdog, so many times.
+  int fed_ = 0;                    ///< Its watchdog, this many times.
 };
 
 TEST_F(HousekeepingTest, TheStatusIsPublishedOnceASecondHoweverOftenItTicks) {
@@ -186,7 +186,7 @@ TEST_F(HousekeepingTest, TheGroundsImageReplacesTheFileAsSoonAsItComes) {
   publisher_.feedback = {{feedback, CaptureTime{}}};
   Make();
   pipeline_.StartReceiving();
-  // The pipeline's thread hands it over; only a failure waits so long.
+  // The pipeline's thread hands it over; only a failure waits this long.
   const auto deadline = std::chrono::steady_clock::now() + seconds(10);
   while (pipeline_.feedback().latency().count == 0) {
     ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the feedback has not come";
