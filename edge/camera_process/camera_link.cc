@@ -49,7 +49,11 @@ CameraLink::Received CameraLink::ReceiveAny(Message* message, Nanoseconds timeou
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(timeout).count();
   if (::poll(&wait, 1, static_cast<int>(ms)) <= 0) return Received::kNothingYet;
   std::array<char, kLongestMessage> bytes;
-  const ssize_t size = ::recv(descriptor_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  ssize_t size = ::recv(descriptor_, bytes.data(), bytes.size(), MSG_DONTWAIT);
+  // The other side left without reading all that it was sent. The kernel says so once, before the
+  // messages that it left behind.
+  if (size < 0 && errno == ECONNRESET)
+    size = ::recv(descriptor_, bytes.data(), bytes.size(), MSG_DONTWAIT);
   if (size < 0 && (errno == EAGAIN || errno == EINTR)) return Received::kNothingYet;
   // An empty message cannot be told from the end; SendAny sends none.
   if (size <= 0 || !message->ParseFromArray(bytes.data(), static_cast<int>(size))) {
