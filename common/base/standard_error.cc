@@ -73,7 +73,7 @@ std::ptrdiff_t UnblockedOutput::TryWrite(std::string_view text) const {
         taken = send(descriptor_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
         break;
       case Kind::kPolled:
-        // A pipe that polls as writable takes so much without waiting.
+        // A pipe that polls as writable takes this much without waiting.
         if (!IsWritable(descriptor_, 0)) return 0;
         taken = write(descriptor_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
         break;

@@ -27,7 +27,7 @@ class UnblockedOutput {
   void Write(std::string_view text);
   /// Returns how many texts were left out since the last call; 0 while there is no room to say so.
   std::uint64_t TakeLeftOut();
-  /// Offers what is kept for so long; for the end of the program.
+  /// Offers what is kept for this long; for the end of the program.
   void Flush(int patience_ms);
 
  private:

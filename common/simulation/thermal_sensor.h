@@ -28,7 +28,7 @@ class ThermalSensor {
     Image<float> rows;
     Image<float> smeared;
   };
-  /// T_world_thermal so many seconds after the capture time.
+  /// T_world_thermal this many seconds after the capture time.
   using PoseAfter = std::function<RigidTransform(double seconds)>;
 
   /// One image in centi-kelvin. The same `noise_stream` gives the same noise.

@@ -10,7 +10,7 @@ namespace {
 // How fast the estimate may move until it has caught up with the line for the first time: half a
 // percent, a third of a millisecond from frame to frame.
 constexpr double kCatchUpSlew = 5e-3;
-// Caught up: so close to a line that rests on so many groups (ten seconds).
+// Caught up: this close to a line that rests on this many groups (ten seconds).
 constexpr double kClose_s = 20e-6;
 constexpr std::size_t kSettledGroups = 20;
 

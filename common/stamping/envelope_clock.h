@@ -19,7 +19,7 @@ struct EnvelopeOptions {
   double max_slew_ppm = 200.0;      ///< By which the estimate may change beyond that.
   double early_limit_s = 0.005;     ///< A frame earlier than this is from another counter.
   double residual_limit_s = 0.010;  ///< Frames all later than this are not synchronised.
-  double residual_window_s = 2.0;   ///< For so long.
+  double residual_window_s = 2.0;   ///< For this long.
   double relearn_after_s = 10.0;    ///< Then the estimate is given up.
 };
 
@@ -72,7 +72,7 @@ class EnvelopeClock {
   Stamp MakeStamp(double now_s) const;
   CaptureTime StampTime(double now_s) const;
   void WatchResidual(bool synchronised, double now_s);
-  /// Least that the frames of residual_window_s are above the line; 0 before there are so many.
+  /// Least that the frames of residual_window_s are above the line; 0 before there are this many.
   double Floor(double now_s) const;
   double Sigma(double now_s) const;
 

@@ -11,8 +11,8 @@
 namespace isotherm {
 namespace {
 
-// A group counts if it is above the hull's line by at most so many times what the lowest quarter of
-// the groups is. That keeps nearly all groups of jitter alone, and half of all may be late.
+// A group counts if it is above the hull's line by at most this many times what the lowest quarter
+// of the groups is. That keeps nearly all groups of jitter alone, and half of all may be late.
 constexpr double kReach = 4.0;
 constexpr double kLowestFraction = 0.25;
 // With fewer groups than this a quarter of them says nothing.

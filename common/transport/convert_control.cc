@@ -63,7 +63,7 @@ std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Fe
   return std::nullopt;
 }
 
-/// The upper triangle of 6 x 6 has so many.
+/// The upper triangle of 6 x 6 has this many.
 constexpr std::size_t kCovarianceNumbers = 21;
 
 /// The upper triangle, row by row.

@@ -20,7 +20,7 @@ struct Profile {
   bool keep_for_late_joiners;
   /// Longest time that a write may wait for room in the middleware's buffers.
   dds_duration_t max_blocking;
-  /// A writer that is silent for so long counts as gone. The middleware keeps it alive by itself.
+  /// A writer that is silent for this long counts as gone. The middleware keeps it alive by itself.
   dds_duration_t liveliness;
 };
 

@@ -72,8 +72,8 @@ class CameraProcess final : public FrameSource {
   void TakeAnswer(const Status& status);
   /// Returns why nothing more comes.
   Status Ended();
-  /// Waits for the end of the process, at most so long, and kills it then. Its wait status; nullopt
-  /// if it does not end even so.
+  /// Waits for the end of the process, at most this long, and kills it then. Its wait status;
+  /// nullopt if it does not end even so.
   std::optional<int> Reap(Nanoseconds patience);
   /// Fails while a process that could not be ended is still there.
   Status CheckLeftBehind();

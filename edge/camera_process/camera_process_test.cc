@@ -24,7 +24,7 @@ using std::chrono::seconds;
 using ::testing::HasSubstr;
 
 constexpr seconds kPatience{20};
-/// A daemon that is told to stop may take so long in all.
+/// A daemon that is told to stop may take this long in all.
 constexpr seconds kPromptly{2};
 
 class CameraProcessTest : public ::testing::Test {

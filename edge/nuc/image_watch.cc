@@ -16,7 +16,7 @@ constexpr int kRepeatsPerNative = 3;
 constexpr std::size_t kSceneFrames = 8;
 // A scene with less spread cannot be told from a shutter, whose image has noise and some shading.
 constexpr double kMinSceneSpread_k = 0.5;
-// Every so many pixels in both directions are enough for the spread.
+// One pixel in this many, in both directions, is enough for the spread.
 constexpr int kStride = 4;
 
 }  // namespace

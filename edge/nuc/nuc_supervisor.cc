@@ -9,7 +9,7 @@
 namespace isotherm {
 namespace {
 
-// A camera that was silent for so long may have been unplugged, and is back as it was built.
+// A camera that was silent for this long may have been unplugged, and is back as it was built.
 constexpr Nanoseconds kSilence = std::chrono::seconds(2);
 
 NucPolicy PolicyOf(const NucOptions& options) {

@@ -85,8 +85,8 @@ class NucSupervisor {
   /// or to the one that it has not answered yet, is the answer to this; or a sentence that says
   /// when; an error if it will not be done.
   Result<std::string> Request();
-  /// No orders for so long, camera's own included as far as it can be told; 0 ends a hold. Bounded
-  /// by max_hold_s; says for how long, or fails if the time is used up.
+  /// No orders for this long, camera's own included as far as it can be told; 0 ends a hold.
+  /// Bounded by max_hold_s; says for how long, or fails if the time is used up.
   Result<std::string> Hold(double seconds);
   /// Fails if there is no camera.
   Status SetPolicy(NucPolicy policy);

@@ -33,7 +33,7 @@ class TemperatureRate {
 /// Follows the warm-up of a thermal camera (thesis 3.2.3): it is warm when its detector and its
 /// housing change more slowly than options say, as far as it tells their temperatures. The detector
 /// settles within minutes; the housing, whose radiation is measured with the scene's, drifts for
-/// some twenty. A camera that tells neither is warm so many seconds after the first frame. Once
+/// some twenty. A camera that tells neither is warm this many seconds after the first frame. Once
 /// warm, it stays so: what changes later is drift. Thread-compatible.
 class WarmUpWatch {
  public:

@@ -13,7 +13,7 @@ namespace {
 /// Frames that may wait for the codec: a quarter of a second of both cameras, 10 MB.
 constexpr std::size_t kCodecQueueFrames = 16;
 
-/// Without a frame for so long, the recording brings to the disk what it has collected.
+/// Without a frame for this long, the recording brings to the disk what it has collected.
 constexpr Nanoseconds kIdle = std::chrono::milliseconds(250);
 /// A disk may stall for some seconds, and the link may wait for the ground for ten
 /// (PublisherOptions::flow_timeout). What takes longer than these hangs.

@@ -80,7 +80,7 @@ class EdgePipeline {
   /// The correction as of the newest thermal frame. Thread-safe.
   NucReport nuc() const { return nuc_report_.Get().value_or(NucReport()); }
   /// Steps of the wall clock since the start and their sum, which capture times do not follow: the
-  /// wall clock is ahead of them by so much. Thread-safe.
+  /// wall clock is ahead of them by this much. Thread-safe.
   std::uint64_t clock_steps() const { return clock_steps_; }
   Nanoseconds clock_step_total() const { return Nanoseconds(clock_step_total_ns_.load()); }
   /// Returns what the ground says. Thread-safe.

@@ -16,8 +16,8 @@ struct PublisherOptions {
   /// Larger: faster replay, more memory on both sides. 1..kMaxFlowWindowFrames (qos.h), so that no
   /// history overflows.
   int flow_window_frames = 24;
-  /// With kLossless: the ground may be silent for so long before a frame is published all the same
-  /// (and counted).
+  /// With kLossless: the ground may be silent for this long before a frame is published all the
+  /// same (and counted).
   Nanoseconds flow_timeout = std::chrono::seconds(10);
 };
 

@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-// A Read waits for a frame at most so long.
+// A Read waits for a frame at most this long.
 constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
 
 std::string_view NameOf(Sensor sensor) {

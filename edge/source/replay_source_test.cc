@@ -18,7 +18,7 @@ using std::chrono::seconds;
 constexpr CaptureTime kRecordedStart{seconds(1'600'000'000)};
 constexpr CaptureTime kNow{seconds(1'700'000'000)};
 constexpr Nanoseconds kNoPause{0};
-/// The camera's counter said this at kRecordedStart, and a frame took so long to arrive.
+/// The camera's counter said this at kRecordedStart, and a frame took this long to arrive.
 constexpr microseconds kTicksAtStart{5'000'000};
 constexpr milliseconds kTransport{40};
 

@@ -40,7 +40,7 @@ class SupervisedSourceTest : public testing::Test {
     return item && std::holds_alternative<RawFrame>(*item) ? std::get<RawFrame>(*item) : RawFrame{};
   }
 
-  /// Reads so many times; returns how many frames came.
+  /// Reads this many times; returns how many frames came.
   int Read(int times) {
     int frames = 0;
     for (int i = 0; i < times; ++i) {

@@ -13,7 +13,7 @@ constexpr std::uint64_t kMb = 1'000'000;
 constexpr std::uint64_t kGb = 1000 * kMb;
 constexpr double kMinute_s = 60.0;
 
-/// A recording that grows by `mb_per_s` for `duration`, on a disk with so much free at its end.
+/// A recording that grows by `mb_per_s` for `duration`, on a disk with this much free at its end.
 class DiskWatchTest : public testing::Test {
  protected:
   DiskLevel Record(std::uint64_t mb_per_s, int duration_s, std::uint64_t free_bytes) {

@@ -42,7 +42,7 @@ constexpr std::uint16_t kRuns = 0x43;
 constexpr std::uint16_t kSerialRegister = 0x07;
 constexpr std::uint16_t kSerialBytes = 64;
 
-// The vendor's program waits so long between the steps of the start.
+// The vendor's program waits this long between the steps of the start.
 constexpr Nanoseconds kBeforeStream = seconds(1);
 constexpr Nanoseconds kAfterStream = seconds(2);
 constexpr Nanoseconds kStartTime = seconds(5);

@@ -20,7 +20,7 @@ constexpr std::uint8_t kEndpoint = 0x81;
 constexpr std::uint8_t kOut = 0x41;
 constexpr std::uint8_t kIn = 0xC1;
 
-// The vendor's program sends the order to sleep so many times at the end.
+// The vendor's program sends the order to sleep this many times at the end.
 constexpr int kSleeps = 3;
 // The first frame after a start sometimes lacks its beginning (libseek-thermal, SeekCam.cpp).
 constexpr int kMaxStarts = 3;

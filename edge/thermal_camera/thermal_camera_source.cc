@@ -14,7 +14,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// One Read waits for an image at most so long.
+// One Read waits for an image at most this long.
 constexpr Nanoseconds kWait = milliseconds(50);
 
 ThermalGain GainOf(ThermalGainOption gain) {

@@ -128,7 +128,7 @@ void AddNucCommand(CLI::App& app, CommandBody& body) {
   orders->add_flag("--now", arguments->now, "Correct as soon as it is allowed");
   orders
       ->add_option("--hold", arguments->hold_s,
-                   "No correction for so long (nuc.expert.max_hold_s at most); 0 ends a hold")
+                   "No correction for this long (nuc.expert.max_hold_s at most); 0 ends a hold")
       ->check(CLI::Range(0.0, 86400.0))
       ->type_name("SECONDS");
   orders->add_option("--policy", arguments->policy, "automatic, manual or camera")

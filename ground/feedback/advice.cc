@@ -16,7 +16,7 @@ constexpr double kSlowEnough = 0.8;
 // The stop criterion is given up when the fraction falls so far below it: new surface came into
 // view.
 constexpr double kDoneSlack = 0.03;
-// A hindrance takes the place of another one that is still due when it is so much larger.
+// A hindrance takes the place of another one that is still due when it is this much larger.
 constexpr double kClearlyLarger = 1.3;
 
 double Percent(double fraction) { return 100.0 * fraction; }
@@ -180,7 +180,7 @@ std::string OperatorAdviser::ReasonToSlowDown(const CoverageSummary& view,
   if (Hurry(s) < 1.0 && view.too_fast > 0.0) {
     const double good_px = limits_.expert().motion().smear_good_px();
     const double slow_enough = std::min(1.0, good_px / view.smear_px);
-    // Turning by so many degrees moves the image as far as a metre does, half a metre away.
+    // Turning by this many degrees moves the image as far as a metre does, half a metre away.
     constexpr double kDegPerMetre = 115.0;
     if (s.rotation_rate_deg_s > kDegPerMetre * s.speed_m_s) {
       return fmt::format(

@@ -11,7 +11,7 @@ namespace {
 /// surface (SurfaceOptions::max_slope).
 constexpr float kMaxSlope = 3.0F;
 
-/// Cells of so many blocks (4 x 4 x 4) gather what is lacking.
+/// Cells of this many blocks (4 x 4 x 4) gather what is lacking.
 constexpr int kCellShift = 2;
 
 /// Blocks that are looked at for each one that has a surface to measure, at most.

@@ -20,7 +20,7 @@ constexpr std::size_t kMaxTargets = 48;
 /// Candidates look along the normal and from so far askew, to four sides.
 constexpr double kAskew_rad = 25.0 * std::numbers::pi / 180.0;
 
-/// Another view takes the place of the best one when it gains so much more: it should not jump.
+/// Another view takes the place of the best one when it gains this much more: it should not jump.
 constexpr double kClearlyBetter = 1.2;
 
 /// A surface nearer to the camera than this fraction of the least distance is in its way.
@@ -33,7 +33,7 @@ constexpr double kMinTrackable = 0.05, kMinTrackableOfView = 0.6;
 /// Targets are looked at from this much more than the nearest depth that the depth camera measures.
 constexpr double kDepthReserve = 1.15;
 
-/// A view counts as taken within this far of it, for so many steps.
+/// A view counts as taken within this far of it, for this many steps.
 constexpr double kAtView_m = 0.10;
 constexpr double kAtView_rad = 15.0 * std::numbers::pi / 180.0;
 constexpr int kStepsAtView = 20;

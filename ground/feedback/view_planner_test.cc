@@ -44,7 +44,7 @@ class ViewPlannerTest : public ::testing::Test {
     });
     coverage_.Update(tsdf_, thermal_, kNothingSpilled, tsdf_.block_count() + 1, pool_);
   }
-  /// The best view after so many steps with the rig in front of the scene, looking along z.
+  /// The best view after this many steps with the rig in front of the scene, looking along z.
   std::optional<NextView> Plan(ViewPlanner& planner, int steps = 60) {
     const RigidTransform here = MakeTransform({0.5, 0.5, -0.1}, Eigen::Quaterniond::Identity());
     for (int i = 0; i < steps; ++i)

@@ -12,8 +12,8 @@ namespace {
 /// Width of a letter's stroke, in heights of a capital letter.
 constexpr double kStrokePerHeight = 0.125;
 
-/// Returns how much of a pixel a shape covers whose edge is so many pixels from the pixel's centre,
-/// negative inside. Exact for an edge along a row or a column.
+/// Returns how much of a pixel a shape covers whose edge is this many pixels from the pixel's
+/// centre, negative inside. Exact for an edge along a row or a column.
 double Cover(double distance_px) { return std::clamp(0.5 - distance_px, 0.0, 1.0); }
 
 /// Mixes as much of `colour` into the pixel, if there is one.

@@ -69,7 +69,7 @@ Result<TemperatureBand> ToBand(const TemperatureBandOptions& options) {
   return band;
 }
 
-/// Converts each of a list of options, of which there may be so many.
+/// Converts each of a list of options, of which there may be this many.
 template <typename Part, typename Options>
 Result<std::vector<Part>> ConvertEach(
     const Options& list, int max_count,

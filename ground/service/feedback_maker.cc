@@ -12,7 +12,8 @@
 namespace isotherm {
 namespace {
 
-/// Coverage of the view is assessed by so many pixels per row at least, whatever the image's size.
+/// Coverage of the view is assessed by this many pixels per row at least, whatever the image's
+/// size.
 constexpr int kMinColumns = 160;
 
 /// Once parts of the model are on the disk, only blocks within this distance of the rig are

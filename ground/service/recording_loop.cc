@@ -19,7 +19,7 @@ constexpr Nanoseconds kFlushAfter = 500ms;
 constexpr Nanoseconds kLookInterval = 200ms;
 // An open chunk, the index and the footer take no more.
 constexpr std::uint64_t kClosingBytes = 5U << 20;
-// Kept free in any case: so much, but of a small disk no more than this part.
+// Kept free in any case: this much, but of a small disk no more than this part.
 constexpr std::uint64_t kMaxReserveBytes = 100U << 20;
 constexpr std::uint64_t kReservePart = 10;
 constexpr double kMegabyte = 1 << 20;

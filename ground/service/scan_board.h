@@ -24,7 +24,7 @@ struct ScanBoard {
   LatestValue<EdgeStatus> edge;
   LatestValue<BehindCounts> behind;
   LatestValue<std::shared_ptr<RecordingTracker>> recording;
-  /// The results of the model so far would take so much.
+  /// The results of the model so far would take this much.
   std::atomic<std::uint64_t> result_bytes{0};
   std::atomic<int> scans_being_written{0};  ///< Ended ones whose results are not there yet.
   std::atomic<int> scans_given_up{0};       ///< Ended ones whose results found no place to wait.

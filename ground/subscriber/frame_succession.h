@@ -15,7 +15,7 @@ struct FrameMark {
   SteadyTime arrival{};  ///< Ground.
 };
 
-/// A camera that delivers gives a frame at least so often.
+/// A camera that delivers gives a frame at least this often.
 inline constexpr Nanoseconds kMaxFramePeriod = std::chrono::seconds(1);
 /// Frames of a camera per second, more than any has.
 inline constexpr double kMaxFrameRate_hz = 200.0;

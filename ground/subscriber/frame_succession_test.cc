@@ -9,7 +9,7 @@ using namespace std::chrono_literals;
 
 class FrameSuccessionTest : public ::testing::Test {
  protected:
-  /// Checks a frame so much further on in numbers, capture time and arrival.
+  /// Checks a frame this much further on in numbers, capture time and arrival.
   std::optional<RefusalCause> Check(std::int64_t numbers, Nanoseconds time, Nanoseconds arrival) {
     FrameMark frame = before_;
     frame.number += static_cast<std::uint64_t>(numbers);

@@ -179,7 +179,7 @@ int main(int argc, char** argv) {
   isotherm::Arguments arguments;
   app.add_option("scan,--dataset", arguments.scan,
                  "Dataset folder or recording (.mcap); without one the simulated furnace door");
-  app.add_option("--frames", arguments.frames, "Only the first so many depth frames; 0 = all");
+  app.add_option("--frames", arguments.frames, "Only the first this many depth frames; 0 = all");
   app.add_option("--threads", arguments.threads, "Threads of each")->check(CLI::PositiveNumber);
   app.add_option("--volume-min", arguments.volume_min,
                  "Corner of the scan volume in the ground truth's world, \"x y z\", metres; both "

@@ -31,7 +31,7 @@ double Wall(const Eigen::Vector3d& p) {
   return std::min({0.65 - p.z(), ball, post, ledge});
 }
 
-/// Returns what the camera sees after so many steps along the wall.
+/// Returns what the camera sees after this many steps along the wall.
 const DepthFrame& View(const CameraModel& camera, int step) {
   static std::map<int, DepthFrame> views;
   const auto [view, is_new] = views.try_emplace(step);

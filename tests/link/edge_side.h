@@ -26,7 +26,7 @@ struct EdgePlan {
 
 inline constexpr std::chrono::seconds kLinkPatience{60};  // Far above anything measured.
 
-/// Every so many bytes of a payload hold a mark that depends on the frame; the others are the same
+/// One byte in this many of a payload is a mark that depends on the frame; the others are the same
 /// in all frames, so that making them costs little.
 inline constexpr std::size_t kMarkEvery = 1001;
 

@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using ::testing::HasSubstr;
 
-constexpr auto kPatience = 20s;  // Far above anything measured; only a failure waits so long.
+constexpr auto kPatience = 20s;  // Far above anything measured; only a failure waits this long.
 
 /// Our end of one topic.
 template <typename Message>

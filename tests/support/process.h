@@ -41,7 +41,7 @@ class Process {
   void Signal(int signal) const;
   /// The exit status, or nullopt if the program still runs after `timeout`.
   std::optional<ExitStatus> WaitForExit(Seconds timeout);
-  /// True as soon as `text` has appeared in the output so many times, false if it has not within
+  /// True as soon as `text` has appeared in the output this many times, false if it has not within
   /// `timeout` or never will.
   bool WaitForOutput(std::string_view text, Seconds timeout, int times = 1);
   /// Everything written so far; everything at all once WaitForExit has returned a status.

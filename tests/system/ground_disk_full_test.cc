@@ -36,7 +36,7 @@ std::multiset<std::uint64_t> DepthNumbersIn(const std::filesystem::path& folder)
   return numbers;
 }
 
-/// Waits until so much of a recording is on the disk.
+/// Waits until this much of a recording is on the disk.
 bool WaitForSize(const std::filesystem::path& path, std::uintmax_t bytes) {
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   std::error_code error;

@@ -22,7 +22,7 @@ namespace isotherm {
 /// are tested by link_test.
 class JoinedEndsTest : public ::testing::Test {
  protected:
-  /// Far above anything measured; only a failure waits so long.
+  /// Far above anything measured; only a failure waits this long.
   static constexpr std::chrono::seconds kPatience{10};
 
   std::unique_ptr<Participant> Join() {

@@ -7,7 +7,7 @@
 
 namespace isotherm {
 
-/// The process of testing/fake_camera_process.cc, which does `what` after so many frames.
+/// The process of testing/fake_camera_process.cc, which does `what` after this many frames.
 inline CameraProcess::Settings Fake(const std::string& what, int after_frames) {
   CameraProcess::Settings settings;
   settings.name = "fake camera";

@@ -42,7 +42,7 @@ class FakeSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override { open_ = false; }
-  /// Answers with `control_answer`, at once or so many reads later.
+  /// Answers with `control_answer`, at once or this many reads later.
   std::optional<Status> Control(const CameraControl& control) override;
   std::vector<ControlAnswer> TakeControlAnswers() override;
   std::array<std::uint64_t, 2> TakeLeftOut() override { return std::exchange(left_out_, {}); }
@@ -63,7 +63,7 @@ class FakeSource final : public FrameSource {
   Status control_answer = FailedPrecondition("the source has no shutter to command");
   int answers_after_reads = 0;  ///< 0: at once.
 
-  /// Later calls of Open fail so many times.
+  /// The next calls of Open fail, this many of them.
   void FailToOpen(int times) { failures_to_open_ = times; }
   int opened() const { return opened_; }
 

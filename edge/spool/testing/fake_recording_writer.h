@@ -29,7 +29,7 @@ struct FakeRecording {
   bool closed = false;
 };
 
-/// A disk with room for so many frames. Thread-compatible.
+/// A disk with room for this many frames. Thread-compatible.
 class FakeRecordingWriter final : public RecordingWriter {
  public:
   explicit FakeRecordingWriter(FakeRecording& recording, std::uint64_t room = UINT64_MAX)

@@ -13,7 +13,7 @@ namespace isotherm {
 class EmulatedP2Pro final : public EmulatedUvcCamera {
  public:
   explicit EmulatedP2Pro(std::string_view script);
-  /// One that streams over bulk transfers, in payloads of at most so many bytes.
+  /// One that streams over bulk transfers, in payloads of at most this many bytes.
   EmulatedP2Pro(std::string_view script, std::uint32_t bulk_payload_bytes);
 
   /// The value of pixel (0, 0) without noise, kelvin x 64; columns follow in steps of 1.

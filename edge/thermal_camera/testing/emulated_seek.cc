@@ -18,7 +18,7 @@ constexpr int kImage = 3;
 constexpr int kFirst = 4;
 constexpr int kOther = 8;
 
-/// Detectors differ by so much.
+/// Detectors differ by this much.
 int PatternAt(int x, int y) { return (7 * x + 13 * y) % 50; }
 
 }  // namespace

@@ -66,7 +66,7 @@ class UsbStreamTest : public ::testing::Test {
     const Status started = device_->StartStream(plan, [this](const UsbPacket&) { ++packets_; });
     ASSERT_TRUE(started.ok()) << started.message();
   }
-  /// Pumps until so many packets have come.
+  /// Pumps until this many packets have come.
   void PumpUntil(int packets) {
     const SteadyTime end = clock_.SteadyNow() + kPatience;
     while (packets_ < packets && clock_.SteadyNow() < end) {
