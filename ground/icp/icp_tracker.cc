@@ -81,6 +81,27 @@ void Adopt(const ThermalFit& fit, TrackingResult& result) {
   }
 }
 
+/// Notes how the frame fits the model at the pose that `sums` are of.
+void NoteFit(const IcpSums& sums, TrackingResult& result) {
+  ++result.iterations;
+  result.inlier_ratio = sums.inlier_ratio();
+  result.overlap_ratio = sums.overlap_ratio();
+  result.agreement = sums.agreement();
+  result.residual_m = sums.residual_m();
+}
+
+/// Returns the step towards the model in the observed directions. Without one `result` is lost.
+std::optional<Vector6> SolveStep(const IcpSums& sums, TrackingResult& result) {
+  constexpr std::int64_t kUnknowns = 6;
+  if (sums.inliers < kUnknowns) {
+    result.lost = LostReason::kTooFewInliers;
+    return std::nullopt;
+  }
+  const std::optional<Vector6> step = result.motion.SolveObserved(sums.H, sums.g);
+  if (!step) result.lost = LostReason::kSingular;
+  return step;
+}
+
 }  // namespace
 
 Vector6 TwistBetween(const RigidTransform& from, const RigidTransform& to) {
@@ -237,27 +258,20 @@ IcpSums IcpTracker::Iterate(const PreparedDepth& depth, const ModelView& model,
     for (int iteration = 0; iteration < iterations[level]; ++iteration) {
       const IcpSums sums =
           AccumulateIcp(depth.maps[level], result.T_map_depth, model, grid, Limits(), pool);
-      ++result.iterations;
-      result.inlier_ratio = sums.inlier_ratio();
-      result.overlap_ratio = sums.overlap_ratio();
-      result.agreement = sums.agreement();
-      result.residual_m = std::sqrt(sums.squared_residuals_m2 /
-                                    static_cast<double>(std::max<std::int64_t>(sums.inliers, 1)));
-      const std::optional<Vector6> twist =
-          sums.inliers < 6 ? std::nullopt : result.motion.SolveObserved(sums.H, sums.g);
-      if (!twist) {
-        result.lost = sums.inliers < 6 ? LostReason::kTooFewInliers : LostReason::kSingular;
-        return last;
-      }
+      NoteFit(sums, result);
+      const std::optional<Vector6> step = SolveStep(sums, result);
+      if (!step) return last;  // It is lost.
       last = sums;
-      ApplyTwist(*twist, result.T_map_depth);
-      if (twist->head<3>().norm() < options_.expert().min_update_m() &&
-          twist->tail<3>().norm() < options_.expert().min_update_deg() * kRadPerDeg) {
-        break;
-      }
+      ApplyTwist(*step, result.T_map_depth);
+      if (IsLastStep(*step)) break;
     }
   }
   return last;
+}
+
+bool IcpTracker::IsLastStep(const Vector6& twist) const {
+  return twist.head<3>().norm() < options_.expert().min_update_m() &&
+         twist.tail<3>().norm() < options_.expert().min_update_deg() * kRadPerDeg;
 }
 
 TrackingResult IcpTracker::Assess(TrackingResult result, double min_inlier_ratio) const {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -17,7 +19,7 @@ namespace isotherm {
 
 class ThermalAlignment;
 
-/// Why a frame could not be tracked, in the order of the names, as in stats.json.
+/// Says why a frame could not be tracked, in the order of the names, as in stats.json.
 enum class LostReason : std::uint8_t {
   kNone,
   kNotFound,       ///< Lost before, and nothing convincing since.
@@ -94,6 +96,11 @@ struct IcpSums {
   double inlier_ratio() const { return Fraction(inliers, candidates); }
   double overlap_ratio() const { return Fraction(overlap, candidates); }
   double agreement() const { return Fraction(inliers, overlap); }
+  /// Root mean square of the inliers' distances to the model's planes, metres.
+  double residual_m() const {
+    return std::sqrt(squared_residuals_m2 /
+                     static_cast<double>(std::max<std::int64_t>(inliers, 1)));
+  }
   IcpSums& operator+=(const IcpSums& other);
 
  private:
@@ -110,7 +117,7 @@ class IcpTracker {
  public:
   explicit IcpTracker(const TrackerOptions& options) : options_(options) {}
 
-  /// Where the search starts, and what holds the directions that the geometry cannot measure.
+  /// Says where the search starts, and what holds the directions that the geometry cannot measure.
   struct Start {
     RigidTransform guess;
     RigidTransform prior;
@@ -134,6 +141,8 @@ class IcpTracker {
   /// cannot be solved. Returns the sums of the last iteration.
   IcpSums Iterate(const PreparedDepth& depth, const ModelView& model, const VoxelGrid& grid,
                   ThreadPool& pool, TrackingResult& result) const;
+  /// Returns whether a step is small enough to end with (min_update_m, min_update_deg).
+  bool IsLastStep(const Vector6& twist) const;
   TrackingResult Assess(TrackingResult result, double min_inlier_ratio) const;
 
   const TrackerOptions options_;

@@ -14,9 +14,9 @@ struct IcpLimits;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Which motions of the camera the geometry in view can measure. Motions are twists (translation,
-/// rotation about the camera's position, in `map`) with rotations in metres at the mean depth:
-/// twist = scale * motion, element by element.
+/// Tells which motions of the camera the geometry in view can measure. Motions are twists
+/// (translation, rotation about the camera's position, in `map`) with rotations in metres at the
+/// mean depth: twist = scale * motion, element by element.
 struct Observability {
   Vector6 scale = Vector6::Ones();
   Matrix6 axes = Matrix6::Identity();  ///< Orthonormal columns, the least observed first.
@@ -34,7 +34,7 @@ struct Observability {
   std::optional<Vector6> SolveObserved(const Matrix6& H, const Vector6& g) const;
 };
 
-/// Which motions are observed between `current` (camera coordinates) and the model, with
+/// Measures which motions are observed between `current` (camera coordinates) and the model, with
 /// associations as ICP's. The normals of both sides enter, one each into either factor: their noise
 /// is independent, so that it does not look like structure, as it would in the square of one
 /// side's. `min_strength` separates unobservable from observed axes. All are observed if there are

@@ -37,8 +37,8 @@ class OdometryPrior {
     RigidTransform T_map_depth;
     PriorError error;
   };
-  /// Where the depth camera is at `time` if it moved from `last`, the newest tracked pose, as the
-  /// source says. `inertial` and its error stand in for what the source does not measure.
+  /// Predicts where the depth camera is at `time` if it moved from `last`, the newest tracked pose,
+  /// as the source says. `inertial` and its error stand in for what the source does not measure.
   std::optional<Prediction> Predict(const StampedMapPose& last, CaptureTime time,
                                     const RigidTransform& inertial,
                                     const PriorError& inertial_error);

@@ -17,7 +17,7 @@ namespace isotherm {
 Status Validate(const ExternalOdometryOptions& options);
 Status Validate(const ExternalOdometryExpertOptions& options);
 
-/// Why a sample is refused, in the order of the names, as in stats.json.
+/// Says why a sample is refused, in the order of the names, as in stats.json.
 enum class OdometryFault : std::uint8_t {
   kJump,  ///< Farther from the one before than the rig can go.
   kNotFinite,
@@ -68,7 +68,7 @@ class OdometryStream {
     Estimate estimate;
     double time_sigma_s = 0.0;
   };
-  /// Why the sample is of no use by itself; nullopt: it is.
+  /// Says why the sample is of no use by itself; nullopt if it is of use.
   std::optional<OdometryFault> FindFault(const ExternalOdometry& sample) const;
   Sample ToSample(const ExternalOdometry& pose) const;
   bool IsTooFast(const Sample& before, const Sample& after) const;
