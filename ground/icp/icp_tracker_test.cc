@@ -9,6 +9,7 @@
 #include "common/testing/volume_shapes.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "ground/surface/testing/small_volume.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -19,13 +20,10 @@ constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 class IcpTrackerTest : public ::testing::Test {
  protected:
   IcpTrackerTest() {
-    VolumeOptions volume_options;
-    volume_options.set_size_x_m(0.64);
-    volume_options.set_size_y_m(0.64);
-    volume_options.set_size_z_m(0.64);
-    volume_options.set_voxel_size_m(0.004);
+    const VolumeOptions volume_options = testing::SmallVolume();
     grid_ = MakeVoxelGrid(volume_options).value();
-    volume_ = std::make_unique<TsdfVolume>(grid_, 0.016, MaxBlocks(volume_options, grid_));
+    volume_ = std::make_unique<TsdfVolume>(grid_, testing::kSmallTruncation_m,
+                                           MaxBlocks(volume_options, grid_));
     testing::FillVolume(*volume_, testing::BallInCorner);
     LookFrom(testing::FirstPose());
   }

@@ -12,6 +12,7 @@
 #include "ground/icp/pose_uncertainty.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "ground/surface/testing/small_volume.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -49,13 +50,9 @@ class MeasureObservabilityTest : public ::testing::Test {
 
   /// Shows the scene to the model, and to a frame from the same pose.
   void Look(const testing::SignedDistance& scene) {
-    VolumeOptions options;
-    options.set_size_x_m(0.64);
-    options.set_size_y_m(0.64);
-    options.set_size_z_m(0.64);
-    options.set_voxel_size_m(0.004);
+    const VolumeOptions options = testing::SmallVolume();
     const VoxelGrid grid = MakeVoxelGrid(options).value();
-    TsdfVolume volume(grid, 0.016, MaxBlocks(options, grid));
+    TsdfVolume volume(grid, testing::kSmallTruncation_m, MaxBlocks(options, grid));
     testing::FillVolume(volume, scene);
     view_.camera = testing::SmallDepthCamera();
     view_.T_map_depth = testing::FirstPose();

@@ -9,6 +9,7 @@
 
 #include "common/testing/volume_shapes.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "ground/surface/testing/small_volume.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -24,14 +25,10 @@ class ThermalStageTest : public ::testing::Test {
     rig_.depth = testing::SmallDepthCamera();
     rig_.thermal = rig_.depth;
     rig_.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
-    VolumeOptions volume;
-    volume.set_size_x_m(0.64);
-    volume.set_size_y_m(0.64);
-    volume.set_size_z_m(0.64);
-    volume.set_voxel_size_m(0.004);
+    const VolumeOptions volume = testing::SmallVolume();
     const VoxelGrid grid = MakeVoxelGrid(volume).value();
     const std::int32_t max_blocks = MaxBlocks(volume, grid);
-    tsdf_ = std::make_unique<TsdfVolume>(grid, 0.016, max_blocks);
+    tsdf_ = std::make_unique<TsdfVolume>(grid, testing::kSmallTruncation_m, max_blocks);
     testing::FillVolume(*tsdf_, testing::BallInCorner);
     thermal_ = std::make_unique<ThermalVolume>(max_blocks);
     EXPECT_TRUE(thermal_->Commit(tsdf_->block_count()));

@@ -8,6 +8,7 @@
 #include "ground/atlas/sub_map.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "ground/surface/testing/small_volume.h"
 
 namespace isotherm::testing {
 
@@ -15,19 +16,15 @@ namespace isotherm::testing {
 class SubMapTest : public ::testing::Test {
  protected:
   SubMapTest() {
-    VolumeOptions& volume = *options_.mutable_volume();
-    volume.set_size_x_m(0.64);
-    volume.set_size_y_m(0.64);
-    volume.set_size_z_m(0.64);
-    volume.set_voxel_size_m(0.004);
-    options_.mutable_tsdf()->set_truncation_distance_m(kTruncation_m);
+    *options_.mutable_volume() = SmallVolume();
+    options_.mutable_tsdf()->set_truncation_distance_m(kSmallTruncation_m);
   }
 
   VoxelGrid Grid() const { return MakeVoxelGrid(options_.volume()).value(); }
   SubMap MakeSubMap() const {
     const std::int32_t max_blocks = MaxBlocks(options_.volume(), Grid());
     SubMap map;
-    map.tsdf = std::make_unique<TsdfVolume>(Grid(), kTruncation_m, max_blocks);
+    map.tsdf = std::make_unique<TsdfVolume>(Grid(), kSmallTruncation_m, max_blocks);
     map.thermal = std::make_unique<ThermalVolume>(max_blocks);
     map.relocaliser = std::make_unique<Relocaliser>(options_.relocaliser(), camera_);
     return map;
@@ -52,7 +49,6 @@ class SubMapTest : public ::testing::Test {
     return preprocessor_.Process(frame, pool_);
   }
 
-  static constexpr double kTruncation_m = 0.016;
   GroundOptions options_;
   const CameraModel camera_ = SmallDepthCamera();
   ThreadPool pool_{2};

@@ -1,0 +1,69 @@
+// What the pipeline leaves out when there is not enough time for all frames.
+
+#include <gtest/gtest.h>
+
+#include "ground/pipeline/ground_pipeline.h"
+#include "ground/pipeline/testing/pipeline_fixture.h"
+
+namespace isotherm {
+namespace {
+
+using LoadSheddingTest = testing::PipelineFixture;
+
+TEST_F(LoadSheddingTest, WithoutTimeForThermalItIsLeftOutAndCounted) {
+  Depth(0);
+  pipeline_->set_load_shedding(LoadShedding::kNoThermal);
+  Thermal(0.5);
+  Depth(1);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 0U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 1U);
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, 2U);
+  EXPECT_EQ(pipeline_->model().counts.depth_behind, 0U);
+  pipeline_->set_load_shedding(LoadShedding::kNone);
+  Thermal(1.5);
+  Depth(2);
+  EXPECT_EQ(pipeline_->model().counts.thermal_fused, 1U);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 1U);
+}
+
+TEST_F(LoadSheddingTest, WithHalfTheTimeForThermalEverySecondFrameIsLeftOut) {
+  constexpr int kFrames = 6;
+  Depth(0);
+  pipeline_->set_load_shedding(LoadShedding::kHalfThermal);
+  for (int i = 1; i <= kFrames; ++i) {
+    Thermal(i - 0.5);
+    Depth(i);
+    EXPECT_EQ(pipeline_->model().counts.thermal_fused, static_cast<std::uint64_t>((i + 1) / 2));
+  }
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 0U + kFrames / 2);
+  EXPECT_EQ(pipeline_->model().counts.depth_integrated, 1U + kFrames);
+}
+
+TEST_F(LoadSheddingTest, WithTimeForEverySecondFrameAllAreTracked) {
+  constexpr double kMaxError = 0.002;  // Metres: half a voxel.
+  constexpr int kFrames = 8;
+  Depth(0);
+  pipeline_->set_load_shedding(LoadShedding::kEverySecond);
+  for (int i = 1; i <= kFrames; ++i) {
+    Thermal(i - 0.5);
+    const DepthReport report = Depth(i);
+    ASSERT_TRUE(report.tracked) << i;
+    EXPECT_EQ(report.integrated, i % 2 == 1) << i;
+    EXPECT_LT(TranslationDistance(report.pose.T_map_depth, TruePose(i)), kMaxError) << i;
+  }
+  const PipelineCounts& counts = pipeline_->model().counts;
+  EXPECT_EQ(counts.depth_tracked, 1U + kFrames);
+  EXPECT_EQ(counts.depth_integrated, 1U + kFrames / 2);
+  EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
+  EXPECT_EQ(LeftOut(LeftOutReason::kBehind), 0U + kFrames);
+  pipeline_->set_load_shedding(LoadShedding::kNone);
+  for (int i = kFrames + 1; i <= kFrames + 3; ++i) {
+    Thermal(i - 0.5);
+    EXPECT_TRUE(Depth(i).integrated) << i;
+  }
+  EXPECT_EQ(counts.depth_behind, 0U + kFrames / 2);
+  EXPECT_EQ(counts.thermal_fused, 3U);
+}
+
+}  // namespace
+}  // namespace isotherm
