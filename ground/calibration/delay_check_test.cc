@@ -26,7 +26,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr std::uint64_t kSeed = 20;
-// Small cameras and large voxels: poses lag by more than with the usual ones.
+// Small cameras and large voxels: poses drift by more than with the usual ones.
 constexpr double kTolerance_s = 0.003;
 
 /// A simulated scan with small cameras, reconstructed once. Its thermal stamps are the true

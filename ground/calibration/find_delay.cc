@@ -7,9 +7,10 @@ namespace isotherm {
 namespace {
 
 constexpr double kPart_s = 1.0;
-// Tracked poses follow the rig by about that much (1.0 ms on a rendered scan, where true poses say
-// so), and resampling does not show it.
-constexpr double kPoseLag_s = 0.001;
+// What tracked poses are off by makes about that much (1.0 ms on a rendered scan, where true poses
+// say so), and resampling does not show it. It can be several times as much where the rig hardly
+// reverses (docs/timing.md).
+constexpr double kPoseError_s = 0.001;
 
 }  // namespace
 
@@ -24,7 +25,7 @@ Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& 
   Result<DelayEstimate> estimate = SearchDelay(
       disagreement, [&](double delay_s) { consistency.WeighAt(delay_s); }, consistency.parts(),
       options.search, progress);
-  if (estimate) estimate->sigma_s = std::hypot(estimate->sigma_s, kPoseLag_s);
+  if (estimate) estimate->sigma_s = std::hypot(estimate->sigma_s, kPoseError_s);
   return estimate;
 }
 

@@ -17,8 +17,8 @@ struct FindDelayOptions {
 };
 
 /// The delay, to be added to the stamps, at which the thermal images of a scan agree about the
-/// surface. Its sigma holds, beside the spread of parts of the scan, what poses lag. Fails and says
-/// what the scan lacks. Deterministic. `progress` gets the fraction done, 0..1.
+/// surface. Its sigma holds, beside the spread of parts of the scan, a millisecond for the poses.
+/// Fails and says what the scan lacks. Deterministic. `progress` gets the fraction done, 0..1.
 Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& options,
                                 ThreadPool& pool, const std::function<void(double)>& progress);
 

@@ -27,6 +27,8 @@ struct Disturbances {
   std::uint64_t seed = 1;
   double pixel_noise_k = 0.05;
   double pose_noise_m = 0.0001;
+  double pose_drift = 0.0;  ///< Poses fall short of the rig's way from its start by this fraction.
+  double hurry = 1.0;       ///< The rig swings so many times as fast.
 };
 
 /// A wall at z = 1 m with a wavy temperature; the rig swings in front of it.
@@ -71,7 +73,9 @@ ScanViews SwingInFrontOfAWall(double delay_s, const Disturbances& disturbances =
   views.thermal_camera = {
       .width = kWidth, .height = kHeight, .fx = kFocal_px, .fy = kFocal_px, .cx = 80, .cy = 60};
   for (int i = 0; i < 300; ++i) {
-    RigidTransform pose = PoseAt(i / 30.0);
+    RigidTransform pose = PoseAt(disturbances.hurry * i / 30.0);
+    pose.translation() -=
+        disturbances.pose_drift * (pose.translation() - PoseAt(0.0).translation());
     const std::uint64_t stream = NoiseStream(disturbances.seed, 2, static_cast<std::uint64_t>(i));
     for (int axis = 0; axis < 3; ++axis)
       pose.translation()[axis] +=
@@ -85,10 +89,10 @@ ScanViews SwingInFrontOfAWall(double delay_s, const Disturbances& disturbances =
   }
   for (int i = 10; i < 390; i += 3) {
     const double time_s = i / 40.0, stamp_s = time_s - delay_s;
-    views.frames.push_back(
-        {kStart + FromSeconds(stamp_s),
-         std::make_shared<const Image<std::uint16_t>>(Render(time_s, disturbances)),
-         {}});
+    views.frames.push_back({kStart + FromSeconds(stamp_s),
+                            std::make_shared<const Image<std::uint16_t>>(
+                                Render(disturbances.hurry * time_s, disturbances)),
+                            {}});
     // All points stay in the image. Poses are known for all delays that are tried.
     if (stamp_s < 0.2 || stamp_s > 9.75) continue;
     for (std::uint32_t point = 0; point < views.points.size(); ++point)
@@ -114,6 +118,34 @@ TEST(FindDelayTest, SeveralDelaysAreFoundWithinTheirUncertainty) {
     EXPECT_NEAR(found->delay_s, delay_s, kTolerance_s) << "seed " << disturbances.seed;
     EXPECT_LT(found->sigma_s, 0.0011);
   }
+}
+
+/// What tracked poses do in scans: they do not lag, they fall short of the rig's way. That looks
+/// like a delay as long as the rig goes one way, and averages out over its reversals.
+TEST(FindDelayTest, DriftOfThePosesAveragesOutIfTheRigGoesBackAndForth) {
+  constexpr int kSeeds = 10;
+  constexpr double kMaxBias_s = 0.0003;
+  constexpr double kDrift = 0.01;
+  FindDelayOptions options;
+  options.search.range_s = 0.04;
+  options.search.resamplings = 20;
+  double sum_s = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Result<DelayEstimate> found =
+        Find(SwingInFrontOfAWall(0.0, {.seed = seed, .pose_drift = kDrift}), options);
+    ASSERT_TRUE(found.has_value()) << found.error().message();
+    sum_s += found->delay_s;
+  }
+  EXPECT_NEAR(sum_s / kSeeds, 0.0, kMaxBias_s);
+  // A tenth as fast, there is time for less than half a swing, whatever the seed.
+  options.search.max_sigma_s = 1.0;
+  options.search.min_contrast = 0.0;
+  const Result<DelayEstimate> one_way =
+      Find(SwingInFrontOfAWall(0.0, {.pose_drift = kDrift, .hurry = 0.1}), options);
+  ASSERT_TRUE(one_way.has_value()) << one_way.error().message();
+  std::printf("back and forth %+.2f ms, one way %+.2f ms\n", 1e3 * sum_s / kSeeds,
+              1e3 * one_way->delay_s);
+  EXPECT_GT(std::abs(one_way->delay_s), 10.0 * kMaxBias_s);
 }
 
 TEST(FindDelayTest, WithoutThermalContrastNothingIsFound) {
