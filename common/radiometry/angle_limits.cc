@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/check.h"
+#include "common/radiometry/materials.h"
+
 namespace isotherm {
 namespace {
 
@@ -13,6 +16,11 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 /// NaN (no temperature fits) is beyond every tolerance.
 bool Within(const EmissionError& error, const ErrorTolerance& tolerance) {
   return std::abs(tolerance.in_kelvin ? error.kelvin : error.relative) <= tolerance.value;
+}
+
+/// `degrees` in whole tenths, by `direction` (std::ceil or std::floor).
+double Tenths(double degrees, double (*direction)(double), double rounding) {
+  return direction(degrees * 10.0 + rounding) / 10.0;
 }
 
 }  // namespace
@@ -86,6 +94,24 @@ Result<AngleLimits> EmissionCurve::Limits(const ErrorTolerance& good,
         limits.min_rad / kDegree, limits.good_rad / kDegree)));
   }
   return limits;
+}
+
+AngleLimitsInDegrees InTenthsOfDegrees(const AngleLimits& limits) {
+  constexpr double kRounding = 1e-8;  // Of tenths: far above that of a double, far below a tenth.
+  const auto up = static_cast<double (*)(double)>(std::ceil);
+  const auto down = static_cast<double (*)(double)>(std::floor);
+  return {limits.min_rad > 0.0 ? Tenths(limits.min_rad / kDegree, up, -kRounding) : 0.0,
+          Tenths(limits.good_rad / kDegree, down, kRounding),
+          Tenths(limits.max_rad / kDegree, down, kRounding)};
+}
+
+AngleLimitsInDegrees AngleLimitsOf(const OpticalMaterial& material) {
+  constexpr ErrorTolerance kGood{kGoodFraction * kDefaultTolerance.value,
+                                 kDefaultTolerance.in_kelvin};
+  const EmissionCurve curve(material.index, SpectralBand{}, EmissionConditions{});
+  const Result<AngleLimits> limits = curve.Limits(kGood, kDefaultTolerance);
+  CHECK(limits);  // Of each material that is built in; a test looks at all.
+  return InTenthsOfDegrees(*limits);
 }
 
 double OperatorMirrorAngle(double half_width_m, double distance_m) {

@@ -5,6 +5,8 @@
 
 namespace isotherm {
 
+struct OpticalMaterial;
+
 /// Holds what is looked at, and what it mirrors.
 struct EmissionConditions {
   double object_celsius = 100.0;
@@ -28,12 +30,32 @@ struct ErrorTolerance {
   bool in_kelvin = false;
 };
 
+/// This is tolerated where nothing else is said: the default of `isotherm limits`, and what the
+/// limits that thermal.material sets stand for. A good angle costs a quarter of an acceptable one.
+inline constexpr ErrorTolerance kDefaultTolerance{0.02, false};
+inline constexpr double kGoodFraction = 0.25;
+
 /// theta_min, theta_th and theta_max of (6.3b), radians.
 struct AngleLimits {
   double min_rad;
   double good_rad;
   double max_rad;
 };
+
+/// Holds the same as options state it.
+struct AngleLimitsInDegrees {
+  double min_deg;
+  double good_deg;
+  double max_deg;
+};
+
+/// Cuts limits to tenths of a degree, on the safe side. A value that is whole but for rounding
+/// stays.
+AngleLimitsInDegrees InTenthsOfDegrees(const AngleLimits& limits);
+
+/// Returns the limits of a built-in material under the default tolerance, band and
+/// EmissionConditions.
+AngleLimitsInDegrees AngleLimitsOf(const OpticalMaterial& material);
 
 /// Errors over the emission angle for one material. Immutable.
 class EmissionCurve {

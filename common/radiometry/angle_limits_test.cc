@@ -55,6 +55,35 @@ TEST(EmissionCurveTest, DielectricsAreGoodUpToWhereTheThesisPutsIt) {
   EXPECT_NEAR(limits->max_rad, 60.0 * kDegree, 1.0 * kDegree);
 }
 
+TEST(AngleLimitsOfTest, APaintedSurfaceIsGoodToAHalfPercentAndAcceptableToTwo) {
+  const AngleLimitsInDegrees limits = AngleLimitsOf(*FindOpticalMaterial("paint"));
+  EXPECT_NEAR(limits.good_deg, AngleByBisection({1.5, 0.0}, 0.005) / kDegree, 0.11);
+  EXPECT_NEAR(limits.max_deg, AngleByBisection({1.5, 0.0}, 0.02) / kDegree, 0.11);
+  EXPECT_EQ(limits.min_deg, 0.0) << "35 degrees C mirrored at 4 % cost less than a half percent";
+}
+
+TEST(AngleLimitsOfTest, EachMaterialLeavesAnglesAndOfShinyOnesNotThoseThatMirrorTheOperator) {
+  for (const OpticalMaterial& material : OpticalMaterials()) {
+    const AngleLimitsInDegrees limits = AngleLimitsOf(material);
+    EXPECT_LT(limits.min_deg, limits.good_deg) << material.name;
+    EXPECT_LT(limits.good_deg, limits.max_deg) << material.name;
+    const double emissivity =
+        BandEmissivity(material.index, SpectralBand{}, EmissionConditions{}.object_celsius).At(0.0);
+    if (emissivity < 0.94) {
+      EXPECT_NEAR(limits.min_deg, 15.5, 1e-9) << material.name;
+    }
+  }
+}
+
+TEST(AngleLimitsOfTest, TenthsLieOnTheSafeSide) {
+  const AngleLimitsInDegrees cut =
+      InTenthsOfDegrees({15.41 * kDegree, 41.29 * kDegree, 55.0 * kDegree});
+  EXPECT_DOUBLE_EQ(cut.min_deg, 15.5);
+  EXPECT_DOUBLE_EQ(cut.good_deg, 41.2);
+  EXPECT_DOUBLE_EQ(cut.max_deg, 55.0);
+  EXPECT_EQ(InTenthsOfDegrees({0.0, 0.1, 0.2}).min_deg, 0.0);
+}
+
 TEST(EmissionCurveTest, KelvinAreWhatInterpretationWithTheNormalEmissivityGivesWrong) {
   constexpr double kTables = 2e-3;  // Twice BandRadiance's interpolation error, kelvin.
   const BandRadiance band;

@@ -21,7 +21,8 @@ constexpr const char* kFooter =
     R"(Angles: the emissivity of a smooth surface over the emission angle follows from its refractive index
 (Fresnel), and from it the error of a temperature that is interpreted with the emissivity along the
 normal. The tolerated error is a fraction of the radiance (2%) or a temperature (1.5K). Below the least
-angle the surface mirrors the operator; there is one only where that matters.
+angle the surface mirrors the operator; there is one only where that matters. With nothing but --material
+these are the limits that thermal.material sets.
 
 Distances: sharp within the depth of field (focal length, f-number, focus, pitch; or --near and
 --far), resolved while a detail is 1.5 pixels wide (good) or 1 (acceptable; --pixels "3 2" is stricter).
@@ -37,7 +38,8 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Arguments {
   bool list = false;
-  std::string material, band = "7.5 13", tolerance = "2%", good_tolerance;
+  std::string material, band = "7.5 13", good_tolerance;
+  std::string tolerance = fmt::format("{:g}%", 100.0 * kDefaultTolerance.value);
   std::optional<double> n;
   double k = 0.0;
   EmissionConditions conditions;
@@ -54,8 +56,6 @@ struct Arguments {
 };
 
 Status ReadTolerances(const Arguments& arguments, AngleRequest& request) {
-  // With the default a dielectric's classes come near the options' defaults of 40 and 60 degrees.
-  constexpr double kGoodFraction = 0.25;
   const auto acceptable = ParseTolerance(arguments.tolerance, "--tolerance");
   if (!acceptable) return acceptable.error();
   request.acceptable = request.good = *acceptable;

@@ -95,7 +95,6 @@ std::string DescribeFootprints(double ifov_rad, const std::vector<double>& dista
 }
 
 std::string DescribeOptions(const LimitOptions& limits) {
-  constexpr double kStep_deg = 0.1;
   constexpr double kStep_m = 0.001;
   std::string set, config;
   // A line of the file and the overrides for one group of the thermal options.
@@ -121,11 +120,9 @@ std::string DescribeOptions(const LimitOptions& limits) {
        {"max_m", round(limits.distance_max_m, RoundDown, kStep_m)}},
       3);
   if (limits.angle) {
+    const AngleLimitsInDegrees angle = InTenthsOfDegrees(*limits.angle);
     add("angle",
-        {{"min_deg", RoundUp(limits.angle->min_rad / kDegree, kStep_deg)},
-         {"good_deg", RoundDown(limits.angle->good_rad / kDegree, kStep_deg)},
-         {"max_deg", RoundDown(limits.angle->max_rad / kDegree, kStep_deg)}},
-        1);
+        {{"min_deg", angle.min_deg}, {"good_deg", angle.good_deg}, {"max_deg", angle.max_deg}}, 1);
   }
   if (set.empty()) return {};
   return fmt::format("\non the command line\n  {}\nin the configuration file\nthermal {{\n{}}}\n",

@@ -1,5 +1,6 @@
 #include "ground/cli/limits_report.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -40,6 +41,23 @@ TEST(LimitsReportTest, SnippetIsAConfigurationThatValidates) {
   EXPECT_EQ(options.thermal().distance().max_m(), 0.57);
 }
 
+TEST(LimitsReportTest, AMaterialSetsWhatIsReportedOfIt) {
+  constexpr ErrorTolerance kGood{kGoodFraction * kDefaultTolerance.value, false};
+  for (const OpticalMaterial& material : OpticalMaterials()) {
+    const EmissionCurve curve(material.index, SpectralBand{}, EmissionConditions{});
+    LimitOptions limits;
+    limits.angle = curve.Limits(kGood, kDefaultTolerance).value();
+    const std::string text = DescribeOptions(limits);
+    GroundOptions reported, set;
+    ASSERT_TRUE(ParseTextProto(text.substr(text.find("thermal {")), "limits", reported).ok());
+    set.mutable_thermal()->set_material(std::string(material.name));
+    const ThermalAngleOptions angle = WithAnglesOfMaterial(set.thermal()).angle();
+    EXPECT_EQ(reported.thermal().angle().SerializeAsString(), angle.SerializeAsString())
+        << material.name << "\n"
+        << text;
+  }
+}
+
 TEST(LimitsReportTest, OverridesSayTheSame) {
   std::string text = DescribeOptions(SomeLimits());
   GroundOptions options;
@@ -74,6 +92,10 @@ TEST(LimitsReportTest, EveryMaterialIsDocumented) {
     EXPECT_NE(document.find("`" + std::string(material.name) + "`"), std::string::npos)
         << material.name;
     EXPECT_NE(list.find(material.name), std::string::npos) << material.name;
+    const AngleLimitsInDegrees limits = AngleLimitsOf(material);
+    const std::string row = fmt::format("| `{}` | {:g} | {:g} | {:g} |", material.name,
+                                        limits.min_deg, limits.good_deg, limits.max_deg);
+    EXPECT_NE(document.find(row), std::string::npos) << row;
   }
 }
 

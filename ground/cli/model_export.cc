@@ -9,6 +9,7 @@
 #include "ground/export/message_json.h"
 #include "ground/model/load_model.h"
 #include "ground/surface/surface_maps.h"
+#include "ground/thermal/measurement_conditions.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -43,7 +44,7 @@ Result<ResultSummary> ExportModel(const std::filesystem::path& model_path, Groun
                       .trajectory = std::nullopt,
                       .view = view ? &*view : nullptr,
                       .renderer_options = options.renderer(),
-                      .thermal_options = options.thermal(),
+                      .thermal_options = WithAnglesOfMaterial(options.thermal()),
                       .export_options = options.export_(),
                       .interpretation = &interpretation,
                       .stats = stats};

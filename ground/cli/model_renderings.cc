@@ -9,6 +9,7 @@
 #include "ground/export/surface.h"
 #include "ground/renderer/renderer.h"
 #include "ground/surface/surface_maps.h"
+#include "ground/thermal/measurement_conditions.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {
@@ -78,7 +79,7 @@ Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& optio
                             const std::optional<TemperatureScale>& scale,
                             const RenderingRequest& request, ThreadPool& pool,
                             const std::function<void(double fraction)>& progress) {
-  const Renderer renderer(options.renderer(), options.thermal());
+  const Renderer renderer(options.renderer(), WithAnglesOfMaterial(options.thermal()));
   const bool thermal = std::ranges::count(request.layers, RenderLayer::kThermal) > 0;
   const std::vector<fs::path> files = RenderingFiles(request);
   auto file = files.begin();

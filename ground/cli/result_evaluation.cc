@@ -8,8 +8,10 @@
 
 #include "common/config/text_proto.h"
 #include "common/dataset/trajectory.h"
+#include "ground/cli/result_folder.h"
 #include "ground/cli/truth.h"
 #include "ground/evaluation/point_sets.h"
+#include "ground/thermal/measurement_conditions.h"
 
 namespace isotherm {
 namespace {
@@ -44,12 +46,27 @@ Result<TrajectoryErrors> CompareTrajectory(const EvaluationRequest& request) {
 constexpr std::size_t kPosesForCoverage = 40;
 constexpr float kCoveredWithin_m = 0.005F;
 
+/// What the result was told to measure under (stats.json), or the defaults.
+Result<WellSeenLimits> LimitsOf(const EvaluationRequest& request, const Rig& rig) {
+  const ThermalOptions options =
+      ConfigurationOf(request.result_dir).value_or(GroundOptions()).thermal();
+  if (Status status = Validate(options); !status.ok())
+    return Err(status.WithContext((request.result_dir / "stats.json").string()));
+  const ThermalOptions limits = CompleteLimits(options, rig.thermal_sensor);
+  return WellSeenLimits{limits.distance().min_m(), limits.distance().max_m(),
+                        limits.angle().min_deg(), limits.angle().max_deg()};
+}
+
 Result<ThermalCoverage> CompareCoverage(const EvaluationRequest& request, const TrueSurface& truth,
                                         const MeasuredCloud& cloud,
-                                        const std::vector<Eigen::Vector3f>& positions) {
+                                        const std::vector<Eigen::Vector3f>& positions,
+                                        WellSeenLimits& limits) {
   const auto rig = LoadRigCalibration(*request.rig);
   if (!rig) return Err(rig.error());
   if (Status status = CheckThermalFusion(*rig); !status.ok()) return Err(std::move(status));
+  const auto known = LimitsOf(request, *rig);
+  if (!known) return Err(known.error());
+  limits = *known;
   const auto poses = ReadTruePoses(request.groundtruth);
   if (!poses) return Err(poses.error());
   std::vector<RigidTransform> T_truth_thermal;
@@ -60,7 +77,7 @@ Result<ThermalCoverage> CompareCoverage(const EvaluationRequest& request, const 
   for (std::size_t i = 0; i < positions.size(); ++i) {
     if (std::isfinite(cloud.celsius[i])) assigned.push_back(positions[i]);
   }
-  return EvaluateThermalCoverage(truth, *rig->thermal, T_truth_thermal, {}, assigned,
+  return EvaluateThermalCoverage(truth, *rig->thermal, T_truth_thermal, limits, assigned,
                                  kCoveredWithin_m);
 }
 
@@ -106,7 +123,7 @@ Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) 
   if (!temperature) return temperature.error();
   report.temperature = *temperature;
   if (!request.rig) return OkStatus();
-  const auto coverage = CompareCoverage(request, truth, *cloud, positions);
+  const auto coverage = CompareCoverage(request, truth, *cloud, positions, report.well_seen_limits);
   if (!coverage) return coverage.error();
   report.coverage = *coverage;
   return OkStatus();
@@ -202,14 +219,15 @@ std::string ToText(const EvaluationReport& report) {
   }
   if (report.temperature) text += TemperatureText(*report.temperature);
   if (report.coverage) {
+    const WellSeenLimits& limits = report.well_seen_limits;
     text += fmt::format(
-        "  {:<26}{:.2f} % of {} true points seen by the thermal camera from 0.3 to 0.9 m at up to "
-        "60 "
-        "degrees have a temperature within 5 mm\n",
+        "  {:<26}{:.2f} % of {} true points seen by the thermal camera from {:.3g} to {:.3g} m at "
+        "{:g} to {:g} degrees have a temperature within 5 mm\n",
         "coverage",
         100.0 * static_cast<double>(report.coverage->covered) /
             static_cast<double>(std::max<std::size_t>(1, report.coverage->well_seen)),
-        report.coverage->well_seen);
+        report.coverage->well_seen, limits.min_distance_m, limits.max_distance_m,
+        limits.min_angle_deg, limits.max_angle_deg);
   }
   return text;
 }
@@ -246,6 +264,10 @@ Json ToJson(const EvaluationReport& report) {
   if (report.coverage) {
     json["coverage"]["well_seen"] = report.coverage->well_seen;
     json["coverage"]["covered"] = report.coverage->covered;
+    json["coverage"]["distance_m"] = {report.well_seen_limits.min_distance_m,
+                                      report.well_seen_limits.max_distance_m};
+    json["coverage"]["angle_deg"] = {report.well_seen_limits.min_angle_deg,
+                                     report.well_seen_limits.max_angle_deg};
   }
   return json;
 }

@@ -38,6 +38,7 @@ struct EvaluationReport {
   std::size_t cloud_points = 0;
   std::optional<TemperatureReport> temperature;
   std::optional<ThermalCoverage> coverage;
+  WellSeenLimits well_seen_limits;  ///< Of the coverage.
 };
 
 Result<EvaluationReport> Evaluate(const EvaluationRequest& request);

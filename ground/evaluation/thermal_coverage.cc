@@ -51,7 +51,11 @@ class View {
       return false;
     }
     const float cosine = -(R_ * truth_.points().normals[i]).dot(p) / distance_m;
-    if (cosine < std::cos(limits.max_angle_deg * std::numbers::pi / 180.0)) return false;
+    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
+    if (cosine < std::cos(limits.max_angle_deg * kRadPerDeg) ||
+        cosine > std::cos(limits.min_angle_deg * kRadPerDeg)) {
+      return false;
+    }
     const auto pixel = ProjectIntoImage(camera_, Normalized(p));
     if (!pixel) return false;
     const auto u = static_cast<int>(std::floor(pixel->x() + 0.5));

@@ -12,6 +12,7 @@ namespace isotherm {
 struct WellSeenLimits {
   double min_distance_m = 0.30;
   double max_distance_m = 0.90;
+  double min_angle_deg = 0.0;
   double max_angle_deg = 60.0;
 };
 

@@ -82,7 +82,9 @@ TEST_F(ThermalCoverageTest, WhatThePolynomialFoldsBackIsNotSeen) {
 TEST_F(ThermalCoverageTest, DistanceAndAngleLimitWhatCounts) {
   EXPECT_NEAR(Fraction(Evaluate({.max_distance_m = 0.55}).well_seen), 0.1 / 0.4, kEdges);
   EXPECT_NEAR(Fraction(Evaluate({.min_distance_m = 0.55}).well_seen), 0.18 / 0.4, kEdges);
-  EXPECT_LT(Evaluate({.max_angle_deg = 5.0}).well_seen, Evaluate().well_seen / 2);
+  const std::size_t frontal = Evaluate({.max_angle_deg = 5.0}).well_seen;
+  EXPECT_LT(frontal, Evaluate().well_seen / 2);
+  EXPECT_EQ(Evaluate({.min_angle_deg = 5.0}).well_seen, Evaluate().well_seen - frontal);
 }
 
 TEST_F(ThermalCoverageTest, CoveredIsWhatHasAnAssignedPointNearBy) {

@@ -8,6 +8,7 @@
 #include "ground/experiment/thesis_fusion.h"
 #include "ground/experiment/true_conditions.h"
 #include "ground/renderer/renderer.h"
+#include "ground/thermal/measurement_conditions.h"
 
 namespace isotherm {
 namespace {
@@ -58,13 +59,13 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
                           "wrong [% of assigned]"};
   const Renderer renderer(ScaleOf(scan.scene()), ThermalOptions());
   const RigidTransform T_world_depth = scan.PoseAt(scan.depth_times().front().exposure);
+  const ThermalOptions limits = WithAnglesOfMaterial(ThermalOptions());
   double coverage_percent = 0.0;  // With visibility.
   for (const Method& method : methods) {
     const std::vector<CheckedPoint> points =
         CheckModel(scan.scene(), scan.band(), model.tsdf(), *method.thermal, pool);
     const AssignmentCheck check = CheckAssignment(points);
-    if (&method == &methods.back())
-      coverage_percent = CoveragePercent(scan, points, ThermalOptions());
+    if (&method == &methods.back()) coverage_percent = CoveragePercent(scan, points, limits);
     report.table.rows.push_back(
         {method.label,
          {static_cast<double>(check.points), static_cast<double>(check.assigned),

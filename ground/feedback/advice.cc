@@ -218,10 +218,10 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
       return fmt::format("{:.0f} % of the surface is nearer than {:.2f} m", Percent(view.too_near),
                          limits_.distance().min_m());
     case AdviceKind::kLessOblique:
-      return fmt::format("{:.0f} % of the surface is seen at more than {:.0f} deg",
+      return fmt::format("{:.0f} % of the surface is seen at more than {:g} deg",
                          Percent(view.too_oblique), limits_.angle().good_deg());
     case AdviceKind::kMoreOblique:
-      return fmt::format("{:.0f} % of the surface is seen at less than {:.0f} deg and reflects you",
+      return fmt::format("{:.0f} % of the surface is seen at less than {:g} deg and reflects you",
                          Percent(view.too_frontal), limits_.angle().min_deg());
     case AdviceKind::kNone:
       break;

@@ -53,6 +53,7 @@ Status Validate(const FeedbackOptions& options);
 /// Thread-compatible.
 class OperatorAdviser {
  public:
+  /// `limits` come from CompleteLimits.
   OperatorAdviser(const FeedbackOptions& options, const ThermalOptions& limits);
 
   /// Returns the advice for this view and situation. `now` must not go back.

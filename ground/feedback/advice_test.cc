@@ -7,6 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "ground/thermal/measurement_conditions.h"
+
 namespace isotherm {
 namespace {
 
@@ -57,7 +59,7 @@ class AdviceTest : public ::testing::Test {
   CoverageSummary view_;
   ScanSituation situation_;
   CaptureTime now_{1h};
-  OperatorAdviser adviser_{options_, ThermalOptions()};
+  OperatorAdviser adviser_{options_, WithAnglesOfMaterial(ThermalOptions())};
 };
 
 TEST_F(AdviceTest, EachHindranceHasItsAdviceAndItsNumbers) {
@@ -71,7 +73,7 @@ TEST_F(AdviceTest, EachHindranceHasItsAdviceAndItsNumbers) {
   view_.too_near = 0.0;
   view_.too_oblique = 0.3;
   EXPECT_EQ(Settled().kind, AdviceKind::kLessOblique);
-  EXPECT_THAT(Settled().reason, HasSubstr("more than 40 deg"));
+  EXPECT_THAT(Settled().reason, HasSubstr("more than 38.5 deg"));
   view_.too_oblique = 0.0;
   view_.too_frontal = 0.3;
   EXPECT_EQ(Settled().kind, AdviceKind::kMoreOblique);

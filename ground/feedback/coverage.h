@@ -29,8 +29,7 @@ struct CoverageSummary {
 };
 
 /// Sums up a view. `view`'s distances and angles are those of the thermal camera, to which `limits`
-/// apply (within the depth of field). `smear_px` is SmearInView() of the same pixels; empty = not
-/// known.
+/// apply (CompleteLimits). `smear_px` is SmearInView() of the same pixels; empty = not known.
 CoverageSummary SummarizeCoverage(const ViewMaps& view, const Image<float>& smear_px,
                                   const ThermalOptions& limits);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ground/options/ground_options.pb.h"
+#include "ground/thermal/measurement_conditions.h"
 
 namespace isotherm {
 namespace {
@@ -31,6 +32,8 @@ ViewMaps Row(int surface, int empty, double distance_m, double angle_deg) {
   return view;
 }
 
+ThermalOptions Limits() { return WithAnglesOfMaterial(ThermalOptions()); }
+
 void Measure(ViewMaps& view, int x, std::uint8_t distance, std::uint8_t angle) {
   view.celsius.At(x, 0) = 20.0F;
   view.distance_class.At(x, 0) = distance;
@@ -45,7 +48,7 @@ TEST(CoverageTest, FractionsAreOfTheSurfaceAndAddUpToOne) {
   Measure(view, 3, kAcceptable, kAcceptable);
   Measure(view, 4, kAcceptable, kGood);
   Measure(view, 5, kBad, kGood);
-  const CoverageSummary coverage = SummarizeCoverage(view, {}, ThermalOptions());
+  const CoverageSummary coverage = SummarizeCoverage(view, {}, Limits());
   EXPECT_DOUBLE_EQ(coverage.surface, 0.8);
   EXPECT_DOUBLE_EQ(coverage.good, 2.0 / 8.0);
   EXPECT_DOUBLE_EQ(coverage.acceptable, 3.0 / 8.0);
@@ -54,15 +57,17 @@ TEST(CoverageTest, FractionsAreOfTheSurfaceAndAddUpToOne) {
 }
 
 TEST(CoverageTest, IsZeroWithoutASurface) {
-  const CoverageSummary coverage = SummarizeCoverage(Row(0, 5, 0.5, 0.0), {}, ThermalOptions());
+  const CoverageSummary coverage = SummarizeCoverage(Row(0, 5, 0.5, 0.0), {}, Limits());
   EXPECT_EQ(coverage.surface, 0.0);
   EXPECT_EQ(coverage.never_measured, 0.0);
-  EXPECT_EQ(SummarizeCoverage(ViewMaps(), {}, ThermalOptions()).surface, 0.0);
+  EXPECT_EQ(SummarizeCoverage(ViewMaps(), {}, Limits()).surface, 0.0);
 }
 
 TEST(CoverageTest, WhatHindersIsSaidOfWhatIsNotYetGood) {
-  ThermalOptions limits;  // 0.30 to 0.60 m, up to 40 degrees.
-  limits.mutable_angle()->set_min_deg(10);
+  ThermalOptions options;  // 0.30 to 0.60 m.
+  options.mutable_angle()->set_min_deg(10);
+  options.mutable_angle()->set_good_deg(40);
+  const ThermalOptions limits = WithAnglesOfMaterial(options);
   EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.61, 20.0), {}, limits).too_far, 1.0);
   EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.59, 20.0), {}, limits).too_far, 0.0);
   EXPECT_EQ(SummarizeCoverage(Row(4, 0, 0.29, 20.0), {}, limits).too_near, 1.0);
@@ -77,7 +82,7 @@ TEST(CoverageTest, WhatHindersIsSaidOfWhatIsNotYetGood) {
 }
 
 TEST(CoverageTest, MotionHindersWhereNothingElseDoes) {
-  const ThermalOptions limits;  // Up to 0.5 px of smear are good.
+  const ThermalOptions limits = Limits();  // Up to 0.5 px of smear are good.
   ViewMaps view = Row(6, 0, 0.5, 20.0);
   Measure(view, 0, kGood, kGood);
   view.distance_m.At(1, 0) = 0.7F;  // Too far.
@@ -97,7 +102,7 @@ TEST(CoverageTest, WhatWasMeasuredWhileTheRigMovedTooFastIsNotGood) {
   Measure(view, 1, kGood, kGood);
   view.motion_class.At(0, 0) = kGood;
   view.motion_class.At(1, 0) = kAcceptable;
-  const CoverageSummary coverage = SummarizeCoverage(view, {}, ThermalOptions());
+  const CoverageSummary coverage = SummarizeCoverage(view, {}, Limits());
   EXPECT_DOUBLE_EQ(coverage.good, 0.5);
   EXPECT_DOUBLE_EQ(coverage.acceptable, 0.5);
 }

@@ -73,8 +73,8 @@ ViewPlanner::ViewPlanner(const FeedbackOptions& options, const ThermalOptions& l
                          const Rig& rig, float min_weight)
     : options_(options),
       limits_(limits, rig.thermal_sensor),
-      angle_min_rad_(limits.angle().min_deg() * std::numbers::pi / 180.0),
-      angle_good_rad_(limits.angle().good_deg() * std::numbers::pi / 180.0),
+      angle_min_rad_(std::acos(limits_.cosine_min_angle)),
+      angle_good_rad_(std::acos(limits_.cosine_good_angle)),
       min_weight_(min_weight),
       min_depth_m_(std::max(rig.depth_sensor.near_range_m, rig.depth_sensor.min_depth_m)),
       depth_camera_(rig.depth->WithoutDistortion()),

@@ -32,7 +32,7 @@ Status Validate(const RendererExpertOptions& options);
 class Renderer {
  public:
   /// `options` are valid; `thermal` supplies the limits that the class layers' legends
-  /// state (WithinDepthOfField).
+  /// state (CompleteLimits).
   Renderer(const RendererOptions& options, const ThermalOptions& thermal);
 
   /// The scale for `view` alone; pass a scale of your own to keep several renderings comparable.

@@ -55,8 +55,7 @@ std::string NoTemperature(const ScanOutcome& outcome) {
         "intrinsics?",
         counts.thermal_fused);
   }
-  const ThermalOptions limits =
-      WithinDepthOfField(outcome.options.thermal(), outcome.thermal_sensor);
+  const ThermalOptions limits = CompleteLimits(outcome.options.thermal(), outcome.thermal_sensor);
   return fmt::format(
       "{} thermal frames were used, but no temperature was measured under acceptable conditions: "
       "go "

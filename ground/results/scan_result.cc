@@ -226,7 +226,9 @@ Json DescribeScan(const ScanModel& scan, const GroundOptions& options) {
   json["drift"] = DescribeDrift(scan.atlas);
   json["volume"] = DescribeVolume(scan);
   json["calibration"] = ToJson(ToProto(scan.rig));
-  json["configuration"] = ToJson(options);
+  GroundOptions complete = options;
+  *complete.mutable_thermal() = WithAnglesOfMaterial(options.thermal());
+  json["configuration"] = ToJson(complete);
   if (!scan.thermal_status.ok()) json["thermal_not_fused_because"] = scan.thermal_status.message();
   return json;
 }
@@ -247,7 +249,7 @@ Result<WrittenScan> WriteScan(
                             has_view ? &view : nullptr,
                             scan.view.T_map_depth.translation(),
                             options.renderer(),
-                            WithinDepthOfField(options.thermal(), scan.rig.thermal_sensor),
+                            CompleteLimits(options.thermal(), scan.rig.thermal_sensor),
                             options.export_(),
                             interpretation->changes_nothing() ? nullptr : &*interpretation,
                             stats,

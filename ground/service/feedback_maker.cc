@@ -114,7 +114,7 @@ FeedbackMaker::FeedbackMaker(const GroundOptions& options, const RigDescription&
       session_(rig.session),
       T_depth_thermal_(rig.rig.T_thermal_depth ? rig.rig.T_thermal_depth->inverse()
                                                : RigidTransform::Identity()),
-      limits_(WithinDepthOfField(options.thermal(), rig.rig.thermal_sensor)),
+      limits_(CompleteLimits(options.thermal(), rig.rig.thermal_sensor)),
       adviser_(options.feedback(), limits_) {}
 
 SurfaceAreas FeedbackMaker::areas() const {

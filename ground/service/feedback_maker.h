@@ -59,7 +59,7 @@ class FeedbackMaker {
   const Rig rig_;
   const std::uint64_t session_;
   const RigidTransform T_depth_thermal_;
-  const ThermalOptions limits_;  ///< Within the depth of field of this rig.
+  const ThermalOptions limits_;  ///< CompleteLimits of this rig.
   OperatorAdviser adviser_;
   std::map<int, ModelCoverage> coverages_;  ///< By sub-map.
   int planned_map_ = 0;                     ///< The sub-map in whose coordinates views are planned.

@@ -19,6 +19,7 @@
 #include "ground/configuration/validate_options.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/service/ground_service.h"
+#include "ground/thermal/measurement_conditions.h"
 
 namespace isotherm {
 namespace {
@@ -125,6 +126,7 @@ int Main(int argc, char** argv) {
     for (const Status& problem : problems) LOG(Ground, Error) << problem.message();
     return kExitConfiguration;
   }
+  *options.mutable_thermal() = WithAnglesOfMaterial(options.thermal());
   LOG(Ground, Debug) << "effective configuration:\n" << ToTextProto(options);
   StopSignal signal;
   const SystemClock clock;

@@ -6,7 +6,13 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <string>
+#include <vector>
 
+#include "common/base/check.h"
+#include "common/config/nearest_name.h"
+#include "common/radiometry/angle_limits.h"
+#include "common/radiometry/materials.h"
 #include "common/radiometry/optics.h"
 
 namespace isotherm {
@@ -35,14 +41,31 @@ Status Validate(const ThermalDistanceOptions& o) {
                   o.min_m(), o.good_m(), o.max_m()));
 }
 
-Status Validate(const ThermalAngleOptions& o) {
+Status CheckMaterial(const std::string& name) {
+  if (FindOpticalMaterial(name) != nullptr) return OkStatus();
+  std::vector<std::string> names;
+  for (const OpticalMaterial& known : OpticalMaterials()) names.emplace_back(known.name);
+  return InvalidArgument(
+      fmt::format("thermal.material: there is no material '{}'.{} Known are {}; `isotherm limits "
+                  "--n` finds the limits of others, for thermal.angle",
+                  name, DidYouMean(name, names), JoinNames(names)));
+}
+
+/// The angles, of which the material has set what `options` does not.
+Status ValidateAngles(const ThermalOptions& options) {
+  const ThermalAngleOptions o = WithAnglesOfMaterial(options).angle();
   if (o.min_deg() >= 0.0 && o.min_deg() < o.good_deg() && o.good_deg() <= o.max_deg() &&
       o.max_deg() <= 90.0) {
     return OkStatus();
   }
+  const auto value = [&](bool is_set, double degrees) {
+    return fmt::format("{:g}{}", degrees, is_set ? "" : " (of " + options.material() + ")");
+  };
+  const ThermalAngleOptions& given = options.angle();
   return InvalidArgument(fmt::format(
       "thermal.angle: need 0 <= min_deg < good_deg <= max_deg <= 90, got {}, {}, {} degrees",
-      o.min_deg(), o.good_deg(), o.max_deg()));
+      value(given.has_min_deg(), o.min_deg()), value(given.has_good_deg(), o.good_deg()),
+      value(given.has_max_deg(), o.max_deg())));
 }
 
 Status Validate(const ThermalOcclusionOptions& o) {
@@ -117,7 +140,8 @@ Status Validate(const ThermalExpertOptions& o) {
 
 Status Validate(const ThermalOptions& o) {
   ISOTHERM_RETURN_IF_ERROR(Validate(o.distance()));
-  ISOTHERM_RETURN_IF_ERROR(Validate(o.angle()));
+  ISOTHERM_RETURN_IF_ERROR(CheckMaterial(o.material()));
+  ISOTHERM_RETURN_IF_ERROR(ValidateAngles(o));
   return Validate(o.expert());
 }
 
@@ -131,19 +155,33 @@ Status CheckSharpness(const ThermalOptions& o, const ThermalSensorModel& sensor)
                   sharp->near_m, sharp->far_m, o.distance().min_m(), o.distance().max_m()));
 }
 
-ThermalOptions WithinDepthOfField(const ThermalOptions& o, const ThermalSensorModel& sensor) {
-  ThermalOptions narrowed = o;
+ThermalOptions WithAnglesOfMaterial(const ThermalOptions& o) {
+  ThermalOptions complete = o;
+  if (o.angle().has_min_deg() && o.angle().has_good_deg() && o.angle().has_max_deg())
+    return complete;
+  const OpticalMaterial* material = FindOpticalMaterial(o.material());
+  CHECK(material != nullptr);
+  const AngleLimitsInDegrees limits = AngleLimitsOf(*material);
+  ThermalAngleOptions& angle = *complete.mutable_angle();
+  if (!angle.has_min_deg()) angle.set_min_deg(limits.min_deg);
+  if (!angle.has_good_deg()) angle.set_good_deg(limits.good_deg);
+  if (!angle.has_max_deg()) angle.set_max_deg(limits.max_deg);
+  return complete;
+}
+
+ThermalOptions CompleteLimits(const ThermalOptions& o, const ThermalSensorModel& sensor) {
+  ThermalOptions complete = WithAnglesOfMaterial(o);
   const std::optional<DepthOfField> sharp = SharpDistances(sensor);
-  if (!sharp) return narrowed;
-  ThermalDistanceOptions& distance = *narrowed.mutable_distance();
+  if (!sharp) return complete;
+  ThermalDistanceOptions& distance = *complete.mutable_distance();
   distance.set_min_m(std::max(distance.min_m(), sharp->near_m));
   distance.set_max_m(std::min(distance.max_m(), sharp->far_m));
   distance.set_good_m(std::min(distance.good_m(), distance.max_m()));
-  return narrowed;
+  return complete;
 }
 
 ConditionLimits::ConditionLimits(const ThermalOptions& options, const ThermalSensorModel& sensor)
-    : ConditionLimits(WithinDepthOfField(options, sensor)) {}
+    : ConditionLimits(CompleteLimits(options, sensor)) {}
 
 ConditionLimits::ConditionLimits(const ThermalOptions& o)
     : distance_min_m(static_cast<float>(o.distance().min_m())),

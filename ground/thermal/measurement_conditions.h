@@ -12,19 +12,24 @@ Status Validate(const ThermalOptions& options);
 /// Fails if the lens (if it is known) is sharp nowhere between the distances that are not bad.
 Status CheckSharpness(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
-/// `options` with distances narrowed to those at which the rig's lens is sharp, as the fuser takes
-/// them: for everything that states or applies the limits. Unchanged if the lens is not known.
-ThermalOptions WithinDepthOfField(const ThermalOptions& options, const ThermalSensorModel& sensor);
+/// Returns `options` with the emission angles of its material where it sets none. The material is
+/// known (Validate, CHECK).
+ThermalOptions WithAnglesOfMaterial(const ThermalOptions& options);
+
+/// Returns `options` with all limits as the fuser takes them, for everything that states or applies
+/// them: WithAnglesOfMaterial, and distances narrowed to those at which the rig's lens is sharp (if
+/// it is known).
+ThermalOptions CompleteLimits(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
 /// The distances and angles of (6.3a-b) in metres and as cosines, ready for inner loops.
 struct ConditionLimits {
   float distance_min_m, distance_good_m, distance_max_m;
   float cosine_min_angle, cosine_good_angle, cosine_max_angle;
 
-  /// Distances are narrowed by the depth of field if the lens is known.
+  /// Takes the limits of CompleteLimits(options, sensor).
   ConditionLimits(const ThermalOptions& options, const ThermalSensorModel& sensor);
-  /// `options` are within the depth of field.
-  explicit ConditionLimits(const ThermalOptions& options);
+  /// `complete` comes from CompleteLimits.
+  explicit ConditionLimits(const ThermalOptions& complete);
   ConditionClass ClassifyDistance(float distance_m) const;
   /// `cosine` of the emission angle, 0..1.
   ConditionClass ClassifyAngle(float cosine) const;

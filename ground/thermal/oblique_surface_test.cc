@@ -50,7 +50,9 @@ TEST_P(ObliqueSurfaceTest, EverySurfaceVoxelInViewGetsATemperature) {
   frame.valid = true;
   frame.centikelvin = Image<std::uint16_t>(camera.width, camera.height, 32'315);
   ThreadPool pool(2);
-  ThermalFuser(ThermalOptions(), camera, ThermalSensorModel(), 0.0F)
+  ThermalOptions options;
+  options.mutable_angle()->set_max_deg(60.0);  // The largest tilt, and what the view adds to it.
+  ThermalFuser(options, camera, ThermalSensorModel(), 0.0F)
       .Fuse(frame, T_map_camera_, testing::SmallDepthCamera(), T_map_camera_, *tsdf_, pool,
             *thermal_);
   int on_surface = 0, measured = 0, away = 0;

@@ -110,7 +110,7 @@ TEST_F(EdgeReviewTest, BesideASteepFaceTheFinalReviewDropsAndNoOther) {
 }
 
 TEST_F(EdgeReviewTest, AnEdgeBetweenFacesThatWereBothSeenWellStays) {
-  Measure(45.0);  // The face at +x is seen at 45 degrees, too; limits end at 60.
+  Measure(45.0);  // The face at +x is seen at 45 degrees, too; limits end at 50.7.
   ReviewAll(/*is_final=*/true);
   int beside_seen = 0, beside_hidden = 0;
   ForFrontVoxels([&](std::int32_t block, int i, const Eigen::Vector3d& p) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "ground/thermal/measurement_recorder.h"
 #include "ground/thermal/testing/ball_and_wall.h"
@@ -239,6 +240,48 @@ TEST(ValidateThermalTest, RefusesContradictionsByName) {
               o.mutable_expert()->mutable_occlusion()->set_hole_px(0);
             }).find("hole_px"),
             std::string::npos);
+}
+
+TEST(ValidateThermalTest, AnUnknownMaterialIsRefusedWithThoseThatAreKnown) {
+  ThermalOptions options;
+  options.set_material("aluminum");
+  const Status status = Validate(options);
+  EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+  for (const char* part : {"thermal.material", "'aluminum'", "Did you mean 'aluminium'?", "paint",
+                           "steel-oxidised", "firebrick"})
+    EXPECT_NE(status.message().find(part), std::string::npos) << part << ": " << status.message();
+  options.set_material("");
+  EXPECT_NE(Validate(options).message().find("thermal.material"), std::string::npos);
+}
+
+TEST(ValidateThermalTest, AnglesThatContradictTheMaterialSayWhichAreTheMaterials) {
+  ThermalOptions options;
+  options.mutable_angle()->set_max_deg(30.0);  // Less than where paint is good.
+  const std::string message = Validate(options).message();
+  EXPECT_NE(message.find("38.5 (of paint), 30 degrees"), std::string::npos) << message;
+  options.mutable_angle()->set_good_deg(20.0);
+  EXPECT_TRUE(Validate(options).ok());
+}
+
+TEST(MaterialTest, SetsTheAnglesThatOptionsDoNot) {
+  ThermalOptions options;
+  EXPECT_EQ(WithAnglesOfMaterial(options).angle().min_deg(), 0.0);
+  EXPECT_EQ(WithAnglesOfMaterial(options).angle().good_deg(), 38.5);
+  EXPECT_EQ(WithAnglesOfMaterial(options).angle().max_deg(), 50.7);
+  options.mutable_angle()->set_max_deg(60.0);
+  EXPECT_EQ(WithAnglesOfMaterial(options).angle().good_deg(), 38.5);
+  EXPECT_EQ(WithAnglesOfMaterial(options).angle().max_deg(), 60.0);
+}
+
+TEST(MaterialTest, OnAShinySurfaceTheOperatorsMirrorImageIsBad) {
+  constexpr double kFrontal_rad = 10.0 * std::numbers::pi / 180.0;
+  const auto cosine = static_cast<float>(std::cos(kFrontal_rad));
+  ThermalOptions options;
+  EXPECT_EQ(ConditionLimits(options, ThermalSensorModel()).ClassifyAngle(cosine), kGood);
+  for (const char* shiny : {"aluminium", "stainless", "glass", "steel-oxidised"}) {
+    options.set_material(shiny);
+    EXPECT_EQ(ConditionLimits(options, ThermalSensorModel()).ClassifyAngle(cosine), kBad) << shiny;
+  }
 }
 
 ThermalSensorModel SharpAtHalfAMetre() {

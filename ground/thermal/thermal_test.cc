@@ -44,7 +44,7 @@ TEST(ThermalVoxelTest, MotionAndDisagreementHaveFourBitsEachOfWhichZeroIsUncheck
 }
 
 TEST(ConditionLimitsTest, ClassesChangeAtTheLimitsOfEquation63) {
-  ThermalOptions options;
+  ThermalOptions options;  // Of paint: 38.5 and 50.7 degrees.
   options.mutable_angle()->set_min_deg(15);
   const ConditionLimits limits(options, ThermalSensorModel());
   EXPECT_EQ(limits.ClassifyDistance(0.299F), kBad);
@@ -59,10 +59,10 @@ TEST(ConditionLimitsTest, ClassesChangeAtTheLimitsOfEquation63) {
   };
   EXPECT_EQ(angle(14.0), kBad);
   EXPECT_EQ(angle(16.0), kGood);
-  EXPECT_EQ(angle(39.0), kGood);
-  EXPECT_EQ(angle(41.0), kAcceptable);
-  EXPECT_EQ(angle(59.0), kAcceptable);
-  EXPECT_EQ(angle(61.0), kBad);
+  EXPECT_EQ(angle(38.0), kGood);
+  EXPECT_EQ(angle(39.0), kAcceptable);
+  EXPECT_EQ(angle(50.0), kAcceptable);
+  EXPECT_EQ(angle(51.0), kBad);
 }
 
 TEST(ReplacesMeasurementTest, FollowsAlgorithm6ForAllClassPairs) {

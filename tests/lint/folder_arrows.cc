@@ -117,10 +117,11 @@ const FolderArrows& AllowedArrows() {
              "ground/export", "ground/feedback", "ground/renderer", "ground/thermal",
              "ground/pipeline", "ground/calibration", "ground/results", "ground/configuration"})},
       {"ground/cli",
-       with(kCommon, {"common/transport", "common/simulation", "common/dataset", "ground/options",
-                      "ground/subscriber", "ground/surface", "ground/tsdf", "ground/model",
-                      "ground/renderer", "ground/export", "ground/evaluation", "ground/experiment",
-                      "ground/calibration", "ground/configuration", "ground/offline"})},
+       with(kCommon,
+            {"common/transport", "common/simulation", "common/dataset", "ground/options",
+             "ground/subscriber", "ground/surface", "ground/tsdf", "ground/thermal", "ground/model",
+             "ground/renderer", "ground/export", "ground/evaluation", "ground/experiment",
+             "ground/calibration", "ground/configuration", "ground/offline"})},
   };
   return kAllowed;
 }
