@@ -9,6 +9,7 @@
 
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "ground/surface/testing/small_volume.h"
 
 namespace isotherm {
 namespace {
@@ -30,12 +31,8 @@ class FeedbackMakerTest : public ::testing::Test {
   FeedbackMakerTest() {
     rig_.session = 7;
     rig_.rig.depth = testing::SmallDepthCamera();
-    VolumeOptions& volume = *options_.mutable_volume();
-    volume.set_size_x_m(0.64);
-    volume.set_size_y_m(0.64);
-    volume.set_size_z_m(0.64);
-    volume.set_voxel_size_m(0.004);
-    options_.mutable_tsdf()->set_truncation_distance_m(0.016);
+    *options_.mutable_volume() = testing::SmallVolume();
+    options_.mutable_tsdf()->set_truncation_distance_m(testing::kSmallTruncation_m);
     options_.mutable_tsdf()->mutable_expert()->set_max_step_deg(10.0);
     options_.mutable_tsdf()->mutable_expert()->set_min_step_m(
         0.0);  // Each frame counts for the loop closer.

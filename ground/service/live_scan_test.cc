@@ -7,6 +7,7 @@
 
 #include "ground/options/option_geometry.h"
 #include "ground/surface/testing/analytic_views.h"
+#include "ground/surface/testing/small_volume.h"
 
 namespace isotherm {
 namespace {
@@ -22,12 +23,9 @@ class LiveScanTest : public ::testing::Test {
     rig_.rig.thermal = rig_.rig.depth;
     rig_.rig.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
     VolumeOptions& volume = *options_.mutable_volume();
-    volume.set_size_x_m(0.64);
-    volume.set_size_y_m(0.64);
-    volume.set_size_z_m(0.64);
-    volume.set_voxel_size_m(0.004);
+    volume = testing::SmallVolume();
     *volume.mutable_expert()->mutable_initial_pose() = ToOptions(testing::FirstPose());
-    options_.mutable_tsdf()->set_truncation_distance_m(0.016);
+    options_.mutable_tsdf()->set_truncation_distance_m(testing::kSmallTruncation_m);
     options_.mutable_live()->mutable_expert()->set_max_wait_s(0.1);
     options_.set_threads(2);
     rig_.rig.thermal_sensor.time_constant_s = 0.001;  // What is near moves fast.
