@@ -101,21 +101,27 @@ struct Setting {
   double min_gradient_k_m = TrackerOptions().expert().thermal_min_gradient_k_m();
 };
 
-Outcome Run(const Scene& scene, const Setting& setting) {
+Rig MakeRig() {
   Rig rig = DefaultSimulatedRig();
   rig.depth = rig.depth->WithoutDistortion().Downscaled(1);
-  SimulatedDepthOptions depth_options;
-  depth_options.mutable_expert()->set_disparity_noise_px(
-      0.5 * depth_options.expert().disparity_noise_px());
-  depth_options.mutable_expert()->set_disparity_step_px(0.5 *
-                                                        depth_options.expert().disparity_step_px());
-  const DepthSensor depth_sensor(*rig.depth, depth_options);
-  SimulatedThermalOptions thermal_options;
-  thermal_options.mutable_expert()->set_netd_kelvin(setting.netd_k);
-  const ThermalSensor thermal_sensor(*rig.thermal, thermal_options);
-  DepthSensor::Scratch depth_scratch;
-  ThermalSensor::Scratch thermal_scratch;
+  return rig;
+}
 
+/// A depth image of half the size has half the disparity.
+SimulatedDepthOptions DepthNoise() {
+  SimulatedDepthOptions options;
+  options.mutable_expert()->set_disparity_noise_px(0.5 * options.expert().disparity_noise_px());
+  options.mutable_expert()->set_disparity_step_px(0.5 * options.expert().disparity_step_px());
+  return options;
+}
+
+SimulatedThermalOptions ThermalNoise(double netd_k) {
+  SimulatedThermalOptions options;
+  options.mutable_expert()->set_netd_kelvin(netd_k);
+  return options;
+}
+
+GroundOptions MakeOptions(const Setting& setting) {
   GroundOptions options;
   VolumeOptions& volume = *options.mutable_volume();
   volume.set_voxel_size_m(0.004);
@@ -126,72 +132,104 @@ Outcome Run(const Scene& scene, const Setting& setting) {
   options.mutable_tracker()->mutable_expert()->set_thermal_min_gradient_k_m(
       setting.min_gradient_k_m);
   options.set_threads(2);
-  const Walk walk;
-  auto created = GroundPipeline::Create(options, rig, walk.PoseAt(0.0));
-  EXPECT_TRUE(created) << created.error().message();
-  GroundPipeline& pipeline = **created;
-  const auto time_at = [](double seconds) { return CaptureTime(FromSeconds(100.0 + seconds)); };
-
-  Outcome outcome;
-  int thermal_number = 0;
-  Image<std::uint16_t> image;
-  double squares_x = 0.0;
-  double squares_y = 0.0;
-  const int frames = static_cast<int>(kSeconds / kDepthPeriod);
-  for (int i = 0; i <= frames; ++i) {
-    const double now = kDepthPeriod * i;
-    for (;; ++thermal_number) {
-      const double taken = kThermalPeriod * thermal_number - kThermalPhase;
-      if (taken > now) break;
-      auto frame = std::make_shared<ThermalFrame>();
-      const auto number = static_cast<std::uint64_t>(thermal_number);
-      frame->header.frame_number = number;
-      frame->header.capture_time = time_at(taken);
-      const bool shutter = taken >= setting.nuc_from && taken < setting.nuc_from + 0.4;
-      if (!shutter) {
-        image = thermal_sensor.Render(scene, walk.PoseAt(taken) * rig.T_thermal_depth->inverse(),
-                                      NoiseStream(kSeed, 1, number), thermal_scratch);
-      }
-      frame->centikelvin = image;
-      frame->valid = !shutter;
-      pipeline.ProcessThermal(frame);
-    }
-    DepthFrame frame;
-    const RigidTransform truth = walk.PoseAt(now);
-    frame.header.frame_number = static_cast<std::uint64_t>(i);
-    frame.header.capture_time = time_at(now);
-    frame.depth_raw = depth_sensor.Render(
-        scene, truth, NoiseStream(kSeed, 0, static_cast<std::uint64_t>(i)), depth_scratch);
-    const DepthReport report = pipeline.ProcessDepth(frame);
-    if (!report.tracked) {
-      ++outcome.lost;
-      continue;
-    }
-    if (i > 0) {
-      outcome.min_unobservable =
-          std::min(outcome.min_unobservable, report.tracking.motion.unobservable_axes);
-      outcome.max_unobservable =
-          std::max(outcome.max_unobservable, report.tracking.motion.unobservable_axes);
-    }
-    outcome.degraded += report.tracking.verdict() == Verdict::kDegraded ? 1 : 0;
-    const RigidTransform& pose = report.pose.T_map_depth;
-    const Eigen::Vector3d off = pose.translation() - truth.translation();
-    squares_x += off.x() * off.x();
-    squares_y += off.y() * off.y();
-    outcome.end_m = off.head<2>().norm();
-    outcome.across_m = std::abs(off.z());
-    outcome.end_deg = RotationAngle(pose, truth) * 180.0 / kPi;
-  }
-  outcome.rms_x_m = std::sqrt(squares_x / frames);
-  outcome.rms_y_m = std::sqrt(squares_y / frames);
-  outcome.sigma_m = pipeline.model().uncertainty.surface_sigma_m();
-  outcome.fused = pipeline.model().counts.thermal_fused;
-  outcome.track_ms = pipeline.model().stages.Find(Stage::kTrack)->Percentile(50);
-  return outcome;
+  return options;
 }
 
+/// A walk along the wall through the pipeline.
+class WallScan {
+ public:
+  WallScan(const Scene& scene, const Setting& setting) : scene_(scene), setting_(setting) {
+    auto created = GroundPipeline::Create(MakeOptions(setting), rig_, walk_.PoseAt(0.0));
+    EXPECT_TRUE(created) << created.error().message();
+    pipeline_ = std::move(*created);
+  }
+
+  Outcome Run() {
+    const int frames = static_cast<int>(kSeconds / kDepthPeriod);
+    for (int i = 0; i <= frames; ++i) {
+      ShowThermalUntil(kDepthPeriod * i);
+      ShowDepth(i);
+    }
+    outcome_.rms_x_m = std::sqrt(squares_.x() / frames);
+    outcome_.rms_y_m = std::sqrt(squares_.y() / frames);
+    const ScanModel& model = pipeline_->model();
+    outcome_.sigma_m = model.uncertainty.surface_sigma_m();
+    outcome_.fused = model.counts.thermal_fused;
+    outcome_.track_ms = model.stages.Find(Stage::kTrack)->Percentile(50);
+    return outcome_;
+  }
+
+ private:
+  static CaptureTime TimeAt(double seconds) { return CaptureTime(FromSeconds(100.0 + seconds)); }
+
+  /// Shows the thermal frames that were taken by `now`.
+  void ShowThermalUntil(double now) {
+    for (;; ++thermal_number_) {
+      const auto number = static_cast<double>(thermal_number_);
+      const double taken = kThermalPeriod * number - kThermalPhase;
+      if (taken > now) return;
+      const bool shutter = taken >= setting_.nuc_from && taken < setting_.nuc_from + 0.4;
+      if (!shutter) {
+        image_ =
+            thermal_sensor_.Render(scene_, walk_.PoseAt(taken) * rig_.T_thermal_depth->inverse(),
+                                   NoiseStream(kSeed, 1, thermal_number_), thermal_scratch_);
+      }
+      auto frame = std::make_shared<ThermalFrame>();
+      frame->header.frame_number = thermal_number_;
+      frame->header.capture_time = TimeAt(taken);
+      frame->centikelvin = image_;
+      frame->valid = !shutter;
+      pipeline_->ProcessThermal(frame);
+    }
+  }
+
+  void ShowDepth(int i) {
+    const auto number = static_cast<std::uint64_t>(i);
+    const RigidTransform truth = walk_.PoseAt(kDepthPeriod * i);
+    DepthFrame frame;
+    frame.header.frame_number = number;
+    frame.header.capture_time = TimeAt(kDepthPeriod * i);
+    frame.depth_raw =
+        depth_sensor_.Render(scene_, truth, NoiseStream(kSeed, 0, number), depth_scratch_);
+    const DepthReport report = pipeline_->ProcessDepth(frame);
+    if (!report.tracked) {
+      ++outcome_.lost;
+      return;
+    }
+    if (i > 0) {
+      const int unobservable = report.tracking.motion.unobservable_axes;
+      outcome_.min_unobservable = std::min(outcome_.min_unobservable, unobservable);
+      outcome_.max_unobservable = std::max(outcome_.max_unobservable, unobservable);
+    }
+    outcome_.degraded += report.tracking.verdict() == Verdict::kDegraded ? 1 : 0;
+    Compare(report.pose.T_map_depth, truth);
+  }
+
+  void Compare(const RigidTransform& pose, const RigidTransform& truth) {
+    const Eigen::Vector3d off = pose.translation() - truth.translation();
+    squares_ += off.head<2>().cwiseAbs2();
+    outcome_.end_m = off.head<2>().norm();
+    outcome_.across_m = std::abs(off.z());
+    outcome_.end_deg = RotationAngle(pose, truth) * 180.0 / kPi;
+  }
+
+  const Scene& scene_;
+  const Setting setting_;
+  const Rig rig_ = MakeRig();
+  const DepthSensor depth_sensor_{*rig_.depth, DepthNoise()};
+  const ThermalSensor thermal_sensor_{*rig_.thermal, ThermalNoise(setting_.netd_k)};
+  const Walk walk_;
+  DepthSensor::Scratch depth_scratch_;
+  ThermalSensor::Scratch thermal_scratch_;
+  std::unique_ptr<GroundPipeline> pipeline_;
+  std::uint64_t thermal_number_ = 0;
+  Image<std::uint16_t> image_;  ///< The newest that was not of the shutter.
+  Outcome outcome_;
+  Eigen::Vector2d squares_ = Eigen::Vector2d::Zero();  ///< Of the deviation along x and y, m2.
+};
+
 Outcome Show(const char* what, const Scene& scene, const Setting& setting) {
-  const Outcome o = Run(scene, setting);
+  const Outcome o = WallScan(scene, setting).Run();
   std::cout << what << (setting.use_thermal ? " with" : " without") << ": off at the end "
             << 1e3 * o.end_m << " mm and " << o.end_deg << " degrees, on the way "
             << 1e3 * o.rms_x_m << " mm along x, " << 1e3 * o.rms_y_m << " mm along y (rms), across "

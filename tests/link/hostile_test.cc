@@ -20,8 +20,23 @@ int Count(const std::string& text, std::string_view part) {
   return count;
 }
 
+constexpr std::uint64_t kRepeats = 3;  // As in hostile_peer.
+
+void ExpectEachCauseIsCounted(const RefusalCounter& refusals) {
+  EXPECT_EQ(refusals.count(RefusalCause::kImpossibleSize), 2 * kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kUnknownEncoding), kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kEmptyPayload), kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kOversizePayload), kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kNegativeTime), 2 * kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kNotFinite), 3 * kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kImpossibleNumber), 2 * kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kOtherSession), kRepeats);
+  EXPECT_EQ(refusals.count(RefusalCause::kUnknownValue), 2 * kRepeats);
+  // The undecodable one has the number of a frame that is here: a duplicate, not even looked at.
+  EXPECT_EQ(refusals.count(RefusalCause::kUndecodable), 0U);
+}
+
 TEST(HostileTest, F60WhatCannotBeIsRefusedCountedAndLoggedOncePerCause) {
-  constexpr std::uint64_t kRepeats = 3;  // As in hostile_peer.
   const SystemClock clock;
   const TransportEnvironment environment(clock);
   const TestDomain domain;
@@ -56,18 +71,7 @@ TEST(HostileTest, F60WhatCannotBeIsRefusedCountedAndLoggedOncePerCause) {
   // The good ones came through, each once; also the newer version's, whose extra member is ignored.
   EXPECT_THAT(depth_sessions, ::testing::ElementsAre(1, 2, 2));
   EXPECT_EQ(thermal_frames, 1U);
-  const RefusalCounter& refusals = subscriber->refusals();
-  EXPECT_EQ(refusals.count(RefusalCause::kImpossibleSize), 2 * kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kUnknownEncoding), kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kEmptyPayload), kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kOversizePayload), kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kNegativeTime), 2 * kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kNotFinite), 3 * kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kImpossibleNumber), 2 * kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kOtherSession), kRepeats);
-  EXPECT_EQ(refusals.count(RefusalCause::kUnknownValue), 2 * kRepeats);
-  // The undecodable one has the number of a frame that is here: a duplicate, not even looked at.
-  EXPECT_EQ(refusals.count(RefusalCause::kUndecodable), 0U);
+  ExpectEachCauseIsCounted(subscriber->refusals());
   const SessionCounters counters = subscriber->stats().counters;
   EXPECT_EQ(counters.depth.received, 2U);
   EXPECT_EQ(counters.depth.missing, 0U);

@@ -58,7 +58,7 @@ class Ends {
     }
   }
   bool got() const { return got_; }
-  /// Whether somebody reads or writes this topic besides.
+  /// Returns whether somebody else reads or writes this topic.
   bool IsShared() const {
     dds_publication_matched_status_t readers{};
     dds_subscription_matched_status_t writers{};
@@ -82,74 +82,120 @@ Sample Named() {
   return sample;
 }
 
+isotherm_wire_Hello OwnHello() {
+  auto hello = Named<isotherm_wire_Hello>();
+  hello.wire_major = PEER_MAJOR;
+  hello.wire_minor = PEER_MINOR;
+  std::strcpy(hello.software_version, "of another day");
+  return hello;
+}
+
+isotherm_wire_EdgeStatus OwnStatus() {
+  auto status = Named<isotherm_wire_EdgeStatus>();
+  status.session = 11;
+  status.time_ns = 1'700'000'000'000'000'000;
+  status.scan_state = 1;
+  status.nuc_state = 1;
+  status.depth.published = status.depth.next_frame_number = 90;
+  status.clock_error_s = 0.002;
+  status.feedback_count = 5;
+  status.feedback_latency_p99_s = 0.11;
+  return status;
+}
+
+isotherm_wire_Command OwnCommand() {
+  auto command = Named<isotherm_wire_Command>();
+  command.number = 12;
+  command.kind = 2;
+  return command;
+}
+
+isotherm_wire_Receipt OwnReceipt() {
+  auto receipt = Named<isotherm_wire_Receipt>();
+  receipt.session = 13;
+  receipt.thermal.next_number = receipt.thermal.received = 40;
+  return receipt;
+}
+
+unsigned long long Number(std::uint64_t value) { return value; }
+
+void Print(const isotherm_wire_Hello& hello) {
+  std::printf("hello %d.%d\n", hello.wire_major, hello.wire_minor);
+}
+
+void Print(const isotherm_wire_EdgeStatus& status) {
+  std::printf("status %llu published %llu error %g feedback %llu p99 %g\n", Number(status.session),
+              Number(status.depth.published), status.clock_error_s, Number(status.feedback_count),
+              status.feedback_latency_p99_s);
+}
+
+void Print(const isotherm_wire_Command& command) {
+  std::printf("command %llu kind %d\n", Number(command.number), command.kind);
+}
+
+void Print(const isotherm_wire_Receipt& receipt) {
+  const auto& holes = receipt.thermal.holes;
+  std::printf("receipt %llu thermal %llu hole %llu\n", Number(receipt.session),
+              Number(receipt.thermal.received),
+              Number(holes._length > 0 ? holes._buffer[0].last : 0));
+}
+
+/// Edge and ground in one.
+class Peer {
+ public:
+  explicit Peer(dds_entity_t participant) : participant_(participant) {}
+
+  /// Writes and prints until it has got all that it can get.
+  void Run() {
+    for (int i = 0; i < kMaxRepeats && !HasGotAll(); ++i) {
+      WriteAll();
+      dds_attach_t triggered[4];
+      dds_waitset_wait(waiter_, triggered, 4, kRepeat);
+      const auto print = [](const auto& sample) { Print(sample); };
+      hello_.Take(print);
+      status_.Take(print);
+      command_.Take(print);
+      receipt_.Take(print);
+    }
+    std::printf("shared: status %d command %d receipt %d\n", status_.IsShared(),
+                command_.IsShared(), receipt_.IsShared());
+  }
+
+ private:
+  bool HasGotAll() const {
+    return hello_.got() && (!kSameMajor || (status_.got() && command_.got() && receipt_.got()));
+  }
+  void WriteAll() const {
+    isotherm_wire_Hello hello = OwnHello();
+    for (std::uint8_t role = 0; role < 2; ++role) {
+      hello.role = role;
+      hello_.Write(hello);
+    }
+    status_.Write(OwnStatus());
+    command_.Write(OwnCommand());
+    receipt_.Write(OwnReceipt());
+  }
+
+  const dds_entity_t participant_;
+  const dds_entity_t waiter_ = dds_create_waitset(participant_);
+  const std::string topics_ = kTopics;
+  Ends<isotherm_wire_EdgeStatus> status_{participant_, waiter_, isotherm_wire_EdgeStatus_desc,
+                                         TopicId::kEdgeStatus, topics_ + "edge_status"};
+  Ends<isotherm_wire_Command> command_{participant_, waiter_, isotherm_wire_Command_desc,
+                                       TopicId::kCommand, topics_ + "command"};
+  Ends<isotherm_wire_Receipt> receipt_{participant_, waiter_, isotherm_wire_Receipt_desc,
+                                       TopicId::kReceipt, topics_ + "receipt"};
+  // Last: who has met this one has met the others, as the middleware announces them in order.
+  Ends<isotherm_wire_Hello> hello_{participant_, waiter_, isotherm_wire_Hello_desc, TopicId::kHello,
+                                   "isotherm/hello"};
+};
+
 int Main(int domain, int seconds) {
   setenv("CYCLONEDDS_URI", kProfile, /*overwrite=*/1);
   const dds_entity_t participant =
       dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
   CHECK(participant > 0);
-  const dds_entity_t waiter = dds_create_waitset(participant);
-  const std::string topics = kTopics;
-  Ends<isotherm_wire_EdgeStatus> status(participant, waiter, isotherm_wire_EdgeStatus_desc,
-                                        TopicId::kEdgeStatus, topics + "edge_status");
-  Ends<isotherm_wire_Command> command(participant, waiter, isotherm_wire_Command_desc,
-                                      TopicId::kCommand, topics + "command");
-  Ends<isotherm_wire_Receipt> receipt(participant, waiter, isotherm_wire_Receipt_desc,
-                                      TopicId::kReceipt, topics + "receipt");
-  // Last: who has met this one has met the others, as the middleware announces them in order.
-  Ends<isotherm_wire_Hello> hello(participant, waiter, isotherm_wire_Hello_desc, TopicId::kHello,
-                                  "isotherm/hello");
-  auto own_hello = Named<isotherm_wire_Hello>();
-  own_hello.wire_major = PEER_MAJOR;
-  own_hello.wire_minor = PEER_MINOR;
-  std::strcpy(own_hello.software_version, "of another day");
-  auto own_status = Named<isotherm_wire_EdgeStatus>();
-  own_status.session = 11;
-  own_status.time_ns = 1'700'000'000'000'000'000;
-  own_status.scan_state = 1;
-  own_status.nuc_state = 1;
-  own_status.depth.published = own_status.depth.next_frame_number = 90;
-  own_status.clock_error_s = 0.002;
-  own_status.feedback_count = 5;
-  own_status.feedback_latency_p99_s = 0.11;
-  auto own_command = Named<isotherm_wire_Command>();
-  own_command.number = 12;
-  own_command.kind = 2;
-  auto own_receipt = Named<isotherm_wire_Receipt>();
-  own_receipt.session = 13;
-  own_receipt.thermal.next_number = own_receipt.thermal.received = 40;
-
-  for (int i = 0; i < kMaxRepeats; ++i) {
-    const bool got_all = status.got() && command.got() && receipt.got();
-    if (hello.got() && (!kSameMajor || got_all)) break;
-    for (std::uint8_t role = 0; role < 2; ++role) {
-      own_hello.role = role;
-      hello.Write(own_hello);
-    }
-    status.Write(own_status);
-    command.Write(own_command);
-    receipt.Write(own_receipt);
-    dds_attach_t triggered[4];
-    dds_waitset_wait(waiter, triggered, 4, kRepeat);
-    hello.Take([](const auto& s) { std::printf("hello %d.%d\n", s.wire_major, s.wire_minor); });
-    status.Take([](const auto& s) {
-      std::printf("status %llu published %llu error %g feedback %llu p99 %g\n",
-                  static_cast<unsigned long long>(s.session),
-                  static_cast<unsigned long long>(s.depth.published), s.clock_error_s,
-                  static_cast<unsigned long long>(s.feedback_count), s.feedback_latency_p99_s);
-    });
-    command.Take([](const auto& s) {
-      std::printf("command %llu kind %d\n", static_cast<unsigned long long>(s.number), s.kind);
-    });
-    receipt.Take([](const auto& s) {
-      std::printf("receipt %llu thermal %llu hole %llu\n",
-                  static_cast<unsigned long long>(s.session),
-                  static_cast<unsigned long long>(s.thermal.received),
-                  static_cast<unsigned long long>(
-                      s.thermal.holes._length > 0 ? s.thermal.holes._buffer[0].last : 0));
-    });
-  }
-  std::printf("shared: status %d command %d receipt %d\n", status.IsShared(), command.IsShared(),
-              receipt.IsShared());
+  Peer(participant).Run();
   std::puts("got all");
   std::fflush(stdout);
   std::this_thread::sleep_for(std::chrono::seconds(seconds));  // Hellos stay as long as we do.
