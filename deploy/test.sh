@@ -7,6 +7,7 @@
 #   LABELS="unit lint" deploy/test.sh   builds and runs only the tests with one of these labels
 #   STRICT=1 deploy/test.sh        fails if a case is skipped that tests/skips.txt does not list, or if a package without which
 #                                  tests would be left out is missing (continuous integration does)
+#   UNITY=1 deploy/test.sh         compiles the sources of a library several at once: faster from nothing, slower after a change
 #
 # Tests on recorded data look for it in $ISOTHERM_DATA_DIR (or ../shared/data) and say so when they skip.
 set -euo pipefail
@@ -43,7 +44,7 @@ say "formatting"
 check_format
 
 say "build ($preset)"
-cmake --preset "$preset" -DISOTHERM_ALL_TESTS="$strict" >/dev/null
+cmake --preset "$preset" -DISOTHERM_ALL_TESTS="$strict" -DISOTHERM_UNITY="${UNITY:-0}" >/dev/null
 targets=()
 for label in $labels; do targets+=(--target "tests_$label"); done
 [ -z "$labels" ] || set -- -L "^(${labels// /|})\$" "$@"

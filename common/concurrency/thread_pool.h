@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <functional>
@@ -27,6 +28,15 @@ class ThreadPool {
   /// Calls `body(index)` once for each index in [0, count), in no particular order and from any
   /// thread of the pool; returns when all are done. Bodies must not write to shared data.
   void ParallelFor(int count, const std::function<void(int index)>& body);
+  /// The same for the rows [0, height) of an image, `rows_per_task` neighbouring ones by one
+  /// thread.
+  template <typename Body>
+  void ParallelForRows(int height, int rows_per_task, const Body& body) {
+    ParallelFor((height + rows_per_task - 1) / rows_per_task, [&](int task) {
+      const int end = std::min(height, (task + 1) * rows_per_task);
+      for (int y = task * rows_per_task; y < end; ++y) body(y);
+    });
+  }
 
  private:
   void Work(std::stop_token stop);

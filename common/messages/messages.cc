@@ -4,10 +4,10 @@
 
 #include <cmath>
 
+#include "common/base/units.h"
+
 namespace isotherm {
 namespace {
-
-constexpr double kMsPerS = 1e3;
 
 std::string_view NameOf(Role role) { return role == Role::kEdge ? "edge" : "ground"; }
 

@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "common/base/units.h"
 
 #include "common/base/check.h"
 #include "common/radiometry/materials.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// NaN (no temperature fits) is beyond every tolerance.
 bool Within(const EmissionError& error, const ErrorTolerance& tolerance) {
@@ -62,10 +61,10 @@ double EmissionCurve::LargestAngle(const ErrorTolerance& tolerance) const {
   constexpr double kLast_deg = 89.9;
   double within_deg = 0.0;
   for (int i = 1; i * kStep_deg <= kLast_deg; ++i) {
-    if (!Within(At(i * kStep_deg * kDegree), tolerance)) break;
+    if (!Within(At(i * kStep_deg * kRadPerDeg), tolerance)) break;
     within_deg = i * kStep_deg;
   }
-  return within_deg * kDegree;
+  return within_deg * kRadPerDeg;
 }
 
 Result<AngleLimits> EmissionCurve::Limits(const ErrorTolerance& good,
@@ -81,7 +80,7 @@ Result<AngleLimits> EmissionCurve::Limits(const ErrorTolerance& good,
     return Err(InvalidArgument(
         fmt::format("the limits contradict each other: the error of a good angle (up to {:.1f} "
                     "degrees) must be at most that of an acceptable one (up to {:.1f} degrees)",
-                    limits.good_rad / kDegree, limits.max_rad / kDegree)));
+                    limits.good_rad / kRadPerDeg, limits.max_rad / kRadPerDeg)));
   }
   if (!Within(WithOperatorMirrored(), good)) {
     limits.min_rad = OperatorMirrorAngle(conditions_.operator_half_width_m, conditions_.distance_m);
@@ -91,7 +90,7 @@ Result<AngleLimits> EmissionCurve::Limits(const ErrorTolerance& good,
         "the limits contradict each other: the operator is mirrored below {:.1f} degrees, and the "
         "error is too large for a good angle above {:.1f} degrees; tolerate a larger error, or go "
         "farther away",
-        limits.min_rad / kDegree, limits.good_rad / kDegree)));
+        limits.min_rad / kRadPerDeg, limits.good_rad / kRadPerDeg)));
   }
   return limits;
 }

@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/radiometry/materials.h"
 #include "common/radiometry/testing/fresnel.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kSearchStep = 0.11 * kDegree;  // The search steps by 0.1 degrees.
+constexpr double kSearchStep = 0.11 * kRadPerDeg;  // The search steps by 0.1 degrees.
 constexpr IndexSample kPaint[] = {{10.0, 1.5, 0.0}};
 constexpr IndexSample kMetal[] = {{10.0, 8.3, 63.0}};
 
@@ -51,8 +50,8 @@ TEST(EmissionCurveTest, DielectricsAreGoodUpToWhereTheThesisPutsIt) {
   // 6.3.3: "somewhere between 40 and 60 degrees, depending on how much error can be tolerated".
   const auto limits = Curve(kPaint).Limits({0.01, false}, {0.05, false});
   ASSERT_TRUE(limits);
-  EXPECT_GT(limits->good_rad, 40.0 * kDegree);
-  EXPECT_NEAR(limits->max_rad, 60.0 * kDegree, 1.0 * kDegree);
+  EXPECT_GT(limits->good_rad, 40.0 * kRadPerDeg);
+  EXPECT_NEAR(limits->max_rad, 60.0 * kRadPerDeg, 1.0 * kRadPerDeg);
 }
 
 TEST(AngleLimitsOfTest, APaintedSurfaceIsGoodToAHalfPercentAndAcceptableToTwo) {
@@ -92,7 +91,7 @@ TEST(EmissionCurveTest, KelvinAreWhatInterpretationWithTheNormalEmissivityGivesW
     conditions.object_celsius = object;
     const EmissionCurve curve = Curve(kPaint, conditions);
     for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
-      const EmissionError error = curve.At(degrees * kDegree);
+      const EmissionError error = curve.At(degrees * kRadPerDeg);
       const double seen = ApparentCelsius(band, object, error.emissivity, 23.0);
       EXPECT_NEAR(error.kelvin, TrueCelsius(band, seen, 0.96, 23.0).value() - object, kTables)
           << object << " " << degrees;
@@ -115,7 +114,7 @@ TEST(EmissionCurveTest, ToleranceInKelvinAllowsMoreOnCoolerObjects) {
   hot.object_celsius = 400.0;
   const double of_warm = Curve(kPaint, warm).Limits({1.0, true}, {2.0, true})->max_rad;
   const double of_hot = Curve(kPaint, hot).Limits({1.0, true}, {2.0, true})->max_rad;
-  EXPECT_GT(of_warm, of_hot + 5.0 * kDegree);
+  EXPECT_GT(of_warm, of_hot + 5.0 * kRadPerDeg);
   EXPECT_NEAR(std::abs(Curve(kPaint, hot).At(of_hot + 2.0 * kSearchStep).kelvin), 2.0, 0.1);
 }
 
@@ -124,8 +123,8 @@ TEST(EmissionCurveTest, AnObjectAsWarmAsItsSurroundingsHasNoErrorInKelvin) {
   conditions.object_celsius = conditions.operator_celsius = conditions.reflected_celsius;
   const auto limits = Curve(kPaint, conditions).Limits({0.1, true}, {0.2, true});
   ASSERT_TRUE(limits);
-  EXPECT_GT(limits->max_rad, 89.0 * kDegree);
-  EXPECT_LT(Curve(kPaint, conditions).At(60.0 * kDegree).relative, -0.04);
+  EXPECT_GT(limits->max_rad, 89.0 * kRadPerDeg);
+  EXPECT_LT(Curve(kPaint, conditions).At(60.0 * kRadPerDeg).relative, -0.04);
 }
 
 TEST(EmissionCurveTest, WhoIsMirroredMattersOnReflectiveMaterialsOnly) {
@@ -135,7 +134,7 @@ TEST(EmissionCurveTest, WhoIsMirroredMattersOnReflectiveMaterialsOnly) {
   EXPECT_EQ(Curve(kPaint, conditions).Limits({1.0, true}, {2.0, true})->min_rad, 0.0);
   const auto limits = Curve(kHalfMirror, conditions).Limits({1.0, true}, {2.0, true});
   ASSERT_TRUE(limits) << limits.error().message();
-  EXPECT_NEAR(limits->min_rad / kDegree, 15.5, 0.1);  // The thesis advises 15 degrees (6.3.3).
+  EXPECT_NEAR(limits->min_rad / kRadPerDeg, 15.5, 0.1);  // The thesis advises 15 degrees (6.3.3).
 }
 
 TEST(EmissionCurveTest, ContradictionsAreSaid) {

@@ -3,14 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/radiometry/testing/fresnel.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr SpectralBand kBand{7.5, 13.0};
 
 TEST(BandEmissivityTest, OneIndexIsOneMinusItsReflectivity) {
@@ -21,10 +20,10 @@ TEST(BandEmissivityTest, OneIndexIsOneMinusItsReflectivity) {
     EXPECT_NEAR(emissivity.At(0.0),
                 1.0 - ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k), 1e-12);
     for (double degrees = 0.0; degrees < 90.0; degrees += 3.0) {
-      EXPECT_NEAR(emissivity.At(degrees * kDegree),
-                  1.0 - testing::ComplexFresnel(degrees * kDegree, {n, k}), 1e-10);
+      EXPECT_NEAR(emissivity.At(degrees * kRadPerDeg),
+                  1.0 - testing::ComplexFresnel(degrees * kRadPerDeg, {n, k}), 1e-10);
     }
-    EXPECT_EQ(emissivity.At(90.0 * kDegree), 0.0);
+    EXPECT_EQ(emissivity.At(90.0 * kRadPerDeg), 0.0);
   }
 }
 
@@ -54,8 +53,8 @@ TEST(BandEmissivityTest, IsTheMeanOverTheBandWeightedWithPlancksLaw) {
   for (const double celsius : {-40.0, 23.0, 900.0}) {
     const BandEmissivity emissivity(samples, kBand, celsius);
     for (const double degrees : {0.0, 45.0, 75.0}) {
-      EXPECT_NEAR(emissivity.At(degrees * kDegree),
-                  IntegrateEmissivity(samples, celsius, degrees * kDegree), kIntegration)
+      EXPECT_NEAR(emissivity.At(degrees * kRadPerDeg),
+                  IntegrateEmissivity(samples, celsius, degrees * kRadPerDeg), kIntegration)
           << celsius << " " << degrees;
     }
   }

@@ -3,12 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 // A microbolometer camera of the size of the thesis's: 10 mm f/1, 25 um pitch.
 constexpr double kFocal = 0.010, kFNumber = 1.0, kPitch = 25e-6;
 
@@ -57,7 +57,7 @@ TEST(FootprintTest, GrowsWithDistanceAndWithTilt) {
   constexpr double kIfov_rad = 2.25e-3;
   EXPECT_NEAR(FootprintOfPixel(kIfov_rad, 0.5, 0.0).across_m, 1.1e-3, kPublishedRounding);
   EXPECT_NEAR(FootprintOfPixel(kIfov_rad, 1.0, 0.0).across_m, 2.3e-3, kPublishedRounding + 1e-12);
-  const PixelFootprint tilted = FootprintOfPixel(kIfov_rad, 1.0, 60.0 * kDegree);
+  const PixelFootprint tilted = FootprintOfPixel(kIfov_rad, 1.0, 60.0 * kRadPerDeg);
   EXPECT_NEAR(tilted.across_m, 2.25e-3, 1e-12);
   EXPECT_NEAR(tilted.along_m, 4.5e-3, 1e-12);
 }
@@ -69,8 +69,9 @@ TEST(LimitDistancesTest, DetailsAreAsManyPixelsWideAsAskedFor) {
   EXPECT_EQ(limits->min_m, 0.2);
   EXPECT_NEAR(0.003 / FootprintOfPixel(0.0025, limits->good_m, 0.0).along_m, 3.0, 1e-9);
   EXPECT_NEAR(0.003 / FootprintOfPixel(0.0025, limits->max_m, 0.0).along_m, 2.0, 1e-9);
-  const auto tilted = LimitDistances(field, 0.0025, 0.003, 45.0 * kDegree, {3.0, 2.0});
-  EXPECT_NEAR(0.003 / FootprintOfPixel(0.0025, tilted->max_m, 45.0 * kDegree).along_m, 2.0, 1e-9);
+  const auto tilted = LimitDistances(field, 0.0025, 0.003, 45.0 * kRadPerDeg, {3.0, 2.0});
+  EXPECT_NEAR(0.003 / FootprintOfPixel(0.0025, tilted->max_m, 45.0 * kRadPerDeg).along_m, 2.0,
+              1e-9);
 }
 
 TEST(LimitDistancesTest, BlurEndsBothRanges) {
@@ -91,7 +92,7 @@ TEST(LimitDistancesTest, ContradictionsAreSaidWithBothDistances) {
             StatusCode::kInvalidArgument);
   EXPECT_EQ(LimitDistances({0.2, 1.0}, 0.0025, -0.003, 0.0, {3.0, 2.0}).error().code(),
             StatusCode::kInvalidArgument);
-  EXPECT_EQ(LimitDistances({0.2, 1.0}, 0.0025, 0.003, 90.0 * kDegree, {}).error().code(),
+  EXPECT_EQ(LimitDistances({0.2, 1.0}, 0.0025, 0.003, 90.0 * kRadPerDeg, {}).error().code(),
             StatusCode::kInvalidArgument);
 }
 

@@ -7,12 +7,12 @@
 #include <numbers>
 #include <random>
 
+#include "common/base/units.h"
 #include "common/radiometry/testing/fresnel.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInterpolation_k = 1e-3;  // What the class promises.
 
 /// Planck's spectral radiance (thesis eq. 2.4, medium: air), W/(m^2 sr m).
@@ -104,8 +104,8 @@ TEST(FresnelTest, AgreesWithTheComplexAmplitudes) {
     for (const double kappa : {0.0, 0.1, 1.7, 60.0}) {
       for (double degrees = 0.0; degrees < 90.0; degrees += 0.7) {
         if (n < 1.0 && kappa == 0.0) continue;  // Total reflection: no real surface.
-        EXPECT_NEAR(FresnelReflectivity(degrees * kDegree, n, kappa),
-                    testing::ComplexFresnel(degrees * kDegree, {n, kappa}), 1e-10)
+        EXPECT_NEAR(FresnelReflectivity(degrees * kRadPerDeg, n, kappa),
+                    testing::ComplexFresnel(degrees * kRadPerDeg, {n, kappa}), 1e-10)
             << n << " " << kappa << " " << degrees;
       }
     }
@@ -114,8 +114,8 @@ TEST(FresnelTest, AgreesWithTheComplexAmplitudes) {
 
 TEST(FresnelTest, AlongTheNormalAndAtTheEdge) {
   EXPECT_NEAR(FresnelReflectivity(0.0, 1.5, 0.0), 0.04, 1e-12);
-  EXPECT_NEAR(FresnelReflectivity(89.9999 * kDegree, 1.5, 0.0), 1.0, 1e-4);
-  EXPECT_EQ(FresnelReflectivity(90.0 * kDegree, 1.5, 0.0), 1.0);
+  EXPECT_NEAR(FresnelReflectivity(89.9999 * kRadPerDeg, 1.5, 0.0), 1.0, 1e-4);
+  EXPECT_EQ(FresnelReflectivity(90.0 * kRadPerDeg, 1.5, 0.0), 1.0);
   EXPECT_NEAR(FresnelReflectivity(0.0, 1.0, 0.0), 0.0, 1e-12);
 }
 
@@ -131,24 +131,24 @@ TEST(FresnelTest, EnergyIsConserved) {
   // What enters at theta_1 leaves at theta_2: reflectivity is the same from both sides (Stokes),
   // and always 0..1.
   for (double degrees = 0.0; degrees < 90.0; degrees += 1.0) {
-    const double rho = FresnelReflectivity(degrees * kDegree, 1.5, 0.3);
+    const double rho = FresnelReflectivity(degrees * kRadPerDeg, 1.5, 0.3);
     EXPECT_GE(rho, 0.0);
     EXPECT_LE(rho, 1.0);
-    const double inside = std::asin(std::sin(degrees * kDegree) / 1.5);
-    EXPECT_NEAR(FresnelReflectivity(degrees * kDegree, 1.5, 0.0),
+    const double inside = std::asin(std::sin(degrees * kRadPerDeg) / 1.5);
+    EXPECT_NEAR(FresnelReflectivity(degrees * kRadPerDeg, 1.5, 0.0),
                 FresnelReflectivity(inside, 1.0 / 1.5, 0.0), 1e-9);
   }
 }
 
 TEST(DirectionalEmissivityTest, FallsFromItsValueAlongTheNormal) {
   EXPECT_NEAR(DirectionalEmissivity(0.0, 0.96, 1.5, 0.0), 0.96, 1e-12);
-  EXPECT_NEAR(DirectionalEmissivity(60.0 * kDegree, 0.96, 1.5, 0.0),
-              1.0 - FresnelReflectivity(60.0 * kDegree, 1.5, 0.0), 1e-12);
-  EXPECT_NEAR(DirectionalEmissivity(60.0 * kDegree, 0.48, 1.5, 0.0),
-              0.5 * DirectionalEmissivity(60.0 * kDegree, 0.96, 1.5, 0.0), 1e-12);
-  EXPECT_EQ(DirectionalEmissivity(90.0 * kDegree, 0.96, 1.5, 0.0), 0.0);
+  EXPECT_NEAR(DirectionalEmissivity(60.0 * kRadPerDeg, 0.96, 1.5, 0.0),
+              1.0 - FresnelReflectivity(60.0 * kRadPerDeg, 1.5, 0.0), 1e-12);
+  EXPECT_NEAR(DirectionalEmissivity(60.0 * kRadPerDeg, 0.48, 1.5, 0.0),
+              0.5 * DirectionalEmissivity(60.0 * kRadPerDeg, 0.96, 1.5, 0.0), 1e-12);
+  EXPECT_EQ(DirectionalEmissivity(90.0 * kRadPerDeg, 0.96, 1.5, 0.0), 0.0);
   // Metals first rise towards grazing angles (thesis figure 2.5).
-  EXPECT_GT(DirectionalEmissivity(80.0 * kDegree, 0.03, 12.0, 60.0), 0.03);
+  EXPECT_GT(DirectionalEmissivity(80.0 * kRadPerDeg, 0.03, 12.0, 60.0), 0.03);
 }
 
 TEST(ApparentCelsiusTest, BlackBodiesAndEqualSurroundingsShowTheTruth) {

@@ -3,13 +3,12 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "common/base/units.h"
 #include "common/recording/feedback.pb.h"
 #include "common/recording/schema.h"
 
 namespace isotherm {
 namespace {
-
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 void SetTime(CaptureTime time, google::protobuf::Timestamp& message) {
   const std::int64_t ns = ToNanoseconds(time);

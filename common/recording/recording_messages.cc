@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 #include "common/config/rig_calibration.h"
 
 namespace isotherm::recording {
@@ -14,7 +15,6 @@ namespace {
 
 using google::protobuf::Timestamp;
 
-constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr std::string_view kWorldFrame = "world";
 constexpr std::string_view kDepthFrame = "depth";
 constexpr std::string_view kThermalFrame = "thermal";

@@ -16,7 +16,7 @@ constexpr double kTableY = 0.80;
 constexpr double kPanelZ = 0.52;  // Front panel.
 constexpr double kLeft = 0.37, kRight = 0.61, kTop = 0.43, kBottom = kTableY - 0.015;
 const Vector3d kTarget(0.49, 0.565, kPanelZ);
-const Vector3d kForward(0.0, 0.0, -1.0);
+const Vector3d kTowardsOperator(0.0, 0.0, -1.0);
 constexpr double kTargetRadius = 0.076;
 
 void AddRoom(SceneBuilder& scene) {
@@ -63,7 +63,7 @@ void AddPanel(SceneBuilder& scene, double hot_celsius) {
   const double warm = 24.0 + 0.16 * (hot_celsius - 24.0);
   const auto piece = [&](const std::string& name, const Vector3d& low, const Vector3d& high) {
     Primitive& part = scene.Box(name, low, high);
-    part.temperature = Radial(part, kTarget, kForward, warm + 8.0, 0.22, warm - 5.0);
+    part.temperature = Radial(part, kTarget, kTowardsOperator, warm + 8.0, 0.22, warm - 5.0);
   };
   const double back = kPanelZ + 0.012, slots = 0.690;
   piece("panel", {kLeft, kTop, kPanelZ}, {kRight, slots, back});
@@ -88,19 +88,20 @@ void AddPanel(SceneBuilder& scene, double hot_celsius) {
   display.temperature = Uniform(warm + 4.0);
   for (int i = 0; i < 4; ++i) {
     const Vector3d center(0.505 + 0.026 * i, 0.459, kPanelZ);
-    scene.Cylinder("button", center + 0.007 * kForward, center, 0.0085).temperature =
+    scene.Cylinder("button", center + 0.007 * kTowardsOperator, center, 0.0085).temperature =
         Uniform(warm - 2.0);
   }
 }
 
 void AddTarget(SceneBuilder& scene, double hot_celsius) {
-  Primitive& rim = scene.Tube("rim", kTarget + 0.026 * kForward, kTarget, kTargetRadius + 0.012,
-                              kTargetRadius + 0.0005);
+  Primitive& rim = scene.Tube("rim", kTarget + 0.026 * kTowardsOperator, kTarget,
+                              kTargetRadius + 0.012, kTargetRadius + 0.0005);
   rim.temperature = Linear(rim, kTarget, 23.0 + 0.45 * (hot_celsius - 23.0),
-                           kTarget + 0.026 * kForward, 23.0 + 0.22 * (hot_celsius - 23.0));
+                           kTarget + 0.026 * kTowardsOperator, 23.0 + 0.22 * (hot_celsius - 23.0));
   scene.UseMaterial({0.95, 1.5, 0.0, false});
-  Primitive& disc = scene.Cylinder("hot disc", kTarget + 0.006 * kForward, kTarget, kTargetRadius);
-  disc.temperature = Radial(disc, kTarget, kForward, hot_celsius, kTargetRadius,
+  Primitive& disc =
+      scene.Cylinder("hot disc", kTarget + 0.006 * kTowardsOperator, kTarget, kTargetRadius);
+  disc.temperature = Radial(disc, kTarget, kTowardsOperator, hot_celsius, kTargetRadius,
                             hot_celsius - 0.002 * (hot_celsius - 23.0));
   scene.UseMaterial({0.96, 1.5, 0.0, false});
 }
@@ -123,7 +124,7 @@ void AddMug(SceneBuilder& scene) {
   scene.Sphere("mug handle", lower, 0.006).temperature = Uniform(35.0);
 }
 
-ScanPath MakePath() {
+ScanPath MakeCalibratorPath() {
   ScanPath path;
   path.target_x_m = {0.48, 0.09, 17.0, 0.5, 0.02, 7.0};
   path.target_y_m = {0.60, 0.05, 13.0, 2.2, 0.02, 9.0};
@@ -148,7 +149,7 @@ StagedScene MakeCalibratorScene(const SceneOptions& options) {
   AddPanel(scene, hot_celsius);
   AddTarget(scene, hot_celsius);
   AddMug(scene);
-  return {scene.Build("calibrator"), MakePath(), {}};
+  return {scene.Build("calibrator"), MakeCalibratorPath(), {}};
 }
 
 }  // namespace isotherm

@@ -15,7 +15,7 @@ constexpr double kRandomDropout = 0.6;
 constexpr double kFlyingFraction = 0.3;
 
 /// Neighbours whose depth differs by more than this fraction are an edge.
-constexpr double kEdgeStepRatio = 0.015;
+constexpr double kSpoiltEdgeStepRatio = 0.015;
 
 bool IsEmpty(DepthDefect defect, int x, int y, double chance) {
   switch (defect) {
@@ -42,7 +42,7 @@ std::uint16_t AcrossEdge(const Image<std::uint16_t>& depth_raw, int x, int y) {
   for (const auto& [dx, dy] : {std::pair(1, 0), {0, 1}, {-1, 0}, {0, -1}}) {
     if (!depth_raw.Contains(x + dx, y + dy)) continue;
     const std::uint16_t other = depth_raw.At(x + dx, y + dy);
-    if (other != kNoDepth && std::abs(other - own) > kEdgeStepRatio * own) return other;
+    if (other != kNoDepth && std::abs(other - own) > kSpoiltEdgeStepRatio * own) return other;
   }
   return own;
 }

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "common/base/noise.h"
+#include "common/base/units.h"
 #include "common/frame/frame.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Neighbours on different surfaces whose depth differs by more than this fraction are an edge.
 constexpr float kEdgeStepRatio = 0.015F;
@@ -76,8 +74,9 @@ DepthSensor::DepthSensor(const CameraModel& camera, const SimulatedDepthOptions&
       min_depth_m_(static_cast<float>(options.expert().min_depth_m())),
       max_depth_m_(static_cast<float>(options.expert().max_depth_m())),
       grazing_start_cos_(
-          static_cast<float>(std::cos(options.expert().grazing_start_deg() * kDegree))),
-      grazing_end_cos_(static_cast<float>(std::cos(options.expert().grazing_end_deg() * kDegree))),
+          static_cast<float>(std::cos(options.expert().grazing_start_deg() * kRadPerDeg))),
+      grazing_end_cos_(
+          static_cast<float>(std::cos(options.expert().grazing_end_deg() * kRadPerDeg))),
       edge_dropout_(static_cast<float>(options.expert().edge_dropout())),
       depth_scale_(static_cast<float>(options.expert().depth_scale())) {}
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/base/noise.h"
+#include "common/base/units.h"
 #include "common/frame/frame.h"
 #include "common/simulation/options.h"
 #include "common/simulation/scene_builder.h"
@@ -18,7 +19,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint64_t kSeed = 3;
-constexpr double kDegree = M_PI / 180.0;
 
 /// A camera at the origin in front of what each test builds.
 class DepthSensorTest : public ::testing::Test {
@@ -158,7 +158,7 @@ TEST_F(DepthSensorTest, GrazingSurfacesHaveHoles) {
       const auto hit = scene.Intersect(Vector3d::Zero(), direction);
       if (!hit) continue;
       const double angle =
-          std::acos(std::abs(hit->point.n_world.dot(direction.normalized()))) / kDegree;
+          std::acos(std::abs(hit->point.n_world.dot(direction.normalized()))) / kRadPerDeg;
       if (angle > options_.expert().grazing_end_deg() + 0.1) {
         EXPECT_EQ(depth.At(x, y), kNoDepth);
       }

@@ -17,7 +17,7 @@
 namespace isotherm {
 namespace {
 
-constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(100);
+constexpr Nanoseconds kLongestFrameWait = std::chrono::milliseconds(100);
 
 bool IsFile(const std::string& uri) { return std::filesystem::path(uri).extension() == ".oni"; }
 
@@ -90,7 +90,8 @@ class OpenedDevice final : public OpenniDevice {
     if (ended()) return std::nullopt;
     openni::VideoStream* streams[] = {&stream_};
     int ready = -1;
-    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(std::min(timeout, kLongestWait));
+    const auto wait =
+        std::chrono::ceil<std::chrono::milliseconds>(std::min(timeout, kLongestFrameWait));
     const openni::Status waited =
         openni::OpenNI::waitForAnyStream(streams, 1, &ready, static_cast<int>(wait.count()));
     if (waited == openni::STATUS_TIME_OUT) return std::nullopt;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/base/units.h"
+
 namespace isotherm {
 
 void FeedbackMonitor::NoteCapture(CaptureTime capture_time, CaptureTime now) {
@@ -11,7 +13,6 @@ void FeedbackMonitor::NoteCapture(CaptureTime capture_time, CaptureTime now) {
 }
 
 void FeedbackMonitor::Add(const Feedback& feedback, CaptureTime arrival) {
-  constexpr double kMsPerS = 1e3;
   const MutexLock lock(mutex_);
   newest_ = feedback;
   ++count_;

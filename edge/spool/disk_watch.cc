@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/base/units.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -9,7 +10,6 @@ namespace {
 
 // Shorter, and one chunk more or less would count.
 constexpr Nanoseconds kMeasuring = std::chrono::seconds(5);
-constexpr double kBytesPerMb = 1e6;
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "common/recording/feedback_record.h"
 #include "common/recording/recording_parts.h"
 #include "edge/options/edge_options.pb.h"
@@ -17,7 +18,6 @@ namespace {
 constexpr Nanoseconds kLookInterval = std::chrono::seconds(1);
 // A disk that takes this much more is well again; one that fails sooner is still the same failure.
 constexpr Nanoseconds kProven = std::chrono::seconds(3);
-constexpr double kBytesPerMb = 1e6;
 
 }  // namespace
 

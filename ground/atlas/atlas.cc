@@ -4,16 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "common/base/units.h"
 #include "ground/atlas/map_merger.h"
 #include "ground/tsdf/tsdf_integrator.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// How much a tracker drifts over a sub-map, and how well a view is verified in another one. Only
 /// their ratio matters to how a mismatch is spread.

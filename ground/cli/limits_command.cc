@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/config/nearest_name.h"
 #include "common/config/text_proto.h"
 #include "common/radiometry/materials.h"
@@ -33,8 +33,6 @@ Examples:
   isotherm limits --n 1.5 --k 0.1 --tolerance 2K --temperature 280 --reflected 23
   isotherm limits --focal-length 10mm --f-number 1 --focus 0.5m --pitch 25um --detail 2mm
   isotherm limits --rig rig.textproto --near 0.3m --far 0.9m --detail 2mm --at-angle 40)";
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct Arguments {
   bool list = false;
@@ -211,7 +209,7 @@ Status RunDistances(const Arguments& arguments, LimitOptions& options) {
     if (!pixels) return pixels.error();
     const auto limits =
         LimitDistances(*field, *optics->ifov_rad, *optics->detail_m,
-                       arguments.at_angle_deg * kDegree, {pixels->front(), pixels->back()});
+                       arguments.at_angle_deg * kRadPerDeg, {pixels->front(), pixels->back()});
     if (!limits) return limits.error();
     options.distance_good_m = limits->good_m;
     options.distance_max_m = limits->max_m;

@@ -4,16 +4,14 @@
 
 #include <cmath>
 #include <initializer_list>
-#include <numbers>
 #include <optional>
 #include <utility>
 
+#include "common/base/units.h"
 #include "common/radiometry/materials.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 std::string Describe(const ErrorTolerance& tolerance) {
   return tolerance.in_kelvin ? fmt::format("{:g} K", tolerance.value)
@@ -54,7 +52,7 @@ std::string DescribeCurve(const AngleRequest& request, const EmissionCurve& curv
       request.band.max_um, request.conditions.object_celsius, request.conditions.reflected_celsius);
   text += "angle  emissivity   change     error\n";
   for (int degrees = 0; degrees < 90; degrees += kStep_deg) {
-    const EmissionError error = curve.At(degrees * kDegree);
+    const EmissionError error = curve.At(degrees * kRadPerDeg);
     text +=
         fmt::format("{:>4}°  {:>10.3f}  {:>+6.2f} %  {:>+6.2f} K\n", degrees, error.emissivity,
                     WithoutNegativeZero(100.0 * error.relative), WithoutNegativeZero(error.kelvin));
@@ -64,13 +62,13 @@ std::string DescribeCurve(const AngleRequest& request, const EmissionCurve& curv
 
 std::string DescribeLimits(const AngleRequest& request, const AngleLimits& limits) {
   std::string text = "\nemission angle (6.3b)\n";
-  text += fmt::format("  good        up to {:.1f}°: error at most {}\n", limits.good_rad / kDegree,
-                      Describe(request.good));
-  text += fmt::format("  acceptable  up to {:.1f}°: error at most {}\n", limits.max_rad / kDegree,
-                      Describe(request.acceptable));
+  text += fmt::format("  good        up to {:.1f}°: error at most {}\n",
+                      limits.good_rad / kRadPerDeg, Describe(request.good));
+  text += fmt::format("  acceptable  up to {:.1f}°: error at most {}\n",
+                      limits.max_rad / kRadPerDeg, Describe(request.acceptable));
   if (limits.min_rad > 0.0) {
     text += fmt::format("  bad         below {:.1f}°: the operator is mirrored\n",
-                        limits.min_rad / kDegree);
+                        limits.min_rad / kRadPerDeg);
   } else {
     text += "  the operator's mirror image costs less than that: no least angle\n";
   }
@@ -86,8 +84,8 @@ std::string DescribeFootprints(double ifov_rad, const std::vector<double>& dista
   for (const double distance_m : distances_m) {
     text += fmt::format("{:>6.3f} m", distance_m);
     for (const double degrees : kAngles_deg) {
-      text += fmt::format("{:>8.2f}",
-                          FootprintOfPixel(ifov_rad, distance_m, degrees * kDegree).along_m * 1e3);
+      text += fmt::format(
+          "{:>8.2f}", FootprintOfPixel(ifov_rad, distance_m, degrees * kRadPerDeg).along_m * 1e3);
     }
     text += "\n";
   }

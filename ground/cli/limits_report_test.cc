@@ -5,8 +5,8 @@
 
 #include <fstream>
 #include <iterator>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/config/text_proto.h"
 #include "common/radiometry/materials.h"
 #include "ground/options/ground_options.pb.h"
@@ -15,11 +15,9 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 LimitOptions SomeLimits() {
   LimitOptions limits;
-  limits.angle = AngleLimits{15.41 * kDegree, 41.29 * kDegree, 55.0 * kDegree};
+  limits.angle = AngleLimits{15.41 * kRadPerDeg, 41.29 * kRadPerDeg, 55.0 * kRadPerDeg};
   limits.distance_min_m = 0.4452;
   limits.distance_good_m = 0.5339;
   limits.distance_max_m = 0.57;

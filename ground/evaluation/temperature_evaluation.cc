@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 #include "common/radiometry/radiometry.h"
 #include "ground/thermal/measurement_quality.h"
 
@@ -57,7 +57,6 @@ double EmissivityOf(const MeasuredCloud& cloud, std::size_t i,
                     const TemperatureEvaluationOptions& options) {
   if (!options.refractive_index || !std::isfinite(cloud.measured_angle_deg[i]))
     return options.emissivity;
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   return DirectionalEmissivity(kRadPerDeg * static_cast<double>(cloud.measured_angle_deg[i]),
                                options.emissivity, *options.refractive_index, 0.0);
 }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
+#include "common/base/units.h"
 #include "common/frame/image.h"
 #include "common/geometry/rectified_camera.h"
 
@@ -51,7 +51,6 @@ class View {
       return false;
     }
     const float cosine = -(R_ * truth_.points().normals[i]).dot(p) / distance_m;
-    constexpr double kRadPerDeg = std::numbers::pi / 180.0;
     if (cosine < std::cos(limits.max_angle_deg * kRadPerDeg) ||
         cosine > std::cos(limits.min_angle_deg * kRadPerDeg)) {
       return false;

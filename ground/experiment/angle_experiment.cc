@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/simulation/scene_builder.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/experiment_scan.h"
@@ -14,7 +14,6 @@ namespace isotherm {
 namespace {
 
 constexpr double kDuration_s = 5.0;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kLastAngle_deg = 75.0;
 constexpr double kDisc_celsius = 100.0, kSurround_celsius = 23.0;
 constexpr double kDiscEmissivity = 0.95, kDiscIndex = 1.5;  // Paint.

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 #include "common/concurrency/thread_pool.h"
 #include "ground/export/marching_cubes.h"
 #include "ground/thermal/temperature_review.h"
@@ -16,8 +17,6 @@
 
 namespace isotherm {
 namespace {
-
-constexpr float kRadPerDeg = 0.0174532925F;
 
 constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
 constexpr float kUnknown = std::numeric_limits<float>::quiet_NaN();
@@ -221,7 +220,8 @@ class Extractor {
     point.nuc_age_s = conditions.age_s();
     point.measured_distance_m = conditions.distance_m();
     const float cosine = normal.dot(DecodeDirection(conditions.direction));
-    point.measured_angle_deg = 1.0F / kRadPerDeg * std::acos(std::clamp(cosine, -1.0F, 1.0F));
+    point.measured_angle_deg =
+        static_cast<float>(1.0 / kRadPerDeg) * std::acos(std::clamp(cosine, -1.0F, 1.0F));
     return point;
   }
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include "common/base/output_file.h"
+#include "common/base/units.h"
 
 namespace isotherm {
 
 std::string TumLine(const StampedPose& pose) {
-  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
   const std::int64_t ns = ToNanoseconds(pose.time);
   // Split by hand: a double has no room for today's date in nanoseconds.
   const std::string stamp =

@@ -1,11 +1,11 @@
 #include "ground/feedback/coverage.h"
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "common/base/check.h"
 #include "common/base/quantile.h"
+#include "common/base/units.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
@@ -13,7 +13,6 @@ namespace isotherm {
 CoverageSummary SummarizeCoverage(const ViewMaps& view, const Image<float>& smear_px,
                                   const ThermalOptions& limits) {
   CHECK(smear_px.size() == 0 || smear_px.size() == view.celsius.size());
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   const double cos_min = std::cos(limits.angle().min_deg() * kRadPerDeg);
   const double cos_good = std::cos(limits.angle().good_deg() * kRadPerDeg);
   const double smear_good_px = limits.expert().motion().smear_good_px();

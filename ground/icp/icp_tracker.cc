@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "common/base/enum_array.h"
+#include "common/base/units.h"
 #include "ground/icp/icp_kernel.h"
 #include "ground/icp/odometry_stream.h"
 #include "ground/icp/thermal_alignment.h"
@@ -27,7 +27,6 @@ constexpr EnumArray<LostReason, std::string_view> kLostReasons = {
     {LostReason::kTooFewPixels, "too_few_pixels"}};
 
 constexpr int kRowsPerTask = 8;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 IcpSums ToIcpSums(const IcpKernelSums& strip) {
   IcpSums result;

@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/surface/testing/analytic_views.h"
@@ -14,8 +14,6 @@
 
 namespace isotherm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 class IcpTrackerTest : public ::testing::Test {
  protected:

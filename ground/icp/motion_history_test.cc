@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <numbers>
+
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
 
 using std::chrono::milliseconds;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kRounding = 1e-9;
 
 class MotionHistoryTest : public ::testing::Test {

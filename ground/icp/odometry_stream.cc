@@ -4,15 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr std::size_t kMaxSamples = 4096;  ///< Four seconds at 1 kHz.
 /// Senders round; what is further off is not a rotation.
 constexpr double kUnitTolerance = 0.01;

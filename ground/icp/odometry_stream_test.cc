@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
+#include "common/base/units.h"
 #include "ground/options/option_geometry.h"
 
 namespace isotherm {
@@ -20,7 +20,6 @@ using Refused = EnumArray<OdometryFault, std::uint64_t>;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding = 1e-9;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 class OdometryStreamTest : public ::testing::Test {
  protected:

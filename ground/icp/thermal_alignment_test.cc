@@ -6,16 +6,15 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <numbers>
 
 #include "common/base/noise.h"
+#include "common/base/units.h"
 #include "ground/surface/surface_maps.h"
 
 namespace isotherm {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kWall_m = 0.6;
 constexpr double kNetd_k = 0.1;
 // Some 2000 points with a quarter of the noise and 30 K/m: 0.05 mm; the rest is interpolation.

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include "common/base/quantile.h"
+#include "common/base/units.h"
 #include "ground/surface/voxel_grid.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// A view is new if none is nearer than this.
 constexpr double kNewView_m = 0.06;

@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// One step of refinement: the model is cast anew, and correspondences get stricter as the pose
 /// gets better.

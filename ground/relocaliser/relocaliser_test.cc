@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/base/units.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/surface/testing/analytic_views.h"
@@ -22,7 +23,6 @@ namespace {
 using ::testing::Each;
 using ::testing::HasSubstr;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kVoxel = 0.004;
 constexpr double kTruncation = 0.016;
 

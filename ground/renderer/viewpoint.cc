@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
@@ -15,7 +15,6 @@ constexpr double kFill = 0.94;
 // Mean of the unit vectors towards the cameras: 1 = all on one spot, 0 = all around. Below it, a
 // scan went around its object (a half circle gives 0.64).
 constexpr double kOneSided = 0.5;
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 /// Any unit vector across `axis`, the nearest to `wish`.
 Eigen::Vector3d Across(const Eigen::Vector3d& axis, const Eigen::Vector3d& wish) {
@@ -72,7 +71,7 @@ CameraModel RenderingCamera(int width, int height, double fov_deg) {
   CameraModel camera;
   camera.width = width;
   camera.height = height;
-  camera.fx = camera.fy = width / 2.0 / std::tan(fov_deg * kRadiansPerDegree / 2.0);
+  camera.fx = camera.fy = width / 2.0 / std::tan(fov_deg * kRadPerDeg / 2.0);
   camera.cx = (width - 1) / 2.0;
   camera.cy = (height - 1) / 2.0;
   return camera;
@@ -137,7 +136,7 @@ std::vector<RigidTransform> Orbit(std::span<const Eigen::Vector3f> points_world,
   const Eigen::Vector3d up = aspect.up_world;
   const Eigen::Vector3d ahead = Across(up, aspect.to_viewer_world);
   const double elevation = options.elevation_deg
-                               ? *options.elevation_deg * kRadiansPerDegree
+                               ? *options.elevation_deg * kRadPerDeg
                                : std::asin(std::clamp(aspect.to_viewer_world.dot(up), -1.0, 1.0));
   const bool closed = options.arc_deg >= 360.0;
   const double step = options.arc_deg / std::max(closed ? options.count : options.count - 1, 1);
@@ -145,7 +144,7 @@ std::vector<RigidTransform> Orbit(std::span<const Eigen::Vector3f> points_world,
   std::vector<RigidTransform> views;
   double back_m = 0.0;
   for (int i = 0; i < options.count; ++i) {
-    const Eigen::AngleAxisd rotation((first + step * i) * kRadiansPerDegree, up);
+    const Eigen::AngleAxisd rotation((first + step * i) * kRadPerDeg, up);
     const Eigen::Vector3d to_viewer =
         std::cos(elevation) * (rotation * ahead) + std::sin(elevation) * up;
     views.push_back(Pose(Orientation(-to_viewer, up), aspect.centre_world));

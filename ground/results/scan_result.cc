@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "common/base/units.h"
 #include "common/config/rig_calibration.h"
 #include "common/config/rig_calibration.pb.h"
 #include "ground/export/message_json.h"
@@ -107,7 +108,6 @@ void AddResultDoubts(const ScanModel& scan, const GroundOptions& options,
 }
 
 Json DescribeDelay(const DelayReport& delay) {
-  constexpr double kMsPerS = 1e3;
   Json json;
   json["verdict"] = ToString(delay.verdict);
   if (!delay.reason.empty()) json["reason"] = delay.reason;

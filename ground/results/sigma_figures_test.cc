@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
@@ -11,7 +11,6 @@ namespace {
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kRounding = 1e-9;  // Of figures around 100.
 
 TEST(SigmaFiguresTest, WithoutPosesThereAreNone) { EXPECT_EQ(Figures({}), std::nullopt); }

@@ -5,16 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
 #include "ground/surface/testing/small_volume.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 /// Two upright columns and a small ball before a wall. Only the ball holds the rig along y, so that
 /// is the least certain direction.

@@ -7,12 +7,11 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "common/base/units.h"
 #include "ground/subscriber/clock_watch.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kMsPerS = 1e3;
 
 Json DescribeStream(const StreamCounters& counters, std::uint64_t recorded,
                     const NotRecordedCounts& left_out) {

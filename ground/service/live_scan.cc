@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "ground/results/scan_result.h"
 
 namespace isotherm {
 namespace {
 
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-constexpr double kMsPerS = 1e3;
 
 }  // namespace
 

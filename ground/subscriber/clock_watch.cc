@@ -5,14 +5,9 @@
 #include <cmath>
 
 #include "common/base/log.h"
+#include "common/base/units.h"
 
 namespace isotherm {
-namespace {
-
-constexpr double kMsPerS = 1e3;
-
-}  // namespace
-
 void ClockWatch::Update(const EdgeStatus& status, const std::optional<ClockOffset>& offset,
                         const KernelClock& own, SteadyTime now) {
   const bool is_first = !seen_ || session_clock_.session != status.session;

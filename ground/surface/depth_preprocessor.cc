@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "common/base/units.h"
 #include "ground/surface/filter_kernel.h"
 #include "ground/surface/surface_map_kernel.h"
 
@@ -21,13 +21,6 @@ constexpr int kMaxBilateralRadius = 8;
 
 /// Pixels to either side for normals, per pyramid level: about the same patch of surface at each.
 constexpr std::array<int, kPyramidLevels> kNormalReach = {3, 2, 1};
-
-void ForRows(ThreadPool& pool, int height, const std::function<void(int)>& row) {
-  pool.ParallelFor((height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
-    const int end = std::min(height, (task + 1) * kRowsPerTask);
-    for (int y = task * kRowsPerTask; y < end; ++y) row(y);
-  });
-}
 
 Image<std::int32_t> MakeRectification(const CameraModel& camera) {
   Image<std::int32_t> source(camera.width, camera.height, -1);
@@ -110,7 +103,7 @@ void FillHoles(const Image<float>& depth_m, float max_step_ratio, float noise_at
   constexpr int kSide = 2 * kRadius + 1;
   const int height = depth_m.height();
   filled_m.Resize(depth_m.width(), height);
-  ForRows(pool, height, [&](int y) {
+  pool.ParallelForRows(height, kRowsPerTask, [&](int y) {
     std::array<const float*, kSide> rows{};
     for (int k = 0; k < kSide; ++k) {
       const int row = y + k - kRadius;
@@ -142,7 +135,7 @@ void BilateralFilter(const Image<float>& depth_m, const PreprocessorExpertOption
   }
   // The biweight with tau = sqrt(7) sigma has the variance of a Gaussian with that sigma.
   const auto tau_at_1m = static_cast<float>(noise_at_1m * std::sqrt(7.0));
-  ForRows(pool, height, [&](int y) {
+  pool.ParallelForRows(height, kRowsPerTask, [&](int y) {
     std::array<const float*, 2 * kMaxBilateralRadius + 1> rows{};
     for (int k = 0; k < side; ++k) {
       const int row = y + k - radius;
@@ -153,14 +146,13 @@ void BilateralFilter(const Image<float>& depth_m, const PreprocessorExpertOption
 }
 
 float StepPerPixel(const CameraModel& camera, double angle_deg) {
-  constexpr double kRadPerDeg = std::numbers::pi / 180.0;
   return static_cast<float>(std::tan(angle_deg * kRadPerDeg) / std::min(camera.fx, camera.fy));
 }
 
 void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& pool,
                 Image<float>& half_m) {
   half_m.Resize(depth_m.width() / 2, depth_m.height() / 2);
-  ForRows(pool, half_m.height(), [&](int y) {
+  pool.ParallelForRows(half_m.height(), kRowsPerTask, [&](int y) {
     HalfRow({depth_m.Row(2 * y).data(), depth_m.Row(2 * y + 1).data(), max_step_ratio},
             half_m.Row(y));
   });
@@ -177,7 +169,8 @@ void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int
                             reach,
                             max_step_ratio * static_cast<float>(reach),
                             noise_at_1m};
-  ForRows(pool, depth_m.height(), [&](int y) { SurfaceMapRow(args, y, maps); });
+  pool.ParallelForRows(depth_m.height(), kRowsPerTask,
+                       [&](int y) { SurfaceMapRow(args, y, maps); });
 }
 
 DepthPreprocessor::DepthPreprocessor(const PreprocessorOptions& options,
@@ -197,7 +190,7 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
   const Image<std::uint16_t>* raw = &frame.depth_raw;
   if (!rectification_.empty()) {
     rectified_raw_.Resize(camera_.width, camera_.height);
-    ForRows(pool, camera_.height, [&](int y) {
+    pool.ParallelForRows(camera_.height, kRowsPerTask, [&](int y) {
       const std::span<const std::int32_t> source = rectification_.Row(y);
       std::transform(source.begin(), source.end(), rectified_raw_.Row(y).begin(),
                      [&](std::int32_t i) { return i < 0 ? kNoDepth : frame.depth_raw.data()[i]; });
@@ -208,7 +201,7 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
   const auto min_depth = static_cast<float>(range_.min_m);
   const auto max_depth = static_cast<float>(range_.max_m);
   std::atomic<int> valid{0};
-  ForRows(pool, camera_.height, [&](int y) {
+  pool.ParallelForRows(camera_.height, kRowsPerTask, [&](int y) {
     valid += MetresRow({raw->Row(y).data(), metres_per_unit, min_depth, max_depth},
                        prepared_.depth_m.Row(y));
   });

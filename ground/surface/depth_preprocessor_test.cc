@@ -6,16 +6,14 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 #include <vector>
 
+#include "common/base/units.h"
 #include "ground/surface/testing/analytic_views.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 class DepthPreprocessorTest : public ::testing::Test {
  protected:

@@ -7,10 +7,10 @@ namespace isotherm {
 namespace {
 
 /// Side of the squares of thermal pixels that share a line of sight.
-constexpr int kTile = 4;
+constexpr int kSightTile = 4;
 /// Points that are looked at on a line of sight, evenly in inverse depth: two to three pixels of a
 /// halved depth image apart, with cameras 5 cm apart and surfaces up to 1.5 m away.
-constexpr int kSteps = 12;
+constexpr int kSightSteps = 12;
 
 }  // namespace
 
@@ -46,8 +46,8 @@ float LineOfSightOcclusion::ProvenUpTo(const Eigen::Vector2f& xy_thermal, float 
   const auto last_u = static_cast<float>(depth_m_.width() - 1);
   const auto last_v = static_cast<float>(depth_m_.height() - 1);
   const float nearest = 1.0F / near_range_m_;
-  const float step = (nearest - 1.0F / z_m) / kSteps;
-  for (int i = 0; i < kSteps; ++i) {
+  const float step = (nearest - 1.0F / z_m) / kSightSteps;
+  for (int i = 0; i < kSightSteps; ++i) {
     const float z_thermal = 1.0F / (nearest - static_cast<float>(i) * step);
     const Eigen::Vector3f p = z_thermal * ray + t_depth_thermal_;
     // What reaches the image's border goes on beyond it.
@@ -72,9 +72,10 @@ std::int64_t LineOfSightOcclusion::LeaveOut(int y, std::span<ThermalPixel> rows)
   const auto cx = static_cast<float>(thermal_camera_.cx),
              cy = static_cast<float>(thermal_camera_.cy);
   std::int64_t count = 0;
-  for (int top = 0; top < height; top += kTile) {
-    for (int left = 0; left < width; left += kTile) {
-      const int bottom = std::min(top + kTile, height), right = std::min(left + kTile, width);
+  for (int top = 0; top < height; top += kSightTile) {
+    for (int left = 0; left < width; left += kSightTile) {
+      const int bottom = std::min(top + kSightTile, height),
+                right = std::min(left + kSightTile, width);
       float farthest_m = 0.0F;
       for (int row = top; row < bottom; ++row) {
         for (int x = left; x < right; ++x) {

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 #include "common/config/nearest_name.h"
 #include "common/radiometry/angle_limits.h"
 #include "common/radiometry/materials.h"
@@ -17,8 +17,6 @@
 
 namespace isotherm {
 namespace {
-
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 float CosineOfDegrees(double degrees) { return static_cast<float>(std::cos(degrees * kRadPerDeg)); }
 

@@ -7,10 +7,10 @@ namespace isotherm {
 namespace {
 
 /// Side of the thermal tiles that are assessed as one, pixels.
-constexpr int kTile = 8;
+constexpr int kNearTile = 8;
 /// Points that are looked at on a line of sight, even in inverse depth down to this fraction of the
 /// near range.
-constexpr int kSteps = 10;
+constexpr int kNearSteps = 10;
 constexpr double kNearestFraction = 0.2;
 /// Pixels of a square that must show known surface, and those of them (of all pixels, where
 /// nothing is known) that may have a return.
@@ -22,7 +22,7 @@ constexpr double kSurfaceFraction = 0.5;
 /// something near, what lies behind is in the projector's shadow.
 constexpr double kProjectorBaseline_m = 0.08;
 
-int Tiles(int pixels) { return (pixels + kTile - 1) / kTile; }
+int Tiles(int pixels) { return (pixels + kNearTile - 1) / kNearTile; }
 
 }  // namespace
 
@@ -112,8 +112,8 @@ void NearRangeOcclusion::AssessColumn(int column) {
 }
 
 bool NearRangeOcclusion::CrossesHole(const Eigen::Vector2d& xy_thermal) const {
-  for (int i = 0; i < kSteps; ++i) {
-    const double fraction = 1.0 + i * (1.0 / kNearestFraction - 1.0) / (kSteps - 1);
+  for (int i = 0; i < kNearSteps; ++i) {
+    const double fraction = 1.0 + i * (1.0 / kNearestFraction - 1.0) / (kNearSteps - 1);
     const double z_m = near_range_m_ / fraction;
     const Eigen::Vector3d p =
         T_depth_thermal_ * (z_m * Eigen::Vector3d(xy_thermal.x(), xy_thermal.y(), 1.0));
@@ -144,8 +144,8 @@ void NearRangeOcclusion::Aim(const RigidTransform& T_depth_thermal) {
   if (!has_holes_) return;
   for (int row = 0; row < left_out_.height(); ++row) {
     for (int column = 0; column < left_out_.width(); ++column) {
-      const double u = (column + 0.5) * kTile - 0.5;
-      const double v = (row + 0.5) * kTile - 0.5;
+      const double u = (column + 0.5) * kNearTile - 0.5;
+      const double v = (row + 0.5) * kNearTile - 0.5;
       const Eigen::Vector2d xy((u - thermal_camera_.cx) / thermal_camera_.fx,
                                (v - thermal_camera_.cy) / thermal_camera_.fy);
       const bool crosses = CrossesHole(xy);
@@ -159,7 +159,7 @@ std::int64_t NearRangeOcclusion::LeaveOut(int y, std::span<ThermalPixel> row) co
   std::int64_t count = 0;
   if (!any_) return count;
   for (std::size_t x = 0; x < row.size(); ++x) {
-    if (left_out_.At(static_cast<int>(x) / kTile, y / kTile) == 0) continue;
+    if (left_out_.At(static_cast<int>(x) / kNearTile, y / kNearTile) == 0) continue;
     count += (row[x].flags & ThermalPixel::kAssignable) != 0 ? 1 : 0;
     row[x].flags &= ~ThermalPixel::kAssignable;
   }

@@ -15,14 +15,6 @@ constexpr int kRowsPerTask = 8;
 /// Side of the tiles whose depths are kept to choose blocks; a row of tiles is one task.
 constexpr int kTile = kRowsPerTask;
 
-template <typename Row>
-void ForRows(int height, ThreadPool& pool, const Row& row) {
-  pool.ParallelFor((height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
-    const int end = std::min(height, (task + 1) * kRowsPerTask);
-    for (int y = task * kRowsPerTask; y < end; ++y) row(y);
-  });
-}
-
 /// Every second pixel each way, and one beyond the last.
 CameraModel EverySecondPixel(CameraModel camera) {
   camera.width = camera.width / 2 + 1;
@@ -103,7 +95,7 @@ void ThermalFuser::CastSurface(const RigidTransform& T_map_thermal, const TsdfVo
       static_cast<float>(0.5 * options_.expert().occlusion().parallax_tolerance_m());
   const Eigen::Vector3f position = T_map_thermal.translation().cast<float>();
   std::copy_n(position.data(), 3, args.position);
-  ForRows(camera.height, pool, [&](int y) {
+  pool.ParallelForRows(camera.height, kRowsPerTask, [&](int y) {
     float* distance_m = distances_m_.Row(y + apron_).data() + apron_;
     if (halved) {
       UpsampleRow(args, y, surface_, distance_m);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "common/base/units.h"
 #include "common/testing/temporary_directory.h"
 #include "ground/thermal/thermal_volume.h"
 
@@ -16,14 +17,13 @@ constexpr std::uint64_t kSeed = 11;
 TEST(EncodeDirectionTest, ComesBackToLessThanADegree) {
   std::mt19937_64 random(kSeed);
   std::normal_distribution<float> normal;
-  constexpr double kDegree = 3.14159265 / 180.0;
   double worst = 0.0;
   for (int i = 0; i < 20'000; ++i) {
     const Eigen::Vector3f v =
         Eigen::Vector3f(normal(random), normal(random), normal(random)).normalized();
     worst = std::max(worst, double{(DecodeDirection(EncodeDirection(v)) - v).norm()});
   }
-  EXPECT_LT(worst, kDegree);
+  EXPECT_LT(worst, kRadPerDeg);
 }
 
 TEST(DisagreementRecordTest, KeepsExtremesExactlyAndTheSpreadNearly) {

@@ -12,15 +12,7 @@ namespace isotherm {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr int kRowsPerTask = 8;
-
-template <typename Row>
-void ForRows(int height, ThreadPool& pool, const Row& row) {
-  pool.ParallelFor((height + kRowsPerTask - 1) / kRowsPerTask, [&](int task) {
-    const int end = std::min(height, (task + 1) * kRowsPerTask);
-    for (int y = task * kRowsPerTask; y < end; ++y) row(y);
-  });
-}
+constexpr int kRectifiedRowsPerTask = 8;
 
 }  // namespace
 
@@ -54,13 +46,13 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, int apro
   image_.Resize(camera_.width, camera_.height);
   if (celsius.width() != width + 2 * apron || celsius.height() != height + 2 * apron)
     celsius = Image<float>(width + 2 * apron, height + 2 * apron, kNan);
-  ForRows(camera_.height, pool, [&](int y) {
+  pool.ParallelForRows(camera_.height, kRectifiedRowsPerTask, [&](int y) {
     const std::span<const std::uint16_t> raw = centikelvin.Row(y);
     const std::span<float> row = image_.Row(y);
     for (std::size_t x = 0; x < row.size(); ++x)
       row[x] = raw[x] == 0 ? kNan : static_cast<float>(raw[x]) * 0.01F - 273.15F;
   });
-  ForRows(height, pool, [&](int v) {
+  pool.ParallelForRows(height, kRectifiedRowsPerTask, [&](int v) {
     ResampleRow({image_.data(), camera_.width, source_.Row(v).data(), fraction_x_.Row(v).data(),
                  fraction_y_.Row(v).data(), width},
                 celsius.Row(v + apron).data() + apron);

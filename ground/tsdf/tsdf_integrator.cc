@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "ground/surface/depth_preprocessor.h"
 
 namespace isotherm {
 namespace {
 
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 /// Side of the tiles whose largest depth is kept; a strip of tiles is one task.
 constexpr int kTile = 16;
 

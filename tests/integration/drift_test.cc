@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <iostream>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "tests/integration/recovery_scan.h"
@@ -14,7 +14,6 @@ namespace isotherm {
 namespace {
 
 constexpr std::uint64_t kSeed = 5;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kOrbitRadius_m = 0.8;
 constexpr double kDegPerFrame = 0.6;  // At most, to be integrated (thesis 6.1.3).
 const Eigen::Vector3d kCentre(0.48, 0.48, 0.48);

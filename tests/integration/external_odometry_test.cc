@@ -7,9 +7,9 @@
 #include <functional>
 #include <iostream>
 #include <limits>
-#include <numbers>
 #include <random>
 
+#include "common/base/units.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "tests/integration/recovery_scan.h"
@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::uint64_t kSeed = 17;
 constexpr double kFrame = 1.0 / 30.0;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
 using testing::RecoveryScan;
 using Path = std::function<RigidTransform(double seconds)>;

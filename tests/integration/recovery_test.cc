@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <iostream>
-#include <numbers>
 #include <random>
 
+#include "common/base/units.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/testing/temporary_directory.h"
@@ -18,7 +18,6 @@ namespace isotherm {
 namespace {
 
 constexpr std::uint64_t kSeed = 11;
-constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 constexpr double kFrame = 1.0 / 30.0;
 constexpr double kWrongPose = 0.005;  // Metres: more than a voxel off.
 
