@@ -16,6 +16,8 @@ constexpr double kSlowEnough = 0.8;
 // The stop criterion is given up when the fraction falls so far below it: new surface came into
 // view.
 constexpr double kDoneSlack = 0.03;
+/// Less surface out of reach is not worth a word, square metres.
+constexpr double kWorthSaying_m2 = 0.005;
 // A hindrance takes the place of another one that is still due when it is this much larger.
 constexpr double kClearlyLarger = 1.3;
 
@@ -207,8 +209,12 @@ std::string OperatorAdviser::Reason(AdviceKind kind, const CoverageSummary& view
     case AdviceKind::kHoldForNuc:
       return "the thermal camera is correcting itself: hold still";
     case AdviceKind::kDone:
-      return fmt::format("{:.0f} % of the surface is measured well, {:.0f} % were asked for",
-                         Percent(s.model_good.value_or(0.0)), Percent(options_.done_fraction()));
+      return fmt::format(
+          "{:.0f} % of the surface is measured well, {:.0f} % were asked for{}",
+          Percent(s.model_good.value_or(0.0)), Percent(options_.done_fraction()),
+          s.out_of_reach_m2 < kWorthSaying_m2
+              ? ""
+              : fmt::format(" ({:.2f} m2 out of reach do not count)", s.out_of_reach_m2));
     case AdviceKind::kSlower:
       return ReasonToSlowDown(view, s);
     case AdviceKind::kCloser:

@@ -17,7 +17,7 @@ namespace isotherm {
 enum class AdviceKind {
   kGoBack,      ///< Tracking is lost, or nothing of the model is in view.
   kHoldForNuc,  ///< No temperature is valid now.
-  kDone,        ///< Enough of the whole surface is measured well.
+  kDone,        ///< Enough of the surface that can be measured well is.
   kSlower,      ///< The model cannot follow, the thermal image is smeared, or the ground is behind.
   kCloser,
   kFarther,
@@ -35,8 +35,10 @@ struct ScanSituation {
   double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.
   double max_rotation_rate_deg_s = 0.0;
   bool ground_is_behind = false;  ///< Thermal frames are left out to keep up.
-  /// The fraction of the whole surface that is measured well; nullopt while it is not known.
+  /// The fraction of the whole surface that is measured well, of what is not out of reach; nullopt
+  /// while it is not known.
   std::optional<double> model_good;
+  double out_of_reach_m2 = 0.0;  ///< Surface that no view would measure well.
 };
 
 /// Holds one thing to do, and the sentence that says why, with its numbers.

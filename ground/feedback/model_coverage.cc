@@ -227,10 +227,19 @@ void ModelCoverage::Update(const TsdfVolume& tsdf, const ThermalVolume& thermal,
   }
 }
 
-std::vector<LackingSurface> ModelCoverage::Lacking(std::size_t max_count) const {
+double ModelCoverage::LackingArea(std::uint64_t cell) const {
+  const auto found = cells_.find(cell);
+  return found == cells_.end() ? 0.0 : found->second.area_m2;
+}
+
+std::vector<LackingSurface> ModelCoverage::Lacking(
+    std::size_t max_count,
+    const std::function<bool(std::uint64_t cell, double area_m2)>& wanted) const {
   std::vector<std::pair<double, std::uint64_t>> largest;  // Negative area and key: a fixed order.
   largest.reserve(cells_.size());
-  for (const auto& [key, cell] : cells_) largest.emplace_back(-cell.area_m2, key);
+  for (const auto& [key, cell] : cells_) {
+    if (!wanted || wanted(key, cell.area_m2)) largest.emplace_back(-cell.area_m2, key);
+  }
   const auto end =
       largest.begin() + static_cast<std::ptrdiff_t>(std::min(max_count, largest.size()));
   std::partial_sort(largest.begin(), end, largest.end());
@@ -239,7 +248,8 @@ std::vector<LackingSurface> ModelCoverage::Lacking(std::size_t max_count) const 
     const Cell& cell = cells_.at(entry->second);
     const double length = cell.normal.norm();
     if (!(length > 0.0)) continue;
-    lacking.push_back({cell.position / cell.area_m2, cell.normal / length, cell.area_m2});
+    lacking.push_back(
+        {entry->second, cell.position / cell.area_m2, cell.normal / length, cell.area_m2});
   }
   return lacking;
 }

@@ -45,6 +45,7 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
 /// Describes a piece of surface, about a hand in size, that is not yet measured well and faces one
 /// way.
 struct LackingSurface {
+  std::uint64_t cell = 0;  ///< Which piece of the model it is; the same as the scan goes on.
   Eigen::Vector3d position_map;
   Eigen::Vector3d normal_map;  ///< Unit, towards the free side.
   double area_m2 = 0.0;
@@ -65,8 +66,12 @@ class ModelCoverage {
   const SurfaceAreas& areas() const { return areas_; }
   /// Returns whether each block was measured at least once since the model was empty.
   bool complete() const { return turns_ > 0; }
-  /// Returns where most is lacking, largest first.
-  std::vector<LackingSurface> Lacking(std::size_t max_count) const;
+  /// Returns where most is lacking, largest first, of the cells that are `wanted` (all by default).
+  std::vector<LackingSurface> Lacking(
+      std::size_t max_count,
+      const std::function<bool(std::uint64_t cell, double area_m2)>& wanted = {}) const;
+  /// Returns what is lacking in a cell, square metres.
+  double LackingArea(std::uint64_t cell) const;
 
  private:
   struct Cell {

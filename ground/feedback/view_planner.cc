@@ -40,7 +40,7 @@ constexpr int kStepsAtView = 20;
 /// Nor is it proposed for longer than this many steps (a quarter of a minute) if nobody goes there:
 /// there may be no way.
 constexpr int kStepsToView = 150;
-constexpr std::size_t kMaxExhausted = 64;
+constexpr std::size_t kMaxExhausted = 512;
 
 CameraModel Coarse(CameraModel camera) {
   camera = RectifiedCamera(camera);
@@ -107,22 +107,29 @@ void ViewPlanner::MakeCandidates(const ModelCoverage& coverage, const RigidTrans
   // Straight on, the operator may be reflected.
   const double straight_rad = angle_min_rad_ > 0.0 ? 0.5 * (angle_min_rad_ + angle_good_rad_) : 0.0;
   const double askew_rad = straight_rad > 0.0 ? straight_rad : kAskew_rad;
-  const std::vector<LackingSurface> targets = coverage.Lacking(kMaxTargets);
+  constexpr int kSides = 4;
+  const std::vector<LackingSurface> targets = coverage.Lacking(
+      kMaxTargets,
+      [this](std::uint64_t cell, double area_m2) { return !reach_.IsOutOfReach(cell, area_m2); });
+  for (const LackingSurface& target : targets)
+    reach_.Begin(target, straight_rad == 0.0 ? 1 + kSides : kSides);
   // All straight views first: they are the most likely, and cells see parts of each other.
   if (straight_rad == 0.0) {
     for (const LackingSurface& target : targets) {
-      candidates_.push_back(LookAt(target.position_map, target.normal_map, T_map_depth));
+      candidates_.push_back(
+          {LookAt(target.position_map, target.normal_map, T_map_depth), target.cell});
     }
   }
-  for (int side = 0; side < 4; ++side) {
+  for (int side = 0; side < kSides; ++side) {
     for (const LackingSurface& target : targets) {
       const Eigen::Vector3d u = target.normal_map.unitOrthogonal();
       const double azimuth = 0.5 * std::numbers::pi * side;
       const Eigen::Vector3d tangent =
           std::cos(azimuth) * u + std::sin(azimuth) * target.normal_map.cross(u);
-      candidates_.push_back(LookAt(
-          target.position_map,
-          std::cos(askew_rad) * target.normal_map + std::sin(askew_rad) * tangent, T_map_depth));
+      const Eigen::Vector3d towards_camera =
+          std::cos(askew_rad) * target.normal_map + std::sin(askew_rad) * tangent;
+      candidates_.push_back(
+          {LookAt(target.position_map, towards_camera, T_map_depth), target.cell});
     }
   }
 }
@@ -204,14 +211,18 @@ void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
   }
   if (candidates_.empty()) MakeCandidates(coverage, T_map_depth);
   for (; left > 0 && !candidates_.empty(); candidates_.pop_front()) {
-    const RigidTransform& candidate = candidates_.front();
-    if (IsExhausted(candidate)) continue;
+    const auto& [T_map_candidate, cell] = candidates_.front();
+    if (IsExhausted(T_map_candidate)) {
+      reach_.Note(cell, false);
+      continue;
+    }
     --left;
-    const double gain_m2 = Gain(candidate, tsdf, thermal, pool);
+    const double gain_m2 = Gain(T_map_candidate, tsdf, thermal, pool);
+    reach_.Note(cell, gain_m2 >= options_.expert().min_gain_m2());
     const double needed_m2 =
         best_ ? kClearlyBetter * best_->gain_m2 : options_.expert().min_gain_m2();
     if (gain_m2 < needed_m2) continue;
-    best_ = NextView{candidate, gain_m2};
+    best_ = NextView{T_map_candidate, gain_m2};
     steps_at_best_ = steps_proposed_ = 0;
   }
 }

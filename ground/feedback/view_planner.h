@@ -7,6 +7,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
 #include "ground/feedback/model_coverage.h"
+#include "ground/feedback/reach.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_fuser.h"
@@ -41,6 +42,10 @@ class ViewPlanner {
 
   const std::optional<NextView>& best() const { return best_; }
 
+  /// Returns the surface of the model for which no view was found that would measure it well,
+  /// square metres.
+  double OutOfReach(const ModelCoverage& coverage) const { return reach_.OutOfReach(coverage); }
+
   /// Returns the surface that a view would measure well and that is not measured well yet, square
   /// metres; 0 where a camera would be inside or too close to something, or the depth camera would
   /// see too little to follow.
@@ -48,6 +53,11 @@ class ViewPlanner {
               const ThermalVolume& thermal, ThreadPool& pool);
 
  private:
+  struct Candidate {
+    RigidTransform T_map_depth;
+    std::uint64_t cell;  ///< The LackingSurface that it looks at.
+  };
+
   void MakeCandidates(const ModelCoverage& coverage, const RigidTransform& T_map_depth);
   /// Returns a pose that looks at `target` from the direction `towards_camera` (unit).
   RigidTransform LookAt(const Eigen::Vector3d& target, const Eigen::Vector3d& towards_camera,
@@ -66,7 +76,8 @@ class ViewPlanner {
   const RigidTransform T_thermal_depth_;
   Raycaster raycaster_{RaycastPrecision::kVisibility};
   SurfaceMaps maps_;
-  std::deque<RigidTransform> candidates_;  ///< T_map_depth.
+  std::deque<Candidate> candidates_;
+  Reach reach_;
   std::optional<NextView> best_;
   int steps_at_best_ = 0;                 ///< How long the rig has been there,
   int steps_proposed_ = 0;                ///< ... and how long it has been proposed.

@@ -188,6 +188,34 @@ TEST_F(ViewPlannerTest, WhereTheOperatorWouldBeReflectedViewsAreAskew) {
   EXPECT_LT(angle, 40.0);
 }
 
+TEST_F(ViewPlannerTest, WhatNoViewCanMeasureIsOutOfReach) {
+  // A square on a wall, and a lid close before it that hides it from all sides.
+  const auto wall = [](const Vector3d& p) { return 0.80 - p.z(); };
+  const auto lid = [](const Vector3d& p) {
+    const Vector3d d = (p - Vector3d(0.5, 0.5, 0.72)).cwiseAbs() - Vector3d(0.25, 0.25, 0.02);
+    return d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
+  };
+  testing::FillVolume(tsdf_, [&](const Vector3d& p) { return std::min(wall(p), lid(p)); });
+  const auto missing = [](const Vector3d& p) {
+    return p.z() > 0.77 && std::abs(p.x() - 0.5) < 0.06 && std::abs(p.y() - 0.5) < 0.06;
+  };
+  Measure(missing);
+  ViewPlanner planner = Planner();
+  EXPECT_EQ(planner.OutOfReach(coverage_), 0.0) << "nothing was tried yet";
+  EXPECT_FALSE(Plan(planner, 200).has_value());
+  constexpr double kSquare_m2 = 0.12 * 0.12;
+  EXPECT_NEAR(planner.OutOfReach(coverage_), kSquare_m2, 0.25 * kSquare_m2);
+}
+
+TEST_F(ViewPlannerTest, WhatCanBeSeenIsNeverOutOfReachHoweverLongItIsNotMeasured) {
+  testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
+  Measure([](const Vector3d& p) { return (p - Vector3d(0.5, 0.5, 0.7)).norm() < 0.1; });
+  ViewPlanner planner = Planner();
+  is_measuring_ = false;
+  EXPECT_TRUE(Plan(planner, 200).has_value());
+  EXPECT_EQ(planner.OutOfReach(coverage_), 0.0);
+}
+
 TEST_F(ViewPlannerTest, AModelThatIsMeasuredWellNeedsNoView) {
   testing::FillSphere(tsdf_, centre_, 0.2);
   Measure([](const Vector3d&) { return false; });

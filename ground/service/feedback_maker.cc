@@ -132,12 +132,19 @@ ModelCoverage& FeedbackMaker::ActiveCoverage(const ScanModel& scan) {
 
 ViewPlanner* FeedbackMaker::Planner(const ScanModel& scan) {
   if (!rig_.depth || !rig_.thermal || !rig_.T_thermal_depth) return nullptr;
-  if (!planner_ || planned_map_ != scan.atlas.active_index()) {
-    planned_map_ = scan.atlas.active_index();
-    planner_.emplace(options_.feedback(), options_.thermal(), rig_,
-                     static_cast<float>(options_.raycast().expert().min_weight()));
+  return &planners_
+              .try_emplace(scan.atlas.active_index(), options_.feedback(), options_.thermal(), rig_,
+                           static_cast<float>(options_.raycast().expert().min_weight()))
+              .first->second;
+}
+
+double FeedbackMaker::OutOfReach() const {
+  double sum_m2 = 0.0;
+  for (const auto& [map, planner] : planners_) {
+    const auto coverage = coverages_.find(map);
+    if (coverage != coverages_.end()) sum_m2 += planner.OutOfReach(coverage->second);
   }
-  return &*planner_;
+  return sum_m2;
 }
 
 CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan, ThreadPool& pool) {
@@ -179,7 +186,9 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   });
   const SurfaceAreas all = areas();
   if (!complete || !(all.total_m2() > 0.0)) return situation;
-  situation.model_good = all.good_m2 / all.total_m2();
+  situation.out_of_reach_m2 = std::min(OutOfReach(), all.total_m2() - all.good_m2);
+  const double within_reach_m2 = all.total_m2() - situation.out_of_reach_m2;
+  if (within_reach_m2 > 0.0) situation.model_good = all.good_m2 / within_reach_m2;
   return situation;
 }
 
@@ -189,10 +198,11 @@ void FeedbackMaker::AddNextPose(const DepthReport& report, const ScanModel& scan
     feedback.T_world_depth_next = LastKnownPose(scan, feedback.capture_time);
     return;
   }
-  if (feedback.done || !planner_ || planned_map_ != report.pose.map) return;
-  const std::optional<NextView>& best = planner_->best();
+  const auto planner = planners_.find(report.pose.map);
+  if (feedback.done || planner == planners_.end()) return;
+  const std::optional<NextView>& best = planner->second.best();
   if (!best) return;
-  feedback.T_world_depth_next = InWorld(scan.atlas, planned_map_, best->T_map_depth);
+  feedback.T_world_depth_next = InWorld(scan.atlas, report.pose.map, best->T_map_depth);
   feedback.next_gain_m2 = best->gain_m2;
   feedback.T_depth_next = report.pose.T_map_depth.inverse() * best->T_map_depth;
 }

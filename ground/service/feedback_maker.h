@@ -54,6 +54,8 @@ class FeedbackMaker {
   /// The coverage of the active sub-map, in whose coordinates the planner works too.
   ModelCoverage& ActiveCoverage(const ScanModel& scan);
   ViewPlanner* Planner(const ScanModel& scan);
+  /// Returns the surface that no view was found for, in all sub-maps, square metres.
+  double OutOfReach() const;
 
   const GroundOptions options_;
   const Rig rig_;
@@ -62,9 +64,8 @@ class FeedbackMaker {
   const ThermalOptions limits_;  ///< CompleteLimits of this rig.
   OperatorAdviser adviser_;
   std::map<int, ModelCoverage> coverages_;  ///< By sub-map.
-  int planned_map_ = 0;                     ///< The sub-map in whose coordinates views are planned.
-  std::optional<ViewPlanner> planner_;      ///< Not without a calibrated thermal camera.
-  SurfaceMaps maps_;                        ///< Every n-th pixel of the model's view.
+  std::map<int, ViewPlanner> planners_;  ///< By sub-map. None without a calibrated thermal camera.
+  SurfaceMaps maps_;                     ///< Every n-th pixel of the model's view.
   ViewMaps view_;
   bool is_measuring_ = false;  ///< With the last message: views can be gone to and measured.
   std::uint64_t messages_ = 0;
