@@ -15,8 +15,8 @@
 #include "ground/calibration/find_delay.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/cli/command.h"
+#include "ground/cli/configuration_arguments.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/configuration/validate_options.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
@@ -43,26 +43,19 @@ Examples:
 constexpr double kReadFraction = 0.8;
 
 struct Arguments {
-  std::string recording, rig, output, config;
-  std::vector<std::string> overrides;
+  std::string recording, rig, output;
+  ConfigurationArguments configuration;
   bool apply = false;
   int threads = 0;
   FindDelayOptions find;
 };
 
-std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
-  std::string problems;
-  const auto add = [&](const Status& status) {
-    if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
-  };
-  if (!arguments.config.empty()) add(LoadTextProto(arguments.config, options));
-  for (const std::string& assignment : arguments.overrides)
-    add(ApplyOverride(assignment, options).WithContext("--set"));
+GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
+  GroundOptions options;
+  Apply(arguments.configuration, options, problems);
   options.set_threads(arguments.threads);
-  if (problems.empty()) {
-    for (const Status& status : ValidateAll(options)) add(status);
-  }
-  return problems;
+  AddInvalid(options, problems);
+  return options;
 }
 
 /// The text of the calibration with the new delay: that of the file if there is one, with all its
@@ -143,9 +136,9 @@ void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, const 
 }
 
 int Run(const Arguments& arguments) {
-  GroundOptions options;
-  const std::string problems = CollectOptions(arguments, options);
-  if (!problems.empty()) return FailConfiguration(problems);
+  Problems problems;
+  const GroundOptions options = CollectOptions(arguments, problems);
+  if (!problems.empty()) return FailConfiguration(problems.text());
   std::optional<Rig> rig;
   if (!arguments.rig.empty()) {
     Result<Rig> loaded = LoadRigCalibration(arguments.rig);
@@ -217,11 +210,7 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
                    "A result less certain than this is refused, seconds")
       ->check(CLI::Range(0.0001, 0.1))
       ->capture_default_str();
-  command->add_option("--config", arguments->config,
-                      "Configuration file (text format of isotherm.GroundOptions)");
-  command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
-      ->take_all()
-      ->type_name("STAGE.FIELD=VALUE");
+  AddConfigurationArguments(*command, arguments->configuration);
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   command->footer(kFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });

@@ -5,12 +5,11 @@
 #include <memory>
 
 #include "common/base/progress.h"
-#include "common/config/text_proto.h"
 #include "ground/cli/command.h"
+#include "ground/cli/configuration_arguments.h"
 #include "ground/cli/interpretation_arguments.h"
 #include "ground/cli/model_export.h"
 #include "ground/cli/result_folder.h"
-#include "ground/configuration/validate_options.h"
 #include "ground/export/interpretation.h"
 
 namespace isotherm {
@@ -19,12 +18,13 @@ namespace {
 constexpr const char* kFooter =
     R"(Temperatures in a model are apparent: those that black bodies would have. With an emissivity and the
 temperature of what is reflected they become those of the objects (3.1, Planck over the camera's
-band). DIR gets cloud.ply and mesh.ply with scalar_temperature (object) and apparent_temperature,
-renders/*.png and stats.json.
+band). DIR gets cloud.ply and mesh.ply with scalar_temperature (object) and
+scalar_apparent_temperature, renders/*.png and stats.json.
 
 A region is a box in `world`; it may have values of its own, and where regions overlap the later one
 holds. A regions file has one entry each:
-  region { name: "pipe" box: "0.1 0.1 0.7 0.3 0.9 0.8" emissivity: 0.3 reflected_celsius: 25 }
+  region { name: "pipe" emissivity: 0.3 reflected_celsius: 25
+           box { min { x_m: 0.1 y_m: 0.1 z_m: 0.7 } max { x_m: 0.3 y_m: 0.9 z_m: 0.8 } } }
 Points that were measured but fit no temperature are NaN, are counted, and make the exit status 65;
 all files are written.
 
@@ -35,31 +35,25 @@ Examples:
   isotherm export out/model.iso -o out/objects --regions plant.textproto --label "pipe: emissivity=0.4")";
 
 struct Arguments {
-  std::string model, output, config;
+  std::string model, output;
+  ConfigurationArguments configuration;
   InterpretationArguments interpretation;
   std::optional<int> threads;
-  std::vector<std::string> overrides;
 };
 
-/// All that is wrong with the options at once, one problem per line; empty if they are fine. Values
-/// of single regions are left to Interpretation, which lets the rest go on.
-std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
-  std::string problems;
-  const auto add = [&](const Status& status) {
-    if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
-  };
-  if (!arguments.config.empty()) add(LoadTextProto(arguments.config, options));
-  for (const std::string& assignment : arguments.overrides)
-    add(ApplyOverride(assignment, options).WithContext("--set"));
+/// Values of single regions are left to Interpretation, which lets the rest go on.
+GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
+  GroundOptions options;
+  Apply(arguments.configuration, options, problems);
   if (arguments.threads) options.set_threads(*arguments.threads);
-  add(ApplyArguments(arguments.interpretation, *options.mutable_interpretation()));
-  if (!problems.empty()) return problems;
-  const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
-  if (!interpretation) add(interpretation.error());
+  problems.Add(ApplyArguments(arguments.interpretation, *options.mutable_interpretation()));
+  if (!problems.empty()) return options;
   GroundOptions others = options;
   others.clear_interpretation();
-  for (const Status& status : ValidateAll(others)) add(status);
-  return problems;
+  AddInvalid(others, problems);
+  const Result<Interpretation> interpretation = Interpretation::Create(options.interpretation());
+  if (!interpretation) problems.Add(interpretation.error());
+  return options;
 }
 
 void PrintSummary(const Interpretation& interpretation, const ResultSummary& summary,
@@ -83,9 +77,9 @@ void PrintSummary(const Interpretation& interpretation, const ResultSummary& sum
 }
 
 int Run(const Arguments& arguments) {
-  GroundOptions options;
-  const std::string problems = CollectOptions(arguments, options);
-  if (!problems.empty()) return FailConfiguration(problems);
+  Problems problems;
+  const GroundOptions options = CollectOptions(arguments, problems);
+  if (!problems.empty()) return FailConfiguration(problems.text());
   const auto model = FindModel(arguments.model);
   if (!model) return Fail(model.error());
   const Interpretation interpretation = Interpretation::Create(options.interpretation()).value();
@@ -127,12 +121,8 @@ void AddExportCommand(CLI::App& app, CommandBody& body) {
       ->take_all()
       ->type_name("\"NAME: emissivity=E reflected=T\"");
   command->add_option("--band", interpretation.band, "Of the thermal camera, \"min max\" um");
-  command->add_option("--config", arguments->config,
-                      "Configuration file (text format of isotherm.GroundOptions)");
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
-  command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
-      ->take_all()
-      ->type_name("STAGE.FIELD=VALUE");
+  AddConfigurationArguments(*command, arguments->configuration);
   command->footer(kFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }

@@ -8,9 +8,9 @@
 #include "common/config/text_proto.h"
 #include "common/geometry/pose_text.h"
 #include "ground/cli/command.h"
+#include "ground/cli/configuration_arguments.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"
-#include "ground/configuration/validate_options.h"
 #include "ground/export/result_files.h"
 #include "ground/offline/reconstruct.h"
 #include "ground/options/option_geometry.h"
@@ -41,23 +41,16 @@ Examples:
 
 struct Arguments {
   std::string rig;
-  std::string recording, output, model, config, volume, volume_min, initial_pose, initial_pose_from;
+  std::string recording, output, model, volume, volume_min, initial_pose, initial_pose_from;
+  ConfigurationArguments configuration;
   std::optional<double> voxel;
   std::optional<int> threads;
-  std::vector<std::string> overrides;
   bool force = false;
 };
 
-// All that is wrong with the options at once, one problem per line; empty if they are fine.
-std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
-  std::string problems;
-  const auto add = [&](const Status& status) {
-    if (!status.ok()) problems += (problems.empty() ? "" : "\n") + status.message();
-  };
-  if (!arguments.config.empty()) add(LoadTextProto(arguments.config, options));
-  for (const std::string& assignment : arguments.overrides) {
-    add(ApplyOverride(assignment, options).WithContext("--set"));
-  }
+GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
+  GroundOptions options;
+  Apply(arguments.configuration, options, problems);
   VolumeOptions& volume = *options.mutable_volume();
   if (!arguments.volume.empty()) {
     if (const auto size = ParseNumbers(arguments.volume, {1, 3}, "--volume")) {
@@ -65,7 +58,7 @@ std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
       volume.set_size_y_m((*size)[size->size() / 2]);
       volume.set_size_z_m(size->back());
     } else {
-      add(size.error());
+      problems.Add(size.error());
     }
   }
   if (!arguments.volume_min.empty()) {
@@ -74,7 +67,7 @@ std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
       volume.mutable_expert()->set_min_y_m((*corner)[1]);
       volume.mutable_expert()->set_min_z_m((*corner)[2]);
     } else {
-      add(corner.error());
+      problems.Add(corner.error());
     }
   }
   if (arguments.voxel) volume.set_voxel_size_m(*arguments.voxel);
@@ -82,14 +75,12 @@ std::string CollectOptions(const Arguments& arguments, GroundOptions& options) {
     if (const auto pose = ParsePose(arguments.initial_pose)) {
       *volume.mutable_expert()->mutable_initial_pose() = ToOptions(*pose);
     } else {
-      add(pose.error().WithContext("--initial-pose"));
+      problems.Add(pose.error().WithContext("--initial-pose"));
     }
   }
   if (arguments.threads) options.set_threads(*arguments.threads);
-  if (problems.empty()) {
-    for (const Status& status : ValidateAll(options)) add(status);
-  }
-  return problems;
+  AddInvalid(options, problems);
+  return options;
 }
 
 Result<std::optional<RigidTransform>> InitialPose(const Arguments& arguments) {
@@ -105,12 +96,13 @@ Result<std::optional<RigidTransform>> InitialPose(const Arguments& arguments) {
 
 int Run(const Arguments& arguments) {
   ReconstructRequest request;
-  if (std::error_code error;
-      !arguments.config.empty() && !std::filesystem::exists(arguments.config, error)) {
-    return Fail(NotFound(arguments.config + ": there is no such configuration file"));
+  if (std::error_code error; !arguments.configuration.file.empty() &&
+                             !std::filesystem::exists(arguments.configuration.file, error)) {
+    return Fail(NotFound(arguments.configuration.file + ": there is no such configuration file"));
   }
-  const std::string problems = CollectOptions(arguments, request.options);
-  if (!problems.empty()) return FailConfiguration(problems);
+  Problems problems;
+  request.options = CollectOptions(arguments, problems);
+  if (!problems.empty()) return FailConfiguration(problems.text());
   if (!arguments.force && HoldsResults(arguments.output)) {
     return Fail(InvalidArgument(fmt::format(
         "{}: has results of another scan; --force replaces them, -o names another folder",
@@ -150,8 +142,6 @@ void AddReconstructCommand(CLI::App& app, CommandBody& body) {
   CLI::Option* model =
       command->add_option("--continue", arguments->model,
                           "Go on with the model of an earlier scan (model.iso) of the same place");
-  command->add_option("--config", arguments->config,
-                      "Configuration file (text format of isotherm.GroundOptions)");
   command->add_option("--volume", arguments->volume,
                       "Edge length of the scan volume, or \"x y z\", metres");
   command->add_option("--volume-min", arguments->volume_min,
@@ -169,9 +159,7 @@ void AddReconstructCommand(CLI::App& app, CommandBody& body) {
                       "Rig calibration (rig.textproto) instead of the one in the recording");
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   command->add_flag("--force", arguments->force, "Replace results that are in the folder");
-  command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
-      ->take_all()
-      ->type_name("STAGE.FIELD=VALUE");
+  AddConfigurationArguments(*command, arguments->configuration);
   command->footer(kFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }

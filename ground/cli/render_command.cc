@@ -7,14 +7,13 @@
 #include <memory>
 
 #include "common/base/progress.h"
-#include "common/config/text_proto.h"
 #include "common/geometry/pose_text.h"
 #include "ground/cli/command.h"
+#include "ground/cli/configuration_arguments.h"
 #include "ground/cli/model_renderings.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/result_folder.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/configuration/validate_options.h"
 #include "ground/renderer/palette.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/viewpoint.h"
@@ -49,7 +48,8 @@ Examples:
   isotherm render out/model.iso -o last.png --view last --set renderer.expert.shading=false)";
 
 struct Arguments {
-  std::string model, output, config;
+  std::string model, output;
+  ConfigurationArguments configuration;
   std::vector<std::string> layers = {"thermal"};
   std::string view, from, at, up;
   std::optional<int> orbit;
@@ -59,19 +59,6 @@ struct Arguments {
   std::string palette, scale, unit, isotherms, bands;
   bool no_legend = false, no_shading = false;
   int threads = 0;
-  std::vector<std::string> overrides;
-};
-
-/// Keeps what is wrong, one problem per line.
-class Problems {
- public:
-  void Add(const Status& status) {
-    if (!status.ok()) text_ += (text_.empty() ? "" : "\n") + status.message();
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  std::string text_;
 };
 
 void SetLook(const Arguments& arguments, RendererOptions& options, Problems& problems) {
@@ -115,13 +102,9 @@ GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
     *options.mutable_thermal() = made_with->thermal();
     *options.mutable_export_() = made_with->export_();
   }
-  if (!arguments.config.empty()) problems.Add(LoadTextProto(arguments.config, options));
-  for (const std::string& assignment : arguments.overrides)
-    problems.Add(ApplyOverride(assignment, options).WithContext("--set"));
+  Apply(arguments.configuration, options, problems);
   SetLook(arguments, *options.mutable_renderer(), problems);
-  if (problems.text().empty()) {
-    for (const Status& status : ValidateAll(options)) problems.Add(status);
-  }
+  AddInvalid(options, problems);
   return options;
 }
 
@@ -172,7 +155,7 @@ Result<Eigen::Vector3d> Place(const std::string& text, const char* option,
   return Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
 }
 
-/// Where to look from, and in words.
+/// Says where to look from, also in words.
 struct Views {
   std::vector<RigidTransform> T_world_camera;
   std::string description;
@@ -270,7 +253,7 @@ int Run(const Arguments& arguments) {
   if (!camera) return Fail(camera.error());
   Problems problems;
   GroundOptions options = CollectOptions(arguments, problems);
-  if (!problems.text().empty()) return FailConfiguration(problems.text());
+  if (!problems.empty()) return FailConfiguration(problems.text());
 
   const auto model = LoadModel(*file, options);
   if (!model) return Fail(model.error());
@@ -356,11 +339,7 @@ void AddRenderCommand(CLI::App& app, CommandBody& body) {
       "Painted (\"80..100#ff00ff\") or, without a colour, highlighted temperatures");
   command->add_flag("--no-legend", arguments->no_legend, "The view only");
   command->add_flag("--no-shading", arguments->no_shading, "The same brightness at every angle");
-  command->add_option("--config", arguments->config,
-                      "Configuration file (text format of isotherm.GroundOptions)");
-  command->add_option("--set", arguments->overrides, "Override an option: stage.field=value")
-      ->take_all()
-      ->type_name("STAGE.FIELD=VALUE");
+  AddConfigurationArguments(*command, arguments->configuration);
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   command->footer(kFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
