@@ -180,6 +180,27 @@ Rig WithoutAppliedDelay(Rig rig, const RecordingInfo& info) {
   return rig;
 }
 
+/// Returns the calibration to use: the request's, or else the recording's.
+Result<Rig> FindRig(const ReconstructRequest& request, RecordingReader& reader) {
+  if (request.rig) return WithoutAppliedDelay(*request.rig, reader.info());
+  Result<Rig> rig = reader.ReadRig();
+  if (rig) return rig;
+  return Err(
+      Status(rig.error().code(), fmt::format("{}: {}; --rig FILE gives one from elsewhere",
+                                             request.recording.string(), rig.error().message())));
+}
+
+/// Says what became of the recording's messages, as `source` in stats.json.
+Json DescribeSource(const ReconstructRequest& request, const RecordingInfo& info,
+                    const InlineDriver& driver) {
+  return {{"recording", request.recording.filename().string()},
+          {"complete", info.complete},
+          {"bytes_ignored", info.bytes_ignored},
+          {"bad_messages", driver.bad_messages()},
+          {"undecodable_frames", driver.undecodable()},
+          {"out_of_order_frames", driver.out_of_order()}};
+}
+
 }  // namespace
 
 Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
@@ -187,13 +208,8 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   if (!reader) return Err(reader.error());
   const RecordingInfo& info = (*reader)->info();
   if (Status status = CheckHasDepth(info, request.recording); !status.ok()) return Err(status);
-  const Result<Rig> rig = request.rig ? Result<Rig>(*request.rig) : (*reader)->ReadRig();
-  if (!rig) {
-    return Err(
-        Status(rig.error().code(), fmt::format("{}: {}; --rig FILE gives one from elsewhere",
-                                               request.recording.string(), rig.error().message())));
-  }
-  const Rig used = request.rig ? WithoutAppliedDelay(*rig, info) : *rig;
+  const Result<Rig> rig = FindRig(request, **reader);
+  if (!rig) return Err(rig.error());
   GroundOptions options = request.options;
   std::unique_ptr<ModelFile> model;
   if (!request.model.empty()) {
@@ -203,7 +219,7 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
     if (Status status = model->AdoptVolume(options); !status.ok()) return Err(status);
   }
   Result<std::unique_ptr<GroundPipeline>> pipeline =
-      GroundPipeline::Create(options, used, request.initial_pose);
+      GroundPipeline::Create(options, *rig, request.initial_pose);
   if (!pipeline) return Err(pipeline.error());
   if (model) {
     if (Status status = (*pipeline)->Continue(*model); !status.ok()) return Err(status);
@@ -216,18 +232,13 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
                               << info.bytes_ignored;
   }
   const auto start = std::chrono::steady_clock::now();
-  InlineDriver driver(request, **reader, used, **pipeline);
+  InlineDriver driver(request, **reader, *rig, **pipeline);
   if (Status status = driver.Run(); !status.ok()) return Err(status);
   const DelayReport delay = driver.CheckDelay();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
   Json stats = DescribeScan((*pipeline)->model(), options);
-  stats["source"]["recording"] = request.recording.filename().string();
-  stats["source"]["complete"] = info.complete;
-  stats["source"]["bytes_ignored"] = info.bytes_ignored;
-  stats["source"]["bad_messages"] = driver.bad_messages();
-  stats["source"]["undecodable_frames"] = driver.undecodable();
-  stats["source"]["out_of_order_frames"] = driver.out_of_order();
+  stats["source"] = DescribeSource(request, info, driver);
   stats["elapsed_s"] = elapsed.count();
   const auto progress = [&](std::string_view what, double fraction) {
     constexpr double kBefore = kFramesFraction + kMergeFraction + kDelayFraction;
