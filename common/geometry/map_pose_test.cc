@@ -3,8 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <numbers>
 #include <random>
+
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
@@ -16,8 +17,8 @@ constexpr unsigned kSeed = 31;
 
 RigidTransform Rotation(double angle_deg, const Eigen::Vector3d& axis,
                         const Eigen::Vector3d& translation) {
-  return MakeTransform(translation, Eigen::Quaterniond(Eigen::AngleAxisd(
-                                        angle_deg * std::numbers::pi / 180.0, axis.normalized())));
+  return MakeTransform(translation, Eigen::Quaterniond(Eigen::AngleAxisd(angle_deg * kRadPerDeg,
+                                                                         axis.normalized())));
 }
 
 /// The pose that differs from `pose` by a small twist, as docs/frames.md says: its origin is moved,

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 // Nobody holds a rig more exactly than this.
 constexpr double kMinMove_m = 0.03;
@@ -39,8 +38,8 @@ std::string MoveText(const RigidTransform& T_depth_next) {
   AppendMove(t.y(), "down", "up", text);
   AppendMove(t.z(), "forward", "back", text);
   const Eigen::Vector3d ahead = T_depth_next.linear().col(2);
-  AppendRotation(std::atan2(ahead.x(), ahead.z()) * kDegPerRad, "right", "left", text);
-  AppendRotation(std::atan2(ahead.y(), std::hypot(ahead.x(), ahead.z())) * kDegPerRad, "down", "up",
+  AppendRotation(std::atan2(ahead.x(), ahead.z()) / kRadPerDeg, "right", "left", text);
+  AppendRotation(std::atan2(ahead.y(), std::hypot(ahead.x(), ahead.z())) / kRadPerDeg, "down", "up",
                  text);
   return text.empty() ? "here" : text;
 }
@@ -59,7 +58,7 @@ std::vector<std::string> FeedbackParts(const Feedback& feedback) {
   if (feedback.pose_covariance) {
     const PoseSigma sigma = LargestSigma(*feedback.pose_covariance);
     tracking += fmt::format(" within {:.1f} mm {:.2f} deg", 1e3 * sigma.translation_m,
-                            sigma.rotation_rad * kDegPerRad);
+                            sigma.rotation_rad / kRadPerDeg);
   }
   if (std::isfinite(feedback.view.good))
     parts.push_back(fmt::format("view {:.0f} % good", 100.0 * feedback.view.good));

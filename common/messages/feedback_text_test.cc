@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <numbers>
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 
 Eigen::Quaterniond Rotation(double deg, const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond(Eigen::AngleAxisd(deg * std::numbers::pi / 180.0, axis));
+  return Eigen::Quaterniond(Eigen::AngleAxisd(deg * kRadPerDeg, axis));
 }
 
 TEST(FeedbackTextTest, MovesAreSaidInTheOperatorsWords) {

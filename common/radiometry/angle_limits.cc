@@ -99,9 +99,9 @@ AngleLimitsInDegrees InTenthsOfDegrees(const AngleLimits& limits) {
   constexpr double kRounding = 1e-8;  // Of tenths: far above that of a double, far below a tenth.
   const auto up = static_cast<double (*)(double)>(std::ceil);
   const auto down = static_cast<double (*)(double)>(std::floor);
-  return {limits.min_rad > 0.0 ? Tenths(limits.min_rad / kDegree, up, -kRounding) : 0.0,
-          Tenths(limits.good_rad / kDegree, down, kRounding),
-          Tenths(limits.max_rad / kDegree, down, kRounding)};
+  return {limits.min_rad > 0.0 ? Tenths(limits.min_rad / kRadPerDeg, up, -kRounding) : 0.0,
+          Tenths(limits.good_rad / kRadPerDeg, down, kRounding),
+          Tenths(limits.max_rad / kRadPerDeg, down, kRounding)};
 }
 
 AngleLimitsInDegrees AngleLimitsOf(const OpticalMaterial& material) {

@@ -56,8 +56,8 @@ TEST(EmissionCurveTest, DielectricsAreGoodUpToWhereTheThesisPutsIt) {
 
 TEST(AngleLimitsOfTest, APaintedSurfaceIsGoodToAHalfPercentAndAcceptableToTwo) {
   const AngleLimitsInDegrees limits = AngleLimitsOf(*FindOpticalMaterial("paint"));
-  EXPECT_NEAR(limits.good_deg, AngleByBisection({1.5, 0.0}, 0.005) / kDegree, 0.11);
-  EXPECT_NEAR(limits.max_deg, AngleByBisection({1.5, 0.0}, 0.02) / kDegree, 0.11);
+  EXPECT_NEAR(limits.good_deg, AngleByBisection({1.5, 0.0}, 0.005) / kRadPerDeg, 0.11);
+  EXPECT_NEAR(limits.max_deg, AngleByBisection({1.5, 0.0}, 0.02) / kRadPerDeg, 0.11);
   EXPECT_EQ(limits.min_deg, 0.0) << "35 degrees C mirrored at 4 % cost less than a half percent";
 }
 
@@ -76,7 +76,7 @@ TEST(AngleLimitsOfTest, EachMaterialLeavesAnglesAndOfShinyOnesNotThoseThatMirror
 
 TEST(AngleLimitsOfTest, TenthsLieOnTheSafeSide) {
   const AngleLimitsInDegrees cut =
-      InTenthsOfDegrees({15.41 * kDegree, 41.29 * kDegree, 55.0 * kDegree});
+      InTenthsOfDegrees({15.41 * kRadPerDeg, 41.29 * kRadPerDeg, 55.0 * kRadPerDeg});
   EXPECT_DOUBLE_EQ(cut.min_deg, 15.5);
   EXPECT_DOUBLE_EQ(cut.good_deg, 41.2);
   EXPECT_DOUBLE_EQ(cut.max_deg, 55.0);

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <optional>
 
+#include "common/base/units.h"
 #include "common/simulation/options.h"
 #include "common/simulation/ray_caster.h"
 #include "common/simulation/scenes.h"
@@ -17,9 +17,9 @@ namespace {
 // Thesis 6.1.3: the fastest scan whose steps between frames at 30 Hz are still integrated, and the
 // smallest step.
 constexpr double kMaxSpeed_m_s = 0.3;
-constexpr double kMaxRotation_rad_s = 17.0 * std::numbers::pi / 180.0;
+constexpr double kMaxRotation_rad_s = 17.0 * kRadPerDeg;
 constexpr double kMinStep_m = 0.001;
-constexpr double kMinStep_rad = 0.06 * std::numbers::pi / 180.0;
+constexpr double kMinStep_rad = 0.06 * kRadPerDeg;
 constexpr double kFrame_s = 1.0 / 30.0;
 
 class ScanPathTest : public ::testing::TestWithParam<int> {

@@ -1,9 +1,9 @@
 #include "common/simulation/scene_builder.h"
 
-#include <numbers>
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 
 namespace isotherm {
 namespace {
@@ -31,7 +31,7 @@ Primitive& SceneBuilder::Box(std::string name, const Vector3d& low, const Vector
 
 Primitive& SceneBuilder::RotatedBox(std::string name, const Vector3d& center, const Vector3d& edges,
                                     const Vector3d& angles_deg) {
-  const Vector3d angles_rad = angles_deg * (std::numbers::pi / 180.0);
+  const Vector3d angles_rad = angles_deg * kRadPerDeg;
   const Eigen::Quaterniond rotation(Eigen::AngleAxisd(angles_rad.z(), Vector3d::UnitZ()) *
                                     Eigen::AngleAxisd(angles_rad.y(), Vector3d::UnitY()) *
                                     Eigen::AngleAxisd(angles_rad.x(), Vector3d::UnitX()));

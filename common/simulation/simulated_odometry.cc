@@ -1,9 +1,9 @@
 #include "common/simulation/simulated_odometry.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "common/base/noise.h"
+#include "common/base/units.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
@@ -32,7 +32,7 @@ std::vector<ExternalOdometry> SimulateOdometry(const OdometryOptions& options,
                                                const SimulatedScan& scan, std::uint64_t seed) {
   std::vector<ExternalOdometry> poses;
   if (options.rate_hz() <= 0.0 || scan.depth_times().empty()) return poses;
-  const double rotation_sigma_rad = options.rotation_sigma_deg() * std::numbers::pi / 180.0;
+  const double rotation_sigma_rad = options.rotation_sigma_deg() * kRadPerDeg;
   const CaptureTime first = scan.depth_times().front().exposure;
   const CaptureTime last = scan.depth_times().back().exposure;
   const RigidTransform T_world_first = scan.PoseAt(first);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 #include "common/geometry/rectified_camera.h"
 
 namespace isotherm {
@@ -18,7 +19,7 @@ constexpr int kCastWidth = 48;
 constexpr std::size_t kMaxTargets = 48;
 
 /// Candidates look along the normal and from so far askew, to four sides.
-constexpr double kAskew_rad = 25.0 * std::numbers::pi / 180.0;
+constexpr double kAskew_rad = 25.0 * kRadPerDeg;
 
 /// Another view takes the place of the best one when it gains this much more: it should not jump.
 constexpr double kClearlyBetter = 1.2;
@@ -35,7 +36,7 @@ constexpr double kDepthReserve = 1.15;
 
 /// A view counts as taken within this far of it, for this many steps.
 constexpr double kAtView_m = 0.10;
-constexpr double kAtView_rad = 15.0 * std::numbers::pi / 180.0;
+constexpr double kAtView_rad = 15.0 * kRadPerDeg;
 constexpr int kStepsAtView = 20;
 /// Nor is it proposed for longer than this many steps (a quarter of a minute) if nobody goes there:
 /// there may be no way.

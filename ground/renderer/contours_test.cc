@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "common/base/units.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/renderer/renderer.h"
@@ -71,8 +71,7 @@ RigidTransform Frontal() {
 
 /// Turned about y by 40 degrees, looking at the plane's middle.
 RigidTransform Oblique() {
-  const Eigen::Quaterniond rotation(
-      Eigen::AngleAxisd(40.0 * std::numbers::pi / 180.0, Eigen::Vector3d::UnitY()));
+  const Eigen::Quaterniond rotation(Eigen::AngleAxisd(40.0 * kRadPerDeg, Eigen::Vector3d::UnitY()));
   return MakeTransform(Eigen::Vector3d(0.128, 0.128, 0.12) - rotation * Eigen::Vector3d(0, 0, 0.3),
                        rotation);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/base/units.h"
+
 namespace isotherm {
 namespace {
 
@@ -120,8 +122,7 @@ void ExpectOrbit(const Eigen::Vector3f& size_m, double arc_deg) {
   for (const RigidTransform& view : views) {
     const Eigen::Vector3d to_viewer = view.translation() - aspect.centre_world;
     EXPECT_NEAR(to_viewer.norm(), (views[0].translation() - aspect.centre_world).norm(), kExact);
-    EXPECT_NEAR(to_viewer.normalized().dot(aspect.up_world),
-                std::sin(20.0 * std::numbers::pi / 180.0), kExact);
+    EXPECT_NEAR(to_viewer.normalized().dot(aspect.up_world), std::sin(20.0 * kRadPerDeg), kExact);
     EXPECT_NEAR(view.linear().col(2).dot(to_viewer.normalized()), -1.0, kExact);
     most = std::max(most, Reach(points, camera, view).maxCoeff());
   }

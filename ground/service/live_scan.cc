@@ -5,7 +5,6 @@
 
 #include <ctime>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <utility>
 
 #include "common/base/log.h"
@@ -13,11 +12,7 @@
 #include "ground/results/scan_result.h"
 
 namespace isotherm {
-namespace {
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
-
-}  // namespace
+namespace {}  // namespace
 
 std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
                                     std::uint64_t session, CaptureTime start) {
@@ -161,7 +156,7 @@ void LiveScan::NoteMotion(const DepthReport& report, CaptureTime time) {
   const double elapsed_s = ToSeconds(time - *motion_since_);
   if (elapsed_s <= 0.0) return;
   moment_.speed_m_s = path_m_ / elapsed_s;
-  moment_.rotation_rate_deg_s = rotated_rad_ * kDegPerRad / elapsed_s;
+  moment_.rotation_rate_deg_s = rotated_rad_ / kRadPerDeg / elapsed_s;
   moment_.frame_interval_s = elapsed_s / frames_;
 }
 

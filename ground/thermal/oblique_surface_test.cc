@@ -3,9 +3,9 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numbers>
 #include <utility>
 
+#include "common/base/units.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/surface/testing/analytic_views.h"
 #include "ground/thermal/testing/ball_and_wall.h"
@@ -35,7 +35,7 @@ class ObliqueSurfaceTest : public ::testing::TestWithParam<double> {
 
   double Distance(const Eigen::Vector3d& p) const { return normal_.dot(p - kMiddle); }
 
-  double tilt_rad_ = GetParam() * std::numbers::pi / 180.0;
+  double tilt_rad_ = GetParam() * kRadPerDeg;
   Eigen::Vector3d normal_{std::sin(tilt_rad_), 0.0, -std::cos(tilt_rad_)};
   inline static const Eigen::Vector3d kMiddle{0.08, 0.04, 0.12};
   RigidTransform T_map_camera_ =

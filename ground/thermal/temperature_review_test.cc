@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "common/testing/volume_shapes.h"
 
 namespace isotherm {
@@ -55,7 +55,7 @@ class EdgeReviewTest : public ::testing::Test {
     }
   }
   void Measure(double degrees) {
-    const double angle = degrees * std::numbers::pi / 180.0;
+    const double angle = degrees * kRadPerDeg;
     const Eigen::Vector3f to_camera(static_cast<float>(std::sin(angle)), 0.0F,
                                     static_cast<float>(-std::cos(angle)));
     ForFrontVoxels([&](std::int32_t block, int i, const Eigen::Vector3d&) {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "ground/thermal/measurement_recorder.h"
 #include "ground/thermal/testing/ball_and_wall.h"
 
@@ -274,7 +274,7 @@ TEST(MaterialTest, SetsTheAnglesThatOptionsDoNot) {
 }
 
 TEST(MaterialTest, OnAShinySurfaceTheOperatorsMirrorImageIsBad) {
-  constexpr double kFrontal_rad = 10.0 * std::numbers::pi / 180.0;
+  constexpr double kFrontal_rad = 10.0 * kRadPerDeg;
   const auto cosine = static_cast<float>(std::cos(kFrontal_rad));
   ThermalOptions options;
   EXPECT_EQ(ConditionLimits(options, ThermalSensorModel()).ClassifyAngle(cosine), kGood);

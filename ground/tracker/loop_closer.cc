@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
 #include "common/base/log.h"
+#include "common/base/units.h"
 #include "ground/relocaliser/relocaliser.h"
 
 namespace isotherm {
@@ -19,8 +18,6 @@ constexpr double kAgree_rad = 0.01;
 
 /// The fraction of a frame's pixels behind which a sub-map must have a surface to go on in it.
 constexpr double kShowsView = 0.8;
-
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 
 }  // namespace
 
@@ -75,7 +72,7 @@ bool LoopCloser::LookForKnownGround(const PreparedDepth& depth, const RigidTrans
         "sub-map {} sees what sub-map {} has: missed by {:.1f} mm and {:.2f} degrees, now spread "
         "over the sub-maps",
         atlas_.active_index() + 1, other + 1, 1e3 * drift.last_gap_m,
-        kDegPerRad * drift.last_gap_rad);
+        drift.last_gap_rad / kRadPerDeg);
   } else {
     LOG(Ground, Info) << fmt::format("sub-maps {} and {} are joined: both see the same",
                                      atlas_.active_index() + 1, other + 1);

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <numbers>
 #include <string>
 
 #include "common/base/check.h"
+#include "common/base/units.h"
 #include "ground/icp/icp_tracker.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/depth_preprocessor.h"
@@ -107,9 +107,9 @@ void MakeMaps(benchmark::State& state, ThreadPool& pool) {
 void Icp(benchmark::State& state, ThreadPool& pool, std::size_t level) {
   const Scene& scene = SharedScene();
   const TrackerOptions& options = scene.options.tracker();
-  const IcpLimits limits{static_cast<float>(options.expert().max_distance_m()),
-                         static_cast<float>(std::cos(options.expert().max_normal_angle_deg() *
-                                                     std::numbers::pi / 180.0))};
+  const IcpLimits limits{
+      static_cast<float>(options.expert().max_distance_m()),
+      static_cast<float>(std::cos(options.expert().max_normal_angle_deg() * kRadPerDeg))};
   const SurfaceMaps& maps = scene.last->maps[level];
   for (auto _ : state) {
     benchmark::DoNotOptimize(

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <optional>
 #include <vector>
 
 #include "common/base/noise.h"
+#include "common/base/units.h"
 #include "common/dataset/dataset.h"
 #include "common/dataset/image_file.h"
 #include "common/dataset/testing/dataset_folder.h"
@@ -22,7 +22,6 @@ namespace isotherm {
 namespace {
 
 constexpr std::uint64_t kSeed = 12;
-constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kFrame = 1.0 / 30.0;
 // A voxel of 4 mm; undisturbed, the pose is within 1 mm of the truth.
 constexpr double kWrongPose_m = 0.004;
@@ -187,7 +186,7 @@ class RecordedRecoveryTest : public ::testing::Test {
     if (report.tracked) {
       const RigidTransform& truth = Truth(script.shots[i].frame);
       const double error_m = TranslationDistance(report.pose.T_map_depth, truth);
-      const double error_deg = RotationAngle(report.pose.T_map_depth, truth) * kDegPerRad;
+      const double error_deg = RotationAngle(report.pose.T_map_depth, truth) / kRadPerDeg;
       const bool covered = script.shots[i].cover != Shot::Cover::kNothing;
       const bool wrong = covered || error_m > kWrongPose_m || error_deg > kWrongPose_deg;
       outcome.largest_error_m = std::max(outcome.largest_error_m, error_m);
@@ -253,7 +252,7 @@ TEST_F(RecordedRecoveryTest, F52AJumpOf20CentimetresAnd20DegreesIsNoticedAndFoun
   constexpr int kFrom = 110;
   constexpr int kTo = 145;
   ASSERT_NEAR(TranslationDistance(Truth(kFrom), Truth(kTo)), 0.20, 0.02);
-  ASSERT_NEAR(RotationAngle(Truth(kFrom), Truth(kTo)) * kDegPerRad, 20.0, 3.0);
+  ASSERT_NEAR(RotationAngle(Truth(kFrom), Truth(kTo)) / kRadPerDeg, 20.0, 3.0);
   Script script;
   script.Play(0, kFrom);
   script.disturbed = script.back = script.shots.size();
@@ -275,7 +274,7 @@ TEST_F(RecordedRecoveryTest, F53AWhipPanIsNotFusedAtAWrongPose) {
   constexpr int kReach = 90;
   double max_deg = 0.0;
   for (int i = kFirst; i < kFirst + kReach; i += kStep)
-    max_deg = std::max(max_deg, RotationAngle(Truth(i), Truth(i + kStep)) * kDegPerRad);
+    max_deg = std::max(max_deg, RotationAngle(Truth(i), Truth(i + kStep)) / kRadPerDeg);
   ASSERT_GT(max_deg, 3.0) << "degrees per frame";
   Script script;
   script.Play(0, kFirst);

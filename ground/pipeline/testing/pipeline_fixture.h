@@ -4,8 +4,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <numbers>
 
+#include "common/base/units.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
 #include "ground/surface/testing/small_volume.h"
@@ -34,7 +34,7 @@ class PipelineFixture : public ::testing::Test {
   }
 
   static RigidTransform TruePose(int i) {
-    const double orientation = 0.3 * i * std::numbers::pi / 180.0;
+    const double orientation = 0.3 * i * kRadPerDeg;
     return FirstPose() * MakeTransform({kStep * i, 0.5 * kStep * i, 0.0},
                                        Eigen::Quaterniond(Eigen::AngleAxisd(
                                            -orientation, Eigen::Vector3d::UnitY())));
