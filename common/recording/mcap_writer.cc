@@ -9,6 +9,14 @@
 #include "common/base/check.h"
 
 namespace isotherm::mcap {
+namespace {
+
+std::uint64_t CountOf(ChannelId channel, const Statistics& statistics) {
+  const auto found = statistics.channel_message_counts.find(channel);
+  return found == statistics.channel_message_counts.end() ? 0 : found->second;
+}
+
+}  // namespace
 
 void Writer::ZstdDeleter::operator()(ZSTD_CCtx_s* context) const { ZSTD_freeCCtx(context); }
 
@@ -118,7 +126,7 @@ Status Writer::Flush() {
   failure_ = sink_->Sync();
   // What was not synced may or may not be on the disk, and trying again would not tell: the kernel
   // forgets the error. So it does not count as written.
-  if (!failure_.ok()) statistics_ = std::move(before);
+  if (!failure_.ok()) unsynced_ = std::exchange(statistics_, std::move(before));
   return failure_;
 }
 
@@ -181,16 +189,16 @@ void Writer::AddToStatistics(const OpenChunk& chunk) {
 }
 
 std::uint64_t Writer::message_count(ChannelId channel) const {
-  std::uint64_t count = 0;
-  if (const auto found = statistics_.channel_message_counts.find(channel);
-      found != statistics_.channel_message_counts.end()) {
-    count = found->second;
-  }
+  std::uint64_t count = CountOf(channel, statistics_);
   if (!failure_.ok()) return count;  // What was still open is lost.
   for (const MessageIndex& index : chunk_.indexes) {
     if (index.channel_id == channel) count += index.entries.size();
   }
   return count;
+}
+
+std::uint64_t Writer::unsynced_count(ChannelId channel) const {
+  return unsynced_ ? CountOf(channel, *unsynced_) - CountOf(channel, statistics_) : 0;
 }
 
 Status Writer::Close() {

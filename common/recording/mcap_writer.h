@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ class Writer {
 
   /// Messages of `channel` that are in the file or still may get there.
   std::uint64_t message_count(ChannelId channel) const;
+  /// Messages of `channel` that the sink took but did not sync: not counted above, and perhaps in
+  /// the file all the same.
+  std::uint64_t unsynced_count(ChannelId channel) const;
   /// Bytes handed to the sink.
   std::uint64_t bytes() const { return offset_; }
 
@@ -90,7 +94,8 @@ class Writer {
   Bytes compressed_;
   Bytes out_;
 
-  Statistics statistics_;  ///< They count what is in the file.
+  Statistics statistics_;               ///< They count what is in the file.
+  std::optional<Statistics> unsynced_;  ///< As they would be if the last sync had not failed.
   std::vector<ChunkIndex> chunk_indexes_;
   std::vector<MetadataIndex> metadata_indexes_;
   std::uint64_t offset_ = 0;

@@ -101,9 +101,12 @@ TEST(RecordingFaultTest, F43WhatWasNotSyncedIsNotCountedAsRecordedAndSyncIsNotTr
   EXPECT_EQ((*writer)->Flush().code(), StatusCode::kIoError);
   EXPECT_EQ((*writer)->stats().depth_frames, 1U);
   EXPECT_EQ((*writer)->stats().failed, 1U);
+  EXPECT_EQ((*writer)->stats().unsynced, 1U);
   const int writes = UnsyncedSink::writes_after_failure;
   EXPECT_FALSE((*writer)->Write(MakeDepth(2, kScanStart), std::nullopt).ok());
   EXPECT_FALSE((*writer)->Close().ok());
+  EXPECT_EQ((*writer)->stats().failed, 2U);
+  EXPECT_EQ((*writer)->stats().unsynced, 1U);
   EXPECT_EQ(UnsyncedSink::syncs_after_failure, 1) << "the kernel has forgotten the error by then";
   EXPECT_EQ(UnsyncedSink::writes_after_failure, writes);
 }

@@ -32,7 +32,7 @@ bool EndsFile(const Status& status) {
 }
 
 bool RemoveIfWithoutFrames(const std::filesystem::path& path, const RecordingStats& stats) {
-  if (stats.depth_frames + stats.thermal_frames > 0) return false;
+  if (stats.depth_frames + stats.thermal_frames + stats.unsynced > 0) return false;
   std::error_code ignored;
   return std::filesystem::is_regular_file(path, ignored) && std::filesystem::remove(path, ignored);
 }

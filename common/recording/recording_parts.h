@@ -20,7 +20,8 @@ bool IsDevice(const std::filesystem::path& path);
 /// message was wrong, and the next may be right.
 bool EndsFile(const Status& status);
 
-/// Removes a closed file that got no frame. Returns whether it did.
+/// Removes a closed file that got no frame, not even one that may be in it (`stats.unsynced`).
+/// Returns whether it did.
 bool RemoveIfWithoutFrames(const std::filesystem::path& path, const RecordingStats& stats);
 
 }  // namespace isotherm

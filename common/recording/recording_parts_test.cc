@@ -35,6 +35,7 @@ TEST(RecordingPartsTest, AFileWithoutFramesIsRemovedADeviceIsNot) {
   const std::filesystem::path path = folder.path() / "scan.mcap";
   std::ofstream(path).put('x');
   EXPECT_FALSE(RemoveIfWithoutFrames(path, {.thermal_frames = 1}));
+  EXPECT_FALSE(RemoveIfWithoutFrames(path, {.failed = 1, .unsynced = 1}));
   EXPECT_TRUE(std::filesystem::exists(path));
   EXPECT_TRUE(RemoveIfWithoutFrames(path, {}));
   EXPECT_FALSE(std::filesystem::exists(path));

@@ -98,6 +98,7 @@ class McapRecordingWriter final : public RecordingWriter {
     stats.depth_frames = MessageCount(rec::kDepthTopic);
     stats.thermal_frames = MessageCount(rec::kThermalTopic);
     stats.failed = offered_ - stats.depth_frames - stats.thermal_frames;
+    stats.unsynced = UnsyncedCount(rec::kDepthTopic) + UnsyncedCount(rec::kThermalTopic);
     stats.bytes = writer_->bytes();
     return stats;
   }
@@ -210,6 +211,11 @@ class McapRecordingWriter final : public RecordingWriter {
   std::uint64_t MessageCount(std::string_view topic) const {
     const auto found = channels_.find(topic);
     return found == channels_.end() ? 0 : writer_->message_count(found->second.id);
+  }
+
+  std::uint64_t UnsyncedCount(std::string_view topic) const {
+    const auto found = channels_.find(topic);
+    return found == channels_.end() ? 0 : writer_->unsynced_count(found->second.id);
   }
 
   const std::unique_ptr<mcap::Writer> writer_;
