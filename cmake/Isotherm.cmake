@@ -33,7 +33,7 @@ if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # Tests spend their time in the libraries, which are optimised.
-set(isotherm_test_options $<$<AND:$<COMPILE_LANG_AND_ID:CXX,GNU>,$<CONFIG:RelWithDebInfo>>:-O1>)
+set(isotherm_test_options $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-O1>)
 # The checks of pointers make up a third of the time that a test takes to compile under sanitizers; what is tested keeps them.
 if(CMAKE_CXX_FLAGS MATCHES "-fsanitize=address,undefined")
   list(APPEND isotherm_test_options -fno-sanitize=vptr,null,alignment)
@@ -49,17 +49,18 @@ function(isotherm_precompile target)
     <Eigen/Core> <Eigen/Geometry> <fmt/format.h> ${ARGN})
 endfunction()
 
-# The sources of a library compiled several at once: a build from nothing takes less time, one after a change more. What is
-# local to a source must then have a name that the library's other sources do not use; NO_UNITY where sources are of one
-# kind and use the same names on purpose, or make a type of what is local to them.
+# The sources of a library or a test compiled several at once: a build from nothing takes less time, one after a change more.
+# What is local to a source must then have a name that the target's other sources do not use: ALONE for a source that uses
+# one all the same, NO_UNITY where all are of one kind and do so on purpose.
 option(ISOTHERM_UNITY "Compile several sources at once (continuous integration does)" OFF)
 
-# isotherm_unity(<target> <sources>): kernels stay alone, since they include themselves once for each instruction set.
-function(isotherm_unity target)
+# isotherm_unity(<target> <number> <sources>): so many at once. Kernels stay alone, since they include themselves once for
+# each instruction set.
+function(isotherm_unity target number)
   if(NOT ISOTHERM_UNITY)
     return()
   endif()
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${number})
   foreach(source IN LISTS ARGN)
     if(source MATCHES "\\.cc$" AND EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${source})
       file(STRINGS ${source} includes_itself REGEX "define HWY_TARGET_INCLUDE")
@@ -77,7 +78,7 @@ function(isotherm_library)
   add_library(${target} STATIC ${ARG_SRCS})
   add_library(isotherm::${ARG_NAME} ALIAS ${target})
   if(NOT ARG_NO_UNITY)
-    isotherm_unity(${target} ${ARG_SRCS})
+    isotherm_unity(${target} 6 ${ARG_SRCS})
   endif()
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR})
   target_link_libraries(${target} PUBLIC ${ARG_DEPS} PRIVATE isotherm_warnings ${ARG_PRIVATE_DEPS})
@@ -99,11 +100,11 @@ set(isotherm_threaded_tests base_test block_spiller_test camera_process_test clo
   live_scan_test nuc_control_test openni_test rig_commander_test rig_gate_test service_test spool_test thermal_test
   tsdf_test)
 
-# isotherm_test(NAME <name> SRCS <files> [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>])
+# isotherm_test(NAME <name> [NO_UNITY] SRCS <files> [ALONE <some of them>] [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>])
 # Labels: unit (default), integration, system, hardware, lint; experiment (figures of the thesis, which sanitizers need not
 # assess); threads is added to what isotherm_threaded_tests names.
 function(isotherm_test)
-  cmake_parse_arguments(ARG "" "NAME;TIMEOUT" "SRCS;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "NO_UNITY" "NAME;TIMEOUT" "SRCS;ALONE;DEPS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
     return()
   endif()
@@ -123,6 +124,10 @@ function(isotherm_test)
     math(EXPR ARG_TIMEOUT "5 * ${ARG_TIMEOUT}")
   endif()
   add_executable(${ARG_NAME} ${ARG_SRCS})
+  if(NOT ARG_NO_UNITY)
+    isotherm_unity(${ARG_NAME} 4 ${ARG_SRCS})
+    set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endif()
   target_link_libraries(${ARG_NAME} PRIVATE ${ARG_DEPS} isotherm_warnings GTest::gmock GTest::gtest_main)
   target_include_directories(${ARG_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   target_compile_definitions(${ARG_NAME} PRIVATE ISOTHERM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")

@@ -22,7 +22,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kCalibrateFooter =
     R"(Finds thermal_delay_s, which is added to thermal stamps so that they mean the same moment as depth
 stamps. The depth camera is tracked through the recording; then thermal images are projected onto the
 surface at the poses that a delay puts them at, and the delay is sought at which they agree. The recording
@@ -42,7 +42,7 @@ Examples:
 
 constexpr double kReadFraction = 0.8;
 
-struct Arguments {
+struct CalibrateArguments {
   std::string recording, rig, output;
   ConfigurationArguments configuration;
   bool apply = false;
@@ -50,7 +50,7 @@ struct Arguments {
   FindDelayOptions find;
 };
 
-GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
+GroundOptions CollectOptions(const CalibrateArguments& arguments, Problems& problems) {
   GroundOptions options;
   Apply(arguments.configuration, options, problems);
   options.set_threads(arguments.threads);
@@ -60,7 +60,7 @@ GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
 
 /// The text of the calibration with the new delay: that of the file if there is one, with all its
 /// comments, else the recording's.
-Result<std::string> CalibratedText(const Arguments& arguments, const Rig& recorded,
+Result<std::string> CalibratedText(const CalibrateArguments& arguments, const Rig& recorded,
                                    double delay_s) {
   std::string text = ToText(recorded);
   if (!arguments.rig.empty()) {
@@ -77,7 +77,7 @@ Result<std::string> CalibratedText(const Arguments& arguments, const Rig& record
 
 /// Writes the calibration where it was asked for. A file that is changed in place keeps its old
 /// content beside it.
-Status WriteRig(const Arguments& arguments, const std::string& text) {
+Status WriteRig(const CalibrateArguments& arguments, const std::string& text) {
   if (!arguments.output.empty()) {
     ISOTHERM_RETURN_IF_ERROR(WriteFile(arguments.output, text));
     fmt::print("{}: written\n", arguments.output);
@@ -135,7 +135,7 @@ void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, const 
              1e3 * (change.after_s - change.before_s));
 }
 
-int Run(const Arguments& arguments) {
+int Run(const CalibrateArguments& arguments) {
   Problems problems;
   const GroundOptions options = CollectOptions(arguments, problems);
   if (!problems.empty()) return FailConfiguration(problems.text());
@@ -192,7 +192,7 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
   calibrate->require_subcommand(1);
   CLI::App* command =
       calibrate->add_subcommand("time", "The constant delay between depth and thermal camera");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CalibrateArguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   CLI::Option* rig_option = command->add_option(
       "--rig", arguments->rig, "Calibration of the scan (text format of isotherm.RigCalibration)");
@@ -212,7 +212,7 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
       ->capture_default_str();
   AddConfigurationArguments(*command, arguments->configuration);
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
-  command->footer(kFooter);
+  command->footer(kCalibrateFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kFooter =
+constexpr const char* kConvertFooter =
     R"(A recording is compact (Isotherm's own lossless codes: small, and only Isotherm reads them) or viewable
 (plain 16-bit images and transforms: two to three times as large, and Foxglove and Lichtblick show them).
 Nothing is lost either way, unless --spoil-depth says so; every command reads both. `isotherm inspect` says which of them a file is.
@@ -34,7 +34,7 @@ Examples:
   isotherm convert view.mcap -o small.mcap --encoding compact
   isotherm convert scan.mcap -o holes.mcap --encoding compact --spoil-depth grid)";
 
-struct Arguments {
+struct ConvertArguments {
   std::string recording, output, trajectory;
   int storage = static_cast<int>(ImageStorage::kViewable);
   int defect = static_cast<int>(DepthDefect::kNone);
@@ -51,7 +51,7 @@ Result<std::vector<StampedPose>> PosesOf(const std::string& place) {
   return poses;
 }
 
-void Print(const ConvertSummary& summary, const Arguments& arguments) {
+void Print(const ConvertSummary& summary, const ConvertArguments& arguments) {
   std::error_code error;
   const auto before = static_cast<double>(fs::file_size(arguments.recording, error));
   const auto after = static_cast<double>(fs::file_size(arguments.output, error));
@@ -71,7 +71,7 @@ void Print(const ConvertSummary& summary, const Arguments& arguments) {
     fmt::print("note: {} damaged messages were left out\n", summary.left_out);
 }
 
-int Run(const Arguments& arguments) {
+int Run(const ConvertArguments& arguments) {
   const StopSignal signal;  // Before any other thread.
   const auto poses = PosesOf(arguments.trajectory);
   if (!poses) return Fail(poses.error());
@@ -103,7 +103,7 @@ int Run(const Arguments& arguments) {
 void AddConvertCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand(
       "convert", "Writes a recording anew: for Foxglove and Lichtblick, or as small as it can be");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ConvertArguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   command->add_option("-o,--output", arguments->output, "Recording to write (.mcap)")->required();
   command
@@ -132,7 +132,7 @@ void AddConvertCommand(CLI::App& app, CommandBody& body) {
                          ""))
       ->type_name("KIND");
   command->add_flag("--force", arguments->force, "Replace an existing recording");
-  command->footer(kFooter);
+  command->footer(kConvertFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDemoFooter =
     R"(The simulated scan is rendered once and kept in the cache. isotherm-edge replays it as if it came
 from cameras, isotherm-ground reconstructs it; both run as processes of their own and talk over DDS
 on loopback. The summary compares the result with the simulation's truth. The exit status is 65 if a
@@ -20,13 +20,13 @@ Examples:
   isotherm demo
   isotherm demo --duration 10 --output /tmp/demo)";
 
-struct Arguments {
+struct DemoArguments {
   DemoRequest request;
   std::string output;
   bool headless = false;
 };
 
-int Run(const Arguments& arguments) {
+int Run(const DemoArguments& arguments) {
   DemoRequest request = arguments.request;
   request.output = arguments.output;
   const StopSignal signal;
@@ -44,7 +44,7 @@ int Run(const Arguments& arguments) {
 void AddDemoCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("demo", "Scans a simulated scene over DDS on this computer");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DemoArguments>();
   DemoRequest& request = arguments->request;
   arguments->output = request.output.string();
   command->add_option("--scene", request.scene, SceneNames())->capture_default_str();
@@ -62,7 +62,7 @@ void AddDemoCommand(CLI::App& app, CommandBody& body) {
       ->check(CLI::Range(0, 230))
       ->capture_default_str();
   command->add_flag("--headless", arguments->headless, "Open nothing, end when the scan is done");
-  command->footer(kFooter);
+  command->footer(kDemoFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -13,7 +13,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kDevicesFooter =
     R"(Shows each depth and thermal camera of this computer with its driver, serial number, address and modes. Names and
 addresses are what edge.textproto takes: source.depth_camera and source.thermal_camera.
 
@@ -36,7 +36,7 @@ int Run() {
 
 void AddDevicesCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand("devices", "Lists the cameras of this computer");
-  command->footer(kFooter);
+  command->footer(kDevicesFooter);
   command->callback([&body] { body = [] { return Run(); }; });
 }
 

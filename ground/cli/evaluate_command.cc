@@ -12,7 +12,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kEvaluateFooter =
     R"(Trajectory: positions of frames with the same stamp, after the rigid alignment that fits best
 (no scale) and with the first poses made equal. Surface: distance of each point of cloud.ply to
 the true surface, discs around its samples, with the first poses made equal and after a rigid
@@ -25,7 +25,7 @@ Example:
   isotherm evaluate out --groundtruth furnace/groundtruth.txt --surface furnace/surface.ply \
       --emissivity 0.96 --ambient 23)";
 
-struct Arguments {
+struct EvaluateArguments {
   EvaluationRequest request;
   std::string result_dir, groundtruth, surface, repeats, volume_box, rig;
   bool json = false;
@@ -42,7 +42,7 @@ Result<Eigen::AlignedBox3f> ParseBox(const std::string& text) {
   return box;
 }
 
-int Run(const Arguments& arguments) {
+int Run(const EvaluateArguments& arguments) {
   EvaluationRequest request = arguments.request;
   request.result_dir = arguments.result_dir;
   request.groundtruth = arguments.groundtruth;
@@ -72,7 +72,7 @@ int Run(const Arguments& arguments) {
 
 void AddEvaluateCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand("evaluate", "Compares a result with the truth");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<EvaluateArguments>();
   EvaluationRequest& request = arguments->request;
   command
       ->add_option("folder", arguments->result_dir,
@@ -107,7 +107,7 @@ void AddEvaluateCommand(CLI::App& app, CommandBody& body) {
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
   command->add_flag("--json", arguments->json, "Machine-readable output (metres, radians, kelvin)");
-  command->footer(kFooter);
+  command->footer(kEvaluateFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -12,7 +12,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kExperimentFooter =
     R"(Experiments repeat the thesis's figures on analytic scenes, whose truth is known, with the real
 pipeline and simulated cameras. Each prints a table and what is required and measured; with -o it
 writes NAME.csv, NAME.json and renderings (NAME_*.png). The exit status is 1 if a requirement is not
@@ -25,7 +25,7 @@ Examples:
 
 constexpr int kExitNotMet = 1;
 
-struct Arguments {
+struct ExperimentArguments {
   std::vector<std::string> names;
   std::string output;
   bool list = false, all = false;
@@ -38,7 +38,7 @@ int List() {
   return 0;
 }
 
-Result<std::vector<const Experiment*>> Chosen(const Arguments& arguments) {
+Result<std::vector<const Experiment*>> Chosen(const ExperimentArguments& arguments) {
   std::vector<const Experiment*> chosen;
   if (arguments.all) {
     for (const Experiment& experiment : AllExperiments()) chosen.push_back(&experiment);
@@ -58,7 +58,7 @@ Result<std::vector<const Experiment*>> Chosen(const Arguments& arguments) {
   return chosen;
 }
 
-int Run(const Arguments& arguments) {
+int Run(const ExperimentArguments& arguments) {
   if (arguments.list) return List();
   const auto chosen = Chosen(arguments);
   if (!chosen) return Fail(chosen.error());
@@ -86,13 +86,13 @@ int Run(const Arguments& arguments) {
 void AddExperimentCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("experiment", "Shows what the method does where the truth is known");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExperimentArguments>();
   command->add_option("name", arguments->names, "Experiments to run");
   command->add_option("-o,--output", arguments->output, "Folder for renderings and tables");
   command->add_flag("--list", arguments->list, "Say which there are");
   command->add_flag("--all", arguments->all, "Run all of them");
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
-  command->footer(kFooter);
+  command->footer(kExperimentFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -15,7 +15,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kExportFooter =
     R"(Temperatures in a model are apparent: those that black bodies would have. With an emissivity and the
 temperature of what is reflected they become those of the objects (3.1, Planck over the camera's
 band). DIR gets cloud.ply and mesh.ply with scalar_temperature (object) and
@@ -34,7 +34,7 @@ Examples:
       --box "0.1 0.1 0.7 0.3 0.9 0.8: emissivity=0.3 reflected=25"
   isotherm export out/model.iso -o out/objects --regions plant.textproto --label "pipe: emissivity=0.4")";
 
-struct Arguments {
+struct ExportArguments {
   std::string model, output;
   ConfigurationArguments configuration;
   InterpretationArguments interpretation;
@@ -42,7 +42,7 @@ struct Arguments {
 };
 
 /// Values of single regions are left to Interpretation, which lets the rest go on.
-GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
+GroundOptions CollectOptions(const ExportArguments& arguments, Problems& problems) {
   GroundOptions options;
   Apply(arguments.configuration, options, problems);
   if (arguments.threads) options.set_threads(*arguments.threads);
@@ -76,7 +76,7 @@ void PrintSummary(const Interpretation& interpretation, const ResultSummary& sum
   fmt::print("results  {}\n", folder);
 }
 
-int Run(const Arguments& arguments) {
+int Run(const ExportArguments& arguments) {
   Problems problems;
   const GroundOptions options = CollectOptions(arguments, problems);
   if (!problems.empty()) return FailConfiguration(problems.text());
@@ -101,7 +101,7 @@ int Run(const Arguments& arguments) {
 void AddExportCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand(
       "export", "Writes a saved model's results, with temperatures interpreted anew");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ExportArguments>();
   InterpretationArguments& interpretation = arguments->interpretation;
   command->add_option("model", arguments->model, "Model (model.iso) or result folder")->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
@@ -123,7 +123,7 @@ void AddExportCommand(CLI::App& app, CommandBody& body) {
   command->add_option("--band", interpretation.band, "Of the thermal camera, \"min max\" um");
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   AddConfigurationArguments(*command, arguments->configuration);
-  command->footer(kFooter);
+  command->footer(kExportFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -14,7 +14,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kImportFooter =
     R"(The folder holds rig.textproto, depth.txt with depth/*.png and, optionally, thermal.txt with
 thermal/*.png, nuc.txt and groundtruth.txt. Lists have 'timestamp_s filename' per line; images
 are 16-bit PNG (raw depth, centi-kelvin). Frames inside the intervals of nuc.txt are recorded as
@@ -26,7 +26,7 @@ Examples:
   isotherm import --from tum ~/scans/door --external-odometry vio.txt -o door.mcap
   isotherm import ~/scans/door -o view.mcap --encoding viewable    for Foxglove and Lichtblick)";
 
-struct Arguments {
+struct ImportArguments {
   std::string format = "tum";
   std::string folder, output, thermal_list, rig, external_odometry;
   int storage = static_cast<int>(ImageStorage::kCompact);
@@ -53,7 +53,7 @@ void Print(const ImportSummary& summary, const std::string& output) {
     fmt::print("note: {} bad images were left out\n", summary.skipped_images);
 }
 
-int Run(const Arguments& arguments) {
+int Run(const ImportArguments& arguments) {
   const StopSignal signal;  // Before any other thread.
   ImportRequest request;
   request.stop = signal.token();
@@ -85,7 +85,7 @@ int Run(const Arguments& arguments) {
 void AddImportCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("import", "Turns a folder of images and time stamps into a recording");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ImportArguments>();
   command->add_option("folder", arguments->folder, "Dataset folder")->required();
   command->add_option("--from", arguments->format, "Layout of the folder: tum (TUM RGB-D style)")
       ->check(CLI::IsMember({"tum"}))
@@ -109,7 +109,7 @@ void AddImportCommand(CLI::App& app, CommandBody& body) {
   command->add_flag("--force", arguments->force, "Replace an existing recording");
   command->add_flag("--skip-bad", arguments->skip_bad,
                     "Leave unreadable images out instead of stopping");
-  command->footer(kFooter);
+  command->footer(kImportFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -15,7 +15,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kInspectFooter =
     R"(Shows what is in a recording: streams with rates, missing frames and gaps, shutter events,
 calibration, size, and whether the file is complete. A torn file is read up to its last good
 part. Stamps, units and temperatures that cannot be right are said, with exit status 65.
@@ -25,13 +25,13 @@ Examples:
   isotherm inspect scan.mcap --render 120 -o frame.png
   isotherm inspect scan.mcap --render 0 --stream depth -o depth.png)";
 
-struct Arguments {
+struct InspectArguments {
   std::string recording, output, stream;
   bool json = false;
   std::optional<std::uint64_t> render;
 };
 
-Sensor ChosenStream(const Arguments& arguments, const RecordingInfo& info) {
+Sensor ChosenStream(const InspectArguments& arguments, const RecordingInfo& info) {
   if (arguments.stream == "depth") return Sensor::kDepth;
   if (arguments.stream == "thermal") return Sensor::kThermal;
   const auto thermal = info.messages_by_topic.find("/thermal");
@@ -39,7 +39,7 @@ Sensor ChosenStream(const Arguments& arguments, const RecordingInfo& info) {
                                                                         : Sensor::kDepth;
 }
 
-int Run(const Arguments& arguments) {
+int Run(const InspectArguments& arguments) {
   const auto reader = RecordingReader::Open(arguments.recording);
   if (!reader) return Fail(reader.error());
   if (arguments.render) {
@@ -59,7 +59,7 @@ int Run(const Arguments& arguments) {
 
 void AddInspectCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand("inspect", "Shows what is in a recording");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<InspectArguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   command->add_flag("--json", arguments->json, "Machine-readable output");
   command->add_option("--render", arguments->render, "Draw frame N (from 0) as an image instead");
@@ -68,7 +68,7 @@ void AddInspectCommand(CLI::App& app, CommandBody& body) {
                    "Stream to draw: depth or thermal (default, if there is one)")
       ->check(CLI::IsMember({"depth", "thermal"}));
   command->add_option("-o,--output", arguments->output, "Image to write (.png)");
-  command->footer(kFooter);
+  command->footer(kInspectFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

@@ -17,7 +17,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kLimitsFooter =
     R"(Angles: the emissivity of a smooth surface over the emission angle follows from its refractive index
 (Fresnel), and from it the error of a temperature that is interpreted with the emissivity along the
 normal. The tolerated error is a fraction of the radiance (2%) or a temperature (1.5K). Below the least
@@ -34,7 +34,7 @@ Examples:
   isotherm limits --focal-length 10mm --f-number 1 --focus 0.5m --pitch 25um --detail 2mm
   isotherm limits --rig rig.textproto --near 0.3m --far 0.9m --detail 2mm --at-angle 40)";
 
-struct Arguments {
+struct LimitsArguments {
   bool list = false;
   std::string material, band = "7.5 13", good_tolerance;
   std::string tolerance = fmt::format("{:g}%", 100.0 * kDefaultTolerance.value);
@@ -53,7 +53,7 @@ struct Arguments {
   }
 };
 
-Status ReadTolerances(const Arguments& arguments, AngleRequest& request) {
+Status ReadTolerances(const LimitsArguments& arguments, AngleRequest& request) {
   const auto acceptable = ParseTolerance(arguments.tolerance, "--tolerance");
   if (!acceptable) return acceptable.error();
   request.acceptable = request.good = *acceptable;
@@ -65,7 +65,7 @@ Status ReadTolerances(const Arguments& arguments, AngleRequest& request) {
   return OkStatus();
 }
 
-Status ReadMaterial(const Arguments& arguments, AngleRequest& request) {
+Status ReadMaterial(const LimitsArguments& arguments, AngleRequest& request) {
   if (arguments.n) {
     if (!(*arguments.n > 0.0 && arguments.k >= 0.0))
       return InvalidArgument(fmt::format("--n must be positive and --k not negative, got {} and {}",
@@ -88,7 +88,7 @@ Status ReadMaterial(const Arguments& arguments, AngleRequest& request) {
   return OkStatus();
 }
 
-Result<SpectralBand> ReadBand(const Arguments& arguments) {
+Result<SpectralBand> ReadBand(const LimitsArguments& arguments) {
   const auto numbers = ParseNumbers(arguments.band, {2}, "--band");
   if (!numbers) return Err(numbers.error());
   const SpectralBand band{(*numbers)[0], (*numbers)[1]};
@@ -108,7 +108,7 @@ Status CheckCelsius(double celsius, const char* option) {
                                      kMinRadiometric_celsius, kMaxRadiometric_celsius, celsius));
 }
 
-Result<AngleRequest> ReadAngleRequest(const Arguments& arguments, const SpectralBand& band) {
+Result<AngleRequest> ReadAngleRequest(const LimitsArguments& arguments, const SpectralBand& band) {
   AngleRequest request;
   request.band = band;
   request.conditions = arguments.conditions;
@@ -133,7 +133,7 @@ struct Optics {
   std::optional<double> ifov_rad, focal_length_m, pitch_m, focus_m, detail_m, near_m, far_m;
 };
 
-Result<Optics> ReadOptics(const Arguments& arguments) {
+Result<Optics> ReadOptics(const LimitsArguments& arguments) {
   Optics optics;
   const auto read = [](const std::string& text, const char* option, std::optional<double>& length) {
     if (text.empty()) return OkStatus();
@@ -166,7 +166,7 @@ Result<Optics> ReadOptics(const Arguments& arguments) {
 }
 
 /// Given, or from the optics (2.20); without either, everything is sharp.
-Result<DepthOfField> FindDepthOfField(const Arguments& arguments, const Optics& optics) {
+Result<DepthOfField> FindDepthOfField(const LimitsArguments& arguments, const Optics& optics) {
   DepthOfField field{0.0, HUGE_VAL};
   if (optics.focus_m) {
     if (!optics.focal_length_m || !optics.pitch_m || !arguments.f_number)
@@ -194,7 +194,7 @@ Result<DepthOfField> FindDepthOfField(const Arguments& arguments, const Optics& 
   return field;
 }
 
-Status RunDistances(const Arguments& arguments, LimitOptions& options) {
+Status RunDistances(const LimitsArguments& arguments, LimitOptions& options) {
   const Result<Optics> optics = ReadOptics(arguments);
   if (!optics) return optics.error();
   const Result<DepthOfField> field = FindDepthOfField(arguments, *optics);
@@ -220,7 +220,8 @@ Status RunDistances(const Arguments& arguments, LimitOptions& options) {
   return OkStatus();
 }
 
-Status RunAngles(const Arguments& arguments, const SpectralBand& band, LimitOptions& options) {
+Status RunAngles(const LimitsArguments& arguments, const SpectralBand& band,
+                 LimitOptions& options) {
   const Result<AngleRequest> request = ReadAngleRequest(arguments, band);
   if (!request) return request.error();
   const EmissionCurve curve(request->index, request->band, request->conditions);
@@ -232,7 +233,7 @@ Status RunAngles(const Arguments& arguments, const SpectralBand& band, LimitOpti
   return OkStatus();
 }
 
-int Run(const Arguments& arguments) {
+int Run(const LimitsArguments& arguments) {
   const Result<SpectralBand> band = ReadBand(arguments);
   if (!band) return Fail(band.error());
   if (arguments.list) {
@@ -257,7 +258,7 @@ int Run(const Arguments& arguments) {
   return 0;
 }
 
-void AddAngleOptions(CLI::App& command, Arguments& arguments) {
+void AddAngleOptions(CLI::App& command, LimitsArguments& arguments) {
   CLI::Option* material = command.add_option("--material", arguments.material,
                                              "Name from the list of materials (--list)");
   CLI::Option* n = command.add_option("--n", arguments.n, "Refractive index of another material")
@@ -288,7 +289,7 @@ void AddAngleOptions(CLI::App& command, Arguments& arguments) {
       ->capture_default_str();
 }
 
-void AddDistanceOptions(CLI::App& command, Arguments& arguments) {
+void AddDistanceOptions(CLI::App& command, LimitsArguments& arguments) {
   command.add_option(
       "--rig", arguments.rig,
       "Calibration (rig.textproto) with the thermal camera's focal length in pixels");
@@ -316,11 +317,11 @@ void AddDistanceOptions(CLI::App& command, Arguments& arguments) {
 void AddLimitsCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("limits", "Derives limits of distance and emission angle (6.3)");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<LimitsArguments>();
   command->add_flag("--list", arguments->list, "List the materials");
   AddAngleOptions(*command, *arguments);
   AddDistanceOptions(*command, *arguments);
-  command->footer(kFooter);
+  command->footer(kLimitsFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

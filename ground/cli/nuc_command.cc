@@ -16,7 +16,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kNucFooter =
     R"(A correction (NUC): the camera looks at its closed shutter and takes its own warmth out of the image. Meanwhile, and
 half a second after, no temperatures are taken; geometry goes on.
 
@@ -39,7 +39,7 @@ Examples:
 
 Try it without cameras: isotherm-edge --scene furnace-door --set source.loops=0)";
 
-struct Arguments {
+struct NucArguments {
   bool now = false;
   std::optional<double> hold_s;
   std::optional<int> policy;  ///< A NucPolicy.
@@ -72,7 +72,7 @@ std::string StatusText(const std::string& edge_id, const NucReport& nuc) {
   return text;
 }
 
-std::optional<Command> OrderOf(const Arguments& arguments) {
+std::optional<Command> OrderOf(const NucArguments& arguments) {
   Command command;
   if (arguments.now) command.kind = CommandKind::kTriggerNuc;
   if (arguments.hold_s) {
@@ -87,7 +87,7 @@ std::optional<Command> OrderOf(const Arguments& arguments) {
   return command;
 }
 
-Status Run(const Arguments& arguments) {
+Status Run(const NucArguments& arguments) {
   const SystemClock clock;
   const TransportEnvironment environment(clock);
   const Nanoseconds timeout = FromSeconds(arguments.timeout_s);
@@ -119,7 +119,7 @@ Status Run(const Arguments& arguments) {
 void AddNucCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand(
       "nuc", "Corrections of a running rig's thermal camera: state, now, hold, policy");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<NucArguments>();
   const std::map<std::string, int> policies = {
       {"automatic", static_cast<int>(NucPolicy::kAutomatic)},
       {"manual", static_cast<int>(NucPolicy::kManual)},
@@ -143,7 +143,7 @@ void AddNucCommand(CLI::App& app, CommandBody& body) {
   command->add_option("--timeout", arguments->timeout_s, "How long to wait for the rig, seconds")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
-  command->footer(kFooter);
+  command->footer(kNucFooter);
   command->callback([arguments, &body] {
     body = [arguments] {
       const Status done = Run(*arguments);

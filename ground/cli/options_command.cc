@@ -8,7 +8,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kOptionsFooter =
     R"(Names are those that --set takes. In a configuration file (--config, protobuf text format) dots are braces:
 tsdf.expert.max_weight=100 is  tsdf { expert { max_weight: 100 } }.
 
@@ -19,12 +19,12 @@ Examples:
   isotherm options edge | less       of isotherm-edge
   isotherm options simulate          of isotherm simulate)";
 
-struct Arguments {
+struct OptionsArguments {
   std::string program = "ground", stage;
   bool with_expert = false, as_page = false;
 };
 
-int Run(const Arguments& arguments) {
+int Run(const OptionsArguments& arguments) {
   const Result<std::string> text =
       arguments.as_page ? OptionsPage()
                         : ListOptions(arguments.program, arguments.stage, arguments.with_expert);
@@ -38,7 +38,7 @@ int Run(const Arguments& arguments) {
 void AddOptionsCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("options", "Lists the options of --set and --config, with their defaults");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<OptionsArguments>();
   command->add_option("program", arguments->program, "ground, edge or simulate")
       ->capture_default_str();
   command->add_option("stage", arguments->stage, "One group of them, e.g. tsdf");
@@ -46,7 +46,7 @@ void AddOptionsCommand(CLI::App& app, CommandBody& body) {
                     "Also what is rarely set, in the expert block of each stage");
   command->add_flag("--markdown", arguments->as_page,
                     "All options of all programs as a page (docs/options.md)");
-  command->footer(kFooter);
+  command->footer(kOptionsFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

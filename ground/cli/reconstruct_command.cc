@@ -18,7 +18,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kReconstructFooter =
     R"(The scan volume is a box in `world` from --volume-min, axes along its edges. The initial pose is
 T_world_depth of the first depth frame; without one the volume's centre lies on the first
 frame's optical axis at the median depth. Options come from the defaults, the configuration
@@ -39,7 +39,7 @@ Examples:
       --initial-pose-from groundtruth.txt
   isotherm reconstruct next_day.mcap -o out2 --continue out/model.iso)";
 
-struct Arguments {
+struct ReconstructArguments {
   std::string rig;
   std::string recording, output, model, volume, volume_min, initial_pose, initial_pose_from;
   ConfigurationArguments configuration;
@@ -48,7 +48,7 @@ struct Arguments {
   bool force = false;
 };
 
-GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
+GroundOptions CollectOptions(const ReconstructArguments& arguments, Problems& problems) {
   GroundOptions options;
   Apply(arguments.configuration, options, problems);
   VolumeOptions& volume = *options.mutable_volume();
@@ -83,7 +83,7 @@ GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
   return options;
 }
 
-Result<std::optional<RigidTransform>> InitialPose(const Arguments& arguments) {
+Result<std::optional<RigidTransform>> InitialPose(const ReconstructArguments& arguments) {
   if (arguments.initial_pose_from.empty()) return std::optional<RigidTransform>();
   const auto poses = ReadTruePoses(arguments.initial_pose_from);
   if (!poses) return Err(poses.error());
@@ -94,7 +94,7 @@ Result<std::optional<RigidTransform>> InitialPose(const Arguments& arguments) {
   return std::optional<RigidTransform>(*pose);
 }
 
-int Run(const Arguments& arguments) {
+int Run(const ReconstructArguments& arguments) {
   ReconstructRequest request;
   if (std::error_code error; !arguments.configuration.file.empty() &&
                              !std::filesystem::exists(arguments.configuration.file, error)) {
@@ -136,7 +136,7 @@ int Run(const Arguments& arguments) {
 
 void AddReconstructCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand("reconstruct", "Turns a recording into a 3D thermogram");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ReconstructArguments>();
   command->add_option("recording", arguments->recording, "Recording (.mcap)")->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
   CLI::Option* model =
@@ -160,7 +160,7 @@ void AddReconstructCommand(CLI::App& app, CommandBody& body) {
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   command->add_flag("--force", arguments->force, "Replace results that are in the folder");
   AddConfigurationArguments(*command, arguments->configuration);
-  command->footer(kFooter);
+  command->footer(kReconstructFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

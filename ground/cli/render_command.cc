@@ -21,7 +21,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kRenderFooter =
     R"(MODEL is a model.iso, or a result folder of `isotherm reconstruct` with one in it; of a folder, the
 limits of classes are those that it was made with. Without a view, the rendering shows the whole model
 from where it was scanned. Places and poses are in `world`, in metres; a pose is T_world_camera,
@@ -47,7 +47,7 @@ Examples:
   isotherm render out -o orbit --orbit 36 --layer thermal,coverage
   isotherm render out/model.iso -o last.png --view last --set renderer.expert.shading=false)";
 
-struct Arguments {
+struct RenderArguments {
   std::string model, output;
   ConfigurationArguments configuration;
   std::vector<std::string> layers = {"thermal"};
@@ -61,7 +61,7 @@ struct Arguments {
   int threads = 0;
 };
 
-void SetLook(const Arguments& arguments, RendererOptions& options, Problems& problems) {
+void SetLook(const RenderArguments& arguments, RendererOptions& options, Problems& problems) {
   if (!arguments.palette.empty()) {
     if (const auto palette = PaletteFromName(arguments.palette)) {
       options.set_palette(*palette);
@@ -95,7 +95,7 @@ void SetLook(const Arguments& arguments, RendererOptions& options, Problems& pro
 
 /// Takes the options of the result folder, then of the configuration file, then of the command
 /// line.
-GroundOptions CollectOptions(const Arguments& arguments, Problems& problems) {
+GroundOptions CollectOptions(const RenderArguments& arguments, Problems& problems) {
   GroundOptions options;
   if (const auto made_with = ConfigurationOf(arguments.model)) {
     *options.mutable_renderer() = made_with->renderer();
@@ -127,7 +127,7 @@ Result<std::vector<RenderLayer>> Layers(const std::vector<std::string>& names) {
   return layers;
 }
 
-Result<CameraModel> Camera(const Arguments& arguments) {
+Result<CameraModel> Camera(const RenderArguments& arguments) {
   constexpr int kSmallest = 16, kLargest = 8192;
   int width = 0, height = 0;
   const char* const end = arguments.size.data() + arguments.size.size();
@@ -161,7 +161,7 @@ struct Views {
   std::string description;
 };
 
-Result<Views> OneView(const Arguments& arguments, const LoadedModel& model,
+Result<Views> OneView(const RenderArguments& arguments, const LoadedModel& model,
                       const std::vector<Eigen::Vector3f>& points_m, const ModelAspect& aspect,
                       const CameraModel& camera) {
   if (arguments.view == "last") {
@@ -194,8 +194,9 @@ Result<Views> OneView(const Arguments& arguments, const LoadedModel& model,
   return Views{{*pose}, arguments.at.empty() ? "towards the model's centre" : "as given"};
 }
 
-Result<Views> OrbitViews(const Arguments& arguments, const std::vector<Eigen::Vector3f>& points_m,
-                         const ModelAspect& aspect, const CameraModel& camera) {
+Result<Views> OrbitViews(const RenderArguments& arguments,
+                         const std::vector<Eigen::Vector3f>& points_m, const ModelAspect& aspect,
+                         const CameraModel& camera) {
   // A surface has no back: from behind there is nothing to see.
   constexpr double kOneSidedArc_deg = 120.0;
   OrbitOptions orbit;
@@ -209,7 +210,7 @@ Result<Views> OrbitViews(const Arguments& arguments, const std::vector<Eigen::Ve
                   shortened ? ", for it was scanned from one side (--arc 360: all around)" : "")};
 }
 
-Result<Views> ChooseViews(const Arguments& arguments, const LoadedModel& model,
+Result<Views> ChooseViews(const RenderArguments& arguments, const LoadedModel& model,
                           const std::vector<Eigen::Vector3f>& points_m, const CameraModel& camera) {
   ModelAspect aspect = AspectOf(points_m, model.known_poses);
   const auto up = Place(arguments.up, "--up", aspect.up_world);
@@ -244,7 +245,7 @@ void PrintSummary(const Views& views, const GroundOptions& options,
   fmt::print("\n");
 }
 
-int Run(const Arguments& arguments) {
+int Run(const RenderArguments& arguments) {
   const auto file = FindModel(arguments.model);
   if (!file) return Fail(file.error());
   const auto layers = Layers(arguments.layers);
@@ -287,7 +288,7 @@ int Run(const Arguments& arguments) {
   return 0;
 }
 
-void AddViewOptions(CLI::App& command, Arguments& arguments) {
+void AddViewOptions(CLI::App& command, RenderArguments& arguments) {
   CLI::Option* view =
       command.add_option("--view", arguments.view,
                          "Pose of the camera, \"x y z qx qy qz qw\", or `last`: of the scan");
@@ -321,7 +322,7 @@ void AddViewOptions(CLI::App& command, Arguments& arguments) {
 
 void AddRenderCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand("render", "Makes renderings of a saved model");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RenderArguments>();
   command->add_option("model", arguments->model, "Model (model.iso) or result folder")->required();
   command->add_option("-o,--output", arguments->output, "Rendering (.png), or folder for several")
       ->required();
@@ -341,7 +342,7 @@ void AddRenderCommand(CLI::App& app, CommandBody& body) {
   command->add_flag("--no-shading", arguments->no_shading, "The same brightness at every angle");
   AddConfigurationArguments(*command, arguments->configuration);
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
-  command->footer(kFooter);
+  command->footer(kRenderFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

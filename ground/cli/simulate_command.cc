@@ -17,7 +17,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kSimulateFooter =
     R"(The recording holds depth and thermal frames with the noise and the clocks of real cameras, a
 shutter event, the calibration and the true poses. --surface writes the true surface for
 `isotherm evaluate`.
@@ -27,7 +27,7 @@ Examples:
   isotherm reconstruct door.mcap -o out --initial-pose-from door.mcap
   isotherm evaluate out --groundtruth door.mcap --surface door.ply --emissivity 0.96 --ambient 23)";
 
-struct Arguments {
+struct SimulateArguments {
   std::string scene = "furnace-door", output, surface, config;
   std::optional<double> duration_s;
   std::optional<std::uint64_t> seed;
@@ -36,7 +36,7 @@ struct Arguments {
   int threads = 0;
 };
 
-Status CollectOptions(const Arguments& arguments, SimulationOptions& options) {
+Status CollectOptions(const SimulateArguments& arguments, SimulationOptions& options) {
   if (!arguments.config.empty()) ISOTHERM_RETURN_IF_ERROR(LoadTextProto(arguments.config, options));
   ISOTHERM_RETURN_IF_ERROR(SetScene(arguments.scene, options));
   if (arguments.duration_s) options.set_duration_s(*arguments.duration_s);
@@ -52,7 +52,7 @@ Status CollectOptions(const Arguments& arguments, SimulationOptions& options) {
   return Validate(options);
 }
 
-int Run(const Arguments& arguments) {
+int Run(const SimulateArguments& arguments) {
   SimulationOptions options;
   if (const Status status = CollectOptions(arguments, options); !status.ok()) {
     return FailConfiguration(status.message());
@@ -81,7 +81,7 @@ int Run(const Arguments& arguments) {
 void AddSimulateCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("simulate", "Renders a simulated scan, with truth, into a recording");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   command->add_option("--scene", arguments->scene, SceneNames())->capture_default_str();
   command->add_option("-o,--output", arguments->output, "Recording to write (.mcap)")->required();
   command->add_option("--surface", arguments->surface, "True surface to write (.ply)");
@@ -93,7 +93,7 @@ void AddSimulateCommand(CLI::App& app, CommandBody& body) {
       ->take_all();
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   command->add_flag("--force", arguments->force, "Replace an existing recording");
-  command->footer(kFooter);
+  command->footer(kSimulateFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 

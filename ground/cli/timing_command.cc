@@ -11,7 +11,7 @@
 namespace isotherm {
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* kTimingFooter =
     R"(Simulated cameras of known drift send frames through a simulated transport with jitter; each method
 stamps them, and its stamps are compared with the true exposures. One constant delay per method and
 scenario is taken out, as a calibration would.
@@ -27,11 +27,11 @@ Examples:
   isotherm timing
   isotherm timing --seed 7 --runs 50)";
 
-struct Arguments {
+struct TimingArguments {
   StampingTrialOptions trial;
 };
 
-int Run(const Arguments& arguments) {
+int Run(const TimingArguments& arguments) {
   const std::vector<StampingScenario> scenarios = StampingScenarios();
   constexpr double kRates_hz[] = {30.0, 40.0};
   std::string table =
@@ -67,7 +67,7 @@ int Run(const Arguments& arguments) {
 void AddTimingCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command =
       app.add_subcommand("timing", "How well capture times are estimated, by simulation");
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<TimingArguments>();
   command->add_option("--seed", arguments->trial.seed, "Of all noise")->capture_default_str();
   command->add_option("--runs", arguments->trial.runs, "Runs per row, each with a drift of its own")
       ->check(CLI::Range(1, 10'000))
@@ -80,7 +80,7 @@ void AddTimingCommand(CLI::App& app, CommandBody& body) {
                    "The cameras' clocks are off by up to this, parts per million")
       ->check(CLI::Range(0.0, 1000.0))
       ->capture_default_str();
-  command->footer(kFooter);
+  command->footer(kTimingFooter);
   command->callback([arguments, &body] { body = [arguments] { return Run(*arguments); }; });
 }
 
