@@ -51,8 +51,8 @@ struct RecordingStats {
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;
   std::uint64_t failed = 0;
-  std::uint64_t unsynced = 0;  // Of `failed`: the disk took them but did not confirm it.
   std::uint64_t bytes = 0;
+  std::uint64_t unsynced = 0;  ///< Of `failed`: the disk took them but did not confirm it.
 };
 
 /// Writes a scan as MCAP: chunks with zstd and CRC, message indexes, a summary at the end. The file

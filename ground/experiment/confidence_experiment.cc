@@ -114,12 +114,8 @@ Agreement Compare(const PlayedScan& played, const ThermalOptions& limits, Thread
 }  // namespace
 
 Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool) {
-  GroundOptions options;
-  // The boards' slants, 0, 25 and 50 degrees, lie in the middle of classes with these.
-  ThermalAngleOptions& angle = *options.mutable_thermal()->mutable_angle();
-  angle.set_min_deg(0.0);
-  angle.set_good_deg(40.0);
-  angle.set_max_deg(60.0);
+  // The boards' slants, 0, 25 and 50 degrees, lie in the middle of its classes.
+  const GroundOptions options = OptionsForSlantedSurfaces();
   const auto played = Play(ExperimentCameras(kDuration_s), SlantedBoards(), {options}, pool);
   if (!played) return Err(played.error());
   const Agreement agreement = Compare(*played, options.thermal(), pool);

@@ -62,6 +62,15 @@ SimulationOptions ExperimentCameras(double duration_s) {
   return options;
 }
 
+GroundOptions OptionsForSlantedSurfaces() {
+  GroundOptions options;
+  ThermalAngleOptions& angle = *options.mutable_thermal()->mutable_angle();
+  angle.set_min_deg(0.0);
+  angle.set_good_deg(40.0);
+  angle.set_max_deg(60.0);
+  return options;
+}
+
 Swing FromTo(double from, double to, double duration_s) {
   return {(from + to) / 2.0, (to - from) / 2.0, 2.0 * duration_s, -std::numbers::pi / 2.0};
 }

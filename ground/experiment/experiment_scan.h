@@ -16,6 +16,10 @@ namespace isotherm {
 /// thermal frames as are needed.
 SimulationOptions ExperimentCameras(double duration_s);
 
+/// Defaults, but slanted surfaces get temperatures, too: good up to 40 degrees from the normal and
+/// acceptable up to 60, whatever the material.
+GroundOptions OptionsForSlantedSurfaces();
+
 /// A path's value that goes from one end to the other and rests at both.
 Swing FromTo(double from, double to, double duration_s);
 
