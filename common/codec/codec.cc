@@ -30,9 +30,7 @@ Status CheckSizes(const EncodedImage& encoded, std::size_t max_pixels) {
   }
   const std::size_t raw_bytes = static_cast<std::size_t>(encoded.width) *
                                 static_cast<std::size_t>(encoded.height) * sizeof(std::uint16_t);
-  const bool is_raw =
-      encoded.encoding == Encoding::kRaw16 || encoded.encoding == Encoding::kCounts16;
-  if (is_raw && encoded.payload.size() != raw_bytes) {
+  if (IsRaw(encoded.encoding) && encoded.payload.size() != raw_bytes) {
     return DataLoss(fmt::format("raw image of {} x {} has {} bytes instead of {}", encoded.width,
                                 encoded.height, encoded.payload.size(), raw_bytes));
   }
@@ -43,6 +41,7 @@ Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
   switch (encoded.encoding) {
     case Encoding::kRaw16:
     case Encoding::kCounts16:
+    case Encoding::kScaledRaw16:
       return DecodeRaw(encoded.payload, image);
     case Encoding::kPng16:
       return DecodeGrey16Png(encoded.payload, image);
@@ -50,7 +49,8 @@ Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
       thread_local codec::DepthCodec decoder;
       return decoder.Decode(encoded.payload, image);
     }
-    case Encoding::kThermalRans: {
+    case Encoding::kThermalRans:
+    case Encoding::kScaledThermalRans: {
       thread_local codec::ThermalCodec decoder;
       return decoder.Decode(encoded.payload, image);
     }
@@ -82,12 +82,14 @@ EncodedImage DepthEncoder::Encode(const Image<std::uint16_t>& depth_raw) {
   return encoded;
 }
 
-EncodedImage ThermalEncoder::Encode(const Image<std::uint16_t>& centikelvin) {
-  EncodedImage encoded{.encoding = Encoding::kThermalRans,
-                       .width = centikelvin.width(),
-                       .height = centikelvin.height(),
-                       .payload = {}};
-  scratch_->codec.Encode(centikelvin, encoded.payload);
+EncodedImage ThermalEncoder::Encode(const Image<std::uint16_t>& temperature_raw,
+                                    const RadiometricScale& scale) {
+  EncodedImage encoded{
+      .encoding = scale == kCentikelvin ? Encoding::kThermalRans : Encoding::kScaledThermalRans,
+      .width = temperature_raw.width(),
+      .height = temperature_raw.height(),
+      .payload = {}};
+  scratch_->codec.Encode(temperature_raw, encoded.payload);
   return encoded;
 }
 

@@ -22,7 +22,9 @@ class ThermalEncoder {
  public:
   ThermalEncoder();
   ~ThermalEncoder();
-  EncodedImage Encode(const Image<std::uint16_t>& centikelvin);
+  /// Pixels are counts of `scale`, which decides the encoding: the image does not carry it.
+  EncodedImage Encode(const Image<std::uint16_t>& temperature_raw,
+                      const RadiometricScale& scale = kCentikelvin);
 
  private:
   struct Scratch;
@@ -37,7 +39,8 @@ EncodedImage PackCounts(const Image<std::uint16_t>& counts);
 /// bounds width x height.
 Result<Image<std::uint16_t>> Decode(const EncodedImage& encoded, std::size_t max_pixels = 1U << 24);
 
-/// Decode for those who ask for temperatures, centi-kelvin: an empty image if there are counts.
+/// Decode for those who ask for temperatures, in counts of the frame's scale: an empty image if
+/// nothing relates its counts to temperatures.
 Result<Image<std::uint16_t>> DecodeTemperatures(const EncodedImage& encoded,
                                                 std::size_t max_pixels = 1U << 24);
 

@@ -271,6 +271,24 @@ TEST(DecodeTest, CountsAreUnpackedButAreNoTemperatures) {
   }
 }
 
+TEST(DecodeTest, AnotherScaleThanCentikelvinHasAnEncodingOfItsOwn) {
+  Image<std::uint16_t> raw(3, 2, 56'157);
+  EXPECT_EQ(ThermalEncoder().Encode(raw).encoding, Encoding::kThermalRans);
+  EXPECT_EQ(ThermalEncoder().Encode(raw, RadiometricScale{0.01, 0.0}).encoding,
+            Encoding::kThermalRans);
+  for (const RadiometricScale& scale :
+       {RadiometricScale{0.02, 0.0}, RadiometricScale{0.01, 100.0}}) {
+    const EncodedImage encoded = ThermalEncoder().Encode(raw, scale);
+    EXPECT_EQ(encoded.encoding, Encoding::kScaledThermalRans);
+    EXPECT_EQ(*DecodeTemperatures(encoded), raw);
+  }
+  EncodedImage plain = PackCounts(raw);
+  plain.encoding = Encoding::kScaledRaw16;
+  EXPECT_EQ(*DecodeTemperatures(plain), raw);
+  plain.payload.pop_back();
+  EXPECT_FALSE(DecodeTemperatures(plain).has_value());
+}
+
 TEST(DecodeTest, AnUnknownEncodingIsRefused) {
   const EncodedImage image{
       .encoding = static_cast<Encoding>(200), .width = 2, .height = 2, .payload = {1, 2, 3}};

@@ -127,6 +127,7 @@ Rig FromProto(const RigCalibration& calibration) {
   if (calibration.has_depth()) rig.depth = FromProto(calibration.depth());
   if (calibration.has_thermal()) rig.thermal = FromProto(calibration.thermal());
   rig.depth_scale = calibration.depth_scale();
+  rig.thermal_scale = {calibration.thermal_scale(), calibration.thermal_offset()};
   if (calibration.has_t_thermal_depth())
     rig.T_thermal_depth = FromProto(calibration.t_thermal_depth());
   rig.thermal_delay_s = calibration.thermal_delay_s();
@@ -148,6 +149,8 @@ RigCalibration ToProto(const Rig& rig) {
   if (rig.depth) *calibration.mutable_depth() = ToProto(*rig.depth);
   if (rig.thermal) *calibration.mutable_thermal() = ToProto(*rig.thermal);
   calibration.set_depth_scale(rig.depth_scale);
+  calibration.set_thermal_scale(rig.thermal_scale.kelvin_per_count);
+  calibration.set_thermal_offset(rig.thermal_scale.offset_kelvin);
   if (rig.T_thermal_depth) *calibration.mutable_t_thermal_depth() = ToProto(*rig.T_thermal_depth);
   calibration.set_thermal_delay_s(rig.thermal_delay_s);
   if (!rig.serial.empty()) calibration.set_serial(rig.serial);

@@ -17,6 +17,7 @@
 namespace isotherm {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -134,6 +135,35 @@ TEST(RigCalibrationTest, ImpossibleSensorsAreRefusedWithTheField) {
   EXPECT_THAT(error("f_number: 1.25", "f_number: 0"), HasSubstr("thermal_sensor.lens"));
   EXPECT_THAT(error("focus_m: 0.6", "focus_m: 0.01"), HasSubstr("beyond the focal length"));
   EXPECT_THAT(error("focus_m: 0.6", ""), HasSubstr("lens.focus_m' is missing"));
+}
+
+TEST(RigCalibrationTest, TheThermalScaleIsCentikelvinUnlessTheFileSaysOtherwise) {
+  EXPECT_EQ(ParseRigCalibration(kRigText, "rig.textproto")->thermal_scale, kCentikelvin);
+  const auto rig = ParseRigCalibration(
+      kRigText + std::string("\nthermal_scale: 0.02\nthermal_offset: 100\n"), "rig.textproto");
+  ASSERT_TRUE(rig.has_value());
+  EXPECT_EQ(rig->thermal_scale, (RadiometricScale{0.02, 100.0}));
+  const auto again = ParseRigCalibration(ToText(*rig), "again");
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(again->thermal_scale, rig->thermal_scale);
+}
+
+TEST(RigCalibrationTest, F57AnImpossibleThermalScaleIsRefusedWithFieldAndFile) {
+  const auto error = [](const std::string& line) {
+    return RigError(std::string(kRigText) + "\n" + line + "\n");
+  };
+  for (const char* scale : {"0", "-0.01", "nan", "inf", "50"}) {
+    EXPECT_THAT(error(std::string("thermal_scale: ") + scale),
+                AllOf(HasSubstr("rig.textproto"), HasSubstr("thermal_scale")))
+        << scale;
+  }
+  for (const char* offset : {"nan", "-inf", "1e9"}) {
+    EXPECT_THAT(error(std::string("thermal_offset: ") + offset),
+                AllOf(HasSubstr("rig.textproto"), HasSubstr("thermal_offset")))
+        << offset;
+  }
+  EXPECT_THAT(error("thermal_scale: 0.0001"), HasSubstr("16 bits reach from -273.1 to -266.6 °C"));
+  EXPECT_THAT(error("thermal_offset: 2000"), HasSubstr("no thermal camera measures"));
 }
 
 TEST(RigCalibrationTest, F57RigWithoutIntrinsicsIsRejected) {

@@ -150,10 +150,11 @@ class Importer {
     auto image = ReadImage(entry, dataset_.thermal_list, *dataset_.rig.thermal);
     if (!image) return image.error();
     if (!*image) return OkStatus();
-    if (plausibility_.AddThermal(entry.time)) plausibility_.LookAtThermal(**image);
+    if (plausibility_.AddThermal(entry.time))
+      plausibility_.LookAtThermal(**image, dataset_.rig.thermal_scale);
     ThermalFrame marked;
     marked.header = Header(entry, index);
-    marked.centikelvin = std::move(**image);
+    marked.temperature_raw = std::move(**image);
     nuc_.Mark(marked);
     EncodedThermalFrame frame;
     frame.header = marked.header;
@@ -161,7 +162,8 @@ class Importer {
     frame.nuc_source = marked.nuc_source;
     frame.seconds_since_nuc = marked.seconds_since_nuc;
     frame.valid = marked.valid;
-    frame.image = thermal_encoder_.Encode(marked.centikelvin);
+    frame.scale = dataset_.rig.thermal_scale;
+    frame.image = thermal_encoder_.Encode(marked.temperature_raw, frame.scale);
     ++summary_.thermal_frames;
     if (!marked.valid) ++summary_.thermal_frames_in_nuc;
     return writer_.Write(frame, std::nullopt);

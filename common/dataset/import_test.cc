@@ -105,6 +105,35 @@ TEST_F(ImportTest, RecordingHasWhatTheFolderHad) {
   }
 }
 
+TEST_F(ImportTest, ThermalImagesHaveTheScaleOfTheRigFile) {
+  folder_.Write("rig.textproto",
+                "thermal { width: 20 height: 15 fx: 20 fy: 20 cx: 9.5 cy: 7 }\n"
+                "depth { width: 32 height: 24 fx: 30 fy: 30 cx: 15.5 cy: 11.5 }\n"
+                "thermal_scale: 0.02\nthermal_offset: 5\n");
+  for (const ImageStorage storage : {ImageStorage::kCompact, ImageStorage::kViewable}) {
+    request_.storage = storage;
+    request_.overwrite = true;
+    ASSERT_EQ(Error(), "accepted");
+    auto reader = RecordingReader::Open(request_.recording);
+    ASSERT_TRUE(reader.has_value());
+    EXPECT_EQ((*reader)->ReadRig()->thermal_scale, (RadiometricScale{0.02, 5.0}));
+    const Content content = ReadBack(**reader);
+    ASSERT_EQ(content.thermal.size(), 6U);
+    const EncodedThermalFrame& frame = content.thermal[5].frame;
+    EXPECT_TRUE(IsScaled(frame.image.encoding));
+    const std::uint16_t raw = DecodeTemperatures(frame.image)->At(0, 0);
+    EXPECT_NEAR(frame.scale.Celsius(raw), 0.02 * 30'005 + 5.0 - 273.15, 1e-3);
+  }
+}
+
+TEST_F(ImportTest, AThermalScaleThatCannotBeIsRefusedWithFileAndField) {
+  folder_.Write("rig.textproto",
+                "thermal { width: 20 height: 15 fx: 20 fy: 20 cx: 9.5 cy: 7 }\nthermal_scale: 0\n");
+  const std::string error = Error();
+  EXPECT_NE(error.find("rig.textproto"), std::string::npos) << error;
+  EXPECT_NE(error.find("thermal_scale"), std::string::npos) << error;
+}
+
 TEST_F(ImportTest, OdometryPosesComeAlongInOrderOfTime) {
   folder_.Write(
       "vio.txt",
@@ -151,7 +180,7 @@ TEST(NucMarkerTest, RepeatsOfAFrozenImageBehindTheIntervalAreInvalidToo) {
   const auto valid = [&](int ms, std::uint16_t value) {
     ThermalFrame frame;
     frame.header.capture_time = time(ms);
-    frame.centikelvin = Image<std::uint16_t>(2, 2, value);
+    frame.temperature_raw = Image<std::uint16_t>(2, 2, value);
     marker.Mark(frame);
     return frame.valid;
   };

@@ -7,13 +7,13 @@ void NucMarker::Mark(ThermalFrame& frame) {
   for (; next_ < intervals_.size() && intervals_[next_].end < now; ++next_)
     last_end_ = intervals_[next_].end;
   const bool inside = next_ < intervals_.size() && intervals_[next_].start <= now;
-  const bool repeated = !inside && frozen_ && *frozen_ == frame.centikelvin;
+  const bool repeated = !inside && frozen_ && *frozen_ == frame.temperature_raw;
   if (inside || repeated) {
     frame.nuc_state = NucState::kInProgress;
     frame.nuc_source = inside ? NucSource::kInBand : NucSource::kInferred;
     frame.seconds_since_nuc.reset();
     frame.valid = false;
-    frozen_ = frame.centikelvin;
+    frozen_ = frame.temperature_raw;
     return;
   }
   frozen_.reset();

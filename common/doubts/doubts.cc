@@ -22,7 +22,7 @@ constexpr double kMaxPeriod_s = 600.0;
 /// The least overlap, as a fraction of the shorter stream.
 constexpr double kMinOverlap = 0.5;
 constexpr double kMinDepth_m = 0.2, kMaxDepth_m = 20.0;
-constexpr double kMinMean_celsius = -40.0;
+constexpr double kMinMean_celsius = -40.0, kMaxMean_celsius = 1500.0;
 constexpr double kMaxSaturated = 0.99;
 /// A reading of numbers in another unit must lie in here to be named as the cause.
 constexpr double kLikelyMin_celsius = -20.0, kLikelyMax_celsius = 500.0;
@@ -95,7 +95,7 @@ bool IsLikely(double celsius) {
   return celsius >= kLikelyMin_celsius && celsius <= kLikelyMax_celsius;
 }
 
-/// Returns what pixels with this mean would be in the units that are confused with centi-kelvin.
+/// Returns what pixels with this mean would be in the units that are confused with each other.
 std::string CauseOfMean(double mean) {
   std::string readings;
   const auto add = [&readings](const char* unit, double celsius) {
@@ -103,6 +103,7 @@ std::string CauseOfMean(double mean) {
     readings +=
         fmt::format("{}as {} they would be {:.1f} °C", readings.empty() ? "" : ", ", unit, celsius);
   };
+  add("centi-kelvin (thermal_scale: 0.01)", kCentikelvin.Celsius(mean));
   add("centi-degrees Celsius", mean / 100.0);
   add("deci-kelvin", ToCelsius(mean / 10.0));
   add("kelvin / 64", ToCelsius(mean / 64.0));
@@ -188,20 +189,23 @@ Doubts DoubtsAboutDepths(double median_raw, double depth_scale) {
 Doubts DoubtsAboutTemperatures(const ThermalPixels& pixels) {
   if (pixels.none_ratio >= 1.0)
     return {
-        "no thermal pixel that was looked at has a value (all are 0): centi-kelvin is expected"};
+        "no thermal pixel that was looked at has a value (all are 0): temperatures are expected, "
+        "centi-kelvin unless thermal_scale in the calibration says otherwise"};
   if (pixels.saturated_ratio >= kMaxSaturated) {
     return {
-        "nearly all thermal pixels have the largest value there is (65535, 382 °C): the images "
-        "must "
-        "be centi-kelvin (kelvin x 100) of what is colder than that"};
+        fmt::format("nearly all thermal pixels have the largest value there is (65535, {:.0f} °C): "
+                    "the images must be of what is colder than that, or their scale a coarser one "
+                    "(thermal_scale in the calibration: 0.02 reaches to 1037 °C)",
+                    pixels.scale.max_celsius())};
   }
-  const double celsius = ToCelsius(pixels.mean_centikelvin / kCentikelvinPerKelvin);
-  if (celsius >= kMinMean_celsius) return {};
+  const double celsius = pixels.scale.Celsius(pixels.mean_raw);
+  if (celsius >= kMinMean_celsius && celsius <= kMaxMean_celsius) return {};
   return {
-      fmt::format("the mean of the thermal images is {:.1f} °C: pixels must be centi-kelvin "
-                  "(kelvin x 100); {}: "
-                  "convert them",
-                  celsius, CauseOfMean(pixels.mean_centikelvin))};
+      fmt::format("the mean of the thermal images is {:.1f} °C with thermal_scale {:g} and "
+                  "thermal_offset {:g} (default: centi-kelvin, kelvin x 100); {}: convert them, or "
+                  "correct the calibration",
+                  celsius, pixels.scale.kelvin_per_count, pixels.scale.offset_kelvin,
+                  CauseOfMean(pixels.mean_raw))};
 }
 
 }  // namespace isotherm

@@ -37,12 +37,13 @@ Doubts DoubtsAboutDepths(double median_raw, double depth_scale);
 /// The pixels of thermal images in short: the mean of those that have a value, and the ratios of
 /// those that have none (0) or the largest (65535) that there is.
 struct ThermalPixels {
-  double mean_centikelvin = 0.0;
+  RadiometricScale scale{};
+  double mean_raw = 0.0;
   double none_ratio = 0.0;
   double saturated_ratio = 0.0;
 };
 
-/// Doubts thermal images that are not centi-kelvin, or hold no temperatures.
+/// Doubts thermal images that are not in their scale, or hold no temperatures.
 Doubts DoubtsAboutTemperatures(const ThermalPixels& pixels);
 
 }  // namespace isotherm

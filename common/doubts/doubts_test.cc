@@ -91,16 +91,29 @@ TEST(DoubtsTest, WrongDepthScalesAreNamedWithTheRightOne) {
 }
 
 TEST(DoubtsTest, ThermalImagesInOtherUnitsAreDoubted) {
-  EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 29615.0}), IsEmpty());
-  EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 23400.0}), IsEmpty()) << "-39.15 °C";
-  EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 17408.0}),
+  EXPECT_THAT(DoubtsAboutTemperatures({.mean_raw = 29615.0}), IsEmpty());
+  EXPECT_THAT(DoubtsAboutTemperatures({.mean_raw = 23400.0}), IsEmpty()) << "-39.15 °C";
+  EXPECT_THAT(DoubtsAboutTemperatures({.mean_raw = 17408.0}),
               ElementsAre(AllOf(HasSubstr("-99.1 °C"),
                                 HasSubstr("as centi-degrees Celsius they would be 174.1 °C"))));
-  EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 2961.5}),
+  EXPECT_THAT(DoubtsAboutTemperatures({.mean_raw = 2961.5}),
               ElementsAre(HasSubstr("as deci-kelvin they would be 23.0 °C")));
   EXPECT_THAT(DoubtsAboutTemperatures({.none_ratio = 1.0}), ElementsAre(HasSubstr("all are 0")));
-  EXPECT_THAT(DoubtsAboutTemperatures({.mean_centikelvin = 65535.0, .saturated_ratio = 1.0}),
+  EXPECT_THAT(DoubtsAboutTemperatures({.mean_raw = 65535.0, .saturated_ratio = 1.0}),
               ElementsAre(HasSubstr("largest value")));
+}
+
+TEST(DoubtsTest, PixelsOfAnotherScaleAreDoubtedInTheirOwn) {
+  constexpr RadiometricScale kHot{0.02, 0.0};
+  EXPECT_THAT(DoubtsAboutTemperatures({.scale = kHot, .mean_raw = 56'000.0}), IsEmpty())
+      << "846.85 °C";
+  EXPECT_THAT(DoubtsAboutTemperatures({.scale = {0.1, 0.0}, .mean_raw = 29615.5}),
+              ElementsAre(AllOf(HasSubstr("2688.4 °C with thermal_scale 0.1"),
+                                HasSubstr("as centi-kelvin (thermal_scale: 0.01) they would be "
+                                          "23.0 °C"))));
+  EXPECT_THAT(
+      DoubtsAboutTemperatures({.scale = kHot, .mean_raw = 65'535.0, .saturated_ratio = 1.0}),
+      ElementsAre(HasSubstr("1038 °C")));
 }
 
 }  // namespace

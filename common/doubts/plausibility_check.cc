@@ -35,10 +35,12 @@ void PlausibilityCheck::LookAtDepth(const Image<std::uint16_t>& depth_raw, doubl
   }
 }
 
-void PlausibilityCheck::LookAtThermal(const Image<std::uint16_t>& centikelvin) {
-  for (int y = 0; y < centikelvin.height(); y += kPixelStep) {
-    for (int x = 0; x < centikelvin.width(); x += kPixelStep) {
-      const std::uint16_t value = centikelvin.At(x, y);
+void PlausibilityCheck::LookAtThermal(const Image<std::uint16_t>& temperature_raw,
+                                      const RadiometricScale& scale) {
+  thermal_scale_ = scale;
+  for (int y = 0; y < temperature_raw.height(); y += kPixelStep) {
+    for (int x = 0; x < temperature_raw.width(); x += kPixelStep) {
+      const std::uint16_t value = temperature_raw.At(x, y);
       ++thermal_pixels_;
       thermal_none_ += value == 0 ? 1 : 0;
       thermal_saturated_ += value == std::numeric_limits<std::uint16_t>::max() ? 1 : 0;
@@ -69,7 +71,8 @@ Doubts PlausibilityCheck::Find() const {
     const auto pixels = static_cast<double>(thermal_pixels_);
     const std::uint64_t with_value = thermal_pixels_ - thermal_none_;
     add(DoubtsAboutTemperatures(
-        {.mean_centikelvin = with_value == 0 ? 0.0 : thermal_sum_ / static_cast<double>(with_value),
+        {.scale = thermal_scale_,
+         .mean_raw = with_value == 0 ? 0.0 : thermal_sum_ / static_cast<double>(with_value),
          .none_ratio = static_cast<double>(thermal_none_) / pixels,
          .saturated_ratio = static_cast<double>(thermal_saturated_) / pixels}));
   }

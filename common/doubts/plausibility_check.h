@@ -21,7 +21,7 @@ class PlausibilityCheck {
   bool AddDepth(CaptureTime time);
   bool AddThermal(CaptureTime time);
   void LookAtDepth(const Image<std::uint16_t>& depth_raw, double depth_scale);
-  void LookAtThermal(const Image<std::uint16_t>& centikelvin);
+  void LookAtThermal(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale);
 
   /// Returns the median of the raw depths seen; 0 if there were none.
   double MedianDepthRaw() const;
@@ -35,6 +35,7 @@ class PlausibilityCheck {
   std::uint64_t depth_pixels_ = 0;
   std::uint64_t thermal_pixels_ = 0, thermal_none_ = 0, thermal_saturated_ = 0;
   double thermal_sum_ = 0.0;
+  RadiometricScale thermal_scale_;
 };
 
 }  // namespace isotherm

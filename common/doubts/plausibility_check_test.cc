@@ -28,7 +28,8 @@ TEST(PlausibilityCheckTest, AScanIsAssessedByItsStampsAndByFewOfItsFrames) {
   }
   EXPECT_EQ(looked_at, 10) << "frames 1, 2, 4 ... 512";
   for (const CaptureTime time : Stamps(1000, 100.05)) {
-    if (check.AddThermal(time)) check.LookAtThermal(Image<std::uint16_t>(38, 28, 2300));
+    if (check.AddThermal(time))
+      check.LookAtThermal(Image<std::uint16_t>(38, 28, 2300), kCentikelvin);
   }
   EXPECT_EQ(check.MedianDepthRaw(), 900.0);
   EXPECT_THAT(check.Find(), ElementsAre(HasSubstr("as centi-degrees Celsius they would be 23.0")));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/frame/image.h"
+#include "common/geometry/radiometric_scale.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {
@@ -65,18 +66,11 @@ struct DepthFrame {
   double depth_scale = 1000.0;     ///< Raw units per metre.
 };
 
-/// Zero of the thermal scale: raw centi-kelvin = 100 x kelvin.
-inline constexpr double kCentikelvinPerKelvin = 100.0;
-inline constexpr double kCelsiusZero_k = 273.15;
-
-constexpr float CentikelvinToCelsius(double centikelvin) {
-  return static_cast<float>(centikelvin / kCentikelvinPerKelvin - kCelsiusZero_k);
-}
-
 struct ThermalFrame {
   FrameHeader header;
-  Image<std::uint16_t> centikelvin;  ///< height x width, row-major, apparent temperature, kelvin x
-                                     ///< 100; 0 = no value.
+  Image<std::uint16_t> temperature_raw;  ///< height x width, row-major, apparent temperature in
+                                         ///< counts of `scale`; 0 = no value.
+  RadiometricScale scale{};
   NucState nuc_state = NucState::kUnknown;
   NucSource nuc_source = NucSource::kUnknown;
   std::optional<double>
@@ -106,9 +100,10 @@ struct RawFrame {
   CaptureTime arrival_wall{};  ///< Edge wall clock when the first byte reached us.
   /// This computer's monotonic clock at the same moment; 0 = the source does not say.
   SteadyTime arrival_steady{};
-  Image<std::uint16_t> pixels;  ///< As DepthFrame::depth_raw or ThermalFrame::centikelvin.
-  double depth_scale = 1000.0;  ///< Raw depth units per metre (depth only).
-  bool shutter_closed = false;  ///< Thermal only: the camera says so (in band).
+  Image<std::uint16_t> pixels;       ///< As DepthFrame::depth_raw or ThermalFrame::temperature_raw.
+  double depth_scale = 1000.0;       ///< Raw depth units per metre (depth only).
+  RadiometricScale thermal_scale{};  ///< Of the pixels (thermal only).
+  bool shutter_closed = false;       ///< Thermal only: the camera says so (in band).
   /// Thermal only: more than the shutter flag; nullopt = the camera says nothing.
   std::optional<CameraNuc> camera_nuc;
   ThermalHousekeeping housekeeping;
@@ -124,7 +119,21 @@ enum class Encoding : std::uint8_t {
   /// As kRaw16, of a camera that measures no temperatures: its counts. A value of its own, so that
   /// nobody takes counts for centi-kelvin; programs that do not know it refuse the frame.
   kCounts16 = 4,
+  /// As kThermalRans and kRaw16, of temperatures in another scale than centi-kelvin, which is the
+  /// frame's. Values of their own for the same reason.
+  kScaledThermalRans = 5,
+  kScaledRaw16 = 6,
 };
+inline constexpr Encoding kLastEncoding = Encoding::kScaledRaw16;
+
+constexpr bool IsScaled(Encoding encoding) {
+  return encoding == Encoding::kScaledThermalRans || encoding == Encoding::kScaledRaw16;
+}
+
+constexpr bool IsRaw(Encoding encoding) {
+  return encoding == Encoding::kRaw16 || encoding == Encoding::kCounts16 ||
+         encoding == Encoding::kScaledRaw16;
+}
 
 struct EncodedImage {
   Encoding encoding = Encoding::kRaw16;
@@ -144,6 +153,7 @@ struct EncodedDepthFrame {
 struct EncodedThermalFrame {
   FrameHeader header;
   EncodedImage image;
+  RadiometricScale scale{};  ///< kCentikelvin unless the image's encoding is scaled.
   NucState nuc_state = NucState::kUnknown;
   NucSource nuc_source = NucSource::kUnknown;
   std::optional<double> seconds_since_nuc;

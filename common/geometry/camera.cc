@@ -152,6 +152,7 @@ Status Validate(const Rig& rig) {
     return InvalidArgument(
         fmt::format("depth_scale (raw units per metre) must be positive, got {}", rig.depth_scale));
   }
+  ISOTHERM_RETURN_IF_ERROR(Validate(rig.thermal_scale));
   if (rig.T_thermal_depth && !IsRigid(*rig.T_thermal_depth)) {
     return InvalidArgument("T_thermal_depth is not a finite rigid transform");
   }

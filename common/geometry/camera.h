@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/base/status.h"
+#include "common/geometry/radiometric_scale.h"
 #include "common/geometry/rigid_transform.h"
 
 namespace isotherm {
@@ -75,6 +76,7 @@ struct Rig {
   std::optional<CameraModel> depth;
   std::optional<CameraModel> thermal;
   double depth_scale = 1000.0;  ///< Raw depth units per metre.
+  RadiometricScale thermal_scale{};
   /// Maps depth-camera coordinates to thermal-camera coordinates. Absent: thermal cannot be fused.
   std::optional<RigidTransform> T_thermal_depth;
   double thermal_delay_s = 0.0;  ///< Added to thermal timestamps.

@@ -135,9 +135,8 @@ Result<EncodedImage> TakeImage(foxglove::RawImage& message) {
     return Err(DataLoss(fmt::format("image of {} x {}, step {}, has {} bytes", message.width(),
                                     message.height(), message.step(), message.data().size())));
   }
-  const bool is_counts =
-      message.frame().encoding() == static_cast<std::uint32_t>(Encoding::kCounts16);
-  EncodedImage image{.encoding = is_counts ? Encoding::kCounts16 : Encoding::kRaw16,
+  const auto encoding = KnownOr(message.frame().encoding(), kLastEncoding, Encoding::kRaw16);
+  EncodedImage image{.encoding = IsRaw(encoding) ? encoding : Encoding::kRaw16,
                      .width = static_cast<int>(message.width()),
                      .height = static_cast<int>(message.height()),
                      .payload = TakeBytes(message.mutable_data())};
@@ -180,6 +179,10 @@ Image ToMessage(const EncodedThermalFrame& frame, const std::optional<CaptureTim
     thermal.set_shutter_celsius(housekeeping.shutter_celsius);
   }
   thermal.set_valid(frame.valid);
+  if (IsScaled(frame.image.encoding)) {
+    thermal.set_kelvin_per_count(frame.scale.kelvin_per_count);
+    thermal.set_offset_kelvin(frame.scale.offset_kelvin);
+  }
   return message;
 }
 
@@ -191,7 +194,7 @@ void SetImageData(EncodedImage&& image, foxglove::CompressedImage& message) {
 }
 
 void SetImageData(EncodedImage&& image, foxglove::RawImage& message) {
-  CHECK(image.encoding == Encoding::kRaw16 || image.encoding == Encoding::kCounts16);
+  CHECK(IsRaw(image.encoding));
   message.mutable_frame()->set_encoding(static_cast<std::uint32_t>(image.encoding));
   message.set_width(static_cast<std::uint32_t>(image.width));
   message.set_height(static_cast<std::uint32_t>(image.height));
@@ -334,6 +337,10 @@ Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uin
   Result<EncodedImage> image = TakeImage(message);
   if (!image) return Err(std::move(image.error()));
   frame.image = std::move(*image);
+  if (!IsScaled(frame.image.encoding)) return thermal;
+  frame.scale = {info.kelvin_per_count(), info.offset_kelvin()};
+  if (Status status = Validate(frame.scale); !status.ok())
+    return Err(DataLoss("its temperatures have an impossible scale: " + status.message()));
   return thermal;
 }
 

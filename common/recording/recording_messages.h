@@ -16,7 +16,7 @@ Image ToMessage(const EncodedDepthFrame& frame, const std::optional<CaptureTime>
 template <typename Image>
 Image ToMessage(const EncodedThermalFrame& frame, const std::optional<CaptureTime>& arrival);
 void SetImageData(EncodedImage&& image, foxglove::CompressedImage& message);
-/// `image` must be kRaw16 or Encoding::kCounts16.
+/// `image` must be raw (IsRaw).
 void SetImageData(EncodedImage&& image, foxglove::RawImage& message);
 
 foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_id,

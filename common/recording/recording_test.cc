@@ -88,6 +88,44 @@ TEST_P(RecordingTest, FramesComeBackAsTheyWere) {
   EXPECT_EQ(recorded_thermal.arrival, std::nullopt);
 }
 
+TEST_P(RecordingTest, TemperaturesComeBackInTheirScale) {
+  EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
+  thermal.image.encoding = Encoding::kScaledRaw16;
+  thermal.scale = {0.02, 12.5};
+  Rig rig = MakeRig();
+  rig.thermal_scale = thermal.scale;
+  {
+    auto writer = WriterTo(disk_, options_);
+    ASSERT_TRUE(writer->Write(rig).ok());
+    ASSERT_TRUE(writer->Write(thermal, kScanStart).ok());
+    ASSERT_TRUE(writer->Close().ok());
+  }
+  const auto reader = Reader();
+  const auto read_rig = reader->ReadRig();
+  ASSERT_TRUE(read_rig.has_value());
+  EXPECT_EQ(read_rig->thermal_scale, thermal.scale);
+  const auto recorded = ReadAll(*reader).All<RecordedThermal>();
+  ASSERT_EQ(recorded.size(), 1U);
+  ExpectSame(recorded[0].frame.image, thermal.image);
+  EXPECT_EQ(recorded[0].frame.scale, thermal.scale);
+}
+
+TEST_P(RecordingTest, AScaleThatCannotBeIsDamage) {
+  EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
+  thermal.image.encoding = Encoding::kScaledRaw16;
+  thermal.scale = {0.0, 0.0};
+  {
+    auto writer = WriterTo(disk_, options_);
+    ASSERT_TRUE(writer->Write(thermal, kScanStart).ok());
+    ASSERT_TRUE(writer->Close().ok());
+  }
+  const auto item = Reader()->Next();
+  ASSERT_FALSE(item.has_value());
+  EXPECT_EQ(item.error().code(), StatusCode::kDataLoss);
+  EXPECT_NE(item.error().message().find("thermal_scale"), std::string::npos)
+      << item.error().message();
+}
+
 TEST_P(RecordingTest, CountsComeBackAsCounts) {
   EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
   thermal.image.encoding = Encoding::kCounts16;

@@ -132,9 +132,8 @@ class McapRecordingWriter final : public RecordingWriter {
   static Status MakeRaw(EncodedImage& image) {
     Result<Image<std::uint16_t>> pixels = Decode(image);  // Checks the size of raw images as well.
     if (!pixels) return pixels.error().WithContext("frame is not recorded");
-    if (image.encoding == Encoding::kRaw16 || image.encoding == Encoding::kCounts16)
-      return OkStatus();
-    image.encoding = Encoding::kRaw16;
+    if (IsRaw(image.encoding)) return OkStatus();
+    image.encoding = IsScaled(image.encoding) ? Encoding::kScaledRaw16 : Encoding::kRaw16;
     image.payload.clear();
     image.payload.reserve(pixels->size() * sizeof(std::uint16_t));
     for (const std::uint16_t pixel : pixels->pixels()) {

@@ -43,6 +43,7 @@ void CheckDepth(const SimulatedDepthOptions& depth, RangeCheck& check) {
 
 void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
   check("thermal.rate_hz", thermal.rate_hz(), 0.1, 1000.0);
+  check("thermal.max_celsius", thermal.max_celsius(), 50.0, kMaxRadiometric_celsius);
   check("thermal.expert.netd_kelvin", thermal.expert().netd_kelvin(), 0.0, 10.0);
   check("thermal.expert.blur_px", thermal.expert().blur_px(), 0.0, 10.0);
   check("thermal.expert.band_min_um", thermal.expert().band_min_um(), 0.5, 100.0);
@@ -162,7 +163,12 @@ Result<Rig> SimulatedRig(const SimulationOptions& options) {
         "{}: a simulated rig needs depth, thermal and T_thermal_depth", options.rig_file())));
   }
   rig.depth_scale = options.depth().expert().depth_scale();
+  rig.thermal_scale = ScaleOf(options.thermal());
   return rig;
+}
+
+RadiometricScale ScaleOf(const SimulatedThermalOptions& options) {
+  return ScaleForRange(kMinRadiometric_celsius, options.max_celsius()).value();
 }
 
 std::string SceneName(const SimulationOptions& options) {

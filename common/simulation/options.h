@@ -7,6 +7,7 @@
 
 namespace isotherm {
 
+class SimulatedThermalOptions;
 class SimulationOptions;
 
 /// Checks ranges and relations; the message names the field.
@@ -18,7 +19,11 @@ SimulationOptions Resolved(const SimulationOptions& options);
 /// The rig of the thesis: a PrimeSense Carmine 1.09 below an Optris PI 450.
 Rig DefaultSimulatedRig();
 
-/// The rig that the options name, with their depth scale. Fails if the file has no depth or no
+/// Returns the scale of the images of a camera that measures up to `max_celsius`. `options` are
+/// valid.
+RadiometricScale ScaleOf(const SimulatedThermalOptions& options);
+
+/// Returns the rig that the options name, with their scales. Fails if the file has no depth or no
 /// thermal camera.
 Result<Rig> SimulatedRig(const SimulationOptions& options);
 

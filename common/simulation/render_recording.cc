@@ -90,7 +90,8 @@ struct Worker {
     const std::optional<CaptureTime> opening = scan.LastOpening(time);
     thermal.seconds_since_nuc.reset();
     if (opening) thermal.seconds_since_nuc = ToSeconds(time - *opening);
-    thermal.image = thermal_encoder.Encode(raw.pixels);
+    thermal.scale = raw.thermal_scale;
+    thermal.image = thermal_encoder.Encode(raw.pixels, raw.thermal_scale);
   }
 };
 

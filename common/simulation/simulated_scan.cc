@@ -17,14 +17,15 @@ enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels, kDepthClock, k
 
 }  // namespace
 
-void AddKelvin(double kelvin, Image<std::uint16_t>& centikelvin) {
+void AddKelvin(double kelvin, const RadiometricScale& scale,
+               Image<std::uint16_t>& temperature_raw) {
   if (kelvin == 0.0) return;
-  constexpr double kLast = 65'535.0;
-  const double add = kelvin * kCentikelvinPerKelvin;
-  for (std::uint16_t& pixel : centikelvin.pixels()) {
+  const double add = kelvin / scale.kelvin_per_count;
+  for (std::uint16_t& pixel : temperature_raw.pixels()) {
     if (pixel == 0) continue;
     const double value = std::floor(pixel + add + 0.5);
-    pixel = value >= 1.0 && value <= kLast ? static_cast<std::uint16_t>(value) : 0;
+    const bool fits = value >= 1.0 && value <= RadiometricScale::kMaxCount;
+    pixel = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
   }
 }
 
@@ -160,6 +161,7 @@ RawFrame SimulatedScan::RenderThermal(std::uint64_t frame_number, Scratch& scrat
   frame.arrival_wall = time.arrival;
   frame.shutter_closed = IsShutterClosed(time.exposure);
   frame.housekeeping = HousekeepingAt(time.exposure);
+  frame.thermal_scale = rig_.thermal_scale;
   frame.pixels = ThermalPixels(frame_number, scratch);
   return frame;
 }
@@ -187,7 +189,7 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
           ? thermal_sensor_.RenderMoving(scene(), pose_after, noise, scratch.thermal)
           : thermal_sensor_.RenderMoving(SceneAround(staged_, PoseAt(time)), pose_after, noise,
                                          scratch.thermal);
-  AddKelvin(DriftErrorKelvin(time), pixels);
+  AddKelvin(DriftErrorKelvin(time), rig_.thermal_scale, pixels);
   return pixels;
 }
 

@@ -82,6 +82,6 @@ class SimulatedScan {
 };
 
 /// Adds the same to each pixel that has a value; what 16 bits cannot say becomes 0 = no value.
-void AddKelvin(double kelvin, Image<std::uint16_t>& centikelvin);
+void AddKelvin(double kelvin, const RadiometricScale& scale, Image<std::uint16_t>& temperature_raw);
 
 }  // namespace isotherm

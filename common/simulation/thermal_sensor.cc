@@ -7,6 +7,7 @@
 
 #include "common/base/noise.h"
 #include "common/frame/frame.h"
+#include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {
@@ -56,6 +57,7 @@ double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, do
 ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOptions& options)
     : grid_(camera),
       band_(SpectralBand{options.expert().band_min_um(), options.expert().band_max_um()}),
+      scale_(ScaleOf(options)),
       noise_radiance_(options.expert().netd_kelvin() *
                       PlanckBandRadianceSlope(kNetd_celsius, band_.band())),
       readout_s_(options.expert().readout_s()),
@@ -209,19 +211,16 @@ void ThermalSensor::Blur(Scratch& scratch) const {
 
 Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream,
                                            const Scratch& scratch) const {
-  constexpr double kRange = 65535.0;
-  Image<std::uint16_t> centikelvin(grid_.width(), grid_.height());
+  Image<std::uint16_t> temperature_raw(grid_.width(), grid_.height());
   const auto radiance = scratch.radiance.pixels();
-  const auto out = centikelvin.pixels();
+  const auto out = temperature_raw.pixels();
   for (std::size_t i = 0; i < out.size(); ++i) {
     const double measured = static_cast<double>(radiance[i]) +
                             noise_radiance_ * static_cast<double>(NormalNoise(noise_stream, i));
-    const double value =
-        (band_.CelsiusFromRadiance(measured) + kCelsiusZero_k) * kCentikelvinPerKelvin;
     // NaN (out of the radiometric range) and what 16 bits cannot say become 0 = no value.
-    out[i] = value >= 0.5 && value < kRange ? static_cast<std::uint16_t>(value + 0.5) : 0;
+    out[i] = scale_.CountOf(band_.CelsiusFromRadiance(measured));
   }
-  return centikelvin;
+  return temperature_raw;
 }
 
 }  // namespace isotherm

@@ -31,7 +31,8 @@ class ThermalSensor {
   /// T_world_thermal this many seconds after the capture time.
   using PoseAfter = std::function<RigidTransform(double seconds)>;
 
-  /// One image in centi-kelvin. The same `noise_stream` gives the same noise.
+  /// One image in counts of the scale that the options ask for (ScaleOf). The same `noise_stream`
+  /// gives the same noise.
   Image<std::uint16_t> Render(const Scene& scene, const RigidTransform& T_world_thermal,
                               std::uint64_t noise_stream, Scratch& scratch) const;
   /// The same by a camera that moves. A pixel's answer to a change is 1 - exp(-t / time constant);
@@ -66,6 +67,7 @@ class ThermalSensor {
 
   const RayGrid grid_;
   const BandRadiance band_;
+  const RadiometricScale scale_;
   const double noise_radiance_;
   const double readout_s_;
   std::vector<double> delays_s_;     ///< Equal parts of the detector's answer; their mean is 0.

@@ -56,6 +56,19 @@ class ThermalSensorTest : public ::testing::Test {
   SimulatedThermalOptions options_;
 };
 
+TEST_F(ThermalSensorTest, ItsRangeDecidesWhatIsHotterThanItsScale) {
+  options_.mutable_expert()->set_netd_kelvin(0.0);
+  const Scene wall = BlackWall(850.0);
+  EXPECT_EQ(Render(wall, RigidTransform::Identity()).At(100, 100), 0) << "hotter than 382 °C";
+  for (const double max_celsius : {900.0, 1500.0}) {
+    options_.set_max_celsius(max_celsius);
+    const RadiometricScale scale = ScaleOf(options_);
+    EXPECT_GE(scale.max_celsius(), max_celsius);
+    const Image<std::uint16_t> image = Render(wall, RigidTransform::Identity());
+    EXPECT_NEAR(scale.Celsius(image.At(100, 100)), 850.0, 0.5 * scale.kelvin_per_count + 0.001);
+  }
+}
+
 TEST_F(ThermalSensorTest, NoiseIsTheNetdAt30CelsiusAndLessWhereItIsHot) {
   const Statistics at_30 = Measure(Render(BlackWall(30.0), RigidTransform::Identity()));
   EXPECT_NEAR(at_30.mean, 30.0, 0.001);

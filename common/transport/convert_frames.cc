@@ -57,6 +57,15 @@ FrameFields FieldsOf(const isotherm_wire_FrameStamp& stamp,
           .payload_bytes = image.payload._length};
 }
 
+/// What a frame's counts mean. An old edge does not say, and sends centi-kelvin.
+std::optional<RefusalCause> FromWireScale(const isotherm_wire_ThermalFrame& from,
+                                          EncodedThermalFrame* to) {
+  if (!IsScaled(to->image.encoding)) return std::nullopt;
+  if (!from.has_scale) return RefusalCause::kOutOfRange;
+  to->scale = {from.kelvin_per_count, from.offset_kelvin};
+  return CheckThermalScale(to->scale);
+}
+
 }  // namespace
 
 void ToWire(const EncodedDepthFrame& from, isotherm_wire_DepthFrame* to) {
@@ -76,6 +85,9 @@ void ToWire(const EncodedThermalFrame& from, isotherm_wire_ThermalFrame* to) {
   to->housing_celsius = from.housekeeping.housing_celsius;
   to->shutter_celsius = from.housekeeping.shutter_celsius;
   to->image = BorrowImage(from.image);
+  to->kelvin_per_count = from.scale.kelvin_per_count;
+  to->offset_kelvin = from.scale.offset_kelvin;
+  to->has_scale = IsScaled(from.image.encoding);
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_DepthFrame& from, EncodedDepthFrame* to) {
@@ -107,7 +119,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_ThermalFrame& from,
                       .housing_celsius = from.housing_celsius,
                       .shutter_celsius = from.shutter_celsius};
   to->image = CopyImage(from.image);
-  return std::nullopt;
+  return FromWireScale(from, to);
 }
 
 void ToWire(const ExternalOdometrySample& from, isotherm_wire_OutsidePose* to) {

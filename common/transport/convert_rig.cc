@@ -58,7 +58,7 @@ std::optional<RefusalCause> FromWireMode(const isotherm_wire_StreamMode& from, S
     return RefusalCause::kImpossibleSize;
   }
   if (const auto cause = CheckFinite({from.rate_hz})) return cause;
-  if (CheckEnum(from.encoding, Encoding::kCounts16)) return RefusalCause::kUnknownEncoding;
+  if (CheckEnum(from.encoding, kLastEncoding)) return RefusalCause::kUnknownEncoding;
   to->width = static_cast<int>(from.width);
   to->height = static_cast<int>(from.height);
   to->rate_hz = from.rate_hz;
@@ -100,6 +100,10 @@ void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
     rig->thermal_sensor.lens = {thermal.focal_length_m, thermal.f_number, thermal.focus_m};
 }
 
+void FromWireScale(const isotherm_wire_Rig& from, Rig* rig) {
+  if (from.has_thermal_scale) rig->thermal_scale = {from.thermal_scale, from.thermal_offset};
+}
+
 std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, Rig* rig) {
   if (from.has_depth) rig->depth = FromWireCamera(from.depth);
   if (from.has_thermal) rig->thermal = FromWireCamera(from.thermal);
@@ -114,6 +118,7 @@ std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, R
   rig->date = ReadText(from.date);
   rig->method = ReadText(from.method);
   FromWireSensors(from, rig);
+  FromWireScale(from, rig);
   return CheckRig(*rig);
 }
 
@@ -153,6 +158,9 @@ void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
   ToWireMode(from.thermal, &to->thermal_mode);
   to->waits_for_ground = from.waits_for_ground;
   ToWireSensors(rig, to);
+  to->thermal_scale = rig.thermal_scale.kelvin_per_count;
+  to->thermal_offset = rig.thermal_scale.offset_kelvin;
+  to->has_thermal_scale = true;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to) {

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 #include <isotherm_frames.h>
 
+#include <limits>
+
 #include "common/transport/conversions.h"
 
 namespace isotherm {
@@ -41,6 +43,57 @@ TEST(ConvertRigTest, AnEdgeBefore22HasTheSensorsOfAnOldRigFile) {
   ASSERT_EQ(FromWire(wire, &received), std::nullopt);
   EXPECT_EQ(received.rig.depth_sensor.near_range_m, DepthSensorModel().near_range_m);
   EXPECT_EQ(received.rig.thermal_sensor.time_constant_s, ThermalSensorModel().time_constant_s);
+}
+
+TEST(ConvertRigTest, AnEdgeBefore23HasThermalFramesInCentikelvin) {
+  isotherm_wire_Rig wire{};
+  RigDescription sent = SomeRig();
+  sent.rig.thermal_scale = {0.02, 0.0};
+  ToWire(sent, &wire);
+  RigDescription received;
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_EQ(received.rig.thermal_scale, sent.rig.thermal_scale);
+  wire.thermal_scale = wire.thermal_offset = 0.0;
+  wire.has_thermal_scale = false;
+  received = RigDescription();
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_EQ(received.rig.thermal_scale, kCentikelvin);
+}
+
+TEST(ConvertRigTest, AThermalScaleThatCannotBeIsRefused) {
+  for (const double scale : {0.0, -0.01, std::numeric_limits<double>::quiet_NaN()}) {
+    isotherm_wire_Rig wire{};
+    ToWire(SomeRig(), &wire);
+    wire.thermal_scale = scale;
+    RigDescription received;
+    EXPECT_NE(FromWire(wire, &received), std::nullopt) << scale;
+  }
+}
+
+/// What ends before the scale, or within it, reads as zeros from there on: nobody knows what its
+/// counts mean.
+TEST(ConvertThermalFrameTest, AScaledImageWithoutItsScaleIsRefused) {
+  EncodedThermalFrame sent;
+  sent.image = {Encoding::kScaledRaw16, 2, 1, {1, 2, 3, 4}};
+  sent.scale = {0.02, 0.0};
+  isotherm_wire_ThermalFrame wire{};
+  ToWire(sent, &wire);
+  EncodedThermalFrame received;
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_EQ(received.scale, sent.scale);
+  for (const double scale : {0.0, -0.02}) {
+    wire.kelvin_per_count = scale;
+    EXPECT_EQ(FromWire(wire, &received), RefusalCause::kOutOfRange) << scale;
+  }
+  wire.offset_kelvin = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(FromWire(wire, &received), RefusalCause::kNotFinite);
+  wire.has_scale = false;
+  EXPECT_EQ(FromWire(wire, &received), RefusalCause::kOutOfRange);
+  // Without a scaled image no scale is asked for, and none is believed.
+  wire.image.encoding = static_cast<std::uint8_t>(Encoding::kRaw16);
+  received = EncodedThermalFrame();
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_EQ(received.scale, kCentikelvin);
 }
 
 TEST(ConvertRigTest, SensorsThatCannotBeAreRefused) {

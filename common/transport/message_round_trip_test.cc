@@ -68,6 +68,7 @@ Rig MakeRig() {
   rig.thermal = camera;
   rig.T_thermal_depth = MakeTransform({0.05, -0.01, 0.002}, Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3));
   rig.thermal_delay_s = 0.012;
+  rig.thermal_scale = {0.02, 12.5};
   rig.serial = "RIG-1";
   rig.reprojection_error_px = 0.31;
   rig.depth_sensor = {
@@ -111,6 +112,16 @@ TEST_F(MessageRoundTripTest, ThermalFrameArrivesAsItWasWritten) {
   EXPECT_TRUE(frame.valid);
 }
 
+TEST_F(MessageRoundTripTest, TemperaturesArriveInTheirScale) {
+  EncodedThermalFrame sent = MakeThermal();
+  sent.image.encoding = Encoding::kScaledThermalRans;
+  sent.scale = {0.02, 12.5};
+  const auto received = RoundTrip(sent);
+  ASSERT_TRUE(received.has_value());
+  EXPECT_EQ(received->message.image.encoding, Encoding::kScaledThermalRans);
+  EXPECT_EQ(received->message.scale, sent.scale);
+}
+
 TEST_F(MessageRoundTripTest, RigArrivesAsItWasWritten) {
   RigDescription sent;
   sent.session = 9;
@@ -120,6 +131,7 @@ TEST_F(MessageRoundTripTest, RigArrivesAsItWasWritten) {
   ASSERT_TRUE(received.has_value());
   const RigDescription& rig = received->message;
   EXPECT_EQ(rig.session, 9U);
+  EXPECT_EQ(rig.rig.thermal_scale, sent.rig.thermal_scale);
   ASSERT_TRUE(rig.rig.T_thermal_depth.has_value());
   EXPECT_TRUE(rig.rig.T_thermal_depth->isApprox(*sent.rig.T_thermal_depth, 1e-12));
   ASSERT_TRUE(rig.rig.thermal.has_value());

@@ -67,7 +67,7 @@ std::optional<RefusalCause> CheckFrame(const FrameFields& fields) {
       fields.payload_bytes > pixels * kMaxBytesPerPixel + kMaxCodeOverheadBytes) {
     return RefusalCause::kOversizePayload;
   }
-  if (CheckEnum(fields.encoding, Encoding::kCounts16)) return RefusalCause::kUnknownEncoding;
+  if (CheckEnum(fields.encoding, kLastEncoding)) return RefusalCause::kUnknownEncoding;
   if (fields.capture_time_ns < 0 || fields.capture_sigma_ns < 0) {
     return RefusalCause::kNegativeTime;
   }
@@ -78,6 +78,12 @@ std::optional<RefusalCause> CheckFrame(const FrameFields& fields) {
 std::optional<RefusalCause> CheckDepthScale(double units_per_metre) {
   if (!std::isfinite(units_per_metre)) return RefusalCause::kNotFinite;
   if (units_per_metre <= 0.0 || units_per_metre > kMaxDepthScale) return RefusalCause::kOutOfRange;
+  return std::nullopt;
+}
+
+std::optional<RefusalCause> CheckThermalScale(const RadiometricScale& scale) {
+  if (const auto cause = CheckFinite({scale.kelvin_per_count, scale.offset_kelvin})) return cause;
+  if (!Validate(scale).ok()) return RefusalCause::kOutOfRange;
   return std::nullopt;
 }
 

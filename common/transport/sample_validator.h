@@ -41,6 +41,7 @@ struct ThermalFields {
 
 std::optional<RefusalCause> CheckFrame(const FrameFields& fields);
 std::optional<RefusalCause> CheckDepthScale(double units_per_metre);
+std::optional<RefusalCause> CheckThermalScale(const RadiometricScale& scale);
 std::optional<RefusalCause> CheckThermal(const ThermalFields& fields);
 std::optional<RefusalCause> CheckRig(const Rig& rig);
 /// The counts must fit together and the holes must be ascending ranges below `next`.

@@ -88,6 +88,17 @@ Status FailureFromLink(const LinkStatus& from) {
   return DataLoss(fmt::format("{}a failure without a reason", kNotOfASoundProcess));
 }
 
+namespace {
+
+Result<RadiometricScale> ScaleOf(double kelvin_per_count, double offset_kelvin) {
+  const RadiometricScale scale{kelvin_per_count, offset_kelvin};
+  if (Status status = Validate(scale); !status.ok())
+    return Err(DataLoss(kNotOfASoundProcess + status.message()));
+  return scale;
+}
+
+}  // namespace
+
 void ToLink(const RawFrame& frame, LinkFrame* to) {
   to->set_width(frame.pixels.width());
   to->set_height(frame.pixels.height());
@@ -98,6 +109,8 @@ void ToLink(const RawFrame& frame, LinkFrame* to) {
   to->set_arrival_wall_ns(ToNanoseconds(frame.arrival_wall));
   to->set_arrival_steady_ns(Nanoseconds(frame.arrival_steady.time_since_epoch()).count());
   to->set_depth_scale(frame.depth_scale);
+  to->set_kelvin_per_count(frame.thermal_scale.kelvin_per_count);
+  to->set_offset_kelvin(frame.thermal_scale.offset_kelvin);
   to->set_shutter_closed(frame.shutter_closed);
   if (frame.camera_nuc) {
     to->set_has_camera_nuc(true);
@@ -133,6 +146,11 @@ Result<RawFrame> FromLink(const LinkFrame& from, const PixelSlots& slots) {
   frame.arrival_wall = CaptureTimeFromNanoseconds(from.arrival_wall_ns());
   frame.arrival_steady = SteadyTime(Nanoseconds(from.arrival_steady_ns()));
   frame.depth_scale = from.depth_scale();
+  if (frame.sensor == Sensor::kThermal) {
+    const auto scale = ScaleOf(from.kelvin_per_count(), from.offset_kelvin());
+    if (!scale) return Err(scale.error());
+    frame.thermal_scale = *scale;
+  }
   frame.shutter_closed = from.shutter_closed();
   if (from.has_camera_nuc()) {
     frame.camera_nuc = CameraNuc{static_cast<NucState>(from.nuc_state()),
@@ -160,6 +178,8 @@ void ToLink(const std::optional<Rig>& rig, const std::vector<CameraDescription>&
     link.set_rate_hz(camera.rate_hz);
     link.set_settings(camera.settings);
     link.set_counts_only(camera.counts_only);
+    link.set_kelvin_per_count(camera.thermal_scale.kelvin_per_count);
+    link.set_offset_kelvin(camera.thermal_scale.offset_kelvin);
   }
 }
 
@@ -177,9 +197,11 @@ Result<std::vector<CameraDescription>> CamerasOf(const LinkOpened& from) {
       return Err(
           DataLoss(fmt::format("{}a camera of sensor {}", kNotOfASoundProcess, link.sensor())));
     }
+    const auto scale = ScaleOf(link.kelvin_per_count(), link.offset_kelvin());
+    if (!scale) return Err(scale.error());
     cameras.push_back({static_cast<Sensor>(link.sensor()), link.driver(), link.model(),
                        link.serial(), link.width(), link.height(), link.rate_hz(), link.settings(),
-                       link.counts_only()});
+                       link.counts_only(), *scale});
   }
   return cameras;
 }

@@ -76,6 +76,7 @@ TEST_F(CameraProcessTest, FramesArriveAsTheyWere) {
   ASSERT_EQ(frame.pixels.height(), 3);
   for (std::size_t i = 0; i < 15; ++i) EXPECT_EQ(frame.pixels.data()[i], 1000 * i + 1);
   EXPECT_EQ(frame.depth_scale, 10'000.0);
+  EXPECT_EQ(frame.thermal_scale, (RadiometricScale{0.02, 5.0}));
   ASSERT_TRUE(frame.camera_nuc);
   EXPECT_EQ(frame.camera_nuc->state, NucState::kSettling);
   EXPECT_EQ(frame.camera_nuc->source, NucSource::kPolled);
@@ -98,6 +99,7 @@ TEST_F(CameraProcessTest, TheCameraTellsWhatItIs) {
   EXPECT_EQ(camera.rate_hz, 40.0);
   EXPECT_EQ(camera.settings, "all on");
   EXPECT_TRUE(camera.counts_only);
+  EXPECT_EQ(camera.thermal_scale, (RadiometricScale{0.02, 5.0}));
 }
 
 TEST_F(CameraProcessTest, OrdersReachTheCameraAndItsAnswersComeBack) {
@@ -260,6 +262,7 @@ TEST_F(CameraProcessTest, WhatNoSoundProcessSendsIsRefused) {
   const std::pair<const char*, const char*> cases[] = {
       {"bad-sensor", "sensor 2"},
       {"bad-nuc-state", "NUC state 99"},
+      {"bad-scale", "thermal_scale"},
       {"bad-nuc-source", "from source 99"},
       {"bad-status", "status 99"},
       {"ok-as-failure", "without a reason"},

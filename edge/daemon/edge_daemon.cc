@@ -91,9 +91,30 @@ void LogClock(const EdgeOptions& options, const KernelClock& clock) {
   }
 }
 
-/// The rig as it is published and recorded: capture times already contain the thermal delay.
-std::optional<Rig> WithoutThermalDelay(std::optional<Rig> rig) {
-  if (rig) rig->thermal_delay_s = 0.0;
+/// Returns the scale that thermal frames have: the camera's, or that of the frames that are played.
+RadiometricScale ScaleOfFrames(const FrameSource& source, const Rig& rig) {
+  for (const CameraDescription& camera : source.cameras()) {
+    if (camera.sensor == Sensor::kThermal && !camera.counts_only) return camera.thermal_scale;
+  }
+  if (!source.cameras().empty()) return rig.thermal_scale;  // The thermal one is not there yet.
+  const std::optional<Rig> played = source.rig();
+  return played ? played->thermal_scale : rig.thermal_scale;
+}
+
+/// Returns the rig as it is published and recorded: capture times already contain the thermal
+/// delay, and the thermal scale is that of the frames.
+std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source) {
+  if (!rig) return rig;
+  rig->thermal_delay_s = 0.0;
+  const RadiometricScale scale = ScaleOfFrames(source, *rig);
+  if (rig->thermal_scale != scale && rig->thermal_scale != kCentikelvin) {
+    LOG(Edge, Warning) << "the calibration's thermal_scale and thermal_offset, K: "
+                       << rig->thermal_scale.kelvin_per_count << " and "
+                       << rig->thermal_scale.offset_kelvin << "; the thermal frames have "
+                       << scale.kelvin_per_count << " and " << scale.offset_kelvin
+                       << ", which hold";
+  }
+  rig->thermal_scale = scale;
   return rig;
 }
 
@@ -114,9 +135,13 @@ std::string ModelText(const CameraDescription& camera) {
   return fmt::format("{}, {}", camera.driver, camera.model);
 }
 
+Encoding TemperatureEncoding(const RadiometricScale& scale) {
+  return scale == kCentikelvin ? Encoding::kThermalRans : Encoding::kScaledThermalRans;
+}
+
 Encoding EncodingOf(const CameraDescription& camera) {
   if (camera.sensor == Sensor::kDepth) return Encoding::kDepthRans;
-  return camera.counts_only ? Encoding::kCounts16 : Encoding::kThermalRans;
+  return camera.counts_only ? Encoding::kCounts16 : TemperatureEncoding(camera.thermal_scale);
 }
 
 RigDescription Describe(const EdgeOptions& options, const Start& start) {
@@ -130,7 +155,8 @@ RigDescription Describe(const EdgeOptions& options, const Start& start) {
     return stream;
   };
   description.depth = mode(description.rig.depth, Encoding::kDepthRans);
-  description.thermal = mode(description.rig.thermal, Encoding::kThermalRans);
+  description.thermal =
+      mode(description.rig.thermal, TemperatureEncoding(description.rig.thermal_scale));
   for (const CameraDescription& camera : start.cameras) {
     StreamMode& stream = camera.sensor == Sensor::kDepth ? description.depth : description.thermal;
     stream = {camera.width,       camera.height, camera.rate_hz,
@@ -364,7 +390,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
   LogRig(rig);
   LogCounts((*source)->cameras());
-  const Start start{clock.Now(), (*source)->cameras(), WithoutThermalDelay(rig),
+  const Start start{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
                     rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
   LogClock(options, start.clock);
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/geometry/radiometric_scale.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -82,6 +83,9 @@ void CheckThermalCamera(const ThermalCameraOptions& options, Problems& problems)
     problems.Add("optris_max_celsius",
                  fmt::format("is {}, must be above optris_min_celsius, which is {}",
                              options.optris_max_celsius(), options.optris_min_celsius()));
+  } else if (options.has_optris_min_celsius()) {
+    const auto scale = ScaleForRange(options.optris_min_celsius(), options.optris_max_celsius());
+    if (!scale) problems.Add("optris_max_celsius", scale.error().message());
   }
 }
 
@@ -102,8 +106,8 @@ void CheckSandbox(const CameraSandboxOptions& options, Problems& problems) {
 
 void CheckFrames(const FrameCheckOptions& options, Problems& problems) {
   problems.Stage("frame_check");
-  problems.CheckRange("expert.min_celsius", options.expert().min_celsius(), -273.0, 382.0);
-  problems.CheckRange("expert.max_celsius", options.expert().max_celsius(), -273.0, 382.19);
+  problems.CheckRange("expert.min_celsius", options.expert().min_celsius(), -273.0, 3000.0);
+  problems.CheckRange("expert.max_celsius", options.expert().max_celsius(), -273.0, 3000.0);
   if (options.expert().max_celsius() <= options.expert().min_celsius()) {
     problems.Add("expert.max_celsius",
                  fmt::format("is {}, must be above min_celsius, which is {}",

@@ -67,6 +67,11 @@ TEST(ValidateEdgeOptionsTest, MeasuringRangeHasTwoEndsInOrder) {
   EXPECT_THAT(Validate(options).message(), HasSubstr("must be above optris_min_celsius"));
   camera.set_optris_max_celsius(250);
   EXPECT_TRUE(Validate(options).ok());
+  camera.set_optris_max_celsius(4000);
+  EXPECT_THAT(Validate(options).message(),
+              HasSubstr("source.thermal_camera.optris_max_celsius: temperatures from 100 to 4000"));
+  camera.set_optris_max_celsius(900);
+  EXPECT_TRUE(Validate(options).ok());
 }
 
 TEST(ValidateEdgeOptionsTest, PathsOfTheSandboxAreAbsolute) {

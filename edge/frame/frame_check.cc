@@ -3,25 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {
 
-std::uint16_t CelsiusToCentikelvin(double celsius) {
-  const double centikelvin = (celsius + kCelsiusZero_k) * kCentikelvinPerKelvin;
-  return static_cast<std::uint16_t>(std::clamp(std::round(centikelvin), 1.0, 65534.0));
-}
+/// The last count stands for all that is hotter.
+constexpr std::uint16_t kLastCount = 65534;
 
 std::string_view NameOf(Sensor sensor) { return sensor == Sensor::kDepth ? "depth" : "thermal"; }
 
 }  // namespace
 
 FrameCheck::FrameCheck(const FrameCheckOptions& options)
-    : min_centikelvin_(CelsiusToCentikelvin(options.expert().min_celsius())),
-      max_centikelvin_(CelsiusToCentikelvin(options.expert().max_celsius())) {}
+    : min_celsius_(options.expert().min_celsius()), max_celsius_(options.expert().max_celsius()) {}
 
 void FrameCheck::Expect(const Rig& rig) {
   const auto size = [](const std::optional<CameraModel>& camera) {
@@ -44,15 +40,17 @@ Status FrameCheck::Process(RawFrame& frame) {
                                 NameOf(frame.sensor), frame.frame_number, width, height,
                                 expected.width, expected.height));
   }
-  if (frame.sensor == Sensor::kThermal && !keep_counts_) MaskTemperatures(frame.pixels);
+  if (frame.sensor == Sensor::kThermal && !keep_counts_)
+    MaskTemperatures(frame.thermal_scale, frame.pixels);
   return OkStatus();
 }
 
-void FrameCheck::MaskTemperatures(Image<std::uint16_t>& centikelvin) {
-  const std::uint16_t lowest = min_centikelvin_;
-  const std::uint16_t highest = max_centikelvin_;
+void FrameCheck::MaskTemperatures(const RadiometricScale& scale,
+                                  Image<std::uint16_t>& temperature_raw) {
+  const std::uint16_t lowest = scale.NearestCountOf(min_celsius_);
+  const std::uint16_t highest = std::min(scale.NearestCountOf(max_celsius_), kLastCount);
   std::uint32_t masked = 0;
-  for (std::uint16_t& value : centikelvin.pixels()) {
+  for (std::uint16_t& value : temperature_raw.pixels()) {
     const bool outside = value < lowest || value > highest;
     masked += outside ? 1U : 0U;
     value = outside ? std::uint16_t{0} : value;

@@ -12,7 +12,8 @@ namespace isotherm {
 class FrameCheckOptions;
 
 /// Refuses frames that cannot be what the camera saw, before anything uses them, and masks single
-/// values: apparent temperatures out of range become 0 (no value). Depth is left as it is: 0 and
+/// values: apparent temperatures out of range become 0 (no value), as do those at the end of the
+/// frame's scale. Depth is left as it is: 0 and
 /// 65535 already mean "no return". The expected size is the rig's, or that of the sensor's first
 /// frame. Thread-compatible.
 class FrameCheck {
@@ -21,7 +22,7 @@ class FrameCheck {
 
   /// Takes the expected sizes from the calibration.
   void Expect(const Rig& rig);
-  /// Thermal frames hold counts instead of centi-kelvin: nothing is masked.
+  /// Thermal frames hold counts instead of temperatures: nothing is masked.
   void KeepCounts(bool keep) { keep_counts_ = keep; }
 
   /// kDataLoss for a frame to be dropped; otherwise `frame` is masked and good.
@@ -34,10 +35,10 @@ class FrameCheck {
     int width = 0;
     int height = 0;
   };
-  void MaskTemperatures(Image<std::uint16_t>& centikelvin);
+  void MaskTemperatures(const RadiometricScale& scale, Image<std::uint16_t>& temperature_raw);
 
-  const std::uint16_t min_centikelvin_;
-  const std::uint16_t max_centikelvin_;
+  const double min_celsius_;
+  const double max_celsius_;
   std::array<Size, 2> expected_{};  ///< By Sensor; zero = not known yet.
   bool keep_counts_ = false;
   std::uint64_t masked_pixels_ = 0;

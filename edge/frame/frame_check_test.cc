@@ -87,6 +87,24 @@ TEST_F(FrameCheckTest, F12TemperaturesAtTheLimitsAreKept) {
   EXPECT_EQ(frame.pixels.At(3, 0), 0);
 }
 
+TEST_F(FrameCheckTest, F12LimitsAreTemperaturesWhateverTheScale) {
+  FrameCheckOptions options;
+  options.mutable_expert()->set_min_celsius(0);
+  options.mutable_expert()->set_max_celsius(900);
+  FrameCheck check(options);
+  RawFrame frame = Frame(Sensor::kThermal, 4, 1, 0);
+  frame.thermal_scale = {0.02, 0.0};
+  frame.pixels.At(0, 0) = 13'600;  // -1.15 °C.
+  frame.pixels.At(1, 0) = 56'157;  // 849.99 °C.
+  frame.pixels.At(2, 0) = 58'657;  // 899.99 °C.
+  frame.pixels.At(3, 0) = 58'700;  // 900.85 °C.
+  ASSERT_TRUE(check.Process(frame).ok());
+  EXPECT_EQ(frame.pixels.At(0, 0), 0);
+  EXPECT_EQ(frame.pixels.At(1, 0), 56'157);
+  EXPECT_EQ(frame.pixels.At(2, 0), 58'657);
+  EXPECT_EQ(frame.pixels.At(3, 0), 0);
+}
+
 TEST_F(FrameCheckTest, F12DepthWithoutReturnStaysAsItIs) {
   RawFrame frame = Frame(Sensor::kDepth, 2, 1, kNoDepth);
   frame.pixels.At(1, 0) = kNoDepthSaturated;

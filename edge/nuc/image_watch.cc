@@ -21,13 +21,13 @@ constexpr int kStride = 4;
 
 }  // namespace
 
-double ImageSpread(const Image<std::uint16_t>& centikelvin) {
+double ImageSpread(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale) {
   double count = 0.0, sum = 0.0, squares = 0.0;
-  for (int y = 0; y < centikelvin.height(); y += kStride) {
-    const std::span<const std::uint16_t> row = centikelvin.Row(y);
+  for (int y = 0; y < temperature_raw.height(); y += kStride) {
+    const std::span<const std::uint16_t> row = temperature_raw.Row(y);
     for (std::size_t x = 0; x < row.size(); x += kStride) {
       if (row[x] == 0) continue;
-      const double kelvin = row[x] / kCentikelvinPerKelvin;
+      const double kelvin = scale.Kelvin(row[x]);
       count += 1.0;
       sum += kelvin;
       squares += kelvin * kelvin;
@@ -43,12 +43,13 @@ ImageWatch::ImageWatch(const NucOptions& options)
       uniform_fraction_(options.expert().shutter_like_spread()),
       longest_(FromSeconds(options.expert().max_duration_s())) {}
 
-ImageEvidence ImageWatch::Add(const Image<std::uint16_t>& centikelvin, CaptureTime time,
-                              bool known_closed) {
+ImageEvidence ImageWatch::Add(const Image<std::uint16_t>& temperature_raw,
+                              const RadiometricScale& scale, CaptureTime time, bool known_closed) {
   ImageEvidence evidence;
-  evidence.is_frozen = repeats_.Add(centikelvin) >= max_repeats_;
+  evidence.is_frozen = repeats_.Add(temperature_raw) >= max_repeats_;
   if (uniform_fraction_ > 0.0 && !evidence.is_frozen) {
-    evidence.is_like_shutter = IsLikeShutter(ImageSpread(centikelvin), time, known_closed);
+    evidence.is_like_shutter =
+        IsLikeShutter(ImageSpread(temperature_raw, scale), time, known_closed);
   }
   return evidence;
 }

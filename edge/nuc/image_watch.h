@@ -6,6 +6,7 @@
 
 #include "common/doubts/repeat_detector.h"
 #include "common/frame/image.h"
+#include "common/geometry/radiometric_scale.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {
@@ -29,9 +30,10 @@ class ImageWatch {
  public:
   explicit ImageWatch(const NucOptions& options);
 
-  /// `centikelvin`: height x width, 0 = no value. `known_closed`: the camera says that it shows no
-  /// scene. `time` must not decrease between calls.
-  ImageEvidence Add(const Image<std::uint16_t>& centikelvin, CaptureTime time, bool known_closed);
+  /// `temperature_raw`: height x width, counts of `scale`, 0 = no value. `known_closed`: the camera
+  /// says that it shows no scene. `time` must not decrease between calls.
+  ImageEvidence Add(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale,
+                    CaptureTime time, bool known_closed);
 
  private:
   bool IsLikeShutter(double spread_k, CaptureTime time, bool known_closed);
@@ -45,6 +47,6 @@ class ImageWatch {
 };
 
 /// Standard deviation of the values of an image, kelvin; pixels without a value do not count.
-double ImageSpread(const Image<std::uint16_t>& centikelvin);
+double ImageSpread(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale);
 
 }  // namespace isotherm

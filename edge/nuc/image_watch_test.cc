@@ -31,7 +31,7 @@ class ImageWatchTest : public ::testing::Test {
   }
   ImageEvidence Add(const ThermalImage& image, bool known_closed = false) {
     now_ += std::chrono::milliseconds(25);
-    return watch_.Add(image, now_, known_closed);
+    return watch_.Add(image, kCentikelvin, now_, known_closed);
   }
 
   std::mt19937 random_{testing::Seed()};
@@ -42,8 +42,8 @@ class ImageWatchTest : public ::testing::Test {
 
 TEST_F(ImageWatchTest, SpreadIsTheStandardDeviationInKelvin) {
   // Of a ramp over 12 K: 12 / sqrt(12). The noise adds nothing that shows.
-  EXPECT_NEAR(ImageSpread(Scene(12.0)), 12.0 / std::sqrt(12.0), 0.1);
-  EXPECT_EQ(ImageSpread(ThermalImage(8, 8, 0)), 0.0) << "no value anywhere";
+  EXPECT_NEAR(ImageSpread(Scene(12.0), kCentikelvin), 12.0 / std::sqrt(12.0), 0.1);
+  EXPECT_EQ(ImageSpread(ThermalImage(8, 8, 0), kCentikelvin), 0.0) << "no value anywhere";
 }
 
 TEST_F(ImageWatchTest, F05TheSameImageAgainAndAgainIsFrozen) {
@@ -70,7 +70,7 @@ TEST_F(ImageWatchTest, F06NativeRepeatsAreNotFrozen) {
     const ThermalImage image = Scene(10.0);
     for (int repeat = 0; repeat < 3; ++repeat) {
       now_ += std::chrono::milliseconds(37);
-      EXPECT_FALSE(watch.Add(image, now_, false).is_frozen);
+      EXPECT_FALSE(watch.Add(image, kCentikelvin, now_, false).is_frozen);
     }
   }
 }

@@ -85,7 +85,7 @@ NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
   seen.housekeeping = housekeeping_ = frame.housekeeping;
   const bool known_closed = frame.shutter_closed ||
                             (frame.camera_nuc && frame.camera_nuc->state == NucState::kInProgress);
-  seen.image = images_.Add(frame.pixels, time, known_closed);
+  seen.image = images_.Add(frame.pixels, frame.thermal_scale, time, known_closed);
   status_ = supervisor_.Update(seen);
   if (status_.order) Pass(*status_.order, time);
   LogNotices();

@@ -252,6 +252,7 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   frame.seconds_since_nuc = nuc.seconds_since_nuc;
   frame.valid = nuc.valid && !thermal_is_counts_;
   if (thermal_is_counts_) frame.image.encoding = Encoding::kCounts16;
+  frame.scale = thermal_is_counts_ ? kCentikelvin : raw.thermal_scale;
   frame.housekeeping = raw.housekeeping;
   nuc_report_.Set(nuc_.Report());
   Forward({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
@@ -284,8 +285,8 @@ void EdgePipeline::Encode(const std::stop_token& stop) {
       depth->image = depth_encoder_.Encode(uncoded->pixels);
     if (auto* thermal = std::get_if<EncodedThermalFrame>(&content)) {
       const bool is_counts = thermal->image.encoding == Encoding::kCounts16;
-      thermal->image =
-          is_counts ? PackCounts(uncoded->pixels) : thermal_encoder_.Encode(uncoded->pixels);
+      thermal->image = is_counts ? PackCounts(uncoded->pixels)
+                                 : thermal_encoder_.Encode(uncoded->pixels, thermal->scale);
     }
     Emit(std::move(uncoded->frame), stop);
   }

@@ -26,6 +26,7 @@ class EdgePipelineTest : public testing::Test {
     auto camera = std::make_unique<FakeSource>(script);
     camera->control_answer = control_answer_;
     if (counts_only_) camera->DescribeThermal(true);
+    camera->thermal_scale = thermal_scale_;
     camera_ = camera.get();
     source_ = std::make_unique<SupervisedSource>(
         std::move(camera), options_.frame_check(), clock_,
@@ -82,6 +83,7 @@ class EdgePipelineTest : public testing::Test {
   CameraHealth health_;
   Status control_answer_ = FailedPrecondition("no shutter");
   bool counts_only_ = false;
+  RadiometricScale thermal_scale_;
   FakeSource* camera_ = nullptr;
   std::unique_ptr<SupervisedSource> source_;
   std::unique_ptr<EdgePipeline> pipeline_;
@@ -170,6 +172,21 @@ TEST_F(EdgePipelineTest, CountsAreRecordedAndPublishedAsCountsAndNeverValid) {
     EXPECT_TRUE(DecodeTemperatures(frame.image)->empty());
   }
   EXPECT_EQ(recording_.thermal_frames.size(), 2U);
+}
+
+TEST_F(EdgePipelineTest, TemperaturesArePublishedInTheScaleOfTheCamera) {
+  thermal_scale_ = {0.02, 0.0};
+  Start("d 2*t");
+  EXPECT_TRUE(RunToTheEnd().ok());
+  const std::vector<EncodedThermalFrame> published = publisher_.thermal();
+  ASSERT_EQ(published.size(), 2U);
+  for (const EncodedThermalFrame& frame : published) {
+    EXPECT_EQ(frame.image.encoding, Encoding::kScaledThermalRans);
+    EXPECT_EQ(frame.scale, thermal_scale_);
+    const Result<Image<std::uint16_t>> pixels = DecodeTemperatures(frame.image);
+    ASSERT_TRUE(pixels.has_value());
+    EXPECT_EQ(pixels->At(0, 0), FakeSource::kCentikelvin);
+  }
 }
 
 TEST_F(EdgePipelineTest, ThermalDelayIsTheOptionsPlusTheRigs) {

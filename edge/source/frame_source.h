@@ -50,8 +50,10 @@ struct CameraDescription {
   int height = 0;        ///< Pixels.
   double rate_hz = 0.0;  ///< 0 = not known.
   std::string settings;  ///< What else was set, for people: "unit 1 mm, mirroring off".
-  /// Thermal only: its pixels are counts that nothing relates to temperatures, not centi-kelvin.
+  /// Thermal only: its pixels are counts that nothing relates to temperatures.
   bool counts_only = false;
+  /// Thermal only: what its pixels mean otherwise.
+  RadiometricScale thermal_scale{};
 };
 
 /// Delivers frames of one or more sensors as the device and the host gave them, and poses of the

@@ -134,6 +134,7 @@ RawFrame ReplaySource::ToRawFrame(RecordedDepth recorded) {
 RawFrame ReplaySource::ToRawFrame(RecordedThermal recorded) {
   const EncodedThermalFrame& thermal = recorded.frame;
   RawFrame frame = Prepare(Sensor::kThermal, thermal.header, thermal.image, recorded.arrival);
+  frame.thermal_scale = thermal.scale;
   frame.housekeeping = thermal.housekeeping;
   const CaptureTime time = thermal.header.capture_time;
   frame.shutter_closed =

@@ -39,7 +39,7 @@ void SimulatedShutter::Apply(RawFrame& frame) {
     Correct(frame);
     if (!closed_by_scan_) ShowShutter(frame);
   } else {
-    AddKelvin(correction_k_, frame.pixels);
+    AddKelvin(correction_k_, frame.thermal_scale, frame.pixels);
     last_open_ = frame.pixels;
   }
   Say(frame, closed);
@@ -78,8 +78,7 @@ void SimulatedShutter::ShowShutter(RawFrame& frame) const {
     const double noise_k =
         options_->thermal().expert().netd_kelvin() *
         static_cast<double>(NormalNoise(NoiseStream(options_->seed(), 0, frame.frame_number), i));
-    pixels[i] = static_cast<std::uint16_t>(
-        (celsius + noise_k + kCelsiusZero_k) * kCentikelvinPerKelvin + 0.5);
+    pixels[i] = frame.thermal_scale.NearestCountOf(celsius + noise_k);
   }
 }
 

@@ -88,7 +88,7 @@ TEST_F(SimulatedShutterTest, AClosedCameraShowsTheLastImageOrTheShutter) {
   ASSERT_TRUE(shutter_->Control(TriggerNuc{}).ok());
   do frame = Frame(30.0F);
   while (!frame.shutter_closed);
-  EXPECT_NEAR(CentikelvinToCelsius(frame.pixels.At(4, 3)), 60.0, 0.3) << "and noise";
+  EXPECT_NEAR(kCentikelvin.Celsius(frame.pixels.At(4, 3)), 60.0, 0.3) << "and noise";
 }
 
 TEST_F(SimulatedShutterTest, ACorrectionTakesTheErrorOfTheHousingAway) {

@@ -20,6 +20,13 @@ inline constexpr int kP2ProHeight = 192;
 /// Kelvin = count / 64.
 inline constexpr PixelEncoding kInfirayEncoding{true, 1.0 / 64.0, 0.0};
 
+/// Returns what a gain measures, by the data sheets; nullopt if it was left as it is.
+constexpr std::optional<MeasuringRange> InfirayRange(ThermalGain gain) {
+  if (gain == ThermalGain::kHigh) return MeasuringRange{-20.0, 150.0};
+  if (gain == ThermalGain::kLow) return MeasuringRange{0.0, 600.0};
+  return std::nullopt;
+}
+
 /// The lower half. kDataLoss if `bytes` has not the size of a frame.
 Result<Image<std::uint16_t>> ParseP2ProFrame(Bytes bytes);
 

@@ -33,12 +33,17 @@ constexpr std::size_t kFfcModeBytes = 32;
 constexpr std::uint8_t kRunFfc = 17;
 
 float CelsiusOf(std::uint16_t centikelvin) {
-  return centikelvin == 0 ? kUnknown_celsius : CentikelvinToCelsius(centikelvin);
+  return centikelvin == 0 ? kUnknown_celsius : kCentikelvin.Celsius(centikelvin);
 }
 
 std::string_view LeptonGainName(std::uint32_t mode) {
   constexpr std::string_view kNames[] = {"high", "low", "automatic"};
   return mode < std::size(kNames) ? kNames[mode] : "unknown";
+}
+
+/// Returns what a gain measures, by the data sheet; automatic gain may become low at any time.
+MeasuringRange LeptonRange(std::uint32_t mode) {
+  return mode == 0 ? MeasuringRange{-10.0, 140.0} : MeasuringRange{-10.0, 550.0};
 }
 
 UvcMode ModeOf(const Size& size) {
@@ -138,6 +143,7 @@ Status LeptonCamera::SetGain(ThermalGain gain) {
     // A Lepton without this control has one range only.
     const Result<std::uint32_t> found = ReadGain();
     info_.settings = found ? fmt::format("gain {}", LeptonGainName(*found)) : "gain unknown";
+    if (found) info_.range = LeptonRange(*found);
     return OkStatus();
   }
   const std::uint32_t wanted = gain == ThermalGain::kLow ? 1 : 0;
@@ -152,6 +158,7 @@ Status LeptonCamera::SetGain(ThermalGain gain) {
                                           info_.bus_port, LeptonGainName(*found), NameOf(gain)));
   }
   info_.settings = fmt::format("gain {}", NameOf(gain));
+  info_.range = LeptonRange(wanted);
   return OkStatus();
 }
 

@@ -172,6 +172,7 @@ Status OptrisCamera::SetRange() {
         lowest, highest));
   }
   info_.settings = fmt::format("range {} to {} degrees Celsius", lowest, highest);
+  info_.range = MeasuringRange{static_cast<double>(lowest), static_cast<double>(highest)};
   return OkStatus();
 }
 

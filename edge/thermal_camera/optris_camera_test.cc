@@ -3,6 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "edge/options/edge_options.pb.h"
+#include "edge/thermal_camera/thermal_camera_source.h"
+
 namespace isotherm {
 namespace {
 
@@ -15,6 +22,33 @@ class OptrisCameraTest : public testing::Test {
     Result<std::optional<RawThermalFrame>> frame = camera.Read(Nanoseconds(0));
     EXPECT_TRUE(frame.has_value() && frame->has_value());
     return frame && *frame ? **frame : RawThermalFrame{};
+  }
+  /// The camera as the edge uses it, in a measuring range.
+  std::unique_ptr<ThermalCameraSource> Source(int min_celsius, int max_celsius) {
+    settings_.range = {min_celsius, max_celsius};
+    ThermalCameraSource::Cameras cameras;
+    cameras.list = [] {
+      DeviceDescription device;
+      device.driver = OptrisCamera::kDriver;
+      return Result<std::vector<DeviceDescription>>(std::vector<DeviceDescription>{device});
+    };
+    cameras.make = [this](const DeviceDescription&) {
+      return std::make_unique<OptrisCamera>("1-1", settings_, clock_);
+    };
+    ThermalCameraOptions options;
+    options.set_driver(OPTRIS_SDK);
+    return std::make_unique<ThermalCameraSource>(options, clock_, std::move(cameras));
+  }
+  RawFrame ReadFrame(FrameSource& source) {
+    for (int i = 0; i < 20; ++i) {
+      Result<SourceItem> item = source.Read({});
+      EXPECT_TRUE(item.has_value());
+      if (!item) break;
+      auto* frame = std::get_if<RawFrame>(&*item);
+      if (frame != nullptr && !frame->pixels.empty()) return std::move(*frame);
+    }
+    ADD_FAILURE() << "no frame";
+    return {};
   }
   FakeClock clock_;
   OptrisSettings settings_{FAKE_OPTRIS, "pi450.xml", "", std::nullopt};
@@ -74,6 +108,32 @@ TEST_F(OptrisCameraTest, MeasuringRangeIsSetAndTold) {
   OptrisCamera other("1-1", settings_, clock_);
   EXPECT_THAT(other.Open().message(), HasSubstr("no range of 0 to 251"));
   EXPECT_THAT(camera.SetGain(ThermalGain::kLow).message(), HasSubstr("optris_min_celsius"));
+}
+
+TEST_F(OptrisCameraTest, TheThirdRangeReachesBeyond382DegreesInAScaleThatIsAnnounced) {
+  const auto source = Source(150, 900);
+  const Status opened = source->Open();
+  ASSERT_TRUE(opened.ok()) << opened.message();
+  const RawFrame frame = ReadFrame(*source);
+  ASSERT_FALSE(frame.pixels.empty());
+  const float celsius = frame.thermal_scale.Celsius(frame.pixels.At(1, 1));
+  EXPECT_GE(celsius, 849.9F);  // 850 to 850.6, in steps of the library.
+  EXPECT_LE(celsius, 850.7F);
+  EXPECT_GE(frame.thermal_scale.max_celsius(), 900.0);
+  EXPECT_LE(frame.thermal_scale.kelvin_per_count, 0.05);
+  ASSERT_EQ(source->cameras().size(), 1U);
+  EXPECT_EQ(source->cameras()[0].thermal_scale, frame.thermal_scale);
+}
+
+TEST_F(OptrisCameraTest, TheOtherRangesStayCentikelvin) {
+  for (const auto& [low, high] : {std::pair(-20, 100), std::pair(0, 250)}) {
+    const auto source = Source(low, high);
+    ASSERT_TRUE(source->Open().ok());
+    const RawFrame frame = ReadFrame(*source);
+    EXPECT_EQ(frame.thermal_scale, kCentikelvin) << high;
+    ASSERT_FALSE(frame.pixels.empty());
+    EXPECT_NEAR(frame.thermal_scale.Celsius(frame.pixels.At(0, 0)), 25.3, 0.4);
+  }
 }
 
 TEST_F(OptrisCameraTest, RangeIsThatOfTheXmlFileUnlessAsked) {

@@ -154,6 +154,7 @@ Status P2ProCamera::SetAutomaticNuc(bool on) {
 
 Status P2ProCamera::SetGain(ThermalGain gain) {
   gain_ = gain;
+  info_.range = InfirayRange(gain);
   info_.settings = gain == ThermalGain::kKeep
                        ? "gain as found"
                        : fmt::format("gain {} when it answers", NameOf(gain));

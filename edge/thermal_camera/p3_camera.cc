@@ -175,6 +175,7 @@ Status P3Camera::SetGain(ThermalGain gain) {
   if (!done) return done.error().WithContext("setting the gain");
   // No way to ask for it was ever published: the camera's acknowledgement is all there is.
   info_.settings = fmt::format("gain {} (acknowledged, not read back)", NameOf(gain));
+  info_.range = InfirayRange(gain);
   return OkStatus();
 }
 

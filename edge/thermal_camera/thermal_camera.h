@@ -44,6 +44,12 @@ inline std::string_view NameOf(ThermalGain gain) {
   return gain == ThermalGain::kHigh ? "high" : "low";
 }
 
+/// Holds the apparent temperatures between which a camera measures, °C.
+struct MeasuringRange {
+  double min_celsius = 0.0;
+  double max_celsius = 0.0;
+};
+
 struct ThermalCameraInfo {
   std::string driver;    ///< E.g. "lepton-uvc".
   std::string product;   ///< As the camera calls itself.
@@ -53,6 +59,8 @@ struct ThermalCameraInfo {
   int height = 0;
   double rate_hz = 0.0;  ///< Nominal.
   std::string settings;  ///< What it was set to or found at, for people: "gain low".
+  /// As set, after SetGain; nullopt = not known.
+  std::optional<MeasuringRange> range;
   /// It measures no temperatures: no frame is radiometric.
   bool counts_only = false;
   /// The device counter grows by this much from image to image; 0 = there is no counter, and

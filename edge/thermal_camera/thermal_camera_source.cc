@@ -66,6 +66,11 @@ Status ThermalCameraSource::Open() {
   camera_ = cameras_.make(*device);
   Status opened = camera_->Open();
   if (opened.ok()) opened = camera_->SetGain(GainOf(options_->gain()));
+  if (opened.ok() && !scale_) {
+    const Result<RadiometricScale> scale = ChooseScale();
+    if (scale) scale_ = *scale;
+    if (!scale) opened = scale.error();
+  }
   if (!opened.ok()) {
     Close();
     return opened.WithContext(
@@ -160,6 +165,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
 RawFrame ThermalCameraSource::Convert(const RawThermalFrame& raw) {
   RawFrame frame;
   frame.sensor = Sensor::kThermal;
+  frame.thermal_scale = *scale_;
   frame.frame_number = next_frame_number_++;
   frame.has_device_clock = raw.device_ticks.has_value();
   frame.device_ticks = raw.device_ticks.value_or(DeviceTicks{});
@@ -176,7 +182,7 @@ RawFrame ThermalCameraSource::Convert(const RawThermalFrame& raw) {
   UpdateTable(EncodingOf(raw));
   frame.pixels.Resize(raw.counts.width(), raw.counts.height());
   const std::uint16_t* counts = raw.counts.data();
-  for (std::uint16_t& pixel : frame.pixels.pixels()) pixel = centikelvin_of_count_[*counts++];
+  for (std::uint16_t& pixel : frame.pixels.pixels()) pixel = raw_of_count_[*counts++];
   return frame;
 }
 
@@ -186,16 +192,30 @@ PixelEncoding ThermalCameraSource::EncodingOf(const RawThermalFrame& raw) const 
 }
 
 void ThermalCameraSource::UpdateTable(const PixelEncoding& encoding) {
-  if (encoding == encoding_ && !centikelvin_of_count_.empty()) return;
+  if (encoding == encoding_ && !raw_of_count_.empty()) return;
   encoding_ = encoding;
-  centikelvin_of_count_.resize(65'536);
-  for (std::size_t count = 0; count < centikelvin_of_count_.size(); ++count) {
+  raw_of_count_.resize(65'536);
+  for (std::size_t count = 0; count < raw_of_count_.size(); ++count) {
     const double kelvin =
         encoding.kelvin_per_count * static_cast<double>(count) + encoding.offset_kelvin;
-    const double centikelvin = std::round(kCentikelvinPerKelvin * kelvin);
-    const bool fits = centikelvin >= 1.0 && centikelvin <= 65'535.0;
-    centikelvin_of_count_[count] = static_cast<std::uint16_t>(fits ? centikelvin : 0.0);
+    raw_of_count_[count] = scale_->CountOf(kelvin - kCelsiusZero_k);
   }
+}
+
+Result<RadiometricScale> ThermalCameraSource::ChooseScale() const {
+  const ThermalCameraInfo& info = camera_->info();
+  if (info.range) return ScaleForRange(info.range->min_celsius, info.range->max_celsius);
+  // What the options make of counts is kept as it is where centi-kelvin would cut it off.
+  const ThermalCameraExpertOptions& expert = options_->expert();
+  const RadiometricScale own{expert.kelvin_per_count(), expert.offset_kelvin()};
+  const bool is_cut = info.counts_only && own.kelvin_per_count > 0.0 &&
+                      own.max_celsius() > kCentikelvin.max_celsius();
+  if (!is_cut) return kCentikelvin;
+  if (Status status = Validate(own); !status.ok()) {
+    return Err(status.WithContext(
+        "source.thermal_camera.expert.kelvin_per_count and offset_kelvin as the frames' scale"));
+  }
+  return own;
 }
 
 Status ThermalCameraSource::Hangs(const std::string& what, Nanoseconds duration) const {
@@ -217,6 +237,7 @@ std::vector<CameraDescription> ThermalCameraSource::cameras() const {
   description.settings = "port " + info.bus_port;
   if (!info.settings.empty()) description.settings += ", " + info.settings;
   description.counts_only = info.counts_only && options_->expert().kelvin_per_count() == 0.0;
+  description.thermal_scale = *scale_;
   return {description};
 }
 

@@ -30,9 +30,11 @@ struct ThermalCameraCounts {
   std::uint64_t lost = 0;        ///< Counted by the camera, never seen here.
 };
 
-/// Frames of one thermal camera in centi-kelvin; in counts if it measures no temperatures and the
-/// options do not say what counts mean (CameraDescription::counts_only).
+/// Frames of one thermal camera as temperatures; in counts if it measures none and the options do
+/// not say what counts mean (CameraDescription::counts_only).
 ///
+/// - Temperatures are centi-kelvin, or in the scale that the camera's range needs. It is decided
+///   when the camera is opened first: that is what the rig's description announces.
 /// - Repeated images are left out; they are no loss.
 /// - Frozen images count as taken behind a closed shutter; when they last, the camera is taken
 ///   for hung, as it is when nothing comes at all: Read fails, so that it is opened again.
@@ -69,6 +71,8 @@ class ThermalCameraSource final : public FrameSource {
   Status Hangs(const std::string& what, Nanoseconds duration) const;
   /// Takes the temperatures of counts from the options if the camera does not know them.
   PixelEncoding EncodingOf(const RawThermalFrame& raw) const;
+  /// Returns the scale for the range of the camera, or for the counts that the options explain.
+  Result<RadiometricScale> ChooseScale() const;
   void UpdateTable(const PixelEncoding& encoding);
 
   const std::unique_ptr<const ThermalCameraOptions> options_;
@@ -79,7 +83,8 @@ class ThermalCameraSource final : public FrameSource {
   std::unique_ptr<ThermalCamera> camera_;
   std::optional<FrameNovelty> novelty_;
   PixelEncoding encoding_;
-  std::vector<std::uint16_t> centikelvin_of_count_;  ///< 65536 values; 0 = no value.
+  std::optional<RadiometricScale> scale_;    ///< Of the frames; nullopt = never opened.
+  std::vector<std::uint16_t> raw_of_count_;  ///< 65536 values; 0 = no value.
   SteadyTime last_frame_at_{};
   std::uint64_t next_frame_number_ = 0;
   bool frozen_ = false;

@@ -162,6 +162,41 @@ TEST_F(ThermalCameraSourceTest, CountsBecomeCentikelvinOrNoValue) {
   EXPECT_EQ(frame.pixels.At(3, 0), 0);
 }
 
+TEST_F(ThermalCameraSourceTest, TheCamerasRangeDecidesTheScaleWhichStaysAndIsTold) {
+  script_.info.range = MeasuringRange{150.0, 900.0};
+  RawThermalFrame sent = MakeFrame(10'000, 100);
+  sent.encoding = {true, 0.1, kCelsiusZero_k - 100.0};  // 900 °C.
+  Send(sent);
+  const auto source = Open();
+  const RawFrame frame = ReadFrame(*source);
+  EXPECT_EQ(frame.thermal_scale, (RadiometricScale{0.02, 0.0}));
+  EXPECT_NEAR(frame.thermal_scale.Celsius(frame.pixels.At(0, 0)), 900.0, 0.011);
+  EXPECT_EQ(source->cameras().at(0).thermal_scale, frame.thermal_scale);
+  // Announced is announced: what it says when it is opened again does not matter.
+  script_.info.range = MeasuringRange{0.0, 250.0};
+  source->Close();
+  ASSERT_TRUE(source->Open().ok());
+  EXPECT_EQ(source->cameras().at(0).thermal_scale, frame.thermal_scale);
+}
+
+TEST_F(ThermalCameraSourceTest, ARangeThatNoScaleOf16BitsHoldsIsRefused) {
+  script_.info.range = MeasuringRange{150.0, 4'000.0};
+  const Status opened = Make()->Open();
+  EXPECT_EQ(opened.code(), StatusCode::kInvalidArgument);
+  EXPECT_THAT(opened.message(), HasSubstr("4000 °C"));
+}
+
+TEST_F(ThermalCameraSourceTest, WhatTheOptionsMakeOfCountsIsNotCutAt382Degrees) {
+  script_.info.counts_only = true;
+  options_.mutable_expert()->set_kelvin_per_count(0.04);
+  options_.mutable_expert()->set_offset_kelvin(-20.0);
+  RawThermalFrame sent = MakeFrame(30'000, 100);  // 1180 K.
+  sent.encoding = {};
+  Send(sent);
+  const RawFrame frame = ReadFrame(*Open());
+  EXPECT_NEAR(frame.thermal_scale.Celsius(frame.pixels.At(0, 0)), 906.85, 0.03);
+}
+
 TEST_F(ThermalCameraSourceTest, CountsWithoutTemperatureAreRefusedUnlessTheOptionsRelateThem) {
   RawThermalFrame sent = MakeFrame(8'000, 100);
   sent.encoding = {};

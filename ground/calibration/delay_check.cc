@@ -110,8 +110,8 @@ void DelayCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) {
   if (!options_.enabled() || !rig_.thermal || !frame->valid ||
       ToSeconds(frame->header.capture_sigma) > kMaxStampSigma_s)
     return;
-  if (frame->centikelvin.width() != rig_.thermal->width ||
-      frame->centikelvin.height() != rig_.thermal->height)
+  if (frame->temperature_raw.width() != rig_.thermal->width ||
+      frame->temperature_raw.height() != rig_.thermal->height)
     return;
   selection_.Add(frame, SpeedNow(scan, *rig_.thermal));
 }
@@ -151,7 +151,8 @@ Result<DelayEstimate> DelayCheck::Estimate(const ScanModel& scan, ThreadPool& po
   views.thermal_camera = *rig_.thermal;
   views.T_thermal_depth = *rig_.T_thermal_depth;
   for (const ThermalFramePtr& frame : selection_.frames()) {
-    views.frames.push_back({frame->header.capture_time, {frame, &frame->centikelvin}, {}});
+    views.frames.push_back(
+        {frame->header.capture_time, {frame, &frame->temperature_raw}, frame->scale, {}});
   }
   const Status surface = AddSurface(scan, kMaxPoints, options.search.range_s, pool, views,
                                     PartOf(progress, 0.0, kVisibilityFraction));

@@ -94,7 +94,7 @@ shutter { first_s: 5 })",
       frame->header.frame_number = i;
       frame->header.capture_time = scan.thermal_times()[i].exposure;
       frame->valid = !scan.IsShutterClosed(frame->header.capture_time);
-      frame->centikelvin = scan.RenderThermal(i, scratch).pixels;
+      frame->temperature_raw = scan.RenderThermal(i, scratch).pixels;
       frames_.push_back(std::move(frame));
     }
   }
@@ -207,7 +207,7 @@ TEST_F(DelayCheckTest, ASceneWithoutThermalContrastIsNotAssessed) {
     frame = std::make_shared<ThermalFrame>(*frame);
     const std::uint64_t stream = NoiseStream(kSeed, 9, frame->header.frame_number);
     std::uint64_t counter = 0;
-    for (std::uint16_t& pixel : frame->centikelvin.pixels())
+    for (std::uint16_t& pixel : frame->temperature_raw.pixels())
       pixel = static_cast<std::uint16_t>(30'000.0F + 4.0F * NormalNoise(stream, counter++));
   }
   const DelayReport report = Check(0.02, 0.0);

@@ -152,10 +152,10 @@ TEST(FindDelayTest, WithoutThermalContrastNothingIsFound) {
   ScanViews views = SwingInFrontOfAWall(0.01);
   std::uint64_t counter = 0;
   for (StampedThermal& frame : views.frames) {
-    Image<std::uint16_t> image = *frame.centikelvin;
+    Image<std::uint16_t> image = *frame.temperature_raw;
     for (std::uint16_t& pixel : image.pixels())
       pixel = static_cast<std::uint16_t>(31'300.0F + 4.0F * NormalNoise(9, counter++));
-    frame.centikelvin = std::make_shared<const Image<std::uint16_t>>(std::move(image));
+    frame.temperature_raw = std::make_shared<const Image<std::uint16_t>>(std::move(image));
   }
   const Result<DelayEstimate> found = Find(views);
   ASSERT_FALSE(found.has_value());
@@ -165,7 +165,8 @@ TEST(FindDelayTest, WithoutThermalContrastNothingIsFound) {
 TEST(FindDelayTest, WithoutMotionNothingIsFound) {
   ScanViews views = SwingInFrontOfAWall(0.01);
   for (StampedPose& pose : views.trajectory) pose.T_world_depth = RigidTransform::Identity();
-  for (StampedThermal& frame : views.frames) frame.centikelvin = views.frames.front().centikelvin;
+  for (StampedThermal& frame : views.frames)
+    frame.temperature_raw = views.frames.front().temperature_raw;
   EXPECT_FALSE(Find(views).has_value());
 }
 

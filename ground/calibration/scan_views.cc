@@ -98,6 +98,7 @@ class Reader {
       return;
     frames_.push_back({recorded.frame.header.capture_time,
                        std::make_shared<const Image<std::uint16_t>>(std::move(*image)),
+                       recorded.frame.scale,
                        {}});
   }
 

@@ -23,7 +23,8 @@ struct Sample {
 };
 
 /// Bilinear value and central differences; nullopt where the image has no value.
-std::optional<Sample> SampleAt(const Image<std::uint16_t>& image, double u, double v) {
+std::optional<Sample> SampleAt(const Image<std::uint16_t>& image, const RadiometricScale& scale,
+                               double u, double v) {
   const int x = static_cast<int>(u), y = static_cast<int>(v);
   if (u < 1.0 || v < 1.0 || x + 2 >= image.width() || y + 2 >= image.height()) return std::nullopt;
   const double a = u - x, b = v - y;
@@ -33,8 +34,8 @@ std::optional<Sample> SampleAt(const Image<std::uint16_t>& image, double u, doub
   const double top = v00 + a * (v10 - v00), bottom = v01 + a * (v11 - v01);
   const double dx = (1.0 - b) * (v10 - v00) + b * (v11 - v01);
   const double dy = bottom - top;
-  return Sample{(top + b * (bottom - top)) / kCentikelvinPerKelvin - kCelsiusZero_k,
-                std::hypot(dx, dy) / kCentikelvinPerKelvin};
+  return Sample{scale.Kelvin(top + b * (bottom - top)) - kCelsiusZero_k,
+                std::hypot(dx, dy) * scale.kelvin_per_count};
 }
 
 }  // namespace
@@ -138,7 +139,8 @@ std::vector<TextureConsistency::PointSums> TextureConsistency::MeasurePart(
       if (i >= points) break;
       const auto pixel = Project(views_.thermal_camera, T_thermal_world * views_.points[i].p_world);
       if (!pixel) continue;
-      const std::optional<Sample> sample = SampleAt(*frame.centikelvin, pixel->x(), pixel->y());
+      const std::optional<Sample> sample =
+          SampleAt(*frame.temperature_raw, frame.scale, pixel->x(), pixel->y());
       if (!sample) continue;
       const double celsius = sample->celsius - means_celsius_[i];
       sums[i].count += 1.0;

@@ -24,7 +24,9 @@ struct TexturePoint {
 /// A thermal image with its stamp as the recording has it.
 struct StampedThermal {
   CaptureTime time;
-  std::shared_ptr<const Image<std::uint16_t>> centikelvin;  ///< As ThermalFrame::centikelvin.
+  /// As in ThermalFrame.
+  std::shared_ptr<const Image<std::uint16_t>> temperature_raw;
+  RadiometricScale scale{};
   /// Indices, ascending, of the points that it shows whatever its delay is within the range that
   /// is searched; empty if poses are missing there.
   std::vector<std::uint32_t> visible;

@@ -27,7 +27,7 @@ A viewable recording has the topics /depth and /thermal (foxglove.RawImage, 16UC
 (foxglove.CameraCalibration), and transforms (foxglove.FrameTransform) between world, depth and
 thermal. Poses of the rig are those of --trajectory (a result folder of `isotherm reconstruct`, or a
 file in TUM format), or else those that the recording has from the ground's feedback. In an image panel set
-the value range: thermal pixels are centi-kelvin (29300 is 19.85 °C).
+the value range: thermal pixels are centi-kelvin (29300 is 19.85 °C) unless `isotherm inspect` names another thermal scale.
 
 Examples:
   isotherm convert scan.mcap -o view.mcap --encoding viewable --trajectory out/scan

@@ -195,13 +195,17 @@ class Converter {
 
   Status WriteItem(const RecordedDepth& depth) {
     EncodedDepthFrame frame = depth.frame;
-    if (!Store(frame.image, depth_encoder_) || !Spoil(frame)) return OkStatus();
+    const auto encode = [this](const auto& pixels) { return depth_encoder_.Encode(pixels); };
+    if (!Store(frame.image, encode) || !Spoil(frame)) return OkStatus();
     ++summary_.depth_frames;
     return writer_.Write(frame, depth.arrival);
   }
   Status WriteItem(const RecordedThermal& thermal) {
     EncodedThermalFrame frame = thermal.frame;
-    if (!Store(frame.image, thermal_encoder_)) return OkStatus();
+    const auto encode = [&](const auto& pixels) {
+      return thermal_encoder_.Encode(pixels, frame.scale);
+    };
+    if (!Store(frame.image, encode)) return OkStatus();
     ++summary_.thermal_frames;
     return writer_.Write(frame, thermal.arrival);
   }
@@ -224,16 +228,18 @@ class Converter {
   }
 
   /// Codes the image anew if it has to be; false if it is damaged.
-  template <typename Encoder>
-  bool Store(EncodedImage& image, Encoder& encoder) {
+  template <typename Encode>
+  bool Store(EncodedImage& image, const Encode& encode) {
     // What the writer unpacks for viewers, it checks; so do we, to go on without a damaged one.
     Result<Image<std::uint16_t>> pixels = Decode(image);
     if (!pixels) {
       LeaveOut(pixels.error());
       return false;
     }
-    const bool is_plain = image.encoding == Encoding::kRaw16 || image.encoding == Encoding::kPng16;
-    if (request_.storage == ImageStorage::kCompact && is_plain) image = encoder.Encode(*pixels);
+    const bool is_plain = image.encoding == Encoding::kRaw16 ||
+                          image.encoding == Encoding::kPng16 ||
+                          image.encoding == Encoding::kScaledRaw16;
+    if (request_.storage == ImageStorage::kCompact && is_plain) image = encode(*pixels);
     return true;
   }
 

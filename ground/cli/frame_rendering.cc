@@ -54,17 +54,19 @@ Result<RgbImage> RenderingOf(const RecordedItem& item) {
       Decode(depth != nullptr ? depth->frame.image : thermal->frame.image);
   if (!image) return Err(image.error());
   if (depth != nullptr) return DepthRendering(*image, depth->frame.depth_scale);
-  return thermal->frame.image.encoding == Encoding::kCounts16 ? CountsRendering(*image)
-                                                              : ThermalRendering(*image);
+  return thermal->frame.image.encoding == Encoding::kCounts16
+             ? CountsRendering(*image)
+             : ThermalRendering(*image, thermal->frame.scale);
 }
 
 }  // namespace
 
-RgbImage ThermalRendering(const Image<std::uint16_t>& centikelvin) {
-  Image<float> celsius(centikelvin.width(), centikelvin.height(), NAN);
+RgbImage ThermalRendering(const Image<std::uint16_t>& temperature_raw,
+                          const RadiometricScale& scale) {
+  Image<float> celsius(temperature_raw.width(), temperature_raw.height(), NAN);
   for (std::size_t i = 0; i < celsius.size(); ++i) {
-    const std::uint16_t raw = centikelvin.pixels()[i];
-    if (raw != 0) celsius.pixels()[i] = CentikelvinToCelsius(raw);
+    const std::uint16_t raw = temperature_raw.pixels()[i];
+    if (raw != 0) celsius.pixels()[i] = scale.Celsius(raw);
   }
   return Rendering(celsius, RendererOptions(), "apparent temperature", "\u00B0C");
 }

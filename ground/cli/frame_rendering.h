@@ -9,7 +9,8 @@
 namespace isotherm {
 
 /// Thermal frame in false colours with a legend; pixels without a value are striped grey.
-RgbImage ThermalRendering(const Image<std::uint16_t>& centikelvin);
+RgbImage ThermalRendering(const Image<std::uint16_t>& temperature_raw,
+                          const RadiometricScale& scale);
 
 /// Depth frame by distance with a legend in metres; pixels without a return are striped grey.
 RgbImage DepthRendering(const Image<std::uint16_t>& depth_raw, double depth_scale);

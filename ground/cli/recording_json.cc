@@ -101,6 +101,8 @@ Json CalibrationJson(const std::optional<Rig>& rig) {
   json["thermal"] = rig->thermal.has_value();
   json["T_thermal_depth"] = rig->T_thermal_depth.has_value();
   json["thermal_delay_s"] = rig->thermal_delay_s;
+  json["thermal_scale"] = rig->thermal_scale.kelvin_per_count;
+  json["thermal_offset"] = rig->thermal_scale.offset_kelvin;
   const RigCalibration calibration = ToProto(*rig);
   json["depth_sensor"] = ToJson(calibration.depth_sensor());
   json["thermal_sensor"] = ToJson(calibration.thermal_sensor());

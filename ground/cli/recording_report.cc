@@ -151,6 +151,11 @@ void AppendRig(const RecordingReport& report, std::string& text) {
   const Rig& rig = *report.rig;
   text += fmt::format("{} depth units per metre, thermal delay {} s", rig.depth_scale,
                       rig.thermal_delay_s);
+  if (rig.thermal_scale != kCentikelvin) {
+    text += fmt::format(", thermal scale {:g} K from {:g} K on (up to {:.0f} °C)",
+                        rig.thermal_scale.kelvin_per_count, rig.thermal_scale.offset_kelvin,
+                        rig.thermal_scale.max_celsius());
+  }
   if (!rig.serial.empty()) text += ", serial " + Printable(rig.serial);
   if (!rig.date.empty()) text += ", " + Printable(rig.date);
   text += "\n";
@@ -201,7 +206,8 @@ bool IsViewable(const RecordingSummary& summary) {
     return std::ranges::all_of(stream.encodings, [](const auto& counted) {
       return counted.first == EncodingName(Encoding::kRaw16) ||
              counted.first == EncodingName(Encoding::kPng16) ||
-             counted.first == EncodingName(Encoding::kCounts16);
+             counted.first == EncodingName(Encoding::kCounts16) ||
+             counted.first == EncodingName(Encoding::kScaledRaw16);
     });
   };
   return is_plain(summary.depth) && is_plain(summary.thermal);

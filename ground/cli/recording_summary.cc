@@ -60,6 +60,10 @@ std::string EncodingName(Encoding encoding) {
       return "thermal-rans";
     case Encoding::kCounts16:
       return "counts (no temperatures)";
+    case Encoding::kScaledThermalRans:
+      return "scaled thermal-rans";
+    case Encoding::kScaledRaw16:
+      return "scaled raw";
   }
   return fmt::format("unknown ({})", static_cast<int>(encoding));
 }
@@ -153,7 +157,8 @@ void Show(const RecordedItem& item, PlausibilityCheck& plausibility) {
   } else if (const auto* thermal = std::get_if<RecordedThermal>(&item)) {
     if (!plausibility.AddThermal(thermal->frame.header.capture_time)) return;
     if (thermal->frame.image.encoding == Encoding::kCounts16) return;  // No temperatures.
-    if (const auto pixels = Decode(thermal->frame.image)) plausibility.LookAtThermal(*pixels);
+    if (const auto pixels = Decode(thermal->frame.image))
+      plausibility.LookAtThermal(*pixels, thermal->frame.scale);
   }
 }
 

@@ -146,7 +146,7 @@ TEST(FrameRenderingTest, HotIsRedAndColdIsBlueBesideALegend) {
     for (int x = 32; x < 64; ++x) centikelvin.At(x, y) = 31000;
   }
   centikelvin.At(0, 0) = 0;
-  const RgbImage rendering = ThermalRendering(centikelvin);
+  const RgbImage rendering = ThermalRendering(centikelvin, kCentikelvin);
   EXPECT_GT(rendering.width(), 64);
   const int top = (rendering.height() - 48) / 2;
   const Rgb8 cold = rendering.At(10, top + 20);
@@ -158,7 +158,7 @@ TEST(FrameRenderingTest, HotIsRedAndColdIsBlueBesideALegend) {
 }
 
 TEST(FrameRenderingTest, AFrameWithoutAnyValueIsDrawnToo) {
-  EXPECT_GT(ThermalRendering(Image<std::uint16_t>(8, 8, 0)).width(), 8);
+  EXPECT_GT(ThermalRendering(Image<std::uint16_t>(8, 8, 0), kCentikelvin).width(), 8);
   EXPECT_GT(DepthRendering(Image<std::uint16_t>(8, 8, 65535), 1000.0).width(), 8);
 }
 

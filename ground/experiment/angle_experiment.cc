@@ -121,7 +121,7 @@ double CompareWithFresnel(const SimulatedScan& scan) {
     const int y = static_cast<int>(std::lround(pixel->y()));
     const RawFrame frame = scan.RenderThermal(number, scratch);
     const double measured =
-        scan.band().RadianceFromCelsius(CentikelvinToCelsius(frame.pixels.At(x, y)));
+        scan.band().RadianceFromCelsius(frame.thermal_scale.Celsius(frame.pixels.At(x, y)));
     const Eigen::Vector3d to_camera = (T_world_thermal.translation() - front).normalized();
     const double reflectivity = DielectricReflectivity(std::acos(-to_camera.z()), kDiscIndex);
     const double fresnel =

@@ -47,7 +47,8 @@ ThermalFramePtr ToThermalFrame(RawFrame raw, CaptureTime time, const SimulatedSc
     frame->seconds_since_nuc = ToSeconds(time - *opening);
   frame->housekeeping = raw.housekeeping;
   frame->valid = !raw.shutter_closed;
-  frame->centikelvin = std::move(raw.pixels);
+  frame->temperature_raw = std::move(raw.pixels);
+  frame->scale = raw.thermal_scale;
   return frame;
 }
 

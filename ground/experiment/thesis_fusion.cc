@@ -127,7 +127,7 @@ void ThesisFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_
                        const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
                        ThreadPool& pool, ThermalVolume& thermal) {
   raycaster_.Cast(tsdf, depth_camera_, T_world_depth, min_weight_, pool, maps_);
-  rectifier_.Rectify(frame.centikelvin, 0, pool, celsius_);
+  rectifier_.Rectify(frame.temperature_raw, frame.scale, 0, pool, celsius_);
   FindVertices(T_world_thermal, pool);
   const RigidTransform T_depth_world = T_world_depth.inverse();
   pool.ParallelFor(tsdf.block_count(),

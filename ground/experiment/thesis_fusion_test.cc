@@ -44,14 +44,14 @@ class ThesisFuserTest : public ::testing::Test {
     ThermalFrame frame;
     frame.valid = true;
     const CameraModel& camera = *rig_.thermal;
-    frame.centikelvin = Image<std::uint16_t>(camera.width, camera.height);
+    frame.temperature_raw = Image<std::uint16_t>(camera.width, camera.height);
     const Eigen::Vector3d to_ball = T_world_thermal_.inverse() * kBall;
     for (int v = 0; v < camera.height; ++v) {
       for (int u = 0; u < camera.width; ++u) {
         const Eigen::Vector3d ray =
             Unproject(camera, Eigen::Vector2d(u, v)).homogeneous().normalized();
         const double celsius = ray.cross(to_ball).norm() < kRadius ? kHot : kCold;
-        frame.centikelvin.At(u, v) =
+        frame.temperature_raw.At(u, v) =
             static_cast<std::uint16_t>(std::lround((celsius + 273.15) * 100.0));
       }
     }

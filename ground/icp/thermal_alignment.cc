@@ -31,7 +31,7 @@ constexpr double kMaxShift_m = 0.1;
 constexpr double kOutlier = 3.0;
 constexpr double kSigmaOfMedian = 1.4826;
 constexpr double kMinSpread_k =
-    0.02;  ///< Steps of a centi-kelvin spread so far, however little noise there is.
+    0.02;  ///< Counts of some centi-kelvin spread so far, however little noise there is.
 /// A fit that leaves more than this part of the reference's variance unexplained is none.
 constexpr double kMaxUnexplained = 0.25;
 /// Neighbouring cells share pixels by interpolation: about one of this many samples counts.
@@ -77,19 +77,18 @@ ThermalAlignment::ThermalAlignment(const CameraModel& thermal_camera,
   }
 }
 
-void ThermalAlignment::Reduce(const Image<std::uint16_t>& centikelvin,
-                              Image<float>& celsius) const {
+void ThermalAlignment::Reduce(const ThermalFrame& frame, Image<float>& celsius) const {
   celsius.Resize(camera_.width, camera_.height);
   const std::int32_t* source = source_.data();
   for (float& cell : celsius.pixels()) {
     std::uint32_t sum = 0;
     bool whole = true;
     for (int i = 0; i < kCellPixels; ++i) {
-      const std::uint16_t raw = centikelvin.data()[*source++];
+      const std::uint16_t raw = frame.temperature_raw.data()[*source++];
       sum += raw;
       whole = whole && raw != 0;
     }
-    cell = whole ? CentikelvinToCelsius(static_cast<double>(sum) / kCellPixels) : NAN;
+    cell = whole ? frame.scale.Celsius(static_cast<double>(sum) / kCellPixels) : NAN;
   }
 }
 
@@ -126,7 +125,7 @@ void ThermalAlignment::MakeReference(const SurfaceMaps& model_points) {
   reference_.clear();
   if (!placed_) return;
   Image<float> celsius;
-  Reduce(placed_->centikelvin, celsius);
+  Reduce(*placed_, celsius);
   const int step = std::max(1, (model_points.width() + kPointsAcross - 1) / kPointsAcross);
   double sum = 0.0;
   double squares = 0.0;
@@ -268,7 +267,7 @@ std::optional<ThermalFit> ThermalAlignment::Align(const Observability& motion,
   if (!has_image_) return std::nullopt;
   if (reference_.empty()) MakeReference(model_points);
   if (reference_.empty()) return std::nullopt;
-  if (!is_reduced_) Reduce(newest_->centikelvin, image_);
+  if (!is_reduced_) Reduce(*newest_, image_);
   is_reduced_ = true;
   const int unobservable = motion.unobservable_axes;
   const Eigen::MatrixXd shifts =

@@ -64,7 +64,7 @@ class ThermalAlignment {
   std::optional<Sample> Look(const Image<float>& celsius, const RigidTransform& T_map_thermal,
                              const Eigen::Vector3d& p_map) const;
   /// The quarter image without lens distortion, °C; NaN = no value.
-  void Reduce(const Image<std::uint16_t>& centikelvin, Image<float>& celsius) const;
+  void Reduce(const ThermalFrame& frame, Image<float>& celsius) const;
   void MakeReference(const SurfaceMaps& model_points);
   /// Mean products of the shifts of the reference's points per motion along the axes.
   Matrix6 Shifts(const RigidTransform& T_map_depth, const Observability& motion) const;

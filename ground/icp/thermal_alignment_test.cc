@@ -60,7 +60,7 @@ class ThermalAlignmentTest : public ::testing::Test {
                                       const Temperature& celsius) {
     auto frame = std::make_shared<ThermalFrame>();
     frame->header.capture_time = Time(seconds);
-    frame->centikelvin.Resize(camera_.width, camera_.height);
+    frame->temperature_raw.Resize(camera_.width, camera_.height);
     const RigidTransform T_map_thermal = T_map_depth * T_thermal_depth_.inverse();
     const std::uint64_t stream = NoiseStream(kSeed, 0, ++frames_);
     for (int v = 0; v < camera_.height; ++v) {
@@ -71,7 +71,7 @@ class ThermalAlignmentTest : public ::testing::Test {
                                   (kWall_m - T_map_thermal.translation().z()) / ray.z() * ray;
         const double noise =
             kNetd_k * NormalNoise(stream, static_cast<std::uint64_t>(v * camera_.width + u));
-        frame->centikelvin.At(u, v) = static_cast<std::uint16_t>(
+        frame->temperature_raw.At(u, v) = static_cast<std::uint16_t>(
             std::lround(100.0 * (celsius(p.x(), p.y()) + noise + 273.15)));
       }
     }
@@ -177,7 +177,7 @@ TEST_F(ThermalAlignmentTest, PixelsWithoutAValueAreLeftOut) {
   alignment_->End(std::nullopt, {Time(0.0), pose}, kReferenceSigma_m);
   const auto frame = Frame(0.033, truth, Spots);
   for (int y = 0; y < 200; ++y) {
-    for (int x = 0; x < 100; ++x) frame->centikelvin.At(x, y) = 0;
+    for (int x = 0; x < 100; ++x) frame->temperature_raw.At(x, y) = 0;
   }
   alignment_->Add(frame);
   alignment_->Begin(StampedMapPose{Time(0.0), pose}, Time(0.033), pose);

@@ -108,9 +108,12 @@ class InlineDriver {
     frame->seconds_since_nuc = encoded.seconds_since_nuc;
     frame->housekeeping = encoded.housekeeping;
     frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
-    if (!Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header, frame->centikelvin))
+    frame->scale = encoded.scale;
+    if (!Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header,
+                frame->temperature_raw))
       return;
-    if (look && !frame->centikelvin.empty()) plausibility_.LookAtThermal(frame->centikelvin);
+    if (look && !frame->temperature_raw.empty())
+      plausibility_.LookAtThermal(frame->temperature_raw, frame->scale);
     assembler_.Add(std::move(frame));
   }
 

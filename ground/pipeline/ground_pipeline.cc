@@ -259,7 +259,7 @@ DepthReport GroundPipeline::Report(const TrackedFrame& frame, bool integrated) c
 void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   ++counts_.thermal_in;
   // Of a camera that measures no temperatures (Encoding::kCounts16).
-  const bool is_counts = frame->centikelvin.empty() && !frame->valid;
+  const bool is_counts = frame->temperature_raw.empty() && !frame->valid;
   if (is_counts && counts_.thermal_left_out[LeftOutReason::kCounts]++ == 0) {
     thermal_status_ = FailedPrecondition(
         "the thermal camera sends counts, which nothing relates to temperatures: none are fused, "

@@ -163,8 +163,9 @@ TEST_F(PipelineFailuresTest, F12TheMapHoldsNoValueThatIsNone) {
     spoil(depth.depth_raw, {kNoDepth, kNoDepthSaturated, 1, 65'534});
     auto thermal = std::make_shared<ThermalFrame>();
     thermal->header.capture_time = Time(i - 0.5);
-    thermal->centikelvin = Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);
-    spoil(thermal->centikelvin, {0});  // As the edge leaves what is out of range.
+    thermal->temperature_raw =
+        Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);
+    spoil(thermal->temperature_raw, {0});  // As the edge leaves what is out of range.
     thermal->valid = true;
     if (i > 0) pipeline_->ProcessThermal(thermal);
     EXPECT_TRUE(pipeline_->ProcessDepth(depth).tracked) << i;

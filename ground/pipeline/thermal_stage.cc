@@ -32,8 +32,8 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
     LeaveOut(LeftOutReason::kNuc);
     return false;
   }
-  if (frame->centikelvin.width() != camera_.width ||
-      frame->centikelvin.height() != camera_.height) {
+  if (frame->temperature_raw.width() != camera_.width ||
+      frame->temperature_raw.height() != camera_.height) {
     LeaveOut(LeftOutReason::kWrongSize);
     return false;
   }

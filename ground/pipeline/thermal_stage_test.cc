@@ -44,7 +44,7 @@ class ThermalStageTest : public ::testing::Test {
   std::shared_ptr<ThermalFrame> Frame(double at) const {
     auto frame = std::make_shared<ThermalFrame>();
     frame->header.capture_time = Time(at);
-    frame->centikelvin =
+    frame->temperature_raw =
         Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);  // 50 °C.
     frame->valid = true;
     return frame;
@@ -116,7 +116,8 @@ TEST_F(ThermalStageTest, F07WhileTheShutterIsClosedItIsNuc) {
 
 TEST_F(ThermalStageTest, OfAnotherSizeThanTheCalibrations) {
   auto frame = Frame(0.5);
-  frame->centikelvin = Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height - 1, 32'315);
+  frame->temperature_raw =
+      Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height - 1, 32'315);
   EXPECT_FALSE(stage_->Add(frame));
   EXPECT_EQ(counts_.thermal_left_out, (LeftOut{{LeftOutReason::kWrongSize, 1}}));
 }

@@ -53,8 +53,8 @@ class LiveScanTest : public ::testing::Test {
   void Thermal(double at) {
     auto frame = std::make_shared<ThermalFrame>();
     frame->header.capture_time = Time(at);
-    frame->centikelvin = Image<std::uint16_t>(rig_.rig.thermal->width, rig_.rig.thermal->height,
-                                              32'315);  // 50 °C.
+    frame->temperature_raw = Image<std::uint16_t>(rig_.rig.thermal->width, rig_.rig.thermal->height,
+                                                  32'315);  // 50 °C.
     frame->valid = true;
     scan_->Add(ReceivedThermal{frame, nullptr, clock_.Now(), clock_.Now()});
   }

@@ -34,7 +34,8 @@ ReceivedThermal Unpacked(EncodedThermalFrame&& encoded, Image<std::uint16_t>&& p
                          CaptureTime arrival) {
   auto frame = std::make_shared<ThermalFrame>();
   frame->header = encoded.header;
-  frame->centikelvin = std::move(pixels);
+  frame->temperature_raw = std::move(pixels);
+  frame->scale = encoded.scale;
   frame->nuc_state = encoded.nuc_state;
   frame->nuc_source = encoded.nuc_source;
   frame->seconds_since_nuc = encoded.seconds_since_nuc;

@@ -61,7 +61,7 @@ TEST_F(StreamReceiverTest, FrameIsUnpackedWithAllThatBelongsToIt) {
   EXPECT_TRUE(Add(MakeFrame(1, 0)));
   ASSERT_EQ(delivered_.size(), 1U);
   const ThermalFrame& frame = *delivered_[0].frame;
-  EXPECT_THAT(frame.centikelvin.pixels(), ElementsAre(0x0201, 0x0403));
+  EXPECT_THAT(frame.temperature_raw.pixels(), ElementsAre(0x0201, 0x0403));
   EXPECT_EQ(frame.nuc_state, NucState::kIdle);
   EXPECT_EQ(frame.seconds_since_nuc, 4.5);
   EXPECT_EQ(frame.housekeeping.housing_celsius, 33.0F);
@@ -75,7 +75,7 @@ TEST_F(StreamReceiverTest, CountsAreNeverTakenForTemperatures) {
   counts.image.encoding = Encoding::kCounts16;
   EXPECT_TRUE(Add(counts));
   ASSERT_EQ(delivered_.size(), 1U);
-  EXPECT_TRUE(delivered_[0].frame->centikelvin.empty());
+  EXPECT_TRUE(delivered_[0].frame->temperature_raw.empty());
   EXPECT_FALSE(delivered_[0].frame->valid);
   EXPECT_EQ(delivered_[0].encoded->image.payload, counts.image.payload);  // For the recording.
 }

@@ -48,7 +48,7 @@ TEST_P(ObliqueSurfaceTest, EverySurfaceVoxelInViewGetsATemperature) {
   const CameraModel camera = testing::ThermalCameraModel();
   ThermalFrame frame;
   frame.valid = true;
-  frame.centikelvin = Image<std::uint16_t>(camera.width, camera.height, 32'315);
+  frame.temperature_raw = Image<std::uint16_t>(camera.width, camera.height, 32'315);
   ThreadPool pool(2);
   ThermalOptions options;
   options.mutable_angle()->set_max_deg(60.0);  // The largest tilt, and what the view adds to it.

@@ -278,7 +278,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
                                 const CaptureConditions& capture) {
   CHECK(frame.valid);
   CHECK(IsRigid(T_map_thermal) && IsRigid(T_map_depth));
-  rectifier_.Rectify(frame.centikelvin, apron_, pool, celsius_);
+  rectifier_.Rectify(frame.temperature_raw, frame.scale, apron_, pool, celsius_);
   CastSurface(T_map_thermal, tsdf, pool);
   FusionReport report;
   MakePixels(RowArgs(T_map_thermal, depth_camera, T_map_depth, capture), capture, pool, report);

@@ -62,7 +62,7 @@ Difference CompareWithOpencv(const CameraModel& camera) {
   Image<float> celsius;
   constexpr int kApron = 1;
   ThermalRectifier rectifier(camera);
-  rectifier.Rectify(centikelvin, kApron, pool, celsius);
+  rectifier.Rectify(centikelvin, kCentikelvin, kApron, pool, celsius);
   const CameraModel& ideal = rectifier.ideal_camera();
   const testing::OpencvRectification truth(camera, ideal);
   Difference result;
@@ -113,7 +113,7 @@ TEST(ThermalRectificationTest, NothingOfABarrelLenssImageIsLost) {
         for (int x = left; x < left + 6; ++x) centikelvin.At(x, y) = 33'000;
       }
       Image<float> celsius;
-      rectifier.Rectify(centikelvin, 0, pool, celsius);
+      rectifier.Rectify(centikelvin, kCentikelvin, 0, pool, celsius);
       const auto hot = std::ranges::count_if(celsius.pixels(), [](float c) { return c > 56.0F; });
       EXPECT_GE(hot, 25) << "at " << left << ", " << top;
     }

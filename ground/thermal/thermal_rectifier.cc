@@ -38,19 +38,23 @@ ThermalRectifier::ThermalRectifier(const CameraModel& camera)
   }
 }
 
-void ThermalRectifier::Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
+void ThermalRectifier::Rectify(const Image<std::uint16_t>& temperature_raw,
+                               const RadiometricScale& scale, int apron, ThreadPool& pool,
                                Image<float>& celsius) {
   const int width = ideal_.width;
   const int height = ideal_.height;
-  CHECK(centikelvin.width() == camera_.width && centikelvin.height() == camera_.height);
+  CHECK(temperature_raw.width() == camera_.width && temperature_raw.height() == camera_.height);
   image_.Resize(camera_.width, camera_.height);
   if (celsius.width() != width + 2 * apron || celsius.height() != height + 2 * apron)
     celsius = Image<float>(width + 2 * apron, height + 2 * apron, kNan);
+  // RadiometricScale::Celsius in single precision, which is right to 0.2 mK at 1500 °C.
+  const auto kelvin_per_count = static_cast<float>(scale.kelvin_per_count);
+  const auto zero_k = static_cast<float>(kCelsiusZero_k - scale.offset_kelvin);
   pool.ParallelForRows(camera_.height, kRectifiedRowsPerTask, [&](int y) {
-    const std::span<const std::uint16_t> raw = centikelvin.Row(y);
+    const std::span<const std::uint16_t> raw = temperature_raw.Row(y);
     const std::span<float> row = image_.Row(y);
     for (std::size_t x = 0; x < row.size(); ++x)
-      row[x] = raw[x] == 0 ? kNan : static_cast<float>(raw[x]) * 0.01F - 273.15F;
+      row[x] = raw[x] == 0 ? kNan : static_cast<float>(raw[x]) * kelvin_per_count - zero_k;
   });
   pool.ParallelForRows(height, kRectifiedRowsPerTask, [&](int v) {
     ResampleRow({image_.data(), camera_.width, source_.Row(v).data(), fraction_x_.Row(v).data(),

@@ -14,10 +14,10 @@ namespace isotherm {
 class ThermalRectifier {
  public:
   explicit ThermalRectifier(const CameraModel& camera);
-  /// `centikelvin` has the camera's size (CHECK). Writes into `celsius` with `apron` pixels of NaN
-  /// all around.
-  void Rectify(const Image<std::uint16_t>& centikelvin, int apron, ThreadPool& pool,
-               Image<float>& celsius);
+  /// `temperature_raw`, counts of `scale`, has the camera's size (CHECK). Writes into `celsius`
+  /// with `apron` pixels of NaN all around.
+  void Rectify(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale,
+               int apron, ThreadPool& pool, Image<float>& celsius);
   const CameraModel& camera() const { return camera_; }
   const CameraModel& ideal_camera() const { return ideal_; }
 

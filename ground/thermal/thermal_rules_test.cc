@@ -21,7 +21,7 @@ class ThermalRulesTest : public testing::BallAndWallTest {
   ThermalFrame Even(double celsius) const {
     ThermalFrame frame;
     frame.valid = true;
-    frame.centikelvin =
+    frame.temperature_raw =
         Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height, Raw(celsius));
     return frame;
   }
@@ -75,7 +75,7 @@ TEST_F(ThermalRulesTest, BesideASteepStepOfTemperatureNothingIsAssigned) {
   constexpr int kStepColumn = 60;
   for (int v = 0; v < thermal_camera_.height; ++v) {
     for (int u = kStepColumn; u < thermal_camera_.width; ++u)
-      frame.centikelvin.At(u, v) = Raw(60.0);
+      frame.temperature_raw.At(u, v) = Raw(60.0);
   }
   EXPECT_GT(FuseFrame(options_, frame).steep, 100);
   ForEachAssessed([&](const ThermalVoxel& voxel, const Eigen::Vector3d&) {
@@ -88,7 +88,7 @@ TEST_F(ThermalRulesTest, BesideASteepStepOfTemperatureNothingIsAssigned) {
   ThermalFrame ramp = Even(20.0);
   for (int v = 0; v < thermal_camera_.height; ++v) {
     for (int u = 0; u < thermal_camera_.width; ++u)
-      ramp.centikelvin.At(u, v) = Raw(-90.0 + 2.0 * u);
+      ramp.temperature_raw.At(u, v) = Raw(-90.0 + 2.0 * u);
   }
   EXPECT_EQ(FuseFrame(options_, ramp).steep, 0);
 }
@@ -153,7 +153,7 @@ TEST_F(ThermalRulesTest, AReflectionThatMovesDisagreesAndTheLowestCanBeKept) {
     for (int i = 0; i < 8; ++i) {
       ThermalFrame frame = Even(20.0);
       for (int v = 0; v < thermal_camera_.height; ++v) {
-        for (int u = 0; u < 40; ++u) frame.centikelvin.At(u, v) = Raw(i % 2 == 0 ? 20.0 : 28.0);
+        for (int u = 0; u < 40; ++u) frame.temperature_raw.At(u, v) = Raw(i % 2 == 0 ? 20.0 : 28.0);
       }
       FuseFrame(options_, frame);
     }

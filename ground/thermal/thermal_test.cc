@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -40,6 +41,23 @@ TEST(ThermalVoxelTest, MotionAndDisagreementHaveFourBitsEachOfWhichZeroIsUncheck
       EXPECT_EQ(voxel.bits,
                 ThermalVoxel::Make(20.0F, kAcceptable, kGood, motion, kAcceptable).bits);
     }
+  }
+}
+
+/// From the camera's counts to the word of a voxel, closed form: half a count and half a step.
+TEST(ThermalVoxelTest, HoldsTemperaturesOfTheWholeRangeWithin50Millikelvin) {
+  constexpr double kLimit_k = 0.05;
+  for (const double max_celsius : {382.0, 900.0, 1500.0}) {
+    const RadiometricScale scale = ScaleForRange(-40.0, max_celsius).value();
+    double largest_k = 0.0;
+    for (double celsius = -40.0; celsius <= max_celsius; celsius += 0.0071) {
+      const float measured = scale.Celsius(scale.CountOf(celsius));
+      const ThermalVoxel voxel = ThermalVoxel::Make(measured, kGood, kGood);
+      largest_k = std::max(largest_k, std::abs(static_cast<double>(voxel.celsius()) - celsius));
+    }
+    EXPECT_LE(largest_k, kLimit_k) << max_celsius;
+    EXPECT_LE(largest_k, 0.5 * scale.kelvin_per_count + 0.5 * 0.025 + 1e-3) << max_celsius;
+    EXPECT_GT(largest_k, 0.01) << "steps are seen";
   }
 }
 
@@ -133,7 +151,7 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
   ThreadPool pool(1);
   Image<float> celsius;
   constexpr int kApron = 2;
-  ThermalRectifier(camera).Rectify(image, kApron, pool, celsius);
+  ThermalRectifier(camera).Rectify(image, kCentikelvin, kApron, pool, celsius);
   EXPECT_TRUE(std::isnan(celsius.At(1, 71)));
   const CameraModel ideal_camera = RectifiedCamera(camera);
   for (const Eigen::Vector2i& ideal :
@@ -141,12 +159,12 @@ TEST(ThermalRectifierTest, PutsEachPixelWhereAnIdealCameraSeesIt) {
     const Eigen::Vector2d source =
         ProjectNormalized(camera, Unproject(ideal_camera, ideal.cast<double>()));
     EXPECT_NEAR(celsius.At(ideal.x() + kApron, ideal.y() + kApron),
-                CentikelvinToCelsius(raw(source.x(), source.y())), 0.001);
+                kCentikelvin.Celsius(raw(source.x(), source.y())), 0.001);
   }
   const auto middle_x = static_cast<int>(ideal_camera.cx),
              middle_y = static_cast<int>(ideal_camera.cy);
   image.At(static_cast<int>(camera.cx), static_cast<int>(camera.cy)) = 0;
-  ThermalRectifier(camera).Rectify(image, kApron, pool, celsius);
+  ThermalRectifier(camera).Rectify(image, kCentikelvin, kApron, pool, celsius);
   EXPECT_TRUE(std::isnan(celsius.At(middle_x + kApron, middle_y + kApron)))
       << "a pixel without value stays without value";
 }
@@ -203,7 +221,7 @@ TEST_F(ThermalFuserTest, ClassesFollowTheThermalCamerasDistanceAndAngle) {
 
 TEST_F(ThermalFuserTest, F12PixelsWithoutValueAreNotAssigned) {
   ThermalFrame frame = TakeFrame(T_map_thermal_);
-  frame.centikelvin.Fill(0);
+  frame.temperature_raw.Fill(0);
   const FusionReport report =
       ThermalFuser(ThermalOptions(), thermal_camera_, sensor_, 0.0F)
           .Fuse(frame, T_map_thermal_, depth_camera_, T_map_depth_, *tsdf_, pool_, *thermal_);

@@ -37,7 +37,7 @@ BenchmarkFrames Render() {
     ThermalFrame& frame = frames.thermal.emplace_back();
     frame.header.frame_number = i;
     frame.header.capture_time = (*scan)->thermal_times()[i].exposure;
-    frame.centikelvin = std::move(raw.pixels);
+    frame.temperature_raw = std::move(raw.pixels);
     frame.valid = true;
   }
   return frames;

@@ -150,7 +150,7 @@ void FuseThermal(benchmark::State& state, ThreadPool& pool) {
                         *scene.volume, pool, thermal);
   }
   CHECK(report.assigned > 0);
-  state.counters["per_pixel"] = PerItem(frame.centikelvin.size());
+  state.counters["per_pixel"] = PerItem(frame.temperature_raw.size());
 }
 
 using Kernel = std::function<void(benchmark::State&, ThreadPool&)>;

@@ -177,7 +177,7 @@ class WallScan {
       auto frame = std::make_shared<ThermalFrame>();
       frame->header.frame_number = thermal_number_;
       frame->header.capture_time = TimeAt(taken);
-      frame->centikelvin = image_;
+      frame->temperature_raw = image_;
       frame->valid = !shutter;
       pipeline_->ProcessThermal(frame);
     }

@@ -55,7 +55,7 @@ std::unique_ptr<GroundPipeline> Scan(const GroundOptions& options) {
     frame.header.capture_time = CaptureTime(FromSeconds(100.0 + i / 30.0));
     auto thermal = std::make_shared<ThermalFrame>();
     thermal->header.capture_time = CaptureTime(FromSeconds(100.0 + (i - 0.5) / 30.0));
-    thermal->centikelvin =
+    thermal->temperature_raw =
         Image<std::uint16_t>(rig.thermal->width, rig.thermal->height, 32'315);  // 50 °C.
     thermal->valid = true;
     if (i > 0) (*pipeline)->ProcessThermal(thermal);

@@ -67,7 +67,7 @@ class FakeCamera final : public FrameSource {
   }
   std::vector<CameraDescription> cameras() const override {
     const Sensor sensor = what_ == "bad-camera" ? static_cast<Sensor>(7) : Sensor::kThermal;
-    return {{sensor, "fake", "Fake 1", "S-9", 5, 3, 40.0, "all on", true}};
+    return {{sensor, "fake", "Fake 1", "S-9", 5, 3, 40.0, "all on", true, kScale}};
   }
 
  private:
@@ -79,6 +79,7 @@ class FakeCamera final : public FrameSource {
     if (what_ == "bad-sensor") frame.sensor = static_cast<Sensor>(2);
     if (what_ == "bad-nuc-state") frame.camera_nuc->state = static_cast<NucState>(99);
     if (what_ == "bad-nuc-source") frame.camera_nuc->source = static_cast<NucSource>(99);
+    if (what_ == "bad-scale") frame.thermal_scale = {0.0, 0.0};
     if (what_ == "bad-number") frame.frame_number = std::uint64_t{1} << 60U;
   }
 
@@ -100,6 +101,7 @@ class FakeCamera final : public FrameSource {
       std::copy(results.begin(), results.end(), frame.pixels.data());
     }
     frame.depth_scale = 10'000.0;
+    frame.thermal_scale = kScale;
     frame.shutter_closed = nuc_ordered_;
     frame.camera_nuc = CameraNuc{automatic_ordered_ ? NucState::kDesired : NucState::kSettling,
                                  NucSource::kPolled, 1.5};
@@ -108,6 +110,7 @@ class FakeCamera final : public FrameSource {
     return frame;
   }
 
+  static constexpr RadiometricScale kScale{0.02, 5.0};
   const std::string what_;
   const int after_frames_;
   const std::string probed_folder_;  ///< Empty: none.

@@ -93,6 +93,7 @@ RawFrame FakeSource::MakeFrame(const Step& step) {
   frame.arrival_wall = kFakeEpoch + time;
   frame.shutter_closed = step.fault == "shut";
 
+  frame.thermal_scale = thermal_scale;
   frame.pixels =
       depth ? Image<std::uint16_t>(8, 6, kDepthRaw) : Image<std::uint16_t>(6, 4, kCentikelvin);
   // No thermal camera is free of noise; the first image has none, for comparison.

@@ -58,6 +58,7 @@ class FakeSource final : public FrameSource {
     descriptions = {camera};
   }
 
+  RadiometricScale thermal_scale;               ///< Of its thermal frames.
   std::vector<CameraDescription> descriptions;  ///< What it says of itself.
   std::vector<CameraControl> controls;          ///< What was asked for.
   Status control_answer = FailedPrecondition("the source has no shutter to command");

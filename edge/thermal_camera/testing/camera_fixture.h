@@ -68,13 +68,15 @@ class EmulatedCameraTest : public testing::Test {
   Status failure_;
 };
 
-/// Returns whether each pixel is the emulated camera's ramp plus its noise, in centi-kelvin.
+/// Checks that each pixel is the emulated camera's ramp plus its noise, in counts of the frame's
+/// scale.
 inline void ExpectRamp(const RawFrame& frame, double kelvin_per_count, int first, int noise) {
   ASSERT_FALSE(frame.pixels.empty());
+  const double raw_per_count = kelvin_per_count / frame.thermal_scale.kelvin_per_count;
   for (int y = 0; y < frame.pixels.height(); ++y) {
     for (int x = 0; x < frame.pixels.width(); ++x) {
-      const double lowest = 100.0 * kelvin_per_count * (first + x);
-      const double highest = 100.0 * kelvin_per_count * (first + x + noise - 1);
+      const double lowest = raw_per_count * (first + x);
+      const double highest = raw_per_count * (first + x + noise - 1);
       ASSERT_GE(frame.pixels.At(x, y), std::floor(lowest)) << x << " " << y;
       ASSERT_LE(frame.pixels.At(x, y), std::ceil(highest)) << x << " " << y;
     }

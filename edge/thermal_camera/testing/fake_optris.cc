@@ -1,4 +1,5 @@
-// A library with the interface of the vendor's, for tests: 4 x 3 pixels, each call a frame; the
+// A library with the interface of the vendor's, for tests, with the ranges of a PI 450: 4 x 3
+// pixels, each call a frame; the
 // flag goes open, closing, closed, opening, open, ...; the fifth frame after an order is open.
 //
 // If the camera's file exists, frames come at the camera's rate, and the words in it say what goes
@@ -27,6 +28,7 @@ struct Metadata {
 std::uint32_t frames = 0;
 int closing = 0;
 bool running = false;
+bool is_hottest_range = false;
 
 struct Script {
   bool paced = false;
@@ -88,7 +90,9 @@ int evo_irimager_get_thermal_image_metadata(int* width, int* height, unsigned sh
   *height = 3;
   ++frames;
   PlayScript();
-  for (int i = 0; i < 12; ++i) data[i] = static_cast<unsigned short>(1'250 + frames % 7);
+  // 25 degrees Celsius, or 850.
+  const unsigned first = is_hottest_range ? 9'500 : 1'250;
+  for (int i = 0; i < 12; ++i) data[i] = static_cast<unsigned short>(first + frames % 7);
   constexpr int kFlags[] = {0, 2, 1, 3};  // Counted down: closing, closed, opening, open.
   const int flag = kFlags[closing];
   if (closing > 0) --closing;
@@ -105,7 +109,9 @@ int evo_irimager_trigger_shutter_flag() {
 }
 int evo_irimager_set_temperature_range(int min, int max) {
   closing = 3;
-  return min == 0 && max == 250 ? 0 : -1;
+  is_hottest_range = min == 150 && max == 900;
+  const bool is_known = (min == -20 && max == 100) || (min == 0 && max == 250) || is_hottest_range;
+  return is_known ? 0 : -1;
 }
 int evo_irimager_set_radiation_parameters(float emissivity, float transmissivity, float ambient) {
   return emissivity == 1.0F && transmissivity == 1.0F && ambient < -273.15F ? 0 : -1;

@@ -60,7 +60,7 @@ class PipelineFixture : public ::testing::Test {
     auto frame = std::make_shared<ThermalFrame>();
     frame->header.capture_time = Time(at);
     frame->header.capture_sigma = sigma;
-    frame->centikelvin =
+    frame->temperature_raw =
         Image<std::uint16_t>(rig_.thermal->width, rig_.thermal->height, 32'315);  // 50 °C
     frame->valid = valid;
     pipeline_->ProcessThermal(frame);

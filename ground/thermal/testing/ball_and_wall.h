@@ -50,14 +50,14 @@ class BallAndWallTest : public ::testing::Test {
   ThermalFrame TakeFrame(const RigidTransform& T_map_thermal) const {
     ThermalFrame frame;
     frame.valid = true;
-    frame.centikelvin = Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height);
+    frame.temperature_raw = Image<std::uint16_t>(thermal_camera_.width, thermal_camera_.height);
     for (int v = 0; v < thermal_camera_.height; ++v) {
       for (int u = 0; u < thermal_camera_.width; ++u) {
         const double z = TraceDepth(Scene, thermal_camera_, T_map_thermal, u, v);
         const Eigen::Vector2d xy = Unproject(thermal_camera_, {u, v});
         const Eigen::Vector3d p = T_map_thermal * Eigen::Vector3d(xy.x() * z, xy.y() * z, z);
         const float celsius = Ball(p) < 1e-4 ? kHot : kCold;
-        frame.centikelvin.At(u, v) =
+        frame.temperature_raw.At(u, v) =
             static_cast<std::uint16_t>(std::lround((celsius + 273.15) * 100.0));
       }
     }
