@@ -135,8 +135,14 @@ Result<EncodedImage> TakeImage(foxglove::RawImage& message) {
     return Err(DataLoss(fmt::format("image of {} x {}, step {}, has {} bytes", message.width(),
                                     message.height(), message.step(), message.data().size())));
   }
-  const auto encoding = KnownOr(message.frame().encoding(), kLastEncoding, Encoding::kRaw16);
-  EncodedImage image{.encoding = IsRaw(encoding) ? encoding : Encoding::kRaw16,
+  // Without a FrameInfo, as other programs write it, this reads as kRaw16.
+  const std::uint32_t encoding = message.frame().encoding();
+  if (encoding > static_cast<std::uint32_t>(kLastEncoding) ||
+      !IsRaw(static_cast<Encoding>(encoding))) {
+    return Err(
+        DataLoss(fmt::format("raw image in encoding {} is not one of Isotherm's", encoding)));
+  }
+  EncodedImage image{.encoding = static_cast<Encoding>(encoding),
                      .width = static_cast<int>(message.width()),
                      .height = static_cast<int>(message.height()),
                      .payload = TakeBytes(message.mutable_data())};

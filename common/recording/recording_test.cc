@@ -1,5 +1,6 @@
 #include "common/recording/recording.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 
 #include "common/codec/codec.h"
 #include "common/recording/recording_messages.h"
@@ -18,6 +20,7 @@ namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::kScanStart;
 using testing::MakeDepth;
@@ -111,19 +114,26 @@ TEST_P(RecordingTest, TemperaturesComeBackInTheirScale) {
 }
 
 TEST_P(RecordingTest, AScaleThatCannotBeIsDamage) {
-  EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
-  thermal.image.encoding = Encoding::kScaledRaw16;
-  thermal.scale = {0.0, 0.0};
-  {
-    auto writer = WriterTo(disk_, options_);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::pair<RadiometricScale, const char*> cases[] = {
+      {{0.0, 0.0}, "thermal_scale"},     {{-0.02, 0.0}, "thermal_scale"},
+      {{kNan, 0.0}, "thermal_scale"},    {{1e300, 0.0}, "thermal_scale"},
+      {{0.02, -kNan}, "thermal_offset"}, {{0.02, 1e300}, "thermal_offset"}};
+  auto writer = WriterTo(disk_, options_);
+  for (const auto& [scale, field] : cases) {
+    EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
+    thermal.image.encoding = Encoding::kScaledRaw16;
+    thermal.scale = scale;
     ASSERT_TRUE(writer->Write(thermal, kScanStart).ok());
-    ASSERT_TRUE(writer->Close().ok());
   }
-  const auto item = Reader()->Next();
-  ASSERT_FALSE(item.has_value());
-  EXPECT_EQ(item.error().code(), StatusCode::kDataLoss);
-  EXPECT_NE(item.error().message().find("thermal_scale"), std::string::npos)
-      << item.error().message();
+  ASSERT_TRUE(writer->Close().ok());
+  const auto reader = Reader();
+  for (const auto& [scale, field] : cases) {
+    const auto item = reader->Next();
+    ASSERT_FALSE(item.has_value());
+    EXPECT_EQ(item.error().code(), StatusCode::kDataLoss);
+    EXPECT_THAT(item.error().message(), AllOf(HasSubstr("/thermal"), HasSubstr(field)));
+  }
 }
 
 TEST_P(RecordingTest, CountsComeBackAsCounts) {
@@ -336,6 +346,26 @@ TEST(RecordingTest, OdometryPosesComeBackAsTheyWere) {
   EXPECT_EQ(read[0].rotation_sigma_rad, 0.002);
   EXPECT_FALSE(read[1].has_position());
   EXPECT_TRUE(std::isnan(read[1].rotation_sigma_rad));
+}
+
+/// Else whoever wrote it later than we were made would be read as centi-kelvin.
+TEST(RecordingTest, ARawImageIsOfAKnownRawEncodingOrOfNoOneWhoSays) {
+  const EncodedThermalFrame thermal = MakeThermal(8, kScanStart);
+  auto message = recording::ToMessage<foxglove::RawImage>(thermal, std::nullopt);
+  recording::SetImageData(EncodedImage(thermal.image), message);
+  for (const int encoding : {3, 5, 7, 1000}) {
+    foxglove::RawImage other = message;
+    other.mutable_frame()->set_encoding(static_cast<std::uint32_t>(encoding));
+    const auto read = recording::ToThermal(other, kScanStart, 0);
+    ASSERT_FALSE(read.has_value()) << encoding;
+    EXPECT_EQ(read.error().code(), StatusCode::kDataLoss);
+    EXPECT_THAT(read.error().message(), HasSubstr(fmt::format("encoding {}", encoding)));
+  }
+  message.clear_frame();
+  const auto read = recording::ToThermal(message, kScanStart, 0);
+  ASSERT_TRUE(read.has_value());
+  ExpectSame(read->frame.image, thermal.image);
+  EXPECT_EQ(read->frame.scale, kCentikelvin);
 }
 
 /// The channel had another name before.

@@ -65,7 +65,9 @@ TEST(SampleValidatorTest, F60PayloadsThatCannotBeAreRefused) {
 }
 
 TEST(SampleValidatorTest, F60UnknownEncodingIsRefused) {
-  EXPECT_EQ(CheckChanged([](auto& f) { f.encoding = 5; }), RefusalCause::kUnknownEncoding);
+  const int next = static_cast<int>(kLastEncoding) + 1;
+  EXPECT_EQ(CheckChanged([&](auto& f) { f.encoding = static_cast<std::uint8_t>(next); }),
+            RefusalCause::kUnknownEncoding);
   EXPECT_EQ(CheckChanged([](auto& f) { f.encoding = 255; }), RefusalCause::kUnknownEncoding);
 }
 

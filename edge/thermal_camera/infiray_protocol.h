@@ -20,7 +20,8 @@ inline constexpr int kP2ProHeight = 192;
 /// Kelvin = count / 64.
 inline constexpr PixelEncoding kInfirayEncoding{true, 1.0 / 64.0, 0.0};
 
-/// Returns what a gain measures, by the data sheets; nullopt if it was left as it is.
+/// Returns what a gain measures; nullopt if it was left as it is. Low: the larger of what data
+/// sheets say, 550 or 600 °C.
 constexpr std::optional<MeasuringRange> InfirayRange(ThermalGain gain) {
   if (gain == ThermalGain::kHigh) return MeasuringRange{-20.0, 150.0};
   if (gain == ThermalGain::kLow) return MeasuringRange{0.0, 600.0};

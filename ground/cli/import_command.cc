@@ -17,8 +17,8 @@ namespace {
 constexpr const char* kImportFooter =
     R"(The folder holds rig.textproto, depth.txt with depth/*.png and, optionally, thermal.txt with
 thermal/*.png, nuc.txt and groundtruth.txt. Lists have 'timestamp_s filename' per line; images
-are 16-bit PNG (raw depth, centi-kelvin). Frames inside the intervals of nuc.txt are recorded as
-invalid. The recording appears under its name only when it is complete. Stamps, units and
+are 16-bit PNG (raw depth; temperatures in centi-kelvin, or as thermal_scale and thermal_offset in
+rig.textproto say). Frames inside the intervals of nuc.txt are recorded as invalid. The recording appears under its name only when it is complete. Stamps, units and
 temperatures that cannot be right are recorded as they are, with a warning and exit status 65.
 
 Examples:
