@@ -127,11 +127,16 @@ bool IsShort(const std::string& text, std::size_t most) {
   return text.size() <= most &&
          std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) >= 0x20; });
 }
+/// Kelvin per count and kelvin of count 0 that some camera may have.
+bool IsSound(const RadiometricScale& scale) {
+  return scale.kelvin_per_count > 0.0 && scale.kelvin_per_count <= 1.0 &&
+         std::abs(scale.offset_kelvin) <= 10'000.0;
+}
 template <typename Frame>
 bool IsFrame(const Frame& frame) {
   const EncodedImage& image = frame.image;
   return image.width > 0 && image.height > 0 && image.width <= 16384 && image.height <= 16384 &&
-         std::int64_t{image.width} * image.height <= 4'194'304 && IsOneOf(image.encoding, 5) &&
+         std::int64_t{image.width} * image.height <= 4'194'304 && IsOneOf(image.encoding, 7) &&
          !image.payload.empty() && image.payload.size() <= 8'388'608 &&
          ToNanoseconds(frame.header.capture_time) >= 0 && frame.header.capture_sigma.count() >= 0;
 }
@@ -140,13 +145,14 @@ bool IsSound(const EncodedDepthFrame& frame) {
 }
 bool IsSound(const EncodedThermalFrame& frame) {
   return IsFrame(frame) && IsOneOf(frame.nuc_source, 5) && IsOneOf(frame.nuc_state, 8) &&
-         !std::isinf(frame.housekeeping.housing_celsius);
+         !std::isinf(frame.housekeeping.housing_celsius) && IsSound(frame.scale);
 }
 bool IsSound(const RigDescription& rig) {
   const bool modes = rig.depth.width >= 0 && rig.thermal.height >= 0 &&
                      std::int64_t{rig.depth.width} * rig.depth.height <= 4'194'304 &&
-                     IsOneOf(rig.depth.encoding, 5) && IsOneOf(rig.thermal.encoding, 5);
-  return modes && IsShort(rig.rig.serial, 256) && IsShort(rig.thermal.model, 256) &&
+                     IsOneOf(rig.depth.encoding, 7) && IsOneOf(rig.thermal.encoding, 7);
+  return modes && IsSound(rig.rig.thermal_scale) && IsShort(rig.rig.serial, 256) &&
+         IsShort(rig.thermal.model, 256) &&
          (!rig.rig.depth || (rig.rig.depth->width > 0 && std::isfinite(rig.rig.depth->fx)));
 }
 bool IsSound(const ExternalOdometrySample& sample) {

@@ -24,7 +24,10 @@ inline EncodedDepthFrame Good() {
 }
 template <>
 inline EncodedThermalFrame Good() {
-  return GoodFrame<EncodedThermalFrame>();
+  auto frame = GoodFrame<EncodedThermalFrame>();
+  frame.image.encoding = Encoding::kScaledRaw16;
+  frame.scale = {0.02, 12.5};
+  return frame;
 }
 template <>
 inline RigDescription Good() {
