@@ -76,9 +76,11 @@ std::optional<TrueClasses> ClassesAt(const SimulatedScan& scan,
 }
 
 struct Agreement {
-  double points = 0.0;
-  double sure = 0.0;                               ///< Away from borders, ...
+  double all = 0.0;                                ///< Points of the surface, ...
+  double points = 0.0;                             ///< ... those that were measured, ...
+  double sure = 0.0;                               ///< ... those of them away from borders, ...
   double distance = 0.0, angle = 0.0, both = 0.0;  ///< ... of which with the true class.
+  double by_chance = 0.0;  ///< With the classes that are true of another point.
 };
 
 Agreement Compare(const PlayedScan& played, const ThermalOptions& limits, ThreadPool& pool) {
@@ -87,7 +89,9 @@ Agreement Compare(const PlayedScan& played, const ThermalOptions& limits, Thread
   const ScanModel model = played.pipelines.front()->model();
   std::vector<CheckedPoint> points;
   const auto all = CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool);
+  Agreement agreement;
   for (std::size_t i = 0; i < all.size(); i += kEvery) {
+    agreement.all += 1.0;
     if (all[i].point.distance_class != kNeverMeasured) points.push_back(all[i]);
   }
   const std::vector<std::size_t> frames = FramesWithPoses(scan);
@@ -96,17 +100,26 @@ Agreement Compare(const PlayedScan& played, const ThermalOptions& limits, Thread
     const auto index = static_cast<std::size_t>(i);
     expected[index] = ClassesAt(scan, frames, limits, points[index].truth);
   });
-  Agreement agreement;
   agreement.points = static_cast<double>(points.size());
+  std::vector<std::size_t> sure;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!expected[i]) continue;
-    const bool distance =
-        points[i].point.distance_class == static_cast<std::uint8_t>(expected[i]->distance);
-    const bool angle = points[i].point.angle_class == static_cast<std::uint8_t>(expected[i]->angle);
-    agreement.sure += 1.0;
-    agreement.distance += distance ? 1.0 : 0.0;
-    agreement.angle += angle ? 1.0 : 0.0;
-    agreement.both += distance && angle ? 1.0 : 0.0;
+    if (expected[i]) sure.push_back(i);
+  }
+  agreement.sure = static_cast<double>(sure.size());
+  for (std::size_t k = 0; k < sure.size(); ++k) {
+    const CloudPoint& point = points[sure[k]].point;
+    const auto has_distance = [&](const TrueClasses& classes) {
+      return point.distance_class == static_cast<std::uint8_t>(classes.distance);
+    };
+    const auto has_angle = [&](const TrueClasses& classes) {
+      return point.angle_class == static_cast<std::uint8_t>(classes.angle);
+    };
+    const TrueClasses& own = *expected[sure[k]];
+    const TrueClasses& other = *expected[sure[(k + sure.size() / 2) % sure.size()]];
+    agreement.distance += has_distance(own) ? 1.0 : 0.0;
+    agreement.angle += has_angle(own) ? 1.0 : 0.0;
+    agreement.both += has_distance(own) && has_angle(own) ? 1.0 : 0.0;
+    agreement.by_chance += has_distance(other) && has_angle(other) ? 1.0 : 0.0;
   }
   return agreement;
 }
@@ -122,17 +135,24 @@ Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool) {
   ExperimentReport report;
   report.table.rows_are = "classes";
   report.table.columns = {"points", "away from class borders", "with the true class",
-                          "with the true class [%]"};
+                          "with the true class [%]", "coverage [% of the surface]"};
   const auto row = [&](const char* label, double right) {
     report.table.rows.push_back(
-        {label, {agreement.points, agreement.sure, right, 100.0 * right / agreement.sure}});
+        {label,
+         {agreement.points, agreement.sure, right, 100.0 * right / agreement.sure,
+          100.0 * agreement.points / agreement.all}});
   };
   row("distance", agreement.distance);
   row("angle", agreement.angle);
   row("both", agreement.both);
+  row("both, of another point", agreement.by_chance);
+  const Requirement true_classes = {"points with the true classes, away from class borders",
+                                    report.table.rows[2].values[3], Requirement::Sense::kAtLeast,
+                                    kMinTrueClasses, "%"};
   report.requirements = {
-      {"points with the true classes, away from class borders", report.table.rows[2].values[3],
-       Requirement::Sense::kAtLeast, kMinTrueClasses, "%"},
+      true_classes,
+      NegativeControl(true_classes, "points with the classes that are true of another point",
+                      report.table.rows[3].values[3]),
       {"points that are away from class borders", 100.0 * agreement.sure / agreement.points,
        Requirement::Sense::kAtLeast, 50.0, "%"}};
   const Renderer renderer({}, options.thermal());

@@ -1,6 +1,7 @@
 #include "ground/experiment/experiment.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace isotherm {
 namespace {
@@ -37,8 +38,21 @@ constexpr Experiment kExperiments[] = {
 
 }  // namespace
 
+Requirement NegativeControl(const Requirement& requirement, std::string what, double measured) {
+  Requirement control = requirement;
+  control.what = std::move(what);
+  control.measured = measured;
+  control.role = Requirement::Role::kNegativeControl;
+  return control;
+}
+
+bool ExperimentReport::HasNegativeControl() const {
+  return std::ranges::count(requirements, Requirement::Role::kNegativeControl, &Requirement::role) >
+         0;
+}
+
 bool ExperimentReport::AllMet() const {
-  return std::ranges::all_of(requirements, &Requirement::IsMet);
+  return HasNegativeControl() && std::ranges::all_of(requirements, &Requirement::IsMet);
 }
 
 std::span<const Experiment> AllExperiments() { return kExperiments; }

@@ -14,16 +14,29 @@ namespace isotherm {
 /// A number that an experiment must reach.
 struct Requirement {
   enum class Sense { kAtMost, kAtLeast };
+  enum class Role {
+    kLimit,
+    /// The same number without what the experiment shows. It must miss the limit: otherwise the
+    /// scene is too easy, and meeting the limit says nothing.
+    kNegativeControl,
+  };
 
   std::string what;
   double measured;
   Sense sense;
   double limit;
   std::string unit;  ///< Empty for counts and ratios.
+  Role role = Role::kLimit;
 
   /// False for NaN.
-  bool IsMet() const { return sense == Sense::kAtMost ? measured <= limit : measured >= limit; }
+  bool IsMet() const {
+    if (role == Role::kNegativeControl)
+      return sense == Sense::kAtMost ? measured > limit : measured < limit;
+    return sense == Sense::kAtMost ? measured <= limit : measured >= limit;
+  }
 };
+/// `measured` without what the experiment shows, held against the limit of `requirement`.
+Requirement NegativeControl(const Requirement& requirement, std::string what, double measured);
 
 /// Numbers by what was compared: one row per method or condition.
 struct ExperimentTable {
@@ -47,6 +60,8 @@ struct ExperimentReport {
   std::vector<Requirement> requirements;
   std::vector<ExperimentRendering> renderings;
 
+  bool HasNegativeControl() const;
+  /// Without a negative control that misses its limit, nothing is met.
   bool AllMet() const;
 };
 

@@ -58,9 +58,10 @@ std::string TableText(const ExperimentTable& table) {
 
 std::string RequirementText(const Requirement& r) {
   const std::string unit = r.unit.empty() ? "" : " " + r.unit;
-  return fmt::format("{}  {}: required {} {}{}, measured {}{}", r.IsMet() ? "met    " : "NOT MET",
-                     r.what, r.sense == Requirement::Sense::kAtMost ? "<=" : ">=", Number(r.limit),
-                     unit, Number(r.measured), unit);
+  return fmt::format("{}  {}: {} {} {}{}, measured {}{}", r.IsMet() ? "met    " : "NOT MET", r.what,
+                     r.role == Requirement::Role::kNegativeControl ? "must miss" : "required",
+                     r.sense == Requirement::Sense::kAtMost ? "<=" : ">=", Number(r.limit), unit,
+                     Number(r.measured), unit);
 }
 
 std::string CsvField(const std::string& text) {
@@ -83,6 +84,8 @@ Json ToJson(const Experiment& experiment, const ExperimentReport& report) {
     requirement["limit"] = r.limit;
     requirement["measured"] = r.measured;
     requirement["unit"] = r.unit;
+    requirement["role"] =
+        r.role == Requirement::Role::kNegativeControl ? "negative control" : "limit";
     requirement["met"] = r.IsMet();
     json["requirements"].push_back(std::move(requirement));
   }
@@ -104,6 +107,7 @@ std::string ToText(const Experiment& experiment, const ExperimentReport& report)
   text += TableText(report.table);
   for (const Requirement& requirement : report.requirements)
     text += RequirementText(requirement) + "\n";
+  if (!report.HasNegativeControl()) text += "NOT MET  there is no negative control\n";
   return text;
 }
 

@@ -21,6 +21,8 @@ ExperimentReport SampleReport() {
   report.table = {"method", {"points", "wrong, of all [%]"}, {{"none", {1200.0, 3.25}}}};
   report.table.rows.push_back({"the \"best\"", {1200.0, std::nan("")}});
   report.requirements = {{"wrong", 0.05, Requirement::Sense::kAtMost, 0.1, "%"}};
+  report.requirements.push_back(
+      NegativeControl(report.requirements.front(), "wrong without it", 3.25));
   report.renderings = {{"none", RgbImage(4, 3, Rgb8{1, 2, 3})}};
   return report;
 }
@@ -37,6 +39,28 @@ TEST(RequirementTest, LimitsBelongToWhatIsAllowedAndNaNNever) {
   EXPECT_FALSE(is_met(std::nan(""), Requirement::Sense::kAtLeast));
 }
 
+TEST(RequirementTest, ANegativeControlMustMissTheLimit) {
+  const auto is_met = [](double measured, Requirement::Sense sense) {
+    return NegativeControl({"x", 0.0, sense, 2.0, ""}, "control", measured).IsMet();
+  };
+  EXPECT_TRUE(is_met(2.1, Requirement::Sense::kAtMost));
+  EXPECT_TRUE(is_met(1.9, Requirement::Sense::kAtLeast));
+  EXPECT_FALSE(is_met(2.0, Requirement::Sense::kAtMost));
+  EXPECT_FALSE(is_met(2.0, Requirement::Sense::kAtLeast));
+  EXPECT_FALSE(is_met(std::nan(""), Requirement::Sense::kAtMost)) << "not run is not failed";
+  EXPECT_FALSE(is_met(std::nan(""), Requirement::Sense::kAtLeast));
+}
+
+TEST(ExperimentReportTest, IsMetOnlyIfItsNegativeControlWasRunAndMissesTheLimit) {
+  ExperimentReport report = SampleReport();
+  EXPECT_TRUE(report.AllMet());
+  report.requirements.back().measured = 0.05;
+  EXPECT_FALSE(report.AllMet());
+  report.requirements.pop_back();
+  EXPECT_FALSE(report.AllMet());
+  EXPECT_THAT(ToText(kExperiment, report), HasSubstr("NOT MET  there is no negative control"));
+}
+
 TEST(ExperimentsTest, HaveDifferentNamesAndAreFoundByThem) {
   for (const Experiment& experiment : AllExperiments())
     EXPECT_EQ(FindExperiment(experiment.name), &experiment);
@@ -47,6 +71,8 @@ TEST(ExperimentOutputTest, TextSaysWhatIsRequiredAndWhatWasMeasured) {
   ExperimentReport report = SampleReport();
   EXPECT_THAT(ToText(kExperiment, report),
               HasSubstr("met      wrong: required <= 0.1 %, measured 0.05 %"));
+  EXPECT_THAT(ToText(kExperiment, report),
+              HasSubstr("met      wrong without it: must miss <= 0.1 %, measured 3.25 %"));
   report.requirements.front().measured = 0.2;
   EXPECT_FALSE(report.AllMet());
   EXPECT_THAT(ToText(kExperiment, report), HasSubstr("NOT MET  wrong: required <= 0.1 %"));
@@ -67,6 +93,7 @@ TEST(ExperimentOutputTest, WritesTableRequirementsAndRenderings) {
   const std::string json{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(json, HasSubstr("\"all_met\": true"));
   EXPECT_THAT(json, HasSubstr("\"limit\": 0.1"));
+  EXPECT_THAT(json, HasSubstr("\"role\": \"negative control\""));
   EXPECT_THAT(json, HasSubstr("null"));
 }
 

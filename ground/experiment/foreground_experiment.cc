@@ -30,7 +30,7 @@ StagedScene PlateBeforeWall() {
 }  // namespace
 
 Result<ExperimentReport> RunForegroundExperiment(ThreadPool& pool) {
-  return CompareParallaxFilters({PlateBeforeWall(), kDuration_s, 0.2, 0.2}, pool);
+  return CompareParallaxFilters({PlateBeforeWall(), kDuration_s, 0.2, true}, pool);
 }
 
 }  // namespace isotherm

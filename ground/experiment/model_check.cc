@@ -19,12 +19,17 @@ std::optional<SurfacePoint> TruthAt(const Scene& scene, const CloudPoint& point)
   return hit->point;
 }
 
+}  // namespace
+
 double Percent(std::size_t part, std::size_t whole) {
   return whole == 0 ? std::numeric_limits<double>::quiet_NaN()
                     : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-}  // namespace
+double MeasuredPercent(const std::vector<CheckedPoint>& points) {
+  const auto measured = std::ranges::count_if(points, &CheckedPoint::measured);
+  return Percent(static_cast<std::size_t>(measured), points.size());
+}
 
 std::vector<CheckedPoint> CheckModel(const Scene& scene, const BandRadiance& band,
                                      const TsdfVolume& tsdf, const ThermalVolume& thermal,

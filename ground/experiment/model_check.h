@@ -32,6 +32,11 @@ std::vector<CheckedPoint> CheckModel(const Scene& scene, const BandRadiance& ban
                                      const TsdfVolume& tsdf, const ThermalVolume& thermal,
                                      ThreadPool& pool);
 
+/// NaN of nothing.
+double Percent(std::size_t part, std::size_t whole);
+/// Fraction of the points that have a temperature, percent.
+double MeasuredPercent(const std::vector<CheckedPoint>& points);
+
 /// Points that have a temperature, and those that have that of something else.
 struct AssignmentCheck {
   std::size_t points = 0;

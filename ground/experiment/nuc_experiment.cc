@@ -50,11 +50,12 @@ double LeftOutForNuc(const ScanModel& model) {
   return static_cast<double>(model.counts.thermal_left_out[LeftOutReason::kNuc]);
 }
 
-ExperimentTable::Row DescribeModel(const char* label, const ScanModel& model) {
+/// `all`: voxels measured if every frame is believed.
+ExperimentTable::Row DescribeModel(const char* label, const ScanModel& model, double all) {
   const VoxelCount voxels = CountVoxels(model);
   return {label,
           {static_cast<double>(model.counts.thermal_fused), LeftOutForNuc(model), voxels.measured,
-           voxels.from_shutter}};
+           voxels.from_shutter, 100.0 * voxels.measured / all}};
 }
 
 /// Frames while the shutter was closed.
@@ -70,12 +71,20 @@ ExperimentReport Describe(const ScanModel& ignored, const ScanModel& respected,
   ExperimentReport report;
   report.table.rows_are = "frames of the closed shutter";
   report.table.columns = {"thermal frames fused", "left out for NUC", "voxels measured",
-                          "voxels with the shutter's temperature"};
-  report.table.rows = {DescribeModel("believed", ignored), DescribeModel("left out", respected)};
+                          "voxels with the shutter's temperature", "coverage [% of believed]"};
+  const double all = CountVoxels(ignored).measured;
+  report.table.rows = {DescribeModel("believed", ignored, all),
+                       DescribeModel("left out", respected, all)};
   const PipelineCounts& counts = respected.counts;
+  const Requirement from_shutter = {"voxels with the shutter's temperature",
+                                    report.table.rows[1].values[3], Requirement::Sense::kAtMost,
+                                    0.0, ""};
   report.requirements = {
-      {"voxels with the shutter's temperature", report.table.rows[1].values[3],
-       Requirement::Sense::kAtMost, 0.0, ""},
+      from_shutter,
+      NegativeControl(from_shutter, "the same if frames of the closed shutter are believed",
+                      report.table.rows[0].values[3]),
+      {"coverage of what all frames together measure", report.table.rows[1].values[4],
+       Requirement::Sense::kAtLeast, 90.0, "%"},
       {"frames of the closed shutter not left out", seen.thermal_frames - LeftOutForNuc(respected),
        Requirement::Sense::kAtMost, 0.0, ""},
       {"depth frames not tracked", static_cast<double>(counts.depth_in - counts.depth_tracked),

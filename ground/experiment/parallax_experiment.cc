@@ -27,7 +27,7 @@ StagedScene CalibratorBeforeWall() {
 }  // namespace
 
 Result<ExperimentReport> RunParallaxExperiment(ThreadPool& pool) {
-  return CompareParallaxFilters({CalibratorBeforeWall(), 2.0, 0.1, 0.0}, pool);
+  return CompareParallaxFilters({CalibratorBeforeWall(), 2.0, 0.1, false}, pool);
 }
 
 }  // namespace isotherm

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "ground/surface/voxel_grid.h"
 
@@ -43,6 +44,7 @@ Eigen::Vector3f VertexAt(const SurfaceMaps& maps, int x, int y) {
 ThesisFuser::ThesisFuser(const ThermalOptions& options, const Rig& rig, float min_weight,
                          ParallaxFilter filter)
     : options_(options),
+      sensor_(rig.thermal_sensor),
       limits_(options, rig.thermal_sensor),
       depth_camera_(rig.depth->WithoutDistortion()),
       min_weight_(min_weight),
@@ -53,7 +55,8 @@ ThesisFuser::ThesisFuser(const ThermalOptions& options, const Rig& rig, float mi
 
 ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_world,
                                          const Eigen::Vector3f& n_world,
-                                         const RigidTransform& T_world_thermal) const {
+                                         const RigidTransform& T_world_thermal,
+                                         const OtherRules* rules) const {
   Vertex vertex{p_world, kNan, ConditionClass::kBad, ConditionClass::kBad};
   if (!p_world.allFinite() || !n_world.allFinite()) return vertex;
   const Eigen::Vector3f to_camera = T_world_thermal.translation().cast<float>() - p_world;
@@ -71,10 +74,68 @@ ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_world,
   vertex.celsius = Bilinear(celsius_, *pixel);
   vertex.distance = limits_.ClassifyDistance(distance_m);
   vertex.angle = limits_.ClassifyAngle(std::min(cosine, 1.0F));
+  if (rules == nullptr) return vertex;
+  const bool bad = vertex.distance == ConditionClass::kBad || vertex.angle == ConditionClass::kBad;
+  if ((bad && !options_.keep_bad()) || IsLeftOut(p_thermal, *nearest, *rules))
+    vertex.celsius = kNan;
   return vertex;
 }
 
-void ThesisFuser::FindVertices(const RigidTransform& T_world_thermal, ThreadPool& pool) {
+bool ThesisFuser::IsLeftOut(const Eigen::Vector3d& p_thermal, const Eigen::Vector2i& pixel,
+                            const OtherRules& rules) const {
+  const CameraModel& camera = rectifier_.ideal_camera();
+  const ThermalExpertOptions& expert = options_.expert();
+  const auto index = static_cast<std::size_t>(pixel.y() * camera.width + pixel.x());
+  if ((pixels_[index].flags & ThermalPixel::kAssignable) == 0) return true;
+  const int margin = expert.occlusion().edge_margin_px();
+  float nearest_m = std::numeric_limits<float>::max();
+  for (int y = std::max(0, pixel.y() - margin); y <= pixel.y() + margin; ++y) {
+    for (int x = std::max(0, pixel.x() - margin); x <= pixel.x() + margin; ++x) {
+      if (nearest_m_.Contains(x, y)) nearest_m = std::min(nearest_m, nearest_m_.At(x, y));
+    }
+  }
+  if (p_thermal.norm() - static_cast<double>(nearest_m) > expert.occlusion().parallax_tolerance_m())
+    return true;
+  // The simulated cameras read all rows at once.
+  const Eigen::Vector2d xy = p_thermal.head<2>() / p_thermal.z();
+  const double smear_px =
+      camera.fx * sensor_.time_constant_s * ImageVelocity(rules.motion, xy, p_thermal.z()).norm();
+  if (smear_px > expert.motion().smear_max_px()) return true;
+  const auto half_step = [&](int dx, int dy) {
+    const Eigen::Vector2i before = pixel - Eigen::Vector2i(dx, dy);
+    const Eigen::Vector2i after = pixel + Eigen::Vector2i(dx, dy);
+    if (!celsius_.Contains(before.x(), before.y()) || !celsius_.Contains(after.x(), after.y()))
+      return 0.0F;
+    const float step =
+        0.5F * (celsius_.At(after.x(), after.y()) - celsius_.At(before.x(), before.y()));
+    return std::isnan(step) ? 0.0F : step;
+  };
+  constexpr double kPixelUncertainty_px = 0.5;  // As the pipeline's.
+  const double slope_k_px = std::hypot(half_step(1, 0), half_step(0, 1));
+  return expert.max_gradient_error_k() > 0.0 &&
+         std::max(smear_px, kPixelUncertainty_px) * slope_k_px > expert.max_gradient_error_k();
+}
+
+void ThesisFuser::FindAssignablePixels(const OtherRules& rules) {
+  const CameraModel& camera = rectifier_.ideal_camera();
+  pixels_.assign(nearest_m_.pixels().size(), ThermalPixel{});
+  for (int y = 0; y < camera.height; ++y) {
+    const std::span row(pixels_.data() + static_cast<std::ptrdiff_t>(y) * camera.width,
+                        static_cast<std::size_t>(camera.width));
+    for (int x = 0; x < camera.width; ++x) {
+      const float distance_m = nearest_m_.At(x, y);
+      if (distance_m == std::numeric_limits<float>::max()) continue;  // No vertex.
+      const double ray = Unproject(camera, Eigen::Vector2d(x, y)).homogeneous().norm();
+      row[static_cast<std::size_t>(x)].depth_m = static_cast<float>(distance_m / ray);
+      row[static_cast<std::size_t>(x)].flags = ThermalPixel::kAssignable;
+    }
+    rules.near_range.LeaveOut(y, row);
+  }
+  rules.line_of_sight.LeaveOut(0, pixels_);
+}
+
+void ThesisFuser::FindVertices(const RigidTransform& T_world_thermal, ThreadPool& pool,
+                               const OtherRules* rules) {
   const RigidTransform T_thermal_world = T_world_thermal.inverse();
   nearest_m_.Fill(std::numeric_limits<float>::max());
   // Algorithm 4, lines 7 to 10.
@@ -88,10 +149,11 @@ void ThesisFuser::FindVertices(const RigidTransform& T_world_thermal, ThreadPool
       }
     }
   }
+  if (rules != nullptr) FindAssignablePixels(*rules);
   pool.ParallelFor(maps_.height(), [&](int y) {
     for (int x = 0; x < maps_.width(); ++x) {
       const Eigen::Vector3f n_world(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
-      vertices_.At(x, y) = Measure(VertexAt(maps_, x, y), n_world, T_world_thermal);
+      vertices_.At(x, y) = Measure(VertexAt(maps_, x, y), n_world, T_world_thermal, rules);
     }
   });
 }
@@ -125,26 +187,34 @@ void ThesisFuser::UpdateBlock(std::int32_t block, const RigidTransform& T_depth_
 
 void ThesisFuser::Fuse(const ThermalFrame& frame, const RigidTransform& T_world_thermal,
                        const RigidTransform& T_world_depth, const TsdfVolume& tsdf,
-                       ThreadPool& pool, ThermalVolume& thermal) {
+                       ThreadPool& pool, ThermalVolume& thermal, const OtherRules* rules) {
   raycaster_.Cast(tsdf, depth_camera_, T_world_depth, min_weight_, pool, maps_);
   rectifier_.Rectify(frame.temperature_raw, frame.scale, 0, pool, celsius_);
-  FindVertices(T_world_thermal, pool);
+  FindVertices(T_world_thermal, pool, rules);
   const RigidTransform T_depth_world = T_world_depth.inverse();
   pool.ParallelFor(tsdf.block_count(),
                    [&](int block) { UpdateBlock(block, T_depth_world, tsdf, thermal); });
 }
 
 ThesisFusion::ThesisFusion(const GroundOptions& options, const Rig& rig, const ScanModel& model,
-                           ParallaxFilter filter)
+                           ParallaxFilter filter, Rules rules)
     : rig_(rig),
       model_(model),
+      rules_(rules),
       fuser_(options.thermal(), rig, static_cast<float>(options.raycast().expert().min_weight()),
              filter),
+      near_range_(options.thermal().expert().occlusion(), rig.depth_sensor, fuser_.ideal_camera()),
+      line_of_sight_(options.thermal().expert().occlusion(), rig.depth_sensor,
+                     fuser_.ideal_camera()),
       thermal_(model.tsdf().max_blocks()) {}
 
-void ThesisFusion::AfterDepth(ThreadPool& pool) {
+void ThesisFusion::AfterDepth(const Image<float>& depth_m, ThreadPool& pool) {
   const std::vector<StampedPose>& poses = model_.trajectory.poses();
   if (poses.size() < 2) return;
+  const ModelView& view = model_.view;
+  near_range_.Update(depth_m, view.maps, view.camera);
+  line_of_sight_.Update(view.maps, view.camera, view.T_map_depth);
+  const RigidTransform T_depth_thermal = rig_.T_thermal_depth->inverse();
   const StampedPose& before = poses[poses.size() - 2];
   const StampedPose& after = poses.back();
   for (; !waiting_.empty() && waiting_.front()->header.capture_time <= after.time;
@@ -155,8 +225,16 @@ void ThesisFusion::AfterDepth(ThreadPool& pool) {
     const double alpha = ToSeconds(time - before.time) / ToSeconds(after.time - before.time);
     const RigidTransform T_world_depth =
         Interpolate(before.T_world_depth, after.T_world_depth, alpha);
-    fuser_.Fuse(frame, T_world_depth * rig_.T_thermal_depth->inverse(), after.T_world_depth,
-                model_.tsdf(), pool, thermal_);
+    const RigidTransform T_world_thermal = T_world_depth * T_depth_thermal;
+    const RigidTransform T_view_thermal = view.T_map_depth.inverse() * T_world_thermal;
+    near_range_.Aim(T_view_thermal);
+    line_of_sight_.Aim(T_view_thermal);
+    const OtherRules rules{
+        MotionBetween(before.T_world_depth * T_depth_thermal, after.T_world_depth * T_depth_thermal,
+                      ToSeconds(after.time - before.time)),
+        near_range_, line_of_sight_};
+    fuser_.Fuse(frame, T_world_thermal, after.T_world_depth, model_.tsdf(), pool, thermal_,
+                rules_ == Rules::kAlsoOurOthers ? &rules : nullptr);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/geometry/rectified_camera.h"
 #include "common/testing/volume_shapes.h"
 
 namespace isotherm {
@@ -62,9 +63,9 @@ class ThesisFuserTest : public ::testing::Test {
     int assigned = 0;
     int hot_on_wall = 0;
   };
-  Outcome Fuse(ParallaxFilter filter) {
-    ThesisFuser(ThermalOptions(), rig_, 0.0F, filter)
-        .Fuse(TakeFrame(), T_world_thermal_, T_world_depth_, *tsdf_, pool_, *thermal_);
+  Outcome Fuse(ParallaxFilter filter, const OtherRules* rules = nullptr) {
+    ThesisFuser(options_, rig_, 0.0F, filter)
+        .Fuse(TakeFrame(), T_world_thermal_, T_world_depth_, *tsdf_, pool_, *thermal_, rules);
     Outcome outcome;
     for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
       testing::ForEachVoxel(thermal_->voxels(block), tsdf_->grid(), tsdf_->block_coordinates(block),
@@ -80,6 +81,7 @@ class ThesisFuserTest : public ::testing::Test {
 
   inline static const Eigen::Vector3d kBall{0.32, 0.32, 0.40};
   static constexpr double kRadius = 0.06, kWall = 0.60;
+  ThermalOptions options_;
   Rig rig_;
   RigidTransform T_world_depth_ = MakeTransform({0.32, 0.32, 0.0}, Eigen::Quaterniond::Identity());
   RigidTransform T_world_thermal_ =
@@ -101,6 +103,27 @@ TEST_F(ThesisFuserTest, Algorithm4KeepsItOffWhatTheDepthCameraSeesBehindTheBall)
   const Outcome outcome = Fuse(ParallaxFilter::kAlgorithm4);
   EXPECT_GT(outcome.assigned, 10'000);
   EXPECT_LT(outcome.hot_on_wall, without / 5) << "what is left is along the silhouette";
+}
+
+/// The steps of temperature along the silhouette, and the margin beside it.
+TEST_F(ThesisFuserTest, OurOtherRulesLeaveOutWhatIsLeftAlongTheSilhouette) {
+  const Outcome alone = Fuse(ParallaxFilter::kAlgorithm4);
+  ASSERT_GT(alone.hot_on_wall, 0);
+  const CameraModel camera = RectifiedCamera(*rig_.thermal);
+  const NearRangeOcclusion near_range(options_.expert().occlusion(), rig_.depth_sensor, camera);
+  const LineOfSightOcclusion line_of_sight(options_.expert().occlusion(), rig_.depth_sensor,
+                                           camera);
+  const OtherRules rules{{}, near_range, line_of_sight};
+  const auto fuse_again = [&] {
+    thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks());
+    return Fuse(ParallaxFilter::kAlgorithm4, &rules);
+  };
+  const Outcome with_rules = fuse_again();
+  EXPECT_LT(with_rules.hot_on_wall, alone.hot_on_wall / 2);
+  EXPECT_GT(with_rules.assigned, alone.assigned / 2);
+  options_.mutable_distance()->set_max_m(0.45);
+  options_.mutable_distance()->set_good_m(0.44);
+  EXPECT_LT(fuse_again().assigned, with_rules.assigned / 2) << "the wall is too far away";
 }
 
 }  // namespace

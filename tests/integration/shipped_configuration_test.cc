@@ -10,6 +10,7 @@
 #include "edge/daemon/validate_options.h"
 #include "edge/options/edge_options.pb.h"
 #include "ground/configuration/validate_options.h"
+#include "ground/experiment/nuc_drift_experiment.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
@@ -62,6 +63,13 @@ TEST(ShippedConfigurationTest, NoShippedFileIsForgotten) {
     if (entry.path().extension() == ".textproto") names.push_back(entry.path().filename().string());
   }
   EXPECT_THAT(names, ::testing::UnorderedElementsAre("edge.textproto", "ground.textproto"));
+}
+
+TEST(ShippedConfigurationTest, TheDriftExperimentCorrectsTheCameraAsTheEdgeDoes) {
+  EdgeOptions options;
+  EXPECT_EQ(options.nuc().max_housing_drift_k(), kShippedHousingDrift_k) << "by default";
+  ASSERT_TRUE(LoadTextProto(kDeploy / "edge.textproto", options).ok());
+  EXPECT_EQ(options.nuc().max_housing_drift_k(), kShippedHousingDrift_k) << "in the shipped file";
 }
 
 TEST(ShippedConfigurationTest, TheDefaultsAreValid) {
