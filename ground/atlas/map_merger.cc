@@ -112,8 +112,10 @@ void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const Tsd
     if (from == TsdfVolume::kNoBlock) continue;
     const auto offset = static_cast<int>(OffsetInBlock(nearest));
     const ThermalVoxel other = source.thermal.voxels(from)[offset];
+    const SigmaPair sigma{.now = source.thermal.sigma_code(from, offset),
+                          .before = thermal.sigma_code(block, i)};
     if (!other.measured() || !ReplacesMeasurement(other.distance_class(), other.angle_class(),
-                                                  other.motion_class(), voxels[i])) {
+                                                  other.motion_class(), voxels[i], sigma)) {
       continue;
     }
     voxels[i] = other;

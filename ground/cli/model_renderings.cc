@@ -75,6 +75,16 @@ Status PrepareRenderings(const RenderingRequest& request) {
   return OkStatus();
 }
 
+namespace {
+
+bool ShowsRecords(const std::vector<RenderLayer>& layers) {
+  return std::ranges::any_of(layers, [](RenderLayer layer) {
+    return layer == RenderLayer::kAge || layer == RenderLayer::kUncertainty;
+  });
+}
+
+}  // namespace
+
 Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& options,
                             const std::optional<TemperatureScale>& scale,
                             const RenderingRequest& request, ThreadPool& pool,
@@ -92,8 +102,7 @@ Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& optio
                    static_cast<float>(options.export_().expert().min_weight()), pool, maps);
     SampleView(maps, T_world_camera.translation(), *model.tsdf, *model.thermal, pool, view);
     empty += std::ranges::all_of(view.cos_view.pixels(), [](float c) { return std::isnan(c); });
-    if (std::ranges::count(request.layers, RenderLayer::kAge) > 0)
-      SampleNucAge(maps, *model.tsdf, *model.thermal, pool, view);
+    if (ShowsRecords(request.layers)) SampleRecords(maps, *model.tsdf, *model.thermal, pool, view);
     std::optional<ContourField> contours;
     if (thermal && renderer.draws_lines()) {
       contours = SampleContours(maps, *model.tsdf, *model.thermal,

@@ -33,6 +33,7 @@ Layers: thermal       apparent temperature: palette, isotherms, bands
         motion        class of the smear while the temperature was measured
         disagreement  how far measurements contradict each other: reflections
         age           seconds between the last NUC and the measurement
+        uncertainty   standard uncertainty of the temperature, kelvin
         coverage      what was seen by depth, but not measured well
         geometry      the surface only
 Scales: min-max, 1-sigma, 3-sigma, percentile (2 to 98 %), 5..95% or, for fixed temperatures, 20..100

@@ -10,6 +10,7 @@
 #include "ground/evaluation/thermal_coverage.h"
 #include "ground/evaluation/trajectory_evaluation.h"
 #include "ground/export/json.h"
+#include "ground/offline/held_out_report.h"
 
 namespace isotherm {
 
@@ -45,5 +46,8 @@ Result<EvaluationReport> Evaluate(const EvaluationRequest& request);
 
 std::string ToText(const EvaluationReport& report);
 Json ToJson(const EvaluationReport& report);
+
+std::string ToText(const HeldOutReport& report);
+Json ToJson(const HeldOutReport& report);
 
 }  // namespace isotherm

@@ -50,11 +50,15 @@ Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path) {
   if (!xyz) return Err(xyz.error());
   MeasuredCloud cloud;
   cloud.positions_m = Vectors(*xyz, 0);
+  if (const Result<Columns> normals = Required(*vertices, {"nx", "ny", "nz"}, path))
+    cloud.normals = Vectors(*normals, 0);
   cloud.celsius = Converted<float>(vertices->Find("scalar_temperature"));
   cloud.distance_class = Converted<std::uint8_t>(vertices->Find("scalar_distance_class"));
   cloud.angle_class = Converted<std::uint8_t>(vertices->Find("scalar_angle_class"));
   cloud.motion_class = Converted<std::uint8_t>(vertices->Find("scalar_motion_class"));
   cloud.measured_angle_deg = Converted<float>(vertices->Find("scalar_measured_angle"));
+  cloud.measured_distance_m = Converted<float>(vertices->Find("scalar_measured_distance"));
+  cloud.sigma_k = Converted<float>(vertices->Find("scalar_temperature_sigma"));
   return cloud;
 }
 

@@ -13,6 +13,7 @@ namespace isotherm {
 /// The points of a result (`cloud.ply`), in `world`.
 struct MeasuredCloud {
   std::vector<Eigen::Vector3f> positions_m;
+  std::vector<Eigen::Vector3f> normals;  ///< Or empty.
   std::vector<float> celsius;  ///< NaN = never measured. Empty: the file has no temperatures.
   std::vector<std::uint8_t>
       distance_class;  ///< 0 bad, 1 good, 2 acceptable, 255 never measured; or empty.
@@ -20,6 +21,8 @@ struct MeasuredCloud {
   std::vector<std::uint8_t> motion_class;  ///< The same, 255 also = not checked.
   std::vector<float> measured_angle_deg;   ///< Emission angle of the measurement; NaN = not known,
                                            ///< or empty.
+  std::vector<float> measured_distance_m;  ///< The same of its distance.
+  std::vector<float> sigma_k;              ///< The same of the temperature's standard uncertainty.
 };
 
 /// Samples of the true surface, in the truth's world.
@@ -33,8 +36,9 @@ struct TruePoints {
       primitive;  ///< Shape the point belongs to; all 0 if the file does not say.
 };
 
-/// Properties are found by their names: x y z, scalar_temperature, scalar_distance_class,
-/// scalar_angle_class, scalar_motion_class, scalar_measured_angle.
+/// Properties are found by their names: x y z, nx ny nz, scalar_temperature, scalar_distance_class,
+/// scalar_angle_class, scalar_motion_class, scalar_measured_angle, scalar_measured_distance,
+/// scalar_temperature_sigma.
 Result<MeasuredCloud> ReadMeasuredCloud(const std::filesystem::path& path);
 /// x y z nx ny nz, scalar_temperature, seen, primitive. Normals must have unit length.
 Result<TruePoints> ReadTruePoints(const std::filesystem::path& path);

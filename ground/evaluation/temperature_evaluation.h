@@ -5,6 +5,7 @@
 #include "common/base/status.h"
 #include "ground/evaluation/error_statistics.h"
 #include "ground/evaluation/true_surface.h"
+#include "ground/evaluation/uncertainty_evaluation.h"
 
 namespace isotherm {
 
@@ -14,6 +15,8 @@ struct TemperatureEvaluationOptions {
   /// thesis B.2). nullopt: it is that along the normal, whatever the angle.
   std::optional<double> refractive_index;
   double ambient_celsius = 23.0;  ///< The surroundings that the surface reflects.
+  /// Turns the cloud's normals into the truth's world.
+  Eigen::Matrix3f R_truth_world = Eigen::Matrix3f::Identity();
   /// Points are near a temperature edge if true temperatures differ by more than `edge_kelvin`
   /// within this radius.
   float edge_radius_m = 0.005F;
@@ -42,6 +45,9 @@ struct TemperatureReport {
   ClassErrors acceptable;
   ClassErrors bad;
   ClassErrors any;
+  /// Of all points together. With a refractive index, what is expected is uncertain as well: the
+  /// angle of each measurement is that to the cloud's normal.
+  UncertaintyReport uncertainty;
 };
 
 /// Compares temperatures of the cloud with the apparent temperature that the true temperature of

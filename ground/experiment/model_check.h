@@ -59,6 +59,10 @@ struct ErrorSummary {
   double p95_k = std::numeric_limits<double>::quiet_NaN();
   double p999_k = std::numeric_limits<double>::quiet_NaN();
   double largest_k = std::numeric_limits<double>::quiet_NaN();
+  /// How many errors lie within the temperatures' standard uncertainties, and within 1.96 of them:
+  /// 68.3 and 95 % if these are right. Of the points that have one.
+  double within_sigma_percent = std::numeric_limits<double>::quiet_NaN();
+  double within_1_96_sigma_percent = std::numeric_limits<double>::quiet_NaN();
 };
 ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points);
 

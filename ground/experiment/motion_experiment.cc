@@ -77,7 +77,8 @@ ExperimentTable::Row DescribeModel(const char* label, const PlayedScan& played,
   return {label,
           {static_cast<double>(points.size()), static_cast<double>(errors.measured),
            static_cast<double>(model.counts.fusion.smeared), errors.median_k, errors.p999_k,
-           errors.largest_k, MeasuredPercent(points)}};
+           errors.largest_k, MeasuredPercent(points), errors.within_sigma_percent,
+           errors.within_1_96_sigma_percent}};
 }
 
 std::vector<Requirement> Require(const ExperimentTable& table) {
@@ -104,7 +105,7 @@ Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool) {
   report.table.rows_are = "smeared pixels";
   report.table.columns = {"points",           "assigned",         "smeared pixels left out",
                           "median error [K]", "99.9 % error [K]", "largest error [K]",
-                          "coverage [%]"};
+                          "coverage [%]",     "within sigma [%]", "within 1.96 sigma [%]"};
   RendererOptions renderer_options = FixedScale(kCold_celsius, kHot_celsius);
   renderer_options.mutable_expert()->set_shading(false);
   const Renderer renderer(renderer_options, ThermalOptions());

@@ -91,9 +91,10 @@ RgbImage Rendering(const PlayedScan& played, ThreadPool& pool) {
 Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool) {
   ExperimentReport report;
   report.table.rows_are = "thermal camera";
-  report.table.columns = {"good points",      "within 1 K [%]",     "within 2 K [%]",
-                          "median error [K]", "95 % below [K]",     "largest [K]",
-                          "corrections",      "shutter closed [%]", "coverage [%]"};
+  report.table.columns = {"good points",      "within 1 K [%]",       "within 2 K [%]",
+                          "median error [K]", "95 % below [K]",       "largest [K]",
+                          "corrections",      "shutter closed [%]",   "coverage [%]",
+                          "within sigma [%]", "within 1.96 sigma [%]"};
   struct Case {
     SimulationOptions cameras;
     const char* label;
@@ -113,7 +114,8 @@ Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool) {
         {each.label,
          {static_cast<double>(good.measured), good.within_1k_percent,
           outcome.within_allowed_percent, good.median_k, good.p95_k, good.largest_k,
-          outcome.corrections, outcome.left_out_percent, outcome.coverage_percent}});
+          outcome.corrections, outcome.left_out_percent, outcome.coverage_percent,
+          good.within_sigma_percent, good.within_1_96_sigma_percent}});
     report.renderings.push_back({each.rendering, Rendering(*played, pool)});
   }
   const Outcome& never = all[1];

@@ -63,7 +63,9 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
       "scalar_disagreement_class: 0 bad, 1 good, 2 acceptable, 255 never measured or not known\n"
       "comment scalar_nuc_epoch: NUCs before the measurement (modulo 256), scalar_nuc_age_s: "
       "seconds since the last one; scalar_measured_distance (metres) and scalar_measured_angle "
-      "(degrees from the normal): of the thermal camera; nan = not known\n";
+      "(degrees from the normal): of the thermal camera; nan = not known\n"
+      "comment scalar_temperature_sigma: standard uncertainty as measured, kelvin; nan = "
+      "never measured or not known\n";
   const std::string never = fmt::format("{} {} {} = never measured", kNeverMeasuredPoint.r,
                                         kNeverMeasuredPoint.g, kNeverMeasuredPoint.b);
   if (style.scale) {
@@ -84,7 +86,8 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
       "property uchar scalar_motion_class\nproperty uchar scalar_disagreement_class\n"
       "property uchar scalar_nuc_epoch\n"
       "property float scalar_nuc_age_s\nproperty float scalar_measured_distance\n"
-      "property float scalar_measured_angle\n";
+      "property float scalar_measured_angle\n"
+      "property float scalar_temperature_sigma\n";
   if (style.interpreted) text += "property float scalar_apparent_temperature\n";
   if (faces)
     text += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", *faces);
@@ -108,6 +111,7 @@ void AddPoint(const CloudPoint& point, const PlyStyle& style, RecordWriter& reco
   records.Add(point.nuc_age_s);
   records.Add(point.measured_distance_m);
   records.Add(point.measured_angle_deg);
+  records.Add(point.sigma_k);
   if (style.interpreted) records.Add(point.apparent_celsius);
   records.EndRecord();
 }

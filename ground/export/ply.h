@@ -31,7 +31,8 @@ inline constexpr float kNeverMeasuredQuality = -273.15F;
 /// `world`, metres) red green blue (uchar) scalar_temperature (float, degC, NaN = never measured)
 /// scalar_distance_class scalar_angle_class (uchar) quality (float, the temperature again, under
 /// the name that MeshLab shows) scalar_motion_class scalar_disagreement_class scalar_nuc_epoch
-/// (uchar) scalar_nuc_age_s scalar_measured_distance scalar_measured_angle (float) and, if
+/// (uchar) scalar_nuc_age_s scalar_measured_distance scalar_measured_angle (float)
+/// scalar_temperature_sigma (float, kelvin, NaN = never measured or not known) and, if
 /// `style.interpreted`, scalar_apparent_temperature (float, degC, as measured). CloudCompare makes
 /// scalar fields of all properties with that prefix. The order matters: it gives each column to the
 /// first property whose name fits.

@@ -125,7 +125,8 @@ TEST_F(PlyTest, PropertiesAreThoseOfTheContractInItsOrder) {
                                              "scalar_nuc_epoch",
                                              "scalar_nuc_age_s",
                                              "scalar_measured_distance",
-                                             "scalar_measured_angle"};
+                                             "scalar_measured_angle",
+                                             "scalar_temperature_sigma"};
   EXPECT_EQ(ReadPly(path_).names, expected);
 }
 
@@ -171,7 +172,7 @@ TEST_F(PlyTest, EveryScalarFieldHasThePrefixOfCloudCompare) {
   style.interpreted = true;
   ASSERT_TRUE(WriteCloudPly(FourPoints(), style, path_).ok());
   const std::vector<std::string> names = ReadPly(path_).names;
-  ASSERT_EQ(names.size(), 20U);
+  ASSERT_EQ(names.size(), 21U);
   for (std::size_t i = 9; i < names.size(); ++i) {
     EXPECT_TRUE(names[i] == "quality" || names[i].starts_with("scalar_")) << names[i];
   }

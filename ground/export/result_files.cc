@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/output_file.h"
+#include "common/base/quantile.h"
 #include "common/concurrency/thread_pool.h"
 #include "ground/export/ply.h"
 #include "ground/export/png_file.h"
@@ -42,14 +43,20 @@ ResultSummary SummarizeSurface(const Surface& surface, const RendererOptions& op
   summary.points = surface.points.size();
   summary.triangles = surface.triangles.size();
   std::vector<float> celsius;
+  std::vector<double> sigmas_k;
   celsius.reserve(surface.points.size());
   for (const CloudPoint& point : surface.points) {
     celsius.push_back(point.celsius);
     if (std::isnan(point.celsius)) continue;
+    if (!std::isnan(point.sigma_k)) sigmas_k.push_back(static_cast<double>(point.sigma_k));
     ++summary.measured_points;
     if (QualityOf(point.distance_class, point.angle_class, point.motion_class) ==
         MeasurementQuality::kGood)
       ++summary.good_points;
+  }
+  if (!sigmas_k.empty()) {
+    constexpr double kNearlyAll = 0.95;
+    summary.sigma = {sigmas_k.size(), TakeMedian(sigmas_k), TakeQuantile(sigmas_k, kNearlyAll)};
   }
   summary.temperatures = Summarize(celsius);
   summary.scale = ChooseScale(options, celsius);
@@ -72,6 +79,10 @@ Json SurfaceStats(const ResultSummary& summary) {
     stats["mean_celsius"] = summary.temperatures.mean_celsius;
     stats["max_celsius"] = summary.temperatures.max_celsius;
   }
+  if (summary.sigma.points > 0) {
+    stats["temperature_sigma_k"]["p50"] = summary.sigma.median_k;
+    stats["temperature_sigma_k"]["p95"] = summary.sigma.p95_k;
+  }
   if (summary.scale) {
     stats["palette_min_celsius"] = summary.scale->min_celsius;
     stats["palette_max_celsius"] = summary.scale->max_celsius;
@@ -85,7 +96,7 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
   fs::create_directories(folder, ignored);
   ViewMaps view;
   SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
-  SampleNucAge(*inputs.view, inputs.tsdf, inputs.thermal, threads, view);
+  SampleRecords(*inputs.view, inputs.tsdf, inputs.thermal, threads, view);
   if (inputs.interpretation != nullptr) {
     inputs.interpretation->Apply(*inputs.view, view.celsius);
     view.celsius_meaning = "object temperature";

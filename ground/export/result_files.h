@@ -67,6 +67,11 @@ struct ResultSummary {
   std::size_t triangles = 0;
   std::optional<TemperatureScale> scale;  ///< The scale of renderings and colours alike.
   TemperatureStatistics temperatures;
+  /// Standard uncertainties of the temperatures, as far as they are known, kelvin.
+  struct {
+    std::size_t points = 0;
+    double median_k = 0.0, p95_k = 0.0;
+  } sigma;
   std::vector<PartReport> interpretation;  ///< One per part; may be empty.
 };
 

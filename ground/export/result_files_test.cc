@@ -99,7 +99,8 @@ constexpr const char* kFiles[] = {"cloud.ply",
                                   "renders/coverage.png",
                                   "renders/motion.png",
                                   "renders/disagreement.png",
-                                  "renders/age.png"};
+                                  "renders/age.png",
+                                  "renders/uncertainty.png"};
 
 TEST_F(ResultsTest, WritesEveryFileOfTheContract) {
   const fs::path dir = folder_.path() / "a" / "b";
@@ -113,7 +114,7 @@ TEST_F(ResultsTest, WritesEveryFileOfTheContract) {
   EXPECT_EQ(summary->good_points, summary->points);
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(dir)) files += entry.is_regular_file();
-  EXPECT_EQ(files, 12);  // Nothing partial is left.
+  EXPECT_EQ(files, 13);  // Nothing partial is left.
 }
 
 TEST_F(ResultsTest, SameInputsGiveTheSameBytesWhateverTheThreads) {
@@ -213,7 +214,7 @@ TEST_F(ResultsTest, InterpretedResultsKeepWhatWasMeasured) {
   const std::string cloud = ReadAll(folder_.path() / "cloud.ply");
   EXPECT_NE(cloud.find("property float scalar_apparent_temperature\nend_header"),
             std::string::npos);
-  constexpr std::size_t kPointBytes = 6 * 4 + 3 + 4 + 2 + 4 + 3 + 3 * 4 + 4;
+  constexpr std::size_t kPointBytes = 6 * 4 + 3 + 4 + 2 + 4 + 3 + 4 * 4 + 4;
   EXPECT_EQ(cloud.size() - cloud.find("end_header\n") - 11, summary->points * kPointBytes);
 }
 

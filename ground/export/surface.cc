@@ -206,7 +206,7 @@ class Extractor {
     CloudPoint point;
     point.position_m = p_world.cast<float>();
     point.normal = normal;
-    const auto [voxel, conditions] = MeasurementAt(tsdf_, thermal_, p_world);
+    const auto [voxel, conditions, sigma_k] = MeasurementAt(tsdf_, thermal_, p_world);
     if (!voxel.assessed()) return point;
     // Beside edges, the nearest voxel may be another face's.
     if (!conditions.empty() && !BelongsToFace(conditions, normal, 0.0F)) return point;
@@ -216,6 +216,7 @@ class Extractor {
     point.motion_class = static_cast<std::uint8_t>(voxel.motion_class());
     point.disagreement_class = static_cast<std::uint8_t>(voxel.disagreement_class());
     if (conditions.empty()) return point;
+    point.sigma_k = sigma_k;
     point.nuc_epoch = conditions.epoch;
     point.nuc_age_s = conditions.age_s();
     point.measured_distance_m = conditions.distance_m();

@@ -27,6 +27,7 @@ struct CloudPoint {
   float nuc_age_s = NAN;
   float measured_distance_m = NAN;
   float measured_angle_deg = NAN;  ///< To the surface as it is now.
+  float sigma_k = NAN;  ///< Standard uncertainty of the apparent temperature; NaN = not known.
   float apparent_celsius = NAN;  ///< Kept by Interpretation; NaN = never measured.
 };
 

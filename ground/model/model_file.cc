@@ -26,9 +26,11 @@ static_assert(std::endian::native == std::endian::little, "files are little-endi
 
 constexpr std::string_view kMagic = "ISOMODEL";
 constexpr std::string_view kEnd = "LEDOMOSI";
-constexpr std::uint32_t kVersion = 2;
-/// The first version has no records.
+/// There is no version 3: one wrong bit would make it a file of version 2.
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint32_t kOldestVersion = 1;
+constexpr std::uint32_t kFirstWithRecords = 2;
+constexpr std::uint32_t kFirstWithSigmas = 4;
 constexpr std::uint32_t kMaxHeaderBytes = 1 << 24;
 constexpr int kBlocksPerChunk = 256;
 constexpr int kCompression = 1;
@@ -340,14 +342,15 @@ Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
                               return v.observed() && v.tsdf() <= 0.0F;
                             }));
     }
-    if (content.version < 2) continue;
+    if (content.version < kFirstWithRecords) continue;
     std::uint32_t with_records = 0;
     if (Status status = content.ReadPart(offset, blocks, kBlocksPerChunk * kMaxRecordBytes,
                                          with_records, plain);
         !status.ok())
       return status;
     if (with_records != blocks ||
-        !UnpackRecords(plain, first, first + static_cast<std::int32_t>(blocks), thermal))
+        !UnpackRecords(plain, first, first + static_cast<std::int32_t>(blocks),
+                       content.version >= kFirstWithSigmas, thermal))
       return content.Damaged("the records of a part make no sense");
   }
   std::array<std::uint8_t, kEnd.size()> end{};

@@ -11,10 +11,13 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "common/testing/temporary_directory.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/model/model.pb.h"
+#include "ground/model/record_part.h"
 #include "ground/surface/voxel_grid.h"
 
 namespace isotherm {
@@ -116,6 +119,64 @@ TEST_F(ModelFileTest, GivesBackEveryVoxelAndPose) {
   for (std::size_t i = 0; i < poses_.size(); ++i)
     EXPECT_TRUE((*model)->known_poses()[i].isApprox(poses_[i], 1e-12));
   EXPECT_TRUE((*model)->CheckRig(rig_).ok());
+}
+
+/// Rows that hold a bit of everything, in every second block.
+void FillRecords(ThermalVolume& thermal, std::int32_t blocks) {
+  for (std::int32_t block = 0; block < blocks; block += 2) {
+    for (int row = block % 5; row < ThermalRecords::kRowsPerBlock; row += 7) {
+      thermal.records()->Row(block, row).conditions[row % 8].direction =
+          static_cast<std::uint16_t>(block + row);
+      for (int x = 0; x < RecordRow::kVoxels; ++x) {
+        thermal.records()->Sigmas(block, row)[x] =
+            static_cast<std::uint8_t>(block + 3 * row + 11 * x);
+      }
+    }
+  }
+}
+
+TEST_F(ModelFileTest, GivesBackEveryRecordAndUncertainty) {
+  FillRecords(*thermal_, tsdf_->block_count());
+  Save();
+  ASSERT_TRUE(Read().ok());
+  int rows = 0;
+  for (std::int32_t block = 0; block < tsdf_->block_count(); ++block) {
+    const std::int32_t other = read_tsdf_->Find(tsdf_->block_coordinates(block));
+    for (int row = 0; row < ThermalRecords::kRowsPerBlock; ++row) {
+      const RecordRow* read = std::as_const(*read_thermal_).records()->Find(other, row);
+      ASSERT_EQ(read != nullptr, thermal_->records()->Find(block, row) != nullptr);
+      if (read == nullptr) continue;
+      ++rows;
+      EXPECT_EQ(read->conditions[row % 8].direction, block + row);
+      for (int x = 0; x < RecordRow::kVoxels; ++x) {
+        ASSERT_EQ(read_thermal_->sigma_code(other, row * RecordRow::kVoxels + x),
+                  static_cast<std::uint8_t>(block + 3 * row + 11 * x));
+      }
+    }
+  }
+  EXPECT_GT(rows, 1000);
+}
+
+TEST_F(ModelFileTest, RecordsOfVersion2AreReadAndTheirUncertaintiesAreNotKnown) {
+  ThermalVolume written(1), read(1);
+  ASSERT_TRUE(written.Commit(1) && read.Commit(1));
+  FillRecords(written, 1);
+  std::vector<std::uint8_t> bytes = PackRecords(written, 0, 1);
+  constexpr std::size_t kMask = sizeof(std::uint64_t);
+  const std::size_t rows =
+      (bytes.size() - kMask) / (sizeof(RecordRow) + std::size_t{RecordRow::kVoxels});
+  EXPECT_FALSE(UnpackRecords(bytes, 0, 1, /*with_sigmas=*/false, read)) << "too long for it";
+  bytes.resize(kMask + rows * sizeof(RecordRow));
+  EXPECT_FALSE(UnpackRecords(bytes, 0, 1, /*with_sigmas=*/true, read)) << "too short";
+  ASSERT_TRUE(UnpackRecords(bytes, 0, 1, /*with_sigmas=*/false, read));
+  EXPECT_EQ(read.records()->Find(0, 7)->conditions[7].direction, 7);
+  EXPECT_EQ(read.sigma_code(0, 7 * RecordRow::kVoxels), 0);
+  // A whole file of that version, as far as it has no records.
+  Save();
+  std::string file = Bytes();
+  file[8] = 2;
+  Write(file);
+  EXPECT_TRUE(Read().ok());
 }
 
 TEST_F(ModelFileTest, AnotherRigOrVoxelSizeIsRefusedByName) {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
@@ -16,6 +17,7 @@
 #include "ground/calibration/delay_check.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/export/result_files.h"
+#include "ground/offline/held_out_views.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/pipeline/pipeline_counts.h"
 #include "ground/results/scan_result.h"
@@ -48,6 +50,11 @@ class InlineDriver {
         assembler_(rig.thermal.has_value()) {
     for (const auto& [topic, count] : reader.info().messages_by_topic) total_ += count;
   }
+
+  /// From here on, every so-many-th valid thermal frame is kept from the pipeline.
+  void HoldOut(int every) { hold_out_every_ = every; }
+  /// Stamps of those that were, in order.
+  const std::vector<CaptureTime>& held_out() const { return held_out_; }
 
   Status Run() {
     while (true) {
@@ -140,9 +147,17 @@ class InlineDriver {
       pipeline_.ProcessDepth(**depth);
     } else {
       const ThermalFramePtr& thermal = std::get<ThermalFramePtr>(frame);
+      if (IsHeldOut(*thermal)) {
+        held_out_.push_back(thermal->header.capture_time);
+        return;
+      }
       pipeline_.ProcessThermal(thermal);
       delay_check_.Add(thermal, pipeline_.model());
     }
+  }
+
+  bool IsHeldOut(const ThermalFrame& frame) {
+    return hold_out_every_ > 0 && frame.valid && ++valid_thermal_ % hold_out_every_ == 0;
   }
 
   void Report() const {
@@ -158,6 +173,9 @@ class InlineDriver {
   PlausibilityCheck plausibility_;
   DelayCheck delay_check_;
   Assembler assembler_;
+  int hold_out_every_ = 0;  ///< 0 = none.
+  int valid_thermal_ = 0;
+  std::vector<CaptureTime> held_out_;
   std::uint64_t total_ = 0;
   std::uint64_t read_ = 0;
   std::uint64_t bad_messages_ = 0;
@@ -204,43 +222,97 @@ Json DescribeSource(const ReconstructRequest& request, const RecordingInfo& info
           {"out_of_order_frames", driver.out_of_order()}};
 }
 
-}  // namespace
+/// A recording that is to be reconstructed, and the pipeline for it.
+struct OpenedScan {
+  std::unique_ptr<RecordingReader> reader;
+  std::unique_ptr<Rig> rig;  ///< As it is used; referred to by others.
+  GroundOptions options;
+  std::unique_ptr<GroundPipeline> pipeline;
+};
 
-Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
+Result<OpenedScan> OpenScan(const ReconstructRequest& request) {
   Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(request.recording);
   if (!reader) return Err(reader.error());
   const RecordingInfo& info = (*reader)->info();
   if (Status status = CheckHasDepth(info, request.recording); !status.ok()) return Err(status);
   const Result<Rig> rig = FindRig(request, **reader);
   if (!rig) return Err(rig.error());
-  GroundOptions options = request.options;
+  OpenedScan scan;
+  scan.rig = std::make_unique<Rig>(*rig);
+  scan.options = request.options;
   std::unique_ptr<ModelFile> model;
   if (!request.model.empty()) {
     Result<std::unique_ptr<ModelFile>> opened = ModelFile::Open(request.model);
     if (!opened) return Err(opened.error());
     model = std::move(*opened);
-    if (Status status = model->AdoptVolume(options); !status.ok()) return Err(status);
+    if (Status status = model->AdoptVolume(scan.options); !status.ok()) return Err(status);
   }
   Result<std::unique_ptr<GroundPipeline>> pipeline =
-      GroundPipeline::Create(options, *rig, request.initial_pose);
+      GroundPipeline::Create(scan.options, *scan.rig, request.initial_pose);
   if (!pipeline) return Err(pipeline.error());
+  scan.pipeline = std::move(*pipeline);
   if (model) {
-    if (Status status = (*pipeline)->Continue(*model); !status.ok()) return Err(status);
+    if (Status status = scan.pipeline->Continue(*model); !status.ok()) return Err(status);
   }
-  if (Status status = PrepareOutputDir(request.output_dir); !status.ok()) return Err(status);
-
   if (info.bytes_ignored > 0) {
     LOG(Reconstruct, Warning) << request.recording.string()
                               << ": damaged or unfinished parts are left out, bytes="
                               << info.bytes_ignored;
   }
+  scan.reader = std::move(*reader);
+  return scan;
+}
+
+/// Reads the thermal frames with these stamps from a recording once more, and compares them.
+Status CompareHeldOut(const ReconstructRequest& request, const Rig& rig,
+                      const std::vector<CaptureTime>& stamps, HeldOutViews& views) {
+  const Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(request.recording);
+  if (!reader) return reader.error();
+  std::size_t read = 0;
+  while (read < stamps.size()) {
+    Result<std::optional<RecordedItem>> item = (*reader)->Next();
+    if (!item) continue;
+    if (!*item) break;
+    auto* recorded = std::get_if<RecordedThermal>(&**item);
+    if (recorded == nullptr || !recorded->frame.valid) continue;
+    ThermalFrame frame;
+    frame.header = recorded->frame.header;
+    frame.header.capture_time += FromSeconds(rig.thermal_delay_s);
+    if (!std::ranges::binary_search(stamps, frame.header.capture_time)) continue;
+    Result<Image<std::uint16_t>> image = DecodeTemperatures(recorded->frame.image);
+    if (!image || image->width() != rig.thermal->width || image->height() != rig.thermal->height)
+      continue;
+    frame.temperature_raw = std::move(*image);
+    frame.scale = recorded->frame.scale;
+    frame.valid = true;
+    views.Compare(frame);
+    ++read;
+    if (request.progress) {
+      request.progress(kFramesFraction + (1.0 - kFramesFraction) * static_cast<double>(read) /
+                                             static_cast<double>(stamps.size()),
+                       "predicting");
+    }
+  }
+  return OkStatus();
+}
+
+}  // namespace
+
+Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
+  Result<OpenedScan> scan = OpenScan(request);
+  if (!scan) return Err(scan.error());
+  const RecordingInfo& info = scan->reader->info();
+  const GroundOptions& options = scan->options;
+  GroundPipeline& pipeline = *scan->pipeline;
+  if (Status status = PrepareOutputDir(request.output_dir); !status.ok()) return Err(status);
+
   const auto start = std::chrono::steady_clock::now();
-  InlineDriver driver(request, **reader, *rig, **pipeline);
+  InlineDriver driver(request, *scan->reader, *scan->rig, pipeline);
   if (Status status = driver.Run(); !status.ok()) return Err(status);
   const DelayReport delay = driver.CheckDelay();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
-  Json stats = DescribeScan((*pipeline)->model(), options);
+  Json stats = DescribeScan(pipeline.model(), options);
   stats["source"] = DescribeSource(request, info, driver);
   stats["elapsed_s"] = elapsed.count();
   const auto progress = [&](std::string_view what, double fraction) {
@@ -248,13 +320,50 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);
   };
   Result<WrittenScan> written =
-      WriteScan((*pipeline)->model(), options, delay, driver.FindDoubts(), std::move(stats),
-                request.output_dir, (*pipeline)->pool(), progress);
+      WriteScan(pipeline.model(), options, delay, driver.FindDoubts(), std::move(stats),
+                request.output_dir, pipeline.pool(), progress);
   if (!written) return Err(written.error());
-  const PipelineCounts& counts = (*pipeline)->model().counts;
+  const PipelineCounts& counts = pipeline.model().counts;
   return ReconstructSummary{
       counts.depth_in,      counts.depth_repeated,    counts.depth_tracked,      counts.thermal_in,
       counts.thermal_fused, std::move(written->text), std::move(written->doubts)};
+}
+
+Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int every,
+                                          const std::optional<SmoothSurface>& surface) {
+  if (every < 2) {
+    return Err(InvalidArgument(
+        fmt::format("every K-th thermal frame is held out: K must be at least 2, got {}", every)));
+  }
+  if (surface) {
+    if (Status status = Validate(*surface); !status.ok()) return Err(status);
+  }
+  Result<OpenedScan> scan = OpenScan(request);
+  if (!scan) return Err(scan.error());
+  if (Status status = CheckThermalFusion(*scan->rig); !status.ok())
+    return Err(status.WithContext(request.recording.string()));
+  InlineDriver driver(request, *scan->reader, *scan->rig, *scan->pipeline);
+  driver.HoldOut(every);
+  if (Status status = driver.Run(); !status.ok()) return Err(status);
+  if (driver.held_out().empty()) {
+    return Err(FailedPrecondition(
+        fmt::format("{}: the recording has fewer than {} valid thermal frames: none is held out",
+                    request.recording.string(), every)));
+  }
+  const HeldOutOptions options{
+      .max_gap_s = scan->options.thermal().expert().max_wait_s(),
+      .min_weight = static_cast<float>(scan->options.export_().expert().min_weight()),
+      .surface = surface};
+  HeldOutViews views(scan->pipeline->model(), options, scan->pipeline->pool());
+  if (Status status = CompareHeldOut(request, *scan->rig, driver.held_out(), views); !status.ok()) {
+    return Err(status);
+  }
+  if (views.report().frames == 0) {
+    return Err(FailedPrecondition(
+        fmt::format("{}: the rig was tracked at none of the {} thermal frames that were held out",
+                    request.recording.string(), driver.held_out().size())));
+  }
+  return views.report();
 }
 
 }  // namespace isotherm

@@ -11,6 +11,8 @@
 #include "common/doubts/doubts.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
+#include "common/radiometry/smooth_surface.h"
+#include "ground/offline/held_out_report.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {
@@ -42,5 +44,12 @@ struct ReconstructSummary {
 /// good in a damaged recording is used. Fails before any work if the output folder cannot be
 /// written, the recording has no calibration or no depth, or an option is out of range.
 Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request);
+
+/// Reconstructs without every K-th valid thermal frame, K = `every`, and predicts those. With a
+/// `surface`, temperatures are predicted as they look from the angle of each view. Writes nothing;
+/// `request.output_dir` is not used. Fails also if `every` is less than 2, the surface is not
+/// valid, no frame is held out, or none of them has a pose.
+Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int every,
+                                          const std::optional<SmoothSurface>& surface);
 
 }  // namespace isotherm

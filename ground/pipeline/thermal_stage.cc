@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ground/stage_times/stage_times.h"
+#include "ground/thermal/uncertainty_budget.h"
 
 namespace isotherm {
 namespace {
@@ -19,6 +20,7 @@ ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float 
     : options_(options),
       camera_(*rig.thermal),
       T_depth_thermal_(rig.T_thermal_depth->inverse()),
+      extrinsic_px_(ExtrinsicSigmaPx(rig.reprojection_error_px)),
       counts_(counts),
       timing_(timing),
       fuser_(options, *rig.thermal, rig.thermal_sensor, min_weight),
@@ -127,6 +129,9 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
   line_of_sight_occlusion_.Aim(T_view_thermal);
   const CaptureConditions capture{.motion = MotionAround(depth),
                                   .registration_px = RegistrationSigmaPx(time, depth),
+                                  .extrinsic_px = extrinsic_px_,
+                                  .time_sigma_s = ToSeconds(waiting.frame->header.capture_sigma),
+                                  .camera = CameraUncertainty(),
                                   .near_range = &near_range_occlusion_,
                                   .line_of_sight = &line_of_sight_occlusion_,
                                   .nuc = waiting.nuc};

@@ -70,6 +70,7 @@ class ThermalStage {
   const ThermalOptions options_;
   const CameraModel camera_;
   const RigidTransform T_depth_thermal_;
+  const double extrinsic_px_;
   PipelineCounts& counts_;
   StageStats& timing_;
   ThermalFuser fuser_;

@@ -6,10 +6,10 @@
 namespace isotherm {
 namespace {
 
-constexpr RenderLayer kLayers[] = {RenderLayer::kThermal,      RenderLayer::kDistance,
-                                   RenderLayer::kAngle,        RenderLayer::kMotion,
-                                   RenderLayer::kDisagreement, RenderLayer::kAge,
-                                   RenderLayer::kCoverage,     RenderLayer::kGeometry};
+constexpr RenderLayer kLayers[] = {
+    RenderLayer::kThermal,     RenderLayer::kDistance,     RenderLayer::kAngle,
+    RenderLayer::kMotion,      RenderLayer::kDisagreement, RenderLayer::kAge,
+    RenderLayer::kUncertainty, RenderLayer::kCoverage,     RenderLayer::kGeometry};
 
 }  // namespace
 
@@ -29,6 +29,8 @@ std::string_view LayerName(RenderLayer layer) {
       return "disagreement";
     case RenderLayer::kAge:
       return "age";
+    case RenderLayer::kUncertainty:
+      return "uncertainty";
     case RenderLayer::kCoverage:
       return "coverage";
     case RenderLayer::kGeometry:

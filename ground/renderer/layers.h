@@ -15,6 +15,7 @@ enum class RenderLayer : std::uint8_t {
   kMotion,        ///< Class of the smear while the temperature was measured.
   kDisagreement,  ///< Class of how far measurements under good conditions contradict each other.
   kAge,           ///< Seconds between the last NUC and the measurement.
+  kUncertainty,   ///< Standard uncertainty of the temperature.
   kCoverage,      ///< Seen by depth, but never measured well.
   kGeometry,      ///< The surface only.
 };

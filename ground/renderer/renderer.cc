@@ -7,6 +7,7 @@
 
 #include "common/base/check.h"
 #include "common/base/log.h"
+#include "common/base/quantile.h"
 
 namespace isotherm {
 namespace {
@@ -201,6 +202,8 @@ RgbImage Renderer::Draw(RenderLayer layer, const ViewMaps& view,
       return Disagreement(view);
     case RenderLayer::kAge:
       return NucAge(view);
+    case RenderLayer::kUncertainty:
+      return Uncertainty(view);
     case RenderLayer::kCoverage:
       return Coverage(view);
     case RenderLayer::kGeometry:
@@ -317,26 +320,50 @@ RgbImage Renderer::Disagreement(const ViewMaps& view) const {
   return Classes(view, view.disagreement_class, legend);
 }
 
-RgbImage Renderer::NucAge(const ViewMaps& view) const {
-  CHECK(view.nuc_age_s.size() == view.celsius.size());
-  constexpr double kShortest_s = 1.0;  // A shorter scale would only show the frames' periods.
-  const TemperatureStatistics ages = Summarize(view.nuc_age_s.pixels());
-  const double longest_s = std::max(ages.max_celsius, kShortest_s);
-  const auto colour = [longest_s](double age_s) { return InfernoColour(1.0 - age_s / longest_s); };
+RgbImage Renderer::Values(const ViewMaps& view, const Image<float>& values, double largest,
+                          ScaleLegend legend) const {
+  CHECK(values.size() == view.celsius.size());
+  const auto colour = [largest](double value) { return InfernoColour(1.0 - value / largest); };
   const RgbImage rendering = DrawSurface(view, [&](int x, int y) {
     const double cos_view = options_.expert().shading() ? view.cos_view.At(x, y) : 1.0;
-    const double age_s = view.nuc_age_s.At(x, y);
-    if (!std::isnan(age_s)) return Shaded(colour(age_s), cos_view);
+    const double value = values.At(x, y);
+    if (!std::isnan(value)) return Shaded(colour(std::min(value, largest)), cos_view);
     return std::isnan(view.celsius.At(x, y)) ? NeverMeasuredColour(x, y, cos_view)
                                              : Shaded(kUncheckedColour, cos_view);
   });
   if (!options_.legend()) return rendering;
+  legend.rows = {{kUncheckedColour, "not known", "", ""}};
+  return WithLegend(rendering, legend, colour);
+}
+
+RgbImage Renderer::NucAge(const ViewMaps& view) const {
+  constexpr double kShortest_s = 1.0;  // A shorter scale would only show the frames' periods.
+  const TemperatureStatistics ages = Summarize(view.nuc_age_s.pixels());
+  const double longest_s = std::max(ages.max_celsius, kShortest_s);
   ScaleLegend legend;
   legend.title = "age since NUC";
   if (ages.count > 0) legend.scale = TemperatureScale{0.0, longest_s};
   legend.unit.name = "s";
-  legend.rows = {{kUncheckedColour, "not known", "", ""}};
-  return WithLegend(rendering, legend, colour);
+  return Values(view, view.nuc_age_s, longest_s, legend);
+}
+
+RgbImage Renderer::Uncertainty(const ViewMaps& view) const {
+  constexpr double kSmallest_k = 0.05;  // A shorter scale would only show the steps of the codes.
+  constexpr double kShown = 0.95;       // The few worst ones would make all others look alike.
+  std::vector<double> sigmas_k;
+  for (const float sigma_k : view.sigma_k.pixels())
+    if (!std::isnan(sigma_k)) sigmas_k.push_back(static_cast<double>(sigma_k));
+  const double largest_k =
+      sigmas_k.empty() ? kSmallest_k : std::max(TakeQuantile(sigmas_k, kShown), kSmallest_k);
+  ScaleLegend legend;
+  legend.title = "standard uncertainty";
+  if (!sigmas_k.empty()) {
+    legend.scale = TemperatureScale{0.0, largest_k};
+    legend.scale->values_above =
+        std::ranges::any_of(sigmas_k, [&](double sigma_k) { return sigma_k > largest_k; });
+  }
+  legend.unit.name = "K";
+  return Values(view, view.sigma_k, largest_k, legend);
 }
 
 RgbImage Renderer::Coverage(const ViewMaps& view) const {

@@ -25,6 +25,7 @@ Status Validate(const RendererExpertOptions& options);
 ///   distance   green, yellow, red = good, acceptable, bad; black = never measured
 ///   angle, motion, disagreement  the same; dim violet = measured, but not checked
 ///   age        light = soon after the NUC, dark = longest after it; dim violet = not known
+///   uncertainty  light = certain, dark = least certain; dim violet = not known
 ///   coverage   grey where measured well, orange where only badly, magenta where never
 ///   geometry   light grey
 /// Pixels without a surface have kBackground. With the legend option a panel is added to the right;
@@ -53,8 +54,9 @@ class Renderer {
   RgbImage Angle(const ViewMaps& view) const;
   RgbImage Motion(const ViewMaps& view) const;
   RgbImage Disagreement(const ViewMaps& view) const;
-  /// Draws a view that was made with SampleNucAge.
+  // Of a view that was made with SampleRecords.
   RgbImage NucAge(const ViewMaps& view) const;
+  RgbImage Uncertainty(const ViewMaps& view) const;
   RgbImage Coverage(const ViewMaps& view) const;
   RgbImage Geometry(const ViewMaps& view) const;
 
@@ -64,6 +66,9 @@ class Renderer {
   ScaleLegend ThermalLegend(const std::optional<TemperatureScale>& scale, bool with_lines) const;
   RgbImage Classes(const ViewMaps& view, const Image<std::uint8_t>& classes,
                    const ClassLegend& legend) const;
+  /// Draws `values` of measured surface: light = 0, dark = the end of legend.scale.
+  RgbImage Values(const ViewMaps& view, const Image<float>& values, double largest,
+                  ScaleLegend legend) const;
 
   const RendererOptions options_;
   const ThermalOptions thermal_;

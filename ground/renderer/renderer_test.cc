@@ -178,9 +178,28 @@ TEST(RendererTest, AgeGoesFromLightToDark) {
   EXPECT_GT(MakeRenderer(FixedScale(true)).NucAge(view).width(), 5);
 }
 
+TEST(RendererTest, UncertaintyGoesFromLightToDarkUpToWhatNearlyAllHave) {
+  ViewMaps view = EmptyView(23, 1);
+  view.sigma_k = Image<float>(23, 1, NAN);
+  for (int x = 0; x < 23; ++x) {
+    view.cos_view.At(x, 0) = 1.0F;
+    view.celsius.At(x, 0) = x == 22 ? NAN : 40.0F;
+    if (x < 20) view.sigma_k.At(x, 0) = 0.2F;
+  }
+  view.sigma_k.At(0, 0) = 0.1F;
+  view.sigma_k.At(20, 0) = 5.0F;  // One of 21: beyond the scale.
+  const RgbImage rendering = MakeRenderer(FixedScale(false)).Uncertainty(view);
+  EXPECT_EQ(rendering.At(0, 0), InfernoColour(0.5));
+  EXPECT_EQ(rendering.At(1, 0), InfernoColour(0.0));
+  EXPECT_EQ(rendering.At(20, 0), InfernoColour(0.0));
+  EXPECT_EQ(rendering.At(21, 0), (Rgb8{96, 84, 128}));
+  EXPECT_EQ(rendering.At(22, 0), NeverMeasuredColour(22, 0, 1.0));
+  EXPECT_GT(MakeRenderer(FixedScale(true)).Uncertainty(view).width(), 23);
+}
+
 TEST(RendererTest, EveryLayerCanBeDrawnByItsName) {
   ViewMaps view = EmptyView(8, 8);
-  view.nuc_age_s = Image<float>(8, 8, NAN);
+  view.nuc_age_s = view.sigma_k = Image<float>(8, 8, NAN);
   view.cos_view.At(4, 4) = 1.0F;
   const Renderer renderer = MakeRenderer(FixedScale(false));
   std::set<std::string_view> names;

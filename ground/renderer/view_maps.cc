@@ -64,17 +64,19 @@ void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
   });
 }
 
-void SampleNucAge(const SurfaceMaps& maps, const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                  ThreadPool& threads, ViewMaps& view) {
+void SampleRecords(const SurfaceMaps& maps, const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                   ThreadPool& threads, ViewMaps& view) {
   view.nuc_age_s.Resize(maps.width(), maps.height());
+  view.sigma_k.Resize(maps.width(), maps.height());
   threads.ParallelFor(maps.height(), [&](int y) {
     for (int x = 0; x < maps.width(); ++x) {
-      float& age_s = view.nuc_age_s.At(x, y);
-      age_s = NAN;
+      view.nuc_age_s.At(x, y) = view.sigma_k.At(x, y) = NAN;
       if (std::isnan(view.celsius.At(x, y))) continue;
       const Eigen::Vector3d p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
-      const ConditionRecord record = MeasurementAt(tsdf, thermal, p_world).conditions;
-      if (!record.empty()) age_s = record.age_s();
+      const PointMeasurement measurement = MeasurementAt(tsdf, thermal, p_world);
+      if (measurement.conditions.empty()) continue;
+      view.nuc_age_s.At(x, y) = measurement.conditions.age_s();
+      view.sigma_k.At(x, y) = measurement.sigma_k;
     }
   });
 }

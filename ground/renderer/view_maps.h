@@ -27,8 +27,9 @@ struct ViewMaps {
   /// Whose temperatures `celsius` holds, for legends.
   const char* celsius_meaning = "apparent temperature";
 
-  Image<float> nuc_age_s;  ///< Since the NUC before the measurement; NaN = not known. Empty unless
-                           ///< SampleNucAge was called.
+  // Of the measurements' records, NaN = not known. Empty unless SampleRecords was called.
+  Image<float> nuc_age_s;  ///< Since the NUC before the measurement.
+  Image<float> sigma_k;    ///< Standard uncertainty of `celsius`.
 
   int width() const { return celsius.width(); }
   int height() const { return celsius.height(); }
@@ -46,9 +47,9 @@ void SampleView(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
                 const TsdfVolume& tsdf, const ThermalVolume& thermal, ThreadPool& threads,
                 ViewMaps& view);
 
-/// Adds the age of the measurements since the NUC, from their records, to a view of the same
-/// `maps`.
-void SampleNucAge(const SurfaceMaps& maps, const TsdfVolume& tsdf, const ThermalVolume& thermal,
-                  ThreadPool& threads, ViewMaps& view);
+/// Adds what the records of the measurements hold to a view of the same `maps`: their age since the
+/// NUC and their uncertainty.
+void SampleRecords(const SurfaceMaps& maps, const TsdfVolume& tsdf, const ThermalVolume& thermal,
+                   ThreadPool& threads, ViewMaps& view);
 
 }  // namespace isotherm

@@ -127,6 +127,10 @@ std::string SurfaceText(const ResultSummary& summary, const Interpretation& inte
                         summary.temperatures.mean_celsius,
                         interpretation.changes_nothing() ? "apparent" : "object");
   }
+  if (summary.sigma.points > 0) {
+    text += fmt::format("         standard uncertainty {:.2f} K (median), 95 % below {:.2f} K\n",
+                        summary.sigma.median_k, summary.sigma.p95_k);
+  }
   for (const std::string& sentence : interpretation.Errors(summary.interpretation))
     text += fmt::format("         {}\n", sentence);
   return text;

@@ -18,8 +18,9 @@ HWY_INLINE MI BothValid(VI classes) {
                  hn::Ne(hn::And(classes, hn::Set(di, ThermalLayout::kDistanceMask)), hn::Zero(di)));
 }
 
-/// Where a voxel's new temperature is no better than the one it has (algorithm 6).
-HWY_INLINE MI KeepsOld(VI old_word, VI word) {
+/// Where a voxel's new temperature is no better than the one it has (algorithm 6). Where the
+/// classes are equal, `larger_sigma` says so.
+HWY_INLINE MI KeepsOld(VI old_word, VI word, MI larger_sigma) {
   // Smaller is better: distance, then angle, then motion (whose code grows the better it is).
   const auto order = [&](VI classes) {
     constexpr std::uint32_t kDistanceAndAngle =
@@ -29,9 +30,37 @@ HWY_INLINE MI KeepsOld(VI old_word, VI word) {
         hn::And(hn::ShiftRight<ThermalLayout::kMotionShift>(classes),
                 hn::Set(di, ThermalLayout::kClassMask)));
   };
+  const VI new_order = order(word);
+  const VI old_order = order(old_word);
+  const MI worse =
+      hn::Or(hn::Gt(new_order, old_order), hn::And(hn::Eq(new_order, old_order), larger_sigma));
   // A voxel never measured has no valid classes either.
-  return hn::And(BothValid(old_word),
-                 hn::Or(hn::Not(BothValid(word)), hn::Gt(order(word), order(old_word))));
+  return hn::And(BothValid(old_word), hn::Or(hn::Not(BothValid(word)), worse));
+}
+
+/// SigmaCodes of the temperatures of the lanes that begin at voxel `i`; 0 = not known.
+HWY_INLINE VI OldSigmas(const BlockSigmas& sigmas, int i) {
+  constexpr int kRow = BlockSigmas::kRowVoxels;
+  const hn::Rebind<std::uint8_t, DI> bytes;
+  const int lanes = static_cast<int>(hn::Lanes(di));
+  HWY_ALIGN std::uint8_t codes[hn::MaxLanes(di) + kRow];
+  for (int lane = 0; lane < lanes; lane += kRow) {
+    const std::uint8_t* row = sigmas.rows[static_cast<std::size_t>((i + lane) / kRow)];
+    if (row != nullptr) {
+      std::memcpy(codes + lane, row, kRow);
+    } else {
+      std::memset(codes + lane, 0, kRow);
+    }
+  }
+  // Vectors shorter than a row begin within it.
+  return hn::PromoteTo(di, hn::LoadU(bytes, codes + i % kRow));
+}
+
+/// Where the temperature that a voxel has is known better than that of its pixel.
+HWY_INLINE MI LargerSigma(const BlockSigmas& sigmas, int i, VI flags) {
+  const VI old_code = OldSigmas(sigmas, i);
+  const VI code = hn::And(hn::ShiftRight<ThermalPixel::kSigmaShift>(flags), hn::Set(di, 0xFF));
+  return hn::And(hn::Gt(old_code, hn::Zero(di)), hn::Gt(code, old_code));
 }
 
 /// Where a voxel was measured under good conditions, and lower than now.
@@ -116,13 +145,15 @@ HWY_INLINE void Note(int i, VI fresh, VI flags, MI noted, MI takes, BlockMeasure
 // Gives the voxels near the surface the temperatures of the pixels they are seen in. A voxel takes
 // part if it lies within max_distance_m of the surface that its pixel shows (algorithm 5, with the
 // plane through the vertex), and takes the temperature unless the one it has was measured under
-// better conditions (algorithm 6) or, with keep_lowest, is lower under conditions as good. Rows:
-// lanes are neighbours along x, then y, of a layer; words are TsdfLayout's and ThermalLayout's of
-// the same 512 voxels, pixels ThermalPixel. Fast: most vectors have no voxel near the surface and
-// end at their first load; a pixel is one load of 16 bytes and a word; what was measured is written
-// packed, so that the slow part (MeasurementRecorder) meets these voxels only.
+// better conditions (algorithm 6), is less uncertain under equal ones or, with keep_lowest, is
+// lower under conditions as good. Rows: lanes are neighbours along x, then y, of a layer; words are
+// TsdfLayout's and ThermalLayout's of the same 512 voxels, pixels ThermalPixel, sigmas bytes in
+// rows of 8 voxels. Fast: most vectors have no voxel near the surface and end at their first load;
+// a pixel is one load of 16 bytes and a word; what was measured is written packed, so that the slow
+// part (MeasurementRecorder) meets these voxels only.
 void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
-               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured) {
+               const BlockSigmas& sigmas, std::uint32_t* thermal, FusionKernelCounts& counts,
+               BlockMeasurements* measured) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   constexpr int kLayer = BlockLayout::kLayerVoxels;
   const auto* distances = reinterpret_cast<const std::int32_t*>(tsdf);
@@ -162,10 +193,15 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
     const VI old = hn::LoadU(di, temperatures + i);
     const VI classes = hn::And(flags, conditions);
     const MI assignable = hn::And(on_surface, has(ThermalPixel::kAssignable));
-    MI assign = assignable;
-    if (a.validate) assign = hn::AndNot(KeepsOld(old, classes), assign);
     counts.considered += static_cast<std::int64_t>(hn::CountTrue(di, on_surface));
+    if (hn::AllFalse(di, assignable)) continue;
+    MI assign = assignable;
     const MI good = hn::And(assignable, hn::Eq(classes, all_good));
+    if (a.validate) {
+      MI larger_sigma = LargerSigma(sigmas, i, flags);
+      if (a.keep_lowest) larger_sigma = hn::AndNot(good, larger_sigma);
+      assign = hn::AndNot(KeepsOld(old, classes, larger_sigma), assign);
+    }
     if (hn::AllFalse(di, hn::Or(assign, good))) continue;
     VI stored = TemperatureCode(record, place);
     if (!a.keep_bad) stored = hn::IfThenElseZero(BothValid(classes), stored);
@@ -188,8 +224,9 @@ namespace isotherm {
 HWY_EXPORT(FuseBlock);
 
 void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
-               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured) {
-  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, first, tsdf, thermal, counts, measured);
+               const BlockSigmas& sigmas, std::uint32_t* thermal, FusionKernelCounts& counts,
+               BlockMeasurements* measured) {
+  HWY_DYNAMIC_DISPATCH(FuseBlock)(args, first, tsdf, sigmas, thermal, counts, measured);
 }
 
 }  // namespace isotherm

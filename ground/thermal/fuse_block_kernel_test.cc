@@ -46,6 +46,9 @@ class FuseBlockTest : public ::testing::Test {
       if (random_.Chance(0.9)) pixel.flags |= ThermalPixel::kSeen;
       if ((pixel.flags & ThermalPixel::kSeen) != 0 && random_.Chance(0.8))
         pixel.flags |= ThermalPixel::kAssignable;
+      // Few values, so that some are the same.
+      pixel.flags |= random_.Integer(1, 4) * (random_.Chance(0.5) ? 1 : 63)
+                     << ThermalPixel::kSigmaShift;
     }
     args_.pixels = pixels_.data();
     args_.planes = planes_.data();
@@ -85,13 +88,28 @@ class FuseBlockTest : public ::testing::Test {
       thermal_[i] = random_.Chance(0.4) ? 0 : (code << 16) | static_cast<std::uint32_t>(classes);
     }
     thermal_.back() = static_cast<std::uint32_t>(testing::kCanary);
+    ArrangeSigmas();
+  }
+
+  /// Some rows have none, and in others some voxels.
+  void ArrangeSigmas() {
+    for (std::size_t i = 0; i < kVoxels; ++i) {
+      sigmas_[i] =
+          static_cast<std::uint8_t>(random_.Integer(0, 4) * (random_.Chance(0.5) ? 1 : 63));
+    }
+    for (std::size_t row = 0; row < block_sigmas_.rows.size(); ++row) {
+      const bool known = random_.Chance(0.7);
+      block_sigmas_.rows[row] = known ? &sigmas_[8 * row] : nullptr;
+      if (!known) std::fill_n(&sigmas_[8 * row], 8, std::uint8_t{0});
+    }
   }
 
   void CompareBlock() {
     const Words before = thermal_;
     FusionKernelCounts counts;
     BlockMeasurements measured;
-    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts, &measured);
+    FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts,
+              &measured);
     ASSERT_EQ(thermal_.back(), before.back()) << "wrote beyond the block";
     const Eigen::Matrix3d axes =
         Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(args_.axes).cast<double>();
@@ -104,7 +122,8 @@ class FuseBlockTest : public ::testing::Test {
       const auto index = static_cast<int>(i);
       const Eigen::Vector3d p =
           first_.cast<double>() + axes * Eigen::Vector3d(index & 7, (index >> 3) & 7, index >> 6);
-      const reference::VoxelFusion truth = reference::FuseVoxel(args_, p, {tsdf_[i]}, {before[i]});
+      const reference::VoxelFusion truth =
+          reference::FuseVoxel(args_, p, {tsdf_[i]}, {before[i]}, sigmas_[i]);
       count(truth.considered, least.considered, most.considered);
       // Bad conditions leave no temperature (code 0).
       const bool takes = truth.code > 0.0 || truth.assigned == Verdict::kEither;
@@ -161,6 +180,8 @@ class FuseBlockTest : public ::testing::Test {
   FusionKernelArgs args_{};
   Eigen::Vector3f first_;
   Words tsdf_{}, thermal_{};
+  std::array<std::uint8_t, kVoxels> sigmas_{};
+  BlockSigmas block_sigmas_;
   std::int64_t assigned_ = 0;
   std::int64_t kept_ = 0;
   std::int64_t good_not_taken_ = 0;
@@ -182,6 +203,41 @@ TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyImageAndPose) {
   });
 }
 
+TEST_F(FuseBlockTest, UnderEqualClassesTheSmallerUncertaintyStaysAndOfEqualOnesTheNewerIsTaken) {
+  testing::ForEachInstructionSet([&] {
+    RearrangeImage(64, 48);
+    args_.validate = true;
+    args_.keep_lowest = false;
+    constexpr std::uint8_t kNew = 0x80;  // The sign of the flags must not matter.
+    for (ThermalPixel& pixel : pixels_) {
+      if (&pixel == &pixels_.back()) break;
+      pixel = {.depth_m = 0.5F, .celsius = 20.0F, .slopes = 0, .flags = kAllGood};
+      pixel.flags |= ThermalPixel::kSeen | ThermalPixel::kAssignable |
+                     static_cast<std::int32_t>(std::uint32_t{kNew} << ThermalPixel::kSigmaShift);
+    }
+    const auto assigned_over = [&](std::uint8_t old_sigma) {
+      std::int64_t assigned = 0;
+      for (int round = 0; round < 20; ++round) {
+        RearrangeBlock();
+        for (std::size_t i = 0; i < kVoxels; ++i)
+          thermal_[i] = (3U << 16) | static_cast<std::uint32_t>(kAllGood);
+        sigmas_.fill(old_sigma);
+        for (std::size_t row = 0; row < block_sigmas_.rows.size(); ++row)
+          block_sigmas_.rows[row] = &sigmas_[8 * row];
+        FusionKernelCounts counts;
+        FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts,
+                  nullptr);
+        assigned += counts.assigned;
+      }
+      return assigned;
+    };
+    EXPECT_EQ(assigned_over(kNew - 1), 0) << "what is known better stays";
+    EXPECT_GT(assigned_over(kNew), 100);
+    EXPECT_GT(assigned_over(kNew + 1), 100);
+    EXPECT_GT(assigned_over(0), 100) << "not known";
+  });
+}
+
 TEST_F(FuseBlockTest, LeavesTheBlockAloneAtAPositionThatIsNone) {
   testing::ForEachInstructionSet([&] {
     RearrangeImage(64, 48);
@@ -193,7 +249,8 @@ TEST_F(FuseBlockTest, LeavesTheBlockAloneAtAPositionThatIsNone) {
         first_[axis] = bad;
         const Words before = thermal_;
         FusionKernelCounts counts;
-        FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts, nullptr);
+        FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts,
+                  nullptr);
         EXPECT_EQ(thermal_, before) << bad << " along axis " << axis;
         EXPECT_EQ(counts.assigned, 0);
       }
@@ -208,7 +265,7 @@ TEST_F(FuseBlockTest, AnImageThatShowsNothingChangesNothing) {
     RearrangeBlock();
     const Words before = thermal_;
     FusionKernelCounts counts;
-    FuseBlock(args_, first_.data(), tsdf_.data(), thermal_.data(), counts, nullptr);
+    FuseBlock(args_, first_.data(), tsdf_.data(), block_sigmas_, thermal_.data(), counts, nullptr);
     EXPECT_EQ(thermal_, before);
     EXPECT_EQ(counts.considered, 0);
   });

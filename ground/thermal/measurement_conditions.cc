@@ -200,7 +200,7 @@ ConditionClass ConditionLimits::ClassifyAngle(float cosine) const {
 }
 
 bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
-                         ConditionClass new_motion, ThermalVoxel old) {
+                         ConditionClass new_motion, ThermalVoxel old, SigmaPair sigma) {
   const auto valid = [](ConditionClass distance, ConditionClass angle) {
     return distance != ConditionClass::kBad && angle != ConditionClass::kBad;
   };
@@ -209,7 +209,8 @@ bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
   if (!valid(new_distance, new_angle)) return false;
   if (new_distance != old.distance_class()) return Rank(new_distance) < Rank(old.distance_class());
   if (new_angle != old.angle_class()) return Rank(new_angle) < Rank(old.angle_class());
-  return Rank(new_motion) <= Rank(old.motion_class());
+  if (new_motion != old.motion_class()) return Rank(new_motion) < Rank(old.motion_class());
+  return sigma.before == 0 || sigma.now <= sigma.before;
 }
 
 }  // namespace isotherm

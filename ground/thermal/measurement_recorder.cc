@@ -68,7 +68,9 @@ void MeasurementRecorder::Record(const BlockMeasurements& measured, const Eigen:
       record = frame_;
       record.good_count = count & ConditionRecord::kMaxGoodCount;
       record.direction = direction;
-      record.cosine = static_cast<std::uint8_t>(measured.flags[i] >> ThermalPixel::kCosineShift);
+      record.cosine = ThermalPixel::Cosine(measured.flags[i]);
+      thermal.records()->Sigmas(block, voxel / RecordRow::kVoxels)[voxel % RecordRow::kVoxels] =
+          ThermalPixel::Sigma(measured.flags[i]);
       const auto steps =
           static_cast<std::uint32_t>(distance_m / ConditionRecord::kDistanceStep_m + 0.5F);
       record.distance =

@@ -1,5 +1,7 @@
 #include "ground/thermal/nuc_epochs.h"
 
+#include <cmath>
+
 namespace isotherm {
 
 NucAge NucEpochs::Follow(const ThermalFrame& frame) {
@@ -9,12 +11,23 @@ NucAge NucEpochs::Follow(const ThermalFrame& frame) {
   if (!frame.valid) {
     // One NUC, however many frames it takes.
     if (!shut_ && had_valid_) ++age_.epoch;
+    housing_celsius_.reset();
     shut_ = true;
     last_shut_ = frame.header.capture_time;
   } else {
-    if (fell && !shut_) ++age_.epoch;
+    if (fell && !shut_) {
+      ++age_.epoch;
+      housing_celsius_.reset();
+    }
     shut_ = false;
     had_valid_ = true;
+  }
+  if (!first_) first_ = frame.header.capture_time;
+  age_.seconds_followed = ToSeconds(frame.header.capture_time - *first_);
+  age_.housing_change_k.reset();
+  if (const float now = frame.housekeeping.housing_celsius; frame.valid && std::isfinite(now)) {
+    if (!housing_celsius_) housing_celsius_ = now;
+    age_.housing_change_k = static_cast<double>(now) - static_cast<double>(*housing_celsius_);
   }
   age_.seconds_since = seconds;
   if (!seconds && last_shut_)

@@ -11,6 +11,9 @@ namespace isotherm {
 struct NucAge {
   std::uint8_t epoch = 0;               ///< NUCs seen before, modulo 256.
   std::optional<double> seconds_since;  ///< Since the shutter opened; nullopt = none seen.
+  double seconds_followed = 0.0;        ///< Since the first frame of the stream.
+  /// Of the housing since the first valid frame after it; nullopt = the camera does not tell.
+  std::optional<double> housing_change_k = std::nullopt;
 };
 
 /// Follows the shutter through a stream of thermal frames, valid or not, in order.
@@ -25,8 +28,9 @@ class NucEpochs {
   NucAge age_;
   bool had_valid_ = false;
   bool shut_ = false;  ///< The last frame was not valid.
-  std::optional<CaptureTime> last_shut_;
-  std::optional<double> last_seconds_;  ///< The camera's count.
+  std::optional<CaptureTime> first_, last_shut_;
+  std::optional<double> last_seconds_;    ///< The camera's count.
+  std::optional<float> housing_celsius_;  ///< Of the first valid frame of the epoch that told it.
 };
 
 }  // namespace isotherm

@@ -7,8 +7,10 @@ namespace {
 
 class NucEpochsTest : public ::testing::Test {
  protected:
-  NucAge Next(bool valid, std::optional<double> seconds = std::nullopt) {
+  NucAge Next(bool valid, std::optional<double> seconds = std::nullopt,
+              float housing_celsius = kUnknown_celsius) {
     ThermalFrame frame;
+    frame.housekeeping.housing_celsius = housing_celsius;
     frame.valid = valid;
     frame.seconds_since_nuc = seconds;
     frame.header.capture_time = CaptureTime{} + FromSeconds(0.1 * number_++);
@@ -20,7 +22,9 @@ class NucEpochsTest : public ::testing::Test {
 
 TEST_F(NucEpochsTest, AShutterThatClosesForSeveralFramesIsOneNuc) {
   EXPECT_EQ(Next(true).epoch, 0);
-  EXPECT_FALSE(Next(true).seconds_since) << "none seen";
+  const NucAge second = Next(true);
+  EXPECT_FALSE(second.seconds_since) << "none seen";
+  EXPECT_NEAR(second.seconds_followed, 0.1, 1e-9);
   for (int i = 0; i < 4; ++i) Next(false);
   const NucAge after = Next(true);
   EXPECT_EQ(after.epoch, 1);
@@ -47,6 +51,17 @@ TEST_F(NucEpochsTest, ACountThatFallsWhileTheShutterIsClosedIsNotASecondNuc) {
 TEST_F(NucEpochsTest, AScanThatStartsWithAClosedShutterStartsInItsFirstEpoch) {
   Next(false);
   EXPECT_EQ(Next(true).epoch, 0);
+}
+
+TEST_F(NucEpochsTest, TheHousingsChangeIsCountedFromTheFirstFrameAfterEachNuc) {
+  EXPECT_FALSE(Next(true, 100.0).housing_change_k) << "not told";
+  EXPECT_EQ(Next(true, 100.1, 30.0F).housing_change_k, 0.0);
+  EXPECT_EQ(Next(true, 100.2, 30.5F).housing_change_k, 0.5);
+  EXPECT_FALSE(Next(true, 100.3).housing_change_k) << "told no longer";
+  EXPECT_EQ(Next(true, 0.1, 31.0F).housing_change_k, 0.0) << "a NUC between frames";
+  EXPECT_EQ(Next(true, 0.2, 30.75F).housing_change_k, -0.25);
+  EXPECT_FALSE(Next(false, 0.3, 40.0F).housing_change_k) << "the shutter is closed";
+  EXPECT_EQ(Next(true, 0.1, 32.0F).housing_change_k, 0.0);
 }
 
 }  // namespace

@@ -117,6 +117,24 @@ class MakePixelRowTest : public ::testing::Test {
     args_.smear_s = 0.01F;
     args_.smear_good_px = 0.8F;
     args_.smear_max_px = 1.8F;
+    FillSigma();
+  }
+  /// Each term is at times all that there is, and at times nothing.
+  void FillSigma() {
+    noise_gain_ = Row(args_.width, 1.0F);
+    for (float& gain : noise_gain_) gain = random_.Uniform(0.25F, 1.0F);
+    args_.noise_gain = noise_gain_.data();
+    const auto term = [&](float largest) {
+      return random_.Chance(0.5) ? 0.0F : random_.Uniform(0.0F, largest);
+    };
+    constexpr float kResolution_k2 = 0.025F * 0.025F / 12.0F;
+    args_.sigma = {.noise_k2 = term(0.01F),
+                   .even_k2 = kResolution_k2 + term(0.04F),
+                   .place_px2 = 1.0F / 12.0F + term(0.5F),
+                   .voxel_px2_m2 = term(0.1F),
+                   .time_s2 = term(1e-5F),
+                   .scene_influence = term(0.05F),
+                   .scene_celsius = random_.Uniform(-20.0F, 20.0F)};
   }
 
   void CompareRow() {
@@ -188,13 +206,28 @@ class MakePixelRowTest : public ::testing::Test {
     if (truth.certain_angle) {
       ASSERT_EQ(pixel.flags & 0xF, truth.angle_class);
     }
+    ASSERT_NO_FATAL_FAILURE(CompareSigma(pixel, truth));
     assignable_ += (pixel.flags & ThermalPixel::kAssignable) != 0 ? 1 : 0;
+  }
+  static void CompareSigma(const ThermalPixel& pixel, const reference::Pixel& truth) {
+    const std::uint8_t code = ThermalPixel::Sigma(pixel.flags);
+    if ((pixel.flags & ThermalPixel::kAssignable) == 0) {
+      ASSERT_EQ(code, 0);
+      return;
+    }
+    constexpr double kRelative = 1e-3;  // A reciprocal, products and a root.
+    const auto of = [&](double factor) {
+      return SigmaCode::Of(static_cast<float>(factor * truth.sigma_k));
+    };
+    ASSERT_GE(code, of(1.0 - kRelative));
+    ASSERT_LE(code, of(1.0 + kRelative));
   }
 
   Random random_;
   PixelRowArgs args_{};
   std::vector<float> planes_[6];
   Image<float> distances_, celsius_;
+  std::vector<float> noise_gain_;
   PixelRowCounts counts_;
   int assignable_ = 0;
 };

@@ -104,6 +104,7 @@ std::int64_t TemperatureReview::Review(std::int32_t block, const TsdfVolume& tsd
       voxel.bits =
           (voxel.bits & ThermalLayout::kClassesMask & ~ThermalLayout::kAngleMask) | kBadAngle;
       record = ConditionRecord();
+      thermal.records()->Sigmas(block, row)[x] = 0;
       ++dropped;
     }
   }

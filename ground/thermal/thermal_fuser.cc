@@ -38,6 +38,27 @@ double RowsFromMiddle(const CameraModel& camera, double y) {
   return std::min(std::abs(ProjectNormalized(camera, {0.0, y}).y() - middle), middle);
 }
 
+BlockSigmas SigmasOf(const ThermalVolume& thermal, std::int32_t block) {
+  static_assert(BlockSigmas::kRowVoxels == RecordRow::kVoxels);
+  BlockSigmas sigmas;
+  if (thermal.records() == nullptr) return sigmas;
+  for (int row = 0; row < BlockSigmas::kRows; ++row)
+    sigmas.rows[static_cast<std::size_t>(row)] = thermal.records()->FindSigmas(block, row);
+  return sigmas;
+}
+
+/// Mean of what has a value, °C; 0 if nothing has.
+double MeanCelsius(const Image<float>& celsius) {
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (const float value : celsius.pixels()) {
+    if (std::isnan(value)) continue;
+    sum += static_cast<double>(value);
+    ++count;
+  }
+  return count == 0 ? 0.0 : sum / static_cast<double>(count);
+}
+
 template <typename Vector>
 void CopyVector(const Vector& from, float* to) {
   const Eigen::Vector3f single = from.template cast<float>();
@@ -155,6 +176,24 @@ PixelRowArgs ThermalFuser::RowArgs(const RigidTransform& T_map_thermal,
   return args;
 }
 
+SigmaArgs ThermalFuser::UncertaintyArgs(const CaptureConditions& capture, double voxel_m) const {
+  const auto squared = [](double value) { return static_cast<float>(value * value); };
+  const double resolution_k2 = kUniformVariance * ThermalLayout::kStep_k * ThermalLayout::kStep_k;
+  const double drift_k = DriftKelvin(capture.camera, capture.nuc);
+  SigmaArgs args{};
+  args.noise_k2 = squared(capture.camera.netd_k);
+  args.even_k2 = static_cast<float>(drift_k * drift_k + resolution_k2);
+  args.place_px2 =
+      static_cast<float>(capture.registration_px * capture.registration_px +
+                         capture.extrinsic_px * capture.extrinsic_px + kUniformVariance);
+  args.voxel_px2_m2 = squared(rectifier_.ideal_camera().fx * voxel_m * std::sqrt(kUniformVariance));
+  args.time_s2 = squared(capture.time_sigma_s);
+  args.scene_influence = static_cast<float>(capture.camera.scene_influence);
+  if (capture.camera.scene_influence > 0.0)
+    args.scene_celsius = static_cast<float>(MeanCelsius(celsius_));
+  return args;
+}
+
 void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions& capture,
                               ThreadPool& pool, FusionReport& report) {
   const CameraModel& camera = rectifier_.ideal_camera();
@@ -178,6 +217,7 @@ void ThermalFuser::MakePixels(const PixelRowArgs& args, const CaptureConditions&
       row.nz = surface_.nz.Row(y).data();
       row.distance_m = distances_m_.Row(y + apron_).data() + apron_;
       row.celsius = celsius_.Row(y + apron_).data() + apron_;
+      row.noise_gain = rectifier_.noise_gain().Row(y).data();
       row.y = static_cast<float>((y - camera.cy) / camera.fy);
       row.smear_s =
           static_cast<float>(sensor_.time_constant_s +
@@ -281,7 +321,9 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
   rectifier_.Rectify(frame.temperature_raw, frame.scale, apron_, pool, celsius_);
   CastSurface(T_map_thermal, tsdf, pool);
   FusionReport report;
-  MakePixels(RowArgs(T_map_thermal, depth_camera, T_map_depth, capture), capture, pool, report);
+  PixelRowArgs row_args = RowArgs(T_map_thermal, depth_camera, T_map_depth, capture);
+  row_args.sigma = UncertaintyArgs(capture, tsdf.grid().voxel_size_m);
+  MakePixels(row_args, capture, pool, report);
   SelectBlocks(T_map_thermal, tsdf);
 
   const RigidTransform T_thermal_map = T_map_thermal.inverse();
@@ -302,7 +344,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
           (T_thermal_map * tsdf.grid().VoxelCentre(tsdf.block_coordinates(block) * kBlockSide))
               .cast<float>();
       measured.count = 0;
-      FuseBlock(args, first.data(), &tsdf.voxels(block).front().bits,
+      FuseBlock(args, first.data(), &tsdf.voxels(block).front().bits, SigmasOf(thermal, block),
                 &thermal.voxels(block).front().bits, counts,
                 thermal.records() != nullptr ? &measured : nullptr);
       if (measured.count > 0) recorder.Record(measured, first, block, thermal);

@@ -18,6 +18,7 @@
 #include "ground/thermal/thermal_kernel.h"
 #include "ground/thermal/thermal_rectifier.h"
 #include "ground/thermal/thermal_volume.h"
+#include "ground/thermal/uncertainty_budget.h"
 #include "ground/tsdf/raycaster.h"
 #include "ground/tsdf/tsdf_volume.h"
 #include "ground/tsdf/visible_blocks.h"
@@ -40,8 +41,11 @@ struct FusionReport {
 
 /// Holds what is known about a thermal frame beside its image and pose.
 struct CaptureConditions {
-  CameraMotion motion;                             ///< Motion of the thermal camera.
-  double registration_px = 0.0;                    ///< Standard deviation of the pose in its image.
+  CameraMotion motion;           ///< Motion of the thermal camera.
+  double registration_px = 0.0;  ///< Standard deviation of the pose in its image.
+  double extrinsic_px = 0.0;     ///< The same of the calibration between the cameras.
+  double time_sigma_s = 0.0;     ///< Of the capture time.
+  CameraUncertainty camera;
   const NearRangeOcclusion* near_range = nullptr;  ///< Where something unseen may be in the way.
   const LineOfSightOcclusion* line_of_sight =
       nullptr;  ///< Space that the depth camera sees through.
@@ -78,6 +82,7 @@ class ThermalFuser {
   void CastSurface(const RigidTransform& T_map_thermal, const TsdfVolume& tsdf, ThreadPool& pool);
   PixelRowArgs RowArgs(const RigidTransform& T_map_thermal, const CameraModel& depth_camera,
                        const RigidTransform& T_map_depth, const CaptureConditions& capture) const;
+  SigmaArgs UncertaintyArgs(const CaptureConditions& capture, double voxel_m) const;
   void MakePixels(const PixelRowArgs& args, const CaptureConditions& capture, ThreadPool& pool,
                   FusionReport& report);
   FusionKernelArgs BlockArgs(const RigidTransform& T_thermal_map, const TsdfVolume& tsdf) const;

@@ -79,9 +79,18 @@ HWY_INLINE VI Classify(MF good, MF acceptable) {
       hn::IfThenElseZero(hn::RebindMask(di, acceptable), hn::Set(di, kAcceptable)));
 }
 
-/// Square of the way that the surface goes in the image while a row is smeared, pixels: the
-/// derivative of the projection of a resting point (camera_motion.h).
-HWY_INLINE VF SmearSquared(const PixelRowArgs& a, int first, VF depth) {
+/// A vector in the image for each lane.
+struct ImageVector {
+  VF u, v;
+};
+
+HWY_INLINE VF Dot(const ImageVector& a, const ImageVector& b) {
+  return hn::MulAdd(a.u, b.u, hn::Mul(a.v, b.v));
+}
+
+/// How fast the surface goes through the image, pixels per second, with the other sign: the
+/// derivative of the projection of a resting point (ImageVelocity).
+HWY_INLINE ImageVector ImageSpeed(const PixelRowArgs& a, int first, VF depth) {
   const VF x = hn::Mul(hn::Sub(hn::ConvertTo(d, hn::Iota(di, first)), hn::Set(d, a.cx)),
                        hn::Set(d, 1.0F / a.fx));
   const VF y = hn::Set(d, a.y);
@@ -92,9 +101,8 @@ HWY_INLINE VF SmearSquared(const PixelRowArgs& a, int first, VF depth) {
   const VF vx = hn::Add(speed(0), hn::NegMulAdd(rate(2), y, rate(1)));
   const VF vy = hn::Add(speed(1), hn::MulSub(rate(2), x, rate(0)));
   const VF vz = hn::Add(speed(2), hn::MulSub(rate(0), y, hn::Mul(rate(1), x)));
-  const VF du = hn::Mul(hn::NegMulAdd(x, vz, vx), hn::Set(d, a.fx * a.smear_s));
-  const VF dv = hn::Mul(hn::NegMulAdd(y, vz, vy), hn::Set(d, a.fy * a.smear_s));
-  return hn::MulAdd(du, du, hn::Mul(dv, dv));
+  return {hn::Mul(hn::NegMulAdd(x, vz, vx), hn::Set(d, a.fx)),
+          hn::Mul(hn::NegMulAdd(y, vz, vy), hn::Set(d, a.fy))};
 }
 
 /// Loads the vector of a row that begins at pixel `x`; the last one of the row has zeros behind it.
@@ -207,6 +215,33 @@ HWY_INLINE VI PackSlopes(VF slope_u, VF slope_v) {
                 hn::And(code(slope_u), hn::Set(di, ThermalPixel::kSlopeUMask)));
 }
 
+/// The square of the standard uncertainty, kelvin squared: the sum of those of BudgetOf's terms.
+HWY_INLINE VF Variance(const PixelRowArgs& a, const RowLoader& load, VF celsius, VF depth,
+                       const ImageVector& slope, const ImageVector& speed) {
+  const SigmaArgs& s = a.sigma;
+  const VF inverse_z = Reciprocal(depth);
+  const VF place_px2 = hn::MulAdd(hn::Mul(inverse_z, inverse_z), hn::Set(d, s.voxel_px2_m2),
+                                  hn::Set(d, s.place_px2));
+  const VF rate = Dot(slope, speed);
+  const VF time_s2 = hn::Set(d, s.time_s2 + a.smear_s * a.smear_s);
+  const VF scene =
+      hn::Mul(hn::Sub(celsius, hn::Set(d, s.scene_celsius)), hn::Set(d, s.scene_influence));
+  VF sum = hn::MulAdd(load(a.noise_gain), hn::Set(d, s.noise_k2), hn::Set(d, s.even_k2));
+  sum = hn::MulAdd(Dot(slope, slope), place_px2, sum);
+  sum = hn::MulAdd(hn::Mul(rate, rate), time_s2, sum);
+  return hn::MulAdd(scene, scene, sum);
+}
+
+/// SigmaCode of a standard uncertainty.
+HWY_INLINE VI PackSigma(VF variance) {
+  const VF sigma = hn::Min(hn::Max(hn::Sqrt(variance), hn::Set(d, SigmaCode::kMin_k)),
+                           hn::Set(d, SigmaCode::kMax_k));
+  constexpr std::int32_t kHalfStep = 1 << (SigmaCode::kShift - 1);
+  const VI rounded = hn::Add(hn::BitCast(di, sigma), hn::Set(di, kHalfStep));
+  return hn::Sub(hn::ShiftRight<SigmaCode::kShift>(rounded),
+                 hn::Set(di, static_cast<std::int32_t>(SigmaCode::kBias)));
+}
+
 HWY_INLINE VI Flag(MF condition, std::int32_t bit) {
   return hn::IfThenElseZero(hn::RebindMask(di, condition), hn::Set(di, bit));
 }
@@ -215,7 +250,8 @@ HWY_INLINE VI Flag(MF condition, std::int32_t bit) {
 // each pixel shows of the surface, and whether its temperature may be assigned. Not if the depth
 // camera does not see the surface (kSeen), if something nearer lies within the margin around
 // (algorithm 5: occluded), if motion smears it, or if the temperature is too steep for how well the
-// place is known; distance, angle and motion get their classes (eq. 6.3a-b).
+// place is known; distance, angle and motion get their classes (eq. 6.3a-b), and an assignable
+// temperature its standard uncertainty (BudgetOf).
 // Rows: vertices, normals, distances and temperatures are planes, one pixel per lane, the last two
 // with an apron; the result is records of 16 bytes (ThermalPixel) and a plane of words
 // (PixelPlane). Fast: every question is a mask, none a branch, so a pixel costs the same whatever
@@ -247,10 +283,12 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels, std::in
     const VF cosine = hn::Min(hn::Div(before_plane, distance), hn::Set(d, 1.0F));
     const VF celsius = load(a.celsius);
     const MF has_value = hn::Eq(celsius, celsius);
-    const VF slope_u = Slope(load, a.celsius - 1, a.celsius + 1);
-    const VF slope_v = Slope(load, a.celsius - a.celsius_stride, a.celsius + a.celsius_stride);
+    const ImageVector slope{
+        Slope(load, a.celsius - 1, a.celsius + 1),
+        Slope(load, a.celsius - a.celsius_stride, a.celsius + a.celsius_stride)};
 
-    const VF smear = SmearSquared(a, x, depth);
+    const ImageVector speed = ImageSpeed(a, x, depth);
+    const VF smear = hn::Mul(Dot(speed, speed), hn::Set(d, a.smear_s * a.smear_s));
     const MF sharp = hn::Le(smear, hn::Set(d, a.smear_max_px * a.smear_max_px));
     const MF still = hn::Le(smear, hn::Set(d, a.smear_good_px * a.smear_good_px));
     counts.smeared += number(hn::AndNot(sharp, usable));
@@ -258,8 +296,7 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels, std::in
     // Inertia shows slope x smear too little or too much, and makes steep edges look even.
     const VF uncertainty = hn::Max(smear, hn::Set(d, a.uncertainty_px * a.uncertainty_px));
     const MF even =
-        hn::Le(hn::Mul(uncertainty, hn::MulAdd(slope_u, slope_u, hn::Mul(slope_v, slope_v))),
-               hn::Set(d, a.max_error_k * a.max_error_k));
+        hn::Le(hn::Mul(uncertainty, Dot(slope, slope)), hn::Set(d, a.max_error_k * a.max_error_k));
     counts.steep += number(hn::AndNot(even, usable));
     usable = hn::And(usable, even);
 
@@ -269,11 +306,15 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels, std::in
                               DistanceAndAngle(a, distance, cosine));
     const VI cosine_code = hn::NearestInt(hn::IfThenElseZero(
         hn::Gt(cosine, zero), hn::Mul(cosine, hn::Set(d, ThermalPixel::kCosineScale))));
+    const VI sigma_code = hn::IfThenElseZero(
+        hn::RebindMask(di, assignable), PackSigma(Variance(a, load, celsius, depth, slope, speed)));
+    const VI codes = hn::Or(hn::ShiftLeft<ThermalPixel::kCosineShift>(cosine_code),
+                            hn::ShiftLeft<ThermalPixel::kSigmaShift>(sigma_code));
     const VI flags =
         hn::Or(hn::Or(Flag(seen, ThermalPixel::kSeen), Flag(assignable, ThermalPixel::kAssignable)),
-               hn::Or(hn::ShiftLeft<ThermalPixel::kCosineShift>(cosine_code), classes));
+               hn::Or(codes, classes));
     StoreRecords({{hn::IfThenElseZero(surface, depth), hn::IfThenElseZero(has_value, celsius),
-                   hn::BitCast(d, PackSlopes(slope_u, slope_v)), hn::BitCast(d, flags)}},
+                   hn::BitCast(d, PackSlopes(slope.u, slope.v)), hn::BitCast(d, flags)}},
                  load.count, pixels + x);
     const VI plane =
         hn::IfThenElseZero(hn::RebindMask(di, surface), PackPlane(a, n, depth, before_plane));

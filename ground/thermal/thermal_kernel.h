@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "ground/surface/block_layout.h"
+#include "ground/thermal/sigma_code.h"
 #include "ground/thermal/voxel_layout.h"
 
 namespace isotherm {
@@ -21,13 +23,22 @@ struct ThermalPixel {
   static constexpr std::int32_t kAssignable = 2 << ThermalLayout::kDisagreementShift;
   static constexpr int kCosineShift = ThermalLayout::kCodeShift;
   static constexpr float kCosineScale = 255.0F;
+  static constexpr int kSigmaShift = kCosineShift + 8;
 
   float depth_m;        ///< Depth of the model's surface along the thermal camera's z; 0 = none.
   float celsius;        ///< At the pixel's centre.
   std::int32_t slopes;  ///< d celsius / dv above d celsius / du, signed, in 1 / kSlopeScale K/px.
   std::int32_t flags;   ///< The classes where ThermalLayout has them, kSeen and kAssignable in
                         ///< place of disagreement, and from kCosineShift on, in place of the
-                        ///< temperature, the cosine of the emission angle in 1 / kCosineScale.
+                        ///< temperature, the cosine of the emission angle in 1 / kCosineScale, and
+                        ///< from kSigmaShift on the SigmaCode of an assignable temperature.
+
+  static constexpr std::uint8_t Cosine(std::int32_t flags) {
+    return static_cast<std::uint8_t>(flags >> kCosineShift & 0xFF);
+  }
+  static constexpr std::uint8_t Sigma(std::int32_t flags) {
+    return static_cast<std::uint8_t>(flags >> kSigmaShift & 0xFF);
+  }
 };
 static_assert(sizeof(ThermalPixel) == 16);
 
@@ -59,6 +70,18 @@ void ResampleRow(const ResampleRowArgs& args, float* out);
 /// Distances of a row of vertices (`map`, metres) from `position`; a huge one for NaN.
 void DistanceRow(const float* vx, const float* vy, const float* vz, const float* position,
                  std::int32_t width, float* distance_m);
+
+/// What the standard uncertainty of a pixel's temperature is made of, for inner loops: squares of
+/// the quantities of FrameUncertainty (but for the scene), as BudgetOf combines them.
+struct SigmaArgs {
+  float noise_k2;
+  float even_k2;       ///< What all pixels have alike: drift and resolution.
+  float place_px2;     ///< Registration and the pixel itself, along each axis.
+  float voxel_px2_m2;  ///< The same of a voxel, times the square of the depth.
+  float time_s2;
+  float scene_influence;
+  float scene_celsius;
+};
 
 /// One row of the thermal image beside the model as the thermal camera sees it.
 struct PixelRowArgs {
@@ -94,6 +117,8 @@ struct PixelRowArgs {
   float velocity_m_s[3], rate_rad_s[3];
   float smear_s;
   float smear_good_px, smear_max_px;
+  const float* noise_gain;  ///< This row's variance of noise that resampling leaves.
+  SigmaArgs sigma;
 };
 /// Pixels that both cameras see but that are not assigned, by the first reason that applies.
 struct PixelRowCounts {
@@ -114,7 +139,8 @@ struct FusionKernelArgs {
   float max_distance_m;        ///< Along the line of sight, between a voxel and the plane of the
                                ///< surface that it takes its temperature from.
   std::int32_t max_tsdf_code;  ///< Voxels farther from the surface are passed over.
-  bool validate;               ///< Worse conditions do not replace better ones (algorithm 6).
+  bool validate;               ///< Worse conditions do not replace better ones (algorithm 6), nor
+                               ///< a larger uncertainty a smaller one under equal classes.
   bool keep_bad;               ///< Bad conditions give a temperature, not only their classes.
   bool keep_lowest;            ///< Keep the lowest of temperatures under good conditions.
 };
@@ -134,9 +160,17 @@ struct BlockMeasurements {
   std::int32_t words[kRoom];   ///< ThermalLayout without disagreement.
   std::int32_t flags[kRoom];   ///< Flags of the pixel.
 };
+/// SigmaCodes of the temperatures that a block has, per row of 8 voxels along x; nullptr: of that
+/// row none are known.
+struct BlockSigmas {
+  static constexpr int kRowVoxels = 8;
+  static constexpr int kRows = kBlockVoxels / kRowVoxels;
+  std::array<const std::uint8_t*, kRows> rows{};
+};
 /// Algorithms 5 and 6 for the 512 voxels of a block whose first voxel's centre is at `first`
 /// (thermal camera coordinates, metres). `measured` may be nullptr.
 void FuseBlock(const FusionKernelArgs& args, const float* first, const std::uint32_t* tsdf,
-               std::uint32_t* thermal, FusionKernelCounts& counts, BlockMeasurements* measured);
+               const BlockSigmas& sigmas, std::uint32_t* thermal, FusionKernelCounts& counts,
+               BlockMeasurements* measured);
 
 }  // namespace isotherm

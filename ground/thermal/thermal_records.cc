@@ -2,30 +2,26 @@
 
 #include <algorithm>
 
+#include "common/base/check.h"
+
 namespace isotherm {
 namespace {
 
 constexpr std::size_t kIndexBytes = ThermalRecords::kRowsPerBlock * sizeof(std::uint32_t);
 
-/// For all rows of the blocks, and the parts' last pages, which need not be full.
-std::size_t MaxPages(std::int32_t blocks) {
-  constexpr std::size_t kPagesPerBlock = 2;
-  const auto count = static_cast<std::size_t>(blocks);
-  return kPagesPerBlock * count + count / ThermalRecords::kBlocksPerPart + 1;
-}
-
 }  // namespace
+
+/// For all rows of the blocks; the last page of a part need not be full.
+std::size_t ThermalRecords::MaxPages(std::int32_t blocks) {
+  constexpr std::size_t kRowsPerPart = std::size_t{kBlocksPerPart} * kRowsPerBlock;
+  constexpr std::size_t kPagesPerPart = (kRowsPerPart + kRowsPerPage - 1) / kRowsPerPage;
+  return kPagesPerPart * (static_cast<std::size_t>(blocks) / kBlocksPerPart + 1);
+}
 
 ThermalRecords::ThermalRecords(std::int32_t max_blocks, const std::filesystem::path& spill_dir)
     : index_(static_cast<std::size_t>(max_blocks) * kIndexBytes, spill_dir),
       pages_(MaxPages(max_blocks) * kPageBytes, spill_dir),
       parts_(static_cast<std::size_t>(max_blocks / kBlocksPerPart) + 1) {}
-
-RecordRow& ThermalRecords::RowAt(std::uint32_t entry) const {
-  const std::size_t page = (entry - 1) / kRowsPerPage;
-  const std::size_t row = (entry - 1) % kRowsPerPage;
-  return reinterpret_cast<RecordRow*>(pages_.data() + page * kPageBytes)[row];
-}
 
 const RecordRow* ThermalRecords::Find(std::int32_t block, int row) const {
   const std::uint32_t entry = Entry(block, row);
@@ -41,8 +37,14 @@ RecordRow& ThermalRecords::Row(std::int32_t block, int row) {
     part.pages.push_back(page_count_++);
     part.used = 0;
   }
-  entry = part.pages.back() * kRowsPerPage + part.used++ + 1;
+  entry = part.pages.back() * kPageEntries + part.used++ + 1;
   return RowAt(entry);
+}
+
+std::uint8_t* ThermalRecords::Sigmas(std::int32_t block, int row) {
+  const std::uint32_t entry = Entry(block, row);
+  DCHECK(entry != 0);
+  return SigmasAt(entry);
 }
 
 bool ThermalRecords::Commit(std::int32_t blocks) {

@@ -31,6 +31,14 @@ class ThermalRecords {
   /// Finds or makes it.
   RecordRow& Row(std::int32_t block, int row);
 
+  /// SigmaCodes of the temperatures of a row that was written, else nullptr.
+  const std::uint8_t* FindSigmas(std::int32_t block, int row) const {
+    const std::uint32_t entry = Entry(block, row);
+    return entry == 0 ? nullptr : SigmasAt(entry);
+  }
+  /// The same of a row that was written (CHECK).
+  std::uint8_t* Sigmas(std::int32_t block, int row);
+
   /// To be called before rows of blocks up to this number are made. False if the disk is full.
   bool Commit(std::int32_t blocks);
   void Decommit(std::int32_t first_block, std::int32_t count) const;
@@ -43,9 +51,18 @@ class ThermalRecords {
   }
 
  private:
-  static constexpr std::uint32_t kRowsPerPage = 32;
   static constexpr std::size_t kPageBytes = 4096;
-  static_assert(kRowsPerPage * sizeof(RecordRow) == kPageBytes);
+  static constexpr std::uint32_t kRowsPerPage =
+      kPageBytes / (sizeof(RecordRow) + sizeof(std::uint8_t) * RecordRow::kVoxels);
+  /// Sigmas lie together: whoever asks for those of a block touches few lines of memory.
+  struct Page {
+    RecordRow rows[kRowsPerPage];
+    std::uint8_t sigmas[kRowsPerPage][RecordRow::kVoxels];
+  };
+  static_assert(sizeof(Page) <= kPageBytes);
+  /// Numbers that a page takes of the index, a power of two: a few stand for no row.
+  static constexpr std::uint32_t kPageEntries = 32;
+  static_assert(kRowsPerPage <= kPageEntries);
 
   struct Part {
     std::vector<std::uint32_t> pages;
@@ -56,12 +73,21 @@ class ThermalRecords {
         index_.data())[static_cast<std::size_t>(block) * kRowsPerBlock +
                        static_cast<std::size_t>(row)];
   }
-  RecordRow& RowAt(std::uint32_t entry) const;
+  Page& PageOf(std::uint32_t entry) const {
+    return *reinterpret_cast<Page*>(pages_.data() + (entry - 1) / kPageEntries * kPageBytes);
+  }
+  RecordRow& RowAt(std::uint32_t entry) const {
+    return PageOf(entry).rows[(entry - 1) % kPageEntries];
+  }
+  std::uint8_t* SigmasAt(std::uint32_t entry) const {
+    return PageOf(entry).sigmas[(entry - 1) % kPageEntries];
+  }
+  static std::size_t MaxPages(std::int32_t blocks);
   /// Calls `visit(page)` for the pages of blocks first_block to first_block + count - 1.
   template <typename Visit>
   void ForPages(std::int32_t first_block, std::int32_t count, const Visit& visit) const;
 
-  GrowingArena index_;  ///< Per block and row: 0 = none, else page * kRowsPerPage + row + 1.
+  GrowingArena index_;  ///< Per block and row: 0 = none, else page * kPageEntries + row + 1.
   GrowingArena pages_;
   mutable Mutex mutex_;  ///< Taken once per new row.
   std::vector<Part> parts_ GUARDED_BY(mutex_);

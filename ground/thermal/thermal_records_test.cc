@@ -52,6 +52,7 @@ TEST(DisagreementRecordTest, KeepsExtremesExactlyAndTheSpreadNearly) {
 TEST(ThermalRecordsTest, RowsExistOnlyWhereTheyWereWritten) {
   ThermalRecords records(1000, {});
   EXPECT_EQ(std::as_const(records).Find(999, 63), nullptr);
+  EXPECT_EQ(records.FindSigmas(999, 63), nullptr);
   EXPECT_EQ(records.memory_bytes(), 0U);
   std::mt19937_64 random(kSeed);
   const auto place = [&] {
@@ -60,14 +61,36 @@ TEST(ThermalRecordsTest, RowsExistOnlyWhereTheyWereWritten) {
   for (int i = 0; i < 5000; ++i) {
     const auto [block, row] = place();
     records.Row(block, row).conditions[3].epoch = static_cast<std::uint8_t>(block + row);
+    records.Sigmas(block, row)[block % 8] = static_cast<std::uint8_t>(block - row);
   }
   random.seed(kSeed);
   for (int i = 0; i < 5000; ++i) {
     const auto [block, row] = place();
     ASSERT_NE(std::as_const(records).Find(block, row), nullptr);
     ASSERT_EQ(records.Row(block, row).conditions[3].epoch, static_cast<std::uint8_t>(block + row));
+    ASSERT_EQ(records.FindSigmas(block, row)[block % 8], static_cast<std::uint8_t>(block - row));
   }
-  EXPECT_LE(records.memory_bytes(), 5000 * sizeof(RecordRow) + 16 * 4096) << "a page per part";
+  constexpr std::size_t kRowBytes = 137;  // 17 per voxel, and what a page has left over.
+  EXPECT_LE(records.memory_bytes(), 5000 * kRowBytes + 16 * 4096) << "a page per part";
+}
+
+TEST(ThermalRecordsTest, EveryRowOfEveryBlockHasRoom) {
+  constexpr std::int32_t kBlocks = 130;  // Two parts and a bit.
+  ThermalRecords records(kBlocks, {});
+  ASSERT_TRUE(records.Commit(kBlocks));
+  for (std::int32_t block = 0; block < kBlocks; ++block) {
+    for (int row = 0; row < ThermalRecords::kRowsPerBlock; ++row) {
+      records.Row(block, row).disagreement[7].squares =
+          static_cast<std::uint16_t>(64 * block + row);
+      records.Sigmas(block, row)[7] = static_cast<std::uint8_t>(row);
+    }
+  }
+  for (std::int32_t block = 0; block < kBlocks; ++block) {
+    for (int row = 0; row < ThermalRecords::kRowsPerBlock; ++row) {
+      ASSERT_EQ(records.Row(block, row).disagreement[7].squares, 64 * block + row);
+      ASSERT_EQ(records.Sigmas(block, row)[7], row);
+    }
+  }
 }
 
 TEST(ThermalRecordsTest, ComeBackFromTheSpillFile) {

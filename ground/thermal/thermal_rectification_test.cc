@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 #include "common/testing/kernel_checks.h"
 #include "common/testing/opencv_camera.h"
@@ -118,6 +119,50 @@ TEST(ThermalRectificationTest, NothingOfABarrelLenssImageIsLost) {
       EXPECT_GE(hot, 25) << "at " << left << ", " << top;
     }
   }
+}
+
+TEST(ThermalRectifierTest, NoiseIsLessWhereFourPixelsAreAveraged) {
+  CameraModel straight = DistortedCamera(0.0, 0.0, 0.0);
+  straight.p1 = straight.p2 = 0.0;
+  const ThermalRectifier none(straight);
+  EXPECT_EQ(none.noise_gain().At(10, 20), 1.0F) << "a pixel is itself";
+  const CameraModel camera = DistortedCamera(-0.4, 0.2, 0.0);
+  ThermalRectifier rectifier(camera);
+  // The variance of what becomes of noise, against what is said of it.
+  constexpr double kSigma_k = 1.0;
+  constexpr int kFrames = 400;
+  std::mt19937 engine(7);
+  std::normal_distribution<double> normal(30'000.0, 100.0 * kSigma_k);
+  ThreadPool pool(1);
+  Image<std::uint16_t> frame(camera.width, camera.height);
+  Image<float> celsius;
+  Image<double> squares;
+  for (int i = 0; i < kFrames; ++i) {
+    for (std::uint16_t& value : frame.pixels())
+      value = static_cast<std::uint16_t>(std::lround(normal(engine)));
+    rectifier.Rectify(frame, 0, pool, celsius);
+    if (i == 0) squares = Image<double>(celsius.width(), celsius.height(), 0.0);
+    for (int y = 0; y < celsius.height(); ++y) {
+      for (int x = 0; x < celsius.width(); ++x)
+        squares.At(x, y) += std::pow(static_cast<double>(celsius.At(x, y)) - 26.85, 2);
+    }
+  }
+  double sum = 0.0, said = 0.0;
+  int compared = 0;
+  for (int y = 0; y < celsius.height(); ++y) {
+    for (int x = 0; x < celsius.width(); ++x) {
+      if (std::isnan(celsius.At(x, y))) continue;
+      const double variance = squares.At(x, y) / kFrames;
+      const double gain = static_cast<double>(rectifier.noise_gain().At(x, y));
+      ASSERT_NEAR(variance, gain, 0.5 * gain) << x << " " << y;  // Seven standard deviations.
+      sum += variance;
+      said += gain;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 50'000);
+  EXPECT_NEAR(sum / said, 1.0, 0.005);
+  EXPECT_LT(said / compared, 0.6) << "four ninths on average";
 }
 
 }  // namespace

@@ -14,6 +14,11 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRectifiedRowsPerTask = 8;
 
+/// Of linear interpolation between two values.
+float SquaresOfWeights(float fraction) {
+  return fraction * fraction + (1.0F - fraction) * (1.0F - fraction);
+}
+
 }  // namespace
 
 ThermalRectifier::ThermalRectifier(const CameraModel& camera)
@@ -21,7 +26,8 @@ ThermalRectifier::ThermalRectifier(const CameraModel& camera)
       ideal_(RectifiedCamera(camera)),
       source_(ideal_.width, ideal_.height, -1),
       fraction_x_(ideal_.width, ideal_.height),
-      fraction_y_(ideal_.width, ideal_.height) {
+      fraction_y_(ideal_.width, ideal_.height),
+      noise_gain_(ideal_.width, ideal_.height) {
   for (int v = 0; v < ideal_.height; ++v) {
     for (int u = 0; u < ideal_.width; ++u) {
       const auto pixel = ProjectIntoImage(camera, Unproject(ideal_, {u, v}));
@@ -34,6 +40,8 @@ ThermalRectifier::ThermalRectifier(const CameraModel& camera)
       source_.At(u, v) = y * camera.width + x;
       fraction_x_.At(u, v) = static_cast<float>(pixel->x() - x);
       fraction_y_.At(u, v) = static_cast<float>(pixel->y() - y);
+      noise_gain_.At(u, v) =
+          SquaresOfWeights(fraction_x_.At(u, v)) * SquaresOfWeights(fraction_y_.At(u, v));
     }
   }
 }

@@ -18,6 +18,9 @@ class ThermalRectifier {
   /// with `apron` pixels of NaN all around.
   void Rectify(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale,
                int apron, ThreadPool& pool, Image<float>& celsius);
+  /// Per pixel of the ideal camera, the variance of what is uncorrelated noise in the frame, as a
+  /// fraction of that in the frame: interpolation averages up to four pixels. 0 outside.
+  const Image<float>& noise_gain() const { return noise_gain_; }
   const CameraModel& camera() const { return camera_; }
   const CameraModel& ideal_camera() const { return ideal_; }
 
@@ -26,6 +29,7 @@ class ThermalRectifier {
   CameraModel ideal_;
   Image<std::int32_t> source_;  ///< Upper left of the four source pixels, -1 = outside.
   Image<float> fraction_x_, fraction_y_;
+  Image<float> noise_gain_;
   Image<float> image_;  ///< The frame in °C.
 };
 

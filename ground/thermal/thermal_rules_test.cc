@@ -138,6 +138,60 @@ TEST_F(ThermalRulesTest, EachTemperatureKnowsItsDistanceAngleAndNuc) {
   EXPECT_GT(checked, 100);
 }
 
+TEST_F(ThermalRulesTest, OfTemperaturesUnderEqualClassesTheLeastUncertainStays) {
+  const auto at_wall = [&] { return MeasurementAt(*tsdf_, *thermal_, {0.44, 0.36, 0.60}); };
+  const auto fuse = [&](double celsius, double housing_change_k) {
+    CaptureConditions capture;
+    capture.nuc = {.epoch = 0, .seconds_since = 1.0, .housing_change_k = housing_change_k};
+    FuseFrame(options_, Even(celsius), capture);
+  };
+  fuse(20.0, 0.5);
+  EXPECT_NEAR(at_wall().sigma_k, std::hypot(2.0, 0.04), 0.07) << "4 K for each kelvin";
+  fuse(21.0, 0.25);
+  EXPECT_NEAR(at_wall().voxel.celsius(), 21.0, 0.02) << "better";
+  EXPECT_NEAR(at_wall().sigma_k, 1.0, 0.035);
+  fuse(22.0, 0.5);
+  EXPECT_NEAR(at_wall().voxel.celsius(), 21.0, 0.02) << "worse, though later";
+  fuse(23.0, 0.25);
+  EXPECT_NEAR(at_wall().voxel.celsius(), 23.0, 0.02) << "as good and later";
+  fuse(24.0, 0.0);
+  EXPECT_NEAR(at_wall().voxel.celsius(), 24.0, 0.02);
+  EXPECT_NEAR(at_wall().sigma_k, std::hypot(CameraUncertainty().netd_k, 0.0072), 0.002);
+}
+
+TEST_F(ThermalRulesTest, WithTheLowestKeptTheUncertaintyDoesNotDecide) {
+  options_.mutable_expert()->set_policy(LOWEST_GOOD);
+  options_.mutable_distance()->set_good_m(0.8);
+  CaptureConditions uncertain;
+  uncertain.nuc = {.epoch = 0, .seconds_since = 1.0, .housing_change_k = 0.5};
+  FuseFrame(options_, Even(21.0));
+  FuseFrame(options_, Even(20.0), uncertain);
+  EXPECT_NEAR(MeasurementAt(*tsdf_, *thermal_, {0.44, 0.36, 0.60}).voxel.celsius(), 20.0, 0.02);
+}
+
+TEST_F(ThermalRulesTest, ASlopeIsAsUncertainAsItsPlace) {
+  ThermalFrame ramp = Even(20.0);
+  for (int v = 0; v < thermal_camera_.height; ++v) {
+    for (int u = 0; u < thermal_camera_.width; ++u) ramp.temperature_raw.At(u, v) = Raw(0.5 * u);
+  }
+  const auto sigma_k = [&](const CaptureConditions& capture) {
+    thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks());
+    FuseFrame(options_, ramp, capture);
+    return static_cast<double>(MeasurementAt(*tsdf_, *thermal_, {0.44, 0.36, 0.60}).sigma_k);
+  };
+  CaptureConditions capture;
+  capture.camera.error_per_housing_k = 0.0;
+  // A pixel of 0.6 m / 186 and a voxel of 4 mm.
+  const double footprint_px = std::hypot(1.0, 0.004 * 186.0 / 0.6) / std::sqrt(12.0);
+  constexpr double kStep = 0.035;  // Of a code.
+  const double even_k = std::hypot(capture.camera.netd_k, 0.5 * footprint_px);
+  EXPECT_NEAR(sigma_k(capture), even_k, kStep * even_k);
+  capture.registration_px = 0.8;
+  capture.extrinsic_px = 0.6;
+  const double moved_k = std::hypot(even_k, 0.5);
+  EXPECT_NEAR(sigma_k(capture), moved_k, kStep * moved_k);
+}
+
 TEST_F(ThermalRulesTest, WithoutRecordsTemperaturesAreTheSame) {
   thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks(), std::filesystem::path(), false);
   EXPECT_GT(Fuse(options_).assigned, 10'000);
@@ -210,6 +264,10 @@ TEST_F(ThermalRulesTest, WhatTurnsOutToBelongToAnotherFaceIsDropped) {
   EXPECT_EQ(review.Review(block, *tsdf_, *thermal_), records);
   EXPECT_FALSE(MeasurementAt(*tsdf_, *thermal_, p).voxel.measured())
       << "and no neighbour speaks for it";
+  for (int voxel = 0; voxel < kBlockVoxels; ++voxel) {
+    const bool measured = thermal_->voxels(block)[static_cast<std::size_t>(voxel)].measured();
+    ASSERT_EQ(thermal_->sigma_code(block, voxel) != 0, measured);
+  }
   FuseFrame(options_, Even(30.0));
   EXPECT_NEAR(ThermalVoxelAt(*tsdf_, *thermal_, p).celsius(), 30.0, 0.02) << "measured anew";
 }

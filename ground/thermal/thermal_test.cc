@@ -120,6 +120,19 @@ TEST(ReplacesMeasurementTest, FollowsAlgorithm6ForAllClassPairs) {
   }
 }
 
+TEST(ReplacesMeasurementTest, TheUncertaintyDecidesBetweenEqualClassesOnly) {
+  const ThermalVoxel old = ThermalVoxel::Make(20.0F, kGood, kAcceptable, kGood);
+  const auto replaces = [&](ConditionClass angle, std::uint8_t now, std::uint8_t before) {
+    return ReplacesMeasurement(kGood, angle, kGood, old, {.now = now, .before = before});
+  };
+  EXPECT_TRUE(replaces(kAcceptable, 9, 10));
+  EXPECT_TRUE(replaces(kAcceptable, 10, 10)) << "the newer of equal ones";
+  EXPECT_FALSE(replaces(kAcceptable, 11, 10));
+  EXPECT_TRUE(replaces(kAcceptable, 11, 0)) << "not known";
+  EXPECT_TRUE(replaces(kGood, 11, 10)) << "a better class";
+  EXPECT_FALSE(replaces(kBad, 9, 10)) << "a worse one";
+}
+
 TEST(ReplacesMeasurementTest, MotionDecidesBetweenEqualClassesOfDistanceAndAngle) {
   const auto replaces = [](ConditionClass motion, ConditionClass old_motion) {
     return ReplacesMeasurement(kGood, kAcceptable, motion,

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "ground/thermal/sigma_code.h"
 
 namespace isotherm {
 
@@ -84,15 +87,24 @@ void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int sou
   conditions.direction = EncodeDirection(R_target_source * DecodeDirection(conditions.direction));
   to.disagreement[voxel % RecordRow::kVoxels] =
       from->disagreement[source_voxel % RecordRow::kVoxels];
+  target.records()->Sigmas(block, voxel / RecordRow::kVoxels)[voxel % RecordRow::kVoxels] =
+      source.sigma_code(source_block, source_voxel);
+}
+
+std::uint8_t ThermalVolume::sigma_code(std::int32_t block, int voxel) const {
+  if (records_ == nullptr) return 0;
+  const std::uint8_t* row = std::as_const(*records_).FindSigmas(block, voxel / RecordRow::kVoxels);
+  return row == nullptr ? std::uint8_t{0} : row[voxel % RecordRow::kVoxels];
 }
 
 PointMeasurement MeasurementAt(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                                const Eigen::Vector3d& p_map) {
   const VoxelPlace place = PlaceFor(tsdf, thermal, p_map);
-  PointMeasurement measurement{VoxelAt(thermal, place), {}};
+  PointMeasurement measurement{.voxel = VoxelAt(thermal, place), .conditions = {}};
   if (!measurement.voxel.measured() || thermal.records() == nullptr) return measurement;
   const RecordRow* row = thermal.records()->Find(place.block, place.index / RecordRow::kVoxels);
   if (row != nullptr) measurement.conditions = row->conditions[place.index % RecordRow::kVoxels];
+  measurement.sigma_k = SigmaCode::Kelvin(thermal.sigma_code(place.block, place.index));
   return measurement;
 }
 

@@ -92,6 +92,9 @@ class ThermalVolume {
   ThermalRecords* records() { return records_.get(); }
   const ThermalRecords* records() const { return records_.get(); }
 
+  /// SigmaCode of a voxel's temperature; 0 = not known.
+  std::uint8_t sigma_code(std::int32_t block, int voxel) const;
+
   std::span<ThermalVoxel, kBlockVoxels> voxels(std::int32_t block) {
     return std::span<ThermalVoxel, kBlockVoxels>(base() + std::size_t{kBlockVoxels} * block,
                                                  kBlockVoxels);
@@ -111,6 +114,7 @@ class ThermalVolume {
 struct PointMeasurement {
   ThermalVoxel voxel;
   ConditionRecord conditions;  ///< Empty: not kept.
+  float sigma_k = NAN;  ///< Standard uncertainty of the apparent temperature; NaN = not known.
 };
 
 /// Copies the record of a voxel to one of another volume, whose coordinate frame is turned by

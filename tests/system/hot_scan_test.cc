@@ -6,10 +6,10 @@
 
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <vector>
 
 #include "common/base/quantile.h"
+#include "common/base/units.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/config/text_proto.h"
 #include "common/radiometry/radiometry.h"
@@ -87,7 +87,7 @@ shutter { interval_s: 0 first_s: 100 })",
       const bool is_on_sphere = std::abs((p - kCentre).norm() - kRadius_m) < kOnSphere_m;
       if (!is_on_sphere || p.z() > kCentre.z() - kEdge_m || std::isnan(cloud->celsius[i])) continue;
       const double angle_rad =
-          static_cast<double>(cloud->measured_angle_deg[i]) * std::numbers::pi / 180.0;
+          static_cast<double>(cloud->measured_angle_deg[i]) * kRadPerDeg;
       const double emissivity = DirectionalEmissivity(angle_rad, kEmissivity, kIndex, 0.0);
       errors_k.push_back(cloud->celsius[i] - ApparentCelsius(band, TrueSphereCelsius(p), emissivity,
                                                              kSurround_celsius));

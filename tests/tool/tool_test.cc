@@ -31,6 +31,20 @@ class ToolTest : public isotherm::testing::ToolRun {
     ASSERT_EQ(outcome.status, 0) << outcome.err;
   }
 
+  void PredictHeldOutViews() const {
+    const Outcome text = Run("evaluate scan.mcap --held-out-views 4 --voxel 0.004");
+    ASSERT_EQ(text.status, 0) << text.err;
+    EXPECT_THAT(text.out, AllOf(HasSubstr("thermal frames predicted"), HasSubstr("mean of |error|"),
+                                HasSubstr("within sigma")));
+    const Outcome json =
+        Run("evaluate scan.mcap --held-out-views 4 --voxel 0.004 --emissivity 0.96 "
+            "--refractive-index 1.5 --json");
+    EXPECT_THAT(json.out, AllOf(HasSubstr("\"mean_absolute_error_kelvin\""),
+                                HasSubstr("\"assigned_fraction\"")));
+    const Outcome too_few = Run("evaluate scan.mcap --held-out-views 1000000 --voxel 0.004");
+    EXPECT_EQ(too_few.status, kData) << too_few.err;
+    EXPECT_THAT(too_few.err, HasSubstr("fewer than 1000000 valid thermal frames"));
+  }
   // Renderings of the result in `out`.
   void RenderResult() const {
     const Outcome one =
@@ -130,7 +144,11 @@ TEST_F(ToolTest, HelpTeachesAndVersionNamesTheProgram) {
 TEST_F(ToolTest, WrongCommandLinesAreOneSentenceAndStatus64) {
   for (const std::string arguments :
        {"dance", "import", "import --nonsense x -o y", "import x -o y --from kitti", "inspect",
-        "evaluate x", "reconstruct a.mcap -o b --initial-pose 1 --initial-pose-from c"}) {
+        "evaluate x", "evaluate x.mcap --held-out-views 1", "evaluate x.mcap --held-out-views two",
+        "evaluate x.mcap --voxel 0.004", "evaluate . --held-out-views 5",
+        "evaluate x.mcap --held-out-views 5 --groundtruth y",
+        "evaluate x.mcap --held-out-views 5 --emissivity 0.9",
+        "reconstruct a.mcap -o b --initial-pose 1 --initial-pose-from c"}) {
     const Outcome outcome = Run(arguments);
     EXPECT_EQ(outcome.status, kUsage) << arguments;
     EXPECT_THAT(outcome.err, HasSubstr("isotherm: ")) << arguments;
@@ -215,6 +233,15 @@ TEST_F(ToolTest, F71HugeVolumeIsRefusedWithNumbers) {
   EXPECT_FALSE(fs::exists(folder_ / "out"));
 }
 
+TEST_F(ToolTest, WhatCannotBePredictedIsOneSentence) {
+  EXPECT_THAT(Run("evaluate x.mcap --held-out-views 1").err, HasSubstr("K must be at least 2"));
+  EXPECT_THAT(Run("evaluate . --held-out-views 5").err, HasSubstr("is a folder"));
+  EXPECT_EQ(Run("evaluate nowhere.mcap --held-out-views 5").status, kNoInput);
+  EXPECT_EQ(Run("evaluate x.mcap --held-out-views 5 --voxel -1").status, kConfiguration);
+  EXPECT_THAT(Run("evaluate x.mcap --held-out-views 5 --refractive-index 1.5").err,
+              HasSubstr("give both or none"));
+}
+
 TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
   Simulate();
   const Outcome inspect = Run("inspect scan.mcap");
@@ -243,6 +270,7 @@ TEST_F(ToolTest, ScanGoesThroughTheWholeTool) {
                                   HasSubstr("\"good\"")));
   EXPECT_THAT(Run("evaluate out --groundtruth scan.mcap").out, HasSubstr("rigidly aligned"));
   EXPECT_EQ(Run("evaluate out --groundtruth scan.mcap --emissivity 0.9").status, kUsage);
+  PredictHeldOutViews();
   RenderResult();
   ExportResult();
 }

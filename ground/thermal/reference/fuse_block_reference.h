@@ -27,7 +27,7 @@ struct VoxelFusion {
 };
 
 inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p, TsdfVoxel voxel,
-                             ThermalVoxel old) {
+                             ThermalVoxel old, std::uint8_t old_sigma) {
   constexpr double kNearPixelBorder = 2e-3;  // Pixels.
   constexpr double kSinglePrecision = 1e-6;  // Metres, at up to a metre.
   VoxelFusion result;
@@ -61,8 +61,11 @@ inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   if ((pixel.flags & ThermalPixel::kAssignable) == 0) return result;
   result.classes = pixel.flags & ThermalLayout::kConditionMask;
   const ThermalVoxel conditions{static_cast<std::uint32_t>(result.classes)};
+  SigmaPair sigma{.now = ThermalPixel::Sigma(pixel.flags), .before = old_sigma};
+  // Of temperatures under good conditions the lowest is kept, not the least uncertain.
+  if (a.keep_lowest && result.classes == static_cast<std::int32_t>(kAllGood)) sigma = {};
   if (a.validate && !ReplacesMeasurement(conditions.distance_class(), conditions.angle_class(),
-                                         conditions.motion_class(), old)) {
+                                         conditions.motion_class(), old, sigma)) {
     return result;
   }
   result.assigned = result.considered;

@@ -7,6 +7,7 @@
 #include "common/testing/kernel_checks.h"
 #include "ground/thermal/camera_motion.h"
 #include "ground/thermal/thermal_kernel.h"
+#include "ground/thermal/uncertainty_budget.h"
 
 // These functions do what the kernel beside this folder must do, one element at a time and in
 // double precision: they are its specification. Compiled for tests only.
@@ -26,6 +27,7 @@ struct Pixel {
   double plane_u = 0.0, plane_v = 0.0;  ///< Codes of PixelPlane.
   double plane_slack = 0.0;
   double smear_px = 0.0;
+  double sigma_k = 0.0;
   Verdict surface = Verdict::kNo, seen = Verdict::kNo;
   Verdict occluded = Verdict::kNo, assignable = Verdict::kNo;
   Verdict sharp = Verdict::kNo, still = Verdict::kNo, even = Verdict::kNo;
@@ -86,6 +88,40 @@ inline void AssessPlane(const PixelRowArgs& a, const Eigen::Vector3d& p, const E
       kPixelPrecision * (std::abs(result.plane_u) + std::abs(result.plane_v)) / before_plane;
 }
 
+/// The standard uncertainty of the pixel's temperature.
+inline double SigmaOf(const PixelRowArgs& a, int x, const Pixel& pixel) {
+  const auto vector = [](const float* v) {
+    return Eigen::Map<const Eigen::Vector3f>(v).cast<double>().eval();
+  };
+  const SigmaArgs& s = a.sigma;
+  const double resolution_k2 = kUniformVariance * std::pow(double{ThermalLayout::kStep_k}, 2);
+  const FrameUncertainty frame{
+      .noise_k = std::sqrt(double{s.noise_k2}),
+      .drift_k = std::sqrt(double{s.even_k2} - resolution_k2),
+      .registration_px = std::sqrt(double{s.place_px2} - kUniformVariance),
+      .time_s = std::sqrt(double{s.time_s2}),
+      .voxel_m = std::sqrt(double{s.voxel_px2_m2} / kUniformVariance) / a.fx,
+      .scene_influence = s.scene_influence,
+      .scene_celsius = s.scene_celsius};
+  const CameraMotion motion{vector(a.velocity_m_s), vector(a.rate_rad_s)};
+  const Eigen::Vector2d xy((x - double{a.cx}) / a.fx, a.y);
+  const Eigen::Vector2d speed = ImageVelocity(motion, xy, pixel.depth_m);
+  const float* above = a.celsius + x - a.celsius_stride;
+  const float* below = a.celsius + x + a.celsius_stride;
+  const auto slope = [](float before, float after) {
+    const double half = 0.5 * (double{after} - before);
+    return std::isnan(half) ? 0.0 : half;
+  };
+  return BudgetOf(frame,
+                  {.celsius = a.celsius[x],
+                   .noise_gain = a.noise_gain[x],
+                   .slope_k_px = {slope(a.celsius[x - 1], a.celsius[x + 1]), slope(*above, *below)},
+                   .speed_px_s = {a.fx * speed.x(), a.fy * speed.y()},
+                   .smear_s = a.smear_s,
+                   .spot_m = pixel.depth_m / a.fx})
+      .Combined();
+}
+
 inline Pixel MakePixel(const PixelRowArgs& a, int x) {
   Pixel result;
   const Eigen::Vector3d p(a.vx[x], a.vy[x], a.vz[x]);
@@ -144,6 +180,7 @@ inline Pixel MakePixel(const PixelRowArgs& a, int x) {
   result.assignable = Both(result.assignable, Both(result.sharp, result.even));
   result.assignable = Both(result.assignable, AtLeastZero(cosine, 1e-5));
   if (std::isnan(a.celsius[x])) result.assignable = Verdict::kNo;
+  result.sigma_k = SigmaOf(a, x, result);
   return result;
 }
 

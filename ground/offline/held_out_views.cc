@@ -1,0 +1,94 @@
+#include "ground/offline/held_out_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "common/base/check.h"
+#include "ground/thermal/condition_record.h"
+#include "ground/thermal/uncertainty_budget.h"
+
+namespace isotherm {
+namespace {
+
+/// Of normal errors, 95 % lie within so many standard deviations.
+constexpr double kSigmasOf95 = 1.96;
+
+}  // namespace
+
+HeldOutViews::HeldOutViews(const ScanModel& scan, const HeldOutOptions& options, ThreadPool& pool)
+    : scan_(scan), options_(options), pool_(pool), rectifier_(*scan.rig.thermal) {}
+
+std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
+  const std::vector<StampedPose>& poses = scan_.trajectory.poses();
+  const auto after = std::ranges::lower_bound(poses, time, {}, &StampedPose::time);
+  if (after == poses.end()) return std::nullopt;
+  if (after->time == time) return after->T_world_depth;
+  if (after == poses.begin()) return std::nullopt;
+  const StampedPose& before = *(after - 1);
+  const double interval_s = ToSeconds(after->time - before.time);
+  if (interval_s > options_.max_gap_s) return std::nullopt;
+  return Interpolate(before.T_world_depth, after->T_world_depth,
+                     ToSeconds(time - before.time) / interval_s);
+}
+
+void HeldOutViews::Compare(const ThermalFrame& frame) {
+  CHECK(frame.valid);
+  const auto T_world_depth = PoseAt(frame.header.capture_time);
+  if (!T_world_depth) {
+    ++report_.without_pose;
+    return;
+  }
+  ++report_.frames;
+  const RigidTransform T_world_thermal = *T_world_depth * scan_.rig.T_thermal_depth->inverse();
+  rectifier_.Rectify(frame.temperature_raw, frame.scale, /*apron=*/0, pool_, celsius_);
+  raycaster_.Cast(scan_.tsdf(), rectifier_.ideal_camera(), T_world_thermal, options_.min_weight,
+                  pool_, maps_);
+  SampleView(maps_, T_world_thermal.translation(), scan_.tsdf(), scan_.thermal(), pool_, view_);
+  for (int y = 0; y < celsius_.height(); ++y) {
+    for (int x = 0; x < celsius_.width(); ++x) {
+      const float shown = celsius_.At(x, y);
+      if (!std::isnan(shown)) ComparePixel(x, y, static_cast<double>(shown));
+    }
+  }
+}
+
+double HeldOutViews::Predict(int x, int y, const PointMeasurement& measurement) const {
+  const auto celsius = static_cast<double>(measurement.voxel.celsius());
+  if (!options_.surface || measurement.conditions.empty()) return celsius;
+  const Eigen::Vector3f n_world(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
+  const float measured =
+      std::abs(n_world.normalized().dot(DecodeDirection(measurement.conditions.direction)));
+  const auto angle_rad = [](float cosine) {
+    return std::acos(std::min(static_cast<double>(cosine), 1.0));
+  };
+  return ApparentAtAngle(band_, *options_.surface, celsius, angle_rad(measured),
+                         angle_rad(view_.cos_view.At(x, y)));
+}
+
+void HeldOutViews::ComparePixel(int x, int y, double shown_celsius) {
+  ++report_.pixels;
+  if (!view_.HasSurface(x, y)) return;
+  ++report_.on_surface;
+  if (std::isnan(view_.celsius.At(x, y))) return;
+  const Eigen::Vector3d p_world(maps_.vx.At(x, y), maps_.vy.At(x, y), maps_.vz.At(x, y));
+  const PointMeasurement measurement = MeasurementAt(scan_.tsdf(), scan_.thermal(), p_world);
+  const double predicted_celsius = Predict(x, y, measurement);
+  if (std::isnan(predicted_celsius)) return;
+  ++report_.assigned;
+  const double error_k = shown_celsius - predicted_celsius;
+  report_.sum_k += error_k;
+  report_.sum_of_magnitudes_k += std::abs(error_k);
+  const auto model_k = static_cast<double>(measurement.sigma_k);
+  if (std::isnan(model_k)) return;
+  // The frame that is predicted has noise of its own.
+  const double noise_k =
+      CameraUncertainty().netd_k * std::sqrt(static_cast<double>(rectifier_.noise_gain().At(x, y)));
+  const double ratio = error_k / std::hypot(model_k, noise_k);
+  ++report_.with_sigma;
+  report_.sum_of_ratios += ratio;
+  report_.within_68 += std::abs(ratio) <= 1.0 ? 1 : 0;
+  report_.within_95 += std::abs(ratio) <= kSigmasOf95 ? 1 : 0;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <optional>
+
+#include "common/concurrency/thread_pool.h"
+#include "common/frame/frame.h"
+#include "common/frame/image.h"
+#include "common/radiometry/smooth_surface.h"
+#include "ground/offline/held_out_report.h"
+#include "ground/pipeline/scan_model.h"
+#include "ground/renderer/view_maps.h"
+#include "ground/surface/surface_maps.h"
+#include "ground/thermal/thermal_rectifier.h"
+#include "ground/thermal/thermal_volume.h"
+#include "ground/tsdf/raycaster.h"
+
+namespace isotherm {
+
+struct HeldOutOptions {
+  double max_gap_s = 0.0;   ///< Poses further apart are not interpolated between.
+  float min_weight = 0.0F;  ///< Voxels that are lighter do not count.
+  /// What was scanned. nullopt: a temperature is predicted to be seen from everywhere as from where
+  /// it was measured.
+  std::optional<SmoothSurface> surface;
+};
+
+/// Predicts thermal frames by casting the model of a finished scan from where they were taken.
+/// Thread-compatible.
+class HeldOutViews {
+ public:
+  /// The pipeline of `scan` must outlive it. CheckThermalFusion(scan.rig) is ok.
+  HeldOutViews(const ScanModel& scan, const HeldOutOptions& options, ThreadPool& pool);
+
+  /// `frame` is valid and has the calibrated size (CHECK).
+  void Compare(const ThermalFrame& frame);
+  const HeldOutReport& report() const { return report_; }
+
+ private:
+  std::optional<RigidTransform> PoseAt(CaptureTime time) const;
+  void ComparePixel(int x, int y, double shown_celsius);
+  /// What the camera should show of what the model has in a pixel, °C.
+  double Predict(int x, int y, const PointMeasurement& measurement) const;
+
+  const ScanModel scan_;
+  const HeldOutOptions options_;
+  const BandRadiance band_;
+  ThreadPool& pool_;
+  ThermalRectifier rectifier_;
+  Raycaster raycaster_;
+  SurfaceMaps maps_;
+  ViewMaps view_;
+  Image<float> celsius_;
+  HeldOutReport report_;
+};
+
+}  // namespace isotherm

@@ -1,0 +1,58 @@
+#include "ground/thermal/uncertainty_budget.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "ground/thermal/voxel_layout.h"
+
+namespace isotherm {
+namespace {
+
+constexpr double kSecondsPerMinute = 60.0;
+/// What the housing of a warm camera stays below, K per minute
+/// (nuc.expert.warm_up_housing_rate_k_per_min).
+constexpr double kHousingRate_k_per_min = 0.1;
+/// Mean error of reprojection between the cameras where the rig file has none (thesis table 5.1).
+constexpr double kReprojectionError_px = 0.141;
+
+}  // namespace
+
+double UncertaintyBudget::Combined() const {
+  double squares = 0.0;
+  for (const double term_k :
+       {noise_k, drift_k, resolution_k, registration_k, footprint_k, smear_k, scene_k})
+    squares += term_k * term_k;
+  return std::sqrt(squares);
+}
+
+UncertaintyBudget BudgetOf(const FrameUncertainty& frame, const PixelUncertainty& pixel) {
+  const double slope_k_px = pixel.slope_k_px.norm();
+  const double rate_k_s = pixel.slope_k_px.dot(pixel.speed_px_s);
+  const double sigma_of_uniform = std::sqrt(kUniformVariance);
+  UncertaintyBudget budget;
+  budget.noise_k = frame.noise_k * std::sqrt(pixel.noise_gain);
+  budget.drift_k = frame.drift_k;
+  budget.resolution_k = double{ThermalLayout::kStep_k} * sigma_of_uniform;
+  budget.registration_k = std::hypot(slope_k_px * frame.registration_px, rate_k_s * frame.time_s);
+  budget.footprint_k =
+      slope_k_px * sigma_of_uniform * std::hypot(1.0, frame.voxel_m / pixel.spot_m);
+  budget.smear_k = std::abs(rate_k_s) * pixel.smear_s;
+  budget.scene_k = frame.scene_influence * std::abs(pixel.celsius - frame.scene_celsius);
+  return budget;
+}
+
+double DriftKelvin(const CameraUncertainty& camera, const NucAge& nuc) {
+  const double minutes = nuc.seconds_since.value_or(nuc.seconds_followed) / kSecondsPerMinute;
+  const double pattern_k = camera.pattern_drift_k_per_sqrt_min * std::sqrt(minutes);
+  // A rate that lies anywhere between its limits: half their distance over the root of 3.
+  const double housing_k = nuc.housing_change_k
+                               ? std::abs(*nuc.housing_change_k)
+                               : kHousingRate_k_per_min * minutes / std::numbers::sqrt3;
+  return std::hypot(pattern_k, camera.error_per_housing_k * housing_k);
+}
+
+double ExtrinsicSigmaPx(std::optional<double> reprojection_error_px) {
+  return reprojection_error_px.value_or(kReprojectionError_px) / std::numbers::sqrt2;
+}
+
+}  // namespace isotherm
