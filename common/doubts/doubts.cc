@@ -195,7 +195,7 @@ Doubts DoubtsAboutTemperatures(const ThermalPixels& pixels) {
     return {
         fmt::format("nearly all thermal pixels have the largest value there is (65535, {:.0f} °C): "
                     "the images must be of what is colder than that, or their scale a coarser one "
-                    "(thermal_scale in the calibration: 0.02 reaches to 1037 °C)",
+                    "(thermal_scale in the calibration: 0.03 reaches to 1692 °C)",
                     pixels.scale.max_celsius())};
   }
   const double celsius = pixels.scale.Celsius(pixels.mean_raw);

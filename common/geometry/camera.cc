@@ -160,6 +160,11 @@ Status Validate(const Rig& rig) {
     return InvalidArgument(
         fmt::format("thermal_delay_s must be within +-10 s, got {} s", rig.thermal_delay_s));
   }
+  if (rig.reprojection_error_px &&
+      !(std::isfinite(*rig.reprojection_error_px) && *rig.reprojection_error_px >= 0.0)) {
+    return InvalidArgument(fmt::format("reprojection_error_px must be 0 or more, got {} px",
+                                       *rig.reprojection_error_px));
+  }
   ISOTHERM_RETURN_IF_ERROR(Validate(rig.depth_sensor));
   return Validate(rig.thermal_sensor);
 }

@@ -335,7 +335,11 @@ Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uin
   const ThermalInfo& info = message.thermal();
   frame.nuc_state = KnownOr(info.nuc_state(), NucState::kError, NucState::kUnknown);
   frame.nuc_source = KnownOr(info.nuc_source(), NucSource::kInferred, NucSource::kUnknown);
-  if (info.has_seconds_since_nuc()) frame.seconds_since_nuc = info.seconds_since_nuc();
+  // What cannot be is not known: the frame's pixels are right all the same.
+  if (std::isfinite(info.seconds_since_nuc()) && info.seconds_since_nuc() >= 0.0 &&
+      info.has_seconds_since_nuc()) {
+    frame.seconds_since_nuc = info.seconds_since_nuc();
+  }
   if (info.has_fpa_celsius()) frame.housekeeping.fpa_celsius = info.fpa_celsius();
   if (info.has_housing_celsius()) frame.housekeeping.housing_celsius = info.housing_celsius();
   if (info.has_shutter_celsius()) frame.housekeeping.shutter_celsius = info.shutter_celsius();

@@ -104,7 +104,10 @@ std::optional<RefusalCause> CheckThermal(const ThermalFields& fields) {
 
 std::optional<RefusalCause> CheckRig(const Rig& rig) {
   // A rig that nobody calibrated may be announced; what needs the calibration refuses.
-  if (!rig.depth && !rig.thermal) return CheckFinite({rig.depth_scale, rig.thermal_delay_s});
+  if (!rig.depth && !rig.thermal) {
+    if (const auto cause = CheckThermalScale(rig.thermal_scale)) return cause;
+    return CheckFinite({rig.depth_scale, rig.thermal_delay_s});
+  }
   if (Validate(rig).ok()) return std::nullopt;
   return RefusalCause::kOutOfRange;
 }

@@ -75,6 +75,12 @@ void CheckThermalCamera(const ThermalCameraOptions& options, Problems& problems)
   problems.CheckRange("expert.stall_timeout_s", options.expert().stall_timeout_s(), 0.2, 60.0);
   problems.CheckRange("expert.kelvin_per_count", options.expert().kelvin_per_count(), 0.0, 10.0);
   problems.CheckRange("expert.offset_kelvin", options.expert().offset_kelvin(), -1e5, 1e4);
+  // It becomes the frames' scale where centi-kelvin would cut it off.
+  const RadiometricScale own{options.expert().kelvin_per_count(), options.expert().offset_kelvin()};
+  if (own.kelvin_per_count > 0.0 && own.max_celsius() > kCentikelvin.max_celsius()) {
+    if (Status status = Validate(own); !status.ok())
+      problems.Add("expert.kelvin_per_count", status.message());
+  }
   if (options.has_optris_min_celsius() != options.has_optris_max_celsius()) {
     problems.Add(options.has_optris_min_celsius() ? "optris_max_celsius" : "optris_min_celsius",
                  "is not set: a range has two ends");

@@ -90,8 +90,9 @@ TEST_F(EmulatedSeekTest, OptionsMayRelateCountsToTemperatures) {
   const std::vector<RawFrame> frames = ReadFrames(*source, 2);
   ASSERT_EQ(frames.size(), 2U) << failure_.message();
   // 0x4000 x 0.02 - 30 = 297.68 K, and up to 7 counts of noise.
-  EXPECT_GE(frames[1].pixels.At(0, 50), 29'768);
-  EXPECT_LE(frames[1].pixels.At(0, 50), 29'768 + 14);
+  const double kelvin = frames[1].thermal_scale.Kelvin(frames[1].pixels.At(0, 50));
+  EXPECT_GE(kelvin, 297.679);
+  EXPECT_LE(kelvin, 297.681 + 7 * 0.02);
 }
 
 TEST_F(EmulatedSeekTest, StartsAsPublishedAndGoesToSleep) {

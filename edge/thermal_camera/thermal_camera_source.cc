@@ -204,13 +204,16 @@ void ThermalCameraSource::UpdateTable(const PixelEncoding& encoding) {
 
 Result<RadiometricScale> ThermalCameraSource::ChooseScale() const {
   const ThermalCameraInfo& info = camera_->info();
-  if (info.range) return ScaleForRange(info.range->min_celsius, info.range->max_celsius);
-  // What the options make of counts is kept as it is where centi-kelvin would cut it off.
+  RadiometricScale scale = kCentikelvin;
+  if (info.range) {
+    const auto of_range = ScaleForRange(info.range->min_celsius, info.range->max_celsius);
+    if (!of_range) return of_range;
+    scale = *of_range;
+  }
+  // What the options make of counts is kept as it is where that would cut it off.
   const ThermalCameraExpertOptions& expert = options_->expert();
   const RadiometricScale own{expert.kelvin_per_count(), expert.offset_kelvin()};
-  const bool is_cut = info.counts_only && own.kelvin_per_count > 0.0 &&
-                      own.max_celsius() > kCentikelvin.max_celsius();
-  if (!is_cut) return kCentikelvin;
+  if (own.kelvin_per_count <= 0.0 || own.max_celsius() <= scale.max_celsius()) return scale;
   if (Status status = Validate(own); !status.ok()) {
     return Err(status.WithContext(
         "source.thermal_camera.expert.kelvin_per_count and offset_kelvin as the frames' scale"));

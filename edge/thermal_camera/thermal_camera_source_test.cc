@@ -187,14 +187,18 @@ TEST_F(ThermalCameraSourceTest, ARangeThatNoScaleOf16BitsHoldsIsRefused) {
 }
 
 TEST_F(ThermalCameraSourceTest, WhatTheOptionsMakeOfCountsIsNotCutAt382Degrees) {
-  script_.info.counts_only = true;
   options_.mutable_expert()->set_kelvin_per_count(0.04);
   options_.mutable_expert()->set_offset_kelvin(-20.0);
   RawThermalFrame sent = MakeFrame(30'000, 100);  // 1180 K.
   sent.encoding = {};
-  Send(sent);
-  const RawFrame frame = ReadFrame(*Open());
-  EXPECT_NEAR(frame.thermal_scale.Celsius(frame.pixels.At(0, 0)), 906.85, 0.03);
+  // A Lepton knows its range, whether or not it sends temperatures.
+  for (const auto& range : {std::optional<MeasuringRange>(), {MeasuringRange{-10.0, 140.0}}}) {
+    script_.info.counts_only = !range;
+    script_.info.range = range;
+    Send(sent);
+    const RawFrame frame = ReadFrame(*Open());
+    EXPECT_NEAR(frame.thermal_scale.Celsius(frame.pixels.At(0, 0)), 906.85, 0.03);
+  }
 }
 
 TEST_F(ThermalCameraSourceTest, CountsWithoutTemperatureAreRefusedUnlessTheOptionsRelateThem) {
@@ -208,7 +212,8 @@ TEST_F(ThermalCameraSourceTest, CountsWithoutTemperatureAreRefusedUnlessTheOptio
   options_.mutable_expert()->set_kelvin_per_count(0.04);
   options_.mutable_expert()->set_offset_kelvin(-20.0);
   Send(sent);
-  EXPECT_EQ(ReadFrame(*Open()).pixels.At(0, 0), 30'000);
+  const RawFrame frame = ReadFrame(*Open());
+  EXPECT_NEAR(frame.thermal_scale.Kelvin(frame.pixels.At(0, 0)), 300.0, 1e-9);
 }
 
 TEST_F(ThermalCameraSourceTest, LostFramesLeaveHolesInTheNumbers) {

@@ -113,7 +113,8 @@ void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const Tsd
     const auto offset = static_cast<int>(OffsetInBlock(nearest));
     const ThermalVoxel other = source.thermal.voxels(from)[offset];
     const SigmaPair sigma{.now = source.thermal.sigma_code(from, offset),
-                          .before = thermal.sigma_code(block, i)};
+                          .before = thermal.sigma_code(block, i),
+                          .difference_k = double{other.celsius()} - double{voxels[i].celsius()}};
     if (!other.measured() || !ReplacesMeasurement(other.distance_class(), other.angle_class(),
                                                   other.motion_class(), voxels[i], sigma)) {
       continue;

@@ -92,6 +92,7 @@ ScanViews SwingInFrontOfAWall(double delay_s, const Disturbances& disturbances =
     views.frames.push_back({kStart + FromSeconds(stamp_s),
                             std::make_shared<const Image<std::uint16_t>>(
                                 Render(disturbances.hurry * time_s, disturbances)),
+                            kCentikelvin,
                             {}});
     // All points stay in the image. Poses are known for all delays that are tried.
     if (stamp_s < 0.2 || stamp_s > 9.75) continue;

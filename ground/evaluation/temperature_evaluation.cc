@@ -1,6 +1,7 @@
 #include "ground/evaluation/temperature_evaluation.h"
 
 #include <fmt/format.h>
+#include <numbers>
 
 #include <algorithm>
 #include <cmath>
@@ -159,12 +160,12 @@ Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
     if (!std::isfinite(error)) continue;
     Errors& errors = by_quality[QualityOfPoint(cloud, i)];
     errors.all.push_back(error);
-    assessed.push_back({.error_k = error,
-                        .sigma_k = std::hypot(
-                            ValueOrNan(cloud.sigma_k, i),
-                            expected.Sigma(i, true_celsius, truth.points().normals[foot->nearest])),
-                        .distance_m = ValueOrNan(cloud.measured_distance_m, i),
-                        .angle_deg = ValueOrNan(cloud.measured_angle_deg, i)});
+    assessed.push_back(
+        {.error_k = error,
+         .sigma_k = ValueOrNan(cloud.sigma_k, i),
+         .expected_sigma_k = expected.Sigma(i, true_celsius, truth.points().normals[foot->nearest]),
+         .distance_m = ValueOrNan(cloud.measured_distance_m, i),
+         .angle_deg = ValueOrNan(cloud.measured_angle_deg, i)});
     const Eigen::Vector3f& q = truth.points().positions_m[foot->nearest];
     if (truth.CelsiusSpread(q, options.edge_radius_m) <= options.edge_kelvin)
       errors.away_from_edges.push_back(error);

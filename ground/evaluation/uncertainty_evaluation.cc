@@ -79,7 +79,7 @@ UncertaintyReport EvaluateUncertainty(std::span<const AssessedError> errors) {
       ++report.unknown;
       continue;
     }
-    const double ratio = error.error_k / error.sigma_k;
+    const double ratio = error.error_k / std::hypot(error.sigma_k, error.expected_sigma_k);
     sigmas_k.push_back(error.sigma_k);
     report.ratios.Add(ratio);
     sum += ratio;

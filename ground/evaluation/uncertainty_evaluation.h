@@ -11,7 +11,8 @@ namespace isotherm {
 /// A temperature beside the truth, with what was said of its uncertainty.
 struct AssessedError {
   double error_k = 0.0;                                       ///< Measured minus expected.
-  double sigma_k = std::numeric_limits<double>::quiet_NaN();  ///< NaN = not known.
+  double sigma_k = std::numeric_limits<double>::quiet_NaN();  ///< As stated; NaN = not known.
+  double expected_sigma_k = 0.0;  ///< How uncertain what is expected is.
   // Of the measurement; NaN = not known.
   double distance_m = std::numeric_limits<double>::quiet_NaN();
   double angle_deg = std::numeric_limits<double>::quiet_NaN();
@@ -55,7 +56,8 @@ struct UncertaintyReport {
 
   std::size_t points = 0;   ///< With an uncertainty.
   std::size_t unknown = 0;  ///< Without.
-  // Of the points with an uncertainty; NaN if there are none.
+  // Of the points with an uncertainty; NaN if there are none. Ratios and fractions are of errors
+  // over both uncertainties, that of the temperature and that of what is expected.
   double within_68 = std::numeric_limits<double>::quiet_NaN();
   double within_95 = std::numeric_limits<double>::quiet_NaN();
   double mean_ratio = std::numeric_limits<double>::quiet_NaN();  ///< Of error / sigma.

@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "common/base/check.h"
+
 namespace isotherm {
 
 std::span<const ThermalRule> ThermalRules() {
@@ -29,8 +31,8 @@ std::span<const ThermalRule> ThermalRules() {
       // Both begin at the near range, and end without one.
       ThermalRule{"near-range holes, line of sight",
                   [](ThermalSettings& s) { s.rig.depth_sensor.near_range_m = 0.0; }},
-      // The review lives on the records.
-      ThermalRule{"review",
+      // Both live on the records.
+      ThermalRule{"review, choice by uncertainty",
                   [](ThermalSettings& s) { s.options.mutable_expert()->set_records(false); }},
   };
   return rules;
@@ -42,7 +44,8 @@ StageFusion::StageFusion(const ThermalSettings& settings, float min_weight, cons
       thermal_(model.tsdf().max_blocks(), {}, settings.options.expert().records()) {}
 
 void StageFusion::AfterDepth(const Image<float>& depth_m, ThreadPool& pool) {
-  thermal_.Commit(model_.tsdf().block_count());
+  if (!model_.motion.last()) return;  // The rig is lost.
+  CHECK(thermal_.Commit(model_.tsdf().block_count()));
   const PoseUncertainty& uncertainty = model_.uncertainty;
   const TrackedDepth tracked{
       .depth_m = depth_m,

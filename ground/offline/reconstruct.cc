@@ -288,8 +288,9 @@ Status CompareHeldOut(const ReconstructRequest& request, const Rig& rig,
     views.Compare(frame);
     ++read;
     if (request.progress) {
-      request.progress(kFramesFraction + (1.0 - kFramesFraction) * static_cast<double>(read) /
-                                             static_cast<double>(stamps.size()),
+      constexpr double kBefore = kFramesFraction + kMergeFraction;
+      request.progress(kBefore + (1.0 - kBefore) * static_cast<double>(read) /
+                                     static_cast<double>(stamps.size()),
                        "predicting");
     }
   }

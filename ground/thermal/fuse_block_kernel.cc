@@ -19,8 +19,8 @@ HWY_INLINE MI BothValid(VI classes) {
 }
 
 /// Where a voxel's new temperature is no better than the one it has (algorithm 6). Where the
-/// classes are equal, `larger_sigma` says so.
-HWY_INLINE MI KeepsOld(VI old_word, VI word, MI larger_sigma) {
+/// classes are equal, `known_better` says so.
+HWY_INLINE MI KeepsOld(VI old_word, VI word, MI known_better) {
   // Smaller is better: distance, then angle, then motion (whose code grows the better it is).
   const auto order = [&](VI classes) {
     constexpr std::uint32_t kDistanceAndAngle =
@@ -33,9 +33,15 @@ HWY_INLINE MI KeepsOld(VI old_word, VI word, MI larger_sigma) {
   const VI new_order = order(word);
   const VI old_order = order(old_word);
   const MI worse =
-      hn::Or(hn::Gt(new_order, old_order), hn::And(hn::Eq(new_order, old_order), larger_sigma));
+      hn::Or(hn::Gt(new_order, old_order), hn::And(hn::Eq(new_order, old_order), known_better));
   // A voxel never measured has no valid classes either.
   return hn::And(BothValid(old_word), hn::Or(hn::Not(BothValid(word)), worse));
+}
+
+/// The temperatures of voxels, as ThermalLayout's codes.
+HWY_INLINE VI OldTemperature(VI old_word) {
+  return hn::And(hn::ShiftRight<ThermalLayout::kCodeShift>(old_word),
+                 hn::Set(di, ThermalLayout::kCodeMask));
 }
 
 /// SigmaCodes of the temperatures of the lanes that begin at voxel `i`; 0 = not known.
@@ -56,19 +62,35 @@ HWY_INLINE VI OldSigmas(const BlockSigmas& sigmas, int i) {
   return hn::PromoteTo(di, hn::LoadU(bytes, codes + i % kRow));
 }
 
-/// Where the temperature that a voxel has is known better than that of its pixel.
-HWY_INLINE MI LargerSigma(const BlockSigmas& sigmas, int i, VI flags) {
+/// Kelvin of SigmaCodes other than 0.
+HWY_INLINE VF SigmaKelvin(VI code) {
+  const VI bits = hn::Add(code, hn::Set(di, static_cast<std::int32_t>(SigmaCode::kBias)));
+  return hn::BitCast(d, hn::ShiftLeft<SigmaCode::kShift>(bits));
+}
+
+/// Where the temperature that a voxel has is known better than its new one, `temperature`, and the
+/// two agree: where they do not, one of them is wrong, whatever its uncertainty, or the surface has
+/// changed, and the new one is as good as any.
+HWY_INLINE MI IsKnownBetter(const BlockSigmas& sigmas, int i, VI flags, VI old_word,
+                            VI temperature) {
   const VI old_code = OldSigmas(sigmas, i);
   const VI code = hn::And(hn::ShiftRight<ThermalPixel::kSigmaShift>(flags), hn::Set(di, 0xFF));
-  return hn::And(hn::Gt(old_code, hn::Zero(di)), hn::Gt(code, old_code));
+  const VF difference = hn::Mul(
+      hn::ConvertTo(d, hn::Sub(temperature, OldTemperature(old_word))),
+      hn::Set(d, 1.0F / (SigmaCode::kAgree * static_cast<float>(ThermalLayout::kStepsPerKelvin))));
+  const VF old_sigma = SigmaKelvin(old_code);
+  const VF sigma = SigmaKelvin(code);
+  const VF variance = hn::MulAdd(sigma, sigma, hn::Mul(old_sigma, old_sigma));
+  const MF agree = hn::Le(hn::Mul(difference, difference), variance);
+  const MI better = hn::And(hn::Gt(old_code, hn::Zero(di)), hn::Gt(code, old_code));
+  return hn::And(better, hn::RebindMask(di, agree));
 }
 
 /// Where a voxel was measured under good conditions, and lower than now.
 HWY_INLINE MI OldIsLower(VI old_word, VI code) {
-  const VI old_code = hn::And(hn::ShiftRight<ThermalLayout::kCodeShift>(old_word),
-                              hn::Set(di, ThermalLayout::kCodeMask));
   const VI old_classes = hn::And(old_word, hn::Set(di, ThermalLayout::kConditionMask));
-  return hn::And(hn::Eq(old_classes, hn::Set(di, kAllGood)), hn::Gt(code, old_code));
+  return hn::And(hn::Eq(old_classes, hn::Set(di, kAllGood)),
+                 hn::Gt(code, OldTemperature(old_word)));
 }
 
 /// Observed voxels whose distance is below `max_code` on either side of the surface.
@@ -145,12 +167,12 @@ HWY_INLINE void Note(int i, VI fresh, VI flags, MI noted, MI takes, BlockMeasure
 // Gives the voxels near the surface the temperatures of the pixels they are seen in. A voxel takes
 // part if it lies within max_distance_m of the surface that its pixel shows (algorithm 5, with the
 // plane through the vertex), and takes the temperature unless the one it has was measured under
-// better conditions (algorithm 6), is less uncertain under equal ones or, with keep_lowest, is
-// lower under conditions as good. Rows: lanes are neighbours along x, then y, of a layer; words are
-// TsdfLayout's and ThermalLayout's of the same 512 voxels, pixels ThermalPixel, sigmas bytes in
-// rows of 8 voxels. Fast: most vectors have no voxel near the surface and end at their first load;
-// a pixel is one load of 16 bytes and a word; what was measured is written packed, so that the slow
-// part (MeasurementRecorder) meets these voxels only.
+// better conditions (algorithm 6), is less uncertain under equal ones and agrees, or, with
+// keep_lowest, is lower under conditions as good. Rows: lanes are neighbours along x, then y, of a
+// layer; words are TsdfLayout's and ThermalLayout's of the same 512 voxels, pixels ThermalPixel,
+// sigmas bytes in rows of 8 voxels. Fast: most vectors have no voxel near the surface and end at
+// their first load; a pixel is one load of 16 bytes and a word; what was measured is written
+// packed, so that the slow part (MeasurementRecorder) meets these voxels only.
 void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_t* tsdf,
                const BlockSigmas& sigmas, std::uint32_t* thermal, FusionKernelCounts& counts,
                BlockMeasurements* measured) {
@@ -197,13 +219,13 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
     if (hn::AllFalse(di, assignable)) continue;
     MI assign = assignable;
     const MI good = hn::And(assignable, hn::Eq(classes, all_good));
+    VI stored = TemperatureCode(record, place);
     if (a.validate) {
-      MI larger_sigma = LargerSigma(sigmas, i, flags);
-      if (a.keep_lowest) larger_sigma = hn::AndNot(good, larger_sigma);
-      assign = hn::AndNot(KeepsOld(old, classes, larger_sigma), assign);
+      MI known_better = IsKnownBetter(sigmas, i, flags, old, stored);
+      if (a.keep_lowest) known_better = hn::AndNot(good, known_better);
+      assign = hn::AndNot(KeepsOld(old, classes, known_better), assign);
     }
     if (hn::AllFalse(di, hn::Or(assign, good))) continue;
-    VI stored = TemperatureCode(record, place);
     if (!a.keep_bad) stored = hn::IfThenElseZero(BothValid(classes), stored);
     const VI fresh = hn::Or(hn::ShiftLeft<ThermalLayout::kCodeShift>(stored), classes);
     if (a.keep_lowest) assign = hn::AndNot(hn::And(good, OldIsLower(old, stored)), assign);

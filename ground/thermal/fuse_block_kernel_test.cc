@@ -203,7 +203,7 @@ TEST_F(FuseBlockTest, MatchesTheScalarReferenceForAnyImageAndPose) {
   });
 }
 
-TEST_F(FuseBlockTest, UnderEqualClassesTheSmallerUncertaintyStaysAndOfEqualOnesTheNewerIsTaken) {
+TEST_F(FuseBlockTest, UnderEqualClassesTheSmallerUncertaintyStaysIfTheyAgree) {
   testing::ForEachInstructionSet([&] {
     RearrangeImage(64, 48);
     args_.validate = true;
@@ -215,12 +215,14 @@ TEST_F(FuseBlockTest, UnderEqualClassesTheSmallerUncertaintyStaysAndOfEqualOnesT
       pixel.flags |= ThermalPixel::kSeen | ThermalPixel::kAssignable |
                      static_cast<std::int32_t>(std::uint32_t{kNew} << ThermalPixel::kSigmaShift);
     }
-    const auto assigned_over = [&](std::uint8_t old_sigma) {
+    const auto assigned_over = [&](std::uint8_t old_sigma, float old_celsius = 20.0F) {
+      const ThermalVoxel old = ThermalVoxel::Make(old_celsius, ConditionClass::kGood,
+                                                  ConditionClass::kGood, ConditionClass::kGood);
+
       std::int64_t assigned = 0;
       for (int round = 0; round < 20; ++round) {
         RearrangeBlock();
-        for (std::size_t i = 0; i < kVoxels; ++i)
-          thermal_[i] = (3U << 16) | static_cast<std::uint32_t>(kAllGood);
+        for (std::size_t i = 0; i < kVoxels; ++i) thermal_[i] = old.bits;
         sigmas_.fill(old_sigma);
         for (std::size_t row = 0; row < block_sigmas_.rows.size(); ++row)
           block_sigmas_.rows[row] = &sigmas_[8 * row];
@@ -235,6 +237,11 @@ TEST_F(FuseBlockTest, UnderEqualClassesTheSmallerUncertaintyStaysAndOfEqualOnesT
     EXPECT_GT(assigned_over(kNew), 100);
     EXPECT_GT(assigned_over(kNew + 1), 100);
     EXPECT_GT(assigned_over(0), 100) << "not known";
+    const double allowed_k = 3.0 * std::hypot(SigmaCode::Kelvin(kNew), SigmaCode::Kelvin(kNew - 1));
+    const auto apart = [&](double part) { return 20.0F + static_cast<float>(part * allowed_k); };
+    EXPECT_EQ(assigned_over(kNew - 1, apart(0.98)), 0);
+    EXPECT_GT(assigned_over(kNew - 1, apart(1.02)), 100) << "one of them is wrong";
+    EXPECT_GT(assigned_over(kNew - 1, apart(-1.02)), 100);
   });
 }
 

@@ -14,6 +14,7 @@
 #include "common/radiometry/angle_limits.h"
 #include "common/radiometry/materials.h"
 #include "common/radiometry/optics.h"
+#include "ground/thermal/sigma_code.h"
 
 namespace isotherm {
 namespace {
@@ -210,7 +211,10 @@ bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
   if (new_distance != old.distance_class()) return Rank(new_distance) < Rank(old.distance_class());
   if (new_angle != old.angle_class()) return Rank(new_angle) < Rank(old.angle_class());
   if (new_motion != old.motion_class()) return Rank(new_motion) < Rank(old.motion_class());
-  return sigma.before == 0 || sigma.now <= sigma.before;
+  if (sigma.before == 0 || sigma.now <= sigma.before) return true;
+  const double allowed_k =
+      SigmaCode::kAgree * std::hypot(SigmaCode::Kelvin(sigma.now), SigmaCode::Kelvin(sigma.before));
+  return std::abs(sigma.difference_k) > allowed_k;
 }
 
 }  // namespace isotherm

@@ -35,16 +35,18 @@ struct ConditionLimits {
   ConditionClass ClassifyAngle(float cosine) const;
 };
 
-/// SigmaCodes of two measurements; 0 = not known.
+/// SigmaCodes of two measurements; 0 = not known. And how far the temperatures are apart.
 struct SigmaPair {
   std::uint8_t now = 0;
   std::uint8_t before = 0;
+  double difference_k = 0.0;
 };
 
 /// Algorithm 6: whether a measurement under the new classes replaces one under the old classes.
 /// Under equal distance and angle classes the motion classes decide, under equal ones of all three
-/// the smaller uncertainty, and if that is not known or the same the newer measurement. A smeared
-/// measurement (kBad) replaces nothing.
+/// the smaller uncertainty; the newer measurement if that is not known or the same, or if the two
+/// do not agree, since one of them is wrong then, whatever its uncertainty, or the surface has
+/// changed. A smeared measurement (kBad) replaces nothing.
 bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
                          ConditionClass new_motion, ThermalVoxel old, SigmaPair sigma = {});
 

@@ -17,6 +17,9 @@ struct SigmaCode {
   static constexpr int kShift = std::numeric_limits<float>::digits - 1 - kMantissaBits;
   static constexpr float kMin_k = 0.0078125F;
   static constexpr float kMax_k = 480.0F;
+  /// Temperatures agree that are no further apart than this many standard uncertainties of their
+  /// difference.
+  static constexpr float kAgree = 3.0F;
   /// What the upper bits of kMin_k exceed its code by.
   static constexpr std::uint32_t kBias = (std::bit_cast<std::uint32_t>(kMin_k) >> kShift) - 1;
 

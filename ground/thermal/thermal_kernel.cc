@@ -232,10 +232,11 @@ HWY_INLINE VF Variance(const PixelRowArgs& a, const RowLoader& load, VF celsius,
   return hn::MulAdd(scene, scene, sum);
 }
 
-/// SigmaCode of a standard uncertainty.
+/// SigmaCode of a standard uncertainty; the largest one of NaN.
 HWY_INLINE VI PackSigma(VF variance) {
-  const VF sigma = hn::Min(hn::Max(hn::Sqrt(variance), hn::Set(d, SigmaCode::kMin_k)),
-                           hn::Set(d, SigmaCode::kMax_k));
+  const VF largest = hn::Set(d, SigmaCode::kMax_k);
+  const VF known = hn::IfThenElse(hn::IsNaN(variance), hn::Mul(largest, largest), variance);
+  const VF sigma = hn::Min(hn::Max(hn::Sqrt(known), hn::Set(d, SigmaCode::kMin_k)), largest);
   constexpr std::int32_t kHalfStep = 1 << (SigmaCode::kShift - 1);
   const VI rounded = hn::Add(hn::BitCast(di, sigma), hn::Set(di, kHalfStep));
   return hn::Sub(hn::ShiftRight<SigmaCode::kShift>(rounded),

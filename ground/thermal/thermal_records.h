@@ -36,7 +36,7 @@ class ThermalRecords {
     const std::uint32_t entry = Entry(block, row);
     return entry == 0 ? nullptr : SigmasAt(entry);
   }
-  /// The same of a row that was written (CHECK).
+  /// The same of a row that was written (DCHECK: called for each voxel that is measured).
   std::uint8_t* Sigmas(std::int32_t block, int row);
 
   /// To be called before rows of blocks up to this number are made. False if the disk is full.

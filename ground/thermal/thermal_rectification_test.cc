@@ -140,7 +140,7 @@ TEST(ThermalRectifierTest, NoiseIsLessWhereFourPixelsAreAveraged) {
   for (int i = 0; i < kFrames; ++i) {
     for (std::uint16_t& value : frame.pixels())
       value = static_cast<std::uint16_t>(std::lround(normal(engine)));
-    rectifier.Rectify(frame, 0, pool, celsius);
+    rectifier.Rectify(frame, kCentikelvin, 0, pool, celsius);
     if (i == 0) squares = Image<double>(celsius.width(), celsius.height(), 0.0);
     for (int y = 0; y < celsius.height(); ++y) {
       for (int x = 0; x < celsius.width(); ++x)

@@ -6,6 +6,7 @@
 
 #include "common/base/check.h"
 #include "common/geometry/rectified_camera.h"
+#include "common/radiometry/radiometry.h"
 #include "ground/thermal/thermal_kernel.h"
 
 namespace isotherm {
@@ -61,8 +62,12 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& temperature_raw,
   pool.ParallelForRows(camera_.height, kRectifiedRowsPerTask, [&](int y) {
     const std::span<const std::uint16_t> raw = temperature_raw.Row(y);
     const std::span<float> row = image_.Row(y);
-    for (std::size_t x = 0; x < row.size(); ++x)
-      row[x] = raw[x] == 0 ? kNan : static_cast<float>(raw[x]) * kelvin_per_count - zero_k;
+    for (std::size_t x = 0; x < row.size(); ++x) {
+      const float value = static_cast<float>(raw[x]) * kelvin_per_count - zero_k;
+      const bool is_kept = raw[x] != 0 && value >= static_cast<float>(kMinRadiometric_celsius) &&
+                           value <= static_cast<float>(kMaxRadiometric_celsius);
+      row[x] = is_kept ? value : kNan;
+    }
   });
   pool.ParallelForRows(height, kRectifiedRowsPerTask, [&](int v) {
     ResampleRow({image_.data(), camera_.width, source_.Row(v).data(), fraction_x_.Row(v).data(),

@@ -15,7 +15,8 @@ class ThermalRectifier {
  public:
   explicit ThermalRectifier(const CameraModel& camera);
   /// `temperature_raw`, counts of `scale`, has the camera's size (CHECK). Writes into `celsius`
-  /// with `apron` pixels of NaN all around.
+  /// with `apron` pixels of NaN all around. NaN is also what lies
+  /// outside kMinRadiometric_celsius..kMaxRadiometric_celsius, which the model cannot hold.
   void Rectify(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale,
                int apron, ThreadPool& pool, Image<float>& celsius);
   /// Per pixel of the ideal camera, the variance of what is uncorrelated noise in the frame, as a

@@ -138,7 +138,7 @@ TEST_F(ThermalRulesTest, EachTemperatureKnowsItsDistanceAngleAndNuc) {
   EXPECT_GT(checked, 100);
 }
 
-TEST_F(ThermalRulesTest, OfTemperaturesUnderEqualClassesTheLeastUncertainStays) {
+TEST_F(ThermalRulesTest, OfTemperaturesUnderEqualClassesThatAgreeTheLeastUncertainStays) {
   const auto at_wall = [&] { return MeasurementAt(*tsdf_, *thermal_, {0.44, 0.36, 0.60}); };
   const auto fuse = [&](double celsius, double housing_change_k) {
     CaptureConditions capture;
@@ -154,6 +154,8 @@ TEST_F(ThermalRulesTest, OfTemperaturesUnderEqualClassesTheLeastUncertainStays) 
   EXPECT_NEAR(at_wall().voxel.celsius(), 21.0, 0.02) << "worse, though later";
   fuse(23.0, 0.25);
   EXPECT_NEAR(at_wall().voxel.celsius(), 23.0, 0.02) << "as good and later";
+  fuse(31.0, 0.5);
+  EXPECT_NEAR(at_wall().voxel.celsius(), 31.0, 0.02) << "8 K off, sigmas of 1 and 2 K";
   fuse(24.0, 0.0);
   EXPECT_NEAR(at_wall().voxel.celsius(), 24.0, 0.02);
   EXPECT_NEAR(at_wall().sigma_k, std::hypot(CameraUncertainty().netd_k, 0.0072), 0.002);
@@ -192,10 +194,15 @@ TEST_F(ThermalRulesTest, ASlopeIsAsUncertainAsItsPlace) {
   EXPECT_NEAR(sigma_k(capture), moved_k, kStep * moved_k);
 }
 
-TEST_F(ThermalRulesTest, WithoutRecordsTemperaturesAreTheSame) {
+TEST_F(ThermalRulesTest, WithoutRecordsTheLatestOfEqualClassesStays) {
   thermal_ = std::make_unique<ThermalVolume>(tsdf_->max_blocks(), std::filesystem::path(), false);
-  EXPECT_GT(Fuse(options_).assigned, 10'000);
-  EXPECT_TRUE(MeasurementAt(*tsdf_, *thermal_, {0.4, 0.36, 0.6}).conditions.empty());
+  CaptureConditions uncertain;
+  uncertain.nuc = {.epoch = 0, .seconds_since = 1.0, .housing_change_k = 0.5};
+  FuseFrame(options_, Even(20.0));
+  FuseFrame(options_, Even(21.0), uncertain);
+  const auto at_wall = MeasurementAt(*tsdf_, *thermal_, {0.4, 0.36, 0.6});
+  EXPECT_NEAR(at_wall.voxel.celsius(), 21.0, 0.02);
+  EXPECT_TRUE(at_wall.conditions.empty());
 }
 
 TEST_F(ThermalRulesTest, AReflectionThatMovesDisagreesAndTheLowestCanBeKept) {

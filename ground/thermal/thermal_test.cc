@@ -133,6 +133,19 @@ TEST(ReplacesMeasurementTest, TheUncertaintyDecidesBetweenEqualClassesOnly) {
   EXPECT_FALSE(replaces(kBad, 9, 10)) << "a worse one";
 }
 
+TEST(ReplacesMeasurementTest, WhereTemperaturesDoNotAgreeTheNewerStays) {
+  const std::uint8_t now = SigmaCode::Of(0.4F), before = SigmaCode::Of(0.3F);
+  const double allowed_k = 3.0 * std::hypot(SigmaCode::Kelvin(now), SigmaCode::Kelvin(before));
+  const auto replaces = [&](double difference_k) {
+    return ReplacesMeasurement(kGood, kGood, kGood, ThermalVoxel::Make(20.0F, kGood, kGood, kGood),
+                               {.now = now, .before = before, .difference_k = difference_k});
+  };
+  EXPECT_FALSE(replaces(0.99 * allowed_k));
+  EXPECT_FALSE(replaces(-0.99 * allowed_k));
+  EXPECT_TRUE(replaces(1.01 * allowed_k));
+  EXPECT_TRUE(replaces(-1.01 * allowed_k));
+}
+
 TEST(ReplacesMeasurementTest, MotionDecidesBetweenEqualClassesOfDistanceAndAngle) {
   const auto replaces = [](ConditionClass motion, ConditionClass old_motion) {
     return ReplacesMeasurement(kGood, kAcceptable, motion,

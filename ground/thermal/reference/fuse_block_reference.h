@@ -61,14 +61,6 @@ inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   if ((pixel.flags & ThermalPixel::kAssignable) == 0) return result;
   result.classes = pixel.flags & ThermalLayout::kConditionMask;
   const ThermalVoxel conditions{static_cast<std::uint32_t>(result.classes)};
-  SigmaPair sigma{.now = ThermalPixel::Sigma(pixel.flags), .before = old_sigma};
-  // Of temperatures under good conditions the lowest is kept, not the least uncertain.
-  if (a.keep_lowest && result.classes == static_cast<std::int32_t>(kAllGood)) sigma = {};
-  if (a.validate && !ReplacesMeasurement(conditions.distance_class(), conditions.angle_class(),
-                                         conditions.motion_class(), old, sigma)) {
-    return result;
-  }
-  result.assigned = result.considered;
   const double slope_u = static_cast<std::int16_t>(pixel.slopes & ThermalPixel::kSlopeUMask);
   const double slope_v = pixel.slopes >> ThermalPixel::kSlopeVShift;
   constexpr double kSlopeScale = ThermalPixel::kSlopeScale;
@@ -79,6 +71,27 @@ inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   result.slack =
       0.52 + kPixelError * kStepsPerKelvin / kSlopeScale * (std::abs(slope_u) + std::abs(slope_v)) +
       1e-6 * result.code;
+  SigmaPair sigma{.now = ThermalPixel::Sigma(pixel.flags), .before = old_sigma};
+  // Of temperatures under good conditions the lowest is kept, not the least uncertain.
+  if (a.keep_lowest && result.classes == static_cast<std::int32_t>(kAllGood)) sigma = {};
+  const double apart = std::abs(result.code - static_cast<double>(ThermalLayout::Code(old.bits)));
+  const auto replaces = [&](double steps_apart) {
+    sigma.difference_k = steps_apart / kStepsPerKelvin;
+    return ReplacesMeasurement(conditions.distance_class(), conditions.angle_class(),
+                               conditions.motion_class(), old, sigma);
+  };
+  result.assigned = result.considered;
+  // The kernel compares what voxels can hold.
+  const bool surely = replaces(std::max(0.0, apart - result.slack));
+  if (a.validate && !surely) {
+    const bool perhaps = replaces(apart + result.slack);
+    const bool either = perhaps && result.assigned != Verdict::kNo;
+    result.assigned = either ? Verdict::kEither : Verdict::kNo;
+    if (!either) {
+      result.code = result.slack = 0.0;
+      return result;
+    }
+  }
   const bool bad = conditions.distance_class() == ConditionClass::kBad ||
                    conditions.angle_class() == ConditionClass::kBad;
   if (!a.keep_bad && bad) result.code = result.slack = 0.0;
