@@ -147,8 +147,9 @@ void AddEvaluateCommand(CLI::App& app, CommandBody& body) {
   CLI::Option* truth =
       command->add_option("--groundtruth", arguments->groundtruth,
                           "True poses: trajectory file, or recording with ground truth (.mcap)");
-  command->add_option("--surface", arguments->surface,
-                      "True surface (.ply: x y z nx ny nz scalar_temperature seen)");
+  CLI::Option* surface =
+      command->add_option("--surface", arguments->surface,
+                          "True surface (.ply: x y z nx ny nz scalar_temperature seen)");
   command->add_option("--emissivity", request.emissivity,
                       "Compare temperatures, for this emissivity (0..1) along the normal");
   command->add_option("--refractive-index", request.refractive_index,
@@ -163,16 +164,21 @@ void AddEvaluateCommand(CLI::App& app, CommandBody& body) {
           ->add_option("--held-out-views", arguments->held_out_views,
                        "Reconstruct without every K-th thermal frame and predict those")
           ->type_name("K")
-          ->excludes(truth);
+          ->excludes(truth)
+          ->excludes(surface);
   for (CLI::Option* option : AddScanOptions(*command, arguments->scan)) option->needs(held_out);
   command->add_option("--ambient", request.ambient_celsius, "Temperature of the surroundings, °C")
       ->capture_default_str();
-  command->add_option(
-      "--volume-box", arguments->volume_box,
-      "Count only true surface inside \"x y z x y z\" (two corners, the truth's world, metres)");
-  command->add_option("--first", request.first, "Only the first N true poses");
-  command->add_option("--skip-repeats", arguments->repeats,
-                      "Leave out depth frames of this recording that repeat the one before");
+  command
+      ->add_option(
+          "--volume-box", arguments->volume_box,
+          "Count only true surface inside \"x y z x y z\" (two corners, the truth's world, metres)")
+      ->excludes(held_out);
+  command->add_option("--first", request.first, "Only the first N true poses")->excludes(held_out);
+  command
+      ->add_option("--skip-repeats", arguments->repeats,
+                   "Leave out depth frames of this recording that repeat the one before")
+      ->excludes(held_out);
   command
       ->add_option("--tolerance-ms", request.tolerance_ms,
                    "Largest difference between stamps of one frame")

@@ -234,6 +234,14 @@ std::string RangeName(const std::array<double, N>& from, std::size_t i, std::str
   return fmt::format("{:g} to {:g} {}", from[i], from[i + 1], unit);
 }
 
+/// No quantiles of a few points.
+std::string CellText(const ErrorCell& cell) {
+  constexpr std::size_t kFew = 20;
+  if (cell.count == 0) return "-";
+  if (cell.count < kFew) return fmt::format("- ({})", cell.count);
+  return fmt::format("{:.2f} / {:.2f} ({})", cell.median_k, cell.p95_k, cell.count);
+}
+
 std::string TableText(const ErrorTable& table) {
   std::string text = "  |error| by distance and angle: median / 95 % in K (points)\n";
   text += fmt::format("  {:>14}", "");
@@ -242,12 +250,7 @@ std::string TableText(const ErrorTable& table) {
   text += "\n";
   for (std::size_t row = 0; row < ErrorTable::kFrom_m.size(); ++row) {
     text += fmt::format("  {:>14}", RangeName(ErrorTable::kFrom_m, row, "m"));
-    for (const ErrorCell& cell : table.cells[row]) {
-      text +=
-          fmt::format("{:>24}", cell.count == 0 ? "-"
-                                                : fmt::format("{:.2f} / {:.2f} ({})", cell.median_k,
-                                                              cell.p95_k, cell.count));
-    }
+    for (const ErrorCell& cell : table.cells[row]) text += fmt::format("{:>24}", CellText(cell));
     text += "\n";
   }
   return text;
