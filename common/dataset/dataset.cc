@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "common/config/nearest_name.h"
-#include "common/config/text_proto.h"
 #include "common/dataset/text_lines.h"
+#include "common/options/nearest_name.h"
+#include "common/rig/rig_calibration.h"
 
 namespace isotherm {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "common/base/status.h"
 #include "common/dataset/trajectory.h"
-#include "common/geometry/camera.h"
 #include "common/geometry/external_odometry.h"
+#include "common/rig/rig.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {

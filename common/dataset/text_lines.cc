@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/base/read_file.h"
-#include "common/config/nearest_name.h"
+#include "common/options/nearest_name.h"
 
 namespace isotherm {
 namespace {

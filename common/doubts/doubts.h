@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {

@@ -5,7 +5,7 @@
 
 #include "common/doubts/doubts.h"
 #include "common/frame/image.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {

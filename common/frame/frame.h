@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/frame/image.h"
-#include "common/geometry/radiometric_scale.h"
+#include "common/frame/radiometric_scale.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {

@@ -10,6 +10,7 @@
 
 #include "common/geometry/camera.h"
 #include "common/geometry/rectified_camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/testing/opencv_camera.h"
 
 namespace isotherm {

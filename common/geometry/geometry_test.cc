@@ -104,23 +104,6 @@ TEST(CameraTest, F57NonPhysicalIntrinsicsAreRejectedByName) {
   camera = ThermalCameraModel();
   camera.cx = 1e6;
   EXPECT_FALSE(Validate(camera, "thermal").ok());
-  Rig rig;
-  EXPECT_FALSE(Validate(rig).ok());
-  rig.thermal = ThermalCameraModel();
-  EXPECT_TRUE(Validate(rig).ok());
-  rig.depth_scale = 0.0;
-  EXPECT_FALSE(Validate(rig).ok());
-}
-
-TEST(CameraTest, F56MissingCalibrationRefusesThermalFusionOnly) {
-  Rig rig;
-  rig.depth = ThermalCameraModel();
-  EXPECT_TRUE(Validate(rig).ok());
-  EXPECT_EQ(CheckThermalFusion(rig).code(), StatusCode::kFailedPrecondition);
-  rig.thermal = ThermalCameraModel();
-  EXPECT_EQ(CheckThermalFusion(rig).code(), StatusCode::kFailedPrecondition);
-  rig.T_thermal_depth = RigidTransform::Identity();
-  EXPECT_TRUE(CheckThermalFusion(rig).ok());
 }
 
 }  // namespace

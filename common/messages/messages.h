@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "common/frame/frame.h"
-#include "common/geometry/camera.h"
 #include "common/geometry/external_odometry.h"
 #include "common/geometry/pose_covariance.h"
 #include "common/geometry/rigid_transform.h"
+#include "common/rig/rig.h"
 #include "common/time/kernel_clock.h"
 #include "common/time/time_types.h"
 

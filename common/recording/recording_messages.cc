@@ -8,7 +8,7 @@
 
 #include "common/base/check.h"
 #include "common/base/units.h"
-#include "common/config/rig_calibration.h"
+#include "common/rig/rig_calibration.h"
 
 namespace isotherm::recording {
 namespace {

@@ -4,10 +4,10 @@
 #include <charconv>
 #include <utility>
 
-#include "common/config/rig_calibration.h"
 #include "common/recording/mcap_message_stream.h"
 #include "common/recording/recording_messages.h"
 #include "common/recording/recording_streams.h"
+#include "common/rig/rig_calibration.h"
 
 namespace isotherm {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "common/frame/image.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/simulation/ray_caster.h"
 
 namespace isotherm {

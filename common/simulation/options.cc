@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "common/config/text_proto.h"
 #include "common/radiometry/radiometry.h"
+#include "common/rig/rig_calibration.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "common/base/status.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 
 namespace isotherm {
 

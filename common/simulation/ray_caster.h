@@ -4,6 +4,7 @@
 
 #include "common/frame/image.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/simulation/scene.h"
 
 namespace isotherm {

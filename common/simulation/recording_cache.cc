@@ -5,8 +5,9 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "common/recording/recording.h"
+#include "common/rig/rig_calibration.h"
 #include "common/simulation/options.h"
 #include "common/simulation/render_recording.h"
 #include "common/simulation/simulation_options.pb.h"

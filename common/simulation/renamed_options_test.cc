@@ -1,4 +1,4 @@
-#include "common/config/renamed_options.h"
+#include "common/options/renamed_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <string>
 
-#include "common/config/text_proto.h"
+#include "common/options/override.h"
+#include "common/options/text_proto.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/codec/codec.h"
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "common/recording/recording.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulated_odometry.h"

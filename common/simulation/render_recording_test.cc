@@ -11,8 +11,9 @@
 #include <vector>
 
 #include "common/codec/codec.h"
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "common/recording/recording.h"
+#include "common/rig/rig_calibration.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"

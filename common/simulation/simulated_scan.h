@@ -6,8 +6,8 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
-#include "common/geometry/camera.h"
 #include "common/recording/recording.h"
+#include "common/rig/rig.h"
 #include "common/simulation/depth_sensor.h"
 #include "common/simulation/scenes.h"
 #include "common/simulation/simulated_clock.h"

@@ -7,6 +7,7 @@
 
 #include "common/base/status.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/simulation/scene.h"
 
 namespace isotherm {

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "common/frame/image.h"
+#include "common/frame/radiometric_scale.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/radiometry/radiometry.h"
 #include "common/simulation/ray_caster.h"
 

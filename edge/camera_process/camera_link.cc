@@ -10,8 +10,8 @@
 #include <cerrno>
 #include <string>
 
-#include "common/config/rig_calibration.h"
-#include "common/config/rig_calibration.pb.h"
+#include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
 #include "edge/camera_process/camera_link.pb.h"
 #include "edge/camera_process/pixel_slots.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "edge/frame/frame_counters.h"
+#include "edge/frame_counters/frame_counters.h"
 #include "edge/source/supervised_source.h"
 
 namespace isotherm {

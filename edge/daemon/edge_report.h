@@ -8,7 +8,7 @@
 
 #include "common/messages/messages.h"
 #include "edge/daemon/host_status.h"
-#include "edge/frame/frame_counters.h"
+#include "edge/frame_counters/frame_counters.h"
 #include "edge/pipeline/time_base.h"
 
 namespace isotherm {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "edge/frame/frame_counters.h"
+#include "edge/frame_counters/frame_counters.h"
 
 namespace isotherm {
 namespace {

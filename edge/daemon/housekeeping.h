@@ -14,7 +14,7 @@
 #include "common/time/clock.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/daemon/host_status.h"
-#include "edge/frame/frame_counters.h"
+#include "edge/frame_counters/frame_counters.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/pipeline/edge_pipeline.h"
 #include "edge/publisher/publisher.h"

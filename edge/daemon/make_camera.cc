@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/base/log.h"
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "edge/camera_process/camera_process.h"
 #include "edge/daemon/camera_access.h"
 #include "edge/options/edge_options.pb.h"

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "common/base/status.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "common/time/clock.h"
-#include "edge/frame/frame_counters.h"
+#include "edge/frame_counters/frame_counters.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/source/frame_source.h"
 

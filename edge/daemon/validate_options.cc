@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "common/geometry/radiometric_scale.h"
+#include "common/frame/radiometric_scale.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {

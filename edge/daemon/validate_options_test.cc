@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {

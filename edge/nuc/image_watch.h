@@ -6,7 +6,7 @@
 
 #include "common/doubts/repeat_detector.h"
 #include "common/frame/image.h"
-#include "common/geometry/radiometric_scale.h"
+#include "common/frame/radiometric_scale.h"
 #include "common/time/time_types.h"
 
 namespace isotherm {

@@ -11,8 +11,8 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
-#include "common/geometry/camera.h"
 #include "common/geometry/external_odometry.h"
+#include "common/rig/rig.h"
 
 namespace isotherm {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/time/clock.h"
-#include "edge/frame/frame_check.h"
+#include "edge/source/frame_check.h"
 #include "edge/source/frame_source.h"
 
 namespace isotherm {

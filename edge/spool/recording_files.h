@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/base/status.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "common/time/time_types.h"
 #include "edge/spool/spool.h"
 

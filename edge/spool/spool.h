@@ -16,9 +16,9 @@
 #include "common/recording/recording.h"
 #include "common/time/back_off.h"
 #include "common/time/clock.h"
-#include "edge/frame/encoded_frame.h"
-#include "edge/frame/frame_counters.h"
+#include "edge/frame_counters/frame_counters.h"
 #include "edge/spool/disk_watch.h"
+#include "edge/spool/encoded_frame.h"
 
 namespace isotherm {
 

@@ -10,6 +10,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/map_pose.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/atlas/pose_graph.h"
 #include "ground/atlas/sub_map.h"
 #include "ground/options/ground_options.pb.h"

@@ -7,7 +7,7 @@
 #include "common/base/status.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "ground/calibration/find_delay.h"
 #include "ground/calibration/thermal_selection.h"
 #include "ground/options/ground_options.pb.h"

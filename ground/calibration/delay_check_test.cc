@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/base/noise.h"
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/testing/temporary_directory.h"

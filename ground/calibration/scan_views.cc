@@ -9,7 +9,6 @@
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
-#include "common/config/text_proto.h"
 #include "common/recording/recording.h"
 #include "ground/calibration/part_of_progress.h"
 #include "ground/calibration/point_visibility.h"

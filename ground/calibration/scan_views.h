@@ -7,6 +7,7 @@
 
 #include "common/base/status.h"
 #include "common/concurrency/thread_pool.h"
+#include "common/rig/rig.h"
 #include "ground/calibration/texture_consistency.h"
 #include "ground/tsdf/tsdf_volume.h"
 

@@ -8,7 +8,9 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/image.h"
+#include "common/frame/radiometric_scale.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/geometry/stamped_pose.h"
 #include "common/time/time_types.h"
 #include "ground/calibration/delay_search.h"

@@ -2,8 +2,9 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/config/text_proto.h"
-#include "ground/configuration/validate_options.h"
+#include "common/options/override.h"
+#include "common/options/text_proto.h"
+#include "ground/option_validation/validate_options.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {

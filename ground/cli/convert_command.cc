@@ -8,8 +8,8 @@
 #include "common/base/partial_file.h"
 #include "common/base/progress.h"
 #include "common/base/service.h"
-#include "common/config/nearest_name.h"
 #include "common/dataset/trajectory.h"
+#include "common/options/nearest_name.h"
 #include "ground/cli/command.h"
 #include "ground/cli/convert_recording.h"
 

@@ -7,8 +7,8 @@
 
 #include "common/base/progress.h"
 #include "common/base/service.h"
-#include "common/config/nearest_name.h"
 #include "common/dataset/import.h"
+#include "common/options/nearest_name.h"
 #include "ground/cli/command.h"
 
 namespace isotherm {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "common/config/nearest_name.h"
-#include "common/config/text_proto.h"
 #include "common/dataset/text_lines.h"
+#include "common/options/nearest_name.h"
+#include "common/options/text_proto.h"
 #include "ground/cli/numbers.h"
 #include "ground/options/option_geometry.h"
 

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "common/config/nearest_name.h"
-#include "common/config/protobuf_log.h"
-#include "common/config/renamed_options.h"
+#include "common/options/nearest_name.h"
+#include "common/options/protobuf_log.h"
+#include "common/options/renamed_options.h"
 #include "ground/cli/command.h"
 
 namespace isotherm {

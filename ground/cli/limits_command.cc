@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "common/base/units.h"
-#include "common/config/nearest_name.h"
-#include "common/config/text_proto.h"
+#include "common/options/nearest_name.h"
 #include "common/radiometry/materials.h"
+#include "common/rig/rig_calibration.h"
 #include "ground/cli/command.h"
 #include "ground/cli/limits_report.h"
 #include "ground/cli/numbers.h"

@@ -7,10 +7,11 @@
 #include <iterator>
 
 #include "common/base/units.h"
-#include "common/config/text_proto.h"
+#include "common/options/override.h"
+#include "common/options/text_proto.h"
 #include "common/radiometry/materials.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/thermal/thermal_fuser.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

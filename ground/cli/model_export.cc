@@ -9,7 +9,7 @@
 #include "ground/export/message_json.h"
 #include "ground/model/load_model.h"
 #include "ground/surface/surface_maps.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {

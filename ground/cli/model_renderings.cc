@@ -9,7 +9,7 @@
 #include "ground/export/surface.h"
 #include "ground/renderer/renderer.h"
 #include "ground/surface/surface_maps.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 #include "ground/tsdf/raycaster.h"
 
 namespace isotherm {

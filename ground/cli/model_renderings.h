@@ -8,6 +8,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/model/load_model.h"
 #include "ground/renderer/layers.h"
 #include "ground/renderer/temperature_scale.h"

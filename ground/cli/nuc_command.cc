@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "common/config/nearest_name.h"
+#include "common/options/nearest_name.h"
 #include "common/transport/participant.h"
 #include "common/transport/transport_environment.h"
 #include "ground/cli/command.h"

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "common/config/renamed_options.h"
+#include "common/options/renamed_options.h"
 
 namespace isotherm {
 namespace {

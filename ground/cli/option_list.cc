@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "common/config/nearest_name.h"
+#include "common/options/nearest_name.h"
 #include "ground/cli/option_tree.h"
 
 namespace isotherm {

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "common/config/nearest_name.h"
+#include "common/options/nearest_name.h"
 
 namespace isotherm {
 

@@ -1,8 +1,8 @@
 #include <nlohmann/json.hpp>
 
-#include "common/config/rig_calibration.h"
-#include "common/config/rig_calibration.pb.h"
 #include "common/dataset/text_lines.h"
+#include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
 #include "ground/cli/recording_damage.h"
 #include "ground/cli/recording_report.h"
 #include "ground/export/message_json.h"

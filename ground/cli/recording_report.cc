@@ -8,9 +8,9 @@
 #include <ctime>
 
 #include "common/base/printable.h"
-#include "common/config/rig_calibration.h"
 #include "common/dataset/text_lines.h"
 #include "common/recording/clock_record.h"
+#include "common/rig/rig_calibration.h"
 #include "ground/cli/recording_damage.h"
 
 namespace isotherm {

@@ -9,12 +9,12 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/units.h"
-#include "common/config/text_proto.h"
 #include "common/dataset/trajectory.h"
+#include "common/rig/rig_calibration.h"
 #include "ground/cli/result_folder.h"
 #include "ground/cli/truth.h"
 #include "ground/evaluation/point_sets.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "common/testing/temporary_directory.h"
 #include "ground/export/message_json.h"
 

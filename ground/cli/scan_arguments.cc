@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <utility>
 
-#include "common/config/rig_calibration.h"
 #include "common/geometry/pose_text.h"
+#include "common/rig/rig_calibration.h"
 #include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"

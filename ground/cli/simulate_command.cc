@@ -6,7 +6,8 @@
 
 #include "common/base/progress.h"
 #include "common/base/service.h"
-#include "common/config/text_proto.h"
+#include "common/options/override.h"
+#include "common/options/text_proto.h"
 #include "common/recording/recording.h"
 #include "common/simulation/options.h"
 #include "common/simulation/render_recording.h"

@@ -9,7 +9,7 @@
 
 #include "common/base/partial_file.h"
 #include "common/concurrency/thread_pool.h"
-#include "common/config/nearest_name.h"
+#include "common/options/nearest_name.h"
 #include "common/simulation/options.h"
 #include "common/simulation/render_recording.h"
 #include "common/simulation/simulated_scan.h"

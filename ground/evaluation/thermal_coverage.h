@@ -4,6 +4,7 @@
 #include <span>
 
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/evaluation/true_surface.h"
 
 namespace isotherm {

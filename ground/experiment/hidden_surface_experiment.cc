@@ -15,7 +15,7 @@
 #include "ground/experiment/true_conditions.h"
 #include "ground/renderer/renderer.h"
 #include "ground/surface/depth_preprocessor.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/simulation/scene.h"
 #include "common/simulation/simulated_scan.h"
 #include "ground/export/surface.h"

@@ -6,7 +6,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/pipeline_counts.h"
 #include "ground/pipeline/scan_model.h"

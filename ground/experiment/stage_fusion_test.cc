@@ -9,7 +9,7 @@
 #include "ground/experiment/corner_scene.h"
 #include "ground/experiment/experiment_scan.h"
 #include "ground/surface/depth_preprocessor.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

@@ -5,9 +5,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "common/config/rig_calibration.h"
-#include "common/config/rig_calibration.pb.h"
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
+#include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/options/option_geometry.h"
 

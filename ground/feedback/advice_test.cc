@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

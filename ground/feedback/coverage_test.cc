@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "ground/options/ground_options.pb.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

@@ -6,6 +6,8 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/rig/rig.h"
 #include "ground/feedback/model_coverage.h"
 #include "ground/feedback/reach.h"
 #include "ground/options/ground_options.pb.h"

@@ -2,6 +2,8 @@
 
 #include "common/frame/image.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/rig/sensor_models.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/camera_motion.h"
 

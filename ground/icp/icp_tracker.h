@@ -9,6 +9,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/icp/observability.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/depth_preprocessor.h"

@@ -7,6 +7,7 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/map_pose.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/icp/observability.h"
 
 namespace isotherm {

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/thermal/thermal_volume.h"
 #include "ground/tsdf/tsdf_volume.h"

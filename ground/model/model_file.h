@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/thermal/thermal_volume.h"
 #include "ground/tsdf/tsdf_volume.h"

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/model/model.pb.h"
 
 namespace isotherm {

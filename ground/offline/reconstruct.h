@@ -9,9 +9,9 @@
 
 #include "common/base/status.h"
 #include "common/doubts/doubts.h"
-#include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/radiometry/smooth_surface.h"
+#include "common/rig/rig.h"
 #include "ground/offline/held_out_report.h"
 #include "ground/options/ground_options.pb.h"
 

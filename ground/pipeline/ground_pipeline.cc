@@ -8,6 +8,7 @@
 #include "common/base/log.h"
 #include "ground/options/option_geometry.h"
 #include "ground/pipeline/saved_model.h"
+#include "ground/thermal/thermal_options.h"
 #include "ground/tsdf/growing_arena.h"
 
 namespace isotherm {

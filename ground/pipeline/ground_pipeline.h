@@ -8,7 +8,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/doubts/repeat_detector.h"
 #include "common/frame/frame.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "ground/atlas/atlas.h"
 #include "ground/model/model_file.h"
 #include "ground/options/ground_options.pb.h"

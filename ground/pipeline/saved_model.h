@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "common/base/status.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "ground/atlas/sub_map.h"
 #include "ground/model/model_file.h"
 

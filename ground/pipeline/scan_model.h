@@ -2,7 +2,7 @@
 
 #include "common/base/status.h"
 #include "common/concurrency/thread_pool.h"
-#include "common/geometry/camera.h"
+#include "common/rig/rig.h"
 #include "ground/atlas/atlas.h"
 #include "ground/icp/icp_tracker.h"
 #include "ground/icp/motion_history.h"

@@ -8,6 +8,8 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/map_pose.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/rig/rig.h"
 #include "ground/icp/icp_tracker.h"
 #include "ground/pipeline/pipeline_counts.h"
 #include "ground/thermal/line_of_sight_occlusion.h"

@@ -7,6 +7,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/image.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {

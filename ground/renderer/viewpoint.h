@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 
 namespace isotherm {
 

@@ -7,7 +7,7 @@
 
 #include "ground/results/outcome_text.h"
 #include "ground/surface/depth_preprocessor.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

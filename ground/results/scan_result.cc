@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "common/base/units.h"
-#include "common/config/rig_calibration.h"
-#include "common/config/rig_calibration.pb.h"
+#include "common/rig/rig_calibration.h"
+#include "common/rig/rig_calibration.pb.h"
 #include "ground/export/message_json.h"
 #include "ground/export/result_files.h"
 #include "ground/pipeline/saved_model.h"
@@ -17,7 +17,7 @@
 #include "ground/results/scan_doubts.h"
 #include "ground/results/scan_text.h"
 #include "ground/results/sigma_figures.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 #include "ground/thermal/thermal_records.h"
 #include "ground/thermal/thermal_volume.h"
 

@@ -7,7 +7,6 @@
 
 #include "common/base/status.h"
 #include "common/doubts/doubts.h"
-#include "common/geometry/camera.h"
 #include "ground/calibration/delay_check.h"
 #include "ground/export/json.h"
 #include "ground/options/ground_options.pb.h"

@@ -7,7 +7,7 @@
 
 #include "ground/feedback/confidence_image.h"
 #include "ground/feedback/view_smear.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

@@ -11,15 +11,16 @@
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/base/status.h"
-#include "common/config/nearest_name.h"
-#include "common/config/protobuf_log.h"
-#include "common/config/text_proto.h"
+#include "common/options/nearest_name.h"
+#include "common/options/override.h"
+#include "common/options/protobuf_log.h"
+#include "common/options/text_proto.h"
 #include "common/time/clock.h"
 #include "common/transport/transport_environment.h"
-#include "ground/configuration/validate_options.h"
+#include "ground/option_validation/validate_options.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/service/ground_service.h"
-#include "ground/thermal/measurement_conditions.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

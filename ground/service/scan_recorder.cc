@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
 #include "common/recording/clock_record.h"
 #include "common/recording/feedback_record.h"
 #include "common/recording/recording_parts.h"

@@ -5,6 +5,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/rig/sensor_models.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/surface_maps.h"
 

@@ -5,6 +5,8 @@
 
 #include "common/frame/image.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/rig/sensor_models.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_kernel.h"

@@ -1,25 +1,10 @@
 #pragma once
 
-#include "common/base/status.h"
-#include "common/geometry/camera.h"
+#include "common/rig/sensor_models.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/thermal/thermal_volume.h"
 
 namespace isotherm {
-
-Status Validate(const ThermalOptions& options);
-
-/// Fails if the lens (if it is known) is sharp nowhere between the distances that are not bad.
-Status CheckSharpness(const ThermalOptions& options, const ThermalSensorModel& sensor);
-
-/// Returns `options` with the emission angles of its material where it sets none. The material is
-/// known (Validate, CHECK).
-ThermalOptions WithAnglesOfMaterial(const ThermalOptions& options);
-
-/// Returns `options` with all limits as the fuser takes them, for everything that states or applies
-/// them: WithAnglesOfMaterial, and distances narrowed to those at which the rig's lens is sharp (if
-/// it is known).
-ThermalOptions CompleteLimits(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
 /// The distances and angles of (6.3a-b) in metres and as cosines, ready for inner loops.
 struct ConditionLimits {

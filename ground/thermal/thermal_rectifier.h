@@ -4,6 +4,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/image.h"
+#include "common/frame/radiometric_scale.h"
 #include "common/geometry/camera.h"
 
 namespace isotherm {

@@ -6,6 +6,7 @@
 #include "common/base/units.h"
 #include "ground/thermal/measurement_recorder.h"
 #include "ground/thermal/testing/ball_and_wall.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {

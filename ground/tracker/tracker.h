@@ -10,6 +10,7 @@
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/map_pose.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/atlas/atlas.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/stage_times/stage_times.h"

@@ -6,6 +6,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/tsdf/tsdf_volume.h"
 #include "ground/tsdf/visible_blocks.h"

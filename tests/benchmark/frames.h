@@ -6,8 +6,8 @@
 
 #include "common/base/status.h"
 #include "common/frame/frame.h"
-#include "common/geometry/camera.h"
 #include "common/geometry/stamped_pose.h"
+#include "common/rig/rig.h"
 
 namespace isotherm {
 

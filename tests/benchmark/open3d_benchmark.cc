@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <thread>
 
-#include "common/config/text_proto.h"
+#include "common/options/override.h"
 #include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/truth.h"

@@ -12,6 +12,7 @@
 #include "common/base/stage_stats.h"
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 #include "common/geometry/stamped_pose.h"
 #include "ground/surface/voxel_grid.h"
 

@@ -13,9 +13,9 @@
 
 #include "common/base/check.h"
 #include "common/codec/codec.h"
-#include "common/config/text_proto.h"
 #include "common/png/png.h"
 #include "common/recording/testing/recording_data.h"
+#include "common/rig/rig_calibration.h"
 #include "common/testing/volume_shapes.h"
 #include "ground/export/ply.h"
 #include "ground/export/trajectory_text.h"

@@ -9,9 +9,10 @@
 #include <set>
 #include <string>
 
-#include "common/config/renamed_options.h"
-#include "common/config/rig_calibration.pb.h"
-#include "common/config/text_proto.h"
+#include "common/options/override.h"
+#include "common/options/renamed_options.h"
+#include "common/options/text_proto.h"
+#include "common/rig/rig_calibration.pb.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "edge/options/edge_options.pb.h"
 #include "ground/options/ground_options.pb.h"

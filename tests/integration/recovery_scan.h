@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/rig/rig.h"
 #include "common/simulation/depth_sensor.h"
 #include "common/simulation/scenes.h"
 #include "ground/pipeline/ground_pipeline.h"

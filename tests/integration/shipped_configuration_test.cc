@@ -6,11 +6,12 @@
 #include <fstream>
 #include <sstream>
 
-#include "common/config/text_proto.h"
+#include "common/options/text_proto.h"
+#include "common/rig/rig_calibration.h"
 #include "edge/daemon/validate_options.h"
 #include "edge/options/edge_options.pb.h"
-#include "ground/configuration/validate_options.h"
 #include "ground/experiment/nuc_drift_experiment.h"
+#include "ground/option_validation/validate_options.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "common/testing/temporary_directory.h"
-#include "ground/configuration/validate_options.h"
+#include "ground/option_validation/validate_options.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
 

@@ -72,14 +72,14 @@ TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
 
 TEST(IncludeRulesTest, HeavyHeadersDoNotLeaveTheirFolder) {
   const SourceFile image = {"ground/renderer/image.h", {"#include <opencv2/core.hpp>"}};
-  const SourceFile message = {"common/config/rig.h", {"#include \"common/config/rig.pb.h\""}};
+  const SourceFile message = {"common/rig/rig_file.h", {"#include \"common/rig/rig_file.pb.h\""}};
   const SourceFile neighbour = {"ground/renderer/image.cc",
                                 {"#include \"ground/renderer/image.h\""}};
   EXPECT_THAT(CheckIncludes({image, message, neighbour}), IsEmpty());
 
   const SourceFile pipeline = {
       "ground/service/ground_service.cc",
-      {"#include \"ground/renderer/image.h\"", "#include \"common/config/rig.h\""}};
+      {"#include \"ground/renderer/image.h\"", "#include \"common/rig/rig_file.h\""}};
   const std::vector<Violation> violations = CheckIncludes({image, message, neighbour, pipeline});
   ASSERT_EQ(violations.size(), 2U) << ToString(violations);
   EXPECT_EQ(violations[0].path, image.path);

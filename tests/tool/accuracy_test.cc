@@ -11,8 +11,9 @@
 
 #include "common/base/quantile.h"
 #include "common/concurrency/thread_pool.h"
-#include "common/config/text_proto.h"
 #include "common/dataset/import.h"
+#include "common/options/override.h"
+#include "common/options/text_proto.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "ground/cli/model_export.h"
 #include "ground/cli/result_evaluation.h"

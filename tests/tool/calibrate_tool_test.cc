@@ -10,8 +10,8 @@
 #include <map>
 #include <string>
 
-#include "common/config/text_proto.h"
 #include "common/recording/recording.h"
+#include "common/rig/rig_calibration.h"
 #include "tests/support/tool.h"
 
 namespace isotherm {

@@ -6,6 +6,7 @@
 
 #include "common/frame/frame.h"
 #include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
 
 namespace isotherm::testing {
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+
+#include "common/base/status.h"
+
+namespace isotherm {
+
+/// Says what a depth camera can see. The defaults are those of a PrimeSense-like camera.
+struct DepthSensorModel {
+  /// It sees nothing closer, so something there may hide surfaces unnoticed; 0 = nothing is there.
+  double near_range_m = 0.35;
+  double min_depth_m = 0.3, max_depth_m = 4.0;  ///< Depth outside is no return.
+  double noise_at_1m_m = 0.006;  ///< Noise and unevenness; it grows with the square of the depth.
+};
+
+/// Describes a lens set to one distance.
+struct LensModel {
+  double focal_length_m = 0.0;
+  double f_number = 0.0;
+  double focus_m = 0.0;  ///< Distance of what is sharp.
+};
+
+/// Says how a thermal camera takes its images. The defaults are those of a microbolometer whose
+/// lens is not known.
+struct ThermalSensorModel {
+  double time_constant_s = 0.010;  ///< A pixel follows a change of temperature with it.
+  double row_readout_s = 0.0;      ///< From one row to the next; 0 = all at once.
+  std::optional<double> pixel_pitch_m;
+  std::optional<LensModel> lens;
+};
+
+/// The message names the field of the rig file.
+Status Validate(const DepthSensorModel& sensor);
+Status Validate(const ThermalSensorModel& sensor);
+
+}  // namespace isotherm
