@@ -3,29 +3,16 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "common/base/units.h"
 #include "common/recording/feedback.pb.h"
+#include "common/recording/message_parts.h"
 #include "common/recording/schema.h"
 
 namespace isotherm {
 namespace {
 
-void SetTime(CaptureTime time, google::protobuf::Timestamp& message) {
-  const std::int64_t ns = ToNanoseconds(time);
-  message.set_seconds(ns / kNanosecondsPerSecond);
-  message.set_nanos(static_cast<std::int32_t>(ns % kNanosecondsPerSecond));
-}
-
 void SetPose(const RigidTransform& pose, recording::PoseRecord& record) {
-  const Eigen::Vector3d t = pose.translation();
-  record.mutable_translation()->set_x(t.x());
-  record.mutable_translation()->set_y(t.y());
-  record.mutable_translation()->set_z(t.z());
-  const Eigen::Quaterniond q(Eigen::Matrix3d(pose.linear()));
-  record.mutable_rotation()->set_x(q.x());
-  record.mutable_rotation()->set_y(q.y());
-  record.mutable_rotation()->set_z(q.z());
-  record.mutable_rotation()->set_w(q.w());
+  recording::SetVector(pose.translation(), *record.mutable_translation());
+  recording::SetQuaternion(Eigen::Quaterniond(pose.linear()), *record.mutable_rotation());
 }
 
 void SetFractions(const CoverageFractions& fractions, recording::CoverageRecord& record) {
@@ -38,8 +25,8 @@ void SetFractions(const CoverageFractions& fractions, recording::CoverageRecord&
 recording::FeedbackRecord ToRecord(const Feedback& feedback,
                                    const std::optional<CaptureTime>& arrival) {
   recording::FeedbackRecord record;
-  SetTime(feedback.capture_time, *record.mutable_timestamp());
-  if (arrival) SetTime(*arrival, *record.mutable_arrival());
+  recording::SetTime(feedback.capture_time, *record.mutable_timestamp());
+  if (arrival) recording::SetTime(*arrival, *record.mutable_arrival());
   record.set_session(feedback.session);
   record.set_frame_number(feedback.frame_number);
   record.set_tracking(std::string(ToString(feedback.tracking_state)));
@@ -74,8 +61,8 @@ Status WriteFeedback(const Feedback& feedback, const std::optional<CaptureTime>&
       WriteAs(kFeedbackRecordTopic, time, ToRecord(feedback, arrival), writer));
   if (feedback.image.empty()) return OkStatus();
   foxglove::CompressedImage image;
-  SetTime(feedback.capture_time, *image.mutable_timestamp());
-  image.set_frame_id("depth");
+  recording::SetTime(feedback.capture_time, *image.mutable_timestamp());
+  image.set_frame_id(recording::kDepthFrame);
   image.set_format("png");
   image.set_data(feedback.image.data(), feedback.image.size());
   return WriteAs(kFeedbackImageTopic, time, image, writer);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <utility>
 
+#include "common/recording/frame_messages.h"
 #include "common/recording/mcap_message_stream.h"
 #include "common/recording/recording_messages.h"
 #include "common/recording/recording_streams.h"

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "common/codec/codec.h"
+#include "common/recording/frame_messages.h"
 #include "common/recording/recording_messages.h"
 #include "common/recording/recording_topics.h"
 #include "common/recording/schema.h"
