@@ -73,6 +73,10 @@ DepthEncoder::~DepthEncoder() = default;
 ThermalEncoder::ThermalEncoder() : scratch_(std::make_unique<Scratch>()) {}
 ThermalEncoder::~ThermalEncoder() = default;
 
+Encoding TemperatureEncoding(const RadiometricScale& scale) {
+  return scale == kCentikelvin ? Encoding::kThermalRans : Encoding::kScaledThermalRans;
+}
+
 EncodedImage DepthEncoder::Encode(const Image<std::uint16_t>& depth_raw) {
   EncodedImage encoded{.encoding = Encoding::kDepthRans,
                        .width = depth_raw.width(),
@@ -84,11 +88,10 @@ EncodedImage DepthEncoder::Encode(const Image<std::uint16_t>& depth_raw) {
 
 EncodedImage ThermalEncoder::Encode(const Image<std::uint16_t>& temperature_raw,
                                     const RadiometricScale& scale) {
-  EncodedImage encoded{
-      .encoding = scale == kCentikelvin ? Encoding::kThermalRans : Encoding::kScaledThermalRans,
-      .width = temperature_raw.width(),
-      .height = temperature_raw.height(),
-      .payload = {}};
+  EncodedImage encoded{.encoding = TemperatureEncoding(scale),
+                       .width = temperature_raw.width(),
+                       .height = temperature_raw.height(),
+                       .payload = {}};
   scratch_->codec.Encode(temperature_raw, encoded.payload);
   return encoded;
 }

@@ -22,14 +22,18 @@ class ThermalEncoder {
  public:
   ThermalEncoder();
   ~ThermalEncoder();
-  /// Pixels are counts of `scale`, which decides the encoding: the image does not carry it.
-  EncodedImage Encode(const Image<std::uint16_t>& temperature_raw,
-                      const RadiometricScale& scale = kCentikelvin);
+  /// Pixels are counts of `scale`, which decides the encoding (TemperatureEncoding): the image does
+  /// not carry it.
+  EncodedImage Encode(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale);
 
  private:
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
 };
+
+/// Returns the encoding of images whose pixels are counts of `scale`: one of its own for any but
+/// centi-kelvin, so that nobody who knows no other scale takes them for that.
+Encoding TemperatureEncoding(const RadiometricScale& scale);
 
 /// Cannot be taken for temperatures: see Encoding::kCounts16.
 EncodedImage PackCounts(const Image<std::uint16_t>& counts);

@@ -87,7 +87,7 @@ std::vector<NamedImage> Images() {
 
 EncodedImage EncodeWith(Encoding encoding, const Pixels& image) {
   return encoding == Encoding::kDepthRans ? DepthEncoder().Encode(image)
-                                          : ThermalEncoder().Encode(image);
+                                          : ThermalEncoder().Encode(image, kCentikelvin);
 }
 
 class CodecTest : public ::testing::TestWithParam<Encoding> {};
@@ -122,8 +122,9 @@ TEST_P(CodecTest, AnEncoderForgetsTheImageBefore) {
   DepthEncoder depth;
   ThermalEncoder thermal;
   for (const NamedImage& named : Images()) {
-    const EncodedImage again = GetParam() == Encoding::kDepthRans ? depth.Encode(named.image)
-                                                                  : thermal.Encode(named.image);
+    const EncodedImage again = GetParam() == Encoding::kDepthRans
+                                   ? depth.Encode(named.image)
+                                   : thermal.Encode(named.image, kCentikelvin);
     EXPECT_EQ(again.payload, EncodeWith(GetParam(), named.image).payload) << named.name;
   }
 }
@@ -264,7 +265,7 @@ TEST(DecodeTest, CountsAreUnpackedButAreNoTemperatures) {
   EXPECT_EQ(*Decode(packed), counts);
   ASSERT_TRUE(DecodeTemperatures(packed).has_value());
   EXPECT_TRUE(DecodeTemperatures(packed)->empty());
-  EXPECT_EQ(*DecodeTemperatures(ThermalEncoder().Encode(counts)), counts);
+  EXPECT_EQ(*DecodeTemperatures(ThermalEncoder().Encode(counts, kCentikelvin)), counts);
   while (!packed.payload.empty()) {
     packed.payload.pop_back();
     EXPECT_FALSE(DecodeTemperatures(packed).has_value()) << packed.payload.size();
@@ -273,7 +274,7 @@ TEST(DecodeTest, CountsAreUnpackedButAreNoTemperatures) {
 
 TEST(DecodeTest, AnotherScaleThanCentikelvinHasAnEncodingOfItsOwn) {
   Image<std::uint16_t> raw(3, 2, 56'157);
-  EXPECT_EQ(ThermalEncoder().Encode(raw).encoding, Encoding::kThermalRans);
+  EXPECT_EQ(ThermalEncoder().Encode(raw, kCentikelvin).encoding, Encoding::kThermalRans);
   EXPECT_EQ(ThermalEncoder().Encode(raw, RadiometricScale{0.01, 0.0}).encoding,
             Encoding::kThermalRans);
   for (const RadiometricScale& scale :

@@ -2,92 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "edge/options/edge_options.pb.h"
-#include "edge/publisher/testing/fake_publisher.h"
-#include "edge/source/supervised_source.h"
-#include "edge/source/testing/fake_source.h"
-#include "edge/spool/testing/fake_recording_writer.h"
+#include "edge/pipeline/testing/edge_pipeline_fixture.h"
 
 namespace isotherm {
 namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::uint64_t kSession = 77;
-
-class EdgePipelineTest : public testing::Test {
- protected:
-  EdgePipelineTest() { options_.mutable_source()->set_rate(0); }
-
-  void Start(std::string_view script, bool record = true) {
-    auto camera = std::make_unique<FakeSource>(script);
-    camera->control_answer = control_answer_;
-    if (counts_only_) camera->DescribeThermal(true);
-    camera->thermal_scale = thermal_scale_;
-    camera_ = camera.get();
-    source_ = std::make_unique<SupervisedSource>(
-        std::move(camera), options_.frame_check(), clock_,
-        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kCaptured); },
-        [this](Sensor sensor) { counters_.Count(sensor, FrameFate::kRejected); }, Nanoseconds(0));
-    ASSERT_TRUE(source_->Open().ok());
-    std::unique_ptr<Spool> spool;
-    if (record) {
-      spool = MakeFakeSpool(recording_, options_.spool(), clock_, counters_, disk_room_);
-    }
-    pipeline_ = std::make_unique<EdgePipeline>(
-        options_, EdgeParts{.source = *source_,
-                            .publisher = publisher_,
-                            .counters = counters_,
-                            .health = health_,
-                            .clock = clock_,
-                            .spool = std::move(spool),
-                            .session = kSession,
-                            .rig_thermal_delay_s = rig_thermal_delay_s_});
-    pipeline_->StartReceiving();
-    pipeline_->StartCapture();
-  }
-  std::vector<CommandResult> AwaitAnswers(std::size_t count) {
-    while (publisher_.answers().size() < count) {
-      pipeline_->AnswerCommands();
-      std::this_thread::yield();
-    }
-    return publisher_.answers();
-  }
-  static CommandResult Find(const std::vector<CommandResult>& answers, std::uint64_t number) {
-    const auto found = std::ranges::find(answers, number, &CommandResult::number);
-    return found == answers.end() ? CommandResult{} : *found;
-  }
-  /// The test's own time limit is the bound.
-  Status RunToTheEnd() {
-    while (!pipeline_->finished()) std::this_thread::yield();
-    return pipeline_->Stop();
-  }
-  void ExpectBalancedCounters() {
-    for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
-      const SensorCounters counters = counters_.Get(sensor);
-      EXPECT_EQ(counters.OnTheWayToDisk(), 0);
-      EXPECT_EQ(counters.OnTheWayToGround(), 0);
-    }
-  }
-
-  EdgeOptions options_;
-  FakeClock clock_;
-  FakePublisher publisher_;
-  FakeRecording recording_;
-  std::uint64_t disk_room_ = UINT64_MAX;
-  double rig_thermal_delay_s_ = 0.0;
-  FrameCounters counters_;
-  CameraHealth health_;
-  Status control_answer_ = FailedPrecondition("no shutter");
-  bool counts_only_ = false;
-  RadiometricScale thermal_scale_;
-  FakeSource* camera_ = nullptr;
-  std::unique_ptr<SupervisedSource> source_;
-  std::unique_ptr<EdgePipeline> pipeline_;
-};
+class EdgePipelineTest : public EdgePipelineFixture {};
 
 TEST_F(EdgePipelineTest, FeedbackIsKeptAndRecordedWithTheScan) {
   Feedback feedback;
@@ -111,7 +37,7 @@ TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
   ASSERT_EQ(depth.size(), 150U);
   for (std::size_t i = 0; i < depth.size(); ++i) {
     EXPECT_EQ(depth[i].header.frame_number, i);
-    EXPECT_EQ(depth[i].header.session, kSession);
+    EXPECT_EQ(depth[i].header.session, kEdgeSession);
   }
 }
 
@@ -135,7 +61,7 @@ TEST_F(EdgePipelineTest, OdometryPosesAreRecordedAndPublishedWithTheNextFrame) {
   const std::vector<ExternalOdometrySample> published = publisher_.external_odometry();
   ASSERT_EQ(published.size(), 5U) << "those behind the last frame tell nothing of any";
   for (std::size_t i = 0; i < published.size(); ++i) {
-    EXPECT_EQ(published[i].session, kSession);
+    EXPECT_EQ(published[i].session, kEdgeSession);
     EXPECT_EQ(published[i].number, i);
     EXPECT_EQ(published[i].pose.source, "fake");
   }
@@ -311,70 +237,6 @@ TEST_F(EdgePipelineTest, WithoutRecordingOnlyTheLinkCounts) {
   EXPECT_TRUE(RunToTheEnd().ok());
   EXPECT_EQ(publisher_.depth().size(), 10U);
   EXPECT_EQ(counters_.Get(Sensor::kDepth).recorded, 0U);
-}
-
-TEST_F(EdgePipelineTest, EveryCommandIsAnswered) {
-  publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc},
-                         {.number = 2,
-                          .kind = CommandKind::kSetPublishPolicy,
-                          .publish_policy = PublishPolicy::kLossless},
-                         {.number = 3, .kind = CommandKind::kStopScan}};
-  Start("d");
-  const std::vector<CommandResult> answers = AwaitAnswers(3);
-  EXPECT_EQ(Find(answers, 1).outcome, CommandOutcome::kRefused) << "there is no thermal camera";
-  EXPECT_FALSE(Find(answers, 1).text.empty());
-  EXPECT_EQ(Find(answers, 2).outcome, CommandOutcome::kDone);
-  EXPECT_EQ(publisher_.policy(), PublishPolicy::kLossless);
-  EXPECT_EQ(Find(answers, 3).outcome, CommandOutcome::kRefused);
-}
-
-TEST_F(EdgePipelineTest, CommandsThatAreTooManyAreAnsweredToo) {
-  constexpr std::uint64_t kCommands = 50;
-  for (std::uint64_t i = 1; i <= kCommands; ++i)
-    publisher_.commands.push_back({.number = i, .kind = CommandKind::kSetPublishPolicy});
-  Start("1000000*t", false);
-  const auto answers = AwaitAnswers(kCommands);
-  EXPECT_TRUE(pipeline_->Stop().ok());
-  for (std::uint64_t i = 1; i <= kCommands; ++i) {
-    const CommandResult answer = Find(answers, i);
-    EXPECT_TRUE(answer.outcome == CommandOutcome::kDone ||
-                answer.text == "too many commands at once; send it again")
-        << answer.text;
-  }
-}
-
-TEST_F(EdgePipelineTest, ANucThatIsAskedForReachesTheCamera) {
-  control_answer_ = OkStatus();
-  publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc}};
-  // More than the test waits for; unpaced playback waits for the queues.
-  Start("1000000*t", false);
-  const CommandResult answer = Find(AwaitAnswers(1), 1);
-  // Asked before the first frame came, or after.
-  if (answer.outcome == CommandOutcome::kDone) {
-    EXPECT_EQ(answer.text, "the camera has the order");
-  } else {
-    EXPECT_EQ(answer.text, "no thermal frame has come yet");
-  }
-  EXPECT_TRUE(pipeline_->Stop().ok());
-  const auto triggers = std::ranges::count_if(camera_->controls, [](const CameraControl& control) {
-    return std::holds_alternative<TriggerNuc>(control);
-  });
-  EXPECT_EQ(triggers > 0, answer.outcome == CommandOutcome::kDone);
-}
-
-TEST_F(EdgePipelineTest, WithoutACameraToCommandNucCommandsAreRefusedWithAReason) {
-  options_.mutable_source()->set_kind(REPLAY);
-  publisher_.commands = {
-      {.number = 1, .kind = CommandKind::kTriggerNuc},
-      {.number = 2, .kind = CommandKind::kHoldNuc, .hold_s = 5.0},
-      {.number = 3, .kind = CommandKind::kSetNucPolicy, .nuc_policy = NucPolicy::kManual}};
-  Start("1000000*t", false);
-  for (const CommandResult& answer : AwaitAnswers(3)) {
-    EXPECT_EQ(answer.outcome, CommandOutcome::kRefused);
-    EXPECT_EQ(answer.text, "a recording is played: there is no shutter to command");
-  }
-  EXPECT_TRUE(pipeline_->Stop().ok());
-  EXPECT_TRUE(camera_->controls.empty());
 }
 
 TEST_F(EdgePipelineTest, F07NucEventsAreRecorded) {

@@ -61,7 +61,7 @@ class ReplaySourceTest : public testing::Test {
   void WriteThermal(Nanoseconds time, NucState state = NucState::kUnknown) {
     EncodedThermalFrame frame;
     frame.header = Header(time, true);
-    frame.image = ThermalEncoder().Encode(Image<std::uint16_t>(6, 4, 29'815));
+    frame.image = ThermalEncoder().Encode(Image<std::uint16_t>(6, 4, 29'815), kCentikelvin);
     frame.nuc_state = state;
     frame.housekeeping.housing_celsius = 31.5F;
     ASSERT_TRUE(writer_->Write(frame, Arrival(time, true)).ok());

@@ -165,10 +165,11 @@ std::vector<Candidate> Candidates(bool depth) {
         {"isotherm",
          [e = std::make_shared<DepthEncoder>()](const Pixels& i) { return e->Encode(i); }, decode});
   } else {
-    candidates.push_back(
-        {"isotherm",
-         [e = std::make_shared<ThermalEncoder>()](const Pixels& i) { return e->Encode(i); },
-         decode});
+    candidates.push_back({"isotherm",
+                          [e = std::make_shared<ThermalEncoder>()](const Pixels& i) {
+                            return e->Encode(i, kCentikelvin);
+                          },
+                          decode});
   }
   candidates.push_back(
       {"zstd_1",

@@ -72,7 +72,7 @@ void WriteCodecSeeds(const fs::path& root) {
     folder.Write(name, bytes);
   };
   write("depth", DepthEncoder().Encode(image));
-  write("thermal", ThermalEncoder().Encode(image));
+  write("thermal", ThermalEncoder().Encode(image, kCentikelvin));
   write("counts", PackCounts(image));
   write("png", {.encoding = Encoding::kPng16,
                 .width = image.width(),

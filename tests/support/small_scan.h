@@ -41,7 +41,7 @@ inline void WriteSmallScan(const std::filesystem::path& path) {
     EncodedThermalFrame thermal;
     thermal.header = depth.header;
     thermal.header.capture_time = time + milliseconds(7);
-    thermal.image = ThermalEncoder().Encode(SmallNoise(38, 28, 29'815));
+    thermal.image = ThermalEncoder().Encode(SmallNoise(38, 28, 29'815), thermal.scale);
     ASSERT_TRUE((*writer)->Write(thermal, std::nullopt).ok());
   }
   ASSERT_TRUE((*writer)->Close().ok());

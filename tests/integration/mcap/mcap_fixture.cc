@@ -74,7 +74,7 @@ Status WriteDepth(RecordingWriter& writer, DepthEncoder& encoder, int n) {
 Status WriteThermal(RecordingWriter& writer, ThermalEncoder& encoder, int n) {
   EncodedThermalFrame frame;
   frame.header = MakeHeader(kThermal, n);
-  frame.image = encoder.Encode(kThermal.Pixels(n));
+  frame.image = encoder.Encode(kThermal.Pixels(n), frame.scale);
   frame.nuc_state = NucState::kSettling;
   frame.nuc_source = NucSource::kPolled;
   frame.seconds_since_nuc = 0.25;

@@ -1,0 +1,94 @@
+// What becomes of commands on their way through the edge's pipeline.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+#include "edge/pipeline/testing/edge_pipeline_fixture.h"
+
+namespace isotherm {
+namespace {
+
+class EdgeCommandsTest : public EdgePipelineFixture {
+ protected:
+  std::vector<CommandResult> AwaitAnswers(std::size_t count) {
+    while (publisher_.answers().size() < count) {
+      pipeline_->AnswerCommands();
+      std::this_thread::yield();
+    }
+    return publisher_.answers();
+  }
+  static CommandResult Find(const std::vector<CommandResult>& answers, std::uint64_t number) {
+    const auto found = std::ranges::find(answers, number, &CommandResult::number);
+    return found == answers.end() ? CommandResult{} : *found;
+  }
+};
+
+TEST_F(EdgeCommandsTest, EveryCommandIsAnswered) {
+  publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc},
+                         {.number = 2,
+                          .kind = CommandKind::kSetPublishPolicy,
+                          .publish_policy = PublishPolicy::kLossless},
+                         {.number = 3, .kind = CommandKind::kStopScan}};
+  Start("d");
+  const std::vector<CommandResult> answers = AwaitAnswers(3);
+  EXPECT_EQ(Find(answers, 1).outcome, CommandOutcome::kRefused) << "there is no thermal camera";
+  EXPECT_FALSE(Find(answers, 1).text.empty());
+  EXPECT_EQ(Find(answers, 2).outcome, CommandOutcome::kDone);
+  EXPECT_EQ(publisher_.policy(), PublishPolicy::kLossless);
+  EXPECT_EQ(Find(answers, 3).outcome, CommandOutcome::kRefused);
+}
+
+TEST_F(EdgeCommandsTest, CommandsThatAreTooManyAreAnsweredToo) {
+  constexpr std::uint64_t kCommands = 50;
+  for (std::uint64_t i = 1; i <= kCommands; ++i)
+    publisher_.commands.push_back({.number = i, .kind = CommandKind::kSetPublishPolicy});
+  Start("1000000*t", false);
+  const auto answers = AwaitAnswers(kCommands);
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  for (std::uint64_t i = 1; i <= kCommands; ++i) {
+    const CommandResult answer = Find(answers, i);
+    EXPECT_TRUE(answer.outcome == CommandOutcome::kDone ||
+                answer.text == "too many commands at once; send it again")
+        << answer.text;
+  }
+}
+
+TEST_F(EdgeCommandsTest, ANucThatIsAskedForReachesTheCamera) {
+  control_answer_ = OkStatus();
+  publisher_.commands = {{.number = 1, .kind = CommandKind::kTriggerNuc}};
+  // More than the test waits for; unpaced playback waits for the queues.
+  Start("1000000*t", false);
+  const CommandResult answer = Find(AwaitAnswers(1), 1);
+  // Asked before the first frame came, or after.
+  if (answer.outcome == CommandOutcome::kDone) {
+    EXPECT_EQ(answer.text, "the camera has the order");
+  } else {
+    EXPECT_EQ(answer.text, "no thermal frame has come yet");
+  }
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  const auto triggers = std::ranges::count_if(camera_->controls, [](const CameraControl& control) {
+    return std::holds_alternative<TriggerNuc>(control);
+  });
+  EXPECT_EQ(triggers > 0, answer.outcome == CommandOutcome::kDone);
+}
+
+TEST_F(EdgeCommandsTest, WithoutACameraToCommandNucCommandsAreRefusedWithAReason) {
+  options_.mutable_source()->set_kind(REPLAY);
+  publisher_.commands = {
+      {.number = 1, .kind = CommandKind::kTriggerNuc},
+      {.number = 2, .kind = CommandKind::kHoldNuc, .hold_s = 5.0},
+      {.number = 3, .kind = CommandKind::kSetNucPolicy, .nuc_policy = NucPolicy::kManual}};
+  Start("1000000*t", false);
+  for (const CommandResult& answer : AwaitAnswers(3)) {
+    EXPECT_EQ(answer.outcome, CommandOutcome::kRefused);
+    EXPECT_EQ(answer.text, "a recording is played: there is no shutter to command");
+  }
+  EXPECT_TRUE(pipeline_->Stop().ok());
+  EXPECT_TRUE(camera_->controls.empty());
+}
+
+}  // namespace
+}  // namespace isotherm
