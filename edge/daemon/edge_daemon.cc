@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -15,16 +14,15 @@
 
 #include "common/base/exit_deadline.h"
 #include "common/base/log.h"
-#include "common/codec/codec.h"
 #include "common/doubts/doubts.h"
-#include "common/options/text_proto.h"
-#include "common/recording/clock_record.h"
 #include "common/rig/rig_calibration.h"
 #include "common/transport/join_domain.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/daemon/host_status.h"
 #include "edge/daemon/housekeeping.h"
 #include "edge/daemon/open_source.h"
+#include "edge/daemon/rig_announcer.h"
+#include "edge/daemon/session_start.h"
 #include "edge/daemon/stop_limits.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/pipeline/edge_pipeline.h"
@@ -92,111 +90,9 @@ void LogClock(const EdgeOptions& options, const KernelClock& clock) {
   }
 }
 
-/// Returns the scale that thermal frames have: the camera's, or that of the frames that are played.
-RadiometricScale ScaleOfFrames(const FrameSource& source, const Rig& rig) {
-  for (const CameraDescription& camera : source.cameras()) {
-    if (camera.sensor == Sensor::kThermal && !camera.counts_only) return camera.thermal_scale;
-  }
-  if (!source.cameras().empty()) return rig.thermal_scale;  // The thermal one is not there yet.
-  const std::optional<Rig> played = source.rig();
-  return played ? played->thermal_scale : rig.thermal_scale;
-}
-
-/// Returns the rig as it is published and recorded: capture times already contain the thermal
-/// delay, and the thermal scale is that of the frames.
-std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source) {
-  if (!rig) return rig;
-  rig->thermal_delay_s = 0.0;
-  const RadiometricScale scale = ScaleOfFrames(source, *rig);
-  if (rig->thermal_scale != scale && rig->thermal_scale != kCentikelvin) {
-    LOG(Edge, Warning) << "the calibration's thermal_scale and thermal_offset, K: "
-                       << rig->thermal_scale.kelvin_per_count << " and "
-                       << rig->thermal_scale.offset_kelvin << "; the thermal frames have "
-                       << scale.kelvin_per_count << " and " << scale.offset_kelvin
-                       << ", which hold";
-  }
-  rig->thermal_scale = scale;
-  return rig;
-}
-
-/// Holds what was found out before anything starts.
-struct Start {
-  CaptureTime time;
-  std::vector<CameraDescription> cameras;
-  std::optional<Rig> rig;            ///< As published and recorded.
-  double rig_thermal_delay_s = 0.0;  ///< As calibrated.
-  KernelClock clock;
-
-  /// One per start of a scan.
-  std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
-};
-
-/// "lepton-uvc, PureThermal".
-std::string ModelText(const CameraDescription& camera) {
-  return fmt::format("{}, {}", camera.driver, camera.model);
-}
-
-Encoding TemperatureEncoding(const RadiometricScale& scale) {
-  return scale == kCentikelvin ? Encoding::kThermalRans : Encoding::kScaledThermalRans;
-}
-
-Encoding EncodingOf(const CameraDescription& camera) {
-  if (camera.sensor == Sensor::kDepth) return Encoding::kDepthRans;
-  return camera.counts_only ? Encoding::kCounts16 : TemperatureEncoding(camera.thermal_scale);
-}
-
-RigDescription Describe(const EdgeOptions& options, const Start& start) {
-  RigDescription description;
-  description.session = start.session();
-  description.waits_for_ground = options.source().rate() == 0.0;
-  if (start.rig) description.rig = *start.rig;
-  const auto mode = [](const std::optional<CameraModel>& camera, Encoding encoding) {
-    StreamMode stream;
-    if (camera) stream = {camera->width, camera->height, 0.0, encoding, "", ""};
-    return stream;
-  };
-  description.depth = mode(description.rig.depth, Encoding::kDepthRans);
-  description.thermal =
-      mode(description.rig.thermal, TemperatureEncoding(description.rig.thermal_scale));
-  for (const CameraDescription& camera : start.cameras) {
-    StreamMode& stream = camera.sensor == Sensor::kDepth ? description.depth : description.thermal;
-    stream = {camera.width,       camera.height, camera.rate_hz,
-              EncodingOf(camera), camera.serial, ModelText(camera)};
-  }
-  return description;
-}
-
-/// Returns what the recording says of the cameras.
-std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
-  std::map<std::string, std::string> metadata;
-  for (const CameraDescription& camera : cameras) {
-    const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
-    metadata[name] = ModelText(camera);
-    metadata[name + "_serial"] = camera.serial;
-    metadata[name + "_mode"] =
-        fmt::format("{}x{}@{:g}", camera.width, camera.height, camera.rate_hz);
-    metadata[name + "_settings"] = camera.settings;
-  }
-  return metadata;
-}
-
-RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options, const Start& start) {
-  const TimestamperOptions& timing = options.timestamper();
-  RecordingDescription::Metadata metadata = {
-      {"configuration", {{"edge", ToTextProto(options)}}},
-      {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
-      {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
-      {"timing",
-       {{"depth_delay_s", fmt::format("{}", timing.expert().depth_delay_s())},
-        {"thermal_delay_s",
-         fmt::format("{}", timing.expert().thermal_delay_s() + start.rig_thermal_delay_s)}}}};
-  if (!start.cameras.empty()) metadata["cameras"] = CameraMetadata(start.cameras);
-  return metadata;
-}
-
 /// Null if nothing is to be recorded. Without a disk it waits for one, unless somebody waits for
 /// the end of the source: then that is an error.
-Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const Start& start,
+Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const SessionStart& start,
                                          const Clock& clock, FrameCounters& counters) {
   const std::optional<std::filesystem::path> path =
       RecordingPath(options.spool().record(), start.time, start.session());
@@ -245,10 +141,11 @@ bool Drain(Publisher& publisher, const LinkOptions& options, const Clock& clock,
 }
 
 void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Housekeeping& housekeeping,
-                     const std::stop_token& stop) {
+                     RigAnnouncer& announcer, const std::stop_token& stop) {
   bool told = false;
   while (!stop.stop_requested()) {
     housekeeping.Tick();
+    announcer.Tick();
     if (pipeline.finished()) {
       if (options.exit_at_end()) return;
       if (!std::exchange(told, true)) {
@@ -314,7 +211,7 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
 }
 
 /// Captures until told to leave, then passes on what is under way. The process's exit status.
-int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
+int Capture(const EdgeOptions& options, const SessionStart& start, FrameSource& source,
             std::unique_ptr<Spool> spool, FrameCounters& counters, CameraHealth& health,
             Publisher& publisher, Leaving& leaving, const Clock& clock,
             const std::stop_token& stop) {
@@ -331,7 +228,8 @@ int Capture(const EdgeOptions& options, const Start& start, FrameSource& source,
   pipeline.StartCapture();
   Housekeeping housekeeping(clock, pipeline, publisher, counters, health,
                             options.display().image_file());
-  RunUntilStopped(options, pipeline, housekeeping, stop);
+  RigAnnouncer announcer(options, start, health, publisher);
+  RunUntilStopped(options, pipeline, housekeeping, announcer, stop);
   NotifyStopping();
   return Leave(options, ending, pipeline, housekeeping, publisher, clock, stop);
 }
@@ -391,8 +289,8 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
   LogRig(rig);
   LogCounts((*source)->cameras());
-  const Start start{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
-                    rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
+  const SessionStart start{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
+                           rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
   LogClock(options, start.clock);
 
   Link link;
@@ -404,7 +302,7 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
     LOG(Edge, Error) << spool.error().message();
     return kExitRecording;
   }
-  const Status begun = link.publisher->BeginSession(Describe(options, start));
+  const Status begun = link.publisher->BeginSession(DescribeRig(options, start));
   if (!begun.ok()) return Fail(begun);
   return Capture(options, start, **source, std::move(*spool), counters, health, *link.publisher,
                  leaving, clock, stop);

@@ -52,6 +52,8 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
     auto supervised = Supervise(std::move(*camera), options, context);
     supervised->OnWorks(
         [&health = context.health, sensor](bool works) { health.SetWorks(sensor, works); });
+    supervised->OnOpened(
+        [&health = context.health](const CameraDescription& opened) { health.SetOpened(opened); });
     CountLosses(*supervised, context.counters);
     cameras.push_back({sensor, std::move(supervised)});
   }

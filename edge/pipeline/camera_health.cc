@@ -21,6 +21,18 @@ void CameraHealth::NoteStamp(Sensor sensor, const Stamp& stamp) {
   if (!stamp.synchronised) ++entry.unsynchronised_frames;
 }
 
+void CameraHealth::SetOpened(const CameraDescription& camera) {
+  Entry& entry = At(camera.sensor);
+  MutexLock lock(entry.mutex);
+  entry.opened = camera;
+}
+
+std::optional<CameraDescription> CameraHealth::opened(Sensor sensor) const {
+  const Entry& entry = entries_[static_cast<std::size_t>(sensor)];
+  MutexLock lock(entry.mutex);
+  return entry.opened;
+}
+
 CameraReport CameraHealth::Get(Sensor sensor) const {
   const Entry& entry = entries_[static_cast<std::size_t>(sensor)];
   CameraReport report;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "common/base/mutex.h"
 #include "common/base/stage_stats.h"
@@ -11,6 +12,7 @@
 #include "common/messages/messages.h"
 #include "common/stamping/stamp.h"
 #include "common/time/time_types.h"
+#include "edge/source/frame_source.h"
 
 namespace isotherm {
 
@@ -27,7 +29,12 @@ class CameraHealth {
   /// Takes note of a frame's stamp.
   void NoteStamp(Sensor sensor, const Stamp& stamp);
 
+  /// Takes note of what a camera says of itself, each time that it is opened.
+  void SetOpened(const CameraDescription& camera);
+
   CameraReport Get(Sensor sensor) const;
+  /// The camera as it was opened last; nullopt if it never was.
+  std::optional<CameraDescription> opened(Sensor sensor) const;
 
  private:
   struct Entry {
@@ -35,6 +42,7 @@ class CameraHealth {
     std::atomic<bool> blind{false};
     std::atomic<std::uint32_t> failures{0};
     mutable Mutex mutex;
+    std::optional<CameraDescription> opened GUARDED_BY(mutex);
     StageStats stamping_ms GUARDED_BY(mutex);
     double stamp_sigma_s GUARDED_BY(mutex) = std::numeric_limits<double>::quiet_NaN();
     std::uint64_t unsynchronised_frames GUARDED_BY(mutex) = 0;

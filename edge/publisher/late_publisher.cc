@@ -54,6 +54,12 @@ Status LatePublisher::BeginSession(const RigDescription& rig) {
   return link() != nullptr ? link()->BeginSession(rig) : OkStatus();
 }
 
+Status LatePublisher::Announce(const RigDescription& rig) {
+  MutexLock lock(mutex_);
+  rig_ = rig;
+  return link() != nullptr ? link()->Announce(rig) : OkStatus();
+}
+
 Status LatePublisher::Publish(const EncodedDepthFrame& frame, std::stop_token stop) {
   return link() != nullptr ? link()->Publish(frame, std::move(stop)) : NoLink();
 }

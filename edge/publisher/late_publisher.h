@@ -28,6 +28,7 @@ class LatePublisher final : public Publisher {
   void Run(std::stop_token stop, const PublisherHandlers& handlers) override;
   bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
   Status BeginSession(const RigDescription& rig) override;
+  Status Announce(const RigDescription& rig) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override;
   Status Publish(const EncodedThermalFrame& frame, std::stop_token stop) override;
   Status Publish(const ExternalOdometrySample& sample, std::stop_token stop) override;

@@ -62,6 +62,21 @@ TEST_F(LatePublisherTest, F31WhenTheNetworkIsThereFramesFlowWithTheChosenPolicy)
   EXPECT_EQ(late_.stats().problem, "");
 }
 
+TEST_F(LatePublisherTest, WhatWasAnnouncedWithoutANetworkIsTheSessionsRigOnceItIsThere) {
+  RigDescription rig;
+  ASSERT_TRUE(late_.BeginSession(rig).ok());
+  rig.thermal.serial = "before";
+  ASSERT_TRUE(late_.Announce(rig).ok());
+  Run();
+  is_there_ = true;
+  ASSERT_TRUE(late_.WaitForGround(std::chrono::hours(1), {}));
+  EXPECT_EQ(publisher_->session_rig().thermal.serial, "before");
+  rig.thermal.serial = "after";
+  ASSERT_TRUE(late_.Announce(rig).ok());
+  ASSERT_EQ(publisher_->announced().size(), 1U);
+  EXPECT_EQ(publisher_->announced()[0].thermal.serial, "after");
+}
+
 TEST_F(LatePublisherTest, F38AStopWhileThereIsNoNetworkIsServed) {
   Run();
   Await(told_);

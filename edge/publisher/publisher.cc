@@ -45,6 +45,7 @@ class DdsPublisher final : public Publisher {
   void Run(std::stop_token stop, const PublisherHandlers& handlers) override;
   bool WaitForGround(Nanoseconds timeout, std::stop_token stop) override;
   Status BeginSession(const RigDescription& rig) override;
+  Status Announce(const RigDescription& rig) override;
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
     return PublishFrame(frame, &ends_.depth, &depth_, stop);
   }
@@ -271,6 +272,10 @@ Status DdsPublisher::BeginSession(const RigDescription& rig) {
     flow_waits_ = 0;
     flow_timeouts_ = 0;
   }
+  return Announce(rig);
+}
+
+Status DdsPublisher::Announce(const RigDescription& rig) {
   return ends_.rig.Write(options_.edge_id, rig);
 }
 

@@ -52,6 +52,9 @@ Status SupervisedSource::OpenSame() {
       return same;
     }
   }
+  for (const CameraDescription& camera : source_->cameras()) {
+    if (on_opened_) on_opened_(camera);
+  }
   return OkStatus();
 }
 

@@ -32,6 +32,7 @@ class SupervisedSource final : public FrameSource {
   using FrameCallback = std::function<void(Sensor)>;
   /// True: frames come (again). False: the source failed and waits to be opened again.
   using WorksCallback = std::function<void(bool works)>;
+  using OpenedCallback = std::function<void(const CameraDescription&)>;
   /// Says how frames that the camera counted were lost on their way here.
   enum class Loss {
     kLeftOut,   ///< Captured, and left out because the source was not read in time.
@@ -64,6 +65,8 @@ class SupervisedSource final : public FrameSource {
   /// Numbers start from 0 with the first frame after it.
   void SetIdle(bool idle) { idle_ = idle; }
   void OnWorks(WorksCallback on_works) { on_works_ = std::move(on_works); }
+  /// Called for each camera whenever it was opened and is used.
+  void OnOpened(OpenedCallback on_opened) { on_opened_ = std::move(on_opened); }
   /// For sources that number frames from 0.
   void OnLoss(LossCallback on_loss) { on_loss_ = std::move(on_loss); }
   std::uint64_t reopened() const { return reopened_; }
@@ -86,6 +89,7 @@ class SupervisedSource final : public FrameSource {
   const FrameCallback on_frame_;
   const FrameCallback on_rejected_;
   WorksCallback on_works_;
+  OpenedCallback on_opened_;
   LossCallback on_loss_;
   std::optional<bool> works_;  ///< As told last.
   std::string failure_;        ///< As logged last; empty while it works.

@@ -23,8 +23,15 @@ class FakePublisher final : public Publisher {
     changed_.wait(lock, stop, [] { return false; });
   }
   bool WaitForGround(Nanoseconds, std::stop_token) override { return true; }
-  Status BeginSession(const RigDescription&) override {
+  Status BeginSession(const RigDescription& rig) override {
+    MutexLock lock(mutex_);
+    session_rig_ = rig;
     ++sessions_;
+    return OkStatus();
+  }
+  Status Announce(const RigDescription& rig) override {
+    MutexLock lock(mutex_);
+    announced_.push_back(rig);
     return OkStatus();
   }
   Status Publish(const EncodedDepthFrame& frame, std::stop_token stop) override {
@@ -91,6 +98,15 @@ class FakePublisher final : public Publisher {
     MutexLock lock(mutex_);
     return external_odometry_;
   }
+  RigDescription session_rig() const {
+    MutexLock lock(mutex_);
+    return session_rig_;
+  }
+  /// What was announced after the beginning of the session.
+  std::vector<RigDescription> announced() const {
+    MutexLock lock(mutex_);
+    return announced_;
+  }
   std::vector<CommandResult> answers() const {
     MutexLock lock(mutex_);
     return answers_;
@@ -121,6 +137,8 @@ class FakePublisher final : public Publisher {
   std::vector<EncodedDepthFrame> depth_ GUARDED_BY(mutex_);
   std::vector<EncodedThermalFrame> thermal_ GUARDED_BY(mutex_);
   std::vector<ExternalOdometrySample> external_odometry_ GUARDED_BY(mutex_);
+  RigDescription session_rig_ GUARDED_BY(mutex_);
+  std::vector<RigDescription> announced_ GUARDED_BY(mutex_);
   std::vector<CommandResult> answers_ GUARDED_BY(mutex_);
   std::vector<EdgeStatus> statuses_ GUARDED_BY(mutex_);
   std::string problem_ GUARDED_BY(mutex_);

@@ -1,0 +1,36 @@
+#include "edge/daemon/rig_announcer.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace isotherm {
+
+RigAnnouncer::RigAnnouncer(const EdgeOptions& options, SessionStart start,
+                           const CameraHealth& health, Publisher& publisher)
+    : options_(options), health_(health), publisher_(publisher), announced_(std::move(start)) {}
+
+bool RigAnnouncer::IsAnnounced(Sensor sensor) const {
+  return std::ranges::any_of(announced_.cameras, [sensor](const CameraDescription& camera) {
+    return camera.sensor == sensor;
+  });
+}
+
+void RigAnnouncer::Tick() {
+  for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
+    if (IsAnnounced(sensor)) continue;
+    std::optional<CameraDescription> camera = health_.opened(sensor);
+    if (!camera) continue;
+    if (announced_.rig && sensor == Sensor::kThermal && !camera->counts_only)
+      TakeScale(camera->thermal_scale, *announced_.rig);
+    announced_.cameras.push_back(std::move(*camera));
+    const Status status = publisher_.Announce(DescribeRig(options_, announced_));
+    if (!status.ok()) {
+      LOG(Edge, Warning) << "a camera is not announced: " << status.message();
+    }
+  }
+}
+
+}  // namespace isotherm

@@ -1,0 +1,109 @@
+#include "edge/daemon/session_start.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+
+#include "common/base/log.h"
+#include "common/codec/codec.h"
+#include "common/options/text_proto.h"
+#include "common/recording/clock_record.h"
+#include "edge/daemon/edge_report.h"
+#include "edge/options/edge_options.pb.h"
+#include "edge/pipeline/time_base.h"
+
+namespace isotherm {
+namespace {
+
+/// Returns the scale that thermal frames have: the camera's, or that of the frames that are played.
+RadiometricScale ScaleOfFrames(const FrameSource& source, const Rig& rig) {
+  for (const CameraDescription& camera : source.cameras()) {
+    if (camera.sensor == Sensor::kThermal && !camera.counts_only) return camera.thermal_scale;
+  }
+  if (!source.cameras().empty()) return rig.thermal_scale;  // Until it is there (RigAnnouncer).
+  const std::optional<Rig> played = source.rig();
+  return played ? played->thermal_scale : rig.thermal_scale;
+}
+
+/// "lepton-uvc, PureThermal".
+std::string ModelText(const CameraDescription& camera) {
+  return fmt::format("{}, {}", camera.driver, camera.model);
+}
+
+Encoding EncodingOf(const CameraDescription& camera) {
+  if (camera.sensor == Sensor::kDepth) return Encoding::kDepthRans;
+  return camera.counts_only ? Encoding::kCounts16 : TemperatureEncoding(camera.thermal_scale);
+}
+
+/// Returns what the recording says of the cameras.
+std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
+  std::map<std::string, std::string> metadata;
+  for (const CameraDescription& camera : cameras) {
+    const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
+    metadata[name] = ModelText(camera);
+    metadata[name + "_serial"] = camera.serial;
+    metadata[name + "_mode"] =
+        fmt::format("{}x{}@{:g}", camera.width, camera.height, camera.rate_hz);
+    metadata[name + "_settings"] = camera.settings;
+  }
+  return metadata;
+}
+
+}  // namespace
+
+std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source) {
+  if (!rig) return rig;
+  rig->thermal_delay_s = 0.0;
+  TakeScale(ScaleOfFrames(source, *rig), *rig);
+  return rig;
+}
+
+void TakeScale(const RadiometricScale& scale, Rig& rig) {
+  if (rig.thermal_scale != scale && rig.thermal_scale != kCentikelvin) {
+    LOG(Edge, Warning) << "the calibration's thermal_scale and thermal_offset, K: "
+                       << rig.thermal_scale.kelvin_per_count << " and "
+                       << rig.thermal_scale.offset_kelvin << "; the thermal frames have "
+                       << scale.kelvin_per_count << " and " << scale.offset_kelvin
+                       << ", which hold";
+  }
+  rig.thermal_scale = scale;
+}
+
+RigDescription DescribeRig(const EdgeOptions& options, const SessionStart& start) {
+  RigDescription description;
+  description.session = start.session();
+  description.waits_for_ground = options.source().rate() == 0.0;
+  if (start.rig) description.rig = *start.rig;
+  const auto mode = [](const std::optional<CameraModel>& camera, Encoding encoding) {
+    StreamMode stream;
+    if (camera) stream = {camera->width, camera->height, 0.0, encoding, "", ""};
+    return stream;
+  };
+  description.depth = mode(description.rig.depth, Encoding::kDepthRans);
+  description.thermal =
+      mode(description.rig.thermal, TemperatureEncoding(description.rig.thermal_scale));
+  for (const CameraDescription& camera : start.cameras) {
+    StreamMode& stream = camera.sensor == Sensor::kDepth ? description.depth : description.thermal;
+    stream = {camera.width,       camera.height, camera.rate_hz,
+              EncodingOf(camera), camera.serial, ModelText(camera)};
+  }
+  return description;
+}
+
+RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,
+                                                 const SessionStart& start) {
+  const TimestamperOptions& timing = options.timestamper();
+  RecordingDescription::Metadata metadata = {
+      {"configuration", {{"edge", ToTextProto(options)}}},
+      {"software", {{"name", "isotherm-edge"}, {"version", ISOTHERM_VERSION}}},
+      {std::string(kClockMetadata), ClockMetadata(start.clock, TimeBaseOf(options.source()))},
+      {"timing",
+       {{"depth_delay_s", fmt::format("{}", timing.expert().depth_delay_s())},
+        {"thermal_delay_s",
+         fmt::format("{}", timing.expert().thermal_delay_s() + start.rig_thermal_delay_s)}}}};
+  if (!start.cameras.empty()) metadata["cameras"] = CameraMetadata(start.cameras);
+  return metadata;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/messages/messages.h"
+#include "common/rig/rig.h"
+#include "common/time/kernel_clock.h"
+#include "common/time/time_types.h"
+#include "edge/source/frame_source.h"
+#include "edge/spool/recording_files.h"
+
+namespace isotherm {
+
+class EdgeOptions;
+
+/// Returns the rig as it is published and recorded: capture times already contain the thermal
+/// delay, and the thermal scale is that of the frames.
+std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source);
+/// Gives the rig the scale that the frames of its thermal camera have.
+void TakeScale(const RadiometricScale& scale, Rig& rig);
+
+/// Holds what was found out before anything starts.
+struct SessionStart {
+  CaptureTime time;
+  std::vector<CameraDescription> cameras;
+  std::optional<Rig> rig;            ///< As published and recorded.
+  double rig_thermal_delay_s = 0.0;  ///< As calibrated.
+  KernelClock clock;
+
+  /// One per start of a scan.
+  std::uint64_t session() const { return static_cast<std::uint64_t>(ToNanoseconds(time)); }
+};
+
+/// Returns what the link says of the session.
+RigDescription DescribeRig(const EdgeOptions& options, const SessionStart& start);
+/// Returns what the recording says of it.
+RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,
+                                                 const SessionStart& start);
+
+}  // namespace isotherm
