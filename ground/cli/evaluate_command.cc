@@ -9,6 +9,7 @@
 
 #include "common/base/progress.h"
 #include "ground/cli/command.h"
+#include "ground/cli/held_out_text.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/result_evaluation.h"
 #include "ground/cli/scan_arguments.h"

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "common/base/units.h"
@@ -13,6 +11,7 @@
 #include "common/rig/rig_calibration.h"
 #include "ground/cli/result_folder.h"
 #include "ground/cli/truth.h"
+#include "ground/cli/uncertainty_text.h"
 #include "ground/evaluation/point_sets.h"
 #include "ground/thermal/thermal_options.h"
 
@@ -166,107 +165,10 @@ Json TemperatureJson(const TemperatureErrors& errors) {
   return json;
 }
 
-Json TableJson(const ErrorTable& table) {
-  Json json;
-  json["distance_from_m"] = ErrorTable::kFrom_m;
-  json["angle_from_deg"] = ErrorTable::kFrom_deg;
-  for (const auto& row : table.cells) {
-    Json cells;
-    for (const ErrorCell& cell : row) {
-      Json entry;
-      entry["count"] = cell.count;
-      entry["median_kelvin"] = cell.median_k;
-      entry["p95_kelvin"] = cell.p95_k;
-      entry["median_sigma_kelvin"] = cell.median_sigma_k;
-      cells.push_back(std::move(entry));
-    }
-    json["rows"].push_back(std::move(cells));
-  }
-  return json;
-}
-
-Json UncertaintyJson(const UncertaintyReport& report) {
-  Json json;
-  json["count"] = report.points;
-  json["not_known"] = report.unknown;
-  json["within_1_sigma"] = report.within_68;
-  json["within_1_96_sigma"] = report.within_95;
-  json["mean_error_over_sigma"] = report.mean_ratio;
-  json["median_sigma_kelvin"] = report.median_sigma_k;
-  json["p95_sigma_kelvin"] = report.p95_sigma_k;
-  Json& histogram = json["error_over_sigma"];
-  histogram["from"] = -Histogram::kEnd;
-  histogram["width"] = Histogram::kWidth;
-  histogram["counts"] = report.ratios.counts;
-  histogram["below"] = report.ratios.below;
-  histogram["above"] = report.ratios.above;
-  json["absolute_error"] = TableJson(report.table);
-  return json;
-}
-
 Json ClassJson(const ClassErrors& errors) {
   Json json = TemperatureJson(errors.all);
   json["away_from_edges"] = TemperatureJson(errors.away_from_edges);
   return json;
-}
-
-std::string HistogramText(const Histogram& histogram, std::size_t points) {
-  constexpr double kPercentPerMark = 0.5;
-  std::string text = "  histogram of error / sigma, % of the points\n";
-  const auto add = [&](const std::string& range, std::size_t count) {
-    const double percent = 100.0 * static_cast<double>(count) / static_cast<double>(points);
-    text += fmt::format("  {:>14} {:6.2f} {}\n", range, percent,
-                        std::string(static_cast<std::size_t>(percent / kPercentPerMark), '#'));
-  };
-  add(fmt::format("below {:+.1f}", -Histogram::kEnd), histogram.below);
-  for (std::size_t i = 0; i < Histogram::kBins; ++i) {
-    const double from = static_cast<double>(i) * Histogram::kWidth - Histogram::kEnd;
-    add(fmt::format("{:+.1f} to {:+.1f}", from, from + Histogram::kWidth), histogram.counts[i]);
-  }
-  add(fmt::format("above {:+.1f}", Histogram::kEnd), histogram.above);
-  return text;
-}
-
-/// The name of the range that begins at `from[i]`.
-template <std::size_t N>
-std::string RangeName(const std::array<double, N>& from, std::size_t i, std::string_view unit) {
-  if (i + 1 == N) return fmt::format("from {:g} {}", from[i], unit);
-  return fmt::format("{:g} to {:g} {}", from[i], from[i + 1], unit);
-}
-
-/// No quantiles of a few points.
-std::string CellText(const ErrorCell& cell) {
-  constexpr std::size_t kFew = 20;
-  if (cell.count == 0) return "-";
-  if (cell.count < kFew) return fmt::format("- ({})", cell.count);
-  return fmt::format("{:.2f} / {:.2f} ({})", cell.median_k, cell.p95_k, cell.count);
-}
-
-std::string TableText(const ErrorTable& table) {
-  std::string text = "  |error| by distance and angle: median / 95 % in K (points)\n";
-  text += fmt::format("  {:>14}", "");
-  for (std::size_t column = 0; column < ErrorTable::kFrom_deg.size(); ++column)
-    text += fmt::format("{:>24}", RangeName(ErrorTable::kFrom_deg, column, "deg"));
-  text += "\n";
-  for (std::size_t row = 0; row < ErrorTable::kFrom_m.size(); ++row) {
-    text += fmt::format("  {:>14}", RangeName(ErrorTable::kFrom_m, row, "m"));
-    for (const ErrorCell& cell : table.cells[row]) text += fmt::format("{:>24}", CellText(cell));
-    text += "\n";
-  }
-  return text;
-}
-
-std::string UncertaintyText(const UncertaintyReport& report) {
-  if (report.points == 0) {
-    return "  uncertainty               the cloud has none (scalar_temperature_sigma)\n" +
-           TableText(report.table);
-  }
-  std::string text = fmt::format(
-      "  {:<26}{} points  sigma median {:.3f}  95 % {:.3f} K\n"
-      "  {:<26}{:.1f} % within sigma (68.3 if it is right), {:.1f} % within 1.96 sigma (95.0)\n",
-      "uncertainty", report.points, report.median_sigma_k, report.p95_sigma_k, "  coverage",
-      100.0 * report.within_68, 100.0 * report.within_95);
-  return text + HistogramText(report.ratios, report.points) + TableText(report.table);
 }
 
 std::string TemperatureText(const TemperatureReport& temperature) {
@@ -279,7 +181,7 @@ std::string TemperatureText(const TemperatureReport& temperature) {
   text += Line("  away from edges", temperature.acceptable.away_from_edges);
   text += Line("bad", temperature.bad.all);
   text += Line("  away from edges", temperature.bad.away_from_edges);
-  return text + Line("all", temperature.any.all) + UncertaintyText(temperature.uncertainty);
+  return text + Line("all", temperature.any.all) + ToText(temperature.uncertainty);
 }
 
 }  // namespace
@@ -360,7 +262,7 @@ Json ToJson(const EvaluationReport& report) {
     temperature["acceptable"] = ClassJson(report.temperature->acceptable);
     temperature["bad"] = ClassJson(report.temperature->bad);
     temperature["all"] = ClassJson(report.temperature->any);
-    temperature["uncertainty"] = UncertaintyJson(report.temperature->uncertainty);
+    temperature["uncertainty"] = ToJson(report.temperature->uncertainty);
   }
   if (report.coverage) {
     json["coverage"]["well_seen"] = report.coverage->well_seen;
@@ -370,54 +272,6 @@ Json ToJson(const EvaluationReport& report) {
     json["coverage"]["angle_deg"] = {report.well_seen_limits.min_angle_deg,
                                      report.well_seen_limits.max_angle_deg};
   }
-  return json;
-}
-
-namespace {
-
-double Ratio(double part, std::uint64_t whole) {
-  return whole == 0 ? std::numeric_limits<double>::quiet_NaN() : part / static_cast<double>(whole);
-}
-
-double Ratio(std::uint64_t part, std::uint64_t whole) {
-  return Ratio(static_cast<double>(part), whole);
-}
-
-}  // namespace
-
-std::string ToText(const HeldOutReport& report) {
-  std::string text = fmt::format("held-out views: {} thermal frames predicted", report.frames);
-  if (report.without_pose > 0) text += fmt::format(", {} without a pose", report.without_pose);
-  text += fmt::format(
-      "\n  {:<26}{:.2f} % of {} pixels have a predicted temperature ({:.2f} % of those that show "
-      "the model's surface)\n",
-      "assigned", 100.0 * Ratio(report.assigned, report.pixels), report.pixels,
-      100.0 * Ratio(report.assigned, report.on_surface));
-  text += fmt::format("  {:<26}mean of |error| {:.3f} °C, mean {:+.3f} °C\n", "shown - predicted",
-                      Ratio(report.sum_of_magnitudes_k, report.assigned),
-                      Ratio(report.sum_k, report.assigned));
-  if (report.with_sigma == 0) return text;
-  return text + fmt::format(
-                    "  {:<26}{:.1f} % within sigma, {:.1f} % within 1.96 sigma, mean {:+.2f} "
-                    "sigma\n",
-                    "error / sigma", 100.0 * Ratio(report.within_68, report.with_sigma),
-                    100.0 * Ratio(report.within_95, report.with_sigma),
-                    Ratio(report.sum_of_ratios, report.with_sigma));
-}
-
-Json ToJson(const HeldOutReport& report) {
-  Json json;
-  json["frames"] = report.frames;
-  json["without_pose"] = report.without_pose;
-  json["pixels"] = report.pixels;
-  json["pixels_on_surface"] = report.on_surface;
-  json["pixels_assigned"] = report.assigned;
-  json["assigned_fraction"] = Ratio(report.assigned, report.pixels);
-  json["mean_absolute_error_kelvin"] = Ratio(report.sum_of_magnitudes_k, report.assigned);
-  json["mean_error_kelvin"] = Ratio(report.sum_k, report.assigned);
-  json["within_1_sigma"] = Ratio(report.within_68, report.with_sigma);
-  json["within_1_96_sigma"] = Ratio(report.within_95, report.with_sigma);
-  json["mean_error_over_sigma"] = Ratio(report.sum_of_ratios, report.with_sigma);
   return json;
 }
 

@@ -10,7 +10,6 @@
 #include "ground/evaluation/thermal_coverage.h"
 #include "ground/evaluation/trajectory_evaluation.h"
 #include "ground/export/json.h"
-#include "ground/offline/held_out_report.h"
 
 namespace isotherm {
 
@@ -46,8 +45,5 @@ Result<EvaluationReport> Evaluate(const EvaluationRequest& request);
 
 std::string ToText(const EvaluationReport& report);
 Json ToJson(const EvaluationReport& report);
-
-std::string ToText(const HeldOutReport& report);
-Json ToJson(const HeldOutReport& report);
 
 }  // namespace isotherm

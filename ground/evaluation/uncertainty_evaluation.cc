@@ -68,12 +68,9 @@ void Histogram::Add(double value) {
 }
 
 UncertaintyReport EvaluateUncertainty(std::span<const AssessedError> errors) {
-  constexpr double kSigmasOf95 = 1.96;
   UncertaintyReport report;
   report.table = MakeTable(errors);
   std::vector<double> sigmas_k;
-  std::size_t within_68 = 0, within_95 = 0;
-  double sum = 0.0;
   for (const AssessedError& error : errors) {
     if (!(error.sigma_k > 0.0)) {
       ++report.unknown;
@@ -82,16 +79,9 @@ UncertaintyReport EvaluateUncertainty(std::span<const AssessedError> errors) {
     const double ratio = error.error_k / std::hypot(error.sigma_k, error.expected_sigma_k);
     sigmas_k.push_back(error.sigma_k);
     report.ratios.Add(ratio);
-    sum += ratio;
-    within_68 += std::abs(ratio) <= 1.0 ? 1 : 0;
-    within_95 += std::abs(ratio) <= kSigmasOf95 ? 1 : 0;
+    report.coverage.Add(ratio);
   }
-  report.points = sigmas_k.size();
   if (sigmas_k.empty()) return report;
-  const auto count = static_cast<double>(report.points);
-  report.within_68 = static_cast<double>(within_68) / count;
-  report.within_95 = static_cast<double>(within_95) / count;
-  report.mean_ratio = sum / count;
   report.median_sigma_k = TakeMedian(sigmas_k);
   report.p95_sigma_k = TakeQuantile(sigmas_k, kNearlyAll);
   return report;

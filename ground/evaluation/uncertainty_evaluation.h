@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "common/base/sigma_coverage.h"
+
 namespace isotherm {
 
 /// A temperature beside the truth, with what was said of its uncertainty.
@@ -50,17 +52,11 @@ struct ErrorTable {
 /// Tells whether the stated uncertainties are right: errors over them are then distributed with a
 /// standard deviation of 1.
 struct UncertaintyReport {
-  /// Of normal errors, these fractions lie within 1 and 1.96 standard deviations (GUM 6.3.3).
-  static constexpr double kExpected68 = 0.6827;
-  static constexpr double kExpected95 = 0.95;
-
-  std::size_t points = 0;   ///< With an uncertainty.
-  std::size_t unknown = 0;  ///< Without.
-  // Of the points with an uncertainty; NaN if there are none. Ratios and fractions are of errors
-  // over both uncertainties, that of the temperature and that of what is expected.
-  double within_68 = std::numeric_limits<double>::quiet_NaN();
-  double within_95 = std::numeric_limits<double>::quiet_NaN();
-  double mean_ratio = std::numeric_limits<double>::quiet_NaN();  ///< Of error / sigma.
+  std::size_t unknown = 0;  ///< Points without an uncertainty.
+  // Of the points with one. Ratios are of errors over both uncertainties, that of the temperature
+  // and that of what is expected.
+  SigmaCoverage coverage;
+  // NaN if there are none.
   double median_sigma_k = std::numeric_limits<double>::quiet_NaN();
   double p95_sigma_k = std::numeric_limits<double>::quiet_NaN();
   Histogram ratios;

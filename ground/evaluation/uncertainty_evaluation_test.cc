@@ -27,13 +27,13 @@ std::vector<AssessedError> NormalErrors(double factor) {
 TEST(EvaluateUncertaintyTest, RightUncertaintiesCoverAsManyErrorsAsTheyShould) {
   constexpr double kTolerance = 0.01;  // Three standard deviations of 20 000 draws.
   const UncertaintyReport right = EvaluateUncertainty(NormalErrors(1.0));
-  EXPECT_NEAR(right.within_68, UncertaintyReport::kExpected68, kTolerance);
-  EXPECT_NEAR(right.within_95, UncertaintyReport::kExpected95, kTolerance);
-  EXPECT_NEAR(right.mean_ratio, 0.0, 0.03);
+  EXPECT_NEAR(right.coverage.within_68(), SigmaCoverage::kExpected68, kTolerance);
+  EXPECT_NEAR(right.coverage.within_95(), SigmaCoverage::kExpected95, kTolerance);
+  EXPECT_NEAR(right.coverage.mean(), 0.0, 0.03);
   EXPECT_NEAR(right.median_sigma_k, 0.55, 0.01);
   const UncertaintyReport too_small = EvaluateUncertainty(NormalErrors(2.0));
-  EXPECT_NEAR(too_small.within_68, 0.383, kTolerance) << "half a standard deviation";
-  EXPECT_NEAR(EvaluateUncertainty(NormalErrors(0.5)).within_68, 0.954, kTolerance);
+  EXPECT_NEAR(too_small.coverage.within_68(), 0.383, kTolerance) << "half a standard deviation";
+  EXPECT_NEAR(EvaluateUncertainty(NormalErrors(0.5)).coverage.within_68(), 0.954, kTolerance);
 }
 
 TEST(EvaluateUncertaintyTest, CountsEveryRatioOnceAndLeavesOutWhatIsNotKnown) {
@@ -42,7 +42,7 @@ TEST(EvaluateUncertaintyTest, CountsEveryRatioOnceAndLeavesOutWhatIsNotKnown) {
     errors.push_back({.error_k = 0.5 * ratio, .sigma_k = 0.5});
   errors.push_back({.error_k = 1.0});
   const UncertaintyReport report = EvaluateUncertainty(errors);
-  EXPECT_EQ(report.points, 8U);
+  EXPECT_EQ(report.coverage.count(), 8U);
   EXPECT_EQ(report.unknown, 1U);
   EXPECT_EQ(report.ratios.below, 1U);
   EXPECT_EQ(report.ratios.above, 2U);
@@ -73,8 +73,8 @@ TEST(EvaluateUncertaintyTest, TheTableHasErrorsWhereTheyWereMeasured) {
 
 TEST(EvaluateUncertaintyTest, OfNothingNothingIsSaid) {
   const UncertaintyReport report = EvaluateUncertainty({});
-  EXPECT_EQ(report.points, 0U);
-  EXPECT_TRUE(std::isnan(report.within_68));
+  EXPECT_EQ(report.coverage.count(), 0U);
+  EXPECT_TRUE(std::isnan(report.coverage.within_68()));
   EXPECT_TRUE(std::isnan(report.table.cells[0][0].median_k));
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "common/base/quantile.h"
+#include "common/base/sigma_coverage.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/tsdf/raycaster.h"
 
@@ -77,17 +78,13 @@ ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points) {
   summary.p95_k = TakeQuantile(errors_k, 0.95);
   summary.p999_k = TakeQuantile(errors_k, 0.999);
   summary.largest_k = TakeQuantile(errors_k, 1.0);
-  std::size_t with_sigma = 0, within_68 = 0, within_95 = 0;
+  SigmaCoverage coverage;
   for (const CheckedPoint& point : points) {
     if (!point.measured() || std::isnan(point.point.sigma_k)) continue;
-    constexpr double kSigmasOf95 = 1.96;
-    const double ratio = std::abs(point.ErrorKelvin()) / static_cast<double>(point.point.sigma_k);
-    ++with_sigma;
-    within_68 += ratio <= 1.0 ? 1 : 0;
-    within_95 += ratio <= kSigmasOf95 ? 1 : 0;
+    coverage.Add(point.ErrorKelvin() / static_cast<double>(point.point.sigma_k));
   }
-  summary.within_sigma_percent = Percent(within_68, with_sigma);
-  summary.within_1_96_sigma_percent = Percent(within_95, with_sigma);
+  summary.within_sigma_percent = 100.0 * coverage.within_68();
+  summary.within_1_96_sigma_percent = 100.0 * coverage.within_95();
   return summary;
 }
 

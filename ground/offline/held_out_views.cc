@@ -9,13 +9,6 @@
 #include "ground/thermal/uncertainty_budget.h"
 
 namespace isotherm {
-namespace {
-
-/// Of normal errors, 95 % lie within so many standard deviations.
-constexpr double kSigmasOf95 = 1.96;
-
-}  // namespace
-
 HeldOutViews::HeldOutViews(const ScanModel& scan, const HeldOutOptions& options, ThreadPool& pool)
     : scan_(scan), options_(options), pool_(pool), rectifier_(*scan.rig.thermal) {}
 
@@ -34,6 +27,12 @@ std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
 
 void HeldOutViews::Compare(const ThermalFrame& frame) {
   CHECK(frame.valid);
+  const CameraModel& camera = *scan_.rig.thermal;
+  if (frame.temperature_raw.width() != camera.width ||
+      frame.temperature_raw.height() != camera.height) {
+    ++report_.wrong_size;
+    return;
+  }
   const auto T_world_depth = PoseAt(frame.header.capture_time);
   if (!T_world_depth) {
     ++report_.without_pose;
@@ -84,11 +83,7 @@ void HeldOutViews::ComparePixel(int x, int y, double shown_celsius) {
   // The frame that is predicted has noise of its own.
   const double noise_k =
       CameraUncertainty().netd_k * std::sqrt(static_cast<double>(rectifier_.noise_gain().At(x, y)));
-  const double ratio = error_k / std::hypot(model_k, noise_k);
-  ++report_.with_sigma;
-  report_.sum_of_ratios += ratio;
-  report_.within_68 += std::abs(ratio) <= 1.0 ? 1 : 0;
-  report_.within_95 += std::abs(ratio) <= kSigmasOf95 ? 1 : 0;
+  report_.coverage.Add(error_k / std::hypot(model_k, noise_k));
 }
 
 }  // namespace isotherm

@@ -31,7 +31,7 @@ class HeldOutViews {
   /// The pipeline of `scan` must outlive it. CheckThermalFusion(scan.rig) is ok.
   HeldOutViews(const ScanModel& scan, const HeldOutOptions& options, ThreadPool& pool);
 
-  /// `frame` is valid and has the calibrated size (CHECK).
+  /// `frame` is valid (CHECK).
   void Compare(const ThermalFrame& frame);
   const HeldOutReport& report() const { return report_; }
 

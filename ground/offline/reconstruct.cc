@@ -89,7 +89,8 @@ class InlineDriver {
   Doubts FindDoubts() const { return plausibility_.Find(); }
 
   std::uint64_t bad_messages() const { return bad_messages_; }
-  std::uint64_t undecodable() const { return undecodable_; }
+  std::uint64_t undecodable() const { return undecodable_depth_ + undecodable_thermal_; }
+  std::uint64_t undecodable_thermal() const { return undecodable_thermal_; }
   std::uint64_t out_of_order() const { return assembler_.refused_late(); }
 
  private:
@@ -99,7 +100,10 @@ class InlineDriver {
     // A calibration from elsewhere may be given because the recorded scale is wrong.
     frame->depth_scale = request_.rig ? request_.rig->depth_scale : recorded.frame.depth_scale;
     const bool look = plausibility_.AddDepth(frame->header.capture_time);
-    if (!Unpack(Decode(recorded.frame.image), "depth", frame->header, frame->depth_raw)) return;
+    if (!Unpack(Decode(recorded.frame.image), "depth", frame->header, frame->depth_raw)) {
+      ++undecodable_depth_;
+      return;
+    }
     if (look) plausibility_.LookAtDepth(frame->depth_raw, frame->depth_scale);
     assembler_.Add(std::move(frame));
   }
@@ -117,8 +121,10 @@ class InlineDriver {
     frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
     frame->scale = encoded.scale;
     if (!Unpack(DecodeTemperatures(encoded.image), "thermal", frame->header,
-                frame->temperature_raw))
+                frame->temperature_raw)) {
+      ++undecodable_thermal_;
       return;
+    }
     if (look && !frame->temperature_raw.empty())
       plausibility_.LookAtThermal(frame->temperature_raw, frame->scale);
     assembler_.Add(std::move(frame));
@@ -130,13 +136,12 @@ class InlineDriver {
   void Take(const RecordedLog& /*log*/) {}
   void Take(const ExternalOdometry& pose) { pipeline_.ProcessExternalOdometry(pose); }
 
-  bool Unpack(Result<Image<std::uint16_t>> decoded, const char* stream, const FrameHeader& header,
-              Image<std::uint16_t>& image) {
+  static bool Unpack(Result<Image<std::uint16_t>> decoded, const char* stream,
+                     const FrameHeader& header, Image<std::uint16_t>& image) {
     if (decoded) {
       image = std::move(*decoded);
       return true;
     }
-    ++undecodable_;
     LOG(Reconstruct, Warning) << stream << " frame " << header.frame_number
                               << " left out: " << decoded.error().message();
     return false;
@@ -179,7 +184,7 @@ class InlineDriver {
   std::uint64_t total_ = 0;
   std::uint64_t read_ = 0;
   std::uint64_t bad_messages_ = 0;
-  std::uint64_t undecodable_ = 0;
+  std::uint64_t undecodable_depth_ = 0, undecodable_thermal_ = 0;
 };
 
 /// A recording without depth cannot give a surface: say so before any work.
@@ -280,8 +285,7 @@ Status CompareHeldOut(const ReconstructRequest& request, const Rig& rig,
     frame.header.capture_time += FromSeconds(rig.thermal_delay_s);
     if (!std::ranges::binary_search(stamps, frame.header.capture_time)) continue;
     Result<Image<std::uint16_t>> image = DecodeTemperatures(recorded->frame.image);
-    if (!image || image->width() != rig.thermal->width || image->height() != rig.thermal->height)
-      continue;
+    if (!image) continue;  // Counted when it was not held out.
     frame.temperature_raw = std::move(*image);
     frame.scale = recorded->frame.scale;
     frame.valid = true;
@@ -359,12 +363,14 @@ Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int
   if (Status status = CompareHeldOut(request, *scan->rig, driver.held_out(), views); !status.ok()) {
     return Err(status);
   }
-  if (views.report().frames == 0) {
-    return Err(FailedPrecondition(
-        fmt::format("{}: the rig was tracked at none of the {} thermal frames that were held out",
-                    request.recording.string(), driver.held_out().size())));
-  }
-  return views.report();
+  HeldOutReport report = views.report();
+  report.undecodable = driver.undecodable_thermal();
+  if (report.frames > 0) return report;
+  return Err(FailedPrecondition(fmt::format(
+      "{}: none of the {} thermal frames that were held out can be compared: the rig was not "
+      "tracked at {}, and {} have another size than the calibration's",
+      request.recording.string(), driver.held_out().size(), report.without_pose,
+      report.wrong_size)));
 }
 
 }  // namespace isotherm

@@ -119,12 +119,32 @@ TEST_F(DoubtfulScanTest, CentiDegreesAreNamed) {
     Image<std::uint16_t> pixels = Decode(frame.image).value();
     for (std::uint16_t& pixel : pixels.pixels())
       pixel = static_cast<std::uint16_t>(std::max(1, pixel - 27315));
-    frame.image = encoder.Encode(pixels);
+    frame.image = encoder.Encode(pixels, frame.scale);
   }});
   const Outcome reconstruct = Reconstruct("wrong.mcap -o out --initial-pose-from scan.mcap");
   EXPECT_EQ(reconstruct.status, kData);
   EXPECT_THAT(reconstruct.err, HasSubstr("as centi-degrees Celsius they would be"));
   EXPECT_EQ(Run("inspect wrong.mcap").status, kData);
+}
+
+TEST_F(DoubtfulScanTest, HeldOutViewsCountWhatCannotBeCompared) {
+  Simulate();
+  int frames = 0;
+  Copy({.thermal = [&frames](EncodedThermalFrame& frame) {
+    ++frames;
+    if (frames == 1 || frames == 3) frame.image.payload.resize(frame.image.payload.size() / 2);
+    // The fourth that can be read: every second is held out.
+    if (frames == 6) {
+      const Image<std::uint16_t> other(16, 12, 30'000);
+      frame.image = ThermalEncoder().Encode(other, frame.scale);
+    }
+  }});
+  ASSERT_GT(frames, 6);
+  const Outcome text = Run("evaluate wrong.mcap --held-out-views 2 --voxel 0.006");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr(", 1 of another size; 2 damaged ones could not be held out\n"));
+  const Outcome json = Run("evaluate wrong.mcap --held-out-views 2 --voxel 0.006 --json");
+  EXPECT_THAT(json.out, AllOf(HasSubstr("\"wrong_size\": 1"), HasSubstr("\"undecodable\": 2")));
 }
 
 TEST_F(DoubtfulScanTest, AFirstPoseOutsideOfTheVolumeIsNamed) {

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "ground/evaluation/uncertainty_evaluation.h"
+#include "ground/export/json.h"
+
+namespace isotherm {
+
+/// What `isotherm evaluate` says of uncertainties: whether they are right, the histogram of error /
+/// sigma, and the table of errors by distance and angle.
+std::string ToText(const UncertaintyReport& report);
+Json ToJson(const UncertaintyReport& report);
+
+}  // namespace isotherm
