@@ -63,6 +63,26 @@ void AddFlyingPixels(std::uint64_t stream, Image<std::uint16_t>& depth_raw) {
 
 }  // namespace
 
+std::string_view ToString(DepthDefect defect) {
+  switch (defect) {
+    case DepthDefect::kNone:
+      return "none";
+    case DepthDefect::kGrid:
+      return "grid";
+    case DepthDefect::kCoarseGrid:
+      return "coarse-grid";
+    case DepthDefect::kRandom:
+      return "random";
+    case DepthDefect::kRows:
+      return "rows";
+    case DepthDefect::kColumns:
+      return "columns";
+    case DepthDefect::kFlyingPixels:
+      return "flying";
+  }
+  return "unknown";
+}
+
 void AddDefect(DepthDefect defect, std::uint64_t noise_stream, Image<std::uint16_t>& depth_raw) {
   if (defect == DepthDefect::kNone) return;
   if (defect == DepthDefect::kFlyingPixels) return AddFlyingPixels(noise_stream, depth_raw);

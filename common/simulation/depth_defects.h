@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "common/frame/image.h"
 
@@ -19,6 +21,14 @@ enum class DepthDefect : std::uint8_t {
   kColumns,      ///< Every second column is empty, from the first on.
   kFlyingPixels  ///< 30 % of the pixels at depth edges lie between the surfaces.
 };
+
+/// All but kNone.
+inline constexpr std::array kDepthDefects = {DepthDefect::kGrid,    DepthDefect::kCoarseGrid,
+                                             DepthDefect::kRandom,  DepthDefect::kRows,
+                                             DepthDefect::kColumns, DepthDefect::kFlyingPixels};
+
+/// "coarse-grid", as command lines and recordings name it.
+std::string_view ToString(DepthDefect defect);
 
 /// The same `noise_stream` gives the same defects. 0 = no return, in and out.
 void AddDefect(DepthDefect defect, std::uint64_t noise_stream, Image<std::uint16_t>& depth_raw);

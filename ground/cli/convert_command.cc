@@ -34,6 +34,13 @@ Examples:
   isotherm convert view.mcap -o small.mcap --encoding compact
   isotherm convert scan.mcap -o holes.mcap --encoding compact --spoil-depth grid)";
 
+std::map<std::string, int> NumbersOfDefects() {
+  std::map<std::string, int> numbers;
+  for (const DepthDefect defect : kDepthDefects)
+    numbers.emplace(ToString(defect), static_cast<int>(defect));
+  return numbers;
+}
+
 struct ConvertArguments {
   std::string recording, output, trajectory;
   int storage = static_cast<int>(ImageStorage::kViewable);
@@ -122,14 +129,7 @@ void AddConvertCommand(CLI::App& app, CommandBody& body) {
                    "64 % of the pixels in all), coarse-grid (two of five rows and columns), random "
                    "(60 %), rows, columns (every second) or flying (30 % of the pixels at edges "
                    "lie between the surfaces)")
-      ->transform(
-          CLI::Validator(NumberOfName({{"grid", static_cast<int>(DepthDefect::kGrid)},
-                                       {"coarse-grid", static_cast<int>(DepthDefect::kCoarseGrid)},
-                                       {"random", static_cast<int>(DepthDefect::kRandom)},
-                                       {"rows", static_cast<int>(DepthDefect::kRows)},
-                                       {"columns", static_cast<int>(DepthDefect::kColumns)},
-                                       {"flying", static_cast<int>(DepthDefect::kFlyingPixels)}}),
-                         ""))
+      ->transform(CLI::Validator(NumberOfName(NumbersOfDefects()), ""))
       ->type_name("KIND");
   command->add_flag("--force", arguments->force, "Replace an existing recording");
   command->footer(kConvertFooter);

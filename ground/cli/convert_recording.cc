@@ -106,10 +106,7 @@ class Converter {
       ISOTHERM_RETURN_IF_ERROR(writer_.Write(*rig));
       summary_.has_thermal_pose = rig->T_thermal_depth.has_value();
     }
-    for (const auto& [name, values] : reader_.info().metadata) {
-      if (name != kRecordingMetadataName)
-        ISOTHERM_RETURN_IF_ERROR(writer_.WriteMetadata(name, values));
-    }
+    ISOTHERM_RETURN_IF_ERROR(WriteMetadata());
     item_ = NextItem();
     other_ = others_.Next();
     while (item_ || other_ || pose_ < request_.poses.size()) {
@@ -144,6 +141,19 @@ class Converter {
       from_ = PosesFrom::kGroundtruth;
       summary_.poses_from = "the ground truth";
     }
+  }
+
+  /// As it was, and what was spoiled now in addition to what was before.
+  Status WriteMetadata() {
+    auto metadata = reader_.info().metadata;
+    metadata.erase(std::string(kRecordingMetadataName));
+    if (request_.defect != DepthDefect::kNone) {
+      std::string& done = metadata[std::string(kSpoiledMetadata)]["depth"];
+      done += (done.empty() ? "" : ", ") + std::string(ToString(request_.defect));
+    }
+    for (const auto& [name, values] : metadata)
+      ISOTHERM_RETURN_IF_ERROR(writer_.WriteMetadata(name, values));
+    return OkStatus();
   }
 
   /// nullopt at the end.

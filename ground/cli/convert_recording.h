@@ -5,6 +5,7 @@
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/base/status.h"
@@ -13,6 +14,9 @@
 #include "common/simulation/depth_defects.h"
 
 namespace isotherm {
+
+/// Metadata of a recording whose images were made worse on purpose: what was done, by stream.
+inline constexpr std::string_view kSpoiledMetadata = "spoiled";
 
 struct ConvertRequest {
   std::filesystem::path recording;
@@ -36,7 +40,8 @@ struct ConvertSummary {
 };
 
 /// Writes the recording anew with its images stored otherwise; frames, times and everything else
-/// that was recorded stay what they are, but for the defect that is asked for.
+/// that was recorded stay what they are, but for the defect that is asked for: the new recording's
+/// metadata say so (kSpoiledMetadata).
 Result<ConvertSummary> ConvertRecording(const ConvertRequest& request);
 
 }  // namespace isotherm

@@ -10,7 +10,7 @@
 #include "common/base/printable.h"
 #include "common/dataset/text_lines.h"
 #include "common/recording/clock_record.h"
-#include "common/rig/rig_calibration.h"
+#include "ground/cli/convert_recording.h"
 #include "ground/cli/recording_damage.h"
 
 namespace isotherm {
@@ -81,6 +81,16 @@ void AppendFormat(const RecordingReport& report, std::string& text) {
                : "compact: lossless, only Isotherm reads them",
       report.file, viewable ? "compact" : "viewable",
       viewable ? "is smaller" : "Foxglove and Lichtblick show");
+}
+
+/// What was done to the images on purpose: nobody should take them for what a camera sent.
+void AppendSpoiled(const RecordingInfo& info, std::string& text) {
+  const auto found = info.metadata.find(std::string(kSpoiledMetadata));
+  if (found == info.metadata.end()) return;
+  for (const auto& [stream, defects] : found->second) {
+    text += fmt::format("{:<14}{} images are not what the camera sent: {} (isotherm convert)\n",
+                        "SPOILED", Printable(stream), Printable(defects));
+  }
 }
 
 void AppendNuc(const RecordingSummary& summary, std::string& text) {
@@ -263,6 +273,7 @@ std::string ToText(const RecordingReport& report) {
                         FormatStamp(*report.info.end), Utc(*report.info.start));
   }
   AppendFormat(report, text);
+  AppendSpoiled(report.info, text);
   AppendStream("depth", report.summary.depth, text);
   AppendStream("thermal", report.summary.thermal, text);
   AppendNuc(report.summary, text);

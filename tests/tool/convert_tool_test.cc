@@ -99,6 +99,21 @@ TEST_F(ConvertToolTest, InspectSaysWhichOfBothItIs) {
   EXPECT_THAT(Run("inspect view.mcap --json").out, HasSubstr("\"viewable\": true"));
 }
 
+TEST_F(ConvertToolTest, ARecordingWithSpoiledImagesSaysSoForEver) {
+  Simulate();
+  ASSERT_EQ(Run("convert scan.mcap -o holes.mcap --spoil-depth grid").status, 0);
+  ASSERT_EQ(Run("convert holes.mcap -o worse.mcap --spoil-depth flying").status, 0);
+  ASSERT_EQ(Run("convert worse.mcap -o small.mcap --encoding compact").status, 0);
+  EXPECT_THAT(Run("inspect scan.mcap").out, Not(HasSubstr("SPOILED")));
+  EXPECT_THAT(Run("inspect holes.mcap").out,
+              HasSubstr("SPOILED       depth images are not what the camera sent: grid ("));
+  EXPECT_THAT(Run("inspect small.mcap").out, HasSubstr("what the camera sent: grid, flying ("));
+  Content small;
+  Read("small.mcap", small);
+  EXPECT_EQ(small.info.metadata.at("spoiled"),
+            (std::map<std::string, std::string>{{"depth", "grid, flying"}}));
+}
+
 TEST_F(ConvertToolTest, PosesOfAResultComeAlong) {
   Simulate();
   fs::create_directory(folder_ / "result");
