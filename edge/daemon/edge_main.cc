@@ -4,16 +4,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
-#include <map>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/base/status.h"
-#include "common/options/nearest_name.h"
-#include "common/options/override.h"
+#include "common/options/daemon_arguments.h"
 #include "common/options/protobuf_log.h"
 #include "common/options/text_proto.h"
 #include "common/time/clock.h"
@@ -74,8 +71,7 @@ constexpr const char* kFooter =
     "  78  wrong configuration (all problems are listed)";
 
 struct CommandLine {
-  std::optional<std::string> config;
-  std::vector<std::string> overrides;
+  DaemonArguments shared;
   std::optional<std::string> source, recording, scene, depth_camera, rig, record, edge_id;
   std::optional<double> rate;
   std::optional<int> domain;
@@ -84,18 +80,13 @@ struct CommandLine {
   bool list_sources = false;
   bool list_devices = false;
   std::string camera_process, camera_options;
-  LogLevel log_level = LogLevel::kInfo;
 };
 
 void Declare(CLI::App& app, CommandLine& line) {
   app.description(kDescription);
   app.footer(kFooter);
   app.set_version_flag("--version", "isotherm-edge " ISOTHERM_VERSION);
-  app.add_option("--config", line.config, "Configuration file (protobuf text format)")
-      ->type_name("FILE");
-  app.add_option("--set", line.overrides, "Override an option of the configuration; repeatable")
-      ->type_name("STAGE.FIELD=VALUE")
-      ->allow_extra_args(false);
+  DeclareConfiguration(app, line.shared);
   app.add_option("--source", line.source, "Where frames come from: cameras, replay or synthetic")
       ->check(CLI::IsMember({"cameras", "replay", "synthetic"}))
       ->type_name("KIND");
@@ -123,13 +114,7 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_flag("--exit-at-end", line.exit_at_end, "Leave when the source has ended");
   app.add_flag("--wait-for-ground", line.wait_for_ground,
                "Hold back the first frame until a ground station is there");
-  const std::map<std::string, int> levels = {{"debug", static_cast<int>(LogLevel::kDebug)},
-                                             {"info", static_cast<int>(LogLevel::kInfo)},
-                                             {"warning", static_cast<int>(LogLevel::kWarning)},
-                                             {"error", static_cast<int>(LogLevel::kError)}};
-  app.add_option("--log-level", line.log_level, "debug, info, warning or error")
-      ->transform(CLI::Validator(NumberOfName(levels), ""))
-      ->type_name("LEVEL");
+  DeclareLogLevel(app, line.shared);
   app.add_flag("--list-sources", line.list_sources,
                "List sources, scenes and connected cameras, then leave");
   app.add_flag("--list-devices", line.list_devices, "List connected cameras, then leave");
@@ -177,10 +162,7 @@ SourceKind KindNamed(const std::string& name) {
 }
 
 Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
-  if (line.config) ISOTHERM_RETURN_IF_ERROR(LoadTextProto(*line.config, options));
-  for (const std::string& assignment : line.overrides) {
-    ISOTHERM_RETURN_IF_ERROR(ApplyOverride(assignment, options));
-  }
+  ISOTHERM_RETURN_IF_ERROR(Apply(line.shared, options));
   SourceOptions& source = *options.mutable_source();
   if (line.scene) ISOTHERM_RETURN_IF_ERROR(ApplyScene(*line.scene, source));
   if (line.recording) {
@@ -218,7 +200,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
-  SetLogLevel(line.log_level);
+  SetLogLevel(line.shared.log_level);
   LimitProtobufLog();
   if (!line.camera_process.empty()) {
     return RunCameraProcess(line.camera_process, line.camera_options, SystemClock());

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,8 +10,7 @@
 #include "common/base/log.h"
 #include "common/base/service.h"
 #include "common/base/status.h"
-#include "common/options/nearest_name.h"
-#include "common/options/override.h"
+#include "common/options/daemon_arguments.h"
 #include "common/options/protobuf_log.h"
 #include "common/options/text_proto.h"
 #include "common/time/clock.h"
@@ -58,23 +56,18 @@ constexpr const char* kFooter =
     "  78  wrong configuration (all problems are listed)";
 
 struct CommandLine {
-  std::optional<std::string> config, output, edge_id;
+  DaemonArguments shared;
+  std::optional<std::string> output, edge_id;
   std::optional<int> domain, threads;
-  std::vector<std::string> overrides;
   bool once = false;
   bool no_record = false;
-  LogLevel log_level = LogLevel::kInfo;
 };
 
 void Declare(CLI::App& app, CommandLine& line) {
   app.description(kDescription);
   app.footer(kFooter);
   app.set_version_flag("--version", "isotherm-ground " ISOTHERM_VERSION);
-  app.add_option("--config", line.config, "Configuration file (protobuf text format)")
-      ->type_name("FILE");
-  app.add_option("--set", line.overrides, "Override an option of the configuration; repeatable")
-      ->type_name("STAGE.FIELD=VALUE")
-      ->allow_extra_args(false);
+  DeclareConfiguration(app, line.shared);
   app.add_option("--output", line.output, "Where recordings and results go")->type_name("DIR");
   app.add_option("--edge-id", line.edge_id, "The rig to follow; \"\" = the first one seen")
       ->type_name("NAME");
@@ -84,20 +77,11 @@ void Declare(CLI::App& app, CommandLine& line) {
   app.add_flag("--once", line.once,
                "Serve one scan, write its results into DIR itself, then leave");
   app.add_flag("--no-record", line.no_record, "Do not record what is received");
-  const std::map<std::string, int> levels = {{"debug", static_cast<int>(LogLevel::kDebug)},
-                                             {"info", static_cast<int>(LogLevel::kInfo)},
-                                             {"warning", static_cast<int>(LogLevel::kWarning)},
-                                             {"error", static_cast<int>(LogLevel::kError)}};
-  app.add_option("--log-level", line.log_level, "debug, info, warning or error")
-      ->transform(CLI::Validator(NumberOfName(levels), ""))
-      ->type_name("LEVEL");
+  DeclareLogLevel(app, line.shared);
 }
 
 Status ApplyCommandLine(const CommandLine& line, GroundOptions& options) {
-  if (line.config) ISOTHERM_RETURN_IF_ERROR(LoadTextProto(*line.config, options));
-  for (const std::string& assignment : line.overrides) {
-    ISOTHERM_RETURN_IF_ERROR(ApplyOverride(assignment, options));
-  }
+  ISOTHERM_RETURN_IF_ERROR(Apply(line.shared, options));
   LiveOptions& live = *options.mutable_live();
   if (line.output) live.set_output_dir(*line.output);
   if (line.edge_id) live.set_edge_id(*line.edge_id);
@@ -116,7 +100,7 @@ int Main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
-  SetLogLevel(line.log_level);
+  SetLogLevel(line.shared.log_level);
   LimitProtobufLog();
   GroundOptions options;
   if (const Status applied = ApplyCommandLine(line, options); !applied.ok()) {

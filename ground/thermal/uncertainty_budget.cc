@@ -9,9 +9,6 @@ namespace isotherm {
 namespace {
 
 constexpr double kSecondsPerMinute = 60.0;
-/// What the housing of a warm camera stays below, K per minute
-/// (nuc.expert.warm_up_housing_rate_k_per_min).
-constexpr double kHousingRate_k_per_min = 0.1;
 /// Mean error of reprojection between the cameras where the rig file has none (thesis table 5.1).
 constexpr double kReprojectionError_px = 0.141;
 
@@ -47,7 +44,7 @@ double DriftKelvin(const CameraUncertainty& camera, const NucAge& nuc) {
   // A rate that lies anywhere between its limits: half their distance over the root of 3.
   const double housing_k = nuc.housing_change_k
                                ? std::abs(*nuc.housing_change_k)
-                               : kHousingRate_k_per_min * minutes / std::numbers::sqrt3;
+                               : kWarmHousingRate_k_per_min * minutes / std::numbers::sqrt3;
   return std::hypot(pattern_k, camera.error_per_housing_k * housing_k);
 }
 

@@ -7,6 +7,10 @@
 
 namespace isotherm {
 
+/// What the housing of a warm camera stays below, as the edge takes it for warm by default
+/// (nuc.expert.warm_up_housing_rate_k_per_min).
+inline constexpr double kWarmHousingRate_k_per_min = 0.1;
+
 /// Says how uncertain the readings of a thermal camera are. The defaults are those of an Optris PI
 /// 450, as far as its data sheet and the thesis tell.
 struct CameraUncertainty {

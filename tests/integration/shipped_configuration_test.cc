@@ -13,6 +13,7 @@
 #include "ground/experiment/nuc_drift_experiment.h"
 #include "ground/option_validation/validate_options.h"
 #include "ground/options/ground_options.pb.h"
+#include "ground/thermal/uncertainty_budget.h"
 
 namespace isotherm {
 namespace {
@@ -71,6 +72,15 @@ TEST(ShippedConfigurationTest, TheDriftExperimentCorrectsTheCameraAsTheEdgeDoes)
   EXPECT_EQ(options.nuc().max_housing_drift_k(), kShippedHousingDrift_k) << "by default";
   ASSERT_TRUE(LoadTextProto(kDeploy / "edge.textproto", options).ok());
   EXPECT_EQ(options.nuc().max_housing_drift_k(), kShippedHousingDrift_k) << "in the shipped file";
+}
+
+TEST(ShippedConfigurationTest, UncertaintiesTakeACameraForWarmWhenTheEdgeDoes) {
+  EdgeOptions options;
+  EXPECT_EQ(options.nuc().expert().warm_up_housing_rate_k_per_min(), kWarmHousingRate_k_per_min)
+      << "by default";
+  ASSERT_TRUE(LoadTextProto(kDeploy / "edge.textproto", options).ok());
+  EXPECT_EQ(options.nuc().expert().warm_up_housing_rate_k_per_min(), kWarmHousingRate_k_per_min)
+      << "in the shipped file";
 }
 
 TEST(ShippedConfigurationTest, TheDefaultsAreValid) {

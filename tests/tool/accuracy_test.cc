@@ -83,22 +83,32 @@ class AccuracyTest : public testing::Test {
     return *report;
   }
 
+  /// The rendered furnace door stands around the origin.
+  static GroundOptions FurnaceDoorOptions() {
+    GroundOptions options;
+    VolumeExpertOptions& volume = *options.mutable_volume()->mutable_expert();
+    volume.set_min_x_m(-0.48);
+    volume.set_min_y_m(-0.48);
+    volume.set_min_z_m(-0.48);
+    return options;
+  }
+  EvaluationReport CompareWithFurnaceDoor() {
+    EvaluationRequest request;
+    request.groundtruth = data_ / "groundtruth.txt";
+    request.surface = data_ / "surface.ply";
+    request.emissivity = 0.96;
+    return Compare(request);
+  }
+
   fs::path folder_, recording_, result_, data_;
 };
 
 TEST_F(AccuracyTest, RenderedFurnaceDoorWithTruth) {
   if (!Import("furnace_dev")) GTEST_SKIP() << "no test data; set ISOTHERM_DATA_DIR";
-  GroundOptions options;
-  for (const char* axis : {"x", "y", "z"}) {
-    ASSERT_TRUE(ApplyOverride(std::string("volume.expert.min_") + axis + "_m=-0.48", options).ok());
-  }
+  GroundOptions options = FurnaceDoorOptions();
   const ReconstructSummary summary = Run(options, data_ / "groundtruth.txt");
   EXPECT_EQ(summary.tracked_frames, 300U);
-  EvaluationRequest request;
-  request.groundtruth = data_ / "groundtruth.txt";
-  request.surface = data_ / "surface.ply";
-  request.emissivity = 0.96;
-  const EvaluationReport report = Compare(request);
+  const EvaluationReport report = CompareWithFurnaceDoor();
   EXPECT_LE(report.trajectory.aligned_m.rms, 0.0010);
   ASSERT_TRUE(report.surface && report.temperature);
   EXPECT_LE(report.surface->distance_m.rms, 0.0008);
@@ -110,19 +120,12 @@ TEST_F(AccuracyTest, RenderedFurnaceDoorWithTruth) {
 // This excerpt comes with the tests: 3.2 s of the same scan, every second frame and pixel.
 TEST_F(AccuracyTest, ExcerptOfTheRenderedFurnaceDoorWithTruth) {
   ASSERT_TRUE(ImportFolder(ISOTHERM_SOURCE_DIR "/tests/data/furnace_excerpt"));
-  GroundOptions options;
-  for (const char* axis : {"x", "y", "z"}) {
-    ASSERT_TRUE(ApplyOverride(std::string("volume.expert.min_") + axis + "_m=-0.48", options).ok());
-  }
+  GroundOptions options = FurnaceDoorOptions();
   options.mutable_volume()->set_voxel_size_m(0.003);
   options.mutable_tsdf()->set_truncation_distance_m(0.012);
   const ReconstructSummary summary = Run(options, data_ / "groundtruth.txt");
   EXPECT_EQ(summary.tracked_frames, 49U);
-  EvaluationRequest request;
-  request.groundtruth = data_ / "groundtruth.txt";
-  request.surface = data_ / "surface.ply";
-  request.emissivity = 0.96;
-  const EvaluationReport report = Compare(request);
+  const EvaluationReport report = CompareWithFurnaceDoor();
   EXPECT_LE(report.trajectory.aligned_m.rms, 0.0010);
   ASSERT_TRUE(report.surface && report.temperature);
   EXPECT_LE(report.surface->distance_m.rms, 0.0010);

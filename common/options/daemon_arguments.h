@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/log.h"
+#include "common/base/status.h"
+
+namespace CLI {
+class App;
+}
+namespace google::protobuf {
+class Message;
+}
+
+namespace isotherm {
+
+/// What the command lines of both daemons have in common.
+struct DaemonArguments {
+  std::optional<std::string> config;
+  std::vector<std::string> overrides;
+  LogLevel log_level = LogLevel::kInfo;
+};
+
+/// Adds --config and --set. `arguments` must outlive `app`.
+void DeclareConfiguration(CLI::App& app, DaemonArguments& arguments);
+/// Adds --log-level. `arguments` must outlive `app`.
+void DeclareLogLevel(CLI::App& app, DaemonArguments& arguments);
+
+/// Reads the configuration into `options`, then what overrides it; returns the first problem.
+Status Apply(const DaemonArguments& arguments, google::protobuf::Message& options);
+
+}  // namespace isotherm
