@@ -117,6 +117,17 @@ HWY_INLINE ImagePlace ProjectVoxels(const FusionKernelArgs& a, const Vector3& p)
   return place;
 }
 
+/// The voxels of `candidates` that lie before the camera and within its image.
+HWY_INLINE MF InImage(const FusionKernelArgs& a, MF candidates, const Vector3& p,
+                      const ImagePlace& place) {
+  const VF zero = hn::Zero(d);
+  const auto within = [&](VF pixel, std::int32_t size) {
+    return hn::And(hn::Ge(pixel, zero), hn::Lt(pixel, hn::Set(d, static_cast<float>(size))));
+  };
+  return hn::And(hn::And(candidates, hn::Gt(p.z, zero)),
+                 hn::And(within(place.column, a.width), within(place.row, a.height)));
+}
+
 /// Where voxels lie within max_distance_m of their pixels' surfaces, along the line of sight. A
 /// plane stands for the surface (PixelPlane), so that neither the size of a pixel nor the angle at
 /// which it is seen is taken for a distance from it, as it is with the vertex at the pixel's centre
@@ -182,12 +193,10 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
   auto* temperatures = reinterpret_cast<std::int32_t*>(thermal);
   const BlockPoints points(a.axes, first);
   HWY_ALIGN std::int32_t pixels[hn::MaxLanes(d)];
-  const VF zero = hn::Zero(d);
   const VI conditions = hn::Set(di, ThermalLayout::kConditionMask);
   const VI all_good = hn::Set(di, kAllGood);
   const VI max_code = hn::Set(di, a.max_tsdf_code + 1);
   const VF width = hn::Set(d, static_cast<float>(a.width));
-  const VF height = hn::Set(d, static_cast<float>(a.height));
   const VI nowhere = hn::Set(di, a.width * a.height);
   for (int i = 0; i < kBlockVoxels; i += lanes) {
     const VI word = hn::LoadU(di, distances + i);
@@ -195,10 +204,7 @@ void FuseBlock(const FusionKernelArgs& a, const float* first, const std::uint32_
     if (hn::AllFalse(di, near)) continue;
     const Vector3 p = points.At(points.Origin(i / kLayer), i % kLayer);
     const ImagePlace place = ProjectVoxels(a, p);
-    const MF inside =
-        hn::And(hn::And(hn::RebindMask(d, near), hn::Gt(p.z, zero)),
-                hn::And(hn::And(hn::Ge(place.column, zero), hn::Lt(place.column, width)),
-                        hn::And(hn::Ge(place.row, zero), hn::Lt(place.row, height))));
+    const MF inside = InImage(a, hn::RebindMask(d, near), p, place);
     // Exact in single precision: images have far less than 2^24 pixels.
     const VI in_image = hn::ConvertTo(di, hn::MulAdd(place.row, width, place.column));
     const VI pixel = hn::IfThenElse(hn::RebindMask(di, inside), in_image, nowhere);

@@ -247,6 +247,23 @@ HWY_INLINE VI Flag(MF condition, std::int32_t bit) {
   return hn::IfThenElseZero(hn::RebindMask(di, condition), hn::Set(di, bit));
 }
 
+/// ThermalPixel's flags but for the classes: what is known of a pixel, cosine and uncertainty.
+HWY_INLINE VI PackFlags(MF seen, MF assignable, VF cosine, VI sigma_code) {
+  const VI cosine_code = hn::NearestInt(hn::IfThenElseZero(
+      hn::Gt(cosine, hn::Zero(d)), hn::Mul(cosine, hn::Set(d, ThermalPixel::kCosineScale))));
+  const VI codes = hn::Or(hn::ShiftLeft<ThermalPixel::kCosineShift>(cosine_code),
+                          hn::ShiftLeft<ThermalPixel::kSigmaShift>(sigma_code));
+  return hn::Or(
+      hn::Or(Flag(seen, ThermalPixel::kSeen), Flag(assignable, ThermalPixel::kAssignable)), codes);
+}
+
+/// Depths of points in the camera's coordinates.
+HWY_INLINE VF DepthOf(const float* z_axis, const Vector3& p) {
+  return hn::MulAdd(hn::Set(d, z_axis[0]), p.x,
+                    hn::MulAdd(hn::Set(d, z_axis[1]), p.y,
+                               hn::MulAdd(hn::Set(d, z_axis[2]), p.z, hn::Set(d, z_axis[3]))));
+}
+
 // Assesses a row of the ideal thermal image against the model as the thermal camera sees it: what
 // each pixel shows of the surface, and whether its temperature may be assigned. Not if the depth
 // camera does not see the surface (kSeen), if something nearer lies within the margin around
@@ -266,10 +283,7 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels, std::in
     const RowLoader load(x, a.width);
     const MF in_row = hn::FirstN(d, load.count);
     const Vector3 p{load(a.vx), load(a.vy), load(a.vz)};
-    const VF depth =
-        hn::MulAdd(hn::Set(d, a.z_axis[0]), p.x,
-                   hn::MulAdd(hn::Set(d, a.z_axis[1]), p.y,
-                              hn::MulAdd(hn::Set(d, a.z_axis[2]), p.z, hn::Set(d, a.z_axis[3]))));
+    const VF depth = DepthOf(a.z_axis, p);
     const MF surface = hn::And(in_row, hn::Gt(depth, zero));  // False for NaN.
     const MF seen = SeenByDepthCamera(a, p, surface);
     const VF distance = load(a.distance_m);
@@ -305,15 +319,9 @@ PixelRowCounts MakePixelRow(const PixelRowArgs& a, ThermalPixel* pixels, std::in
     const VI motion_class = hn::Add(hn::Add(hn::Set(di, kSmeared), Flag(sharp, 1)), Flag(still, 1));
     const VI classes = hn::Or(hn::ShiftLeft<ThermalLayout::kMotionShift>(motion_class),
                               DistanceAndAngle(a, distance, cosine));
-    const VI cosine_code = hn::NearestInt(hn::IfThenElseZero(
-        hn::Gt(cosine, zero), hn::Mul(cosine, hn::Set(d, ThermalPixel::kCosineScale))));
     const VI sigma_code = hn::IfThenElseZero(
         hn::RebindMask(di, assignable), PackSigma(Variance(a, load, celsius, depth, slope, speed)));
-    const VI codes = hn::Or(hn::ShiftLeft<ThermalPixel::kCosineShift>(cosine_code),
-                            hn::ShiftLeft<ThermalPixel::kSigmaShift>(sigma_code));
-    const VI flags =
-        hn::Or(hn::Or(Flag(seen, ThermalPixel::kSeen), Flag(assignable, ThermalPixel::kAssignable)),
-               hn::Or(codes, classes));
+    const VI flags = hn::Or(PackFlags(seen, assignable, cosine, sigma_code), classes);
     StoreRecords({{hn::IfThenElseZero(surface, depth), hn::IfThenElseZero(has_value, celsius),
                    hn::BitCast(d, PackSlopes(slope.u, slope.v)), hn::BitCast(d, flags)}},
                  load.count, pixels + x);

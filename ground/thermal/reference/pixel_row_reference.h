@@ -122,6 +122,22 @@ inline double SigmaOf(const PixelRowArgs& a, int x, const Pixel& pixel) {
       .Combined();
 }
 
+/// Whether a point lies before the depth camera and within its image.
+inline Verdict SeenByDepthCamera(const PixelRowArgs& a, const Eigen::Vector3d& p) {
+  const Eigen::Matrix3d R =
+      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(a.R_depth).cast<double>();
+  const Eigen::Vector3d q = R * p + Eigen::Map<const Eigen::Vector3f>(a.t_depth).cast<double>();
+  const double q_slack = kPixelPrecision * (p.cwiseAbs().sum() + 1.0);
+  const auto in_image = [&](double along, double f, double c, double size) {
+    const double pixel = f * along / q.z() + c + 0.5;
+    const double slack = 1e-4 + f * q_slack * (1.0 + std::abs(along / q.z())) / std::abs(q.z());
+    return Both(AtLeastZero(pixel, slack), AtLeastZero(size - pixel, slack));
+  };
+  return Both(AtLeastZero(q.z(), q_slack),
+              Both(in_image(q.x(), a.depth_fx, a.depth_cx, double{a.depth_width}),
+                   in_image(q.y(), a.depth_fy, a.depth_cy, double{a.depth_height})));
+}
+
 inline Pixel MakePixel(const PixelRowArgs& a, int x) {
   Pixel result;
   const Eigen::Vector3d p(a.vx[x], a.vy[x], a.vz[x]);
@@ -132,19 +148,7 @@ inline Pixel MakePixel(const PixelRowArgs& a, int x) {
   const double reach = z_axis.cwiseAbs().dot(p.cwiseAbs()) + std::abs(a.z_axis[3]);
   result.surface = AtLeastZero(result.depth_m, kPixelPrecision * reach);
 
-  const Eigen::Matrix3d R =
-      Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(a.R_depth).cast<double>();
-  const Eigen::Vector3d q = R * p + Eigen::Map<const Eigen::Vector3f>(a.t_depth).cast<double>();
-  const double q_slack = kPixelPrecision * (p.cwiseAbs().sum() + 1.0);
-  result.seen = Both(result.surface, AtLeastZero(q.z(), q_slack));
-  const auto in_image = [&](double along, double f, double c, double size) {
-    const double pixel = f * along / q.z() + c + 0.5;
-    const double slack = 1e-4 + f * q_slack * (1.0 + std::abs(along / q.z())) / std::abs(q.z());
-    return Both(AtLeastZero(pixel, slack), AtLeastZero(size - pixel, slack));
-  };
-  result.seen =
-      Both(result.seen, Both(in_image(q.x(), a.depth_fx, a.depth_cx, double{a.depth_width}),
-                             in_image(q.y(), a.depth_fy, a.depth_cy, double{a.depth_height})));
+  result.seen = Both(result.surface, SeenByDepthCamera(a, p));
 
   const double distance = a.distance_m[x];
   double nearest = distance;
