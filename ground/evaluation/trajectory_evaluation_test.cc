@@ -6,8 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "ground/evaluation/rigid_alignment.h"
-
 namespace isotherm {
 namespace {
 
@@ -37,26 +35,6 @@ std::vector<StampedPose> TruePath(int count) {
 std::vector<StampedPose> Moved(std::vector<StampedPose> poses, const RigidTransform& motion) {
   for (StampedPose& pose : poses) pose.T_world_depth = motion * pose.T_world_depth;
   return poses;
-}
-
-TEST(AlignRigidTest, RecoversAKnownMotion) {
-  const RigidTransform motion = SomeMotion();
-  std::vector<Eigen::Vector3d> from, to;
-  for (const StampedPose& pose : TruePath(50)) {
-    from.push_back(pose.T_world_depth.translation());
-    to.push_back(motion * from.back());
-  }
-  EXPECT_TRUE(AlignRigid(from, to).isApprox(motion, kExact_m));
-}
-
-TEST(AlignRigidTest, NeverReflects) {
-  // Points in a plane, where a reflection would fit as well, and mirrored points, where it would
-  // fit better.
-  const std::vector<Eigen::Vector3d> plane{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 2, 0}};
-  EXPECT_TRUE(IsRigid(AlignRigid(plane, plane)));
-  std::vector<Eigen::Vector3d> from{{0, 0, 0}, {1, 0, 0}, {0, 2, 0}, {0, 0, 3}}, mirrored = from;
-  for (Eigen::Vector3d& p : mirrored) p.x() = -p.x();
-  EXPECT_TRUE(IsRigid(AlignRigid(from, mirrored)));
 }
 
 TEST(TrajectoryEvaluationTest, AnotherWorldIsNoError) {

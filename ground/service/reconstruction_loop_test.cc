@@ -1,0 +1,256 @@
+#include "ground/service/reconstruction_loop.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "common/testing/temporary_directory.h"
+#include "ground/options/option_geometry.h"
+#include "ground/surface/testing/analytic_views.h"
+#include "ground/surface/testing/small_volume.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// Keeps the feedback that goes to the rig.
+class FakeSubscriber final : public Subscriber {
+ public:
+  void Run(std::stop_token /*stop*/) override {}
+  Status Publish(const Feedback& feedback) override {
+    published.push_back(feedback);
+    if (on_publish) on_publish();
+    return works ? OkStatus() : Unavailable("no link");
+  }
+  Result<std::uint64_t> Send(Command /*command*/) override { return 0; }
+  SubscriberStats stats() const override { return {}; }
+  SessionCounters counters(std::uint64_t session) const override {
+    SessionCounters counters;
+    counters.session = session;
+    return counters;
+  }
+  const RefusalCounter& refusals() const override { return refusals_; }
+
+  bool works = true;
+  std::function<void()> on_publish;  ///< On the loop's thread.
+  std::vector<Feedback> published;   ///< Not while the loop runs.
+
+ private:
+  RefusalCounter refusals_;
+};
+
+/// A loop on a thread of its own, and behind it a thread that writes results.
+class ReconstructionLoopTest : public ::testing::Test {
+ protected:
+  ReconstructionLoopTest() {
+    VolumeOptions& volume = *options_.mutable_volume();
+    volume = testing::SmallVolume();
+    *volume.mutable_expert()->mutable_initial_pose() = ToOptions(testing::FirstPose());
+    options_.mutable_tsdf()->set_truncation_distance_m(testing::kSmallTruncation_m);
+    options_.mutable_delay_check()->set_enabled(false);
+    options_.mutable_live()->set_output_dir(folder_.path().string());
+    options_.set_threads(1);
+  }
+  ~ReconstructionLoopTest() override { End(); }
+
+  std::filesystem::path Folder(std::uint64_t session) const {
+    return folder_.path() / std::to_string(session);
+  }
+  static Rig MakeRig() {
+    Rig rig;
+    rig.depth = testing::SmallDepthCamera();
+    rig.thermal = rig.depth;
+    rig.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+    return rig;
+  }
+  void Start(std::uint64_t session, const Rig& rig = MakeRig()) {
+    SessionStart start;
+    start.rig.session = session;
+    start.rig.rig = rig;
+    start.folder = Folder(session);
+    start.recording = std::make_shared<RecordingTracker>();
+    start.recording->Update([](RecordingProgress& progress) { progress.closed = true; });
+    queue_.Push(start, {});
+  }
+  void Close(std::uint64_t session) {
+    SessionCounters counters;
+    counters.session = session;
+    queue_.Push(counters, {});
+  }
+  static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
+  /// Depth frames of a moving rig that have waited for `queued`, and thermal frames in between.
+  void Frames(int count, Nanoseconds queued = 0ns) {
+    const CaptureTime arrival = clock_.Now() - queued;
+    for (int i = 0; i < count; ++i) {
+      auto depth = std::make_shared<DepthFrame>(testing::RenderDepth(
+          testing::BallInCorner, *MakeRig().depth,
+          testing::FirstPose() *
+              MakeTransform({0.003 * i, 0.0015 * i, 0.0}, Eigen::Quaterniond::Identity())));
+      depth->header.capture_time = Time(i);
+      auto thermal = std::make_shared<ThermalFrame>();
+      thermal->header.capture_time = Time(i - 0.5);
+      thermal->temperature_raw =
+          Image<std::uint16_t>(MakeRig().thermal->width, MakeRig().thermal->height, 32'315);
+      thermal->valid = true;
+      if (i > 0) queue_.Push(ReceivedThermal{thermal, nullptr, arrival, arrival}, {});
+      queue_.Push(ReceivedDepth{depth, nullptr, arrival, arrival}, {});
+    }
+  }
+  void Run() {
+    loop_thread_ = std::jthread([this](const std::stop_token& stop) { loop_.Run(queue_, stop); });
+    result_thread_ = std::jthread([this](const std::stop_token& stop) { results_.Run(stop); });
+  }
+  /// The test's own time limit is the bound.
+  void AwaitResults(int scans) {
+    while (written_ < scans) std::this_thread::yield();
+  }
+  void End() {
+    loop_thread_.request_stop();
+    if (loop_thread_.joinable()) loop_thread_.join();
+    result_thread_.request_stop();
+    if (result_thread_.joinable()) result_thread_.join();
+  }
+  nlohmann::json Stats(std::uint64_t session) const {
+    return nlohmann::json::parse(std::ifstream(Folder(session) / "stats.json"), nullptr, false);
+  }
+  /// Feedback that went to the recording.
+  std::vector<Feedback> Recorded() {
+    std::vector<Feedback> recorded;
+    std::optional<Item> item;
+    while (recording_.Pop(0ns, {}, item) == RecordingQueue::Outcome::kItem)
+      recorded.push_back(std::get<Feedback>(*item));
+    return recorded;
+  }
+
+  const testing::TemporaryDirectory folder_;
+  FakeClock clock_{CaptureTime(FromSeconds(1000.0))};
+  GroundOptions options_;
+  FakeSubscriber subscriber_;
+  RecordingQueue recording_{{.items = 1000, .bytes = 1U << 20}};
+  ScanBoard board_;
+  ThreadProgress progress_, result_progress_;
+  std::atomic<int> written_{0};
+  ResultWriter results_{options_,
+                        clock_,
+                        [this](std::uint64_t session) { return subscriber_.counters(session); },
+                        board_,
+                        result_progress_,
+                        [this] { ++written_; }};
+  ItemQueue queue_{1000, OverflowPolicy::kBlock};
+  ReconstructionLoop loop_{options_, clock_, subscriber_, recording_, results_, board_, progress_};
+  std::jthread loop_thread_, result_thread_;
+};
+
+TEST_F(ReconstructionLoopTest, ASessionGivesFeedbackOnTheWayAndResultsAtItsEnd) {
+  Start(5);
+  Frames(4);
+  Close(5);
+  Run();
+  AwaitResults(1);
+  End();
+  EXPECT_TRUE(loop_.status().ok());
+  EXPECT_EQ(Stats(5)["frames"]["depth"]["tracked"], 4);
+  EXPECT_EQ(Stats(5)["frames"]["thermal"]["fused"], 3);
+  ASSERT_FALSE(subscriber_.published.empty());
+  for (const Feedback& feedback : subscriber_.published) EXPECT_EQ(feedback.session, 5U);
+  const std::vector<Feedback> recorded = Recorded();
+  ASSERT_EQ(recorded.size(), subscriber_.published.size()) << "what was sent is recorded";
+  EXPECT_EQ(recorded.back().frame_number, subscriber_.published.back().frame_number);
+  EXPECT_FALSE(board_.feedback.Take().has_value()) << "nothing of a scan that is over";
+}
+
+TEST_F(ReconstructionLoopTest, RoomOnTheDiskIsAskedForAsTheModelGrows) {
+  std::vector<std::uint64_t> asked;
+  subscriber_.on_publish = [&] { asked.push_back(board_.result_bytes); };
+  Start(1);
+  Frames(10);
+  Close(1);
+  Run();
+  AwaitResults(1);
+  End();
+  // Each feedback comes before the estimate with it.
+  ASSERT_GE(asked.size(), 3U);
+  EXPECT_EQ(asked[0], 0U);
+  std::uint64_t bytes = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(Folder(1)))
+    bytes += entry.is_regular_file() ? entry.file_size() : 0;
+  EXPECT_GT(asked.back(), bytes / 2) << "it has to do with what the results take";
+  EXPECT_LT(asked.back(), 20 * bytes);
+}
+
+TEST_F(ReconstructionLoopTest, ANewSessionEndsTheOneBefore) {
+  Start(1);
+  Frames(2);
+  Start(2);
+  Frames(3);
+  Close(2);
+  Run();
+  AwaitResults(2);
+  End();
+  EXPECT_EQ(Stats(1)["frames"]["depth"]["in"], 2);
+  EXPECT_EQ(Stats(2)["frames"]["depth"]["in"], 3);
+}
+
+TEST_F(ReconstructionLoopTest, F38FramesThatWaitAtTheStopAreCountedAndTheScanIsWritten) {
+  Start(1);
+  Frames(3);
+  std::stop_source stopped;
+  stopped.request_stop();
+  loop_.Run(queue_, stopped.get_token());
+  results_.Run(stopped.get_token());
+  EXPECT_EQ(Stats(1)["frames"]["depth"]["in"], 0);
+  EXPECT_EQ(Stats(1)["link"]["not_processed_at_stop"], 5) << "three depth, two thermal frames";
+  EXPECT_THAT(subscriber_.published, IsEmpty());
+}
+
+TEST_F(ReconstructionLoopTest, ASessionThatCannotBeReconstructedEndsNothing) {
+  Start(1, Rig());
+  Frames(2);
+  Close(1);
+  Start(2);
+  Frames(2);
+  Close(2);
+  Run();
+  AwaitResults(2);
+  End();
+  EXPECT_FALSE(loop_.status().ok());
+  EXPECT_EQ(Stats(2)["frames"]["depth"]["tracked"], 2);
+  for (const Feedback& feedback : subscriber_.published) EXPECT_EQ(feedback.session, 2U);
+}
+
+TEST_F(ReconstructionLoopTest, WithoutALinkTheScanGoesOnAndItsFeedbackIsRecorded) {
+  subscriber_.works = false;
+  Start(1);
+  Frames(3);
+  Close(1);
+  Run();
+  AwaitResults(1);
+  End();
+  EXPECT_EQ(Stats(1)["frames"]["depth"]["tracked"], 3);
+  EXPECT_FALSE(Recorded().empty());
+  EXPECT_TRUE(loop_.status().ok());
+}
+
+TEST_F(ReconstructionLoopTest, TheRigsOperatorIsToldWhatWasLeftOutToKeepUp) {
+  options_.mutable_live()->mutable_expert()->set_max_wait_s(0.1);
+  Start(1);
+  Frames(12, 150ms);
+  Close(1);
+  Run();
+  AwaitResults(1);
+  End();
+  ASSERT_GE(subscriber_.published.size(), 2U);
+  EXPECT_THAT(subscriber_.published.back().advice_reason, HasSubstr("the ground is behind, "));
+  EXPECT_THAT(subscriber_.published.back().advice_reason,
+              HasSubstr(" thermal frames were left out"));
+}
+
+}  // namespace
+}  // namespace isotherm

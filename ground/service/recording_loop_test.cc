@@ -1,0 +1,199 @@
+#include "ground/service/recording_loop.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+#include <thread>
+
+#include "common/recording/testing/recording_data.h"
+#include "common/testing/temporary_directory.h"
+
+namespace isotherm {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::kScanStart;
+
+constexpr std::uint64_t kSession = 42;
+/// Longer than the loop waits between two looks at the disk.
+constexpr Nanoseconds kNextLook = 250ms;
+
+/// A loop on a thread of its own that writes to a real disk.
+class RecordingLoopTest : public ::testing::Test {
+ protected:
+  ~RecordingLoopTest() override { End(); }
+
+  void Run() {
+    thread_ = std::jthread([this](const std::stop_token& stop) { loop_.Run(queue_, stop); });
+  }
+  /// All that was offered is recorded or counted, and the files are closed.
+  void End() {
+    thread_.request_stop();
+    if (thread_.joinable()) thread_.join();
+  }
+  std::filesystem::path Folder(std::uint64_t session) const {
+    return folder_.path() / std::to_string(session);
+  }
+  /// Returns what becomes of the session's recording.
+  std::shared_ptr<RecordingTracker> Start(std::uint64_t session = kSession) {
+    SessionStart start;
+    start.rig.session = session;
+    start.rig.rig = testing::MakeRig();
+    start.folder = Folder(session);
+    start.recording = std::make_shared<RecordingTracker>();
+    tracker_ = start.recording;
+    queue_.Push(start);
+    return tracker_;
+  }
+  void Depths(int count) {
+    for (int i = 0; i < count; ++i) {
+      auto frame = std::make_shared<EncodedDepthFrame>(testing::MakeDepth(
+          number_, kScanStart + static_cast<int>(number_) * Nanoseconds(33'333'333)));
+      ++number_;
+      queue_.Push(ReceivedDepth{nullptr, std::move(frame), clock_.Now()});
+    }
+  }
+  /// The loop has seen all frames so far. The test's own time limit is the bound.
+  RecordingProgress Await() {
+    while (true) {
+      const RecordingProgress progress = tracker_->Get();
+      if (progress.depth_frames + progress.left_out() >= number_) return progress;
+      std::this_thread::yield();
+    }
+  }
+  /// A frame at the disk's next look.
+  RecordingProgress FrameAtNextLook() {
+    clock_.Advance(kNextLook);
+    Depths(1);
+    return Await();
+  }
+  static std::multiset<std::uint64_t> NumbersIn(const std::filesystem::path& file) {
+    std::multiset<std::uint64_t> numbers;
+    const auto reader = RecordingReader::Open(file);
+    EXPECT_TRUE(reader) << reader.error().message();
+    EXPECT_TRUE((*reader)->info().complete) << file;
+    for (const RecordedDepth& depth : testing::ReadAll(**reader).All<RecordedDepth>())
+      numbers.insert(depth.frame.header.frame_number);
+    return numbers;
+  }
+  static bool HasFeedback(const std::filesystem::path& file) {
+    const auto& topics = (*RecordingReader::Open(file))->info().messages_by_topic;
+    return topics.contains("/feedback");
+  }
+  std::uint64_t FreeBytes() const { return std::filesystem::space(folder_.path()).available; }
+
+  const testing::TemporaryDirectory folder_;
+  FakeClock clock_{kScanStart};
+  GroundOptions options_;
+  ScanBoard board_;
+  ThreadProgress progress_;
+  RecordingQueue queue_{{.items = 1000, .bytes = 1U << 30}};
+  RecordingLoop loop_{options_, clock_, board_, progress_};
+  std::shared_ptr<RecordingTracker> tracker_;
+  std::uint64_t number_ = 0;
+  std::jthread thread_;
+};
+
+TEST_F(RecordingLoopTest, FramesOfASessionAreInItsFileAndCounted) {
+  Start();
+  Depths(5);
+  Run();
+  End();
+  const RecordingProgress progress = tracker_->Get();
+  EXPECT_THAT(progress.files, ElementsAre(Folder(kSession) / "scan.mcap"));
+  EXPECT_EQ(progress.depth_frames, 5U);
+  EXPECT_EQ(progress.left_out(), 0U);
+  EXPECT_TRUE(progress.closed);
+  EXPECT_TRUE(loop_.status().ok());
+  EXPECT_EQ(NumbersIn(progress.path), (std::multiset<std::uint64_t>{0, 1, 2, 3, 4}));
+}
+
+TEST_F(RecordingLoopTest, ANewSessionEndsTheOneBeforeAndItsEndClosesIt) {
+  const auto first = Start(1);
+  Depths(2);
+  const auto second = Start(2);
+  Depths(3);
+  Run();
+  static_cast<void>(second->WaitUntilClosed(0ns));
+  while (second->Get().depth_frames < 3) std::this_thread::yield();
+  EXPECT_TRUE(first->Get().closed);
+  EXPECT_FALSE(second->Get().closed);
+  queue_.Push(SessionCounters{});
+  EXPECT_TRUE(second->WaitUntilClosed(60s).closed);
+  EXPECT_EQ(NumbersIn(Folder(1) / "scan.mcap"), (std::multiset<std::uint64_t>{0, 1}));
+  EXPECT_EQ(NumbersIn(Folder(2) / "scan.mcap"), (std::multiset<std::uint64_t>{2, 3, 4}));
+}
+
+TEST_F(RecordingLoopTest, F43WhatIsKeptForTheResultsIsNotTakenByFrames) {
+  ASSERT_GT(FreeBytes(), 1ULL << 30) << "the test needs a disk with 1 GB free";
+  Run();
+  Start();
+  EXPECT_EQ(FrameAtNextLook().left_out(), 0U);
+  board_.result_bytes = 2 * FreeBytes();
+  RecordingProgress progress = FrameAtNextLook();
+  EXPECT_TRUE(progress.paused);
+  EXPECT_THAT(progress.status.message(), HasSubstr("are kept for the results"));
+  Depths(2);
+  EXPECT_EQ(Await().left_out(NotRecorded::kDiskNearlyFull), 3U);
+  // Half as much again as the results are expected to take is kept, and to go on twice that.
+  board_.result_bytes = FreeBytes() / 2;
+  EXPECT_TRUE(FrameAtNextLook().paused) << "it must not begin and end all the time";
+  board_.result_bytes = 0;
+  progress = FrameAtNextLook();
+  EXPECT_FALSE(progress.paused);
+  End();
+  progress = tracker_->Get();
+  EXPECT_THAT(progress.files,
+              ElementsAre(Folder(kSession) / "scan.mcap", Folder(kSession) / "scan-2.mcap"));
+  EXPECT_EQ(NumbersIn(progress.files[0]), (std::multiset<std::uint64_t>{0}));
+  EXPECT_EQ(NumbersIn(progress.files[1]), (std::multiset<std::uint64_t>{5}));
+  EXPECT_EQ(progress.depth_frames, 2U);
+  EXPECT_EQ(progress.left_out(NotRecorded::kDiskNearlyFull), 4U);
+  EXPECT_EQ(loop_.status().code(), StatusCode::kResourceExhausted) << "the recording has a hole";
+}
+
+TEST_F(RecordingLoopTest, HalfOfTheDiskIsRoomEnoughToBeginWith) {
+  ASSERT_GT(FreeBytes(), 1ULL << 30) << "the test needs a disk with 1 GB free";
+  board_.result_bytes = FreeBytes() / 2;
+  Run();
+  Start();
+  EXPECT_EQ(FrameAtNextLook().left_out(), 0U);
+}
+
+TEST_F(RecordingLoopTest, FeedbackOnTheSessionBeforeIsNotRecorded) {
+  Feedback late;
+  late.session = 1;
+  Feedback own;
+  own.session = 2;
+  Start(1);
+  Depths(1);
+  queue_.Push(late);
+  Start(2);
+  Depths(1);
+  queue_.Push(late);
+  Start(3);
+  Depths(1);
+  queue_.Push(own);
+  Run();
+  End();
+  EXPECT_TRUE(HasFeedback(Folder(1) / "scan.mcap"));
+  EXPECT_FALSE(HasFeedback(Folder(2) / "scan.mcap"));
+  EXPECT_FALSE(HasFeedback(Folder(3) / "scan.mcap"));
+}
+
+TEST_F(RecordingLoopTest, WithoutARecordingTheFolderIsThereForTheResults) {
+  options_.mutable_live()->set_record(false);
+  Start();
+  Depths(3);
+  Run();
+  EXPECT_TRUE((queue_.Push(SessionCounters{}), tracker_->WaitUntilClosed(60s).closed));
+  EXPECT_TRUE(std::filesystem::is_directory(Folder(kSession)));
+  EXPECT_FALSE(std::filesystem::exists(Folder(kSession) / "scan.mcap"));
+  EXPECT_TRUE(tracker_->Get().path.empty());
+}
+
+}  // namespace
+}  // namespace isotherm
