@@ -56,13 +56,15 @@ class RecordingLoopTest : public ::testing::Test {
       queue_.Push(ReceivedDepth{nullptr, std::move(frame), clock_.Now()});
     }
   }
-  /// The loop has seen all frames so far. The test's own time limit is the bound.
+  /// The loop is done with all frames so far. The test's own time limit is the bound.
   RecordingProgress Await() {
-    while (true) {
+    const auto seen = [this] {
       const RecordingProgress progress = tracker_->Get();
-      if (progress.depth_frames + progress.left_out() >= number_) return progress;
-      std::this_thread::yield();
-    }
+      return progress.depth_frames + progress.left_out();
+    };
+    while (seen() < number_) std::this_thread::yield();
+    while (progress_.AtItFor(clock_.SteadyNow() + 1h) > 0ns) std::this_thread::yield();
+    return tracker_->Get();
   }
   /// A frame at the disk's next look.
   RecordingProgress FrameAtNextLook() {
@@ -80,8 +82,9 @@ class RecordingLoopTest : public ::testing::Test {
     return numbers;
   }
   static bool HasFeedback(const std::filesystem::path& file) {
-    const auto& topics = (*RecordingReader::Open(file))->info().messages_by_topic;
-    return topics.contains("/feedback");
+    const auto reader = RecordingReader::Open(file);
+    EXPECT_TRUE(reader) << reader.error().message();
+    return (*reader)->info().messages_by_topic.contains("/feedback");
   }
   std::uint64_t FreeBytes() const { return std::filesystem::space(folder_.path()).available; }
 
@@ -117,7 +120,6 @@ TEST_F(RecordingLoopTest, ANewSessionEndsTheOneBeforeAndItsEndClosesIt) {
   const auto second = Start(2);
   Depths(3);
   Run();
-  static_cast<void>(second->WaitUntilClosed(0ns));
   while (second->Get().depth_frames < 3) std::this_thread::yield();
   EXPECT_TRUE(first->Get().closed);
   EXPECT_FALSE(second->Get().closed);
