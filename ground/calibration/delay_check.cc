@@ -16,6 +16,9 @@ namespace isotherm {
 namespace {
 
 constexpr double kSigmas = 3.0;
+// An estimate less certain than this may tell that a delay has moved by much, but agrees with
+// nearly all.
+constexpr double kMaxSigmaToAgree_s = 0.005;
 // A frame that is stamped less certainly says little.
 constexpr double kMaxStampSigma_s = 0.003;
 constexpr double kVisibilityFraction = 0.4;
@@ -41,6 +44,11 @@ std::string InMilliseconds(const DelayEstimate& off_by, double calibrated_s) {
 
 std::string WhatToDo() {
   return "calibrate it again: `isotherm calibrate time RECORDING --rig RIG_FILE`";
+}
+
+std::string WithHint(std::string verdict, const DelayEstimate& off_by) {
+  const std::string hint = HintOfDrift(off_by);
+  return hint.empty() ? verdict : verdict + " (" + hint + ")";
 }
 
 }  // namespace
@@ -78,9 +86,9 @@ std::string_view ToString(DelayVerdict verdict) {
 }
 
 DelayVerdict Assess(const DelayEstimate& off_by, double max_shift_s) {
-  const double shift_s = std::abs(off_by.delay_s);
-  return shift_s > std::max(max_shift_s, kSigmas * off_by.sigma_s) ? DelayVerdict::kMoved
-                                                                   : DelayVerdict::kAgrees;
+  if (std::abs(off_by.delay_s) > std::max(max_shift_s, kSigmas * off_by.sigma_s))
+    return DelayVerdict::kMoved;
+  return off_by.sigma_s > kMaxSigmaToAgree_s ? DelayVerdict::kNotAssessed : DelayVerdict::kAgrees;
 }
 
 std::string Describe(const DelayReport& report) {
@@ -91,12 +99,12 @@ std::string Describe(const DelayReport& report) {
   const bool moved = report.verdict == DelayVerdict::kMoved;
   if (!report.calibrated_s) {
     return fmt::format("thermal stamps are off by {}: {}", InMilliseconds(*report.off_by, 0.0),
-                       moved ? WhatToDo() : "as calibrated");
+                       moved ? WhatToDo() : WithHint("as calibrated", *report.off_by));
   }
   return fmt::format("thermal camera calibrated {:+.1f} ms, this scan says {}: {}",
                      1e3 * *report.calibrated_s,
                      InMilliseconds(*report.off_by, *report.calibrated_s),
-                     moved ? "moved; " + WhatToDo() : "agrees");
+                     moved ? "moved; " + WhatToDo() : WithHint("agrees", *report.off_by));
 }
 
 DelayCheck::DelayCheck(const DelayCheckOptions& options, const Rig& rig,
@@ -130,8 +138,15 @@ DelayReport DelayCheck::Finish(const ScanModel& scan, ThreadPool& pool,
     report.reason = estimate.error().message();
     return report;
   }
-  report.off_by = *estimate;
   report.verdict = Assess(*estimate, options_.expert().max_shift_s());
+  if (report.verdict == DelayVerdict::kNotAssessed) {
+    report.reason = fmt::format(
+        "the rig hardly went back and forth, so that only a delay off by more than {:.0f} ms would "
+        "have shown",
+        1e3 * kSigmas * estimate->sigma_s);
+    return report;
+  }
+  report.off_by = *estimate;
   if (report.verdict == DelayVerdict::kMoved) {
     LOG(Calibrate, Warning) << "the delay between depth and thermal camera has changed: "
                             << Describe(report);

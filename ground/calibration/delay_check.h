@@ -37,7 +37,8 @@ struct DelayReport {
   double elapsed_s = 0.0;               ///< Time that the check took.
 };
 
-/// Moved: by more than `max_shift_s` and more than three standard deviations.
+/// Moved: by more than `max_shift_s` and more than three standard deviations. Not assessed:
+/// neither, but so uncertain that it agrees with nearly any delay.
 DelayVerdict Assess(const DelayEstimate& off_by, double max_shift_s);
 
 /// A line for the user, without its end.

@@ -128,7 +128,9 @@ TEST_F(DelayCheckTest, TheRightDelayAgrees) {
     const DelayReport report = Check(late_s, -0.03);
     ASSERT_EQ(report.verdict, DelayVerdict::kAgrees) << report.reason;
     EXPECT_NEAR(report.off_by->delay_s, -late_s, kTolerance_s);
-    EXPECT_LT(report.off_by->sigma_s, 0.002);
+    // Estimates of such scans, one reversal or two, spread by 2.8 ms (docs/timing.md).
+    EXPECT_GT(report.off_by->sigma_s, 0.002);
+    EXPECT_LT(report.off_by->sigma_s, 0.004);
     EXPECT_THAT(Describe(report), AllOf(HasSubstr("calibrated -30.0 ms"), HasSubstr("agrees")));
   }
 }
@@ -257,6 +259,8 @@ TEST(DelayAssessmentTest, MovedIsWhatIsBothLargeAndCertain) {
   EXPECT_EQ(assess(-0.0031, 0.0001), DelayVerdict::kMoved);
   EXPECT_EQ(assess(0.0055, 0.0019), DelayVerdict::kAgrees) << "within three sigma";
   EXPECT_EQ(assess(0.0060, 0.0019), DelayVerdict::kMoved);
+  EXPECT_EQ(assess(0.0100, 0.0060), DelayVerdict::kNotAssessed) << "agrees with nearly all";
+  EXPECT_EQ(assess(0.0200, 0.0060), DelayVerdict::kMoved) << "but not with this";
 }
 
 TEST(DelayAssessmentTest, OptionsAreChecked) {

@@ -36,9 +36,10 @@ struct DelaySearchOptions {
 
 struct DelayEstimate {
   double delay_s = 0.0;
-  double sigma_s = 0.0;   ///< Spread over resampled parts of the scan.
-  double contrast = 0.0;  ///< Disagreement at the ends of the fine steps over the least.
-  int parts = 0;          ///< Parts of the scan that were resampled.
+  double sigma_s = 0.0;        ///< Of SearchDelay: spread over resampled parts of the scan.
+  double contrast = 0.0;       ///< Disagreement at the ends of the fine steps over the least.
+  int parts = 0;               ///< Parts of the scan that were resampled.
+  double drift_sigma_s = 0.0;  ///< What of sigma_s the drift of poses makes (FindDelay).
 };
 
 /// The delay at which thermal images disagree least: on a grid, then on a fine grid around its

@@ -3,14 +3,16 @@
 #include <cmath>
 #include <vector>
 
+#include "ground/calibration/image_motion.h"
+
 namespace isotherm {
 namespace {
 
 constexpr double kPart_s = 1.0;
-// What tracked poses are off by makes about that much (1.0 ms on a rendered scan, where true poses
-// say so), and resampling does not show it. It can be several times as much where the rig hardly
-// reverses (docs/timing.md).
-constexpr double kPoseError_s = 0.001;
+// What is wrong alike in the whole scan, so that resampling does not show it: the surface that
+// drifting poses made, emissivity that changes with the angle. With true poses on simulated scans,
+// +0.8 ms on average (docs/timing.md).
+constexpr double kCommonError_s = 0.001;
 
 }  // namespace
 
@@ -25,8 +27,17 @@ Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& 
   Result<DelayEstimate> estimate = SearchDelay(
       disagreement, [&](double delay_s) { consistency.WeighAt(delay_s); }, consistency.parts(),
       options.search, progress);
-  if (estimate) estimate->sigma_s = std::hypot(estimate->sigma_s, kPoseError_s);
+  if (!estimate) return estimate;
+  const std::vector<StampedVelocity> motion = ImageVelocities(views);
+  estimate->drift_sigma_s = DelaySigmaOfDrift(motion, views.pose_drift_m * PixelsPerMetre(views));
+  estimate->sigma_s = std::hypot(estimate->sigma_s, kCommonError_s, estimate->drift_sigma_s);
   return estimate;
+}
+
+std::string HintOfDrift(const DelayEstimate& estimate) {
+  if (estimate.drift_sigma_s * estimate.drift_sigma_s <= 0.5 * estimate.sigma_s * estimate.sigma_s)
+    return {};
+  return "move the rig back and forth more often for a more certain one";
 }
 
 }  // namespace isotherm

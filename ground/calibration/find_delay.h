@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 
 #include "common/base/status.h"
 #include "common/concurrency/thread_pool.h"
@@ -17,9 +18,14 @@ struct FindDelayOptions {
 };
 
 /// The delay, to be added to the stamps, at which the thermal images of a scan agree about the
-/// surface. Its sigma holds, beside the spread of parts of the scan, a millisecond for the poses.
+/// surface. Its sigma holds, beside the spread of parts of the scan, a millisecond for what is
+/// wrong in all of it alike, and what the drift of its poses can be taken for (DelaySigmaOfDrift).
 /// Fails and says what the scan lacks. Deterministic. `progress` gets the fraction done, 0..1.
 Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& options,
                                 ThreadPool& pool, const std::function<void(double)>& progress);
+
+/// What to tell the user of an estimate whose uncertainty is mostly that of drifting poses, as the
+/// rig hardly reversed; empty for others.
+std::string HintOfDrift(const DelayEstimate& estimate);
 
 }  // namespace isotherm

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdio>
@@ -21,6 +22,7 @@ constexpr double kFocal_px = 150.0;
 
 // The poses here do not lag; what is left is their noise and the pixels'.
 constexpr double kTolerance_s = 0.0003;
+constexpr double kWanderMemory_s = 4.0;
 
 /// Holds what is simulated beside the delay.
 struct Disturbances {
@@ -29,6 +31,7 @@ struct Disturbances {
   double pose_noise_m = 0.0001;
   double pose_drift = 0.0;  ///< Poses fall short of the rig's way from its start by this fraction.
   double hurry = 1.0;       ///< The rig swings so many times as fast.
+  double wander_m = 0.0;    ///< Poses wander by this, one sigma along x and y, within seconds.
 };
 
 /// A wall at z = 1 m with a wavy temperature; the rig swings in front of it.
@@ -72,8 +75,19 @@ ScanViews SwingInFrontOfAWall(double delay_s, const Disturbances& disturbances =
   ScanViews views;
   views.thermal_camera = {
       .width = kWidth, .height = kHeight, .fx = kFocal_px, .fy = kFocal_px, .cx = 80, .cy = 60};
+  views.pose_drift_m = disturbances.wander_m;
+  const double kept = std::exp(-1.0 / (30.0 * kWanderMemory_s));
+  const std::uint64_t wandering = NoiseStream(disturbances.seed, 4, 0);
+  Eigen::Vector2d wander_m = Eigen::Vector2d::Zero();
   for (int i = 0; i < 300; ++i) {
     RigidTransform pose = PoseAt(disturbances.hurry * i / 30.0);
+    const auto counter = 2 * static_cast<std::uint64_t>(i);
+    const Eigen::Vector2d drawn(NormalNoise(wandering, counter),
+                                NormalNoise(wandering, counter + 1));
+    wander_m = i == 0 ? Eigen::Vector2d(disturbances.wander_m * drawn)
+                      : Eigen::Vector2d(kept * wander_m + disturbances.wander_m *
+                                                              std::sqrt(1.0 - kept * kept) * drawn);
+    pose.translation().head<2>() += wander_m;
     pose.translation() -=
         disturbances.pose_drift * (pose.translation() - PoseAt(0.0).translation());
     const std::uint64_t stream = NoiseStream(disturbances.seed, 2, static_cast<std::uint64_t>(i));
@@ -147,6 +161,41 @@ TEST(FindDelayTest, DriftOfThePosesAveragesOutIfTheRigGoesBackAndForth) {
   std::printf("back and forth %+.2f ms, one way %+.2f ms\n", 1e3 * sum_s / kSeeds,
               1e3 * one_way->delay_s);
   EXPECT_GT(std::abs(one_way->delay_s), 10.0 * kMaxBias_s);
+}
+
+/// Poses that wander make delays that are wrong by milliseconds where the rig hardly reverses: the
+/// uncertainty must say so, or a right delay is called moved.
+TEST(FindDelayTest, WhatWanderingPosesMakeIsInTheUncertainty) {
+  constexpr int kSeeds = 10;
+  FindDelayOptions options;
+  options.search.range_s = 0.06;
+  options.search.resamplings = 40;
+  options.search.max_sigma_s = 0.02;
+  double squares = 0.0, largest_s = 0.0, squares_without = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Disturbances slow{.seed = seed, .hurry = 0.3, .wander_m = 0.0005};
+    const Result<DelayEstimate> found = Find(SwingInFrontOfAWall(0.0, slow), options);
+    ASSERT_TRUE(found.has_value()) << found.error().message();
+    const double without_s =
+        std::sqrt(found->sigma_s * found->sigma_s - found->drift_sigma_s * found->drift_sigma_s);
+    std::printf("seed %d: %+.2f ms, sigma %.2f, without drift %.2f ms\n", static_cast<int>(seed),
+                1e3 * found->delay_s, 1e3 * found->sigma_s, 1e3 * without_s);
+    EXPECT_LT(std::abs(found->delay_s), 3.0 * found->sigma_s) << "seed " << seed;
+    squares += std::pow(found->delay_s / found->sigma_s, 2) / kSeeds;
+    squares_without += std::pow(found->delay_s / without_s, 2) / kSeeds;
+    largest_s = std::max(largest_s, std::abs(found->delay_s));
+  }
+  // Neither too small nor an excuse; and the poses do matter here.
+  EXPECT_LT(std::sqrt(squares), 1.5);
+  EXPECT_GT(std::sqrt(squares), 0.4);
+  EXPECT_GT(std::sqrt(squares_without), 1.5);
+  EXPECT_GT(largest_s, 0.003);
+  // Ten times as fast, back and forth, the same wandering is nothing.
+  const Result<DelayEstimate> fast =
+      Find(SwingInFrontOfAWall(0.0, {.hurry = 3.0, .wander_m = 0.0005}), options);
+  ASSERT_TRUE(fast.has_value()) << fast.error().message();
+  EXPECT_LT(fast->drift_sigma_s, 0.0003);
+  EXPECT_LT(std::abs(fast->delay_s), 0.001);
 }
 
 TEST(FindDelayTest, WithoutThermalContrastNothingIsFound) {

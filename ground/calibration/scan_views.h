@@ -24,9 +24,6 @@ struct ScanModel;
 Status AddSurface(const ScanModel& scan, std::size_t max_points, double range_s, ThreadPool& pool,
                   ScanViews& views, const std::function<void(double)>& progress);
 
-/// RMS speed of the surface's middle in the thermal image, pixels per second.
-double ImageSpeed(const ScanViews& views);
-
 /// The delay that a recording's thermal stamps contain already: that of the edge that made it, in
 /// seconds; 0 for other recordings; nullopt if it was made by the ground, which is not told.
 std::optional<double> AppliedDelay(const RecordingInfo& info);

@@ -41,6 +41,7 @@ struct ScanViews {
   std::vector<StampedPose> trajectory;  ///< By time.
   std::vector<TexturePoint> points;  ///< In random order, so that any number of the first will do.
   std::vector<StampedThermal> frames;  ///< By time.
+  double pose_drift_m = 0.0;  ///< What poses drift by within seconds, one sigma along each axis.
 };
 
 /// Interpolated; nullopt outside the trajectory and in its gaps.

@@ -13,6 +13,7 @@
 #include "common/rig/rig_calibration.h"
 #include "ground/calibration/delay_check.h"
 #include "ground/calibration/find_delay.h"
+#include "ground/calibration/image_motion.h"
 #include "ground/calibration/scan_views.h"
 #include "ground/cli/command.h"
 #include "ground/cli/configuration_arguments.h"
@@ -126,7 +127,8 @@ void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, const 
       "images disagree {:.1f} times as much 15 ms away; {} thermal frames, {} surface "
       "points, {:.0f} px/s\n",
       estimate.contrast, scan.views.frames.size(), scan.views.points.size(),
-      ImageSpeed(scan.views));
+      RmsSpeed(ImageVelocities(scan.views)));
+  if (const std::string hint = HintOfDrift(estimate); !hint.empty()) fmt::print("{}\n", hint);
   if (scan.applied_delay_s.value_or(0.0) != 0.0) {
     fmt::print("of it, {:+.1f} ms were in the recording's stamps already\n",
                1e3 * *scan.applied_delay_s);

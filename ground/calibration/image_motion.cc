@@ -1,0 +1,84 @@
+#include "ground/calibration/image_motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "ground/calibration/texture_consistency.h"
+
+namespace isotherm {
+namespace {
+
+// To each side: longer than what the noise of single poses makes, shorter than a person's swing.
+constexpr double kHalfBaseline_s = 0.08;
+constexpr double kMinDepth_m = 0.05;
+// How long tracked poses remember what they are off by: the surface that they are tracked against
+// was built by poses that drifted alike, and changes as the rig comes to see other parts of it.
+constexpr double kDriftMemory_s = 4.0;
+// Of the pairs' sum below, a bounded number of terms however long the scan is.
+constexpr std::size_t kMaxVelocities = 1200;
+
+Eigen::Vector3d MiddleOfSurface(const ScanViews& views) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const TexturePoint& point : views.points)
+    middle += point.p_world / static_cast<double>(views.points.size());
+  return middle;
+}
+
+}  // namespace
+
+std::vector<StampedVelocity> ImageVelocities(const ScanViews& views) {
+  const Eigen::Vector3d middle = MiddleOfSurface(views);
+  const auto pixel_at = [&](CaptureTime time) -> std::optional<Eigen::Vector2d> {
+    const std::optional<RigidTransform> pose = InterpolatePose(views.trajectory, time);
+    if (!pose) return std::nullopt;
+    const Eigen::Vector3d p_thermal = views.T_thermal_depth * (pose->inverse() * middle);
+    if (p_thermal.z() < kMinDepth_m) return std::nullopt;
+    return views.thermal_camera.fx * p_thermal.head<2>() / p_thermal.z();
+  };
+  const std::size_t stride = 1 + views.frames.size() / kMaxVelocities;
+  std::vector<StampedVelocity> motion;
+  for (std::size_t i = 0; i < views.frames.size(); i += stride) {
+    const CaptureTime time = views.frames[i].time;
+    const auto before = pixel_at(time - FromSeconds(kHalfBaseline_s));
+    const auto after = pixel_at(time + FromSeconds(kHalfBaseline_s));
+    if (before && after) motion.push_back({time, (*after - *before) / (2.0 * kHalfBaseline_s)});
+  }
+  return motion;
+}
+
+double RmsSpeed(const std::vector<StampedVelocity>& motion) {
+  double squares = 0.0;
+  for (const StampedVelocity& at : motion) squares += at.velocity_px_s.squaredNorm();
+  return motion.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(motion.size()));
+}
+
+double PixelsPerMetre(const ScanViews& views) {
+  const Eigen::Vector3d middle = MiddleOfSurface(views);
+  double depth_m = 0.0;
+  for (const StampedPose& pose : views.trajectory)
+    depth_m += (views.T_thermal_depth * (pose.T_world_depth.inverse() * middle)).z() /
+               static_cast<double>(views.trajectory.size());
+  return depth_m < kMinDepth_m ? 0.0 : views.thermal_camera.fx / depth_m;
+}
+
+double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px) {
+  // Least squares: delay = sum(drift . change) / sum(change . change), where change is the velocity
+  // without its mean. Its variance sums the drift's covariance over all pairs of times.
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const StampedVelocity& at : motion)
+    mean += at.velocity_px_s / static_cast<double>(motion.size());
+  double squares = 0.0, variance = 0.0;
+  for (const StampedVelocity& a : motion) {
+    squares += (a.velocity_px_s - mean).squaredNorm();
+    for (const StampedVelocity& b : motion) {
+      const double correlation = std::exp(-std::abs(ToSeconds(a.time - b.time)) / kDriftMemory_s);
+      variance += correlation * (a.velocity_px_s - mean).dot(b.velocity_px_s - mean);
+    }
+  }
+  if (!(squares > 0.0)) return std::numeric_limits<double>::infinity();
+  return drift_px * std::sqrt(std::max(0.0, variance)) / squares;
+}
+
+}  // namespace isotherm

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/time/time_types.h"
+
+namespace isotherm {
+
+struct ScanViews;
+
+/// How the middle of the scanned surface moves through the thermal image at one time.
+struct StampedVelocity {
+  CaptureTime time;
+  Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
+};
+
+/// One for each thermal frame at whose time the rig's motion is known, by time.
+std::vector<StampedVelocity> ImageVelocities(const ScanViews& views);
+
+/// RMS of their lengths, pixels per second; 0 for none.
+double RmsSpeed(const std::vector<StampedVelocity>& motion);
+
+/// How many pixels a shift of a metre across the line of sight makes at the surface's middle, over
+/// the poses of the scan; 0 without.
+double PixelsPerMetre(const ScanViews& views);
+
+/// The standard deviation, seconds, of a delay that comes from poses which drift by `drift_px` (one
+/// sigma along each axis of the image, forgotten within seconds): what of the drift goes along with
+/// the velocity is taken for a delay. A rig that reverses often averages it out, one that goes one
+/// way does not: a constant velocity says nothing about a delay. Infinite without motion.
+double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px);
+
+}  // namespace isotherm
