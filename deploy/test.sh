@@ -56,7 +56,7 @@ mkdir -p "$(dirname "$log")"
 status=0
 # The summary is held back until the skipped cases have been named.
 ctest --preset "$preset" --parallel "$(nproc)" "$@" 2>&1 | tee "$log" |
-  awk '/% tests passed/ { held = 1 } !held { print; fflush() }' || status=$?
+  sed --unbuffered '/% tests passed/,$d' || status=$?
 details=build/$preset/Testing/Temporary/LastTest.log
 if [ -f "$details" ]; then
   skipped=$(grep -aE '^\[  SKIPPED \] [A-Za-z0-9_]+\.[A-Za-z0-9_/]+ \(' "$details" | sed 's/ (.*//' | sort -u || true)
