@@ -32,6 +32,12 @@ if(ISOTHERM_PRECOMPILE AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-Xclang -fno-pch-timestamp>")  # Else ccache never finds it again.
 endif()
 
+# Kernels are compiled for each instruction set, and under sanitizers take longest of all to compile. The release build tests
+# all of them; sanitizers watch the newest ones and the portable one.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize" AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  add_compile_definitions("HWY_DISABLED_TARGETS=(HWY_SSSE3|HWY_SSE4)")
+endif()
+
 # Tests spend their time in the libraries, which are optimised.
 set(isotherm_test_options $<$<COMPILE_LANGUAGE:CXX>:-O1>)
 # The checks of pointers make up a third of the time that a test takes to compile under sanitizers; what is tested keeps them.

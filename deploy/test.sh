@@ -19,7 +19,10 @@ strict=${STRICT:-0}
 say() { printf '== %s\n' "$*"; }
 
 say "packages"
-deploy/install-deps.sh
+case "$preset" in
+  asan | clang) deploy/install-deps.sh --check ;;  # Clang compiles these.
+  *) deploy/install-deps.sh ;;
+esac
 
 # Formatting of the files being worked on. Other versions of clang-format decide differently, so only the one
 # of Debian 12 has a say.

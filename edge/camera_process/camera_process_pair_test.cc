@@ -37,12 +37,12 @@ class SteadyCamera final : public FrameSource {
   void Close() override {}
 
  private:
-  const SystemClock clock_;
+  const SystemClock clock_{};
   std::uint64_t number_ = 0;
 };
 
 TEST(CameraProcessPairTest, F14WhileOneLibraryCrashesAndHangsTheOtherCameraLosesNoFrame) {
-  const SystemClock clock;
+  const SystemClock clock{};
   FrameCheckOptions options;
   options.mutable_expert()->set_retry_min_s(0.05);
   for (const char* what : {"crash", "hang"}) {

@@ -55,7 +55,7 @@ class CameraProcessTest : public ::testing::Test {
     }
   }
 
-  const SystemClock clock_;
+  const SystemClock clock_{};
   std::unique_ptr<CameraProcess> camera_;
 };
 

@@ -59,7 +59,7 @@ class CameraSandboxTest : public ::testing::Test {
   }
 
   const testing::TemporaryDirectory folder_;
-  const SystemClock clock_;
+  const SystemClock clock_{};
   std::string settings_;
   SandboxResults results_{};
 };

@@ -219,7 +219,7 @@ int Main(int argc, char** argv) {
   }
   LOG(Edge, Debug) << "effective configuration:\n" << ToTextProto(options);
 
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const StopSignal signal;
   return RunEdge(options, environment, clock, signal);

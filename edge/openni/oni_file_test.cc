@@ -43,9 +43,9 @@ class OniFileTest : public ::testing::Test {
   }
 
   const testing::TemporaryDirectory folder_;
-  const FakeDepthCamera camera_;
+  const FakeDepthCamera camera_{};
   const std::filesystem::path file_ = folder_.path() / "scan.oni";
-  const SystemClock clock_;
+  const SystemClock clock_{};
   CameraDescription description_;
 };
 

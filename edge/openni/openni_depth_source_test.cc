@@ -72,7 +72,7 @@ class OpenniDepthSourceTest : public ::testing::Test {
   const testing::TemporaryDirectory folder_;
   FakeDepthCamera camera_;
   DepthCameraOptions options_;
-  const SystemClock clock_;
+  const SystemClock clock_{};
   std::unique_ptr<OpenniDepthSource> source_;
 };
 

@@ -75,7 +75,7 @@ class FakeCameraSource final : public FrameSource {
  private:
   const Sensor sensor_;
   const std::shared_ptr<FakeCamera> camera_;
-  const SystemClock clock_;
+  const SystemClock clock_{};
   std::uint64_t number_ = 0;
 };
 
@@ -127,7 +127,7 @@ class CameraPairTest : public ::testing::Test {
   }
 
   FrameCheckOptions options_;
-  const SystemClock clock_;
+  const SystemClock clock_{};
   const std::shared_ptr<FakeCamera> depth_ = std::make_shared<FakeCamera>();
   const std::shared_ptr<FakeCamera> thermal_ = std::make_shared<FakeCamera>();
   std::array<std::atomic<int>, 2> captured_{}, dropped_{};

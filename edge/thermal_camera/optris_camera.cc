@@ -50,7 +50,7 @@ NucState StateOf(int flag) {
 /// The loaded library and its functions.
 struct OptrisCamera::Library {
   struct Unload {
-    void operator()(void* handle) const { dlclose(handle); }
+    void operator()(void* library) const { dlclose(library); }
   };
   std::unique_ptr<void, Unload> handle;
   int (*usb_init)(const char* config, const char* formats, const char* log) = nullptr;

@@ -6,18 +6,18 @@
 namespace isotherm {
 namespace {
 
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Jacobian6 = Eigen::Matrix<double, 6, 6>;
+using PoseError = Eigen::Matrix<double, 6, 1>;
+using PoseJacobian = Eigen::Matrix<double, 6, 6>;
 
 constexpr int kIterations = 20;
 constexpr double kConverged = 1e-9;
 
 /// Metres and radians over their standard deviations.
-Vector6 Residual(const MapLink& link, const RigidTransform& T_world_a,
-                 const RigidTransform& T_world_b) {
+PoseError Residual(const MapLink& link, const RigidTransform& T_world_a,
+                   const RigidTransform& T_world_b) {
   const RigidTransform mismatch = Mismatch(link, T_world_a, T_world_b);
   const Eigen::AngleAxisd rotation(mismatch.linear());
-  Vector6 residual;
+  PoseError residual;
   residual << mismatch.translation() / link.sigma_m,
       rotation.angle() * rotation.axis() / link.sigma_rad;
   return residual;
@@ -26,11 +26,11 @@ Vector6 Residual(const MapLink& link, const RigidTransform& T_world_a,
 /// Change of the residual when one of the two sub-maps moves; central differences, exact enough
 /// for a handful of links.
 template <typename ResidualOf>
-Jacobian6 Differentiate(const RigidTransform& T_world_map, const ResidualOf& residual_of) {
+PoseJacobian Differentiate(const RigidTransform& T_world_map, const ResidualOf& residual_of) {
   constexpr double kStep = 1e-6;
-  Jacobian6 jacobian;
+  PoseJacobian jacobian;
   for (int axis = 0; axis < 6; ++axis) {
-    const Vector6 step = kStep * Vector6::Unit(axis);
+    const PoseError step = kStep * PoseError::Unit(axis);
     jacobian.col(axis) = (residual_of(T_world_map * TransformFromTwist(step)) -
                           residual_of(T_world_map * TransformFromTwist(-step))) /
                          (2.0 * kStep);
@@ -76,8 +76,8 @@ void OptimisePoseGraph(std::span<const MapLink> links, std::vector<RigidTransfor
     for (const MapLink& link : links) {
       const RigidTransform& a = T_world_map[link.a];
       const RigidTransform& b = T_world_map[link.b];
-      const Vector6 residual = Residual(link, a, b);
-      const std::array<Jacobian6, 2> jacobians = {
+      const PoseError residual = Residual(link, a, b);
+      const std::array<PoseJacobian, 2> jacobians = {
           Differentiate(a, [&](const RigidTransform& moved) { return Residual(link, moved, b); }),
           Differentiate(b, [&](const RigidTransform& moved) { return Residual(link, a, moved); })};
       const std::array<int, 2> places = {place[link.a], place[link.b]};

@@ -88,7 +88,7 @@ std::optional<Command> OrderOf(const NucArguments& arguments) {
 }
 
 Status Run(const NucArguments& arguments) {
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const Nanoseconds timeout = FromSeconds(arguments.timeout_s);
   const auto participant = Participant::Create(environment, arguments.domain);

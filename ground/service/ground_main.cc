@@ -114,7 +114,7 @@ int Main(int argc, char** argv) {
   *options.mutable_thermal() = WithAnglesOfMaterial(options.thermal());
   LOG(Ground, Debug) << "effective configuration:\n" << ToTextProto(options);
   StopSignal signal;
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   return RunGround(options, {line.once}, environment, clock, signal);
 }

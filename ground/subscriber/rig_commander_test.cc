@@ -85,7 +85,7 @@ class RigCommanderTest : public ::testing::Test {
     return commander->Send({.kind = CommandKind::kTriggerNuc}, kPatience);
   }
 
-  const SystemClock clock_;
+  const SystemClock clock_{};
   const TransportEnvironment environment_{clock_};
   const TestDomain domain_;
   const std::unique_ptr<Participant> ground_ = *Participant::Create(environment_, domain_.number());

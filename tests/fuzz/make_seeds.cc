@@ -73,6 +73,13 @@ void WriteCodecSeeds(const fs::path& root) {
   };
   write("depth", DepthEncoder().Encode(image));
   write("thermal", ThermalEncoder().Encode(image, kCentikelvin));
+  constexpr RadiometricScale kHot{.kelvin_per_count = 0.02};
+  const EncodedImage scaled = ThermalEncoder().Encode(image, kHot);
+  CHECK(scaled.encoding == Encoding::kScaledThermalRans);
+  write("thermal-scaled", scaled);
+  EncodedImage scaled_raw = PackCounts(image);  // The same bytes under another name.
+  scaled_raw.encoding = Encoding::kScaledRaw16;
+  write("thermal-scaled-raw", scaled_raw);
   write("counts", PackCounts(image));
   write("png", {.encoding = Encoding::kPng16,
                 .width = image.width(),

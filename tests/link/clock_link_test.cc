@@ -23,7 +23,7 @@ class WrongClock final : public Clock {
   SteadyTime SteadyNow() const override { return right_.SteadyNow(); }
 
  private:
-  const SystemClock right_;
+  const SystemClock right_{};
   const Nanoseconds ahead_;
 };
 

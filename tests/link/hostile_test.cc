@@ -37,7 +37,7 @@ void ExpectEachCauseIsCounted(const RefusalCounter& refusals) {
 }
 
 TEST(HostileTest, F60WhatCannotBeIsRefusedCountedAndLoggedOncePerCause) {
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const TestDomain domain;
   const auto participant = std::move(*Participant::Create(environment, domain.number()));

@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
       std::string_view(argv[6]) == "live" ? PublishPolicy::kLive : PublishPolicy::kLossless;
   plan.wait_for_ground = std::chrono::seconds(std::atoi(argv[7]));
 
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   EdgeSide edge(environment, clock, plan);
   std::puts("started");

@@ -149,7 +149,7 @@ class BothCamerasTest : public ::testing::Test {
 
   static constexpr const char* kThermalWorks = "thermal camera: working";
 
-  const SystemClock clock_;
+  const SystemClock clock_{};
   const MachineLoad load_;
   const ::isotherm::testing::TemporaryDirectory folder_;
   FakeDepthCamera depth_;

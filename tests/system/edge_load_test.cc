@@ -341,7 +341,7 @@ class EdgeLoadTest : public ::testing::Test {
   FakeDepthCamera camera_;
   double seconds_ = 60.0;
   EdgeOptions options_;
-  const SystemClock clock_;
+  const SystemClock clock_{};
   const TransportEnvironment environment_{clock_};
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Publisher> publisher_;

@@ -13,7 +13,7 @@ int main(int argc, char** argv) {
   using namespace isotherm;
   if (argc != 2) return kExitUsage;
   const StopSignal signal;
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const auto participant = Participant::Create(environment, std::atoi(argv[1]));
   if (!participant) return ExitCode(participant.error());

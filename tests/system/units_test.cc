@@ -298,7 +298,7 @@ TEST_F(UnitsScanTest, F39ADaemonThatIsStoppedIsKilledByTheWatchdogAndComesBack) 
 TEST_F(UnitsTest, F14TheCamerasProcessConfinesItselfUnderTheUnitAndItsFramesArrive) {
   constexpr int kFrames = 40;
   const ::isotherm::testing::TemporaryDirectory folder;
-  const FakeDepthCamera camera;
+  const FakeDepthCamera camera{};
   const Status recorded = RecordOni(folder.path() / "scan.oni", kFrames);
   ASSERT_TRUE(recorded.ok()) << recorded.message();
   std::filesystem::copy_file(folder.path() / "scan.oni", root() / "srv/scan.oni",

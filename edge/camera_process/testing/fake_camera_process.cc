@@ -114,7 +114,7 @@ class FakeCamera final : public FrameSource {
   const std::string what_;
   const int after_frames_;
   const std::string probed_folder_;  ///< Empty: none.
-  const SystemClock clock_;
+  const SystemClock clock_{};
   int frames_ = 0;
   bool nuc_ordered_ = false;
   bool automatic_ordered_ = false;

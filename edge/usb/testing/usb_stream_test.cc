@@ -75,7 +75,7 @@ class UsbStreamTest : public ::testing::Test {
     ASSERT_GE(packets_, packets);
   }
 
-  const SystemClock clock_;
+  const SystemClock clock_{};
   const std::shared_ptr<BulkDevice> camera_ = std::make_shared<BulkDevice>();
   std::optional<EmulatedBus> bus_;
   std::unique_ptr<UsbDevice> device_;

@@ -51,7 +51,7 @@ class Flood {
 };
 
 int Main(int domain, int names) {
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const auto participant = std::move(*Participant::Create(environment, domain));
   const Flood<Hello> hello(*participant, isotherm_wire_Hello_desc);

@@ -144,7 +144,7 @@ void SendThermal(const RawWriter& writer) {
 
 int Main(int domain) {
   setenv("CYCLONEDDS_URI", kProfile, /*overwrite=*/1);
-  const SystemClock clock;
+  const SystemClock clock{};
   const TransportEnvironment environment(clock);
   const dds_entity_t participant =
       dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
