@@ -15,8 +15,7 @@ class Worker {
   /// `body` gets a std::stop_token.
   template <typename Body>
   explicit Worker(Body body)
-      : ended_(end_.get_future()),
-        thread_([this, body = std::move(body)](const std::stop_token& stop) {
+      : thread_([this, body = std::move(body)](const std::stop_token& stop) {
           body(stop);
           end_.set_value_at_thread_exit();
         }) {}
@@ -29,7 +28,7 @@ class Worker {
 
  private:
   std::promise<void> end_;
-  std::future<void> ended_;
+  std::future<void> ended_ = end_.get_future();
   std::jthread thread_;
 };
 
