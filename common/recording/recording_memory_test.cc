@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/recording/testing/recording_data.h"
+#include "common/testing/sanitizers.h"
 
 namespace isotherm {
 namespace {
@@ -51,9 +52,8 @@ std::size_t PeakDuring(const auto& work) {
 class RecordingMemoryTest : public ::testing::Test {
  protected:
   void SetUp() override {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    GTEST_SKIP() << "a sanitizer's own memory would count";
-#endif
+    if (testing::kAddressSanitizer || testing::kThreadSanitizer)
+      GTEST_SKIP() << "a sanitizer's own memory would count";
     std::string pattern =
         (std::filesystem::temp_directory_path() / "recording_memory_XXXXXX").string();
     ASSERT_NE(::mkdtemp(pattern.data()), nullptr);

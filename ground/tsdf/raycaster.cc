@@ -130,7 +130,8 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
   const auto cx = static_cast<float>(camera.cx) + 0.5F;
   const auto cy = static_cast<float>(camera.cy) + 0.5F;
   const auto tile_of = [](float pixel, int tiles) {
-    return std::clamp(static_cast<int>(pixel) / kRaycastTile, 0, tiles - 1);
+    const auto last = static_cast<float>(tiles * kRaycastTile - 1);
+    return pixel > 0.0F ? static_cast<int>(std::min(pixel, last)) / kRaycastTile : 0;  // NaN: 0.
   };
   // A ray ends where it comes from an observed voxel before the surface into one behind it: start
   // early enough to meet the former.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/base/check.h"
+#include "common/testing/sanitizers.h"
 #include "common/transport/participant.h"
 #include "edge/publisher/publisher.h"
 
@@ -36,11 +37,7 @@ inline std::uint8_t Mark(std::uint64_t number, std::size_t index) {
 
 /// The thread sanitizer looks at each byte that is copied: images a quarter as wide and high are
 /// enough for it.
-#ifdef __SANITIZE_THREAD__
-inline constexpr int kShrink = 4;
-#else
-inline constexpr int kShrink = 1;
-#endif
+inline constexpr int kShrink = testing::kThreadSanitizer ? 4 : 1;
 
 template <typename Frame>
 Frame MakeFrame(std::uint64_t session, std::uint64_t number, int width, int height) {

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "common/testing/sanitizers.h"
 #include "common/testing/temporary_directory.h"
 #include "tests/support/programs.h"
 
@@ -113,9 +114,8 @@ TEST(LightEdgeTest, TheRunningEdgeHasOpenedNoMore) {
 
 /// Without a sanitizer, whose shadow memory counts too.
 TEST(LightEdgeTest, TheEdgeNeedsLittleMemoryToStart) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer's own memory counts too";
-#endif
+  if (testing::kAddressSanitizer || testing::kThreadSanitizer)
+    GTEST_SKIP() << "a sanitizer's own memory counts too";
   // The largest of all children of this process so far: in a process of its own, only this one.
   EXPECT_EXIT(
       {
