@@ -23,7 +23,7 @@ namespace isotherm {
 /// Version of the wire types. Minor: members were added, both sides still understand each other.
 /// Major: they do not and say so (CheckCompatible()); the topics have other names (qos.cc).
 inline constexpr std::uint16_t kWireMajor = 2;
-inline constexpr std::uint16_t kWireMinor = 3;
+inline constexpr std::uint16_t kWireMinor = 4;
 
 /// Ends each sample (idl/isotherm_frames.idl). Not 0, which is what a missing member reads as.
 inline constexpr std::uint8_t kWireMark = 0xA5;

@@ -97,7 +97,10 @@ ThermalSensorModel FromProto(const ThermalSensorProperties& sensor) {
   ThermalSensorModel model{.time_constant_s = sensor.time_constant_s(),
                            .row_readout_s = sensor.row_readout_s(),
                            .pixel_pitch_m = {},
-                           .lens = {}};
+                           .lens = {},
+                           .scene_influence = {sensor.scene_influence().near_fraction(),
+                                               sensor.scene_influence().near_sigma_px(),
+                                               sensor.scene_influence().total_fraction()}};
   if (sensor.has_pixel_pitch_um())
     model.pixel_pitch_m = sensor.pixel_pitch_um() * kMetresPerMicrometre;
   if (sensor.has_lens()) {
@@ -118,6 +121,12 @@ ThermalSensorProperties ToProto(const ThermalSensorModel& sensor) {
     lens.set_focal_length_mm(sensor.lens->focal_length_m / kMetresPerMillimetre);
     lens.set_f_number(sensor.lens->f_number);
     lens.set_focus_m(sensor.lens->focus_m);
+  }
+  if (sensor.scene_influence.Total() > 0.0) {
+    SceneInfluenceProperties& influence = *properties.mutable_scene_influence();
+    influence.set_near_fraction(sensor.scene_influence.near_fraction);
+    influence.set_near_sigma_px(sensor.scene_influence.near_sigma_px);
+    influence.set_total_fraction(sensor.scene_influence.total_fraction);
   }
   return properties;
 }

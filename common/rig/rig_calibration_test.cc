@@ -65,6 +65,7 @@ depth_sensor { near_range_m: 0.5 min_depth_m: 0.4 max_depth_m: 6 noise_at_1m_m: 
 thermal_sensor {
   time_constant_s: 0.012 row_readout_s: 0.0001 pixel_pitch_um: 17
   lens { focal_length_mm: 13 f_number: 1.25 focus_m: 0.6 }
+  scene_influence { near_fraction: 0.04 near_sigma_px: 35 total_fraction: 0.03 }
 })";
 
 TEST(RigCalibrationTest, SensorsAreReadInMetresAndWrittenBack) {
@@ -83,6 +84,9 @@ TEST(RigCalibrationTest, SensorsAreReadInMetresAndWrittenBack) {
     EXPECT_NEAR(rig->thermal_sensor.lens->focal_length_m, 0.013, 1e-9);
     EXPECT_EQ(rig->thermal_sensor.lens->f_number, 1.25);
     EXPECT_EQ(rig->thermal_sensor.lens->focus_m, 0.6);
+    EXPECT_EQ(rig->thermal_sensor.scene_influence.near_fraction, 0.04);
+    EXPECT_EQ(rig->thermal_sensor.scene_influence.near_sigma_px, 35.0);
+    EXPECT_EQ(rig->thermal_sensor.scene_influence.total_fraction, 0.03);
   }
 }
 
@@ -97,6 +101,7 @@ TEST(RigCalibrationTest, ARigFileWithoutSensorsHasThoseOfBefore) {
   EXPECT_EQ(rig.thermal_sensor.row_readout_s, 0.0);
   EXPECT_FALSE(rig.thermal_sensor.pixel_pitch_m.has_value());
   EXPECT_FALSE(rig.thermal_sensor.lens.has_value());
+  EXPECT_EQ(rig.thermal_sensor.scene_influence.Total(), 0.0);
   const Rig by_default;
   EXPECT_EQ(ToText(by_default), ToText(FromProto(RigCalibration())));
 }
@@ -116,6 +121,9 @@ TEST(RigCalibrationTest, ImpossibleSensorsAreRefusedWithTheField) {
   EXPECT_THAT(error("f_number: 1.25", "f_number: 0"), HasSubstr("thermal_sensor.lens"));
   EXPECT_THAT(error("focus_m: 0.6", "focus_m: 0.01"), HasSubstr("beyond the focal length"));
   EXPECT_THAT(error("focus_m: 0.6", ""), HasSubstr("lens.focus_m' is missing"));
+  EXPECT_THAT(error("near_fraction: 0.04", "near_fraction: -0.1"), HasSubstr("near_fraction"));
+  EXPECT_THAT(error("total_fraction: 0.03", "total_fraction: 0.5"), HasSubstr("total_fraction"));
+  EXPECT_THAT(error("near_sigma_px: 35", "near_sigma_px: nan"), HasSubstr("near_sigma_px"));
 }
 
 TEST(RigCalibrationTest, TheThermalScaleIsCentikelvinUnlessTheFileSaysOtherwise) {

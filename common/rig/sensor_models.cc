@@ -5,6 +5,28 @@
 #include <cmath>
 
 namespace isotherm {
+namespace {
+
+Status CheckSceneInfluence(const SceneInfluence& influence) {
+  const auto is_fraction = [](double fraction) {
+    return fraction >= 0.0 && fraction <= SceneInfluence::kMaxFraction;
+  };
+  if (!is_fraction(influence.near_fraction) || !is_fraction(influence.total_fraction)) {
+    return InvalidArgument(fmt::format(
+        "thermal_sensor.scene_influence: near_fraction and total_fraction must be "
+        "0..{}, got {} and {}",
+        SceneInfluence::kMaxFraction, influence.near_fraction, influence.total_fraction));
+  }
+  if (!(influence.near_sigma_px >= SceneInfluence::kMinSigma_px &&
+        influence.near_sigma_px <= SceneInfluence::kMaxSigma_px)) {
+    return InvalidArgument(fmt::format(
+        "thermal_sensor.scene_influence.near_sigma_px must be {}..{}, got {}",
+        SceneInfluence::kMinSigma_px, SceneInfluence::kMaxSigma_px, influence.near_sigma_px));
+  }
+  return OkStatus();
+}
+
+}  // namespace
 
 Status Validate(const DepthSensorModel& sensor) {
   if (!(sensor.near_range_m >= 0.0 && sensor.near_range_m <= 10.0)) {
@@ -39,6 +61,7 @@ Status Validate(const ThermalSensorModel& sensor) {
         fmt::format("thermal_sensor.pixel_pitch_um must be above 0 and at most 1000 um, got {}",
                     1e6 * *sensor.pixel_pitch_m));
   }
+  ISOTHERM_RETURN_IF_ERROR(CheckSceneInfluence(sensor.scene_influence));
   if (!sensor.lens) return OkStatus();
   const LensModel& lens = *sensor.lens;
   if (!sensor.pixel_pitch_m || !(lens.focal_length_m > 0.0 && std::isfinite(lens.focal_length_m)) ||

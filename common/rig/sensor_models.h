@@ -21,6 +21,22 @@ struct LensModel {
   double focus_m = 0.0;  ///< Distance of what is sharp.
 };
 
+/// Tells what the radiation on other pixels adds to each one (thesis 5.1): measured = own +
+/// near_fraction (near - own) + total_fraction (total - own), in temperature, where `near` is the
+/// mean of the surroundings, weighted by a Gaussian, and `total` that of the whole image. None by
+/// default.
+struct SceneInfluence {
+  double near_fraction = 0.0;
+  double near_sigma_px = 40.0;
+  double total_fraction = 0.0;
+
+  double Total() const { return near_fraction + total_fraction; }
+
+  static constexpr double kMaxFraction = 0.25;
+  static constexpr double kMinSigma_px = 8.0;
+  static constexpr double kMaxSigma_px = 1000.0;
+};
+
 /// Says how a thermal camera takes its images. The defaults are those of a microbolometer whose
 /// lens is not known.
 struct ThermalSensorModel {
@@ -28,6 +44,7 @@ struct ThermalSensorModel {
   double row_readout_s = 0.0;      ///< From one row to the next; 0 = all at once.
   std::optional<double> pixel_pitch_m;
   std::optional<LensModel> lens;
+  SceneInfluence scene_influence;
 };
 
 /// The message names the field of the rig file.

@@ -51,6 +51,17 @@ void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
         thermal.expert().band_min_um() + 0.01, 200.0);
   check("thermal.expert.time_constant_s", thermal.expert().time_constant_s(), 0.0, 1.0);
   check("thermal.expert.readout_s", thermal.expert().readout_s(), 0.0, 1.0);
+  check("thermal.expert.pattern_k_per_sqrt_minute", thermal.expert().pattern_k_per_sqrt_minute(),
+        0.0, 10.0);
+  check("thermal.expert.flicker_k", thermal.expert().flicker_k(), 0.0, 10.0);
+  check("thermal.expert.flicker_memory_s", thermal.expert().flicker_memory_s(), 0.001, 1000.0);
+  const SceneInfluenceOptions& influence = thermal.expert().scene_influence();
+  check("thermal.expert.scene_influence.near_fraction", influence.near_fraction(), 0.0,
+        SceneInfluence::kMaxFraction);
+  check("thermal.expert.scene_influence.near_sigma_px", influence.near_sigma_px(),
+        SceneInfluence::kMinSigma_px, SceneInfluence::kMaxSigma_px);
+  check("thermal.expert.scene_influence.total_fraction", influence.total_fraction(), 0.0,
+        SceneInfluence::kMaxFraction);
 }
 
 void CheckClock(const std::string& name, const ClockOptions& clock, RangeCheck& check) {
@@ -164,6 +175,10 @@ Result<Rig> SimulatedRig(const SimulationOptions& options) {
   }
   rig.depth_scale = options.depth().expert().depth_scale();
   rig.thermal_scale = ScaleOf(options.thermal());
+  const SceneInfluenceOptions& influence = options.thermal().expert().scene_influence();
+  rig.thermal_sensor.scene_influence = {.near_fraction = influence.near_fraction(),
+                                        .near_sigma_px = influence.near_sigma_px(),
+                                        .total_fraction = influence.total_fraction()};
   return rig;
 }
 

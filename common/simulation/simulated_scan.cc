@@ -6,28 +6,27 @@
 
 #include "common/base/check.h"
 #include "common/base/noise.h"
+#include "common/base/units.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
+#include "common/simulation/thermal_errors.h"
 
 namespace isotherm {
 namespace {
 
+constexpr double kSecondsPerMinute = 60.0;
+
 /// Says what a stream of random numbers is for.
-enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels, kDepthClock, kThermalClock };
+enum NoisePurpose : std::uint64_t {
+  kDepthPixels,
+  kThermalPixels,
+  kDepthClock,
+  kThermalClock,
+  kThermalPattern,
+  kThermalFlicker
+};
 
 }  // namespace
-
-void AddKelvin(double kelvin, const RadiometricScale& scale,
-               Image<std::uint16_t>& temperature_raw) {
-  if (kelvin == 0.0) return;
-  const double add = kelvin / scale.kelvin_per_count;
-  for (std::uint16_t& pixel : temperature_raw.pixels()) {
-    if (pixel == 0) continue;
-    const double value = std::floor(pixel + add + 0.5);
-    const bool fits = value >= 1.0 && value <= RadiometricScale::kMaxCount;
-    pixel = fits ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
-  }
-}
 
 Result<std::unique_ptr<SimulatedScan>> SimulatedScan::Create(const SimulationOptions& options) {
   if (Status status = Validate(options); !status.ok()) return Err(std::move(status));
@@ -108,10 +107,13 @@ double SimulatedScan::NextDrift(double after_s) const {
   return at_s;
 }
 
+double SimulatedScan::CorrectedAfter(CaptureTime time) const {
+  return ToSeconds(LastOpening(time).value_or(start_) - start_);
+}
+
 double SimulatedScan::DriftErrorKelvin(CaptureTime time) const {
-  const double corrected_s = ToSeconds(LastOpening(time).value_or(start_) - start_);
   return options_->drift().error_per_kelvin() *
-         (HousingCelsius(ToSeconds(time - start_)) - HousingCelsius(corrected_s));
+         (HousingCelsius(ToSeconds(time - start_)) - HousingCelsius(CorrectedAfter(time)));
 }
 
 bool SimulatedScan::IsShutterClosed(CaptureTime time) const {
@@ -189,8 +191,24 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
           ? thermal_sensor_.RenderMoving(scene(), pose_after, noise, scratch.thermal)
           : thermal_sensor_.RenderMoving(SceneAround(staged_, PoseAt(time)), pose_after, noise,
                                          scratch.thermal);
-  AddKelvin(DriftErrorKelvin(time), rig_.thermal_scale, pixels);
+  AddErrors(time, pixels);
   return pixels;
+}
+
+void SimulatedScan::AddErrors(CaptureTime time, Image<std::uint16_t>& temperature_raw) const {
+  const SimulatedThermalExpertOptions& expert = options_->thermal().expert();
+  AddSceneInfluence(expert.scene_influence(), temperature_raw);
+  const double corrected_s = CorrectedAfter(time);
+  const double since_s = ToSeconds(time - start_) - corrected_s;
+  // Each correction takes the pattern out; another one grows.
+  const auto epoch = static_cast<std::uint64_t>(std::llround(corrected_s * kMsPerS));
+  AddPattern(expert.pattern_k_per_sqrt_minute() * std::sqrt(since_s / kSecondsPerMinute),
+             NoiseStream(options_->seed(), kThermalPattern, epoch), rig_.thermal_scale,
+             temperature_raw);
+  const double flicker_k =
+      FlickerKelvin(expert.flicker_k(), expert.flicker_memory_s(), ToSeconds(time - start_),
+                    NoiseStream(options_->seed(), kThermalFlicker, 0));
+  AddKelvin(DriftErrorKelvin(time) + flicker_k, rig_.thermal_scale, temperature_raw);
 }
 
 ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {

@@ -67,7 +67,12 @@ class SimulatedScan {
   /// Returns when the housing has changed by the shutter's drift_k since `after_s`, both in seconds
   /// after the start.
   double NextDrift(double after_s) const;
+  /// Returns when the last correction before `time` ended, or 0: seconds after the start.
+  double CorrectedAfter(CaptureTime time) const;
   Image<std::uint16_t> ThermalPixels(std::uint64_t frame_number, Scratch& scratch) const;
+  /// Adds what a real camera shows beside its noise: influence of the scene, pattern, flicker,
+  /// drift of the housing.
+  void AddErrors(CaptureTime time, Image<std::uint16_t>& temperature_raw) const;
   ThermalHousekeeping HousekeepingAt(CaptureTime time) const;
 
   const std::unique_ptr<const SimulationOptions> options_;
@@ -80,8 +85,5 @@ class SimulatedScan {
   std::vector<SimulatedFrameTime> thermal_times_;
   std::vector<NucEvent> nuc_events_;
 };
-
-/// Adds the same to each pixel that has a value; what 16 bits cannot say becomes 0 = no value.
-void AddKelvin(double kelvin, const RadiometricScale& scale, Image<std::uint16_t>& temperature_raw);
 
 }  // namespace isotherm

@@ -104,6 +104,13 @@ void FromWireScale(const isotherm_wire_Rig& from, Rig* rig) {
   if (from.has_thermal_scale) rig->thermal_scale = {from.thermal_scale, from.thermal_offset};
 }
 
+void FromWireSceneInfluence(const isotherm_wire_Rig& from, Rig* rig) {
+  if (!from.has_scene_influence) return;
+  rig->thermal_sensor.scene_influence = {.near_fraction = from.scene_near_fraction,
+                                         .near_sigma_px = from.scene_near_sigma_px,
+                                         .total_fraction = from.scene_total_fraction};
+}
+
 std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, Rig* rig) {
   if (from.has_depth) rig->depth = FromWireCamera(from.depth);
   if (from.has_thermal) rig->thermal = FromWireCamera(from.thermal);
@@ -119,6 +126,7 @@ std::optional<RefusalCause> FromWireCalibration(const isotherm_wire_Rig& from, R
   rig->method = ReadText(from.method);
   FromWireSensors(from, rig);
   FromWireScale(from, rig);
+  FromWireSceneInfluence(from, rig);
   return CheckRig(*rig);
 }
 
@@ -161,6 +169,10 @@ void ToWire(const RigDescription& from, isotherm_wire_Rig* to) {
   to->thermal_scale = rig.thermal_scale.kelvin_per_count;
   to->thermal_offset = rig.thermal_scale.offset_kelvin;
   to->has_thermal_scale = true;
+  to->scene_near_fraction = rig.thermal_sensor.scene_influence.near_fraction;
+  to->scene_near_sigma_px = rig.thermal_sensor.scene_influence.near_sigma_px;
+  to->scene_total_fraction = rig.thermal_sensor.scene_influence.total_fraction;
+  to->has_scene_influence = true;
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_Rig& from, RigDescription* to) {

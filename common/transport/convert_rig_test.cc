@@ -60,6 +60,33 @@ TEST(ConvertRigTest, AnEdgeBefore23HasThermalFramesInCentikelvin) {
   EXPECT_EQ(received.rig.thermal_scale, kCentikelvin);
 }
 
+TEST(ConvertRigTest, AnEdgeBefore24KnowsOfNoSceneInfluence) {
+  isotherm_wire_Rig wire{};
+  RigDescription sent = SomeRig();
+  sent.rig.thermal_sensor.scene_influence = {0.04, 35.0, 0.03};
+  ToWire(sent, &wire);
+  RigDescription received;
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_EQ(received.rig.thermal_sensor.scene_influence.near_fraction, 0.04);
+  EXPECT_EQ(received.rig.thermal_sensor.scene_influence.near_sigma_px, 35.0);
+  EXPECT_EQ(received.rig.thermal_sensor.scene_influence.total_fraction, 0.03);
+  wire.scene_near_fraction = wire.scene_near_sigma_px = wire.scene_total_fraction = 0.0;
+  wire.has_scene_influence = false;
+  received = RigDescription();
+  ASSERT_EQ(FromWire(wire, &received), std::nullopt);
+  EXPECT_EQ(received.rig.thermal_sensor.scene_influence.Total(), 0.0);
+}
+
+TEST(ConvertRigTest, ASceneInfluenceThatCannotBeIsRefused) {
+  for (const double fraction : {-0.1, 0.9, std::numeric_limits<double>::quiet_NaN()}) {
+    isotherm_wire_Rig wire{};
+    ToWire(SomeRig(), &wire);
+    wire.scene_total_fraction = fraction;
+    RigDescription received;
+    EXPECT_NE(FromWire(wire, &received), std::nullopt) << fraction;
+  }
+}
+
 TEST(ConvertRigTest, AThermalScaleThatCannotBeIsRefused) {
   for (const double scale : {0.0, -0.01, std::numeric_limits<double>::quiet_NaN()}) {
     isotherm_wire_Rig wire{};

@@ -3,6 +3,7 @@
 #include "common/base/noise.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
+#include "common/simulation/thermal_errors.h"
 
 namespace isotherm {
 

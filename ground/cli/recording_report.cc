@@ -142,6 +142,12 @@ void AppendSensors(const Rig& rig, std::string& text) {
   const ThermalSensorModel& thermal = rig.thermal_sensor;
   text += fmt::format("{:<14}thermal: time constant {:g} ms, {:g} us from row to row", "",
                       1e3 * thermal.time_constant_s, 1e6 * thermal.row_readout_s);
+  if (thermal.scene_influence.Total() > 0.0) {
+    text +=
+        fmt::format(", scene influence {:g} within {:g} px and {:g} of the image",
+                    thermal.scene_influence.near_fraction, thermal.scene_influence.near_sigma_px,
+                    thermal.scene_influence.total_fraction);
+  }
   if (thermal.pixel_pitch_m)
     text += fmt::format(", pixels of {:g} um", 1e6 * *thermal.pixel_pitch_m);
   if (thermal.lens) {

@@ -9,6 +9,9 @@ namespace {
 constexpr Experiment kExperiments[] = {
     {"motion", "fig. 3.9", "A fast sweep leaves no smeared temperatures in the model.",
      &RunMotionExperiment},
+    {"scene-influence", "figs. 5.6 to 5.9",
+     "What the radiation on other pixels adds to each one is taken out again.",
+     &RunSceneInfluenceExperiment},
     {"parallax", "fig. 6.8",
      "What hides a surface from the thermal camera keeps its temperature to itself.",
      &RunParallaxExperiment},

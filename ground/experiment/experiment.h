@@ -81,6 +81,7 @@ std::span<const Experiment> AllExperiments();
 const Experiment* FindExperiment(std::string_view name);
 
 // One per file of the same name.
+Result<ExperimentReport> RunSceneInfluenceExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunParallaxExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunForegroundExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool);

@@ -49,7 +49,7 @@ ThesisFuser::ThesisFuser(const ThermalOptions& options, const Rig& rig, float mi
       depth_camera_(rig.depth->WithoutDistortion()),
       min_weight_(min_weight),
       filter_(filter),
-      rectifier_(*rig.thermal),
+      rectifier_(*rig.thermal, SceneInfluence{}),
       nearest_m_(rectifier_.ideal_camera().width, rectifier_.ideal_camera().height),
       vertices_(rig.depth->width, rig.depth->height) {}
 

@@ -10,7 +10,10 @@
 
 namespace isotherm {
 HeldOutViews::HeldOutViews(const ScanModel& scan, const HeldOutOptions& options, ThreadPool& pool)
-    : scan_(scan), options_(options), pool_(pool), rectifier_(*scan.rig.thermal) {}
+    : scan_(scan),
+      options_(options),
+      pool_(pool),
+      rectifier_(*scan.rig.thermal, scan.rig.thermal_sensor.scene_influence) {}
 
 std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
   const std::vector<StampedPose>& poses = scan_.trajectory.poses();

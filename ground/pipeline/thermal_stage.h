@@ -16,6 +16,7 @@
 #include "ground/thermal/near_range_occlusion.h"
 #include "ground/thermal/nuc_epochs.h"
 #include "ground/thermal/thermal_fuser.h"
+#include "ground/thermal/uncertainty_budget.h"
 
 namespace isotherm {
 
@@ -73,6 +74,7 @@ class ThermalStage {
   const CameraModel camera_;
   const RigidTransform T_depth_thermal_;
   const double extrinsic_px_;
+  const CameraUncertainty uncertainty_;
   PipelineCounts& counts_;
   StageStats& timing_;
   ThermalFuser fuser_;

@@ -86,7 +86,8 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
       review_(options, sensor),
       min_weight_(min_weight),
       apron_(std::max(1, options.expert().occlusion().edge_margin_px())),
-      rectifier_(thermal_camera) {
+      rectifier_(thermal_camera, options.expert().correct_scene_influence() ? sensor.scene_influence
+                                                                            : SceneInfluence{}) {
   const int width = rectifier_.ideal_camera().width;
   const int height = rectifier_.ideal_camera().height;
   distances_m_ =
@@ -189,8 +190,7 @@ SigmaArgs ThermalFuser::UncertaintyArgs(const CaptureConditions& capture, double
   args.voxel_px2_m2 = squared(rectifier_.ideal_camera().fx * voxel_m * std::sqrt(kUniformVariance));
   args.time_s2 = squared(capture.time_sigma_s);
   args.scene_influence = static_cast<float>(capture.camera.scene_influence);
-  if (capture.camera.scene_influence > 0.0)
-    args.scene_celsius = static_cast<float>(MeanCelsius(celsius_));
+  if (args.scene_influence > 0.0F) args.scene_celsius = static_cast<float>(MeanCelsius(celsius_));
   return args;
 }
 

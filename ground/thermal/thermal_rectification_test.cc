@@ -62,7 +62,7 @@ Difference CompareWithOpencv(const CameraModel& camera) {
   ThreadPool pool(1);
   Image<float> celsius;
   constexpr int kApron = 1;
-  ThermalRectifier rectifier(camera);
+  ThermalRectifier rectifier(camera, SceneInfluence{});
   rectifier.Rectify(centikelvin, kCentikelvin, kApron, pool, celsius);
   const CameraModel& ideal = rectifier.ideal_camera();
   const testing::OpencvRectification truth(camera, ideal);
@@ -105,7 +105,7 @@ TEST(ThermalRectificationTest, APincushionLensIsStraightenedAsByOpencv) {
 /// Each corner and the middle of each side shows something hot.
 TEST(ThermalRectificationTest, NothingOfABarrelLenssImageIsLost) {
   const CameraModel camera = DistortedCamera(-0.439, 0.29, -0.114);
-  ThermalRectifier rectifier(camera);
+  ThermalRectifier rectifier(camera, SceneInfluence{});
   ThreadPool pool(1);
   for (const int left : {0, 180, camera.width - 6}) {
     for (const int top : {0, 140, camera.height - 6}) {
@@ -124,10 +124,10 @@ TEST(ThermalRectificationTest, NothingOfABarrelLenssImageIsLost) {
 TEST(ThermalRectifierTest, NoiseIsLessWhereFourPixelsAreAveraged) {
   CameraModel straight = DistortedCamera(0.0, 0.0, 0.0);
   straight.p1 = straight.p2 = 0.0;
-  const ThermalRectifier none(straight);
+  const ThermalRectifier none(straight, SceneInfluence{});
   EXPECT_EQ(none.noise_gain().At(10, 20), 1.0F) << "a pixel is itself";
   const CameraModel camera = DistortedCamera(-0.4, 0.2, 0.0);
-  ThermalRectifier rectifier(camera);
+  ThermalRectifier rectifier(camera, SceneInfluence{});
   // The variance of what becomes of noise, against what is said of it.
   constexpr double kSigma_k = 1.0;
   constexpr int kFrames = 400;

@@ -22,13 +22,14 @@ float SquaresOfWeights(float fraction) {
 
 }  // namespace
 
-ThermalRectifier::ThermalRectifier(const CameraModel& camera)
+ThermalRectifier::ThermalRectifier(const CameraModel& camera, const SceneInfluence& influence)
     : camera_(camera),
       ideal_(RectifiedCamera(camera)),
       source_(ideal_.width, ideal_.height, -1),
       fraction_x_(ideal_.width, ideal_.height),
       fraction_y_(ideal_.width, ideal_.height),
       noise_gain_(ideal_.width, ideal_.height) {
+  if (influence.Total() > 0.0) corrector_.emplace(influence, camera.width, camera.height);
   for (int v = 0; v < ideal_.height; ++v) {
     for (int u = 0; u < ideal_.width; ++u) {
       const auto pixel = ProjectIntoImage(camera, Unproject(ideal_, {u, v}));
@@ -69,6 +70,7 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& temperature_raw,
       row[x] = is_kept ? value : kNan;
     }
   });
+  if (corrector_) corrector_->Correct(image_);
   pool.ParallelForRows(height, kRectifiedRowsPerTask, [&](int v) {
     ResampleRow({image_.data(), camera_.width, source_.Row(v).data(), fraction_x_.Row(v).data(),
                  fraction_y_.Row(v).data(), width},

@@ -1,20 +1,24 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "common/concurrency/thread_pool.h"
 #include "common/frame/image.h"
 #include "common/frame/radiometric_scale.h"
 #include "common/geometry/camera.h"
+#include "common/rig/sensor_models.h"
+#include "ground/thermal/scene_influence_corrector.h"
 
 namespace isotherm {
 
 /// Removes lens distortion from thermal frames: °C per pixel of the ideal camera, which sees all
 /// that the frame shows (RectifiedCamera); NaN outside the frame or where it has no value.
-/// Bilinear. Keeps scratch memory. Thread-compatible.
+/// Before that it takes out what the scene adds to each pixel. Bilinear. Keeps scratch memory.
+/// Thread-compatible.
 class ThermalRectifier {
  public:
-  explicit ThermalRectifier(const CameraModel& camera);
+  ThermalRectifier(const CameraModel& camera, const SceneInfluence& influence);
   /// `temperature_raw`, counts of `scale`, has the camera's size (CHECK). Writes into `celsius`
   /// with `apron` pixels of NaN all around. NaN is also what lies
   /// outside kMinRadiometric_celsius..kMaxRadiometric_celsius, which the model cannot hold.
@@ -33,6 +37,7 @@ class ThermalRectifier {
   Image<float> fraction_x_, fraction_y_;
   Image<float> noise_gain_;
   Image<float> image_;  ///< The frame in °C.
+  std::optional<SceneInfluenceCorrector> corrector_;
 };
 
 }  // namespace isotherm

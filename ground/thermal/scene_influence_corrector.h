@@ -1,0 +1,55 @@
+#pragma once
+
+#include <vector>
+
+#include "common/frame/image.h"
+#include "common/rig/sensor_models.h"
+
+namespace isotherm {
+
+/// Takes out of thermal images what the radiation on other pixels adds to each one (thesis 5.1):
+///
+///   measured = own + near_fraction (near - own) + total_fraction (total - own)
+///
+/// in temperature, where `near` is the mean of the surroundings, weighted by a Gaussian of
+/// near_sigma_px, and `total` the mean of the image, both over pixels with a value. The means are
+/// so smooth that they are found, and the equation solved, on cells of 8 x 8 pixels. Thread-bound.
+class SceneInfluenceCorrector {
+ public:
+  /// `influence` is valid, images have this size.
+  SceneInfluenceCorrector(const SceneInfluence& influence, int width, int height);
+
+  /// Turns measured temperatures into the pixels' own, °C; NaN is "no value" and stays so.
+  void Correct(Image<float>& celsius);
+
+ private:
+  /// Where a pixel lies between the middles of two cells of a row or column.
+  struct Between {
+    int first = 0, second = 0;
+    float fraction = 0.0F;
+  };
+  /// own = gain (measured - near_fraction near - total).
+  struct Terms {
+    float near_fraction, total, gain;
+  };
+
+  static Between CellsAround(int pixel, int cells);
+  void AverageCells(const Image<float>& celsius);
+  /// The near mean of `values_`, into `near_`.
+  void AverageNeighbourhoods();
+  /// The total mean of `values_`.
+  float AverageAll() const;
+  void Subtract(const Terms& terms, Image<float>& celsius);
+
+  const SceneInfluence influence_;
+  const int columns_, rows_;      ///< Of cells.
+  std::vector<float> weights_;    ///< Of the Gaussian, from the middle outwards, in cells.
+  Image<float> measured_;         ///< Mean of each cell.
+  Image<float> coverage_;         ///< Number of pixels with a value in each cell.
+  Image<float> values_, near_;    ///< What is solved for.
+  Image<float> sums_, divisors_;  ///< After the pass along rows.
+  std::vector<Between> across_;   ///< By column of pixels.
+  std::vector<float> near_row_;   ///< By column of cells, for one row of pixels.
+};
+
+}  // namespace isotherm
