@@ -73,10 +73,12 @@ Rig MakeRig() {
   rig.reprojection_error_px = 0.31;
   rig.depth_sensor = {
       .near_range_m = 0.5, .min_depth_m = 0.4, .max_depth_m = 6.0, .noise_at_1m_m = 0.01};
-  rig.thermal_sensor = {.time_constant_s = 0.012,
-                        .row_readout_s = 1e-4,
-                        .pixel_pitch_m = 25e-6,
-                        .lens = LensModel{.focal_length_m = 0.01, .f_number = 1.0, .focus_m = 0.5}};
+  rig.thermal_sensor = {
+      .time_constant_s = 0.012,
+      .row_readout_s = 1e-4,
+      .pixel_pitch_m = 25e-6,
+      .lens = LensModel{.focal_length_m = 0.01, .f_number = 1.0, .focus_m = 0.5},
+      .scene_influence = {.near_fraction = 0.04, .near_sigma_px = 35.0, .total_fraction = 0.03}};
   return rig;
 }
 
@@ -150,6 +152,9 @@ TEST_F(MessageRoundTripTest, RigArrivesAsItWasWritten) {
   EXPECT_EQ(rig.rig.thermal_sensor.lens->focal_length_m, 0.01);
   EXPECT_EQ(rig.rig.thermal_sensor.lens->f_number, 1.0);
   EXPECT_EQ(rig.rig.thermal_sensor.lens->focus_m, 0.5);
+  EXPECT_EQ(rig.rig.thermal_sensor.scene_influence.near_fraction, 0.04);
+  EXPECT_EQ(rig.rig.thermal_sensor.scene_influence.near_sigma_px, 35.0);
+  EXPECT_EQ(rig.rig.thermal_sensor.scene_influence.total_fraction, 0.03);
   EXPECT_EQ(rig.depth.serial, "D1");
   EXPECT_EQ(rig.depth.model, "a, b");
   EXPECT_EQ(rig.depth.rate_hz, 30.0);
