@@ -12,7 +12,6 @@
 #include "ground/results/scan_result.h"
 
 namespace isotherm {
-namespace {}  // namespace
 
 std::filesystem::path SessionFolder(const GroundOptions& options, bool single_scan,
                                     std::uint64_t session, CaptureTime start) {
@@ -41,7 +40,8 @@ LiveScan::LiveScan(const Clock& clock, const GroundOptions& options, const RigDe
       pipeline_(std::move(pipeline)),
       assembler_(rig.rig.thermal.has_value()),
       delay_check_(options.delay_check(), rig.rig, std::nullopt),
-      feedback_(options, rig) {}
+      feedback_(options, rig),
+      pace_(options.live().expert().feedback_hz()) {}
 
 void LiveScan::Add(const ReceivedDepth& depth) {
   if (keeps_up_) KeepUp(clock_.Now() - depth.queued);
@@ -52,8 +52,8 @@ void LiveScan::Add(const ReceivedDepth& depth) {
 
 void LiveScan::Add(const ReceivedThermal& thermal) {
   const NucState state = thermal.frame->nuc_state;
-  moment_.nuc_running = state == NucState::kImminent || state == NucState::kInProgress ||
-                        state == NucState::kSettling;
+  pace_.set_nuc_running(state == NucState::kImminent || state == NucState::kInProgress ||
+                        state == NucState::kSettling);
   arrivals_[thermal.frame.get()] = thermal.arrival;
   assembler_.Add(thermal.frame);
   while (const auto frame = assembler_.Pop()) Process(*frame);
@@ -129,48 +129,16 @@ void LiveScan::Process(const Assembler::Frame& frame) {
   }
   const DepthFrame& depth = *std::get<DepthFramePtr>(frame);
   NoteQueueTime(&depth);
-  const DepthReport report = pipeline_->ProcessDepth(depth);
-  if (report.repeated) return;  // Says nothing new.
-  const CaptureTime time = depth.header.capture_time;
-  NoteMotion(report, time);
-  moment_.report = report;
-  moment_.header = depth.header;
-  if (next_feedback_ && time < *next_feedback_) return;
-  feedback_waiting_ = true;
-  // From the deadline before, so that jitter does not lower the rate; after a gap, from now.
-  const Nanoseconds period = FromSeconds(1.0 / options_.live().expert().feedback_hz());
-  const CaptureTime due = next_feedback_.value_or(time) + period;
-  next_feedback_ = due > time ? due : time + period;
-}
-
-void LiveScan::NoteMotion(const DepthReport& report, CaptureTime time) {
-  if (!motion_since_) {
-    motion_since_ = time;
-    return;
-  }
-  ++frames_;
-  if (report.tracked) {
-    path_m_ += report.tracking.step_m;
-    rotated_rad_ += report.tracking.step_rad;
-  }
-  const double elapsed_s = ToSeconds(time - *motion_since_);
-  if (elapsed_s <= 0.0) return;
-  moment_.speed_m_s = path_m_ / elapsed_s;
-  moment_.rotation_rate_deg_s = rotated_rad_ / kRadPerDeg / elapsed_s;
-  moment_.frame_interval_s = elapsed_s / frames_;
+  pace_.Add(depth.header, pipeline_->ProcessDepth(depth));
 }
 
 std::optional<Feedback> LiveScan::TakeFeedback() {
-  if (!feedback_waiting_) return std::nullopt;
-  feedback_waiting_ = false;
+  std::optional<FeedbackMoment> moment = pace_.Take();
+  if (!moment) return std::nullopt;
   const SteadyTime start = clock_.SteadyNow();
-  moment_.ground_is_behind = is_behind_;
-  Feedback feedback = feedback_.Make(moment_, model(), pool());
+  moment->ground_is_behind = is_behind_;
+  Feedback feedback = feedback_.Make(*moment, model(), pool());
   making_.Add(kMsPerS * ToSeconds(clock_.SteadyNow() - start));
-  motion_since_ = moment_.header.capture_time;
-  path_m_ = 0.0;
-  rotated_rad_ = 0.0;
-  frames_ = 0;
   LogWhenDone();
   return feedback;
 }

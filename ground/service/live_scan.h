@@ -17,9 +17,10 @@
 #include "ground/assembler/assembler.h"
 #include "ground/calibration/delay_check.h"
 #include "ground/export/json.h"
+#include "ground/guidance/feedback_maker.h"
+#include "ground/guidance/feedback_pace.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/ground_pipeline.h"
-#include "ground/service/feedback_maker.h"
 #include "ground/service/scan_board.h"
 #include "ground/subscriber/received_frame.h"
 
@@ -80,8 +81,6 @@ class LiveScan {
   void NoteQueueTime(const void* frame);
   /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
   void KeepUp(Nanoseconds queued);
-  /// Sums up what the rig did since the last feedback.
-  void NoteMotion(const DepthReport& report, CaptureTime time);
   void LogWhenDone();
 
   const Clock& clock_;
@@ -93,14 +92,7 @@ class LiveScan {
   Assembler assembler_;
   DelayCheck delay_check_;
   FeedbackMaker feedback_;
-  FeedbackMoment moment_;  ///< The newest depth frame's.
-  bool feedback_waiting_ = false;
-  std::optional<CaptureTime> next_feedback_;
-  std::optional<CaptureTime>
-      motion_since_;  ///< Time of the last frame before those summed up here.
-  double path_m_ = 0.0;
-  double rotated_rad_ = 0.0;
-  int frames_ = 0;
+  FeedbackPace pace_;
   bool is_behind_ = false;
   bool reported_done_ = false;
   std::uint64_t odometry_poses_received_ = 0;

@@ -153,7 +153,7 @@ TEST(IncludeRulesTest, AStageKnowsItsOptionsAndItsInputButNeverThePipeline) {
   for (const auto& [folder, targets] : AllowedArrows()) {
     if (targets.contains("ground/pipeline")) {
       EXPECT_THAT(folder, AnyOf("ground/experiment", "ground/calibration", "ground/results",
-                                "ground/offline", "ground/service"));
+                                "ground/offline", "ground/guidance", "ground/service"));
     }
   }
 }

@@ -1,4 +1,4 @@
-#include "ground/service/feedback_maker.h"
+#include "ground/guidance/feedback_maker.h"
 
 #include <fmt/format.h>
 
