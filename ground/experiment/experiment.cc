@@ -37,6 +37,8 @@ constexpr Experiment kExperiments[] = {
     {"nuc-drift", "fig. 3.4b",
      "Corrections as the camera's housing drifts keep the error small that it would cause.",
      &RunNucDriftExperiment},
+    {"guidance", "8.2", "Who follows the feedback is done sooner than who scans by plan.",
+     &RunGuidanceExperiment},
 };
 
 }  // namespace

@@ -92,5 +92,6 @@ Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunGuidanceExperiment(ThreadPool& pool);
 
 }  // namespace isotherm
