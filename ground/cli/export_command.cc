@@ -25,6 +25,9 @@ A region is a box in `world`; it may have values of its own, and where regions o
 holds. A regions file has one entry each:
   region { name: "pipe" emissivity: 0.3 reflected_celsius: 25
            box { min { x_m: 0.1 y_m: 0.1 z_m: 0.7 } max { x_m: 0.3 y_m: 0.9 z_m: 0.8 } } }
+With a material the emissivity is that at the angle at which each point was measured (Fresnel).
+scalar_temperature_sigma is then that of the object's temperature, uncertainties of emissivity and
+reflected temperature included; those are the same for all points of a part.
 Points that were measured but fit no temperature are NaN, are counted, and make the exit status 65;
 all files are written.
 
@@ -32,6 +35,8 @@ Examples:
   isotherm export out/model.iso -o out/objects --emissivity 0.85 --reflected 23
   isotherm export out/model.iso -o out/objects --emissivity 0.95 \
       --box "0.1 0.1 0.7 0.3 0.9 0.8: emissivity=0.3 reflected=25"
+  isotherm export out/model.iso -o out/objects --emissivity 0.94 --emissivity-sigma 0.02 \
+      --material paint
   isotherm export out/model.iso -o out/objects --regions plant.textproto --label "pipe: emissivity=0.4")";
 
 struct ExportArguments {
@@ -109,6 +114,13 @@ void AddExportCommand(CLI::App& app, CommandBody& body) {
                       "Of the whole model, above 0 and at most 1");
   command->add_option("--reflected", interpretation.reflected_celsius,
                       "Temperature of what the whole model reflects, °C");
+  command->add_option("--material", interpretation.material,
+                      "The emissivity depends on the angle like that of this material "
+                      "(isotherm limits --list); --emissivity is along the normal");
+  command->add_option("--emissivity-sigma", interpretation.emissivity_sigma,
+                      "Standard uncertainty of the emissivity");
+  command->add_option("--reflected-sigma", interpretation.reflected_sigma_k,
+                      "Standard uncertainty of the reflected temperature, K");
   command
       ->add_option("--box", interpretation.boxes,
                    "A region: two corners (metres, world), a colon, its values; repeatable")

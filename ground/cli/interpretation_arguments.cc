@@ -13,6 +13,16 @@
 namespace isotherm {
 namespace {
 
+/// Sets one of a region's values by its name on the command line; false if there is none.
+bool SetNumber(const std::string& key, double value, InterpretedRegion& region) {
+  if (key == "emissivity") region.set_emissivity(value);
+  if (key == "reflected") region.set_reflected_celsius(value);
+  if (key == "emissivity-sigma") region.set_emissivity_sigma(value);
+  if (key == "reflected-sigma") region.set_reflected_sigma_k(value);
+  return key == "emissivity" || key == "reflected" || key == "emissivity-sigma" ||
+         key == "reflected-sigma";
+}
+
 /// "emissivity=0.3 reflected=25" into a region.
 Status ReadValues(std::string_view values, std::string_view option, InterpretedRegion& region) {
   bool any = false;
@@ -23,15 +33,22 @@ Status ReadValues(std::string_view values, std::string_view option, InterpretedR
       region.set_name(std::string(word.substr(equals + 1)));
       continue;
     }
-    if (equals == std::string_view::npos || (key != "emissivity" && key != "reflected")) {
-      return InvalidArgument(fmt::format(
-          "{}: '{}' is not known, expected emissivity=VALUE and reflected=VALUE", option, word));
+    if (key == "material" && equals != std::string_view::npos) {
+      region.set_material(std::string(word.substr(equals + 1)));
+      any = true;
+      continue;
+    }
+    InterpretedRegion ignored;
+    if (equals == std::string_view::npos || !SetNumber(key, 0.0, ignored)) {
+      return InvalidArgument(
+          fmt::format("{}: '{}' is not known, expected emissivity=VALUE, reflected=VALUE, "
+                      "material=NAME, emissivity-sigma=VALUE or reflected-sigma=VALUE",
+                      option, word));
     }
     const Result<double> value = ParseNumber(word.substr(equals + 1));
     if (!value)
       return InvalidArgument(fmt::format("{}: {}: {}", option, key, value.error().message()));
-    if (key == "emissivity") region.set_emissivity(*value);
-    if (key == "reflected") region.set_reflected_celsius(*value);
+    SetNumber(key, *value, region);
     any = true;
   }
   if (any) return OkStatus();
@@ -81,6 +98,9 @@ Status ApplyArguments(const InterpretationArguments& arguments, InterpretationOp
   }
   if (arguments.emissivity) options.set_emissivity(*arguments.emissivity);
   if (arguments.reflected_celsius) options.set_reflected_celsius(*arguments.reflected_celsius);
+  if (arguments.emissivity_sigma) options.set_emissivity_sigma(*arguments.emissivity_sigma);
+  if (arguments.reflected_sigma_k) options.set_reflected_sigma_k(*arguments.reflected_sigma_k);
+  if (arguments.material) options.set_material(*arguments.material);
   if (!arguments.band.empty()) {
     const auto band = ParseNumbers(arguments.band, {2}, "--band");
     if (!band) return band.error();

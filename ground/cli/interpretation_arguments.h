@@ -11,7 +11,8 @@ namespace isotherm {
 
 /// The arguments by which `isotherm export` is told what to interpret.
 struct InterpretationArguments {
-  std::optional<double> emissivity, reflected_celsius;
+  std::optional<double> emissivity, reflected_celsius, emissivity_sigma, reflected_sigma_k;
+  std::optional<std::string> material;
   std::string band;                 ///< "min max", um; empty: as in the options.
   std::string regions;              ///< Text format of InterpretationOptions.
   std::vector<std::string> boxes;   ///< "x0 y0 z0 x1 y1 z1: emissivity=0.3 reflected=25".

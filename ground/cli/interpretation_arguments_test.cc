@@ -49,6 +49,23 @@ TEST_F(InterpretationArgumentsTest, CommandLineHoldsOverTheFileAndBoxesComeLast)
   EXPECT_EQ(options.region(3).reflected_celsius(), -5.0);
 }
 
+TEST_F(InterpretationArgumentsTest, MaterialAndUncertaintiesAreOfTheModelAndOfBoxes) {
+  arguments_.emissivity_sigma = 0.02;
+  arguments_.reflected_sigma_k = 3.0;
+  arguments_.material = "paint";
+  arguments_.boxes = {
+      "0 0 0 1 1 1: emissivity=0.2 material=steel emissivity-sigma=0.05 reflected-sigma=2"};
+  InterpretationOptions options;
+  const Status status = ApplyArguments(arguments_, options);
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(options.emissivity_sigma(), 0.02);
+  EXPECT_EQ(options.reflected_sigma_k(), 3.0);
+  EXPECT_EQ(options.material(), "paint");
+  EXPECT_EQ(options.region(0).material(), "steel");
+  EXPECT_EQ(options.region(0).emissivity_sigma(), 0.05);
+  EXPECT_EQ(options.region(0).reflected_sigma_k(), 2.0);
+}
+
 TEST_F(InterpretationArgumentsTest, WhatCannotBeReadIsSaid) {
   for (const auto& [box, said] : {std::pair("1 2 3 4 5: emissivity=1", "--box: expected 6 numbers"),
                                   {"0 0 0 1 1 1", "nothing to interpret with"},

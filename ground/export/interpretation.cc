@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "common/base/units.h"
+#include "common/radiometry/materials.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/options/option_geometry.h"
 
@@ -13,9 +15,15 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kWholeModel = "whole model";
+constexpr double kMaxReflectedSigma_k = 1000.0;
+/// Beyond, nothing is measured, and Fresnel's emissivity goes to zero.
+constexpr int kLastAngle_deg = 85;
+/// Weighs the wavelengths of a material's index; the ratio hardly depends on it.
+constexpr double kMaterial_celsius = 100.0;
 
 /// Returns what is wrong with a part's numbers; `prefix` names it. Empty if nothing is.
-std::string FindProblem(const InterpretedPart& part, const std::string& prefix) {
+std::string FindProblem(const InterpretedPart& part, bool has_emissivity,
+                        const std::string& prefix) {
   if (!(part.emissivity > 0.0 && part.emissivity <= 1.0)) {
     return fmt::format("{}emissivity must be above 0 and at most 1, got {}", prefix,
                        part.emissivity);
@@ -25,7 +33,48 @@ std::string FindProblem(const InterpretedPart& part, const std::string& prefix) 
     return fmt::format("{}reflected_celsius must be {} to {} °C, got {}", prefix,
                        kMinRadiometric_celsius, kMaxRadiometric_celsius, part.reflected_celsius);
   }
+  if (!(part.emissivity_sigma >= 0.0 && part.emissivity_sigma <= 1.0)) {
+    return fmt::format("{}emissivity_sigma must be 0 to 1, got {}", prefix, part.emissivity_sigma);
+  }
+  if (!(part.reflected_sigma_k >= 0.0 && part.reflected_sigma_k <= kMaxReflectedSigma_k)) {
+    return fmt::format("{}reflected_sigma_k must be 0 to {} K, got {}", prefix,
+                       kMaxReflectedSigma_k, part.reflected_sigma_k);
+  }
+  if (!part.material.empty() && FindOpticalMaterial(part.material) == nullptr) {
+    return fmt::format(
+        "{}material '{}' is not known; `isotherm limits --list` shows those that are", prefix,
+        part.material);
+  }
+  if (!part.material.empty() && !has_emissivity) {
+    return fmt::format(
+        "{}material '{}' says how the emissivity depends on the angle; give the emissivity along "
+        "the "
+        "normal as well, measured (docs/materials.md)",
+        prefix, part.material);
+  }
   return {};
+}
+
+/// Sets what follows from a part's material.
+void UseMaterial(const SpectralBand& band, InterpretedPart& part) {
+  const OpticalMaterial* material = FindOpticalMaterial(part.material);
+  if (material == nullptr) return;
+  const BandEmissivity emissivity(material->index, band, kMaterial_celsius);
+  const double along_normal = emissivity.At(0.0);
+  for (int angle_deg = 0; angle_deg <= kLastAngle_deg; ++angle_deg)
+    part.by_angle.push_back(
+        static_cast<float>(emissivity.At(angle_deg * kRadPerDeg) / along_normal));
+}
+
+/// What a part's emissivity is at an angle; NaN is along the normal.
+double EmissivityAt(const InterpretedPart& part, float angle_deg) {
+  if (part.by_angle.empty() || std::isnan(angle_deg)) return part.emissivity;
+  const float at = std::clamp(angle_deg, 0.0F, static_cast<float>(kLastAngle_deg));
+  const auto first = std::min(static_cast<std::size_t>(at), part.by_angle.size() - 2);
+  const float fraction = at - static_cast<float>(first);
+  const float ratio =
+      part.by_angle[first] + fraction * (part.by_angle[first + 1] - part.by_angle[first]);
+  return std::min(1.0, part.emissivity * static_cast<double>(ratio));
 }
 
 std::string RegionPrefix(const std::string& name) {
@@ -56,9 +105,17 @@ Result<Interpretation> Interpretation::Create(const InterpretationOptions& optio
   if (Status status = CheckBand(options); !status.ok()) return Err(status);
   Interpretation interpretation(
       SpectralBand{options.expert().band_min_um(), options.expert().band_max_um()});
-  InterpretedPart whole{kWholeModel, {}, options.emissivity(), options.reflected_celsius(), {}};
-  if (std::string problem = FindProblem(whole, "interpretation."); !problem.empty())
+  InterpretedPart whole;
+  whole.name = kWholeModel;
+  whole.emissivity = options.emissivity();
+  whole.reflected_celsius = options.reflected_celsius();
+  whole.material = options.material();
+  whole.emissivity_sigma = options.emissivity_sigma();
+  whole.reflected_sigma_k = options.reflected_sigma_k();
+  if (std::string problem = FindProblem(whole, options.has_emissivity(), "interpretation.");
+      !problem.empty())
     return Err(InvalidArgument(std::move(problem)));
+  UseMaterial(interpretation.band_.band(), whole);
   interpretation.parts_.push_back(std::move(whole));
   for (const InterpretedRegion& region : options.region()) {
     InterpretedPart part;
@@ -70,7 +127,14 @@ Result<Interpretation> Interpretation::Create(const InterpretationOptions& optio
     part.emissivity = region.has_emissivity() ? region.emissivity() : options.emissivity();
     part.reflected_celsius =
         region.has_reflected_celsius() ? region.reflected_celsius() : options.reflected_celsius();
-    part.problem = FindProblem(part, RegionPrefix(part.name));
+    part.material = region.has_material() ? region.material() : options.material();
+    part.emissivity_sigma =
+        region.has_emissivity_sigma() ? region.emissivity_sigma() : options.emissivity_sigma();
+    part.reflected_sigma_k =
+        region.has_reflected_sigma_k() ? region.reflected_sigma_k() : options.reflected_sigma_k();
+    part.problem = FindProblem(part, region.has_emissivity() || options.has_emissivity(),
+                               RegionPrefix(part.name));
+    if (part.problem.empty()) UseMaterial(interpretation.band_.band(), part);
     interpretation.parts_.push_back(std::move(part));
   }
   return interpretation;
@@ -78,7 +142,8 @@ Result<Interpretation> Interpretation::Create(const InterpretationOptions& optio
 
 bool Interpretation::changes_nothing() const {
   return std::ranges::all_of(parts_, [](const InterpretedPart& part) {
-    return part.emissivity == 1.0 && part.problem.empty();
+    return part.emissivity == 1.0 && part.by_angle.empty() && part.emissivity_sigma == 0.0 &&
+           part.problem.empty();
   });
 }
 
@@ -88,17 +153,45 @@ std::size_t Interpretation::PartAt(const Eigen::Vector3f& p_world) const {
   return 0;
 }
 
-double Interpretation::EmittedRadiance(const InterpretedPart& part, float apparent_celsius) const {
+double Interpretation::EmittedRadiance(const InterpretedPart& part, float apparent_celsius,
+                                       float angle_deg) const {
+  const double emissivity = EmissivityAt(part, angle_deg);
   return (band_.RadianceFromCelsius(static_cast<double>(apparent_celsius)) -
-          (1.0 - part.emissivity) * band_.RadianceFromCelsius(part.reflected_celsius)) /
-         part.emissivity;
+          (1.0 - emissivity) * band_.RadianceFromCelsius(part.reflected_celsius)) /
+         emissivity;
 }
 
-float Interpretation::ObjectCelsius(std::size_t part, float apparent_celsius) const {
+float Interpretation::ObjectCelsius(std::size_t part, float apparent_celsius,
+                                    float angle_deg) const {
   if (std::isnan(apparent_celsius) || !parts_[part].problem.empty()) return NAN;
-  if (parts_[part].emissivity == 1.0) return apparent_celsius;
+  if (EmissivityAt(parts_[part], angle_deg) == 1.0) return apparent_celsius;
   return static_cast<float>(
-      band_.CelsiusFromRadiance(EmittedRadiance(parts_[part], apparent_celsius)));
+      band_.CelsiusFromRadiance(EmittedRadiance(parts_[part], apparent_celsius, angle_deg)));
+}
+
+float Interpretation::ObjectSigma(std::size_t index, float apparent_celsius, float apparent_sigma_k,
+                                  float angle_deg) const {
+  const InterpretedPart& part = parts_[index];
+  const float object_celsius = ObjectCelsius(index, apparent_celsius, angle_deg);
+  if (std::isnan(object_celsius) || std::isnan(apparent_sigma_k)) return NAN;
+  const auto slope = [this](double celsius) {
+    constexpr double kStep_k = 0.5;
+    return (band_.RadianceFromCelsius(celsius + kStep_k) -
+            band_.RadianceFromCelsius(celsius - kStep_k)) /
+           (2.0 * kStep_k);
+  };
+  const double emissivity = EmissivityAt(part, angle_deg);
+  const double emitted = band_.RadianceFromCelsius(static_cast<double>(object_celsius));
+  const double reflected = band_.RadianceFromCelsius(part.reflected_celsius);
+  // Of emitted = (measured - reflected) / emissivity + reflected, by each of the three.
+  const double by_measured = slope(static_cast<double>(apparent_celsius)) *
+                             static_cast<double>(apparent_sigma_k) / emissivity;
+  // The emissivity along the normal is uncertain; at an angle by the same ratio.
+  const double by_emissivity = (emitted - reflected) * part.emissivity_sigma / part.emissivity;
+  const double by_reflected =
+      (1.0 - emissivity) / emissivity * slope(part.reflected_celsius) * part.reflected_sigma_k;
+  return static_cast<float>(std::hypot(by_measured, by_emissivity, by_reflected) /
+                            slope(static_cast<double>(object_celsius)));
 }
 
 std::vector<PartReport> Interpretation::Apply(Surface& surface) const {
@@ -111,25 +204,44 @@ std::vector<PartReport> Interpretation::Apply(Surface& surface) const {
     point.apparent_celsius = point.celsius;
     if (std::isnan(point.celsius)) continue;
     ++report.measured;
-    point.celsius = ObjectCelsius(part, point.apparent_celsius);
+    if (!parts_[part].by_angle.empty() && std::isnan(point.measured_angle_deg))
+      ++report.without_angle;
+    point.celsius = ObjectCelsius(part, point.apparent_celsius, point.measured_angle_deg);
+    point.sigma_k =
+        ObjectSigma(part, point.apparent_celsius, point.sigma_k, point.measured_angle_deg);
     if (!std::isnan(point.celsius) || !parts_[part].problem.empty()) continue;
     const float apparent = point.apparent_celsius;
     const bool first = report.unsolved() == 0;
     report.coldest_celsius = first ? apparent : std::min(report.coldest_celsius, apparent);
     report.hottest_celsius = first ? apparent : std::max(report.hottest_celsius, apparent);
-    const bool cold = EmittedRadiance(parts_[part], apparent) <= lowest_radiance;
+    const bool cold =
+        EmittedRadiance(parts_[part], apparent, point.measured_angle_deg) <= lowest_radiance;
     ++(cold ? report.reflects_too_much : report.too_hot);
   }
   return reports;
 }
 
-void Interpretation::Apply(const SurfaceMaps& maps, Image<float>& celsius) const {
+void Interpretation::Apply(const SurfaceMaps& maps, ViewMaps& view) const {
+  for (int y = 0; y < view.height(); ++y) {
+    for (int x = 0; x < view.width(); ++x) {
+      const Eigen::Vector3f p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
+      if (std::isnan(view.celsius.At(x, y))) continue;
+      float& sigma_k = view.sigma_k.At(x, y);
+      sigma_k = ObjectSigma(PartAt(p_world), view.celsius.At(x, y), sigma_k,
+                            view.measured_angle_deg.At(x, y));
+    }
+  }
+  Apply(maps, view, view.celsius);
+}
+
+void Interpretation::Apply(const SurfaceMaps& maps, const ViewMaps& view,
+                           Image<float>& celsius) const {
   for (int y = 0; y < celsius.height(); ++y) {
     for (int x = 0; x < celsius.width(); ++x) {
       float& value = celsius.At(x, y);
       if (std::isnan(value)) continue;
       const Eigen::Vector3f p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
-      value = ObjectCelsius(PartAt(p_world), value);
+      value = ObjectCelsius(PartAt(p_world), value, view.measured_angle_deg.At(x, y));
     }
   }
 }
@@ -157,6 +269,11 @@ std::vector<std::string> Interpretation::Errors(const std::vector<PartReport>& r
     if (!part.problem.empty()) {
       sentences.push_back(fmt::format("{}; its {} measured points get no temperature", part.problem,
                                       report.measured));
+    } else if (report.without_angle > 0 && report.without_angle == report.measured) {
+      sentences.push_back(fmt::format(
+          "{}: the angle of no measured point is known, so that material '{}' counts as seen along "
+          "its normal: scan with thermal.expert.records",
+          part.name, part.material));
     } else if (report.unsolved() > 0) {
       const bool cold = report.reflects_too_much >= report.too_hot;
       sentences.push_back(fmt::format(
@@ -186,6 +303,12 @@ Json Interpretation::Describe(const std::vector<PartReport>& reports) const {
     }
     part["emissivity"] = parts_[i].emissivity;
     part["reflected_celsius"] = parts_[i].reflected_celsius;
+    if (!parts_[i].material.empty()) {
+      part["material"] = parts_[i].material;
+      part["without_angle"] = reports[i].without_angle;
+    }
+    part["emissivity_sigma"] = parts_[i].emissivity_sigma;
+    part["reflected_sigma_k"] = parts_[i].reflected_sigma_k;
     part["points"] = reports[i].points;
     part["measured_points"] = reports[i].measured;
     part["without_solution"] = reports[i].unsolved();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "common/radiometry/radiometry.h"
 #include "ground/export/json.h"
 #include "ground/export/surface.h"
+#include "ground/renderer/view_maps.h"
 #include "ground/surface/surface_maps.h"
 
 namespace isotherm {
@@ -22,8 +24,13 @@ Status Validate(const InterpretationOptions& options);
 struct InterpretedPart {
   std::string name;
   Eigen::AlignedBox3f box_world;  ///< Metres; empty for the whole model.
-  double emissivity = 1.0;
+  double emissivity = 1.0;        ///< Along the normal.
   double reflected_celsius = 0.0;
+  std::string
+      material;  ///< Its emissivity depends on the angle like this one's; empty: it does not.
+  double emissivity_sigma = 0.0, reflected_sigma_k = 0.0;  ///< Standard uncertainties.
+  /// Emissivity by whole degree of the angle, as a ratio to that along the normal; empty: 1.
+  std::vector<float> by_angle{};
   std::string problem;  ///< Why nothing can be interpreted here; empty if it can.
 };
 
@@ -33,6 +40,8 @@ struct PartReport {
   std::size_t measured = 0;           ///< Points with an apparent temperature.
   std::size_t reflects_too_much = 0;  ///< How many of those would reflect more than was measured.
   std::size_t too_hot = 0;            ///< How many of those are beyond the range of temperatures.
+  /// How many of the measured ones have no angle that a material needs: taken as along the normal.
+  std::size_t without_angle = 0;
   /// Apparent temperatures of the points without a solution.
   float coldest_celsius = 0.0F, hottest_celsius = 0.0F;
 
@@ -53,13 +62,21 @@ class Interpretation {
   const std::vector<InterpretedPart>& parts() const { return parts_; }
   /// Index in parts() of the one that holds at a point.
   std::size_t PartAt(const Eigen::Vector3f& p_world) const;
-  /// NaN if `apparent_celsius` is, or if no temperature fits.
-  float ObjectCelsius(std::size_t part, float apparent_celsius) const;
+  /// NaN if `apparent_celsius` is, or if no temperature fits. `angle_deg`: between the normal and
+  /// the line of sight of the measurement; NaN is taken as along the normal.
+  float ObjectCelsius(std::size_t part, float apparent_celsius, float angle_deg = NAN) const;
+  /// The standard uncertainty of that, kelvin, from `apparent_sigma_k` and those of the part's
+  /// emissivity and reflected temperature, to first order (GUM 5.1.2). NaN if the temperature or
+  /// `apparent_sigma_k` is.
+  float ObjectSigma(std::size_t part, float apparent_celsius, float apparent_sigma_k,
+                    float angle_deg = NAN) const;
 
   /// Interprets every point; `apparent_celsius` keeps what was measured. One report per part.
   std::vector<PartReport> Apply(Surface& surface) const;
-  /// The same for temperatures in a view, whose vertices are `maps` (world).
-  void Apply(const SurfaceMaps& maps, Image<float>& celsius) const;
+  /// The same for a view with records, whose vertices are `maps` (world).
+  void Apply(const SurfaceMaps& maps, ViewMaps& view) const;
+  /// The same for other temperatures in it.
+  void Apply(const SurfaceMaps& maps, const ViewMaps& view, Image<float>& celsius) const;
 
   /// Sentences about regions that overlap.
   std::vector<std::string> Overlaps() const;
@@ -71,7 +88,8 @@ class Interpretation {
 
  private:
   explicit Interpretation(const SpectralBand& band) : band_(band) {}
-  double EmittedRadiance(const InterpretedPart& part, float apparent_celsius) const;
+  double EmittedRadiance(const InterpretedPart& part, float apparent_celsius,
+                         float angle_deg) const;
 
   BandRadiance band_;
   std::vector<InterpretedPart> parts_;

@@ -7,12 +7,15 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "common/base/noise.h"
+#include "common/base/units.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/options/option_geometry.h"
 
 namespace isotherm {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -220,6 +223,96 @@ TEST_F(InterpretationTest, StatsSayWhatWasAppliedAndToHowMuch) {
         "\"measured_points\": 1", "\"without_solution\": 0", "\"box_m\""}) {
     EXPECT_THAT(json, HasSubstr(text));
   }
+}
+
+/// Emissivity of a smooth dielectric over that along its normal (Fresnel, unpolarised).
+double DielectricRatio(double angle_rad, double n) {
+  const auto reflectivity = [n](double angle) {
+    const double inside = std::asin(std::sin(angle) / n);
+    const double s =
+        (std::cos(angle) - n * std::cos(inside)) / (std::cos(angle) + n * std::cos(inside));
+    const double p =
+        (std::cos(inside) - n * std::cos(angle)) / (std::cos(inside) + n * std::cos(angle));
+    return 0.5 * (s * s + p * p);
+  };
+  return (1.0 - reflectivity(angle_rad)) / (1.0 - reflectivity(0.0));
+}
+
+TEST_F(InterpretationTest, AMaterialsEmissivityIsThatAtTheAngleOfTheMeasurement) {
+  constexpr double kObject_celsius = 200.0, kPaintIndex = 1.5;
+  options_.set_material("paint");
+  const Interpretation interpretation = Make();
+  const BandRadiance band;
+  for (const double angle_deg : {0.0, 30.5, 45.0, 60.0, 70.0}) {
+    const double emissivity = 0.85 * DielectricRatio(angle_deg * kRadPerDeg, kPaintIndex);
+    const auto apparent =
+        static_cast<float>(ApparentCelsius(band, kObject_celsius, emissivity, 23.0));
+    constexpr double kTolerance_k = 0.05;  // The table has whole degrees.
+    EXPECT_NEAR(interpretation.ObjectCelsius(0, apparent, static_cast<float>(angle_deg)),
+                kObject_celsius, kTolerance_k)
+        << angle_deg;
+    // Without the angle it would be wrong where the angle matters.
+    if (angle_deg > 50.0) {
+      EXPECT_LT(interpretation.ObjectCelsius(0, apparent), kObject_celsius - 2.0);
+    }
+  }
+}
+
+TEST_F(InterpretationTest, PointsWithoutAnAngleAreCountedAndSaid) {
+  options_.set_material("paint");
+  const Interpretation interpretation = Make();
+  Surface surface = SurfaceOf({{0.0F, 80.0F}, {0.1F, 90.0F}});
+  const std::vector<PartReport> reports = interpretation.Apply(surface);
+  EXPECT_EQ(reports[0].without_angle, 2U);
+  EXPECT_THAT(interpretation.Errors(reports), ElementsAre(HasSubstr("thermal.expert.records")));
+}
+
+/// Drawn at random, what is uncertain spreads the temperature as stated.
+TEST_F(InterpretationTest, UncertaintiesOfEmissivityAndReflectionAreInThatOfTheTemperature) {
+  constexpr double kApparent_celsius = 90.0, kApparentSigma_k = 0.3, kEmissivitySigma = 0.01,
+                   kReflectedSigma_k = 4.0;
+  constexpr int kDraws = 20'000;
+  options_.set_emissivity_sigma(kEmissivitySigma);
+  options_.set_reflected_sigma_k(kReflectedSigma_k);
+  const float sigma_k = Make().ObjectSigma(0, kApparent_celsius, kApparentSigma_k);
+  const BandRadiance band;
+  double sum = 0.0, squares = 0.0;
+  for (std::uint64_t i = 0; i < kDraws; ++i) {
+    const auto drawn = [i](std::uint64_t what) {
+      return static_cast<double>(NormalNoise(NoiseStream(1, what, 0), i));
+    };
+    const double celsius =
+        TrueCelsius(band, kApparent_celsius + kApparentSigma_k * drawn(1),
+                    0.85 + kEmissivitySigma * drawn(2), 23.0 + kReflectedSigma_k * drawn(3))
+            .value();
+    sum += celsius;
+    squares += celsius * celsius;
+  }
+  const double spread_k = std::sqrt(squares / kDraws - std::pow(sum / kDraws, 2));
+  EXPECT_NEAR(sigma_k, spread_k, 0.03 * spread_k);
+  EXPECT_GT(sigma_k, 1.5 * kApparentSigma_k) << "the terms matter here";
+  EXPECT_TRUE(std::isnan(Make().ObjectSigma(0, kApparent_celsius, NAN)));
+}
+
+TEST_F(InterpretationTest, WithoutEmissivityTheUncertaintyStaysThatOfTheMeasurement) {
+  options_.set_emissivity(1.0);
+  EXPECT_NEAR(Make().ObjectSigma(0, 90.0F, 0.3F), 0.3, 1e-3);
+  EXPECT_TRUE(Make().changes_nothing());
+}
+
+TEST_F(InterpretationTest, MaterialsAndUncertaintiesThatCannotBeAreRefused) {
+  options_.set_material("unobtainium");
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("'unobtainium'"), HasSubstr("isotherm limits --list")));
+  options_.set_material("paint");
+  options_.clear_emissivity();
+  EXPECT_THAT(Refusal(), HasSubstr("along the normal"));
+  options_.set_emissivity(0.9);
+  EXPECT_EQ(Refusal(), "");
+  options_.set_emissivity_sigma(-0.1);
+  EXPECT_THAT(Refusal(), HasSubstr("emissivity_sigma"));
+  options_.set_emissivity_sigma(0.1);
+  options_.set_reflected_sigma_k(NAN);
+  EXPECT_THAT(Refusal(), HasSubstr("reflected_sigma_k"));
 }
 
 }  // namespace

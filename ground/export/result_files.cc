@@ -98,7 +98,7 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
   SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
   SampleRecords(*inputs.view, inputs.tsdf, inputs.thermal, threads, view);
   if (inputs.interpretation != nullptr) {
-    inputs.interpretation->Apply(*inputs.view, view.celsius);
+    inputs.interpretation->Apply(*inputs.view, view);
     view.celsius_meaning = "object temperature";
   }
   const Renderer renderer(inputs.renderer_options, inputs.thermal_options);
@@ -107,7 +107,7 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
     contours = SampleContours(*inputs.view, inputs.tsdf, inputs.thermal,
                               inputs.renderer_options.expert().isotherm_smoothing_px(), threads);
     if (inputs.interpretation != nullptr)
-      inputs.interpretation->Apply(*inputs.view, contours->celsius);
+      inputs.interpretation->Apply(*inputs.view, view, contours->celsius);
   }
   for (const RenderLayer layer : AllLayers()) {
     const RgbImage rendering = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);

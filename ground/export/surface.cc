@@ -9,9 +9,9 @@
 #include <tuple>
 
 #include "common/base/check.h"
-#include "common/base/units.h"
 #include "common/concurrency/thread_pool.h"
 #include "ground/export/marching_cubes.h"
+#include "ground/thermal/condition_record.h"
 #include "ground/thermal/temperature_review.h"
 #include "ground/tsdf/raycaster.h"
 
@@ -220,9 +220,7 @@ class Extractor {
     point.nuc_epoch = conditions.epoch;
     point.nuc_age_s = conditions.age_s();
     point.measured_distance_m = conditions.distance_m();
-    const float cosine = normal.dot(DecodeDirection(conditions.direction));
-    point.measured_angle_deg =
-        static_cast<float>(1.0 / kRadPerDeg) * std::acos(std::clamp(cosine, -1.0F, 1.0F));
+    point.measured_angle_deg = AngleToNormalDeg(conditions.direction, normal);
     return point;
   }
 

@@ -27,8 +27,8 @@ struct CloudPoint {
   float nuc_age_s = NAN;
   float measured_distance_m = NAN;
   float measured_angle_deg = NAN;  ///< To the surface as it is now.
-  float sigma_k = NAN;  ///< Standard uncertainty of the apparent temperature; NaN = not known.
-  float apparent_celsius = NAN;  ///< Kept by Interpretation; NaN = never measured.
+  float sigma_k = NAN;             ///< Standard uncertainty of `celsius`; NaN = not known.
+  float apparent_celsius = NAN;    ///< Kept by Interpretation; NaN = never measured.
 };
 
 /// The zero crossings of the model, and triangles between them. Points that no triangle uses are

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/concurrency/thread_pool.h"
+#include "ground/thermal/condition_record.h"
 #include "ground/tsdf/tsdf_volume.h"
 
 namespace isotherm {
@@ -68,15 +69,18 @@ void SampleRecords(const SurfaceMaps& maps, const TsdfVolume& tsdf, const Therma
                    ThreadPool& threads, ViewMaps& view) {
   view.nuc_age_s.Resize(maps.width(), maps.height());
   view.sigma_k.Resize(maps.width(), maps.height());
+  view.measured_angle_deg.Resize(maps.width(), maps.height());
   threads.ParallelFor(maps.height(), [&](int y) {
     for (int x = 0; x < maps.width(); ++x) {
-      view.nuc_age_s.At(x, y) = view.sigma_k.At(x, y) = NAN;
+      view.nuc_age_s.At(x, y) = view.sigma_k.At(x, y) = view.measured_angle_deg.At(x, y) = NAN;
       if (std::isnan(view.celsius.At(x, y))) continue;
       const Eigen::Vector3d p_world(maps.vx.At(x, y), maps.vy.At(x, y), maps.vz.At(x, y));
       const PointMeasurement measurement = MeasurementAt(tsdf, thermal, p_world);
       if (measurement.conditions.empty()) continue;
       view.nuc_age_s.At(x, y) = measurement.conditions.age_s();
       view.sigma_k.At(x, y) = measurement.sigma_k;
+      const Eigen::Vector3f normal(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y));
+      view.measured_angle_deg.At(x, y) = AngleToNormalDeg(measurement.conditions.direction, normal);
     }
   });
 }

@@ -28,8 +28,9 @@ struct ViewMaps {
   const char* celsius_meaning = "apparent temperature";
 
   // Of the measurements' records, NaN = not known. Empty unless SampleRecords was called.
-  Image<float> nuc_age_s;  ///< Since the NUC before the measurement.
-  Image<float> sigma_k;    ///< Standard uncertainty of `celsius`.
+  Image<float> nuc_age_s;           ///< Since the NUC before the measurement.
+  Image<float> sigma_k;             ///< Standard uncertainty of `celsius`.
+  Image<float> measured_angle_deg;  ///< Between its line of sight and the surface as it is now.
 
   int width() const { return celsius.width(); }
   int height() const { return celsius.height(); }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/units.h"
 #include "ground/thermal/thermal_volume.h"
 
 namespace isotherm {
@@ -87,6 +88,11 @@ Eigen::Vector3f DecodeDirection(std::uint16_t code) {
     p.y() = (1.0F - std::abs(u)) * SignOf(v);
   }
   return p.normalized();
+}
+
+float AngleToNormalDeg(std::uint16_t direction, const Eigen::Vector3f& normal) {
+  const float cosine = normal.dot(DecodeDirection(direction));
+  return static_cast<float>(1.0 / kRadPerDeg) * std::acos(std::clamp(cosine, -1.0F, 1.0F));
 }
 
 }  // namespace isotherm

@@ -55,5 +55,7 @@ struct RecordRow {
 /// flat (Meyer et al., On floating-point normal vectors, 2010), 8 bits along each axis.
 std::uint16_t EncodeDirection(const Eigen::Vector3f& unit);
 Eigen::Vector3f DecodeDirection(std::uint16_t code);
+/// Between a coded direction and a unit normal, degrees.
+float AngleToNormalDeg(std::uint16_t direction, const Eigen::Vector3f& normal);
 
 }  // namespace isotherm
