@@ -40,7 +40,6 @@ if [ "$headless" = 0 ]; then
   stats.json  what was measured and how long it took
   scan.mcap   the scan itself, to reconstruct again
 Further renderings:   build/release/bin/isotherm render out/demo -o IMAGE.png --size 800x600
-The web console is not part of this version.
 TEXT
 fi
 

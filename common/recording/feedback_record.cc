@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/recording/feedback.pb.h"
-#include "common/recording/message_parts.h"
+#include "common/recording/proto_parts.h"
 #include "common/recording/schema.h"
 
 namespace isotherm {

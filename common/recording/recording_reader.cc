@@ -4,9 +4,9 @@
 #include <charconv>
 #include <utility>
 
-#include "common/recording/frame_messages.h"
+#include "common/recording/frame_protos.h"
 #include "common/recording/mcap_message_stream.h"
-#include "common/recording/recording_messages.h"
+#include "common/recording/recording_protos.h"
 #include "common/recording/recording_streams.h"
 #include "common/rig/rig_calibration.h"
 

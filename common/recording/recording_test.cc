@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "common/codec/codec.h"
-#include "common/recording/frame_messages.h"
-#include "common/recording/recording_messages.h"
+#include "common/recording/frame_protos.h"
+#include "common/recording/recording_protos.h"
 #include "common/recording/recording_topics.h"
 #include "common/recording/schema.h"
 #include "common/recording/testing/recording_data.h"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "common/recording/feedback.pb.h"
-#include "common/recording/recording_messages.h"
+#include "common/recording/recording_protos.h"
 #include "common/recording/schema.h"
 
 namespace isotherm::recording {

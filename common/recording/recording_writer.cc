@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "common/codec/codec.h"
-#include "common/recording/frame_messages.h"
+#include "common/recording/frame_protos.h"
 #include "common/recording/mcap_writer.h"
-#include "common/recording/recording_messages.h"
+#include "common/recording/recording_protos.h"
 #include "common/recording/recording_streams.h"
 #include "common/recording/schema.h"
 

@@ -15,7 +15,7 @@
 #include "common/simulation/simulation_options.pb.h"
 #include "ground/cli/child_process.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/cli/truth.h"
+#include "ground/evaluation/true_poses.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/options/option_geometry.h"
 

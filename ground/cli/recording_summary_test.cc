@@ -8,7 +8,7 @@
 #include "ground/cli/frame_rendering.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/recording_report.h"
-#include "ground/cli/truth.h"
+#include "ground/evaluation/true_poses.h"
 
 namespace isotherm {
 namespace {

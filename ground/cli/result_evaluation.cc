@@ -10,9 +10,9 @@
 #include "common/dataset/trajectory.h"
 #include "common/rig/rig_calibration.h"
 #include "ground/cli/result_folder.h"
-#include "ground/cli/truth.h"
 #include "ground/cli/uncertainty_text.h"
 #include "ground/evaluation/point_sets.h"
+#include "ground/evaluation/true_poses.h"
 #include "ground/thermal/thermal_options.h"
 
 namespace isotherm {

@@ -8,7 +8,7 @@
 #include "common/rig/rig_calibration.h"
 #include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
-#include "ground/cli/truth.h"
+#include "ground/evaluation/true_poses.h"
 #include "ground/options/option_geometry.h"
 
 namespace isotherm {

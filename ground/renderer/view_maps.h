@@ -12,7 +12,7 @@ namespace isotherm {
 class ThreadPool;
 
 /// Holds what the model knows about the surface in one view, as numbers, height x width, row-major.
-/// The renderings, the coverage summary and the console start from here.
+/// The renderings and the coverage summary start from here.
 struct ViewMaps {
   Image<float> celsius;  ///< Apparent temperature; NaN = never measured or no surface.
   Image<std::uint8_t>

@@ -23,8 +23,6 @@ const std::map<std::string_view, std::string_view>& SdkHomes() {
       {"PS1080.h", "edge/openni"},
       {"libusb", "edge/usb"},
       {"umockdev", "edge/usb/testing"},
-      {"boost/beast", "ground/console"},
-      {"boost/asio", "ground/console"},
       {"png.h", "common/png"},
       {"systemd/", "common/base"},
   };

@@ -17,8 +17,8 @@
 #include "common/simulation/simulation_options.pb.h"
 #include "common/testing/temporary_directory.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/cli/truth.h"
 #include "ground/evaluation/point_sets.h"
+#include "ground/evaluation/true_poses.h"
 #include "tests/support/programs.h"
 
 namespace isotherm::system_test {

@@ -18,8 +18,8 @@
 #include "ground/cli/model_export.h"
 #include "ground/cli/result_evaluation.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/cli/truth.h"
 #include "ground/evaluation/ply_reader.h"
+#include "ground/evaluation/true_poses.h"
 #include "ground/offline/reconstruct.h"
 #include "ground/options/option_geometry.h"
 

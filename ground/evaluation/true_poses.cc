@@ -1,4 +1,4 @@
-#include "ground/cli/truth.h"
+#include "ground/evaluation/true_poses.h"
 
 #include <fmt/format.h>
 

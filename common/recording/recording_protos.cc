@@ -1,9 +1,9 @@
-#include "common/recording/recording_messages.h"
+#include "common/recording/recording_protos.h"
 
 #include <cmath>
 #include <utility>
 
-#include "common/recording/message_parts.h"
+#include "common/recording/proto_parts.h"
 #include "common/rig/rig_calibration.h"
 
 namespace isotherm::recording {

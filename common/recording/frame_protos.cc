@@ -1,4 +1,4 @@
-#include "common/recording/frame_messages.h"
+#include "common/recording/frame_protos.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/base/check.h"
-#include "common/recording/message_parts.h"
+#include "common/recording/proto_parts.h"
 
 namespace isotherm::recording {
 namespace {
