@@ -175,11 +175,15 @@ Result<Rig> SimulatedRig(const SimulationOptions& options) {
   }
   rig.depth_scale = options.depth().expert().depth_scale();
   rig.thermal_scale = ScaleOf(options.thermal());
-  const SceneInfluenceOptions& influence = options.thermal().expert().scene_influence();
-  rig.thermal_sensor.scene_influence = {.near_fraction = influence.near_fraction(),
-                                        .near_sigma_px = influence.near_sigma_px(),
-                                        .total_fraction = influence.total_fraction()};
+  rig.thermal_sensor.scene_influence = InfluenceOf(options.thermal());
   return rig;
+}
+
+SceneInfluence InfluenceOf(const SimulatedThermalOptions& options) {
+  const SceneInfluenceOptions& influence = options.expert().scene_influence();
+  return {.near_fraction = influence.near_fraction(),
+          .near_sigma_px = influence.near_sigma_px(),
+          .total_fraction = influence.total_fraction()};
 }
 
 RadiometricScale ScaleOf(const SimulatedThermalOptions& options) {

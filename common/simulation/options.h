@@ -30,4 +30,7 @@ Result<Rig> SimulatedRig(const SimulationOptions& options);
 /// "furnace-door", "calibrator", "plane", "corner-sphere".
 std::string SceneName(const SimulationOptions& options);
 
+/// Returns what the scene adds to each pixel of a simulated camera; the rig tells it.
+SceneInfluence InfluenceOf(const SimulatedThermalOptions& options);
+
 }  // namespace isotherm

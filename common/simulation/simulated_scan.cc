@@ -197,7 +197,6 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
 
 void SimulatedScan::AddErrors(CaptureTime time, Image<std::uint16_t>& temperature_raw) const {
   const SimulatedThermalExpertOptions& expert = options_->thermal().expert();
-  AddSceneInfluence(expert.scene_influence(), temperature_raw);
   const double corrected_s = CorrectedAfter(time);
   const double since_s = ToSeconds(time - start_) - corrected_s;
   // Each correction takes the pattern out; another one grows.

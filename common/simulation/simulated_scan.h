@@ -70,8 +70,7 @@ class SimulatedScan {
   /// Returns when the last correction before `time` ended, or 0: seconds after the start.
   double CorrectedAfter(CaptureTime time) const;
   Image<std::uint16_t> ThermalPixels(std::uint64_t frame_number, Scratch& scratch) const;
-  /// Adds what a real camera shows beside its noise: influence of the scene, pattern, flicker,
-  /// drift of the housing.
+  /// Adds what a real camera shows beside its noise: pattern, flicker, drift of the housing.
   void AddErrors(CaptureTime time, Image<std::uint16_t>& temperature_raw) const;
   ThermalHousekeeping HousekeepingAt(CaptureTime time) const;
 

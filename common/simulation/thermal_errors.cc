@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/base/noise.h"
-#include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {
 namespace {
@@ -51,26 +50,26 @@ void AddKelvin(double kelvin, const RadiometricScale& scale, Image<std::uint16_t
   }
 }
 
-void AddSceneInfluence(const SceneInfluenceOptions& influence, Image<std::uint16_t>& counts) {
-  if (influence.near_fraction() == 0.0 && influence.total_fraction() == 0.0) return;
-  Image<float> values(counts.width(), counts.height()), present(counts.width(), counts.height());
+void AddSceneInfluence(const SceneInfluence& influence, Image<float>& celsius) {
+  Image<float> values(celsius.width(), celsius.height());
+  Image<float> present(celsius.width(), celsius.height());
   double total = 0.0, pixels = 0.0;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    values.pixels()[i] = static_cast<float>(counts.pixels()[i]);
-    present.pixels()[i] = counts.pixels()[i] == 0 ? 0.0F : 1.0F;
-    total += static_cast<double>(values.pixels()[i]);
-    pixels += static_cast<double>(present.pixels()[i]);
+  for (std::size_t i = 0; i < celsius.size(); ++i) {
+    if (std::isnan(celsius.pixels()[i])) continue;
+    values.pixels()[i] = celsius.pixels()[i];
+    present.pixels()[i] = 1.0F;
+    total += static_cast<double>(celsius.pixels()[i]);
+    pixels += 1.0;
   }
   if (pixels == 0.0) return;
   total /= pixels;
-  const Image<float> sums = GaussianSum(values, influence.near_sigma_px());
-  const Image<float> divisors = GaussianSum(present, influence.near_sigma_px());
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    std::uint16_t& count = counts.pixels()[i];
-    if (count == 0) continue;
+  const Image<float> sums = GaussianSum(values, influence.near_sigma_px);
+  const Image<float> divisors = GaussianSum(present, influence.near_sigma_px);
+  for (std::size_t i = 0; i < celsius.size(); ++i) {
+    const auto own = static_cast<double>(celsius.pixels()[i]);  // NaN stays so.
     const double near = static_cast<double>(sums.pixels()[i] / divisors.pixels()[i]);
-    count = CountOrNone(count + influence.near_fraction() * (near - count) +
-                        influence.total_fraction() * (total - count));
+    celsius.pixels()[i] = static_cast<float>(own + influence.near_fraction * (near - own) +
+                                             influence.total_fraction * (total - own));
   }
 }
 

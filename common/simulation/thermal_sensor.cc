@@ -9,6 +9,7 @@
 #include "common/frame/frame.h"
 #include "common/simulation/options.h"
 #include "common/simulation/simulation_options.pb.h"
+#include "common/simulation/thermal_errors.h"
 
 namespace isotherm {
 namespace {
@@ -61,6 +62,7 @@ ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOp
       noise_radiance_(options.expert().netd_kelvin() *
                       PlanckBandRadianceSlope(kNetd_celsius, band_.band())),
       readout_s_(options.expert().readout_s()),
+      influence_(InfluenceOf(options)),
       delays_s_(ResponseDelays(options.expert().time_constant_s())),
       blur_weights_(GaussianWeights(options.expert().blur_px())) {}
 
@@ -209,8 +211,24 @@ void ThermalSensor::Blur(Scratch& scratch) const {
   }
 }
 
-Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream,
-                                           const Scratch& scratch) const {
+void ThermalSensor::AddInfluence(Scratch& scratch) const {
+  if (influence_.Total() == 0.0) return;
+  scratch.celsius.Resize(grid_.width(), grid_.height());
+  for (std::size_t i = 0; i < scratch.celsius.size(); ++i) {
+    scratch.celsius.pixels()[i] = static_cast<float>(
+        band_.CelsiusFromRadiance(static_cast<double>(scratch.radiance.pixels()[i])));
+  }
+  AddSceneInfluence(influence_, scratch.celsius);
+  for (std::size_t i = 0; i < scratch.celsius.size(); ++i) {
+    const float celsius = scratch.celsius.pixels()[i];
+    if (std::isnan(celsius)) continue;  // Out of the radiometric range, as it was.
+    scratch.radiance.pixels()[i] =
+        static_cast<float>(band_.RadianceFromCelsius(static_cast<double>(celsius)));
+  }
+}
+
+Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream, Scratch& scratch) const {
+  AddInfluence(scratch);
   Image<std::uint16_t> temperature_raw(grid_.width(), grid_.height());
   const auto radiance = scratch.radiance.pixels();
   const auto out = temperature_raw.pixels();

@@ -9,6 +9,7 @@
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 #include "common/radiometry/radiometry.h"
+#include "common/rig/sensor_models.h"
 #include "common/simulation/ray_caster.h"
 
 namespace isotherm {
@@ -29,6 +30,7 @@ class ThermalSensor {
     Image<float> radiance;
     Image<float> rows;
     Image<float> smeared;
+    Image<float> celsius;
   };
   /// T_world_thermal this many seconds after the capture time.
   using PoseAfter = std::function<RigidTransform(double seconds)>;
@@ -65,13 +67,16 @@ class ThermalSensor {
   /// Adds one exposure's part, which depends on the row, to scratch.smeared.
   void AddSmear(const std::vector<double>& exposure_times_s, std::size_t exposure,
                 Scratch& scratch) const;
-  Image<std::uint16_t> Detect(std::uint64_t noise_stream, const Scratch& scratch) const;
+  /// Adds what each pixel gets of others, in temperature, to scratch.radiance.
+  void AddInfluence(Scratch& scratch) const;
+  Image<std::uint16_t> Detect(std::uint64_t noise_stream, Scratch& scratch) const;
 
   const RayGrid grid_;
   const BandRadiance band_;
   const RadiometricScale scale_;
   const double noise_radiance_;
   const double readout_s_;
+  const SceneInfluence influence_;
   std::vector<double> delays_s_;     ///< Equal parts of the detector's answer; their mean is 0.
   std::vector<float> blur_weights_;  ///< From the centre outwards; one weight = sharp.
 };

@@ -92,7 +92,7 @@ void LogClock(const EdgeOptions& options, const KernelClock& clock) {
 
 /// Null if nothing is to be recorded. Without a disk it waits for one, unless somebody waits for
 /// the end of the source: then that is an error.
-Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const SessionStart& start,
+Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const EdgeSession& start,
                                          const Clock& clock, FrameCounters& counters) {
   const std::optional<std::filesystem::path> path =
       RecordingPath(options.spool().record(), start.time, start.session());
@@ -211,7 +211,7 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
 }
 
 /// Captures until told to leave, then passes on what is under way. The process's exit status.
-int Capture(const EdgeOptions& options, const SessionStart& start, FrameSource& source,
+int Capture(const EdgeOptions& options, const EdgeSession& start, FrameSource& source,
             std::unique_ptr<Spool> spool, FrameCounters& counters, CameraHealth& health,
             Publisher& publisher, Leaving& leaving, const Clock& clock,
             const std::stop_token& stop) {
@@ -289,8 +289,8 @@ int RunEdge(const EdgeOptions& options, const TransportEnvironment& environment,
   const std::optional<Rig> rig = *calibration ? *calibration : (*source)->rig();
   LogRig(rig);
   LogCounts((*source)->cameras());
-  const SessionStart start{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
-                           rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
+  const EdgeSession start{clock.Now(), (*source)->cameras(), AsPublished(rig, **source),
+                          rig ? rig->thermal_delay_s : 0.0, ReadKernelClock()};
   LogClock(options, start.clock);
 
   Link link;

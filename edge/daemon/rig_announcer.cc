@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-RigAnnouncer::RigAnnouncer(const EdgeOptions& options, SessionStart start,
+RigAnnouncer::RigAnnouncer(const EdgeOptions& options, EdgeSession start,
                            const CameraHealth& health, Publisher& publisher)
     : options_(options), health_(health), publisher_(publisher), announced_(std::move(start)) {}
 
@@ -26,11 +26,14 @@ void RigAnnouncer::Tick() {
     if (announced_.rig && sensor == Sensor::kThermal && !camera->counts_only)
       TakeScale(camera->thermal_scale, *announced_.rig);
     announced_.cameras.push_back(std::move(*camera));
-    const Status status = publisher_.Announce(DescribeRig(options_, announced_));
-    if (!status.ok()) {
-      LOG(Edge, Warning) << "a camera is not announced: " << status.message();
-    }
+    is_due_ = true;
   }
+  if (!is_due_) return;
+  const Status status = publisher_.Announce(DescribeRig(options_, announced_));
+  if (status.message() != problem_ && !status.ok())
+    LOG(Edge, Warning) << "a camera is not announced yet: " << status.message();
+  problem_ = status.message();
+  is_due_ = !status.ok();
 }
 
 }  // namespace isotherm

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "edge/daemon/session_start.h"
 #include "edge/pipeline/camera_health.h"
 #include "edge/publisher/publisher.h"
@@ -13,10 +15,10 @@ class EdgeOptions;
 class RigAnnouncer {
  public:
   /// All but `start` must outlive it; the rig is announced as `start` describes it.
-  RigAnnouncer(const EdgeOptions& options, SessionStart start, const CameraHealth& health,
+  RigAnnouncer(const EdgeOptions& options, EdgeSession start, const CameraHealth& health,
                Publisher& publisher);
 
-  /// Call it often.
+  /// Call it often: what could not be announced is tried again.
   void Tick();
 
  private:
@@ -25,7 +27,9 @@ class RigAnnouncer {
   const EdgeOptions& options_;
   const CameraHealth& health_;
   Publisher& publisher_;
-  SessionStart announced_;
+  EdgeSession announced_;
+  bool is_due_ = false;  ///< A camera is known that could not be announced so far.
+  std::string problem_;  ///< Why not; logged once.
 };
 
 }  // namespace isotherm

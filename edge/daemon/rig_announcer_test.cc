@@ -36,7 +36,7 @@ class RigAnnouncerTest : public ::testing::Test {
   RigAnnouncer Make() { return {options_, start_, health_, publisher_}; }
 
   EdgeOptions options_;
-  SessionStart start_;
+  EdgeSession start_;
   CameraHealth health_;
   FakePublisher publisher_;
 };
@@ -73,6 +73,19 @@ TEST_F(RigAnnouncerTest, ACameraThatComesLateIsAnnouncedOnceWithItsOwnScale) {
   EXPECT_EQ(announced.thermal.serial, "T1");
   EXPECT_EQ(announced.depth.serial, "D1") << "and what was known stays";
   EXPECT_EQ(announced.session, start_.session());
+}
+
+TEST_F(RigAnnouncerTest, WhatTheLinkDoesNotTakeIsTriedAgain) {
+  RigAnnouncer announcer = Make();
+  health_.SetOpened(HotCamera());
+  publisher_.Break();
+  announcer.Tick();
+  announcer.Tick();
+  EXPECT_TRUE(publisher_.announced().empty());
+  publisher_.Mend();
+  for (int i = 0; i < 3; ++i) announcer.Tick();
+  ASSERT_EQ(publisher_.announced().size(), 1U);
+  EXPECT_EQ(publisher_.announced()[0].rig.thermal_scale, kHotScale);
 }
 
 TEST_F(RigAnnouncerTest, ACameraOfCountsLeavesTheCalibrationsScale) {

@@ -70,7 +70,7 @@ void TakeScale(const RadiometricScale& scale, Rig& rig) {
   rig.thermal_scale = scale;
 }
 
-RigDescription DescribeRig(const EdgeOptions& options, const SessionStart& start) {
+RigDescription DescribeRig(const EdgeOptions& options, const EdgeSession& start) {
   RigDescription description;
   description.session = start.session();
   description.waits_for_ground = options.source().rate() == 0.0;
@@ -92,7 +92,7 @@ RigDescription DescribeRig(const EdgeOptions& options, const SessionStart& start
 }
 
 RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,
-                                                 const SessionStart& start) {
+                                                 const EdgeSession& start) {
   const TimestamperOptions& timing = options.timestamper();
   RecordingDescription::Metadata metadata = {
       {"configuration", {{"edge", ToTextProto(options)}}},

@@ -22,7 +22,7 @@ std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source
 void TakeScale(const RadiometricScale& scale, Rig& rig);
 
 /// Holds what was found out before anything starts.
-struct SessionStart {
+struct EdgeSession {
   CaptureTime time;
   std::vector<CameraDescription> cameras;
   std::optional<Rig> rig;            ///< As published and recorded.
@@ -34,9 +34,9 @@ struct SessionStart {
 };
 
 /// Returns what the link says of the session.
-RigDescription DescribeRig(const EdgeOptions& options, const SessionStart& start);
+RigDescription DescribeRig(const EdgeOptions& options, const EdgeSession& start);
 /// Returns what the recording says of it.
 RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,
-                                                 const SessionStart& start);
+                                                 const EdgeSession& start);
 
 }  // namespace isotherm

@@ -63,7 +63,7 @@ class Publisher {
   /// Starts the counts of a session and announces its rig. Frames of other sessions must not
   /// follow.
   virtual Status BeginSession(const RigDescription& rig) = 0;
-  /// Announces the rig of the session that has begun anew: more is known of it.
+  /// Announces the rig of the running session again, after more has become known of it.
   virtual Status Announce(const RigDescription& rig) = 0;
   /// Writes a frame. With kLossless it first waits for room in the flow window. Once stop is
   /// requested, all frames that follow have the time of one StopBudget. An error: the frame was not

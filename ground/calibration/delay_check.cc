@@ -140,10 +140,11 @@ DelayReport DelayCheck::Finish(const ScanModel& scan, ThreadPool& pool,
   }
   report.verdict = Assess(*estimate, options_.expert().max_shift_s());
   if (report.verdict == DelayVerdict::kNotAssessed) {
-    report.reason = fmt::format(
-        "the rig hardly went back and forth, so that only a delay off by more than {:.0f} ms would "
-        "have shown",
-        1e3 * kSigmas * estimate->sigma_s);
+    report.reason =
+        fmt::format("{}, so that it is uncertain by {:.0f} ms",
+                    HintOfDrift(*estimate).empty() ? "parts of the scan say different things"
+                                                   : "the rig hardly went back and forth",
+                    1e3 * estimate->sigma_s);
     return report;
   }
   report.off_by = *estimate;

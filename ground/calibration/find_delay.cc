@@ -1,6 +1,8 @@
 #include "ground/calibration/find_delay.h"
 
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "ground/calibration/image_motion.h"
@@ -29,14 +31,19 @@ Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& 
       options.search, progress);
   if (!estimate) return estimate;
   const std::vector<StampedVelocity> motion = ImageVelocities(views);
-  estimate->drift_sigma_s = DelaySigmaOfDrift(motion, views.pose_drift_m * PixelsPerMetre(views));
+  const std::optional<double> pixels_per_metre = PixelsPerMetre(views);
+  estimate->drift_sigma_s = pixels_per_metre
+                                ? DelaySigmaOfDrift(motion, views.pose_drift_m * *pixels_per_metre)
+                                : std::numeric_limits<double>::infinity();
   estimate->sigma_s = std::hypot(estimate->sigma_s, kCommonError_s, estimate->drift_sigma_s);
   return estimate;
 }
 
 std::string HintOfDrift(const DelayEstimate& estimate) {
-  if (estimate.drift_sigma_s * estimate.drift_sigma_s <= 0.5 * estimate.sigma_s * estimate.sigma_s)
-    return {};
+  const bool is_mostly_drift =
+      std::isinf(estimate.drift_sigma_s) ||
+      estimate.drift_sigma_s * estimate.drift_sigma_s > 0.5 * estimate.sigma_s * estimate.sigma_s;
+  if (!is_mostly_drift) return {};
   return "move the rig back and forth more often for a more certain one";
 }
 

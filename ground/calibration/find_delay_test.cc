@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <memory>
 
 #include "common/base/noise.h"
@@ -196,6 +197,15 @@ TEST(FindDelayTest, WhatWanderingPosesMakeIsInTheUncertainty) {
   ASSERT_TRUE(fast.has_value()) << fast.error().message();
   EXPECT_LT(fast->drift_sigma_s, 0.0003);
   EXPECT_LT(std::abs(fast->delay_s), 0.001);
+}
+
+TEST(FindDelayTest, TheHintComesWhereDriftIsMostOfTheUncertainty) {
+  EXPECT_EQ(HintOfDrift({.sigma_s = 0.002, .drift_sigma_s = 0.001}), "");
+  EXPECT_THAT(HintOfDrift({.sigma_s = 0.003, .drift_sigma_s = 0.0028}),
+              HasSubstr("back and forth"));
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  EXPECT_THAT(HintOfDrift({.sigma_s = kUnknown, .drift_sigma_s = kUnknown}),
+              HasSubstr("back and forth"));
 }
 
 TEST(FindDelayTest, WithoutThermalContrastNothingIsFound) {

@@ -13,6 +13,8 @@ namespace {
 // To each side: longer than what the noise of single poses makes, shorter than a person's swing.
 constexpr double kHalfBaseline_s = 0.08;
 constexpr double kMinDepth_m = 0.05;
+// Less of the squared speed than this is rounding, not a change of it.
+constexpr double kMinChange = 1e-9;
 // How long tracked poses remember what they are off by: the surface that they are tracked against
 // was built by poses that drifted alike, and changes as the rig comes to see other parts of it.
 constexpr double kDriftMemory_s = 4.0;
@@ -54,13 +56,18 @@ double RmsSpeed(const std::vector<StampedVelocity>& motion) {
   return motion.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(motion.size()));
 }
 
-double PixelsPerMetre(const ScanViews& views) {
+std::optional<double> PixelsPerMetre(const ScanViews& views) {
   const Eigen::Vector3d middle = MiddleOfSurface(views);
   double depth_m = 0.0;
-  for (const StampedPose& pose : views.trajectory)
-    depth_m += (views.T_thermal_depth * (pose.T_world_depth.inverse() * middle)).z() /
-               static_cast<double>(views.trajectory.size());
-  return depth_m < kMinDepth_m ? 0.0 : views.thermal_camera.fx / depth_m;
+  int count = 0;
+  for (const StampedPose& pose : views.trajectory) {
+    const double z_m = (views.T_thermal_depth * (pose.T_world_depth.inverse() * middle)).z();
+    if (z_m < kMinDepth_m) continue;
+    depth_m += z_m;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return views.thermal_camera.fx * count / depth_m;
 }
 
 double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px) {
@@ -69,15 +76,16 @@ double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drif
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const StampedVelocity& at : motion)
     mean += at.velocity_px_s / static_cast<double>(motion.size());
-  double squares = 0.0, variance = 0.0;
+  double squares = 0.0, all_squares = 0.0, variance = 0.0;
   for (const StampedVelocity& a : motion) {
     squares += (a.velocity_px_s - mean).squaredNorm();
+    all_squares += a.velocity_px_s.squaredNorm();
     for (const StampedVelocity& b : motion) {
       const double correlation = std::exp(-std::abs(ToSeconds(a.time - b.time)) / kDriftMemory_s);
       variance += correlation * (a.velocity_px_s - mean).dot(b.velocity_px_s - mean);
     }
   }
-  if (!(squares > 0.0)) return std::numeric_limits<double>::infinity();
+  if (!(squares > kMinChange * all_squares)) return std::numeric_limits<double>::infinity();
   return drift_px * std::sqrt(std::max(0.0, variance)) / squares;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "common/time/time_types.h"
@@ -15,20 +16,21 @@ struct StampedVelocity {
   Eigen::Vector2d velocity_px_s = Eigen::Vector2d::Zero();
 };
 
-/// One for each thermal frame at whose time the rig's motion is known, by time.
+/// Returns one for each thermal frame at whose time the rig's motion is known, by time.
 std::vector<StampedVelocity> ImageVelocities(const ScanViews& views);
 
-/// RMS of their lengths, pixels per second; 0 for none.
+/// Returns the RMS of their lengths, pixels per second; 0 for none.
 double RmsSpeed(const std::vector<StampedVelocity>& motion);
 
-/// How many pixels a shift of a metre across the line of sight makes at the surface's middle, over
-/// the poses of the scan; 0 without.
-double PixelsPerMetre(const ScanViews& views);
+/// Returns how many pixels a shift of a metre across the line of sight makes at the surface's
+/// middle, by its mean depth; nullopt if no pose has it before the camera.
+std::optional<double> PixelsPerMetre(const ScanViews& views);
 
-/// The standard deviation, seconds, of a delay that comes from poses which drift by `drift_px` (one
-/// sigma along each axis of the image, forgotten within seconds): what of the drift goes along with
-/// the velocity is taken for a delay. A rig that reverses often averages it out, one that goes one
-/// way does not: a constant velocity says nothing about a delay. Infinite without motion.
+/// Returns the standard deviation, seconds, of a delay that comes from poses which drift by
+/// `drift_px` (one sigma along each axis of the image, forgotten within seconds): what of the drift
+/// goes along with the velocity is taken for a delay. A rig that reverses often averages it out,
+/// one that goes one way does not: a constant velocity says nothing about a delay. Infinite without
+/// a change of it.
 double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px);
 
 }  // namespace isotherm

@@ -63,8 +63,10 @@ TEST(ImageMotionTest, SigmaIsTheSpreadOfDelaysThatDrawnDriftsMake) {
 }
 
 TEST(ImageMotionTest, AConstantVelocitySaysNothing) {
-  std::vector<StampedVelocity> motion = Swing(0.0, 1.0, 0.1, 50);
-  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift(motion, 0.1)));
+  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift(Swing(0.0, 1.0, 0.1, 50), 0.1)));
+  std::vector<StampedVelocity> steady;
+  for (int i = 0; i < 333; ++i) steady.push_back({kBegin + FromSeconds(0.025 * i), {30.1, -7.3}});
+  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift(steady, 0.1)));
   EXPECT_TRUE(std::isinf(DelaySigmaOfDrift({}, 0.1)));
   EXPECT_EQ(RmsSpeed({}), 0.0);
 }
@@ -92,7 +94,9 @@ TEST(ImageMotionTest, VelocitiesAreThoseOfTheSurfaceInTheImage) {
     EXPECT_NEAR(at.velocity_px_s.y(), 0.0, 1e-9);
   }
   EXPECT_NEAR(RmsSpeed(motion), -expected_px_s, 1e-6);
-  EXPECT_NEAR(PixelsPerMetre(views), kFocal_px / kDistance_m, 1e-9);
+  EXPECT_NEAR(PixelsPerMetre(views).value(), kFocal_px / kDistance_m, 1e-9);
+  views.points.front().p_world.z() = -kDistance_m;
+  EXPECT_FALSE(PixelsPerMetre(views)) << "behind the camera";
 }
 
 }  // namespace

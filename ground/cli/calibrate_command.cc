@@ -28,8 +28,9 @@ constexpr const char* kCalibrateFooter =
 stamps. The depth camera is tracked through the recording; then thermal images are projected onto the
 surface at the poses that a delay puts them at, and the delay is sought at which they agree. The recording
 should show a surface with clear thermal contrast for 10 s or more while the rig is moved back and forth.
-Parts of the scan are resampled to say how certain the result is; nothing is written if it is not, or
-if the calibration's delay agrees with it (delay_check.expert.max_shift_s).
+Parts of the scan are resampled to say how certain the result is; to their spread comes what drifting poses
+can be taken for, which reversals average out. Nothing is written if parts spread by more than --max-sigma, if
+the calibration's delay agrees with the result (delay_check.expert.max_shift_s), or if nearly any would.
 
 --rig names the calibration that the scan was made with. Only --apply changes it: that one number, comments
 and all else stay, and the file as it was is kept beside it (FILE.bak).
@@ -120,7 +121,7 @@ Result<Change> ChangeOf(const ScanForCalibration& scan, const std::optional<Rig>
 
 void Print(const ScanForCalibration& scan, const DelayEstimate& estimate, const Change& change) {
   fmt::print(
-      "thermal_delay_s: {:.4f} ({:+.1f} ms), uncertain by {:.1f} ms (one standard deviation, from "
+      "thermal_delay_s: {:.4f} ({:+.1f} ms), uncertain by {:.1f} ms (one standard deviation; "
       "{} parts of the scan)\n",
       change.after_s, 1e3 * change.after_s, 1e3 * estimate.sigma_s, estimate.parts);
   fmt::print(
@@ -168,7 +169,12 @@ int Run(const CalibrateArguments& arguments) {
   Print(*scan, *estimate, *change);
   DelayEstimate moved_by = *estimate;
   moved_by.delay_s = change->after_s - change->before_s;
-  if (Assess(moved_by, options.delay_check().expert().max_shift_s()) != DelayVerdict::kMoved) {
+  const DelayVerdict verdict = Assess(moved_by, options.delay_check().expert().max_shift_s());
+  if (verdict == DelayVerdict::kNotAssessed) {
+    fmt::print("too uncertain to agree with the calibration or not: nothing to write\n");
+    return 0;
+  }
+  if (verdict != DelayVerdict::kMoved) {
     fmt::print(
         "agrees with the calibration (within {:g} ms or its uncertainty): nothing to write\n",
         1e3 * options.delay_check().expert().max_shift_s());
@@ -209,7 +215,7 @@ void AddCalibrateCommand(CLI::App& app, CommandBody& body) {
       ->capture_default_str();
   command
       ->add_option("--max-sigma", arguments->find.search.max_sigma_s,
-                   "A result less certain than this is refused, seconds")
+                   "A result whose parts of the scan spread by more than this is refused, seconds")
       ->check(CLI::Range(0.0001, 0.1))
       ->capture_default_str();
   AddConfigurationArguments(*command, arguments->configuration);

@@ -13,7 +13,7 @@ HeldOutViews::HeldOutViews(const ScanModel& scan, const HeldOutOptions& options,
     : scan_(scan),
       options_(options),
       pool_(pool),
-      rectifier_(*scan.rig.thermal, scan.rig.thermal_sensor.scene_influence) {}
+      rectifier_(*scan.rig.thermal, options.scene_influence) {}
 
 std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
   const std::vector<StampedPose>& poses = scan_.trajectory.poses();

@@ -22,6 +22,7 @@ struct HeldOutOptions {
   /// What was scanned. nullopt: a temperature is predicted to be seen from everywhere as from where
   /// it was measured.
   std::optional<SmoothSurface> surface;
+  SceneInfluence scene_influence;  ///< Taken out of the frames, as it was for the model.
 };
 
 /// Predicts thermal frames by casting the model of a finished scan from where they were taken.

@@ -21,6 +21,7 @@
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/pipeline/pipeline_counts.h"
 #include "ground/results/scan_result.h"
+#include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
 namespace {
@@ -358,7 +359,8 @@ Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int
   const HeldOutOptions options{
       .max_gap_s = scan->options.thermal().expert().max_wait_s(),
       .min_weight = static_cast<float>(scan->options.export_().expert().min_weight()),
-      .surface = surface};
+      .surface = surface,
+      .scene_influence = CorrectedInfluence(scan->options.thermal(), scan->rig->thermal_sensor)};
   HeldOutViews views(scan->pipeline->model(), options, scan->pipeline->pool());
   if (Status status = CompareHeldOut(request, *scan->rig, driver.held_out(), views); !status.ok()) {
     return Err(status);

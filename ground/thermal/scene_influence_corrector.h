@@ -24,32 +24,32 @@ class SceneInfluenceCorrector {
 
  private:
   /// Where a pixel lies between the middles of two cells of a row or column.
-  struct Between {
+  struct CellInterpolation {
     int first = 0, second = 0;
     float fraction = 0.0F;
   };
   /// own = gain (measured - near_fraction near - total).
-  struct Terms {
+  struct CorrectionTerms {
     float near_fraction, total, gain;
   };
 
-  static Between CellsAround(int pixel, int cells);
+  static CellInterpolation CellsAround(int pixel, int cells);
   void AverageCells(const Image<float>& celsius);
   /// The near mean of `values_`, into `near_`.
   void AverageNeighbourhoods();
   /// The total mean of `values_`.
   float AverageAll() const;
-  void Subtract(const Terms& terms, Image<float>& celsius);
+  void Subtract(const CorrectionTerms& terms, Image<float>& celsius);
 
   const SceneInfluence influence_;
-  const int columns_, rows_;      ///< Of cells.
-  std::vector<float> weights_;    ///< Of the Gaussian, from the middle outwards, in cells.
-  Image<float> measured_;         ///< Mean of each cell.
-  Image<float> coverage_;         ///< Number of pixels with a value in each cell.
-  Image<float> values_, near_;    ///< What is solved for.
-  Image<float> sums_, divisors_;  ///< After the pass along rows.
-  std::vector<Between> across_;   ///< By column of pixels.
-  std::vector<float> near_row_;   ///< By column of cells, for one row of pixels.
+  const int columns_, rows_;               ///< Of cells.
+  std::vector<float> weights_;             ///< Of the Gaussian, from the middle outwards, in cells.
+  Image<float> measured_;                  ///< Mean of each cell.
+  Image<float> coverage_;                  ///< Number of pixels with a value in each cell.
+  Image<float> values_, near_;             ///< What is solved for.
+  Image<float> sums_, divisors_;           ///< After the pass along rows.
+  std::vector<CellInterpolation> across_;  ///< By column of pixels.
+  std::vector<float> near_row_;            ///< By column of cells, for one row of pixels.
 };
 
 }  // namespace isotherm

@@ -90,6 +90,39 @@ TEST(SceneInfluenceCorrectorTest, OwnTemperaturesComeBack) {
   }
 }
 
+TEST(SceneInfluenceCorrectorTest, TheLargestInfluenceThatIsAllowedIsTakenOutToo) {
+  const cv::Mat mask = HasValue(kWidth);
+  const cv::Mat own = Disc(40.0, 120.0, 24.0);
+  for (const auto& [influence, tolerance_k] :
+       {std::pair(SceneInfluence{.near_fraction = SceneInfluence::kMaxFraction,
+       .near_sigma_px = 40.0,
+       .total_fraction = SceneInfluence::kMaxFraction},
+                  0.5),
+        // Means of so few pixels are not smooth: a cell is as wide as they reach.
+        std::pair(SceneInfluence{.near_fraction = 0.05,
+        .near_sigma_px = SceneInfluence::kMinSigma_px,
+        .total_fraction = 0.0},
+                  0.7)}) {
+    Image<float> image = ToImage(WithInfluence(own, mask, influence), mask);
+    const double before_k = LargestError(image, own, mask);
+    SceneInfluenceCorrector(influence, kWidth, kHeight).Correct(image);
+    const double after_k = LargestError(image, own, mask);
+    std::printf("%.2f K off, corrected %.3f K\n", before_k, after_k);
+    EXPECT_LT(after_k, tolerance_k);
+    EXPECT_GT(before_k, 3.0 * tolerance_k);
+  }
+}
+
+TEST(SceneInfluenceCorrectorTest, AnImageOfLessThanACellIsCorrectedByItsMean) {
+  Image<float> image(5, 3, 24.0F);
+  image.At(2, 1) = 39.0F;  // Mean 25 °C.
+  SceneInfluenceCorrector({.near_fraction = 0.0, .near_sigma_px = 40.0, .total_fraction = 0.2}, 5,
+                          3)
+      .Correct(image);
+  EXPECT_NEAR(image.At(2, 1), 39.0 + 0.2 / 0.8 * 14.0, 1e-3);
+  EXPECT_NEAR(image.At(0, 0), 24.0 - 0.2 / 0.8 * 1.0, 1e-3);
+}
+
 TEST(SceneInfluenceCorrectorTest, WithoutInfluenceNothingChanges) {
   const cv::Mat mask = HasValue(kWidth);
   const Image<float> measured = ToImage(Disc(40.0, 120.0, 24.0), mask);

@@ -86,8 +86,7 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
       review_(options, sensor),
       min_weight_(min_weight),
       apron_(std::max(1, options.expert().occlusion().edge_margin_px())),
-      rectifier_(thermal_camera, options.expert().correct_scene_influence() ? sensor.scene_influence
-                                                                            : SceneInfluence{}) {
+      rectifier_(thermal_camera, CorrectedInfluence(options, sensor)) {
   const int width = rectifier_.ideal_camera().width;
   const int height = rectifier_.ideal_camera().height;
   distances_m_ =

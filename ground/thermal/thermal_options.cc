@@ -171,4 +171,8 @@ ThermalOptions CompleteLimits(const ThermalOptions& o, const ThermalSensorModel&
   return complete;
 }
 
+SceneInfluence CorrectedInfluence(const ThermalOptions& options, const ThermalSensorModel& sensor) {
+  return options.expert().correct_scene_influence() ? sensor.scene_influence : SceneInfluence{};
+}
+
 }  // namespace isotherm

@@ -126,6 +126,9 @@ TEST(ThermalRectifierTest, NoiseIsLessWhereFourPixelsAreAveraged) {
   straight.p1 = straight.p2 = 0.0;
   const ThermalRectifier none(straight, SceneInfluence{});
   EXPECT_EQ(none.noise_gain().At(10, 20), 1.0F) << "a pixel is itself";
+  const ThermalRectifier corrected(straight, {.near_fraction = 0.1, .total_fraction = 0.1});
+  EXPECT_NEAR(corrected.noise_gain().At(10, 20), 1.0 / (0.8 * 0.8), 1e-5)
+      << "what takes the scene's influence out raises the noise";
   const CameraModel camera = DistortedCamera(-0.4, 0.2, 0.0);
   ThermalRectifier rectifier(camera, SceneInfluence{});
   // The variance of what becomes of noise, against what is said of it.

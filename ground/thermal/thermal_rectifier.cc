@@ -20,6 +20,15 @@ float SquaresOfWeights(float fraction) {
   return fraction * fraction + (1.0F - fraction) * (1.0F - fraction);
 }
 
+/// What the model cannot hold becomes "no value".
+void KeepRadiometric(std::span<float> celsius) {
+  for (float& value : celsius) {
+    const bool is_kept = value >= static_cast<float>(kMinRadiometric_celsius) &&
+                         value <= static_cast<float>(kMaxRadiometric_celsius);
+    value = is_kept ? value : kNan;
+  }
+}
+
 }  // namespace
 
 ThermalRectifier::ThermalRectifier(const CameraModel& camera, const SceneInfluence& influence)
@@ -30,6 +39,7 @@ ThermalRectifier::ThermalRectifier(const CameraModel& camera, const SceneInfluen
       fraction_y_(ideal_.width, ideal_.height),
       noise_gain_(ideal_.width, ideal_.height) {
   if (influence.Total() > 0.0) corrector_.emplace(influence, camera.width, camera.height);
+  const auto gain = static_cast<float>(1.0 / (1.0 - influence.Total()));
   for (int v = 0; v < ideal_.height; ++v) {
     for (int u = 0; u < ideal_.width; ++u) {
       const auto pixel = ProjectIntoImage(camera, Unproject(ideal_, {u, v}));
@@ -42,8 +52,8 @@ ThermalRectifier::ThermalRectifier(const CameraModel& camera, const SceneInfluen
       source_.At(u, v) = y * camera.width + x;
       fraction_x_.At(u, v) = static_cast<float>(pixel->x() - x);
       fraction_y_.At(u, v) = static_cast<float>(pixel->y() - y);
-      noise_gain_.At(u, v) =
-          SquaresOfWeights(fraction_x_.At(u, v)) * SquaresOfWeights(fraction_y_.At(u, v));
+      noise_gain_.At(u, v) = gain * gain * SquaresOfWeights(fraction_x_.At(u, v)) *
+                             SquaresOfWeights(fraction_y_.At(u, v));
     }
   }
 }
@@ -65,12 +75,15 @@ void ThermalRectifier::Rectify(const Image<std::uint16_t>& temperature_raw,
     const std::span<float> row = image_.Row(y);
     for (std::size_t x = 0; x < row.size(); ++x) {
       const float value = static_cast<float>(raw[x]) * kelvin_per_count - zero_k;
-      const bool is_kept = raw[x] != 0 && value >= static_cast<float>(kMinRadiometric_celsius) &&
-                           value <= static_cast<float>(kMaxRadiometric_celsius);
-      row[x] = is_kept ? value : kNan;
+      row[x] = raw[x] == 0 ? kNan : value;
     }
+    if (!corrector_) KeepRadiometric(row);
   });
-  if (corrector_) corrector_->Correct(image_);
+  if (corrector_) {
+    corrector_->Correct(image_);
+    pool.ParallelForRows(camera_.height, kRectifiedRowsPerTask,
+                         [&](int y) { KeepRadiometric(image_.Row(y)); });
+  }
   pool.ParallelForRows(height, kRectifiedRowsPerTask, [&](int v) {
     ResampleRow({image_.data(), camera_.width, source_.Row(v).data(), fraction_x_.Row(v).data(),
                  fraction_y_.Row(v).data(), width},

@@ -25,7 +25,8 @@ class ThermalRectifier {
   void Rectify(const Image<std::uint16_t>& temperature_raw, const RadiometricScale& scale,
                int apron, ThreadPool& pool, Image<float>& celsius);
   /// Per pixel of the ideal camera, the variance of what is uncorrelated noise in the frame, as a
-  /// fraction of that in the frame: interpolation averages up to four pixels. 0 outside.
+  /// fraction of that in the frame: interpolation averages up to four pixels, and what takes the
+  /// scene's influence out raises it. 0 outside.
   const Image<float>& noise_gain() const { return noise_gain_; }
   const CameraModel& camera() const { return camera_; }
   const CameraModel& ideal_camera() const { return ideal_; }

@@ -21,7 +21,7 @@ struct CameraUncertainty {
   /// K).
   double error_per_housing_k = 4.0;
   /// Fraction by which the rest of the image pulls a pixel's temperature towards its own mean
-  /// (thesis 5.1). 0 = not known, or corrected.
+  /// (thesis 5.1); after it was taken out, what is left. 0 = not known.
   double scene_influence = 0.0;
 };
 

@@ -31,6 +31,7 @@ class FakePublisher final : public Publisher {
   }
   Status Announce(const RigDescription& rig) override {
     MutexLock lock(mutex_);
+    if (broken_) return Unavailable("no link");
     announced_.push_back(rig);
     return OkStatus();
   }
@@ -71,6 +72,7 @@ class FakePublisher final : public Publisher {
   std::vector<std::pair<Feedback, CaptureTime>> feedback;
 
   void Break() { broken_ = true; }
+  void Mend() { broken_ = false; }
   /// Sets why there is no network; empty if there is one.
   void SetProblem(std::string problem) {
     MutexLock lock(mutex_);
