@@ -208,7 +208,7 @@ TEST_F(CalibrateToolTest, TheDelayOfRecordedDataIsFoundAndThenAgrees) {
   EXPECT_THAT(stats, HasSubstr("\"verdict\": \"moved\""));
   EXPECT_EQ(Number(stats, "calibrated_ms"), 0.0);
   EXPECT_NEAR(Number(stats, "estimated_ms"), 1e3 * kTrue_s, 1e3 * kTolerance_s);
-  EXPECT_LT(Number(stats, "sigma_ms"), 2.0) << "that would not be assessed";
+  EXPECT_LT(Number(stats, "sigma_ms"), 5.0) << "a delay that is right would not be assessed";
 
   ASSERT_EQ(
       Run(import + "--rig '" + (folder_ / "rig.textproto").string() + "' -o right.mcap").status, 0);
