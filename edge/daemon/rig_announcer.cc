@@ -30,8 +30,9 @@ void RigAnnouncer::Tick() {
   }
   if (!is_due_) return;
   const Status status = publisher_.Announce(DescribeRig(options_, announced_));
-  if (status.message() != problem_ && !status.ok())
+  if (!status.ok() && status.message() != problem_) {
     LOG(Edge, Warning) << "a camera is not announced yet: " << status.message();
+  }
   problem_ = status.message();
   is_due_ = !status.ok();
 }

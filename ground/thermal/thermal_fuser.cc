@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ground/thermal/thermal_options.h"
 #include "ground/thermal/upsample_kernel.h"
 
 namespace isotherm {
