@@ -202,15 +202,22 @@ TEST_F(InterpretationTest, RenderingsShowTheSameAsThePoints) {
   const Interpretation interpretation = Make();
   SurfaceMaps maps;
   maps.Resize(2, 1);
-  Image<float> celsius(2, 1);
+  constexpr float kSigma_k = 0.25F;
+  ViewMaps view;
+  view.Resize(2, 1);
+  view.sigma_k = Image<float>(2, 1, kSigma_k);
+  view.measured_angle_deg = Image<float>(2, 1, 20.0F);
   for (const int x : {0, 1}) {
     maps.vx.At(x, 0) = x == 0 ? -0.5F : 0.5F;
     maps.vy.At(x, 0) = maps.vz.At(x, 0) = 0.0F;
-    celsius.At(x, 0) = 80.0F;
+    view.celsius.At(x, 0) = 80.0F;
   }
-  interpretation.Apply(maps, celsius);
-  EXPECT_EQ(celsius.At(0, 0), interpretation.ObjectCelsius(0, 80.0F));
-  EXPECT_EQ(celsius.At(1, 0), interpretation.ObjectCelsius(1, 80.0F));
+  interpretation.Apply(maps, view);
+  for (const int x : {0, 1}) {
+    const auto part = static_cast<std::size_t>(x);
+    EXPECT_EQ(view.celsius.At(x, 0), interpretation.ObjectCelsius(part, 80.0F, 20.0F));
+    EXPECT_EQ(view.sigma_k.At(x, 0), interpretation.ObjectSigma(part, 80.0F, kSigma_k, 20.0F));
+  }
 }
 
 TEST_F(InterpretationTest, StatsSayWhatWasAppliedAndToHowMuch) {
@@ -274,7 +281,8 @@ TEST_F(InterpretationTest, UncertaintiesOfEmissivityAndReflectionAreInThatOfTheT
   constexpr int kDraws = 20'000;
   options_.set_emissivity_sigma(kEmissivitySigma);
   options_.set_reflected_sigma_k(kReflectedSigma_k);
-  const float sigma_k = Make().ObjectSigma(0, kApparent_celsius, kApparentSigma_k);
+  const float sigma_k = Make().ObjectSigma(0, static_cast<float>(kApparent_celsius),
+                                           static_cast<float>(kApparentSigma_k));
   const BandRadiance band;
   double sum = 0.0, squares = 0.0;
   for (std::uint64_t i = 0; i < kDraws; ++i) {
@@ -291,7 +299,7 @@ TEST_F(InterpretationTest, UncertaintiesOfEmissivityAndReflectionAreInThatOfTheT
   const double spread_k = std::sqrt(squares / kDraws - std::pow(sum / kDraws, 2));
   EXPECT_NEAR(sigma_k, spread_k, 0.03 * spread_k);
   EXPECT_GT(sigma_k, 1.5 * kApparentSigma_k) << "the terms matter here";
-  EXPECT_TRUE(std::isnan(Make().ObjectSigma(0, kApparent_celsius, NAN)));
+  EXPECT_TRUE(std::isnan(Make().ObjectSigma(0, static_cast<float>(kApparent_celsius), NAN)));
 }
 
 TEST_F(InterpretationTest, WithoutEmissivityTheUncertaintyStaysThatOfTheMeasurement) {

@@ -97,12 +97,12 @@ TEST(SceneInfluenceCorrectorTest, TheLargestInfluenceThatIsAllowedIsTakenOutToo)
        {std::pair(SceneInfluence{.near_fraction = SceneInfluence::kMaxFraction,
        .near_sigma_px = 40.0,
        .total_fraction = SceneInfluence::kMaxFraction},
-                  0.5),
+                  0.3),
         // Means of so few pixels are not smooth: a cell is as wide as they reach.
         std::pair(SceneInfluence{.near_fraction = 0.05,
         .near_sigma_px = SceneInfluence::kMinSigma_px,
         .total_fraction = 0.0},
-                  0.7)}) {
+                  0.4)}) {
     Image<float> image = ToImage(WithInfluence(own, mask, influence), mask);
     const double before_k = LargestError(image, own, mask);
     SceneInfluenceCorrector(influence, kWidth, kHeight).Correct(image);

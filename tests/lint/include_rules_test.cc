@@ -56,7 +56,7 @@ TEST(IncludeRulesTest, StagesDoNotIncludeTheirSiblings) {
   EXPECT_THAT(MessagesFor("ground/thermal/fuser.h", "#include \"ground/tsdf/tsdf_volume.h\""),
               IsEmpty());
   EXPECT_THAT(
-      MessagesFor("ground/service/ground_service.cc", "#include \"ground/renderer/palette.h\""),
+      MessagesFor("ground/results/scan_result.cc", "#include \"ground/renderer/palette.h\""),
       IsEmpty());
 }
 
@@ -78,7 +78,7 @@ TEST(IncludeRulesTest, HeavyHeadersDoNotLeaveTheirFolder) {
   EXPECT_THAT(CheckIncludes({image, message, neighbour}), IsEmpty());
 
   const SourceFile pipeline = {
-      "ground/service/ground_service.cc",
+      "ground/results/scan_result.cc",
       {"#include \"ground/renderer/image.h\"", "#include \"common/rig/rig_file.h\""}};
   const std::vector<Violation> violations = CheckIncludes({image, message, neighbour, pipeline});
   ASSERT_EQ(violations.size(), 2U) << ToString(violations);
