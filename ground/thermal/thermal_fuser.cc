@@ -260,9 +260,7 @@ void ThermalFuser::SelectBlocks(const RigidTransform& T_map_thermal, const TsdfV
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx);
   const auto cy = static_cast<float>(camera.cy);
-  const auto tile_of = [](float pixel, int tiles) {
-    return std::clamp(static_cast<int>(pixel) / kTile, 0, tiles - 1);
-  };
+  const auto tile_of = [](float pixel, int tiles) { return TileOf(pixel, kTile, tiles); };
   blocks_.clear();
   for (const std::int32_t block : visible_.Find(tsdf, camera, T_map_thermal)) {
     const Eigen::Vector3f p = to_camera.Centre(tsdf.block_coordinates(block));

@@ -129,10 +129,7 @@ void RangeMap::Compute(const TsdfVolume& volume, const CameraModel& camera,
   const auto fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx) + 0.5F;
   const auto cy = static_cast<float>(camera.cy) + 0.5F;
-  const auto tile_of = [](float pixel, int tiles) {
-    const auto last = static_cast<float>(tiles * kRaycastTile - 1);
-    return pixel > 0.0F ? static_cast<int>(std::min(pixel, last)) / kRaycastTile : 0;  // NaN: 0.
-  };
+  const auto tile_of = [](float pixel, int tiles) { return TileOf(pixel, kRaycastTile, tiles); };
   // A ray ends where it comes from an observed voxel before the surface into one behind it: start
   // early enough to meet the former.
   constexpr float kLeadVox = 1.5F;

@@ -151,9 +151,7 @@ void TsdfIntegrator::SelectBlocks(const CameraModel& camera, const RigidTransfor
   const BlockToCamera to_camera(grid, T_map_depth.inverse());
   const float radius = BlockRadius(grid);
   const float reach = radius + 2.0F * static_cast<float>(volume.truncation_distance_m());
-  const auto tile_of = [](float pixel, int tiles) {
-    return std::clamp(static_cast<int>(pixel) / kTile, 0, tiles - 1);
-  };
+  const auto tile_of = [](float pixel, int tiles) { return TileOf(pixel, kTile, tiles); };
   updated_blocks_.clear();
   for (const std::int32_t block : visible_.Find(volume, camera, T_map_depth)) {
     const Eigen::Vector3f p = to_camera.Centre(volume.block_coordinates(block));

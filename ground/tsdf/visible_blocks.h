@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -40,6 +41,13 @@ struct BlockToCamera {
 inline float BlockRadius(const VoxelGrid& grid) {
   constexpr float kHalfDiagonal = 0.8660254F;
   return kHalfDiagonal * static_cast<float>(grid.block_size_m());
+}
+
+/// Returns which of `tiles` tiles of `tile_px` pixels along one axis a coordinate lies in: the
+/// first or the last one for what lies beyond, the first for NaN.
+inline int TileOf(float pixel, int tile_px, int tiles) {
+  const auto last_px = static_cast<float>(tiles * tile_px - 1);
+  return pixel > 0.0F ? static_cast<int>(std::min(pixel, last_px)) / tile_px : 0;
 }
 
 }  // namespace isotherm
