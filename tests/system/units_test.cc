@@ -187,7 +187,9 @@ class UnitsScanTest : public UnitsTest {
       EXPECT_TRUE(recorded.Closes() && published.Closes()) << journal;
       EXPECT_EQ(recorded.captured, 200) << name;
       EXPECT_EQ(recorded.done, recorded.captured) << name;
-      const auto count = [&](const char* what) { return NumberAt(stats, {"link", name, what}); };
+      const auto count = [&stats, stream = name](const char* what) {
+        return NumberAt(stats, {"link", stream, what});
+      };
       EXPECT_EQ(count("published"), static_cast<double>(published.done)) << name;
       EXPECT_EQ(count("received"), count("published")) << name;
       EXPECT_EQ(count("recorded"), count("published")) << name;
