@@ -57,9 +57,9 @@ say "tests ($preset)"
 log=build/$preset/Testing/ctest.log
 mkdir -p "$(dirname "$log")"
 status=0
-# One more at a time than there are processors: the longest tests wait for time-outs of daemons. The summary is held back until
-# the skipped cases have been named.
-ctest --preset "$preset" --parallel "$(($(nproc) + 1))" "$@" 2>&1 | tee "$log" |
+# Two more at a time than there are processors: the longest tests, of which two run at once, wait for time-outs of daemons. The
+# summary is held back until the skipped cases have been named.
+ctest --preset "$preset" --parallel "$(($(nproc) + 2))" "$@" 2>&1 | tee "$log" |
   sed --unbuffered '/% tests passed/,$d' || status=$?
 details=build/$preset/Testing/Temporary/LastTest.log
 if [ -f "$details" ]; then

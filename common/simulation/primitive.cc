@@ -13,7 +13,14 @@ double AxisDistance(const Vector3d& p) { return std::sqrt(p.x() * p.x() + p.y() 
 
 Vector3d BoxNormal(const Vector3d& half, const Vector3d& p) {
   int axis = 0;
-  (p.cwiseAbs() - half).maxCoeff(&axis);
+  double farthest = -HUGE_VAL;
+  for (int i = 0; i < 3; ++i) {
+    const double beyond = std::abs(p[i]) - half[i];
+    if (beyond > farthest) {
+      farthest = beyond;
+      axis = i;
+    }
+  }
   Vector3d normal = Vector3d::Zero();
   normal[axis] = p[axis] < 0.0 ? -1.0 : 1.0;
   return normal;

@@ -146,27 +146,42 @@ CameraView::CameraView(const Scene& scene, const RigidTransform& T_world_camera)
     const RigidTransform T_primitive_camera =
         primitive.T_world_primitive.inverse() * T_world_camera;
     locals_.push_back({&primitive, T_primitive_camera.linear().cast<float>(),
-                       T_primitive_camera.translation().cast<float>(),
-                       primitive.size.cast<float>()});
+                       T_primitive_camera.translation().cast<float>()});
   }
+}
+
+CameraView::Point CameraView::PointAt(const Local& local, const Eigen::Vector2f& ray, float z_m) {
+  // In coordinates: for each pixel, and sanitizers watch a vector's temporaries one by one.
+  const auto& r = local.R_primitive_camera;
+  const float x = ray.x(), y = ray.y();
+  Point point;
+  for (int row = 0; row < 3; ++row) {
+    const float direction = r(row, 0) * x + r(row, 1) * y + r(row, 2);
+    point.direction[row] = direction;
+    point.p_primitive[row] = static_cast<double>(local.camera_in_primitive[row] + z_m * direction);
+  }
+  return point;
+}
+
+float CameraView::CosineOf(const Local& local, const Point& point) {
+  const Eigen::Vector3d normal = NormalAt(*local.primitive, point.p_primitive);
+  const Eigen::Vector3f& d = point.direction;
+  const float along = static_cast<float>(normal[0]) * d[0] + static_cast<float>(normal[1]) * d[1] +
+                      static_cast<float>(normal[2]) * d[2];
+  const float length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  return std::min(std::abs(along) / length, 1.0F);
 }
 
 CameraView::Surface CameraView::At(int primitive, const Eigen::Vector2f& ray, float z_m) const {
   const Local& local = locals_[static_cast<std::size_t>(primitive)];
-  const Eigen::Vector3f direction = local.R_primitive_camera * Eigen::Vector3f(ray.x(), ray.y(), 1);
-  const Eigen::Vector3d p_primitive = (local.camera_in_primitive + z_m * direction).cast<double>();
-  const Eigen::Vector3f normal = NormalAt(*local.primitive, p_primitive).cast<float>();
-  const float cosine = std::abs(normal.dot(direction)) / direction.norm();
-  return {std::min(cosine, 1.0F),
-          static_cast<float>(local.primitive->temperature.CelsiusAt(p_primitive))};
+  const Point point = PointAt(local, ray, z_m);
+  return {CosineOf(local, point),
+          static_cast<float>(local.primitive->temperature.CelsiusAt(point.p_primitive))};
 }
 
 float CameraView::CosineAt(int primitive, const Eigen::Vector2f& ray, float z_m) const {
   const Local& local = locals_[static_cast<std::size_t>(primitive)];
-  const Eigen::Vector3f direction = local.R_primitive_camera * Eigen::Vector3f(ray.x(), ray.y(), 1);
-  const Eigen::Vector3d p_primitive = (local.camera_in_primitive + z_m * direction).cast<double>();
-  const Eigen::Vector3f normal = NormalAt(*local.primitive, p_primitive).cast<float>();
-  return std::min(std::abs(normal.dot(direction)) / direction.norm(), 1.0F);
+  return CosineOf(local, PointAt(local, ray, z_m));
 }
 
 }  // namespace isotherm

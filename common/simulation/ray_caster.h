@@ -72,8 +72,15 @@ class CameraView {
     const Primitive* primitive;
     Eigen::Matrix3f R_primitive_camera;
     Eigen::Vector3f camera_in_primitive;
-    Eigen::Vector3f size;
   };
+  /// A point on the line of sight, in the primitive's coordinates.
+  struct Point {
+    Eigen::Vector3f direction;  ///< Of the line of sight.
+    Eigen::Vector3d p_primitive;
+  };
+  static Point PointAt(const Local& local, const Eigen::Vector2f& ray, float z_m);
+  static float CosineOf(const Local& local, const Point& point);
+
   std::vector<Local> locals_;
 };
 

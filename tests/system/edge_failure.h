@@ -25,6 +25,14 @@ inline constexpr const char* kFed = "WATCHDOG=1";
 inline constexpr Seconds kTimeToLeave{2.0};
 inline constexpr Seconds kSlack{4.0};
 
+/// How often `words` stand in `text`.
+inline int Count(const std::string& text, const std::string& words) {
+  int count = 0;
+  for (std::size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + 1))
+    ++count;
+  return count;
+}
+
 /// An edge with its disk and its cameras; the test plays the service manager.
 class EdgeFailureTest : public ::testing::Test {
  protected:
