@@ -16,6 +16,7 @@ RawThermalFrame BeginFrame(const UvcFrame& frame) {
   RawThermalFrame raw;
   raw.first_packet = frame.first_packet;
   raw.incomplete = frame.incomplete;
+  raw.dropped_before = frame.dropped_before;
   return raw;
 }
 

@@ -12,8 +12,6 @@ namespace {
 constexpr std::size_t kFrameCounter = 64;
 constexpr std::size_t kZeroWhileCorrecting[] = {169, 170};
 
-constexpr std::size_t kMaxFrames = 4;
-
 /// Nullopt if `bytes` does not begin with a marker.
 std::optional<UvcPayloadHeader> ParseMarker(Bytes bytes) {
   // End of header, source clock and time stamp are always there; error bits never.
@@ -89,18 +87,8 @@ void P3Assembler::Conclude() {
   in_frame_ = false;
   if (frame_.received != data_bytes_) frame_.incomplete = true;
   const bool first = !std::exchange(seen_a_frame_, true);
-  if (!(first && frame_.incomplete)) {
-    if (finished_.size() == kMaxFrames) finished_.pop_front();
-    finished_.push_back(std::move(frame_));
-  }
+  if (!(first && frame_.incomplete)) finished_.Push(std::move(frame_));
   frame_ = {};
-}
-
-std::optional<UvcFrame> P3Assembler::Pop() {
-  if (finished_.empty()) return std::nullopt;
-  UvcFrame frame = std::move(finished_.front());
-  finished_.pop_front();
-  return frame;
 }
 
 std::array<std::uint8_t, 18> PackP3Command(std::uint16_t type, std::uint16_t parameter,

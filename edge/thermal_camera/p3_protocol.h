@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,7 +52,7 @@ class P3Assembler {
   void AddTransfer(Bytes bytes, const HostStamp& stamp);
   void NoteLost() { frame_.incomplete = in_frame_; }
   /// The next frame: bytes between the markers, time stamp of the start marker.
-  std::optional<UvcFrame> Pop();
+  std::optional<UvcFrame> Pop() { return finished_.Pop(); }
   bool has_frame() const { return !finished_.empty(); }
 
  private:
@@ -65,7 +64,7 @@ class P3Assembler {
   UvcFrame frame_;
   bool in_frame_ = false;
   bool seen_a_frame_ = false;
-  std::deque<UvcFrame> finished_;
+  WaitingFrames finished_;
 };
 
 /// A command of 18 bytes with its check sum.

@@ -35,6 +35,7 @@ struct RawThermalFrame {
   bool shutter_closed = false;   ///< By the camera's word.
   ThermalHousekeeping housekeeping;
   bool incomplete = false;  ///< Parts are missing or damaged; counts must not be used.
+  std::uint64_t dropped_before = 0;  ///< Frames that came before it and were not read in time.
 };
 
 enum class ThermalGain { kKeep, kHigh, kLow };

@@ -115,6 +115,10 @@ Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
 }
 
 Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
+  if (camera_->info().counter_step == 0) {
+    counts_.lost += raw.dropped_before;
+    next_frame_number_ += raw.dropped_before;
+  }
   if (raw.incomplete) {
     ++counts_.incomplete;
     ++incomplete_since_;

@@ -27,7 +27,8 @@ struct ThermalCameraCounts {
   std::uint64_t frozen = 0;      ///< Delivered as taken behind a closed shutter.
   std::uint64_t repeated = 0;    ///< Sent again by the camera; left out.
   std::uint64_t incomplete = 0;  ///< Refused.
-  std::uint64_t lost = 0;        ///< Counted by the camera, never seen here.
+  /// Counted by the camera, never seen here; if it does not count, what was not read in time.
+  std::uint64_t lost = 0;
 };
 
 /// Frames of one thermal camera as temperatures; in counts if it measures none and the options do

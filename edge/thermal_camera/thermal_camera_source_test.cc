@@ -269,6 +269,21 @@ TEST_F(ThermalCameraSourceTest, FrozenImageOfASilentCameraIsACorrection) {
   EXPECT_EQ(ReadFrame(*source).camera_nuc->state, NucState::kInProgress);
 }
 
+TEST_F(ThermalCameraSourceTest, FramesThatWereNotReadInTimeAreCountedOnce) {
+  for (const int counter_step : {0, 3}) {
+    script_.info.counter_step = counter_step;
+    RawThermalFrame first = MakeFrame(1, 100), second = MakeFrame(2, 109);
+    if (counter_step == 0) first.device_counter = second.device_counter = std::nullopt;
+    second.dropped_before = 2;
+    Send(first);
+    Send(second);
+    const auto source = Open();
+    EXPECT_EQ(ReadFrame(*source).frame_number, 0U);
+    EXPECT_EQ(ReadFrame(*source).frame_number, 3U);
+    EXPECT_EQ(source->counts().lost, 2U) << "counter step " << counter_step;
+  }
+}
+
 TEST_F(ThermalCameraSourceTest, F08CorrectionThatNeverEndsIsDeliveredAsThat) {
   for (int i = 0; i < 50; ++i) {
     RawThermalFrame frame = MakeFrame(1, 100);

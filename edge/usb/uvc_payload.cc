@@ -27,6 +27,21 @@ std::optional<UvcPayloadHeader> ParseUvcPayloadHeader(Bytes payload) {
   return header;
 }
 
+void WaitingFrames::Push(UvcFrame frame) {
+  frames_.push_back(std::move(frame));
+  if (frames_.size() <= kMax) return;
+  const std::uint64_t dropped = frames_.front().dropped_before + 1;
+  frames_.pop_front();
+  frames_.front().dropped_before += dropped;
+}
+
+std::optional<UvcFrame> WaitingFrames::Pop() {
+  if (frames_.empty()) return std::nullopt;
+  UvcFrame frame = std::move(frames_.front());
+  frames_.pop_front();
+  return frame;
+}
+
 bool UvcBulkJoiner::Add(Bytes transfer, const HostStamp& stamp) {
   if (received_ == 0 && !skipping_) {
     payload_.clear();
@@ -100,18 +115,7 @@ void UvcAssembler::Finish() {
   in_frame_ = false;
   if (frame_.received != frame_bytes_) frame_.incomplete = true;
   if (!std::exchange(seen_a_frame_, true) && frame_.incomplete) return;
-  if (finished_.size() == kMaxFrames) {
-    finished_.pop_front();
-    ++dropped_frames_;
-  }
-  finished_.push_back(std::move(frame_));
-}
-
-std::optional<UvcFrame> UvcAssembler::Pop() {
-  if (finished_.empty()) return std::nullopt;
-  UvcFrame frame = std::move(finished_.front());
-  finished_.pop_front();
-  return frame;
+  finished_.Push(std::move(frame_));
 }
 
 }  // namespace isotherm

@@ -37,6 +37,21 @@ struct UvcFrame {
   HostStamp first_packet;
   HostStamp last_packet;
   std::optional<std::uint32_t> presentation_time;
+  std::uint64_t dropped_before = 0;  ///< Finished frames before it that nobody took in time.
+};
+
+/// Finished frames until somebody takes them. At most `kMax` wait; older ones are dropped, and the
+/// next one says how many. Thread-compatible.
+class WaitingFrames {
+ public:
+  static constexpr std::size_t kMax = 4;
+
+  void Push(UvcFrame frame);
+  std::optional<UvcFrame> Pop();
+  bool empty() const { return frames_.empty(); }
+
+ private:
+  std::deque<UvcFrame> frames_;
 };
 
 /// Finds payloads in bulk transfers (UVC 1.5, section 2.4.3.2.1): one begins with a transfer, and
@@ -77,14 +92,11 @@ class UvcAssembler {
   void AddPayload(Bytes payload, const HostStamp& stamp);
   /// The bus lost a packet: the frame it belongs to cannot be whole.
   void NoteLostPacket();
-  /// The next finished frame. At most `kMaxFrames` wait; older ones are dropped and counted.
-  std::optional<UvcFrame> Pop();
+  /// The next finished frame.
+  std::optional<UvcFrame> Pop() { return finished_.Pop(); }
   bool has_frame() const { return !finished_.empty(); }
 
   std::uint64_t bad_payloads() const { return bad_payloads_; }
-  std::uint64_t dropped_frames() const { return dropped_frames_; }
-
-  static constexpr std::size_t kMaxFrames = 4;
 
  private:
   void Begin(const UvcPayloadHeader& header);
@@ -97,9 +109,8 @@ class UvcAssembler {
   bool damaged_ = false;  ///< A packet was lost before the frame it may belong to began.
   bool seen_a_frame_ = false;
   std::optional<bool> frame_id_;
-  std::deque<UvcFrame> finished_;
+  WaitingFrames finished_;
   std::uint64_t bad_payloads_ = 0;
-  std::uint64_t dropped_frames_ = 0;
 };
 
 }  // namespace isotherm

@@ -204,11 +204,13 @@ TEST(UvcAssemblerStartTest, HalfAFrameAtTheStartIsLeftOut) {
 }
 
 TEST_F(UvcAssemblerTest, WaitingFramesAreBounded) {
-  for (std::uint8_t i = 0; i < UvcAssembler::kMaxFrames + 2; ++i) {
+  for (std::uint8_t i = 0; i < WaitingFrames::kMax + 2; ++i) {
     Add(static_cast<std::uint8_t>(i % 2 == 0 ? kId | kEnd : kEnd), {i, i, i, i});
   }
-  EXPECT_EQ(assembler_.dropped_frames(), 2U);
-  EXPECT_THAT(assembler_.Pop()->bytes, ElementsAre(2, 2, 2, 2));
+  const auto next = assembler_.Pop();
+  EXPECT_THAT(next->bytes, ElementsAre(2, 2, 2, 2));
+  EXPECT_EQ(next->dropped_before, 2U);
+  EXPECT_EQ(assembler_.Pop()->dropped_before, 0U);
 }
 
 }  // namespace
