@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 namespace isotherm {
 
 Status Validate(const SmoothSurface& surface) {
@@ -12,6 +14,10 @@ Status Validate(const SmoothSurface& surface) {
   if (!(surface.refractive_index >= 1.0)) {
     return InvalidArgument(
         fmt::format("refractive index must be at least 1, got {}", surface.refractive_index));
+  }
+  if (!(surface.extinction_coefficient >= 0.0 && std::isfinite(surface.extinction_coefficient))) {
+    return InvalidArgument(fmt::format("extinction coefficient must be 0 or more, got {}",
+                                       surface.extinction_coefficient));
   }
   if (!(surface.reflected_celsius >= kMinRadiometric_celsius &&
         surface.reflected_celsius <= kMaxRadiometric_celsius)) {
@@ -26,7 +32,7 @@ double ApparentAtAngle(const BandRadiance& band, const SmoothSurface& surface,
                        double apparent_celsius, double from_rad, double to_rad) {
   const auto emissivity = [&](double angle_rad) {
     return DirectionalEmissivity(angle_rad, surface.normal_emissivity, surface.refractive_index,
-                                 0.0);
+                                 surface.extinction_coefficient);
   };
   // By (3.1), what is sent beyond the reflected radiance is proportional to the emissivity.
   const double reflected = band.RadianceFromCelsius(surface.reflected_celsius);

@@ -11,6 +11,7 @@ struct SmoothSurface {
   double normal_emissivity = 1.0;  ///< (0, 1].
   double refractive_index = 1.5;   ///< At least 1.
   double reflected_celsius = 23.0;
+  double extinction_coefficient = 0.0;  ///< Not negative; metals have tens.
 };
 
 Status Validate(const SmoothSurface& surface);

@@ -23,8 +23,8 @@ TEST(SmoothSurfaceTest, WhatIsSeenAtAnAngleTellsWhatIsSeenAtAnother) {
     };
     for (const double from_deg : {0.0, 30.0, 65.0}) {
       for (const double to_deg : {0.0, 45.0, 80.0}) {
-        EXPECT_NEAR(ApparentAtAngle(band, kPaint, apparent(from_deg * kRadPerDeg), from_deg * kRadPerDeg,
-                                    to_deg * kRadPerDeg),
+        EXPECT_NEAR(ApparentAtAngle(band, kPaint, apparent(from_deg * kRadPerDeg),
+                                    from_deg * kRadPerDeg, to_deg * kRadPerDeg),
                     apparent(to_deg * kRadPerDeg), kInterpolation_k)
             << true_celsius << " from " << from_deg << " to " << to_deg;
       }
@@ -42,7 +42,8 @@ TEST(SmoothSurfaceTest, RefusesWhatNoSurfaceHas) {
   for (const SmoothSurface& wrong :
        {SmoothSurface{.normal_emissivity = 0.0}, SmoothSurface{.normal_emissivity = 1.01},
         SmoothSurface{.normal_emissivity = NAN}, SmoothSurface{.refractive_index = 0.9},
-        SmoothSurface{.refractive_index = NAN}, SmoothSurface{.reflected_celsius = -101.0},
+        SmoothSurface{.refractive_index = NAN}, SmoothSurface{.extinction_coefficient = -1.0},
+        SmoothSurface{.extinction_coefficient = NAN}, SmoothSurface{.reflected_celsius = -101.0},
         SmoothSurface{.reflected_celsius = std::numeric_limits<double>::infinity()}}) {
     EXPECT_EQ(Validate(wrong).code(), StatusCode::kInvalidArgument);
   }

@@ -1,7 +1,6 @@
 #include "ground/evaluation/temperature_evaluation.h"
 
 #include <fmt/format.h>
-#include <numbers>
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +8,8 @@
 #include <map>
 
 #include "common/base/check.h"
-#include "common/base/units.h"
 #include "common/radiometry/radiometry.h"
+#include "ground/evaluation/expected_temperature.h"
 #include "ground/thermal/measurement_quality.h"
 
 namespace isotherm {
@@ -59,50 +58,31 @@ double ValueOrNan(const std::vector<float>& column, std::size_t i) {
   return column.empty() ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(column[i]);
 }
 
-/// What a camera that takes everything for a black body shows of a point, by the angle at which it
-/// was measured.
-class ExpectedTemperature {
+/// What is expected of the cloud's points, by the angle at which each was measured.
+class ExpectedOfPoints {
  public:
-  ExpectedTemperature(const MeasuredCloud& cloud, const TemperatureEvaluationOptions& options)
-      : cloud_(cloud), options_(options) {}
+  ExpectedOfPoints(const MeasuredCloud& cloud, const TemperatureEvaluationOptions& options)
+      : cloud_(cloud),
+        options_(options),
+        surface_{.normal_emissivity = options.emissivity,
+                 .refractive_index = options.refractive_index.value_or(1.5),
+                 .reflected_celsius = options.ambient_celsius} {}
 
-  double Celsius(std::size_t i, double true_celsius) const {
-    return At(HasAngle(i) ? static_cast<double>(cloud_.measured_angle_deg[i]) : NAN, true_celsius);
-  }
-  /// Its standard uncertainty, kelvin: by the angle, as far as the cloud's normal and the true one
-  /// are apart, and by the code of the direction.
-  double Sigma(std::size_t i, double true_celsius, const Eigen::Vector3f& true_normal) const {
-    if (!HasAngle(i) || cloud_.normals.empty()) return 0.0;
-    constexpr double kDirection_deg = 1.0;  // EncodeDirection, and one direction per block.
-    const float cosine =
-        std::min(1.0F, std::abs(true_normal.dot(options_.R_truth_world * cloud_.normals[i])));
-    // Of two directions in which a normal is off, one changes the angle.
-    const double normal_deg = static_cast<double>(std::acos(cosine)) / kRadPerDeg;
-    const double sigma_deg = std::hypot(normal_deg / std::numbers::sqrt2, kDirection_deg);
-    constexpr double kStep_deg = 0.5;
-    const auto angle_deg = static_cast<double>(cloud_.measured_angle_deg[i]);
-    const double per_degree = (At(angle_deg + kStep_deg, true_celsius) -
-                               At(std::max(0.0, angle_deg - kStep_deg), true_celsius)) /
-                              (2.0 * kStep_deg);
-    return std::abs(per_degree) * sigma_deg;
+  ExpectedTemperature Of(std::size_t i, double true_celsius,
+                         const Eigen::Vector3f& true_normal) const {
+    const bool by_angle = options_.refractive_index && std::isfinite(cloud_.measured_angle_deg[i]);
+    const bool has_normal = !cloud_.normals.empty();
+    return ExpectTemperature(
+        band_, surface_, true_celsius,
+        by_angle ? static_cast<double>(cloud_.measured_angle_deg[i]) : NAN,
+        has_normal ? AngleSigmaDeg(options_.R_truth_world * cloud_.normals[i], true_normal) : 0.0);
   }
 
  private:
-  bool HasAngle(std::size_t i) const {
-    return options_.refractive_index && std::isfinite(cloud_.measured_angle_deg[i]);
-  }
-  /// NaN: the emissivity does not depend on the angle.
-  double At(double angle_deg, double true_celsius) const {
-    const double emissivity =
-        std::isnan(angle_deg) ? options_.emissivity
-                              : DirectionalEmissivity(kRadPerDeg * angle_deg, options_.emissivity,
-                                                      *options_.refractive_index, 0.0);
-    return ApparentCelsius(band_, true_celsius, emissivity, options_.ambient_celsius);
-  }
-
   const MeasuredCloud& cloud_;
   const TemperatureEvaluationOptions& options_;
-  const BandRadiance band_;
+  const SmoothSurface surface_;
+  const BandRadiance band_{};
 };
 
 Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
@@ -145,7 +125,7 @@ Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
   if (Status status = CheckInput(cloud, truth, options); !status.ok())
     return Err(std::move(status));
   CHECK(positions.size() == cloud.celsius.size());
-  const ExpectedTemperature expected(cloud, options);
+  const ExpectedOfPoints expected_of_points(cloud, options);
   TemperatureReport report;
   std::map<MeasurementQuality, Errors> by_quality;
   std::vector<AssessedError> assessed;
@@ -156,16 +136,17 @@ Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
       continue;
     }
     const double true_celsius = truth.CelsiusAt(positions[i], foot->nearest);
-    const double error = cloud.celsius[i] - expected.Celsius(i, true_celsius);
+    const ExpectedTemperature expected =
+        expected_of_points.Of(i, true_celsius, truth.points().normals[foot->nearest]);
+    const double error = cloud.celsius[i] - expected.celsius;
     if (!std::isfinite(error)) continue;
     Errors& errors = by_quality[QualityOfPoint(cloud, i)];
     errors.all.push_back(error);
-    assessed.push_back(
-        {.error_k = error,
-         .sigma_k = ValueOrNan(cloud.sigma_k, i),
-         .expected_sigma_k = expected.Sigma(i, true_celsius, truth.points().normals[foot->nearest]),
-         .distance_m = ValueOrNan(cloud.measured_distance_m, i),
-         .angle_deg = ValueOrNan(cloud.measured_angle_deg, i)});
+    assessed.push_back({.error_k = error,
+                        .sigma_k = ValueOrNan(cloud.sigma_k, i),
+                        .expected_sigma_k = expected.sigma_k,
+                        .distance_m = ValueOrNan(cloud.measured_distance_m, i),
+                        .angle_deg = ValueOrNan(cloud.measured_angle_deg, i)});
     const Eigen::Vector3f& q = truth.points().positions_m[foot->nearest];
     if (truth.CelsiusSpread(q, options.edge_radius_m) <= options.edge_kelvin)
       errors.away_from_edges.push_back(error);

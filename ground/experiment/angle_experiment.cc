@@ -70,6 +70,7 @@ struct DiscErrors {
   double largest_kelvin = 0.0;
   std::size_t points = 0;      ///< With a temperature, ...
   std::size_t all_points = 0;  ///< ... of these.
+  ErrorSummary apparent;       ///< Of their apparent temperatures.
 };
 
 /// Errors of the disc's temperature, found from the apparent one with the emissivity at right
@@ -79,6 +80,7 @@ DiscErrors MeasureDisc(const PlayedScan& played, const ScanModel& model, ThreadP
   constexpr double kBorder_m = 0.004;
   const SimulatedScan& scan = *played.scan;
   DiscErrors errors;
+  std::vector<CheckedPoint> disc;
   for (const CheckedPoint& point :
        CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool)) {
     if (scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)].name != "disc")
@@ -86,6 +88,7 @@ DiscErrors MeasureDisc(const PlayedScan& played, const ScanModel& model, ThreadP
     const Eigen::Vector3d offset = point.truth.p_world - kDisc;
     if (std::hypot(offset.x(), offset.y()) > kDiscRadius - kBorder_m) continue;
     ++errors.all_points;
+    disc.push_back(point);
     if (!point.measured()) continue;
     const auto celsius =
         TrueCelsius(scan.band(), point.point.celsius, kDiscEmissivity, kSurround_celsius);
@@ -95,6 +98,7 @@ DiscErrors MeasureDisc(const PlayedScan& played, const ScanModel& model, ThreadP
     ++errors.points;
   }
   errors.mean_kelvin /= static_cast<double>(std::max<std::size_t>(1, errors.points));
+  errors.apparent = SummarizeErrors(disc);
   return errors;
 }
 
@@ -142,8 +146,8 @@ Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool) {
   if (!played) return Err(played.error());
   ExperimentReport report;
   report.table.rows_are = "method";
-  report.table.columns = {"points on the disc", "mean error [K]", "largest error [K]",
-                          "coverage [%]"};
+  report.table.columns = {"points on the disc", "mean error [K]",   "largest error [K]",
+                          "coverage [%]",       "within sigma [%]", "within 1.96 sigma [%]"};
   const Renderer renderer(FixedScale(kSurround_celsius, kDisc_celsius), ThermalOptions());
   const CaptureTime middle = played->scan->depth_times()[played->scan->depth_times().size() / 2]
                                  .exposure;  // At about 40 degrees, as in the thesis.
@@ -155,7 +159,8 @@ Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool) {
     report.table.rows.push_back(
         {kLabels[i],
          {static_cast<double>(errors.points), errors.mean_kelvin, errors.largest_kelvin,
-          Percent(errors.points, errors.all_points)}});
+          Percent(errors.points, errors.all_points), errors.apparent.within_sigma_percent,
+          errors.apparent.within_1_96_sigma_percent}});
     report.renderings.push_back(
         {kRenderings[i], renderer.Thermal(LookAtModel(model, *played->scan, middle, pool))});
   }

@@ -163,7 +163,9 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
                           "background too warm",
                           "foreground too cold",
                           "wrong [% of assigned]",
-                          "coverage [% of truly seen]"};
+                          "coverage [% of truly seen]",
+                          "within sigma [%]",
+                          "within 1.96 sigma [%]"};
   const Renderer renderer(ScaleOf(scan.scene()), ThermalOptions());
   const RigidTransform T_world_depth = scan.PoseAt(scan.depth_times().front().exposure);
   const ThermalOptions limits = WithAnglesOfMaterial(ThermalOptions());
@@ -173,11 +175,13 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
         CheckModel(scan.scene(), scan.band(), contest.model().tsdf(), *method.thermal, pool);
     if (!truly_seen) truly_seen = TrulySeen(scan, points, limits);
     const AssignmentCheck check = CheckAssignment(points);
+    const ErrorSummary errors = SummarizeErrors(points);
     report.table.rows.push_back(
         {method.label,
          {static_cast<double>(check.points), static_cast<double>(check.assigned),
           static_cast<double>(check.too_warm), static_cast<double>(check.too_cold),
-          check.WrongPercent(), CoveragePercent(points, *truly_seen)}});
+          check.WrongPercent(), CoveragePercent(points, *truly_seen), errors.within_sigma_percent,
+          errors.within_1_96_sigma_percent}});
     if (method.rendering.empty()) continue;
     report.renderings.push_back(
         {method.rendering, renderer.Thermal(LookAtModel(contest.model().tsdf(), *method.thermal,

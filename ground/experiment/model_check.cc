@@ -42,10 +42,18 @@ std::vector<CheckedPoint> CheckModel(const Scene& scene, const BandRadiance& ban
   for (const CloudPoint& point : ExtractSurface(tsdf, thermal, options, pool).points) {
     const auto truth = TruthAt(scene, point);
     if (!truth) continue;
+    const Material& material = scene.MaterialOf(truth->primitive);
+    const SmoothSurface paint = {.normal_emissivity = material.normal_emissivity,
+                                 .refractive_index = material.n,
+                                 .reflected_celsius = scene.surround_celsius(),
+                                 .extinction_coefficient = material.kappa};
     checked.push_back(
         {point, *truth,
-         ApparentCelsius(band, truth->celsius, scene.MaterialOf(truth->primitive).normal_emissivity,
-                         scene.surround_celsius())});
+         ApparentCelsius(band, truth->celsius, material.normal_emissivity,
+                         scene.surround_celsius()),
+         ExpectTemperature(band, paint, truth->celsius,
+                           static_cast<double>(point.measured_angle_deg),
+                           AngleSigmaDeg(point.normal, truth->n_world.cast<float>()))});
   }
   return checked;
 }
@@ -80,8 +88,7 @@ ErrorSummary SummarizeErrors(const std::vector<CheckedPoint>& points) {
   summary.largest_k = TakeQuantile(errors_k, 1.0);
   SigmaCoverage coverage;
   for (const CheckedPoint& point : points) {
-    if (!point.measured() || std::isnan(point.point.sigma_k)) continue;
-    coverage.Add(point.ErrorKelvin() / static_cast<double>(point.point.sigma_k));
+    if (point.measured() && !std::isnan(point.point.sigma_k)) coverage.Add(point.NormalizedError());
   }
   summary.within_sigma_percent = 100.0 * coverage.within_68();
   summary.within_1_96_sigma_percent = 100.0 * coverage.within_95();

@@ -9,6 +9,7 @@
 #include "common/geometry/rigid_transform.h"
 #include "common/simulation/scene.h"
 #include "common/simulation/simulated_scan.h"
+#include "ground/evaluation/expected_temperature.h"
 #include "ground/export/surface.h"
 #include "ground/pipeline/scan_model.h"
 #include "ground/renderer/renderer.h"
@@ -21,10 +22,18 @@ struct CheckedPoint {
   CloudPoint point;
   SurfacePoint truth;       ///< Where the true surface is met along the point's normal.
   double expected_celsius;  ///< Apparent, at right angles, of the true temperature.
+  /// The same at the angle at which it was measured, which is what its uncertainty is about.
+  ExpectedTemperature expected_at_angle;
 
   bool measured() const { return point.celsius == point.celsius; }
   /// Returns how far a measured point is off: measured minus expected.
   double ErrorKelvin() const { return static_cast<double>(point.celsius) - expected_celsius; }
+  /// Returns how far it is from what is expected at its angle, over the standard uncertainty of
+  /// both; NaN without one.
+  double NormalizedError() const {
+    return (static_cast<double>(point.celsius) - expected_at_angle.celsius) /
+           std::hypot(static_cast<double>(point.sigma_k), expected_at_angle.sigma_k);
+  }
 };
 
 /// The points of the model's surface (algorithm 10), but for stray ones more than 6 mm away from
@@ -60,8 +69,9 @@ struct ErrorSummary {
   double p95_k = std::numeric_limits<double>::quiet_NaN();
   double p999_k = std::numeric_limits<double>::quiet_NaN();
   double largest_k = std::numeric_limits<double>::quiet_NaN();
-  /// How many errors lie within the temperatures' standard uncertainties, and within 1.96 of them:
-  /// 68.3 and 95 % if these are right. Of the points that have one.
+  /// How many errors against what is expected at the angle of measurement lie within the standard
+  /// uncertainties, and within 1.96 of them: 68.3 and 95 % if these are right. Of the points that
+  /// have one.
   double within_sigma_percent = std::numeric_limits<double>::quiet_NaN();
   double within_1_96_sigma_percent = std::numeric_limits<double>::quiet_NaN();
 };
