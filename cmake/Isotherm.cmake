@@ -107,11 +107,13 @@ set(isotherm_threaded_tests base_test block_spiller_test camera_process_test clo
   live_scan_test nuc_control_test openni_test reconstruction_loop_test recording_loop_test rig_commander_test
   rig_gate_test service_test spool_test thermal_test tsdf_test)
 
-# isotherm_test(NAME <name> [NO_UNITY] SRCS <files> [ALONE <some of them>] [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>])
+# isotherm_test(NAME <name> [NO_UNITY] SRCS <files> [ALONE <some of them>] [DEPS <targets>] [LABELS <labels>] [TIMEOUT <seconds>]
+#   [SHARDS <number>])
+# SHARDS: the program's cases are run by so many of ctest's tests, which may run at the same time: NAME, NAME_2, ...
 # Labels: unit (default), integration, system, hardware, lint; experiment (figures of the thesis, which sanitizers need not
 # assess); threads is added to what isotherm_threaded_tests names.
 function(isotherm_test)
-  cmake_parse_arguments(ARG "NO_UNITY" "NAME;TIMEOUT" "SRCS;ALONE;DEPS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "NO_UNITY" "NAME;TIMEOUT;SHARDS" "SRCS;ALONE;DEPS;LABELS" ${ARGN})
   if(NOT BUILD_TESTING)
     return()
   endif()
@@ -148,11 +150,25 @@ function(isotherm_test)
     target_link_libraries(${ARG_NAME} PRIVATE fmt::fmt)
     target_precompile_headers(${ARG_NAME} REUSE_FROM isotherm_test_headers)
   endif()
-  add_test(NAME ${ARG_NAME} COMMAND ${ARG_NAME})
-  set_tests_properties(${ARG_NAME} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
-  if("integration" IN_LIST ARG_LABELS)  # The longest begin first, so that none is left alone at the end.
-    set_tests_properties(${ARG_NAME} PROPERTIES COST ${ARG_TIMEOUT})
+  if(NOT ARG_SHARDS)
+    set(ARG_SHARDS 1)
   endif()
+  foreach(shard RANGE 1 ${ARG_SHARDS})
+    set(test ${ARG_NAME})
+    if(shard GREATER 1)
+      string(APPEND test _${shard})
+    endif()
+    math(EXPR index "${shard} - 1")
+    add_test(NAME ${test} COMMAND ${ARG_NAME})
+    set_tests_properties(${test} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT ${ARG_TIMEOUT})
+    if(ARG_SHARDS GREATER 1)
+      set_tests_properties(${test} PROPERTIES
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${ARG_SHARDS};GTEST_SHARD_INDEX=${index}")
+    endif()
+    if("integration" IN_LIST ARG_LABELS)  # The longest begin first, so that none is left alone at the end.
+      set_tests_properties(${test} PROPERTIES COST ${ARG_TIMEOUT})
+    endif()
+  endforeach()
   foreach(label IN LISTS ARG_LABELS)  # What deploy/test.sh builds for a label.
     if(NOT TARGET tests_${label})
       add_custom_target(tests_${label})
