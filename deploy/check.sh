@@ -5,6 +5,7 @@
 #   deploy/check.sh                 what was changed since the last version tag, if there is none by the last commit
 #   deploy/check.sh FILE...         these files
 #   deploy/check.sh --since COMMIT  what was changed since then
+#   deploy/check.sh --quick         the same without the thread-safety analysis, which compiling with the preset asan does, too
 #   deploy/check.sh --threads       only the thread-safety analysis, which always covers every source that names a mutex
 #
 # Needs clang-14 and clang-tidy-14 (deploy/install-deps.sh --check). Nothing but the generated headers is built (build/clang).
@@ -24,6 +25,8 @@ changed_since() {
 }
 
 files=()
+threads=1
+if [ "${1-}" = --quick ]; then threads=0; shift; fi
 case "${1-}" in
   --threads) ;;
   --since) mapfile -t files < <(changed_since "${2:?--since needs a commit}") ;;
@@ -57,10 +60,12 @@ if [ "${#files[@]}" -gt 0 ]; then
   printf '%s\n' "${files[@]}" | sed -E 's|^\./||; s|\.h$|.cc|' | tidy || status=1
 fi
 
-say "what mutexes guard"
-# Sources that use a mutex; of a header its own source. Half of all sources include such a header by way of others.
-git grep --untracked -lE 'MutexLock|GUARDED_BY|REQUIRES\(' -- '*.h' '*.cc' | sed -E 's|\.h$|.cc|' |
-  tidy --checks='-*,misc-definitions-in-headers,clang-diagnostic-thread-safety*' || status=1
+if [ "$threads" = 1 ]; then
+  say "what mutexes guard"
+  # Sources that use a mutex; of a header its own source. Half of all sources include such a header by way of others.
+  git grep --untracked -lE 'MutexLock|GUARDED_BY|REQUIRES\(' -- '*.h' '*.cc' | sed -E 's|\.h$|.cc|' |
+    tidy --checks='-*,misc-definitions-in-headers,clang-diagnostic-thread-safety*' || status=1
+fi
 
 [ "$status" = 0 ] && say "all is well" || say "see above"
 exit "$status"

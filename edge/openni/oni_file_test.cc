@@ -56,7 +56,8 @@ TEST_F(OniFileTest, EveryFrameComesOnceAsItWasAndThenItEnds) {
     EXPECT_EQ(frames[i].frame_number, i);
     ASSERT_EQ(frames[i].pixels.width(), 320);
     ASSERT_EQ(frames[i].pixels.height(), 240);
-    for (int u = 0; u < 320; ++u) ASSERT_EQ(frames[i].pixels.At(u, 77), FakePlane_mm(u, 77));
+    for (int u = 0; u < 320; ++u)
+      ASSERT_EQ(frames[i].pixels.At(u, 77), FakePlaneMillimetres(u, 77));
   }
   EXPECT_EQ(description_.driver, "oni-file");
   EXPECT_EQ(description_.width, 320);

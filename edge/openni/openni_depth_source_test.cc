@@ -95,7 +95,7 @@ TEST_F(OpenniDepthSourceTest, DeliversWhatTheCameraSeesUnmirrored) {
   ASSERT_EQ(frame.pixels.width(), 640);
   ASSERT_EQ(frame.pixels.height(), 480);
   for (int v = 0; v < 480; v += 7) {
-    for (int u = 0; u < 640; ++u) ASSERT_EQ(frame.pixels.At(u, v), FakePlane_mm(u, v));
+    for (int u = 0; u < 640; ++u) ASSERT_EQ(frame.pixels.At(u, v), FakePlaneMillimetres(u, v));
   }
 }
 
@@ -104,7 +104,8 @@ TEST_F(OpenniDepthSourceTest, UndoesMirroringThatTheCameraDoesNotSwitchOff) {
   ASSERT_TRUE(Open().ok());
   const std::vector<RawFrame> frames = Read(1);
   ASSERT_EQ(frames.size(), 1U);
-  for (int u = 0; u < 320; ++u) ASSERT_EQ(frames[0].pixels.At(u, 100), FakePlane_mm(u, 100));
+  for (int u = 0; u < 320; ++u)
+    ASSERT_EQ(frames[0].pixels.At(u, 100), FakePlaneMillimetres(u, 100));
   EXPECT_THAT(source_->cameras().at(0).settings, HasSubstr("mirroring on (undone here)"));
 }
 
@@ -130,7 +131,7 @@ TEST_F(OpenniDepthSourceTest, TenthMillimetresAreScaledAsSuch) {
   const std::vector<RawFrame> frames = Read(1);
   ASSERT_EQ(frames.size(), 1U);
   EXPECT_EQ(frames[0].depth_scale, 10'000.0);
-  EXPECT_EQ(frames[0].pixels.At(100, 100), 10 * FakePlane_mm(100, 100));
+  EXPECT_EQ(frames[0].pixels.At(100, 100), 10 * FakePlaneMillimetres(100, 100));
   EXPECT_EQ(source_->rig()->depth_scale, 10'000.0);
 }
 
@@ -297,7 +298,7 @@ TEST_F(OpenniDepthSourceTest, F01UnpluggingIsAFailureAndF02ReopeningGoesOn) {
   const std::vector<RawFrame> frames = Read(2);
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_GT(frames[0].frame_number, last);
-  EXPECT_EQ(frames[0].pixels.At(100, 100), FakePlane_mm(100, 100));
+  EXPECT_EQ(frames[0].pixels.At(100, 100), FakePlaneMillimetres(100, 100));
 }
 
 TEST_F(OpenniDepthSourceTest, AStallIsAFailure) {

@@ -34,7 +34,7 @@ struct RawThermalFrame {
   std::optional<CameraNuc> nuc;  ///< Nullopt = the camera says nothing.
   bool shutter_closed = false;   ///< By the camera's word.
   ThermalHousekeeping housekeeping;
-  bool incomplete = false;  ///< Parts are missing or damaged; counts must not be used.
+  bool incomplete = false;           ///< Parts are missing or damaged; counts must not be used.
   std::uint64_t dropped_before = 0;  ///< Frames that came before it and were not read in time.
 };
 

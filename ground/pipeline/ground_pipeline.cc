@@ -59,7 +59,7 @@ Result<std::unique_ptr<GroundPipeline>> GroundPipeline::Create(
 }
 
 GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
-                               std::optional<RigidTransform> initial_pose)
+                               const std::optional<RigidTransform>& initial_pose)
     : options_(options),
       rig_(rig),
       thermal_status_(CheckThermalFusion(rig)),

@@ -70,7 +70,7 @@ class GroundPipeline {
 
  private:
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
-                 std::optional<RigidTransform> initial_pose);
+                 const std::optional<RigidTransform>& initial_pose);
 
   /// False for frames that cannot be used, or say nothing new.
   bool Admit(const DepthFrame& frame, DepthReport& report);

@@ -68,7 +68,7 @@ TEST_F(CamerasTest, RecordsAndPublishesWhatTheCameraSees) {
   const RecordingContent content = ReadRecording(file_);
   ASSERT_FALSE(content.depth.empty());
   ASSERT_EQ(content.depth[0].pixels.size(), 640U * 480U);
-  EXPECT_EQ(content.depth[0].pixels[100 * 640 + 200], FakePlane_mm(200, 100));
+  EXPECT_EQ(content.depth[0].pixels[100 * 640 + 200], FakePlaneMillimetres(200, 100));
   EXPECT_THAT(edge.output(), HasSubstr("nominal"));
   EXPECT_THAT(edge.output(), HasSubstr("serial=FAKE-1 mode=640x480@30"));
   EXPECT_THAT(edge.output(), HasSubstr("depth    camera failed 0 times, stamped"));
@@ -194,7 +194,7 @@ TEST_F(CamerasTest, AnOniFileIsPlayedInAProcessOfItsOwnAndNoFrameOfItIsLost) {
   for (std::size_t i = 0; i < content.depth.size(); ++i) {
     EXPECT_EQ(content.depth[i].frame_number, i);
     ASSERT_EQ(content.depth[i].pixels.size(), 320U * 240U);
-    EXPECT_EQ(content.depth[i].pixels[100 * 320 + 200], FakePlane_mm(200, 100));
+    EXPECT_EQ(content.depth[i].pixels[100 * 320 + 200], FakePlaneMillimetres(200, 100));
   }
 }
 

@@ -209,10 +209,11 @@ class UnitsScanTest : public UnitsTest {
   }
 
   void ExpectReadableByTheGroupOnly() const {
+    const std::string results = "/var/lib/isotherm/ground/*/stats.json";
+    const std::string recordings = "/var/lib/isotherm/edge/*.mcap";
     const auto read_as = [&](const std::string& groups) {
       return Run({"setpriv", "--reuid", "nobody", "--regid", "nogroup", groups, "/bin/sh", "-c",
-                  "cat /var/lib/isotherm/ground/*/stats.json /var/lib/isotherm/edge/*.mcap "
-                  ">/dev/null"})
+                  "cat " + results + " " + recordings + " >/dev/null"})
           .status;
     };
     EXPECT_EQ(read_as("--groups=isotherm"), 0);

@@ -92,7 +92,7 @@ std::optional<FakeDepthScript> ReadFakeDepthScript() {
   return script;
 }
 
-std::uint16_t FakePlane_mm(int u, int v) {
+std::uint16_t FakePlaneMillimetres(int u, int v) {
   if ((u * 7 + v * 13) % 41 == 0) return 0;
   return static_cast<std::uint16_t>(600 + u / 4 + v / 8);
 }
@@ -107,7 +107,7 @@ std::vector<std::uint16_t> PrepareFakeDepth(const FakeDepthScript& script, int w
               static_cast<std::streamsize>(frames.size() * 2));
   } else {
     for (int v = 0; v < height; ++v) {
-      for (int u = 0; u < width; ++u) frames.push_back(FakePlane_mm(u, v));
+      for (int u = 0; u < width; ++u) frames.push_back(FakePlaneMillimetres(u, v));
     }
   }
   for (std::uint16_t& depth : frames) {

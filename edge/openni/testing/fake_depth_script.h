@@ -70,7 +70,7 @@ std::vector<std::uint16_t> PrepareFakeDepth(const FakeDepthScript& script, int w
                                             bool tenth_mm);
 
 /// Returns what the plane measures at a pixel, millimetres; 0 = no return.
-std::uint16_t FakePlane_mm(int u, int v);
+std::uint16_t FakePlaneMillimetres(int u, int v);
 
 /// One frame to send.
 struct FakeDepthFrame {
