@@ -47,20 +47,6 @@ std::uint16_t AcrossEdge(const Image<std::uint16_t>& depth_raw, int x, int y) {
   return own;
 }
 
-void AddFlyingPixels(std::uint64_t stream, Image<std::uint16_t>& depth_raw) {
-  const Image<std::uint16_t> before = depth_raw;
-  std::uint64_t counter = 0;
-  for (int y = 0; y < before.height(); ++y) {
-    for (int x = 0; x < before.width(); ++x, counter += 2) {
-      if (before.At(x, y) == kNoDepth || UniformNoise(stream, counter) >= kFlyingFraction) continue;
-      const double fraction = UniformNoise(stream, counter + 1);
-      const double own = before.At(x, y);
-      const double other = AcrossEdge(before, x, y);
-      depth_raw.At(x, y) = static_cast<std::uint16_t>(std::lround(std::lerp(own, other, fraction)));
-    }
-  }
-}
-
 }  // namespace
 
 std::string_view ToString(DepthDefect defect) {
@@ -83,9 +69,24 @@ std::string_view ToString(DepthDefect defect) {
   return "unknown";
 }
 
+void AddFlyingPixels(double fraction, std::uint64_t noise_stream, Image<std::uint16_t>& depth_raw) {
+  const Image<std::uint16_t> before = depth_raw;
+  std::uint64_t counter = 0;
+  for (int y = 0; y < before.height(); ++y) {
+    for (int x = 0; x < before.width(); ++x, counter += 2) {
+      if (before.At(x, y) == kNoDepth || UniformNoise(noise_stream, counter) >= fraction) continue;
+      const double across = UniformNoise(noise_stream, counter + 1);
+      const double own = before.At(x, y);
+      const double other = AcrossEdge(before, x, y);
+      depth_raw.At(x, y) = static_cast<std::uint16_t>(std::lround(std::lerp(own, other, across)));
+    }
+  }
+}
+
 void AddDefect(DepthDefect defect, std::uint64_t noise_stream, Image<std::uint16_t>& depth_raw) {
   if (defect == DepthDefect::kNone) return;
-  if (defect == DepthDefect::kFlyingPixels) return AddFlyingPixels(noise_stream, depth_raw);
+  if (defect == DepthDefect::kFlyingPixels)
+    return AddFlyingPixels(kFlyingFraction, noise_stream, depth_raw);
   std::uint64_t counter = 0;
   for (int y = 0; y < depth_raw.height(); ++y) {
     for (int x = 0; x < depth_raw.width(); ++x, ++counter) {

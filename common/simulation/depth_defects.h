@@ -30,6 +30,10 @@ inline constexpr std::array kDepthDefects = {DepthDefect::kGrid,    DepthDefect:
 /// "coarse-grid", as command lines and recordings name it.
 std::string_view ToString(DepthDefect defect);
 
+/// Puts this fraction of the pixels at depth edges between the surfaces. The same `noise_stream`
+/// gives the same ones.
+void AddFlyingPixels(double fraction, std::uint64_t noise_stream, Image<std::uint16_t>& depth_raw);
+
 /// The same `noise_stream` gives the same defects. 0 = no return, in and out.
 void AddDefect(DepthDefect defect, std::uint64_t noise_stream, Image<std::uint16_t>& depth_raw);
 

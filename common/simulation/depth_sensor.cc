@@ -7,6 +7,7 @@
 #include "common/base/noise.h"
 #include "common/base/units.h"
 #include "common/frame/frame.h"
+#include "common/simulation/depth_defects.h"
 #include "common/simulation/simulation_options.pb.h"
 
 namespace isotherm {
@@ -78,25 +79,48 @@ DepthSensor::DepthSensor(const CameraModel& camera, const SimulatedDepthOptions&
       grazing_end_cos_(
           static_cast<float>(std::cos(options.expert().grazing_end_deg() * kRadPerDeg))),
       edge_dropout_(static_cast<float>(options.expert().edge_dropout())),
-      depth_scale_(static_cast<float>(options.expert().depth_scale())) {}
+      depth_scale_(static_cast<float>(options.expert().depth_scale())),
+      flying_fraction_(options.expert().flying_fraction()),
+      readout_s_(options.expert().readout_s()) {}
 
 Image<std::uint16_t> DepthSensor::Render(const Scene& scene, const RigidTransform& T_world_depth,
                                          std::uint64_t noise_stream, Scratch& scratch) const {
-  CastRays(scene, grid_, T_world_depth, scratch.hits);
+  return RenderMoving(
+      scene, [&](double) { return T_world_depth; }, 1.0, noise_stream, scratch);
+}
+
+Image<std::uint16_t> DepthSensor::RenderMoving(const Scene& scene, const PoseAfter& T_world_depth,
+                                               double stretch, std::uint64_t noise_stream,
+                                               Scratch& scratch) const {
+  const int height = grid_.height();
+  // Rows that are taken from one pose.
+  const int strip = readout_s_ > 0.0 ? RayGrid::kTileHeight : height;
+  const auto pose_of_strip = [&](int row) {
+    const double middle = row + 0.5 * std::min(strip, height - row);
+    return T_world_depth(readout_s_ * (middle / height - 0.5));
+  };
+  if (readout_s_ > 0.0) {
+    CastRays(scene, grid_, pose_of_strip, scratch.hits);
+  } else {
+    CastRays(scene, grid_, T_world_depth(0.0), scratch.hits);
+  }
   FindShadow(scratch.hits, scratch.lit);
   MakeCorrelatedNoise(noise_stream, scratch);
-  const CameraView view(scene, T_world_depth);
   const std::uint64_t drop_stream = MixBits(noise_stream);
-  Image<std::uint16_t> depth_raw(grid_.width(), grid_.height(), kNoDepth);
-  for (int y = 0; y < grid_.height(); ++y) {
-    CorrelateColumns(scratch.rows, y, scratch.noise);
-    MeasureRow(scratch.hits.z_m.Row(y), scratch);
-    for (int x = 0; x < grid_.width(); ++x) {
-      if (scratch.lit.At(x, y) == 0) continue;
-      if (IsDropped(scratch.hits, view, x, y, drop_stream)) continue;
-      depth_raw.At(x, y) = static_cast<std::uint16_t>(scratch.raw[static_cast<std::size_t>(x)]);
+  Image<std::uint16_t> depth_raw(grid_.width(), height, kNoDepth);
+  for (int first = 0; first < height; first += strip) {
+    const CameraView view(scene, pose_of_strip(first));
+    for (int y = first; y < std::min(first + strip, height); ++y) {
+      CorrelateColumns(scratch.rows, y, scratch.noise);
+      MeasureRow(scratch.hits.z_m.Row(y), static_cast<float>(stretch), scratch);
+      for (int x = 0; x < grid_.width(); ++x) {
+        if (scratch.lit.At(x, y) == 0) continue;
+        if (IsDropped(scratch.hits, view, x, y, drop_stream)) continue;
+        depth_raw.At(x, y) = static_cast<std::uint16_t>(scratch.raw[static_cast<std::size_t>(x)]);
+      }
     }
   }
+  if (flying_fraction_ > 0.0) AddFlyingPixels(flying_fraction_, MixBits(drop_stream), depth_raw);
   return depth_raw;
 }
 
@@ -135,12 +159,14 @@ bool DepthSensor::IsDropped(const HitImage& hits, const CameraView& view, int x,
   return dropped_fraction > 0.0F && UniformNoise(drop_stream, counter) < dropped_fraction;
 }
 
-void DepthSensor::MeasureRow(std::span<const float> z_m, Scratch& scratch) const {
+void DepthSensor::MeasureRow(std::span<const float> z_m, float stretch, Scratch& scratch) const {
   // Without branches and member accesses inside, so that the divisions become SIMD code.
   constexpr float kLargest = static_cast<float>(kNoDepthSaturated - 1);
   constexpr float kUnquantised = 1e-4F;  // A step far below any noise.
   constexpr float kMax_px = 1e5F;        // Nearer than any camera; keeps steps within 32 bits.
   const float disparity_metres_px = disparity_metres_px_, sigma_px = sigma_px_;
+  // The baseline has changed, but not what the camera knows of it.
+  const float known_metres_px = stretch * disparity_metres_px;
   const float step_px = step_px_ > 0.0F ? step_px_ : kUnquantised;
   const float min_m = min_depth_m_, max_m = max_depth_m_, scale = depth_scale_;
   scratch.raw.resize(z_m.size());
@@ -151,7 +177,7 @@ void DepthSensor::MeasureRow(std::span<const float> z_m, Scratch& scratch) const
   for (int x = 0; x < width; ++x) {
     const float true_px = disparity_metres_px / z[x];
     const float noisy_px = std::min(true_px, kMax_px) + sigma_px * noise[x];
-    const float measured_m = disparity_metres_px / (RoundPositive(noisy_px / step_px) * step_px);
+    const float measured_m = known_metres_px / (RoundPositive(noisy_px / step_px) * step_px);
     const float raw = measured_m * scale;
     const bool good = (measured_m >= min_m) & (measured_m <= max_m) & (raw <= kLargest);
     out[x] = static_cast<std::int32_t>(RoundPositive(good ? raw : 0.0F));

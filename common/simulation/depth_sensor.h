@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,9 @@ class SimulatedDepthOptions;
 
 /// A structured-light depth camera (PrimeSense Carmine): noise and quantisation in disparity, so
 /// that both grow with the square of the distance; no return at grazing angles, beside depth edges,
-/// in the projector's shadow and out of range. The projector is to the right of the camera.
-/// Thread-safe (immutable); scratch memory is the caller's.
+/// in the projector's shadow and out of range; depths between both surfaces at some edges, rows
+/// read one after the other. The projector is to the right of the camera. Thread-safe (immutable);
+/// scratch memory is the caller's.
 class DepthSensor {
  public:
   DepthSensor(const CameraModel& camera, const SimulatedDepthOptions& options);
@@ -35,12 +37,19 @@ class DepthSensor {
   Image<std::uint16_t> Render(const Scene& scene, const RigidTransform& T_world_depth,
                               std::uint64_t noise_stream, Scratch& scratch) const;
 
+  /// T_world_depth this many seconds after the capture time, which is that of the middle row.
+  using PoseAfter = std::function<RigidTransform(double seconds)>;
+  /// The same by a camera that moves, whose distances are too long by the factor `stretch`.
+  Image<std::uint16_t> RenderMoving(const Scene& scene, const PoseAfter& T_world_depth,
+                                    double stretch, std::uint64_t noise_stream,
+                                    Scratch& scratch) const;
+
  private:
   void FindShadow(const HitImage& hits, Image<std::uint8_t>& lit) const;
   bool IsDropped(const HitImage& hits, const CameraView& view, int x, int y,
                  std::uint64_t drop_stream) const;
   /// Raw values of one row of true depths with scratch.noise, 0 = out of range, into scratch.raw.
-  void MeasureRow(std::span<const float> z_m, Scratch& scratch) const;
+  void MeasureRow(std::span<const float> z_m, float stretch, Scratch& scratch) const;
 
   const RayGrid grid_;
   const float disparity_metres_px_;  ///< Focal length x baseline: disparity = this / depth.
@@ -52,6 +61,8 @@ class DepthSensor {
   const float grazing_end_cos_;
   const float edge_dropout_;
   const float depth_scale_;
+  const double flying_fraction_;
+  const double readout_s_;
 };
 
 }  // namespace isotherm

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iostream>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "common/base/noise.h"
 #include "common/base/units.h"
@@ -209,6 +211,92 @@ TEST_F(DepthSensorTest, EdgesLoseTheFractionThatTheOptionsSay) {
   for (int y = top; y < bottom; ++y) holes += depth.At(edge, y) == kNoDepth;
   EXPECT_NEAR(holes, 0.5 * (bottom - top), 30);
   for (int y = top; y < bottom; ++y) EXPECT_NE(depth.At(edge - 3, y), kNoDepth);
+}
+
+TEST_F(DepthSensorTest, PixelsFlyBetweenTheSurfacesOfAnEdgeWhereTheOptionsSay) {
+  builder_.Box("near", {-0.2, -0.2, 0.6}, {0.2, 0.2, 0.601});
+  AddWall(0.9);
+  options_.mutable_expert()->set_edge_dropout(0.0);
+  options_.mutable_expert()->set_flying_fraction(0.4);
+  const Image<std::uint16_t> depth = Render();
+  // The right edge has no shadow.
+  const int edge = static_cast<int>(std::floor(camera_.cx + 0.2 / 0.6 * camera_.fx));
+  const int top = 150, bottom = 350;
+  int flying = 0;
+  for (int y = top; y < bottom; ++y) {
+    for (const int x : {edge, edge + 1}) flying += depth.At(x, y) > 6300 && depth.At(x, y) < 8700;
+    for (const int x : {edge - 2, edge + 3})
+      ASSERT_FALSE(depth.At(x, y) > 6300 && depth.At(x, y) < 8700);
+  }
+  // Of those that fly, four fifths are neither near one surface nor near the other.
+  EXPECT_NEAR(flying, 0.8 * 0.4 * 2 * (bottom - top), 35);
+}
+
+TEST_F(DepthSensorTest, RowsThatAreReadLaterSeeThingsLater) {
+  constexpr double kReadout_s = 0.030, kSpeed_m_s = 0.4, kNear_m = 0.6;
+  builder_.Box("near", {-0.1, -3, kNear_m}, {0.1, 3, kNear_m + 0.001});
+  AddWall(0.9);
+  options_.mutable_expert()->set_edge_dropout(0.0);
+  options_.mutable_expert()->set_readout_s(kReadout_s);
+  const DepthSensor sensor(camera_, options_);
+  DepthSensor::Scratch scratch;
+  const Image<std::uint16_t> depth = sensor.RenderMoving(
+      builder_.Build("test"),
+      [](double seconds) {
+        return MakeTransform({kSpeed_m_s * seconds, 0, 0}, Eigen::Quaterniond::Identity());
+      },
+      1.0, NoiseStream(kSeed, 0, 0), scratch);
+  // Last column of the near thing, whose right edge has no shadow.
+  const auto edge_column = [&](int y) {
+    int last = 0;
+    for (int x = 0; x < camera_.width; ++x) {
+      if (depth.At(x, y) != kNoDepth && depth.At(x, y) < 7000) last = x;
+    }
+    return last;
+  };
+  const double shift_px = kSpeed_m_s * kReadout_s * camera_.fx / kNear_m;
+  ASSERT_GT(shift_px, 10.0);
+  EXPECT_NEAR(edge_column(0) - edge_column(camera_.height - 1), shift_px, 1.5);
+  EXPECT_NEAR(edge_column(camera_.height / 2), camera_.cx + 0.1 / kNear_m * camera_.fx, 1.5);
+}
+
+TEST_F(DepthSensorTest, AWarmCameraShowsDistancesThatAreTooLong) {
+  options_.mutable_expert()->set_disparity_step_px(0.0);
+  AddWall(0.8);
+  const DepthSensor sensor(camera_, options_);
+  DepthSensor::Scratch scratch;
+  const auto pose = [](double) { return RigidTransform::Identity(); };
+  const Image<std::uint16_t> depth =
+      sensor.RenderMoving(builder_.Build("test"), pose, 1.01, NoiseStream(kSeed, 0, 0), scratch);
+  double sum = 0.0;
+  for (const std::uint16_t raw : depth.pixels()) sum += raw;
+  EXPECT_NEAR(sum / static_cast<double>(depth.size()), 1.01 * 8000.0, 2.0);
+}
+
+TEST(DepthSensorOptionsTest, AreCheckedAndSayWhatIsWrong) {
+  using Set = void (*)(SimulatedDepthExpertOptions&, double);
+  struct Case {
+    const char* name;
+    Set set;
+    std::vector<double> wrong;
+  };
+  for (const Case& one :
+       {Case{"flying_fraction", [](auto&o, double v) { o.set_flying_fraction(v); }, {-0.1, 1.1}},
+        Case{"depth.expert.readout_s", [](auto&o, double v) { o.set_readout_s(v); }, {-0.01, 2.0}},
+        Case{"warm_up_stretch", [](auto&o, double v) { o.set_warm_up_stretch(v); }, {-0.2, 0.2}},
+        Case{"warm_up_time_constant_s",
+             [](auto&o, double v) { o.set_warm_up_time_constant_s(v); },
+             {0.0, -1.0}}}) {
+    std::vector<double> wrong = one.wrong;
+    wrong.insert(wrong.end(), {NAN, HUGE_VAL, -HUGE_VAL});
+    for (const double value : wrong) {
+      SimulationOptions options;
+      one.set(*options.mutable_depth()->mutable_expert(), value);
+      const Status status = Validate(options);
+      EXPECT_FALSE(status.ok()) << one.name << " " << value;
+      EXPECT_NE(status.message().find(one.name), std::string::npos) << status.message();
+    }
+  }
 }
 
 TEST_F(DepthSensorTest, AnySizeAndUnitWorks) {

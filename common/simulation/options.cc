@@ -12,6 +12,8 @@
 namespace isotherm {
 namespace {
 
+constexpr double kMetresPerMillimetre = 1e-3;
+
 /// Collects the first violated range.
 class RangeCheck {
  public:
@@ -19,6 +21,10 @@ class RangeCheck {
     if (!status_.ok() || (value >= low && value <= high)) return;
     status_ = InvalidArgument(
         fmt::format("simulation.{} must be {}..{}, got {}", field, low, high, value));
+  }
+  /// `text` says what must be.
+  void Require(bool is_so, const char* text) {
+    if (status_.ok() && !is_so) status_ = InvalidArgument(fmt::format("simulation.{}", text));
   }
   Status status() const { return status_; }
 
@@ -39,6 +45,26 @@ void CheckDepth(const SimulatedDepthOptions& depth, RangeCheck& check) {
         depth.expert().grazing_start_deg(), 90.0);
   check("depth.expert.edge_dropout", depth.expert().edge_dropout(), 0.0, 1.0);
   check("depth.expert.depth_scale", depth.expert().depth_scale(), 1.0, 1e6);
+  check("depth.expert.flying_fraction", depth.expert().flying_fraction(), 0.0, 1.0);
+  check("depth.expert.readout_s", depth.expert().readout_s(), 0.0, 1.0);
+  check("depth.expert.warm_up_stretch", depth.expert().warm_up_stretch(), -0.1, 0.1);
+  check("depth.expert.warm_up_time_constant_s", depth.expert().warm_up_time_constant_s(), 0.01,
+        360'000.0);
+}
+
+void CheckLens(const SimulatedThermalExpertOptions& expert, RangeCheck& check) {
+  const SimulatedLensOptions& lens = expert.lens();
+  check("thermal.expert.rays_per_pixel_side", expert.rays_per_pixel_side(), 1.0, 16.0);
+  check("thermal.expert.lens.focus_m", lens.focus_m(), 0.0, 1000.0);
+  check("thermal.expert.lens.focal_length_mm", lens.focal_length_mm(), 0.1, 1000.0);
+  check("thermal.expert.lens.f_number", lens.f_number(), 0.1, 1000.0);
+  if (lens.focus_m() == 0.0) return;
+  check.Require(lens.focus_m() > 2.0 * kMetresPerMillimetre * lens.focal_length_mm(),
+                "thermal.expert.lens.focus_m must be 0 (sharp everywhere) or more than twice the "
+                "focal length");
+  check.Require(expert.rays_per_pixel_side() >= 3,
+                "thermal.expert.rays_per_pixel_side must be 3 or more with lens.focus_m: the rays "
+                "are spread over the lens, too");
 }
 
 void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
@@ -62,6 +88,7 @@ void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
         SceneInfluence::kMinSigma_px, SceneInfluence::kMaxSigma_px);
   check("thermal.expert.scene_influence.total_fraction", influence.total_fraction(), 0.0,
         SceneInfluence::kMaxFraction);
+  CheckLens(thermal.expert(), check);
 }
 
 void CheckClock(const std::string& name, const ClockOptions& clock, RangeCheck& check) {
@@ -162,6 +189,19 @@ Rig DefaultSimulatedRig() {
   return rig;
 }
 
+namespace {
+
+/// The camera model's focal length, in pixels, is the distance of the image behind the lens (2.19).
+void TellLens(const SimulatedLensOptions& lens, Rig& rig) {
+  if (lens.focus_m() == 0.0) return;
+  const double focal_length_m = kMetresPerMillimetre * lens.focal_length_mm();
+  const double image_m = focal_length_m * lens.focus_m() / (lens.focus_m() - focal_length_m);
+  rig.thermal_sensor.pixel_pitch_m = image_m / rig.thermal->fx;
+  rig.thermal_sensor.lens = LensModel{focal_length_m, lens.f_number(), lens.focus_m()};
+}
+
+}  // namespace
+
 Result<Rig> SimulatedRig(const SimulationOptions& options) {
   Rig rig = DefaultSimulatedRig();
   if (!options.rig_file().empty()) {
@@ -176,6 +216,7 @@ Result<Rig> SimulatedRig(const SimulationOptions& options) {
   rig.depth_scale = options.depth().expert().depth_scale();
   rig.thermal_scale = ScaleOf(options.thermal());
   rig.thermal_sensor.scene_influence = InfluenceOf(options.thermal());
+  TellLens(options.thermal().expert().lens(), rig);
   return rig;
 }
 

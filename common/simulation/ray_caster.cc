@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/base/check.h"
 #include "common/simulation/trace_tile.h"
 
 namespace isotherm {
@@ -86,7 +87,29 @@ void StoreTile(const RayGrid::Tile& tile, const TileHits& hits, HitImage& image)
   }
 }
 
+/// `seen` nearest first.
+void CastTile(const std::vector<SeenPrimitive>& seen, const RayGrid::Tile& tile, TileHits& hits) {
+  std::fill_n(hits.z, RayGrid::kTilePixels, kInfinity);
+  std::fill_n(hits.index, RayGrid::kTilePixels, -1);
+  float farthest = kInfinity;
+  for (const SeenPrimitive& primitive : seen) {
+    if (primitive.min_z > farthest) break;  // Sorted: all that follow are hidden.
+    if (!Overlap(primitive, tile)) continue;
+    TraceTile(primitive.shape, primitive.target, tile, hits);
+    farthest = hits.farthest;
+  }
+}
+
 }  // namespace
+
+void RayGrid::Tile::SetBounds() {
+  const auto x_range = std::minmax_element(ray_x, ray_x + kTilePixels);
+  const auto y_range = std::minmax_element(ray_y, ray_y + kTilePixels);
+  min_x = *x_range.first;
+  max_x = *x_range.second;
+  min_y = *y_range.first;
+  max_y = *y_range.second;
+}
 
 RayGrid::RayGrid(const CameraModel& camera)
     : width_(camera.width),
@@ -111,12 +134,7 @@ RayGrid::RayGrid(const CameraModel& camera)
         tile.ray_x[i] = rays_x_.At(x, y);
         tile.ray_y[i] = rays_y_.At(x, y);
       }
-      const auto x_range = std::minmax_element(tile.ray_x, tile.ray_x + kTilePixels);
-      const auto y_range = std::minmax_element(tile.ray_y, tile.ray_y + kTilePixels);
-      tile.min_x = *x_range.first;
-      tile.max_x = *x_range.second;
-      tile.min_y = *y_range.first;
-      tile.max_y = *y_range.second;
+      tile.SetBounds();
     }
   }
 }
@@ -128,16 +146,46 @@ void CastRays(const Scene& scene, const RayGrid& grid, const RigidTransform& T_w
   const std::vector<SeenPrimitive> seen = LookAt(scene, T_world_camera);
   TileHits tile_hits;
   for (const RayGrid::Tile& tile : grid.tiles()) {
-    std::fill_n(tile_hits.z, RayGrid::kTilePixels, kInfinity);
-    std::fill_n(tile_hits.index, RayGrid::kTilePixels, -1);
-    float farthest = kInfinity;
-    for (const SeenPrimitive& primitive : seen) {
-      if (primitive.min_z > farthest) break;  // Sorted: all that follow are hidden.
-      if (!Overlap(primitive, tile)) continue;
-      TraceTile(primitive.shape, primitive.target, tile, tile_hits);
-      farthest = tile_hits.farthest;
-    }
+    CastTile(seen, tile, tile_hits);
     StoreTile(tile, tile_hits, hits);
+  }
+}
+
+void CastRays(const Scene& scene, const RayGrid& grid,
+              const std::function<RigidTransform(int row)>& T_world_camera, HitImage& hits) {
+  hits.z_m.Resize(grid.width(), grid.height());
+  hits.primitive.Resize(grid.width(), grid.height());
+  std::vector<SeenPrimitive> seen;
+  int row_of_pose = -1;
+  TileHits tile_hits;
+  for (const RayGrid::Tile& tile : grid.tiles()) {
+    if (tile.y0 != row_of_pose) {
+      seen = LookAt(scene, T_world_camera(tile.y0));
+      row_of_pose = tile.y0;
+    }
+    CastTile(seen, tile, tile_hits);
+    StoreTile(tile, tile_hits, hits);
+  }
+}
+
+void CastRays(const Scene& scene, std::span<const Eigen::Vector2f> rays,
+              const RigidTransform& T_world_camera, std::span<RayHit> hits) {
+  CHECK(rays.size() == hits.size());
+  const std::vector<SeenPrimitive> seen = LookAt(scene, T_world_camera);
+  RayGrid::Tile tile;
+  TileHits tile_hits;
+  for (std::size_t first = 0; first < rays.size(); first += RayGrid::kTilePixels) {
+    const std::size_t count =
+        std::min(rays.size() - first, static_cast<std::size_t>(RayGrid::kTilePixels));
+    for (std::size_t i = 0; i < RayGrid::kTilePixels; ++i) {
+      const Eigen::Vector2f& ray = rays[first + std::min(i, count - 1)];
+      tile.ray_x[i] = ray.x();
+      tile.ray_y[i] = ray.y();
+    }
+    tile.SetBounds();
+    CastTile(seen, tile, tile_hits);
+    for (std::size_t i = 0; i < count; ++i)
+      hits[first + i] = {tile_hits.z[i], static_cast<std::int16_t>(tile_hits.index[i])};
   }
 }
 

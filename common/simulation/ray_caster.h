@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
+#include <span>
 #include <vector>
 
 #include "common/frame/image.h"
@@ -27,6 +30,9 @@ class RayGrid {
   /// kTileHeight rows of kTileWidth rays (x, y, 1) in the camera's coordinates. Tiles at the right
   /// and lower border repeat the last pixel.
   struct Tile {
+    /// Sets the bounds from the rays.
+    void SetBounds();
+
     int x0 = 0, y0 = 0;  ///< First pixel.
     float min_x = 0, max_x = 0, min_y = 0, max_y = 0;
     float ray_x[kTilePixels];
@@ -52,6 +58,22 @@ class RayGrid {
 /// micrometre).
 void CastRays(const Scene& scene, const RayGrid& grid, const RigidTransform& T_world_camera,
               HitImage& hits);
+
+/// The same of a camera that moves while it reads one row after the other: `T_world_camera` is
+/// asked once per kTileHeight rows, for the first of them.
+void CastRays(const Scene& scene, const RayGrid& grid,
+              const std::function<RigidTransform(int row)>& T_world_camera, HitImage& hits);
+
+/// What a single ray sees.
+struct RayHit {
+  float z_m;               ///< Metres along the optical axis; infinity = nothing.
+  std::int16_t primitive;  ///< Index into Scene::primitives(); -1 = nothing.
+};
+
+/// The same for single rays (x, y, 1) in the camera's coordinates, as many as there are `hits`.
+/// Faster if neighbours in the list are close together.
+void CastRays(const Scene& scene, std::span<const Eigen::Vector2f> rays,
+              const RigidTransform& T_world_camera, std::span<RayHit> hits);
 
 /// The scene's primitives as seen from one camera pose, for what comes after CastRays. Thread-safe
 /// (immutable).

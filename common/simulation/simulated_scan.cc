@@ -116,6 +116,13 @@ double SimulatedScan::DriftErrorKelvin(CaptureTime time) const {
          (HousingCelsius(ToSeconds(time - start_)) - HousingCelsius(CorrectedAfter(time)));
 }
 
+double SimulatedScan::DepthStretch(CaptureTime time) const {
+  const SimulatedDepthExpertOptions& depth = options_->depth().expert();
+  const double seconds = ToSeconds(time - start_);
+  return 1.0 +
+         depth.warm_up_stretch() * (1.0 - std::exp(-seconds / depth.warm_up_time_constant_s()));
+}
+
 bool SimulatedScan::IsShutterClosed(CaptureTime time) const {
   return std::any_of(nuc_events_.begin(), nuc_events_.end(), [&](const NucEvent& event) {
     return time >= event.start && time < event.end;
@@ -147,9 +154,10 @@ RawFrame SimulatedScan::RenderDepth(std::uint64_t frame_number, Scratch& scratch
   frame.device_ticks = time.device_ticks;
   frame.arrival_wall = time.arrival;
   frame.depth_scale = rig_.depth_scale;
-  frame.pixels = depth_sensor_.Render(scene(), PoseAt(time.exposure),
-                                      NoiseStream(options_->seed(), kDepthPixels, frame_number),
-                                      scratch.depth);
+  frame.pixels = depth_sensor_.RenderMoving(
+      scene(), [&](double seconds) { return PoseAt(time.exposure + FromSeconds(seconds)); },
+      DepthStretch(time.exposure), NoiseStream(options_->seed(), kDepthPixels, frame_number),
+      scratch.depth);
   return frame;
 }
 

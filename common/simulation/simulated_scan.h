@@ -50,6 +50,9 @@ class SimulatedScan {
   /// since the last correction.
   double DriftErrorKelvin(CaptureTime time) const;
 
+  /// Returns how much too long the depth camera shows distances at `time`, as a factor.
+  double DepthStretch(CaptureTime time) const;
+
   /// True T_world_depth.
   RigidTransform PoseAt(CaptureTime time) const;
   /// True T_world_thermal.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/frame/frame.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 
@@ -137,6 +138,31 @@ TEST_F(SimulatedScanTest, OptionsOutOfRangeAreRefusedWithASceneOfOnesOwnToo) {
   const auto scan = SimulatedScan::Create(options_, PolishedWallAndOperator(false));
   ASSERT_FALSE(scan.has_value());
   EXPECT_NE(scan.error().message().find("thermal.expert.time_constant_s"), std::string::npos);
+}
+
+TEST_F(SimulatedScanTest, TheDepthCameraWarmsUpAsTheOptionsSay) {
+  options_.mutable_depth()->mutable_expert()->set_warm_up_stretch(0.02);
+  options_.mutable_depth()->mutable_expert()->set_disparity_step_px(0.0);
+  options_.mutable_depth()->mutable_expert()->set_depth_scale(10'000.0);
+  options_.mutable_depth()->mutable_expert()->set_warm_up_time_constant_s(2.0);
+  const auto scan = Create(PolishedWallAndOperator(false));
+  const CaptureTime start = scan->depth_times().front().exposure;
+  EXPECT_EQ(scan->DepthStretch(start), 1.0);
+  EXPECT_NEAR(scan->DepthStretch(start + FromSeconds(2.0)), 1.0 + 0.02 * (1.0 - std::exp(-1.0)),
+              1e-9);
+  SimulatedScan::Scratch scratch;
+  const auto mean = [&](std::uint64_t frame) {
+    const RawFrame raw = scan->RenderDepth(frame, scratch);
+    double sum = 0.0, count = 0.0;
+    for (const std::uint16_t value : raw.pixels.pixels()) {
+      sum += value;
+      count += value == kNoDepth ? 0.0 : 1.0;
+    }
+    return sum / count;
+  };
+  const std::uint64_t last = scan->depth_times().size() - 1;
+  const double stretch = scan->DepthStretch(scan->depth_times()[last].exposure);
+  EXPECT_NEAR(mean(last) / mean(0), stretch, 2e-4) << "the rig stands still";
 }
 
 }  // namespace

@@ -14,7 +14,6 @@
 namespace isotherm {
 namespace {
 
-constexpr int kEmissivityIntervals = 1024;
 constexpr double kNetd_celsius = 30.0;  // Temperature at which makers state the NETD.
 
 std::vector<float> GaussianWeights(double sigma_px) {
@@ -57,6 +56,7 @@ double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, do
 
 ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOptions& options)
     : grid_(camera),
+      average_(camera, options),
       band_(SpectralBand{options.expert().band_min_um(), options.expert().band_max_um()}),
       scale_(ScaleOf(options)),
       noise_radiance_(options.expert().netd_kelvin() *
@@ -76,7 +76,11 @@ Image<std::uint16_t> ThermalSensor::Render(const Scene& scene,
 void ThermalSensor::Expose(const Scene& scene, const RigidTransform& T_world_thermal,
                            Scratch& scratch) const {
   CastRays(scene, grid_, T_world_thermal, scratch.hits);
-  FillRadiance(scene, T_world_thermal, scratch);
+  const EmissivityTables emissivity(scene);
+  FillRadiance(RadianceView(scene, band_, emissivity, T_world_thermal), scratch);
+  if (!average_.IsSingleRay())
+    average_.Apply(scene, grid_, band_, emissivity, T_world_thermal, scratch.hits, scratch.radiance,
+                   scratch.average);
   Blur(scratch);
 }
 
@@ -126,59 +130,14 @@ Image<std::uint16_t> ThermalSensor::RenderShutter(double shutter_celsius,
   return Detect(noise_stream, scratch);
 }
 
-ThermalSensor::EmissivityTable ThermalSensor::MakeTable(const Material& material) {
-  EmissivityTable table;
-  for (int i = 0; i <= kEmissivityIntervals; ++i) {
-    const double angle_rad = std::acos(static_cast<double>(i) / kEmissivityIntervals);
-    table.push_back(static_cast<float>(
-        DirectionalEmissivity(angle_rad, material.normal_emissivity, material.n, material.kappa)));
-  }
-  return table;
-}
-
-double ThermalSensor::LookUp(const EmissivityTable& table, float cosine) {
-  const float position = cosine * kEmissivityIntervals;
-  const auto index =
-      static_cast<std::size_t>(std::clamp(static_cast<int>(position), 0, kEmissivityIntervals - 1));
-  const float fraction = position - static_cast<float>(index);
-  return static_cast<double>(table[index] + fraction * (table[index + 1] - table[index]));
-}
-
-void ThermalSensor::FillRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
-                                 Scratch& scratch) const {
-  std::vector<EmissivityTable> tables;
-  for (const Material& material : scene.materials()) tables.push_back(MakeTable(material));
-  const CameraView view(scene, T_world_thermal);
-  const double surround = band_.RadianceFromCelsius(scene.surround_celsius());
+void ThermalSensor::FillRadiance(const RadianceView& view, Scratch& scratch) const {
   scratch.radiance.Resize(grid_.width(), grid_.height());
-  const auto radiance_at = [&](int x, int y) {
-    const int primitive = scratch.hits.primitive.At(x, y);
-    if (primitive < 0) return surround;
-    const Eigen::Vector2f ray = grid_.Ray(x, y);
-    const CameraView::Surface surface = view.At(primitive, ray, scratch.hits.z_m.At(x, y));
-    const int material = scene.primitives()[static_cast<std::size_t>(primitive)].material;
-    const double emissivity = LookUp(tables[static_cast<std::size_t>(material)], surface.cosine);
-    if (scene.MaterialOf(primitive).mirror) {
-      return MirrorRadiance(scene, T_world_thermal, ray, emissivity);
-    }
-    return emissivity * band_.RadianceFromCelsius(static_cast<double>(surface.celsius)) +
-           (1.0 - emissivity) * surround;
-  };
   for (int y = 0; y < grid_.height(); ++y) {
     for (int x = 0; x < grid_.width(); ++x) {
-      scratch.radiance.At(x, y) = static_cast<float>(radiance_at(x, y));
+      scratch.radiance.At(x, y) = static_cast<float>(
+          view.At(scratch.hits.primitive.At(x, y), grid_.Ray(x, y), scratch.hits.z_m.At(x, y)));
     }
   }
-}
-
-double ThermalSensor::MirrorRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
-                                     const Eigen::Vector2f& ray, double emissivity) const {
-  const Eigen::Vector3d viewer_world = T_world_thermal.translation();
-  const Eigen::Vector3d direction_world =
-      T_world_thermal.linear() * ray.cast<double>().homogeneous();
-  const auto hit = scene.Intersect(viewer_world, direction_world);
-  if (!hit) return band_.RadianceFromCelsius(scene.surround_celsius());
-  return TrueRadiance(scene, band_, hit->point, viewer_world, emissivity);
 }
 
 void ThermalSensor::Blur(Scratch& scratch) const {

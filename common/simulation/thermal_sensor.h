@@ -10,14 +10,16 @@
 #include "common/geometry/rigid_transform.h"
 #include "common/radiometry/radiometry.h"
 #include "common/rig/sensor_models.h"
+#include "common/simulation/pixel_average.h"
+#include "common/simulation/radiance_view.h"
 #include "common/simulation/ray_caster.h"
 
 namespace isotherm {
 
 class SimulatedThermalOptions;
 
-/// A long-wave camera: band radiance of what each pixel sees with directional emissivity and
-/// reflected surroundings (thesis eq. 3.1, B.2), optical blur, the detector's inertia and the
+/// A long-wave camera: band radiance of what each pixel sees, over its area and through a lens that
+/// is focused at one distance, optical blur, the detector's inertia and the
 /// reading of one row after the other (3.3.1), noise that is constant in radiance, and conversion
 /// to the apparent (black-body) temperature. Thread-safe (immutable); scratch memory is the
 /// caller's.
@@ -27,6 +29,7 @@ class ThermalSensor {
 
   struct Scratch {
     HitImage hits;
+    PixelAverage::Scratch average;
     Image<float> radiance;
     Image<float> rows;
     Image<float> smeared;
@@ -52,15 +55,7 @@ class ThermalSensor {
   const BandRadiance& band() const { return band_; }
 
  private:
-  /// Emissivity over the cosine of the emission angle.
-  using EmissivityTable = std::vector<float>;
-  static EmissivityTable MakeTable(const Material& material);
-  static double LookUp(const EmissivityTable& table, float cosine);
-
-  void FillRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
-                    Scratch& scratch) const;
-  double MirrorRadiance(const Scene& scene, const RigidTransform& T_world_thermal,
-                        const Eigen::Vector2f& ray, double emissivity) const;
+  void FillRadiance(const RadianceView& view, Scratch& scratch) const;
   void Blur(Scratch& scratch) const;
   /// Computes what the optics throw on the detector, into scratch.radiance.
   void Expose(const Scene& scene, const RigidTransform& T_world_thermal, Scratch& scratch) const;
@@ -72,6 +67,7 @@ class ThermalSensor {
   Image<std::uint16_t> Detect(std::uint64_t noise_stream, Scratch& scratch) const;
 
   const RayGrid grid_;
+  const PixelAverage average_;
   const BandRadiance band_;
   const RadiometricScale scale_;
   const double noise_radiance_;

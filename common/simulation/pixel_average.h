@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "common/frame/image.h"
+#include "common/geometry/camera.h"
+#include "common/geometry/rigid_transform.h"
+#include "common/radiometry/radiometry.h"
+#include "common/simulation/radiance_view.h"
+#include "common/simulation/ray_caster.h"
+#include "common/simulation/scene.h"
+
+namespace isotherm {
+
+class SimulatedThermalOptions;
+
+/// Makes each pixel the mean radiance of many rays instead of that of the one through its middle.
+/// They are spread over the pixel's area and over the aperture of a thin lens; those of one pixel
+/// meet at the focus distance, so that what is nearer or farther is blurred (thesis eq. 2.20) and
+/// what is near hides only a part of what is behind it. Only pixels around which the image through
+/// a pinhole is uneven take the time: a part that no ray through the middle of a pixel meets stays
+/// unseen. Thread-safe (immutable); scratch memory is the caller's.
+class PixelAverage {
+ public:
+  PixelAverage(const CameraModel& camera, const SimulatedThermalOptions& options);
+
+  struct Scratch {
+    Image<std::uint8_t> uneven;           ///< 1 = the radiance is no plane there.
+    std::vector<Eigen::Vector2i> pixels;  ///< Those that take many rays.
+    std::vector<Eigen::Vector2f> rays;
+    std::vector<RayHit> hits;
+    std::vector<double> sums;
+  };
+
+  /// Returns whether there is only the ray through the middle.
+  bool IsSingleRay() const { return rays_.size() == 1; }
+  /// Diameter of a point's image at depth `z_m`, pixels: eq. (2.20) solved for the circle. `z_m`
+  /// may be infinite.
+  double BlurDiameterPx(double z_m) const;
+
+  /// Changes `radiance`, which is that of the middles of the pixels, and `hits` what they met.
+  void Apply(const Scene& scene, const RayGrid& grid, const BandRadiance& band,
+             const EmissivityTables& emissivity, const RigidTransform& T_world_camera,
+             const HitImage& hits, Image<float>& radiance, Scratch& scratch) const;
+
+ private:
+  struct Ray {
+    Eigen::Vector2f pixel_offset;  ///< From the pixel's middle, pixels.
+    Eigen::Vector2d lens_m;        ///< Where it passes the lens, from its middle.
+  };
+  /// Fills scratch.pixels, neighbours together.
+  void FindPixels(const HitImage& hits, const Image<float>& radiance, Scratch& scratch) const;
+  Eigen::Vector2f RayThrough(const RayGrid& grid, const Eigen::Vector2i& pixel,
+                             const Ray& ray) const;
+
+  const double focal_length_px_;
+  const double aperture_m_;  ///< Diameter; 0 = pinhole.
+  const double focus_m_;
+  const double negligible_;  ///< Radiance.
+  std::vector<Ray> rays_;
+};
+
+}  // namespace isotherm
