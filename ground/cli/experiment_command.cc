@@ -34,7 +34,7 @@ struct ExperimentArguments {
 
 int List() {
   for (const Experiment& experiment : AllExperiments())
-    fmt::print("{:<12}{:<20}{}\n", experiment.name, experiment.figure, experiment.claim);
+    fmt::print("{:<25}{:<20}{}\n", experiment.name, experiment.figure, experiment.claim);
   return 0;
 }
 

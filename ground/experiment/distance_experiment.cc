@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <vector>
 
-#include "common/simulation/scene_builder.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/experiment_scan.h"
 #include "ground/experiment/model_check.h"
+#include "ground/experiment/resolution_target.h"
 #include "ground/renderer/renderer.h"
 
 namespace isotherm {
@@ -17,84 +18,10 @@ namespace {
 
 constexpr double kDuration_s = 4.0;
 constexpr double kCloseUp_s = 0.8;  ///< Until then the rig has hardly moved away.
-constexpr double kHot_celsius = 80.0, kCold_celsius = 40.0;
-constexpr double kPanelZ = 0.60;
 constexpr std::array kBarWidths_m = {0.002, 0.003, 0.004};
-constexpr int kPeriods = 5;
-
-/// A resolution target in a panel: groups of hot and cold bars, flush, so that only the camera's
-/// resolution blurs them. Black bodies.
-StagedScene ResolutionTarget() {
-  SceneBuilder scene(23.0);
-  scene.UseMaterial({1.0, 1.0, 0.0, false});
-  scene.Box("wall", {0.02, 0.02, 0.84}, {0.94, 0.94, 0.90}).temperature = Uniform(24.0);
-  scene.Box("table", {0.02, 0.70, 0.20}, {0.94, 0.76, 0.84}).temperature = Uniform(24.0);
-  scene.Box("panel", {0.36, 0.34, kPanelZ + 0.002}, {0.60, 0.70, 0.74}).temperature =
-      Uniform(kCold_celsius);
-  scene.Cylinder("knob", {0.40, 0.66, kPanelZ - 0.03}, {0.40, 0.66, kPanelZ + 0.002}, 0.02)
-      .temperature = Uniform(kCold_celsius);
-  scene.RotatedBox("carton", {0.22, 0.62, 0.68}, {0.14, 0.16, 0.14}, {0, 30, 0}).temperature =
-      Uniform(24.0);
-  double x = 0.42;
-  for (const double width : kBarWidths_m) {
-    for (int bar = 0; bar < 2 * kPeriods; ++bar, x += width) {
-      const bool hot = bar % 2 == 0;
-      scene.Box(hot ? "hot bar" : "cold bar", {x, 0.47, kPanelZ}, {x + width, 0.57, kPanelZ + 0.01})
-          .temperature = Uniform(hot ? kHot_celsius : kCold_celsius);
-    }
-    x += 0.010;
-  }
-  ScanPath path;
-  path.target_x_m = {0.48, 0.005, 1.5};
-  path.target_y_m = {0.52, 0.005, 1.1};
-  path.target_z_m = {kPanelZ};
-  path.distance_m = FromTo(0.40, 0.90, kDuration_s);
-  return {scene.Build("resolution target"), path, {}};
-}
-
-/// The bars of one width.
-struct BarGroup {
-  double contrast = 0.0;          ///< Between the middles of hot and cold bars, of the true one.
-  double coverage_percent = 0.0;  ///< Points of these middles that have a temperature.
-};
-using BarGroups = std::array<BarGroup, kBarWidths_m.size()>;
-
-BarGroups MeasureBars(const SimulatedScan& scan, const ScanModel& model, ThreadPool& pool) {
-  constexpr double kMiddleFraction = 0.15;  // Of a bar's width, to either side of its middle.
-  struct Sum {
-    double celsius = 0.0;
-    std::size_t count = 0, points = 0;
-    double Mean() const { return count == 0 ? std::nan("") : celsius / static_cast<double>(count); }
-  };
-  std::array<std::array<Sum, 2>, kBarWidths_m.size()> sums;
-  for (const CheckedPoint& point :
-       CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool)) {
-    const Primitive& part =
-        scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)];
-    if (!part.name.ends_with("bar")) continue;
-    const Eigen::Vector3d p = part.T_world_primitive.inverse() * point.truth.p_world;
-    if (std::abs(p.x()) > 2.0 * kMiddleFraction * part.size.x()) continue;
-    if (std::abs(p.y()) > 0.8 * part.size.y()) continue;
-    for (std::size_t group = 0; group < kBarWidths_m.size(); ++group) {
-      if (std::abs(2.0 * part.size.x() - kBarWidths_m[group]) > 1e-4) continue;
-      Sum& sum = sums[group][part.name == "hot bar" ? 1 : 0];
-      ++sum.points;
-      if (!point.measured()) continue;
-      sum.celsius += static_cast<double>(point.point.celsius);
-      ++sum.count;
-    }
-  }
-  BarGroups groups;
-  for (std::size_t group = 0; group < groups.size(); ++group) {
-    const auto& [cold, hot] = sums[group];
-    groups[group] = {(hot.Mean() - cold.Mean()) / (kHot_celsius - kCold_celsius),
-                     Percent(cold.count + hot.count, cold.points + hot.points)};
-  }
-  return groups;
-}
 
 RgbImage Rendering(const SimulatedScan& scan, const ScanModel& model, ThreadPool& pool) {
-  return Renderer(FixedScale(23.0, kHot_celsius), ThermalOptions())
+  return Renderer(FixedScale(23.0, kHotBar_celsius), ThermalOptions())
       .Thermal(LookAtModel(model, scan, scan.depth_times().front().exposure, pool));
 }
 
@@ -114,8 +41,9 @@ GroundOptions FineModel(bool validation) {
 }
 
 /// The table and what is required of it.
-ExperimentReport Describe(const BarGroups& close_up, const BarGroups& not_validated,
-                          const BarGroups& validated) {
+ExperimentReport Describe(const std::vector<BarGroup>& close_up,
+                          const std::vector<BarGroup>& not_validated,
+                          const std::vector<BarGroup>& validated) {
   ExperimentReport report;
   report.table.rows_are = "bars";
   report.table.columns = {"close-up [contrast]",           "retreat, not validated [contrast]",
@@ -153,7 +81,9 @@ ExperimentReport Describe(const BarGroups& close_up, const BarGroups& not_valida
 }  // namespace
 
 Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
-  const auto scan = SimulatedScan::Create(ExperimentCameras(kDuration_s), ResolutionTarget());
+  const auto scan =
+      SimulatedScan::Create(ExperimentCameras(kDuration_s),
+                            MakeResolutionTarget(kBarWidths_m, FromTo(0.40, 0.90, kDuration_s)));
   if (!scan) return Err(scan.error());
   const auto with = StartPipeline(FineModel(true), **scan, pool);
   const auto without = StartPipeline(FineModel(false), **scan, pool);
@@ -161,13 +91,13 @@ Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
   if (!without) return Err(without.error());
   const CaptureTime close_up_until =
       (*scan)->depth_times().front().exposure + FromSeconds(kCloseUp_s);
-  std::optional<BarGroups> close_up;
+  std::optional<std::vector<BarGroup>> close_up;
   PlayScan(**scan, pool,
            {[&](const DepthFrame& frame) {
               (*with)->ProcessDepth(frame);
               (*without)->ProcessDepth(frame);
               if (!close_up && frame.header.capture_time >= close_up_until)
-                close_up = MeasureBars(**scan, (*with)->model(), pool);
+                close_up = MeasureBars(**scan, (*with)->model(), kBarWidths_m, pool);
             },
             [&](const ThermalFramePtr& frame) {
               (*with)->ProcessThermal(frame);
@@ -179,8 +109,9 @@ Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
   }
 
   if (!close_up) return Err(Internal("the scan was over before the close-up"));
-  ExperimentReport report = Describe(*close_up, MeasureBars(**scan, (*without)->model(), pool),
-                                     MeasureBars(**scan, (*with)->model(), pool));
+  ExperimentReport report =
+      Describe(*close_up, MeasureBars(**scan, (*without)->model(), kBarWidths_m, pool),
+               MeasureBars(**scan, (*with)->model(), kBarWidths_m, pool));
   report.renderings = {{"not_validated", Rendering(**scan, (*without)->model(), pool)},
                        {"validated", Rendering(**scan, (*with)->model(), pool)}};
   return report;

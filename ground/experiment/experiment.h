@@ -81,6 +81,12 @@ std::span<const Experiment> AllExperiments();
 const Experiment* FindExperiment(std::string_view name);
 
 // One per file of the same name.
+Result<ExperimentReport> RunFocusExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunSpotSizeExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunBackgroundExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunVoxelSizeExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunConditionalIntegrationExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunTimingExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunSceneInfluenceExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunParallaxExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunForegroundExperiment(ThreadPool& pool);
