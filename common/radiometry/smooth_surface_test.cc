@@ -10,7 +10,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kInterpolation_k = 2e-3;  // BandRadiance, there and back.
+constexpr double kThereAndBack_k = 2e-3;  // What BandRadiance promises, twice.
 constexpr SmoothSurface kPaint{
     .normal_emissivity = 0.96, .refractive_index = 1.5, .reflected_celsius = 23.0};
 
@@ -25,7 +25,7 @@ TEST(SmoothSurfaceTest, WhatIsSeenAtAnAngleTellsWhatIsSeenAtAnother) {
       for (const double to_deg : {0.0, 45.0, 80.0}) {
         EXPECT_NEAR(ApparentAtAngle(band, kPaint, apparent(from_deg * kRadPerDeg),
                                     from_deg * kRadPerDeg, to_deg * kRadPerDeg),
-                    apparent(to_deg * kRadPerDeg), kInterpolation_k)
+                    apparent(to_deg * kRadPerDeg), kThereAndBack_k)
             << true_celsius << " from " << from_deg << " to " << to_deg;
       }
     }

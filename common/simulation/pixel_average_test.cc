@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/base/noise.h"
-#include "common/radiometry/optics.h"
+#include "common/geometry/depth_of_field.h"
 #include "common/simulation/options.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"

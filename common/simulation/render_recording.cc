@@ -23,28 +23,28 @@ namespace {
 constexpr std::uint64_t kSession = 1;
 
 /// One thing to write, in the order of true time.
-struct Item {
+struct ScheduledMessage {
   enum class Kind { kNuc, kOdometry, kDepth, kThermal };  // Order at equal times.
   CaptureTime time;
   Kind kind;
   std::uint64_t number;
 };
 
-std::vector<Item> InOrderOfTime(const SimulatedScan& scan,
-                                const std::vector<ExternalOdometry>& odometry) {
-  std::vector<Item> items;
+std::vector<ScheduledMessage> InOrderOfTime(const SimulatedScan& scan,
+                                            const std::vector<ExternalOdometry>& odometry) {
+  std::vector<ScheduledMessage> items;
   for (std::size_t i = 0; i < odometry.size(); ++i)
-    items.push_back({odometry[i].time, Item::Kind::kOdometry, i});
+    items.push_back({odometry[i].time, ScheduledMessage::Kind::kOdometry, i});
   for (std::size_t i = 0; i < scan.nuc_events().size(); ++i) {
-    items.push_back({scan.nuc_events()[i].start, Item::Kind::kNuc, i});
+    items.push_back({scan.nuc_events()[i].start, ScheduledMessage::Kind::kNuc, i});
   }
   for (std::size_t i = 0; i < scan.depth_times().size(); ++i) {
-    items.push_back({scan.depth_times()[i].exposure, Item::Kind::kDepth, i});
+    items.push_back({scan.depth_times()[i].exposure, ScheduledMessage::Kind::kDepth, i});
   }
   for (std::size_t i = 0; i < scan.thermal_times().size(); ++i) {
-    items.push_back({scan.thermal_times()[i].exposure, Item::Kind::kThermal, i});
+    items.push_back({scan.thermal_times()[i].exposure, ScheduledMessage::Kind::kThermal, i});
   }
-  std::sort(items.begin(), items.end(), [](const Item& a, const Item& b) {
+  std::sort(items.begin(), items.end(), [](const ScheduledMessage& a, const ScheduledMessage& b) {
     return std::tie(a.time, a.kind, a.number) < std::tie(b.time, b.kind, b.number);
   });
   return items;
@@ -67,9 +67,9 @@ struct Worker {
   EncodedDepthFrame depth;
   EncodedThermalFrame thermal;
 
-  void Render(const SimulatedScan& scan, const Item& item) {
-    if (item.kind == Item::Kind::kDepth) RenderDepth(scan, item.number);
-    if (item.kind == Item::Kind::kThermal) RenderThermal(scan, item.number);
+  void Render(const SimulatedScan& scan, const ScheduledMessage& item) {
+    if (item.kind == ScheduledMessage::Kind::kDepth) RenderDepth(scan, item.number);
+    if (item.kind == ScheduledMessage::Kind::kThermal) RenderThermal(scan, item.number);
   }
 
   void RenderDepth(const SimulatedScan& scan, std::uint64_t number) {
@@ -95,18 +95,18 @@ struct Worker {
   }
 };
 
-Status WriteItem(const SimulatedScan& scan, const std::vector<ExternalOdometry>& odometry,
-                 const Item& item, const Worker& worker, RecordingWriter& writer) {
+Status WriteMessage(const SimulatedScan& scan, const std::vector<ExternalOdometry>& odometry,
+                    const ScheduledMessage& item, const Worker& worker, RecordingWriter& writer) {
   switch (item.kind) {
-    case Item::Kind::kNuc:
+    case ScheduledMessage::Kind::kNuc:
       return writer.Write(scan.nuc_events()[item.number]);
-    case Item::Kind::kOdometry:
+    case ScheduledMessage::Kind::kOdometry:
       return writer.Write(odometry[item.number]);
-    case Item::Kind::kDepth:
+    case ScheduledMessage::Kind::kDepth:
       ISOTHERM_RETURN_IF_ERROR(
           writer.WritePose("groundtruth", {item.time, scan.PoseAt(item.time)}));
       return writer.Write(worker.depth, scan.depth_times()[item.number].arrival);
-    case Item::Kind::kThermal:
+    case ScheduledMessage::Kind::kThermal:
       break;
   }
   return writer.Write(worker.thermal, scan.thermal_times()[item.number].arrival);
@@ -152,7 +152,7 @@ Status RenderRecording(const SimulationOptions& options, const std::filesystem::
   std::vector<Worker> workers(static_cast<std::size_t>(pool.threads() * kFramesPerThread));
   const std::vector<ExternalOdometry> odometry =
       SimulateOdometry(options.odometry(), **scan, options.seed());
-  const std::vector<Item> items = InOrderOfTime(**scan, odometry);
+  const std::vector<ScheduledMessage> items = InOrderOfTime(**scan, odometry);
   for (std::size_t done = 0; done < items.size();) {
     if (stop.stop_requested()) return Unavailable("rendering the simulated scan was interrupted");
     const std::size_t count = std::min(workers.size(), items.size() - done);
@@ -161,7 +161,8 @@ Status RenderRecording(const SimulationOptions& options, const std::filesystem::
       workers[index].Render(**scan, items[done + index]);
     });
     for (std::size_t i = 0; i < count; ++i) {
-      ISOTHERM_RETURN_IF_ERROR(WriteItem(**scan, odometry, items[done + i], workers[i], **writer));
+      ISOTHERM_RETURN_IF_ERROR(
+          WriteMessage(**scan, odometry, items[done + i], workers[i], **writer));
     }
     done += count;
     if (progress) progress(static_cast<double>(done) / static_cast<double>(items.size()));

@@ -58,18 +58,18 @@ class Random {
 inline constexpr double kSinglePrecision = 1e-6;
 
 /// A decision falls one way, the other, or is so near its threshold that rounding decides.
-enum class Verdict { kNo, kYes, kEither };
+enum class Tribool { kNo, kYes, kEither };
 
 /// value >= 0; `slack` is the rounding of `value` in single precision. NaN is no.
-inline Verdict AtLeastZero(double value, double slack) {
-  if (!(value >= -slack)) return Verdict::kNo;
-  return value > slack || slack == 0.0 ? Verdict::kYes : Verdict::kEither;
+inline Tribool AtLeastZero(double value, double slack) {
+  if (!(value >= -slack)) return Tribool::kNo;
+  return value > slack || slack == 0.0 ? Tribool::kYes : Tribool::kEither;
 }
 
 /// Returns whether both are so.
-inline Verdict Both(Verdict a, Verdict b) {
-  if (a == Verdict::kNo || b == Verdict::kNo) return Verdict::kNo;
-  return a == Verdict::kYes && b == Verdict::kYes ? Verdict::kYes : Verdict::kEither;
+inline Tribool Both(Tribool a, Tribool b) {
+  if (a == Tribool::kNo || b == Tribool::kNo) return Tribool::kNo;
+  return a == Tribool::kYes && b == Tribool::kYes ? Tribool::kYes : Tribool::kEither;
 }
 
 }  // namespace isotherm::testing

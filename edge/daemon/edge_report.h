@@ -9,7 +9,7 @@
 #include "common/messages/messages.h"
 #include "edge/daemon/host_status.h"
 #include "edge/frame_counters/frame_counters.h"
-#include "edge/pipeline/time_base.h"
+#include "edge/timestamper/time_base.h"
 
 namespace isotherm {
 

@@ -11,7 +11,7 @@
 #include "common/recording/clock_record.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/options/edge_options.pb.h"
-#include "edge/pipeline/time_base.h"
+#include "edge/timestamper/time_base.h"
 
 namespace isotherm {
 namespace {

@@ -268,27 +268,27 @@ FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const 
   return {session_, raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
 }
 
-void EdgePipeline::Forward(UncodedFrame uncoded, const std::stop_token& stop) {
-  uncoded.frame.external_odometry = std::exchange(external_odometry_, {});
-  uncoded.frame.log = nuc_.TakeLog();
-  if (time_base_ == TimeBase::kWallClock) uncoded.frame.wall_minus_time = step_watch_.total();
-  const Sensor sensor = uncoded.frame.sensor();
-  if (codec_queue_.Push(std::move(uncoded), stop)) return;
+void EdgePipeline::Forward(FrameToEncode frame, const std::stop_token& stop) {
+  frame.encoded.external_odometry = std::exchange(external_odometry_, {});
+  frame.encoded.log = nuc_.TakeLog();
+  if (time_base_ == TimeBase::kWallClock) frame.encoded.wall_minus_time = step_watch_.total();
+  const Sensor sensor = frame.encoded.sensor();
+  if (codec_queue_.Push(std::move(frame), stop)) return;
   if (spool_) counters_.Count(sensor, FrameFate::kRecordQueueFull);
   counters_.Count(sensor, FrameFate::kPublishQueueFull);
 }
 
 void EdgePipeline::Encode(const std::stop_token& stop) {
-  while (std::optional<UncodedFrame> uncoded = codec_queue_.Pop(stop)) {
-    auto& content = uncoded->frame.content;
+  while (std::optional<FrameToEncode> frame = codec_queue_.Pop(stop)) {
+    auto& content = frame->encoded.content;
     if (auto* depth = std::get_if<EncodedDepthFrame>(&content))
-      depth->image = depth_encoder_.Encode(uncoded->pixels);
+      depth->image = depth_encoder_.Encode(frame->pixels);
     if (auto* thermal = std::get_if<EncodedThermalFrame>(&content)) {
       const bool is_counts = thermal->image.encoding == Encoding::kCounts16;
-      thermal->image = is_counts ? PackCounts(uncoded->pixels)
-                                 : thermal_encoder_.Encode(uncoded->pixels, thermal->scale);
+      thermal->image = is_counts ? PackCounts(frame->pixels)
+                                 : thermal_encoder_.Encode(frame->pixels, thermal->scale);
     }
-    Emit(std::move(uncoded->frame), stop);
+    Emit(std::move(frame->encoded), stop);
   }
 }
 

@@ -93,6 +93,12 @@ class EdgePipeline {
   std::optional<std::string> StuckIn(SteadyTime now) const;
 
  private:
+  /// A frame on its way to the codec.
+  struct FrameToEncode {
+    EncodedFrame encoded;  ///< Complete but for the image.
+    Image<std::uint16_t> pixels;
+  };
+
   void Capture(const std::stop_token& stop);
   Result<SourceItem> Read(const std::stop_token& stop);
   void Process(RawFrame raw, const std::stop_token& stop);
@@ -104,7 +110,7 @@ class EdgePipeline {
   void PublishExternalOdometry(const EncodedFrame& frame, const std::stop_token& stop);
   void ProcessDepth(RawFrame raw, const std::stop_token& stop);
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
-  void Forward(UncodedFrame uncoded, const std::stop_token& stop);
+  void Forward(FrameToEncode frame, const std::stop_token& stop);
   void Encode(const std::stop_token& stop);
   void Emit(EncodedFrame encoded, const std::stop_token& stop);
   /// Notes how certain the stamp is, and how long it took from arrival to here.
@@ -168,7 +174,7 @@ class EdgePipeline {
   };
   BoundedQueue<Command> commands_{16, OverflowPolicy::kDropOldest, refuse_};
   BoundedQueue<Command> nuc_commands_{16, OverflowPolicy::kDropOldest, refuse_};
-  BoundedQueue<UncodedFrame> codec_queue_;
+  BoundedQueue<FrameToEncode> codec_queue_;
   const std::size_t spool_capacity_;
   BoundedQueue<EncodedFramePtr> spool_queue_;
   BoundedQueue<EncodedFramePtr> publish_queue_;

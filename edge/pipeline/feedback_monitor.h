@@ -5,7 +5,7 @@
 #include "common/base/mutex.h"
 #include "common/base/stage_stats.h"
 #include "common/messages/messages.h"
-#include "edge/pipeline/time_base.h"
+#include "edge/timestamper/time_base.h"
 
 namespace isotherm {
 

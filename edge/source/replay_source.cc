@@ -60,7 +60,7 @@ Status ReplaySource::Open() {
 
 Result<SourceItem> ReplaySource::Read(std::stop_token stop) {
   if (!pending_) {
-    Result<std::optional<Item>> item = NextItem();
+    Result<std::optional<PlayedItem>> item = NextItem();
     if (!item) return Err(item.error());
     if (!*item) return SourceItem(StartNextLoop() ? SourceItem(NothingYet{}) : EndOfStream{});
     PlaceInTime(**item);
@@ -71,12 +71,12 @@ Result<SourceItem> ReplaySource::Read(std::stop_token stop) {
     Pause(stop, std::min(early, longest_pause_));
     if (clock_.SteadyNow() < DueTime(*pending_)) return NothingYet{};
   }
-  Item item = std::move(*pending_);
+  PlayedItem item = std::move(*pending_);
   pending_.reset();
   return std::visit([](auto& value) { return SourceItem(std::move(value)); }, item);
 }
 
-Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
+Result<std::optional<ReplaySource::PlayedItem>> ReplaySource::NextItem() {
   while (true) {
     Result<std::optional<RecordedItem>> item = reader_->Next();
     if (!item && item.error().code() == StatusCode::kDataLoss) {
@@ -94,7 +94,7 @@ Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
       continue;
     }
     if (auto* depth = std::get_if<RecordedDepth>(&**item))
-      return Item(ToRawFrame(std::move(*depth)));
+      return PlayedItem(ToRawFrame(std::move(*depth)));
     auto* thermal = std::get_if<RecordedThermal>(&**item);
     if (thermal != nullptr && thermal->frame.image.encoding == Encoding::kCounts16) {
       if (counts_left_out_++ == 0) {
@@ -104,8 +104,8 @@ Result<std::optional<ReplaySource::Item>> ReplaySource::NextItem() {
       }
       continue;
     }
-    if (thermal != nullptr) return Item(ToRawFrame(std::move(*thermal)));
-    if (auto* pose = std::get_if<ExternalOdometry>(&**item)) return Item(std::move(*pose));
+    if (thermal != nullptr) return PlayedItem(ToRawFrame(std::move(*thermal)));
+    if (auto* pose = std::get_if<ExternalOdometry>(&**item)) return PlayedItem(std::move(*pose));
     if (const auto* nuc = std::get_if<NucEvent>(&**item)) last_nuc_event_ = *nuc;
   }
 }
@@ -176,7 +176,7 @@ bool ReplaySource::StartNextLoop() {
   return true;
 }
 
-void ReplaySource::PlaceInTime(Item& item) {
+void ReplaySource::PlaceInTime(PlayedItem& item) {
   auto* frame = std::get_if<RawFrame>(&item);
   // A pose comes when it is true.
   CaptureTime& arrival = frame ? frame->arrival_wall : std::get<ExternalOdometry>(item).time;
@@ -191,7 +191,7 @@ void ReplaySource::PlaceInTime(Item& item) {
   arrival += rebase_offset_;
 }
 
-SteadyTime ReplaySource::DueTime(const Item& item) const {
+SteadyTime ReplaySource::DueTime(const PlayedItem& item) const {
   const auto* frame = std::get_if<RawFrame>(&item);
   const CaptureTime arrival = frame ? frame->arrival_wall : std::get<ExternalOdometry>(item).time;
   const Nanoseconds since_start = arrival - rebase_offset_ - *first_arrival_;

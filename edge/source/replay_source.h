@@ -41,9 +41,9 @@ class ReplaySource final : public FrameSource {
   std::optional<Rig> rig() const override { return rig_; }
 
  private:
-  using Item = std::variant<RawFrame, ExternalOdometry>;
+  using PlayedItem = std::variant<RawFrame, ExternalOdometry>;
 
-  Result<std::optional<Item>> NextItem();
+  Result<std::optional<PlayedItem>> NextItem();
   /// Returns whether the item belongs to the same scan as the first one, by its time.
   bool IsInTime(const RecordedItem& item) const;
   RawFrame ToRawFrame(RecordedDepth recorded);
@@ -51,8 +51,8 @@ class ReplaySource final : public FrameSource {
   RawFrame Prepare(Sensor sensor, const FrameHeader& header, const EncodedImage& image,
                    const std::optional<CaptureTime>& arrival);
   bool StartNextLoop();
-  void PlaceInTime(Item& item);
-  SteadyTime DueTime(const Item& item) const;
+  void PlaceInTime(PlayedItem& item);
+  SteadyTime DueTime(const PlayedItem& item) const;
 
   const std::string name_;
   const std::filesystem::path path_;
@@ -71,7 +71,7 @@ class ReplaySource final : public FrameSource {
   std::uint64_t counts_left_out_ = 0;  ///< Thermal frames without temperatures.
   int loops_played_ = 0;
 
-  std::optional<Item> pending_;               ///< Read ahead, not due yet.
+  std::optional<PlayedItem> pending_;         ///< Read ahead, not due yet.
   std::optional<CaptureTime> first_arrival_;  ///< As recorded.
   CaptureTime last_arrival_{};                ///< As recorded, with the loops before.
   Nanoseconds loop_offset_{0};

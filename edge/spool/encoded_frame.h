@@ -27,12 +27,6 @@ struct EncodedFrame {
   }
 };
 
-/// A frame on its way to the codec: all of it but the image is as it will be.
-struct UncodedFrame {
-  EncodedFrame frame;
-  Image<std::uint16_t> pixels;
-};
-
 using EncodedFramePtr = std::shared_ptr<const EncodedFrame>;
 
 }  // namespace isotherm

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/base/status.h"
-#include "ground/cli/result_evaluation.h"
+#include "ground/evaluation/result_evaluation.h"
 
 namespace isotherm {
 

@@ -11,8 +11,8 @@
 #include "ground/cli/command.h"
 #include "ground/cli/held_out_text.h"
 #include "ground/cli/numbers.h"
-#include "ground/cli/result_evaluation.h"
 #include "ground/cli/scan_arguments.h"
+#include "ground/evaluation/result_evaluation.h"
 
 namespace isotherm {
 namespace {

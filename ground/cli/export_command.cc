@@ -9,8 +9,8 @@
 #include "ground/cli/configuration_arguments.h"
 #include "ground/cli/interpretation_arguments.h"
 #include "ground/cli/model_export.h"
-#include "ground/cli/result_folder.h"
-#include "ground/export/interpretation.h"
+#include "ground/interpretation/interpretation.h"
+#include "ground/results/result_folder.h"
 
 namespace isotherm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 #include "ground/offline/held_out_report.h"
 
 namespace isotherm {

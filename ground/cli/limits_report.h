@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "common/radiometry/angle_limits.h"
-#include "common/radiometry/optics.h"
+#include "ground/limits/angle_limits.h"
+#include "ground/limits/distance_limits.h"
 
 namespace isotherm {
 

@@ -6,7 +6,7 @@
 
 #include "common/concurrency/thread_pool.h"
 #include "ground/cli/simulation_files.h"
-#include "ground/export/message_json.h"
+#include "ground/json/message_json.h"
 #include "ground/model/load_model.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_options.h"

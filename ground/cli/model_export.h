@@ -2,8 +2,8 @@
 
 #include <filesystem>
 
-#include "ground/export/interpretation.h"
 #include "ground/export/result_files.h"
+#include "ground/interpretation/interpretation.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {

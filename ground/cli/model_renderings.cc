@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "ground/export/png_file.h"
-#include "ground/export/surface.h"
+#include "ground/mesh/surface.h"
 #include "ground/renderer/renderer.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_options.h"

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "common/base/status.h"
-#include "common/radiometry/angle_limits.h"
+#include "ground/limits/angle_limits.h"
 
 namespace isotherm {
 

@@ -5,7 +5,7 @@
 #include "common/rig/rig_calibration.pb.h"
 #include "ground/cli/recording_damage.h"
 #include "ground/cli/recording_report.h"
-#include "ground/export/message_json.h"
+#include "ground/json/message_json.h"
 
 namespace isotherm {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "common/doubts/doubts.h"
 #include "ground/cli/recording_summary.h"
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 
 namespace isotherm {
 

@@ -12,11 +12,11 @@
 #include "ground/cli/configuration_arguments.h"
 #include "ground/cli/model_renderings.h"
 #include "ground/cli/numbers.h"
-#include "ground/cli/result_folder.h"
 #include "ground/cli/simulation_files.h"
 #include "ground/renderer/palette.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/viewpoint.h"
+#include "ground/results/result_folder.h"
 
 namespace isotherm {
 namespace {

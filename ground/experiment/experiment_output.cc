@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "common/base/output_file.h"
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 #include "ground/renderer/png.h"
 
 namespace isotherm {

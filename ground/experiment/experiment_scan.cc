@@ -10,21 +10,22 @@
 namespace isotherm {
 namespace {
 
-struct Item {
+struct ScheduledFrame {
   CaptureTime time;
   Sensor sensor;
   std::uint64_t number;
 };
 
-std::vector<Item> InOrderOfTime(const SimulatedScan& scan) {
-  std::vector<Item> items;
+std::vector<ScheduledFrame> InOrderOfTime(const SimulatedScan& scan) {
+  std::vector<ScheduledFrame> items;
   const auto add = [&](Sensor sensor, const std::vector<SimulatedFrameTime>& times) {
     for (std::size_t i = 0; i < times.size(); ++i) items.push_back({times[i].exposure, sensor, i});
   };
   add(Sensor::kDepth, scan.depth_times());
   add(Sensor::kThermal, scan.thermal_times());
-  std::ranges::sort(
-      items, {}, [](const Item& item) { return std::tuple(item.time, item.sensor, item.number); });
+  std::ranges::sort(items, {}, [](const ScheduledFrame& item) {
+    return std::tuple(item.time, item.sensor, item.number);
+  });
   return items;
 }
 
@@ -78,7 +79,7 @@ Swing FromTo(double from, double to, double duration_s) {
 
 void PlayScan(const SimulatedScan& scan, ThreadPool& pool, const FrameSinks& sinks) {
   constexpr int kFramesPerThread = 4;
-  const std::vector<Item> items = InOrderOfTime(scan);
+  const std::vector<ScheduledFrame> items = InOrderOfTime(scan);
   // Frames of a batch are rendered in parallel and passed on one after the other.
   const auto batch = static_cast<std::size_t>(pool.threads() * kFramesPerThread);
   std::vector<SimulatedScan::Scratch> scratch(batch);
@@ -87,13 +88,13 @@ void PlayScan(const SimulatedScan& scan, ThreadPool& pool, const FrameSinks& sin
     const std::size_t count = std::min(batch, items.size() - done);
     pool.ParallelFor(static_cast<int>(count), [&](int i) {
       const auto index = static_cast<std::size_t>(i);
-      const Item& item = items[done + index];
+      const ScheduledFrame& item = items[done + index];
       frames[index] = item.sensor == Sensor::kDepth
                           ? scan.RenderDepth(item.number, scratch[index])
                           : scan.RenderThermal(item.number, scratch[index]);
     });
     for (std::size_t i = 0; i < count; ++i) {
-      const Item& item = items[done + i];
+      const ScheduledFrame& item = items[done + i];
       if (item.sensor == Sensor::kDepth) {
         sinks.depth(ToDepthFrame(std::move(frames[i]), item.time));
       } else {

@@ -10,7 +10,7 @@
 #include "common/simulation/scene.h"
 #include "common/simulation/simulated_scan.h"
 #include "ground/evaluation/expected_temperature.h"
-#include "ground/export/surface.h"
+#include "ground/mesh/surface.h"
 #include "ground/pipeline/scan_model.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/view_maps.h"

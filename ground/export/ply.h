@@ -5,7 +5,7 @@
 #include <string>
 
 #include "common/base/status.h"
-#include "ground/export/surface.h"
+#include "ground/mesh/surface.h"
 #include "ground/renderer/palette.h"
 #include "ground/renderer/temperature_scale.h"
 

@@ -14,8 +14,8 @@
 #include "common/concurrency/thread_pool.h"
 #include "ground/export/ply.h"
 #include "ground/export/png_file.h"
-#include "ground/export/surface.h"
 #include "ground/export/trajectory_text.h"
+#include "ground/mesh/surface.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/renderer/renderer.h"
 

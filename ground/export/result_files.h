@@ -11,8 +11,8 @@
 
 #include "common/base/status.h"
 #include "common/recording/recording.h"
-#include "ground/export/interpretation.h"
-#include "ground/export/json.h"
+#include "ground/interpretation/interpretation.h"
+#include "ground/json/json.h"
 #include "ground/renderer/temperature_scale.h"
 #include "ground/surface/surface_maps.h"
 #include "ground/thermal/thermal_volume.h"

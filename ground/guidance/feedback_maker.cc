@@ -62,8 +62,8 @@ CoverageFractions ToFractions(const SurfaceAreas& areas) {
 
 TrackingState StateOf(const DepthReport& report) {
   if (!report.tracked) return TrackingState::kLost;
-  return report.tracking.verdict() == Verdict::kDegraded ? TrackingState::kDegraded
-                                                         : TrackingState::kTracked;
+  return report.tracking.quality() == TrackingQuality::kDegraded ? TrackingState::kDegraded
+                                                                 : TrackingState::kTracked;
 }
 
 /// Every `stride`th pixel of each row and column.

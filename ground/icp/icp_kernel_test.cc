@@ -15,7 +15,7 @@ namespace isotherm {
 namespace {
 
 using testing::Random;
-using testing::Verdict;
+using testing::Tribool;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -85,7 +85,7 @@ class AccumulateIcpRowsTest : public ::testing::Test {
     for (int y = 0; y < current_.height(); ++y) {
       for (int x = 0; x < current_.width(); ++x) {
         const reference::Pair pair = reference::MakePair(args_, x, y);
-        if (pair.candidate != Verdict::kEither && pair.inlier != Verdict::kEither) continue;
+        if (pair.candidate != Tribool::kEither && pair.inlier != Tribool::kEither) continue;
         for (Image<float>* plane : Planes(current_)) plane->At(x, y) = kNan;
       }
     }
@@ -97,8 +97,8 @@ class AccumulateIcpRowsTest : public ::testing::Test {
     for (int y = first_row; y < last_row; ++y) {
       for (int x = 0; x < current_.width(); ++x) {
         const reference::Pair pair = reference::MakePair(args_, x, y);
-        truth_counts.candidates += pair.candidate == Verdict::kYes ? 1 : 0;
-        if (pair.inlier != Verdict::kYes) continue;
+        truth_counts.candidates += pair.candidate == Tribool::kYes ? 1 : 0;
+        if (pair.inlier != Tribool::kYes) continue;
         ++truth_counts.inliers;
         for (std::size_t k = 0; k < 28; ++k) {
           truth[k] += pair.terms[k];

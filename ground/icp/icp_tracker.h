@@ -44,7 +44,7 @@ struct ModelView {
 };
 
 /// Tells how far a frame's pose can be trusted.
-enum class Verdict : std::uint8_t {
+enum class TrackingQuality : std::uint8_t {
   kTracked,
   kDegraded,  ///< Not all directions are observed: the rest is held by the motion before.
   kLost,      ///< No pose.
@@ -73,9 +73,9 @@ struct TrackingResult {
   Matrix6 covariance = Matrix6::Zero();
 
   bool tracked() const { return lost == LostReason::kNone; }
-  Verdict verdict() const {
-    if (!tracked()) return Verdict::kLost;
-    return motion.fully_observed() ? Verdict::kTracked : Verdict::kDegraded;
+  TrackingQuality quality() const {
+    if (!tracked()) return TrackingQuality::kLost;
+    return motion.fully_observed() ? TrackingQuality::kTracked : TrackingQuality::kDegraded;
   }
 };
 

@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "ground/calibration/delay_check.h"
-#include "ground/export/interpretation.h"
 #include "ground/export/result_files.h"
 #include "ground/feedback/advice.h"
 #include "ground/icp/icp_tracker.h"
+#include "ground/interpretation/interpretation.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/options/option_geometry.h"
 #include "ground/relocaliser/relocaliser.h"

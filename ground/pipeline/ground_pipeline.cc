@@ -181,13 +181,13 @@ bool GroundPipeline::Integrate(const PreparedDepth& depth, TrackedFrame& frame) 
     return false;
   }
   ++counts_.depth_tracked;
-  const Verdict verdict = frame.tracking.verdict();
-  if (verdict == Verdict::kDegraded) ++counts_.depth_degraded;
+  const TrackingQuality quality = frame.tracking.quality();
+  if (quality == TrackingQuality::kDegraded) ++counts_.depth_degraded;
   const bool integrates = IsDue(frame);
   if (integrates && !is_first) AddSurface(depth, T_map_depth);
   if (integrates) ++counts_.depth_integrated;
   tracker_.Accept(frame);
-  if (integrates && verdict == Verdict::kTracked &&
+  if (integrates && quality == TrackingQuality::kTracked &&
       tracker_.CloseLoops(frame, depth, integrator_.updated_blocks(), pool_)) {
     spiller_.Restart();
   }

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "ground/export/surface.h"
+#include "ground/mesh/surface.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/pipeline/testing/pipeline_fixture.h"
 

@@ -8,7 +8,7 @@
 #include "common/base/status.h"
 #include "common/doubts/doubts.h"
 #include "ground/calibration/delay_check.h"
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/scan_model.h"
 

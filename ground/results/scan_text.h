@@ -3,8 +3,8 @@
 #include <string>
 
 #include "ground/calibration/delay_check.h"
-#include "ground/export/interpretation.h"
 #include "ground/export/result_files.h"
+#include "ground/interpretation/interpretation.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/pipeline/scan_model.h"
 

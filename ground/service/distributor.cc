@@ -9,7 +9,7 @@
 namespace isotherm {
 namespace {
 
-std::uint64_t SessionOf(const Item& item) {
+std::uint64_t SessionOf(const SessionItem& item) {
   if (const auto* depth = std::get_if<ReceivedDepth>(&item)) return depth->frame->header.session;
   if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
     return thermal->frame->header.session;
@@ -35,13 +35,13 @@ void Distributor::OnRig(const RigDescription& rig) {
   recording_behind_ = false;
   board_.recording.Set(start_.recording);
   SendMark(start_);
-  std::deque<Item> early = std::exchange(early_, {});
-  for (Item& item : early) {
+  std::deque<SessionItem> early = std::exchange(early_, {});
+  for (SessionItem& item : early) {
     if (SessionOf(item) == session_) Send(std::move(item));
   }
 }
 
-void Distributor::OnFrame(Item item) {
+void Distributor::OnFrame(SessionItem item) {
   if (over_) return;
   if (SessionOf(item) == session_) {
     Send(std::move(item));
@@ -65,25 +65,25 @@ void Distributor::OnSessionEnd(const SessionCounters& counters) {
   SendMark(counters);
 }
 
-void Distributor::Send(Item item) {
+void Distributor::Send(SessionItem item) {
   if (auto* depth = std::get_if<ReceivedDepth>(&item)) depth->queued = clock_.Now();
   if (auto* thermal = std::get_if<ReceivedThermal>(&item)) thermal->queued = clock_.Now();
   Record(item);
   Reconstruct(std::move(item));
 }
 
-void Distributor::SendMark(const Item& mark) {
+void Distributor::SendMark(const SessionItem& mark) {
   recording_.Push(mark);
   Reconstruct(mark);
 }
 
-void Distributor::Reconstruct(Item item) {
+void Distributor::Reconstruct(SessionItem item) {
   progress_.Idle();  // Whether that goes on is for the reconstruction to say.
   reconstruction_.Push(std::move(item), stop_);
   progress_.Busy(clock_.SteadyNow());
 }
 
-void Distributor::Record(const Item& item) {
+void Distributor::Record(const SessionItem& item) {
   if (!options_.live().record()) return;
   // A live edge does not wait for us, so nothing may hold up reception; a replay does.
   constexpr Nanoseconds kPatience = std::chrono::seconds(1);

@@ -24,7 +24,7 @@ struct ScanBoard;
 class Distributor {
  public:
   Distributor(const GroundOptions& options, bool single_scan, const Clock& clock,
-              ItemQueue& reconstruction, RecordingQueue& recording, ScanBoard& board,
+              SessionQueue& reconstruction, RecordingQueue& recording, ScanBoard& board,
               ThreadProgress& progress)
       : options_(options),
         single_scan_(single_scan),
@@ -38,24 +38,24 @@ class Distributor {
   void SetStop(std::stop_token stop) { stop_ = std::move(stop); }
 
   void OnRig(const RigDescription& rig);
-  void OnFrame(Item item);
+  void OnFrame(SessionItem item);
   void OnClock(const SessionClock& clock) { recording_.Offer(clock, {}, stop_); }
-  void OnLate(Item item) { Record(std::move(item)); }
+  void OnLate(SessionItem item) { Record(std::move(item)); }
   void OnSessionEnd(const SessionCounters& counters);
 
  private:
   /// To both consumers.
-  void Send(Item item);
+  void Send(SessionItem item);
   /// A beginning or an end: to both, whatever waits there.
-  void SendMark(const Item& mark);
-  void Reconstruct(Item item);
-  void Record(const Item& item);
+  void SendMark(const SessionItem& mark);
+  void Reconstruct(SessionItem item);
+  void Record(const SessionItem& item);
   void LogRecording(bool taken);
 
   const GroundOptions& options_;
   const bool single_scan_;
   const Clock& clock_;
-  ItemQueue& reconstruction_;
+  SessionQueue& reconstruction_;
   RecordingQueue& recording_;
   ScanBoard& board_;
   ThreadProgress& progress_;
@@ -64,7 +64,7 @@ class Distributor {
   SessionStart start_;  ///< That session's.
   bool over_ = false;   ///< The single scan has ended.
   bool recording_behind_ = false;
-  std::deque<Item> early_;
+  std::deque<SessionItem> early_;
   LineLimiter early_limiter_;
 };
 

@@ -48,7 +48,7 @@ class DistributorTest : public ::testing::Test {
   }
 
   /// S<session> for a beginning, E<session> for an end, and numbers of frames.
-  static std::string Name(const Item& item) {
+  static std::string Name(const SessionItem& item) {
     if (const auto* start = std::get_if<SessionStart>(&item))
       return "S" + std::to_string(start->rig.session);
     if (const auto* end = std::get_if<SessionCounters>(&item))
@@ -57,27 +57,27 @@ class DistributorTest : public ::testing::Test {
       return std::to_string(depth->encoded->header.frame_number);
     return "?";
   }
-  std::vector<Item> Reconstructed() {
-    std::vector<Item> items;
+  std::vector<SessionItem> Reconstructed() {
+    std::vector<SessionItem> items;
     while (auto item = reconstruction_.PopFor(0ns, {})) items.push_back(std::move(*item));
     return items;
   }
-  std::vector<Item> Recorded() {
-    std::vector<Item> items;
-    std::optional<Item> item;
+  std::vector<SessionItem> Recorded() {
+    std::vector<SessionItem> items;
+    std::optional<SessionItem> item;
     while (recording_->Pop(0ns, {}, item) == RecordingQueue::Outcome::kItem)
       items.push_back(std::move(*item));
     return items;
   }
-  static std::string Names(const std::vector<Item>& items) {
+  static std::string Names(const std::vector<SessionItem>& items) {
     std::string names;
-    for (const Item& item : items) names += (names.empty() ? "" : " ") + Name(item);
+    for (const SessionItem& item : items) names += (names.empty() ? "" : " ") + Name(item);
     return names;
   }
 
   FakeClock clock_{CaptureTime(FromSeconds(1000.0))};
   GroundOptions options_;
-  ItemQueue reconstruction_{1000, OverflowPolicy::kBlock};
+  SessionQueue reconstruction_{1000, OverflowPolicy::kBlock};
   std::unique_ptr<RecordingQueue> recording_;
   ScanBoard board_;
   ThreadProgress progress_;
@@ -124,7 +124,7 @@ TEST_F(DistributorTest, OfTooManyFramesWithoutARigTheNewestAreKept) {
   for (std::uint64_t i = 0; i < kKept + 2; ++i) Depth(i);
   EXPECT_NE(::testing::internal::GetCapturedStderr().find("no rig description"), std::string::npos);
   Rig();
-  const std::vector<Item> items = Reconstructed();
+  const std::vector<SessionItem> items = Reconstructed();
   ASSERT_EQ(items.size(), 1 + kKept);
   EXPECT_EQ(Name(items.at(1)), "2");
 }
@@ -141,7 +141,7 @@ TEST_F(DistributorTest, ASessionThatFollowsHasAFolderOfItsOwn) {
   Rig();
   End();
   Rig(kSession + 1);
-  const std::vector<Item> items = Reconstructed();
+  const std::vector<SessionItem> items = Reconstructed();
   ASSERT_EQ(Names(items), "S7 E7 S8");
   EXPECT_NE(std::get<SessionStart>(items[0]).folder, std::get<SessionStart>(items[2]).folder);
   EXPECT_EQ(*board_.recording.Get(), std::get<SessionStart>(items[2]).recording);
@@ -182,7 +182,7 @@ TEST_F(DistributorTest, F42WhatTheDiskDoesNotTakeIsCountedAndStillReconstructed)
   for (int i = 0; i < 4; ++i) Depth(i);
   EXPECT_NE(::testing::internal::GetCapturedStderr().find("does not take the recording"),
             std::string::npos);
-  const std::vector<Item> items = Reconstructed();
+  const std::vector<SessionItem> items = Reconstructed();
   EXPECT_EQ(Names(items), "S7 0 1 2 3");
   const std::size_t kept = Recorded().size() - 1;  // Without the beginning.
   const RecordingProgress counters = std::get<SessionStart>(items[0]).recording->Get();

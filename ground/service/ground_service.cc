@@ -98,7 +98,7 @@ class GroundService {
   StopSignal& signal_;
   ScanBoard board_;
   Health health_;
-  ItemQueue to_reconstruction_;
+  SessionQueue to_reconstruction_;
   RecordingQueue to_recording_;
   Distributor distributor_;
   ExitDeadline leaving_;  // Outlives the participant.

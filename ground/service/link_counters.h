@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 #include "ground/service/recording_tracker.h"
 #include "ground/subscriber/session_counters.h"
 

@@ -18,9 +18,9 @@ constexpr std::uint64_t kResultBytesAtLeast = 4U << 20;
 
 }  // namespace
 
-void ReconstructionLoop::Run(ItemQueue& queue, const std::stop_token& stop) {
+void ReconstructionLoop::Run(SessionQueue& queue, const std::stop_token& stop) {
   stop_ = stop;
-  while (std::optional<Item> item = queue.Pop(stop)) {
+  while (std::optional<SessionItem> item = queue.Pop(stop)) {
     progress_.Busy(clock_.SteadyNow());
     if (stop.stop_requested() && IsFrame(*item)) {
       ++unprocessed_;

@@ -32,7 +32,7 @@ class ReconstructionLoop {
         progress_(progress) {}
 
   /// Until stop is requested; frames that wait then are counted and left out.
-  void Run(ItemQueue& queue, const std::stop_token& stop);
+  void Run(SessionQueue& queue, const std::stop_token& stop);
   /// The last failure. Not while it runs.
   const Status& status() const { return status_; }
 

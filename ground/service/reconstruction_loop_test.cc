@@ -123,7 +123,7 @@ class ReconstructionLoopTest : public ::testing::Test {
   /// Feedback that went to the recording.
   std::vector<Feedback> Recorded() {
     std::vector<Feedback> recorded;
-    std::optional<Item> item;
+    std::optional<SessionItem> item;
     while (recording_.Pop(0ns, {}, item) == RecordingQueue::Outcome::kItem)
       recorded.push_back(std::get<Feedback>(*item));
     return recorded;
@@ -143,7 +143,7 @@ class ReconstructionLoopTest : public ::testing::Test {
                         board_,
                         result_progress_,
                         [this] { ++written_; }};
-  ItemQueue queue_{1000, OverflowPolicy::kBlock};
+  SessionQueue queue_{1000, OverflowPolicy::kBlock};
   ReconstructionLoop loop_{options_, clock_, subscriber_, recording_, results_, board_, progress_};
   std::jthread loop_thread_, result_thread_;
 };

@@ -28,7 +28,7 @@ constexpr double kMegabyte = 1 << 20;
 
 void RecordingLoop::Run(RecordingQueue& queue, const std::stop_token& stop) {
   for (;;) {
-    std::optional<Item> item;
+    std::optional<SessionItem> item;
     const RecordingQueue::Outcome outcome = queue.Pop(kFlushAfter, stop, item);
     progress_.Busy(clock_.SteadyNow());
     if (outcome == RecordingQueue::Outcome::kEnd) break;

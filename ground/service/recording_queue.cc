@@ -7,7 +7,7 @@ namespace isotherm {
 namespace {
 
 /// Returns what an item keeps in memory, but for what all have.
-std::size_t Bytes(const Item& item) {
+std::size_t Bytes(const SessionItem& item) {
   if (const auto* depth = std::get_if<ReceivedDepth>(&item))
     return depth->encoded->image.payload.size();
   if (const auto* thermal = std::get_if<ReceivedThermal>(&item))
@@ -22,13 +22,13 @@ bool RecordingQueue::HasRoom(std::size_t bytes) const {
   return items_.empty() || (items_.size() < limits_.items && bytes_ + bytes <= limits_.bytes);
 }
 
-void RecordingQueue::Add(Item item, std::size_t bytes) {
+void RecordingQueue::Add(SessionItem item, std::size_t bytes) {
   items_.emplace_back(std::move(item), bytes);
   bytes_ += bytes;
   changed_.notify_all();
 }
 
-bool RecordingQueue::Offer(Item item, std::chrono::nanoseconds patience,
+bool RecordingQueue::Offer(SessionItem item, std::chrono::nanoseconds patience,
                            const std::stop_token& stop) {
   const std::size_t bytes = Bytes(item);
   MutexLock lock(mutex_);
@@ -44,7 +44,7 @@ bool RecordingQueue::Offer(Item item, std::chrono::nanoseconds patience,
   return true;
 }
 
-void RecordingQueue::Push(Item item) {
+void RecordingQueue::Push(SessionItem item) {
   const std::size_t bytes = Bytes(item);
   MutexLock lock(mutex_);
   Add(std::move(item), bytes);
@@ -52,7 +52,7 @@ void RecordingQueue::Push(Item item) {
 
 RecordingQueue::Outcome RecordingQueue::Pop(std::chrono::nanoseconds timeout,
                                             const std::stop_token& stop,
-                                            std::optional<Item>& item) {
+                                            std::optional<SessionItem>& item) {
   MutexLock lock(mutex_);
   if (!changed_.wait_for(lock, stop, timeout,
                          [this]() REQUIRES(mutex_) { return !items_.empty(); }))

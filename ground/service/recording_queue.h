@@ -24,24 +24,24 @@ class RecordingQueue {
 
   /// Returns false if there is no room for `item` after `patience`. A queue from which nothing was
   /// taken while somebody waited is not waited for again before something is.
-  bool Offer(Item item, std::chrono::nanoseconds patience, const std::stop_token& stop);
+  bool Offer(SessionItem item, std::chrono::nanoseconds patience, const std::stop_token& stop);
   /// Takes what is rare and must not be lost, beginnings and ends of sessions, in any case.
-  void Push(Item item);
+  void Push(SessionItem item);
 
   enum class Outcome { kItem, kTimeout, kEnd };
   /// Waits for an item up to `timeout`. kEnd: stop was requested and nothing is left.
   Outcome Pop(std::chrono::nanoseconds timeout, const std::stop_token& stop,
-              std::optional<Item>& item);
+              std::optional<SessionItem>& item);
 
  private:
   bool HasRoom(std::size_t bytes) const REQUIRES(mutex_);
-  void Add(Item item, std::size_t bytes) REQUIRES(mutex_);
+  void Add(SessionItem item, std::size_t bytes) REQUIRES(mutex_);
 
   const Limits limits_;
   Mutex mutex_;
   std::condition_variable_any changed_;
   /// With their size in bytes.
-  std::deque<std::pair<Item, std::size_t>> items_ GUARDED_BY(mutex_);
+  std::deque<std::pair<SessionItem, std::size_t>> items_ GUARDED_BY(mutex_);
   std::size_t bytes_ GUARDED_BY(mutex_) = 0;
   /// Something was taken since somebody waited in vain.
   bool moved_ GUARDED_BY(mutex_) = true;

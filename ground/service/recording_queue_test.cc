@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 constexpr std::chrono::nanoseconds kPatience = 60s;  // Far above anything measured.
 constexpr std::chrono::nanoseconds kNow = 0ns;
 
-Item Frame(std::uint64_t number, std::size_t bytes = 1) {
+SessionItem Frame(std::uint64_t number, std::size_t bytes = 1) {
   auto encoded = std::make_shared<EncodedDepthFrame>();
   encoded->header.frame_number = number;
   encoded->image.payload.resize(bytes);
@@ -25,7 +25,7 @@ Item Frame(std::uint64_t number, std::size_t bytes = 1) {
 
 /// The number of the next frame; nullopt if there is none.
 std::optional<std::uint64_t> Next(RecordingQueue& queue) {
-  std::optional<Item> item;
+  std::optional<SessionItem> item;
   if (queue.Pop(kNow, {}, item) != RecordingQueue::Outcome::kItem) return std::nullopt;
   return std::get<ReceivedDepth>(*item).encoded->header.frame_number;
 }
@@ -57,7 +57,7 @@ TEST(RecordingQueueTest, BeginningsAndEndsAreAlwaysTaken) {
   EXPECT_TRUE(queue.Offer(Frame(0), kNow, {}));
   queue.Push(SessionCounters());
   EXPECT_EQ(Next(queue), 0U);
-  std::optional<Item> item;
+  std::optional<SessionItem> item;
   ASSERT_EQ(queue.Pop(kNow, {}, item), RecordingQueue::Outcome::kItem);
   EXPECT_TRUE(std::holds_alternative<SessionCounters>(*item));
 }
@@ -85,7 +85,7 @@ TEST(RecordingQueueTest, StopEndsWaitingOnBothSides) {
   stop.request_stop();
   ASSERT_TRUE(queue.Offer(Frame(0), kNow, {}));
   EXPECT_FALSE(queue.Offer(Frame(1), std::chrono::hours(1), stop.get_token()));
-  std::optional<Item> item;
+  std::optional<SessionItem> item;
   EXPECT_EQ(queue.Pop(kPatience, stop.get_token(), item), RecordingQueue::Outcome::kItem);
   EXPECT_EQ(queue.Pop(kPatience, stop.get_token(), item), RecordingQueue::Outcome::kEnd);
 }

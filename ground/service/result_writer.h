@@ -9,7 +9,7 @@
 #include "common/base/mutex.h"
 #include "common/time/clock.h"
 #include "common/time/thread_progress.h"
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/service/live_scan.h"
 #include "ground/service/scan_board.h"

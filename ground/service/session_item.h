@@ -19,11 +19,11 @@ struct SessionStart {
   std::shared_ptr<RecordingTracker> recording;
 };
 
-using Item = std::variant<SessionStart, ReceivedDepth, ReceivedThermal, ExternalOdometrySample,
-                          SessionCounters, Feedback, SessionClock>;
-using ItemQueue = BoundedQueue<Item>;
+using SessionItem = std::variant<SessionStart, ReceivedDepth, ReceivedThermal,
+                                 ExternalOdometrySample, SessionCounters, Feedback, SessionClock>;
+using SessionQueue = BoundedQueue<SessionItem>;
 
-inline bool IsFrame(const Item& item) {
+inline bool IsFrame(const SessionItem& item) {
   return std::holds_alternative<ReceivedDepth>(item) ||
          std::holds_alternative<ReceivedThermal>(item);
 }

@@ -18,7 +18,7 @@ namespace isotherm {
 template <typename T>
 class FrameSequencer {
  public:
-  enum class Verdict {
+  enum class ArrivalOrder {
     kInOrder,    ///< Goes (or went) into the line.
     kLate,       ///< New, but the line has passed its place.
     kDuplicate,  ///< Was here before.
@@ -30,18 +30,18 @@ class FrameSequencer {
   explicit FrameSequencer(Nanoseconds window) : window_(window) {}
 
   /// Returns what would become of `number`.
-  Verdict Check(std::uint64_t number) const {
-    if (!receipts_.IsNew(number)) return Verdict::kDuplicate;
-    if (number < handled_) return Verdict::kLate;
-    return Verdict::kInOrder;
+  ArrivalOrder Check(std::uint64_t number) const {
+    if (!receipts_.IsNew(number)) return ArrivalOrder::kDuplicate;
+    if (number < handled_) return ArrivalOrder::kLate;
+    return ArrivalOrder::kInOrder;
   }
 
-  /// Takes `item` if the verdict is kInOrder; leaves it to the caller otherwise.
-  Verdict Add(std::uint64_t number, T&& item, SteadyTime now) {
-    const Verdict verdict = Check(number);
-    if (verdict == Verdict::kInOrder || verdict == Verdict::kLate) receipts_.Add(number);
-    if (verdict == Verdict::kInOrder) waiting_.emplace(number, Waiting{std::move(item), now});
-    return verdict;
+  /// Takes `item` if the order is kInOrder; leaves it to the caller otherwise.
+  ArrivalOrder Add(std::uint64_t number, T&& item, SteadyTime now) {
+    const ArrivalOrder order = Check(number);
+    if (order == ArrivalOrder::kInOrder || order == ArrivalOrder::kLate) receipts_.Add(number);
+    if (order == ArrivalOrder::kInOrder) waiting_.emplace(number, Waiting{std::move(item), now});
+    return order;
   }
 
   /// The next frame in line, if it is time for it. Call until nullopt.

@@ -15,13 +15,13 @@ using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::IsEmpty;
-using Verdict = FrameSequencer<int>::Verdict;
+using ArrivalOrder = FrameSequencer<int>::ArrivalOrder;
 
 constexpr Nanoseconds kWindow = 200ms;
 
 class FrameSequencerTest : public ::testing::Test {
  protected:
-  Verdict Add(std::uint64_t number) {
+  ArrivalOrder Add(std::uint64_t number) {
     return sequencer_.Add(number, static_cast<int>(number), now_);
   }
   std::vector<int> TakeAll() {
@@ -35,19 +35,19 @@ class FrameSequencerTest : public ::testing::Test {
 };
 
 TEST_F(FrameSequencerTest, FramesInOrderPassAtOnce) {
-  for (const std::uint64_t number : {0, 1, 2}) EXPECT_EQ(Add(number), Verdict::kInOrder);
+  for (const std::uint64_t number : {0, 1, 2}) EXPECT_EQ(Add(number), ArrivalOrder::kInOrder);
   EXPECT_THAT(TakeAll(), ElementsAre(0, 1, 2));
   EXPECT_EQ(sequencer_.handled(), 3U);
   EXPECT_EQ(sequencer_.deadline(), std::nullopt);
 }
 
 TEST_F(FrameSequencerTest, F20DuplicateIsDroppedWhetherItWaitsOrHasPassed) {
-  EXPECT_EQ(Add(0), Verdict::kInOrder);
-  EXPECT_EQ(Add(0), Verdict::kDuplicate);
+  EXPECT_EQ(Add(0), ArrivalOrder::kInOrder);
+  EXPECT_EQ(Add(0), ArrivalOrder::kDuplicate);
   EXPECT_THAT(TakeAll(), ElementsAre(0));
-  EXPECT_EQ(Add(0), Verdict::kDuplicate);
-  EXPECT_EQ(Add(2), Verdict::kInOrder);
-  EXPECT_EQ(Add(2), Verdict::kDuplicate);
+  EXPECT_EQ(Add(0), ArrivalOrder::kDuplicate);
+  EXPECT_EQ(Add(2), ArrivalOrder::kInOrder);
+  EXPECT_EQ(Add(2), ArrivalOrder::kDuplicate);
   EXPECT_EQ(sequencer_.receipts().received(), 2U);
 }
 
@@ -57,7 +57,7 @@ TEST_F(FrameSequencerTest, F21FramesOutOfOrderAreSortedWithinTheWindow) {
   EXPECT_THAT(TakeAll(), ElementsAre(0));
   now_ += kWindow - 1ns;
   EXPECT_THAT(TakeAll(), IsEmpty());
-  EXPECT_EQ(Add(1), Verdict::kInOrder);
+  EXPECT_EQ(Add(1), ArrivalOrder::kInOrder);
   EXPECT_THAT(TakeAll(), ElementsAre(1, 2));
 }
 
@@ -68,10 +68,10 @@ TEST_F(FrameSequencerTest, F21AfterTheWindowTheMissingFrameIsLate) {
   ASSERT_EQ(sequencer_.deadline(), now_ + kWindow);
   now_ += kWindow;
   EXPECT_THAT(TakeAll(), ElementsAre(2));
-  EXPECT_EQ(Add(1), Verdict::kLate);
+  EXPECT_EQ(Add(1), ArrivalOrder::kLate);
   EXPECT_THAT(TakeAll(), IsEmpty());
   EXPECT_EQ(sequencer_.receipts().missing(), 0U);  // Late, but here.
-  EXPECT_EQ(Add(1), Verdict::kDuplicate);
+  EXPECT_EQ(Add(1), ArrivalOrder::kDuplicate);
 }
 
 TEST_F(FrameSequencerTest, F19LostFramesAreCountedAndNamed) {
@@ -93,9 +93,9 @@ TEST_F(FrameSequencerTest, WaitingFramesAreBounded) {
 TEST_F(FrameSequencerTest, AfterAResyncTheLineGoesOnThere) {
   Add(1'000'000);
   EXPECT_EQ(sequencer_.Flush(), 1'000'000);
-  EXPECT_EQ(Add(1), Verdict::kLate);
+  EXPECT_EQ(Add(1), ArrivalOrder::kLate);
   sequencer_.Resync(2);
-  EXPECT_EQ(Add(2), Verdict::kInOrder);
+  EXPECT_EQ(Add(2), ArrivalOrder::kInOrder);
   EXPECT_THAT(TakeAll(), ElementsAre(2));
 }
 
@@ -125,7 +125,7 @@ TEST_F(FrameSequencerTest, AnyMixtureIsDeliveredInOrderOnceAndAddsUp) {
   std::uint64_t late = 0;
   for (const std::uint64_t number : sent) {
     now_ += 1ms * (random() % 60);
-    late += Add(number) == Verdict::kLate ? 1 : 0;
+    late += Add(number) == ArrivalOrder::kLate ? 1 : 0;
     for (const int item : TakeAll()) delivered.push_back(item);
   }
   while (const auto item = sequencer_.Flush()) delivered.push_back(*item);

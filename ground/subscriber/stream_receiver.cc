@@ -48,10 +48,10 @@ ReceivedThermal Unpacked(EncodedThermalFrame&& encoded, Image<std::uint16_t>&& p
 
 }  // namespace
 
-template <typename Item>
-StreamReceiver<Item>::StreamReceiver(std::string_view name, Nanoseconds reorder_window,
-                                     RefusalCounter* refusals, Consumer deliver,
-                                     Consumer deliver_late)
+template <typename ReceivedFrame>
+StreamReceiver<ReceivedFrame>::StreamReceiver(std::string_view name, Nanoseconds reorder_window,
+                                              RefusalCounter* refusals, Consumer deliver,
+                                              Consumer deliver_late)
     : name_(name),
       refusals_(refusals),
       deliver_(std::move(deliver)),
@@ -59,20 +59,20 @@ StreamReceiver<Item>::StreamReceiver(std::string_view name, Nanoseconds reorder_
       reorder_window_(reorder_window),
       sequencer_(std::in_place, reorder_window) {}
 
-template <typename Item>
-bool StreamReceiver<Item>::IsWanted(const FrameHeader& header) {
+template <typename ReceivedFrame>
+bool StreamReceiver<ReceivedFrame>::IsWanted(const FrameHeader& header) {
   if (!IsCurrent(header.session)) {
     const bool is_new = std::ranges::find(over_, header.session) == over_.end();
     if (!is_new) Refuse(RefusalCause::kOtherSession, header);
     return is_new;
   }
-  if (sequencer_->Check(header.frame_number) != Verdict::kDuplicate) return true;
+  if (sequencer_->Check(header.frame_number) != ArrivalOrder::kDuplicate) return true;
   ++tally_.duplicates;
   return false;
 }
 
-template <typename Item>
-bool StreamReceiver<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now) {
+template <typename ReceivedFrame>
+bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now) {
   const FrameHeader header = encoded.header;
   if (!IsWanted(header)) return false;
   Result<Image<std::uint16_t>> pixels = PixelsOf(encoded);
@@ -82,7 +82,7 @@ bool StreamReceiver<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTim
   }
   if (!IsCurrent(header.session)) BeginSession(header);
   const FrameMark mark{header.frame_number, header.capture_time, now};
-  Item item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
+  ReceivedFrame item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
   if (newest_) {
     if (const auto cause = CheckFollows(*newest_, mark)) {
       return Suspect(std::move(item), mark, *cause);
@@ -93,8 +93,8 @@ bool StreamReceiver<Item>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTim
   return true;
 }
 
-template <typename Item>
-void StreamReceiver<Item>::BeginSession(const FrameHeader& header) {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::BeginSession(const FrameHeader& header) {
   DeliverAll();
   if (newest_) {
     previous_ = tally(tally_.session);
@@ -110,16 +110,17 @@ void StreamReceiver<Item>::BeginSession(const FrameHeader& header) {
                         << " frame_number=" << header.frame_number;
 }
 
-template <typename Item>
-void StreamReceiver<Item>::Accept(Item&& item, const FrameMark& mark) {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::Accept(ReceivedFrame&& item, const FrameMark& mark) {
   if (!newest_ || mark.number > newest_->number) newest_ = mark;
-  if (sequencer_->Add(mark.number, std::move(item), mark.arrival) != Verdict::kLate) return;
+  if (sequencer_->Add(mark.number, std::move(item), mark.arrival) != ArrivalOrder::kLate) return;
   ++tally_.late;
   if (deliver_late_) deliver_late_(std::move(item));  // Add has left it where it was.
 }
 
-template <typename Item>
-bool StreamReceiver<Item>::Suspect(Item&& item, const FrameMark& mark, RefusalCause cause) {
+template <typename ReceivedFrame>
+bool StreamReceiver<ReceivedFrame>::Suspect(ReceivedFrame&& item, const FrameMark& mark,
+                                            RefusalCause cause) {
   if (FollowsGap() && MayFollowGap(aside_.back().mark, mark, item.arrival)) {
     BelieveAside();
     if (!CheckFollows(*newest_, mark)) {
@@ -136,14 +137,14 @@ bool StreamReceiver<Item>::Suspect(Item&& item, const FrameMark& mark, RefusalCa
   return true;
 }
 
-template <typename Item>
-bool StreamReceiver<Item>::FollowsGap() const {
+template <typename ReceivedFrame>
+bool StreamReceiver<ReceivedFrame>::FollowsGap() const {
   return replay_ && newest_ && !aside_.empty() &&
          MayFollowGap(*newest_, aside_.front().mark, aside_.front().item.arrival);
 }
 
-template <typename Item>
-void StreamReceiver<Item>::BelieveAside() {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::BelieveAside() {
   const bool gap = FollowsGap();
   std::vector<Aside> believed = std::exchange(aside_, {});
   const FrameMark& first = believed.front().mark;
@@ -163,20 +164,20 @@ void StreamReceiver<Item>::BelieveAside() {
   for (Aside& next : believed) Accept(std::move(next.item), next.mark);
 }
 
-template <typename Item>
-void StreamReceiver<Item>::SettleAside() {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::SettleAside() {
   if (FollowsGap()) return BelieveAside();
   RefuseAside();
 }
 
-template <typename Item>
-void StreamReceiver<Item>::RefuseAside() {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::RefuseAside() {
   for (const Aside& aside : aside_) Refuse(aside.cause, aside.item.frame->header);
   aside_.clear();
 }
 
-template <typename Item>
-StreamTally StreamReceiver<Item>::tally(std::uint64_t session) const {
+template <typename ReceivedFrame>
+StreamTally StreamReceiver<ReceivedFrame>::tally(std::uint64_t session) const {
   if (!IsCurrent(session)) {
     StreamTally unknown;
     unknown.session = session;
@@ -190,8 +191,8 @@ StreamTally StreamReceiver<Item>::tally(std::uint64_t session) const {
   return tally;
 }
 
-template <typename Item>
-StreamReceipt StreamReceiver<Item>::receipt(std::uint64_t session) const {
+template <typename ReceivedFrame>
+StreamReceipt StreamReceiver<ReceivedFrame>::receipt(std::uint64_t session) const {
   if (!IsCurrent(session)) return {};
   const ReceiptTracker& receipts = sequencer_->receipts();
   return {.next = receipts.next(),
@@ -200,29 +201,29 @@ StreamReceipt StreamReceiver<Item>::receipt(std::uint64_t session) const {
           .holes = receipts.NewestHoles(kMaxHoles)};
 }
 
-template <typename Item>
-void StreamReceiver<Item>::DeliverDue(SteadyTime now) {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::DeliverDue(SteadyTime now) {
   if (!aside_.empty() && now >= aside_.front().mark.arrival + kMaxAside) SettleAside();
-  while (std::optional<Item> item = sequencer_->Next(now)) {
+  while (std::optional<ReceivedFrame> item = sequencer_->Next(now)) {
     if (deliver_) deliver_(std::move(*item));
   }
 }
 
-template <typename Item>
-void StreamReceiver<Item>::DeliverAll() {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::DeliverAll() {
   SettleAside();
   Flush();
 }
 
-template <typename Item>
-void StreamReceiver<Item>::Flush() {
-  while (std::optional<Item> item = sequencer_->Flush()) {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::Flush() {
+  while (std::optional<ReceivedFrame> item = sequencer_->Flush()) {
     if (deliver_) deliver_(std::move(*item));
   }
 }
 
-template <typename Item>
-void StreamReceiver<Item>::Refuse(RefusalCause cause, const FrameHeader& header) {
+template <typename ReceivedFrame>
+void StreamReceiver<ReceivedFrame>::Refuse(RefusalCause cause, const FrameHeader& header) {
   refusals_->Add(cause, fmt::format("stream={} session={} frame_number={}", name_, header.session,
                                     header.frame_number));
 }

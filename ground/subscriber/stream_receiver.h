@@ -22,13 +22,13 @@ namespace isotherm {
 /// follow those before is kept aside: when kConfirm in a row agree with each other, the stream has
 /// really jumped and goes on with them; otherwise they are refused, and one wild frame stops none
 /// behind it. A replay as fast as the ground takes it passes over the gaps of its recording: one
-/// more frame confirms those, and none contradicts the last. Item is ReceivedDepth or
+/// more frame confirms those, and none contradicts the last. ReceivedFrame is ReceivedDepth or
 /// ReceivedThermal. No DDS, no clock. Thread-compatible.
-template <typename Item>
+template <typename ReceivedFrame>
 class StreamReceiver {
  public:
-  using Encoded = std::remove_const_t<typename decltype(Item::encoded)::element_type>;
-  using Consumer = std::function<void(Item)>;
+  using Encoded = std::remove_const_t<typename decltype(ReceivedFrame::encoded)::element_type>;
+  using Consumer = std::function<void(ReceivedFrame)>;
   static constexpr std::size_t kConfirm = 3;
   /// Frames that are kept aside are refused after this time.
   static constexpr Nanoseconds kMaxAside = std::chrono::seconds(1);
@@ -55,17 +55,17 @@ class StreamReceiver {
   StreamReceipt receipt(std::uint64_t session) const;
 
  private:
-  using Sequencer = FrameSequencer<Item>;
-  using Verdict = typename Sequencer::Verdict;
+  using Sequencer = FrameSequencer<ReceivedFrame>;
+  using ArrivalOrder = typename Sequencer::ArrivalOrder;
   static constexpr std::size_t kMaxRemembered = 32;  ///< Sessions that must not come back.
 
   bool IsCurrent(std::uint64_t session) const { return newest_ && session == tally_.session; }
   /// True if a frame with this header would be taken; counts it if not.
   bool IsWanted(const FrameHeader& header);
   void BeginSession(const FrameHeader& header);
-  void Accept(Item&& item, const FrameMark& mark);
+  void Accept(ReceivedFrame&& item, const FrameMark& mark);
   /// Keeps a frame aside that `cause` speaks against; true if it is believed now.
-  bool Suspect(Item&& item, const FrameMark& mark, RefusalCause cause);
+  bool Suspect(ReceivedFrame&& item, const FrameMark& mark, RefusalCause cause);
   /// The frames kept aside are where the stream goes on.
   void BelieveAside();
   void RefuseAside();
@@ -83,7 +83,7 @@ class StreamReceiver {
   std::optional<Sequencer> sequencer_;  ///< Never empty; a new one for each session.
   std::optional<FrameMark> newest_;     ///< The newest of the session's frames that were taken.
   struct Aside {
-    Item item;
+    ReceivedFrame item;
     FrameMark mark;
     RefusalCause cause;
   };

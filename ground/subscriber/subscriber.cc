@@ -75,9 +75,9 @@ class DdsSubscriber final : public Subscriber {
   void On(EncodedThermalFrame&& frame, CaptureTime arrival) {
     OnFrame(std::move(frame), &thermal_, arrival);
   }
-  template <typename Item>
-  void OnFrame(typename StreamReceiver<Item>::Encoded&& frame, StreamReceiver<Item>* receiver,
-               CaptureTime arrival);
+  template <typename ReceivedFrame>
+  void OnFrame(typename StreamReceiver<ReceivedFrame>::Encoded&& frame,
+               StreamReceiver<ReceivedFrame>* receiver, CaptureTime arrival);
   /// Finds out who is there, who is the rig, and who only says so.
   void LookAround(SteadyTime now);
   /// True for samples of the rig that is followed; counts those of others.
@@ -236,9 +236,9 @@ void DdsSubscriber::On(const EdgeStatus& status, CaptureTime /*arrival*/) {
   if (handlers_.clock) handlers_.clock(clock_watch_.clock());
 }
 
-template <typename Item>
-void DdsSubscriber::OnFrame(typename StreamReceiver<Item>::Encoded&& frame,
-                            StreamReceiver<Item>* receiver, CaptureTime arrival) {
+template <typename ReceivedFrame>
+void DdsSubscriber::OnFrame(typename StreamReceiver<ReceivedFrame>::Encoded&& frame,
+                            StreamReceiver<ReceivedFrame>* receiver, CaptureTime arrival) {
   const SteadyTime now = clock_.SteadyNow();
   const std::uint64_t session = frame.header.session;
   if (!receiver->Add(std::move(frame), arrival, now)) return;

@@ -14,7 +14,7 @@ namespace isotherm {
 namespace {
 
 using testing::Random;
-using testing::Verdict;
+using testing::Tribool;
 
 constexpr double kSinglePrecision = 1e-6;
 
@@ -76,8 +76,8 @@ class SurfaceMapRowTest : public ::testing::Test {
     const Eigen::Vector3d n(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
     const bool has_normal = p.allFinite() && n.allFinite();
     ASSERT_TRUE(has_normal || (p.array().isNaN().all() && n.array().isNaN().all()));
-    if (truth.has_normal != Verdict::kEither) {
-      ASSERT_EQ(has_normal, truth.has_normal == Verdict::kYes);
+    if (truth.has_normal != Tribool::kEither) {
+      ASSERT_EQ(has_normal, truth.has_normal == Tribool::kYes);
     }
     if (!has_normal) return;
     ASSERT_LT((p - truth.p).norm(), 3.0 * kSinglePrecision);

@@ -15,7 +15,7 @@ namespace isotherm {
 namespace {
 
 using testing::Random;
-using testing::Verdict;
+using testing::Tribool;
 
 class FuseBlockTest : public ::testing::Test {
  protected:
@@ -114,9 +114,9 @@ class FuseBlockTest : public ::testing::Test {
     const Eigen::Matrix3d axes =
         Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(args_.axes).cast<double>();
     FusionKernelCounts least, most;
-    const auto count = [](Verdict v, std::int64_t& low, std::int64_t& high) {
-      low += v == Verdict::kYes ? 1 : 0;
-      high += v != Verdict::kNo ? 1 : 0;
+    const auto count = [](Tribool v, std::int64_t& low, std::int64_t& high) {
+      low += v == Tribool::kYes ? 1 : 0;
+      high += v != Tribool::kNo ? 1 : 0;
     };
     for (std::size_t i = 0; i < kVoxels && !HasFatalFailure(); ++i) {
       const auto index = static_cast<int>(i);
@@ -126,8 +126,8 @@ class FuseBlockTest : public ::testing::Test {
           reference::FuseVoxel(args_, p, {tsdf_[i]}, {before[i]}, sigmas_[i]);
       count(truth.considered, least.considered, most.considered);
       // Bad conditions leave no temperature (code 0).
-      const bool takes = truth.code > 0.0 || truth.assigned == Verdict::kEither;
-      count(takes ? truth.assigned : Verdict::kNo, least.assigned, most.assigned);
+      const bool takes = truth.code > 0.0 || truth.assigned == Tribool::kEither;
+      count(takes ? truth.assigned : Tribool::kNo, least.assigned, most.assigned);
       CompareVoxel(truth, before[i], thermal_[i]);
     }
     ASSERT_GE(counts.considered, least.considered);
@@ -163,10 +163,10 @@ class FuseBlockTest : public ::testing::Test {
   }
   static void CompareVoxel(const reference::VoxelFusion& truth, std::uint32_t before,
                            std::uint32_t after) {
-    if (truth.assigned == Verdict::kNo) {
+    if (truth.assigned == Tribool::kNo) {
       ASSERT_EQ(after, before);
     }
-    if (truth.assigned != Verdict::kYes) return;
+    if (truth.assigned != Tribool::kYes) return;
     ASSERT_NEAR(static_cast<double>(after >> 16), truth.code, truth.slack);
     ASSERT_EQ(static_cast<std::int32_t>(after & 0xF0FFU), truth.classes);
     ASSERT_EQ(after & 0x0F00U, before & 0x0F00U);

@@ -16,7 +16,7 @@ namespace {
 
 using testing::Both;
 using testing::Random;
-using testing::Verdict;
+using testing::Tribool;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -146,14 +146,14 @@ class MakePixelRowTest : public ::testing::Test {
     ASSERT_EQ(pixels.back().flags, testing::kCanary) << "wrote beyond a row of " << width;
     ASSERT_EQ(planes.back(), testing::kCanary) << "wrote beyond a row of " << width;
     PixelRowCounts least, most;
-    const auto tally = [](Verdict v, std::int64_t& low, std::int64_t& high) {
-      low += v == Verdict::kYes ? 1 : 0;
-      high += v != Verdict::kNo ? 1 : 0;
+    const auto tally = [](Tribool v, std::int64_t& low, std::int64_t& high) {
+      low += v == Tribool::kYes ? 1 : 0;
+      high += v != Tribool::kNo ? 1 : 0;
     };
     for (int x = 0; x < args_.width && !HasFatalFailure(); ++x) {
       SCOPED_TRACE(::testing::Message() << "pixel " << x << " of " << args_.width);
       const reference::Pixel truth = reference::MakePixel(args_, x);
-      const Verdict visible = Both(truth.seen, reference::Not(truth.occluded));
+      const Tribool visible = Both(truth.seen, reference::Not(truth.occluded));
       tally(Both(truth.seen, truth.occluded), least.occluded, most.occluded);
       tally(Both(visible, reference::Not(truth.sharp)), least.smeared, most.smeared);
       tally(Both(Both(visible, truth.sharp), reference::Not(truth.even)), least.steep, most.steep);
@@ -167,17 +167,17 @@ class MakePixelRowTest : public ::testing::Test {
       counts_.*reason += counts.*reason;
     }
   }
-  static void CompareFlag(const ThermalPixel& pixel, std::int32_t flag, Verdict truth) {
-    if (truth != Verdict::kEither) {
-      ASSERT_EQ((pixel.flags & flag) != 0, truth == Verdict::kYes) << "flag " << flag;
+  static void CompareFlag(const ThermalPixel& pixel, std::int32_t flag, Tribool truth) {
+    if (truth != Tribool::kEither) {
+      ASSERT_EQ((pixel.flags & flag) != 0, truth == Tribool::kYes) << "flag " << flag;
     }
   }
   static void ComparePlane(std::int32_t plane, const reference::Pixel& truth) {
-    if (truth.surface == Verdict::kNo) {
+    if (truth.surface == Tribool::kNo) {
       ASSERT_EQ(plane, 0);
     }
     constexpr double kNearEdgeOn = 1e-3;  // Cosine; the sign may go either way.
-    if (truth.surface != Verdict::kYes || std::abs(truth.cosine) < kNearEdgeOn) return;
+    if (truth.surface != Tribool::kYes || std::abs(truth.cosine) < kNearEdgeOn) return;
     ASSERT_NEAR(static_cast<std::int16_t>(plane & 0xFFFF), truth.plane_u, 0.51 + truth.plane_slack);
     ASSERT_NEAR(plane >> 16, truth.plane_v, 0.51 + truth.plane_slack);
   }
@@ -188,17 +188,17 @@ class MakePixelRowTest : public ::testing::Test {
     ASSERT_NEAR(pixel.slopes >> 16, truth.slope_v, kStep);
     ASSERT_NO_FATAL_FAILURE(CompareFlag(pixel, ThermalPixel::kSeen, truth.seen));
     ASSERT_NO_FATAL_FAILURE(CompareFlag(pixel, ThermalPixel::kAssignable, truth.assignable));
-    if (truth.surface == Verdict::kNo) {
+    if (truth.surface == Tribool::kNo) {
       ASSERT_EQ(pixel.depth_m, 0.0F);
     }
-    if (truth.surface != Verdict::kYes) return;
+    if (truth.surface != Tribool::kYes) return;
     ASSERT_NEAR(pixel.depth_m, truth.depth_m, 3.0 * kSinglePrecision);
     if (truth.certain_distance) {
       ASSERT_EQ((pixel.flags >> 4) & 0xF, truth.distance_class);
     }
-    if (truth.sharp != Verdict::kEither && truth.still != Verdict::kEither) {
-      ASSERT_EQ((pixel.flags >> 12) & 0xF, truth.still == Verdict::kYes   ? 3
-                                           : truth.sharp == Verdict::kYes ? 2
+    if (truth.sharp != Tribool::kEither && truth.still != Tribool::kEither) {
+      ASSERT_EQ((pixel.flags >> 12) & 0xF, truth.still == Tribool::kYes   ? 3
+                                           : truth.sharp == Tribool::kYes ? 2
                                                                           : 1);
     }
     ASSERT_NEAR((pixel.flags >> ThermalPixel::kCosineShift) & 0xFF,

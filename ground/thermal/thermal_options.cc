@@ -9,9 +9,9 @@
 
 #include "common/base/check.h"
 #include "common/options/nearest_name.h"
-#include "common/radiometry/angle_limits.h"
 #include "common/radiometry/materials.h"
-#include "common/radiometry/optics.h"
+#include "ground/limits/angle_limits.h"
+#include "ground/limits/distance_limits.h"
 
 namespace isotherm {
 namespace {

@@ -14,7 +14,7 @@ namespace isotherm {
 namespace {
 
 using testing::Random;
-using testing::Verdict;
+using testing::Tribool;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -71,8 +71,8 @@ class UpsampleRowTest : public ::testing::Test {
     const reference::Vertex vertex = reference::At(fine_, x, y);
     const bool has_vertex = vertex.p.allFinite() && vertex.n.allFinite();
     ASSERT_TRUE(has_vertex || (vertex.p.array().isNaN().all() && vertex.n.array().isNaN().all()));
-    if (truth.has_vertex != Verdict::kEither) {
-      ASSERT_EQ(has_vertex, truth.has_vertex == Verdict::kYes);
+    if (truth.has_vertex != Tribool::kEither) {
+      ASSERT_EQ(has_vertex, truth.has_vertex == Tribool::kYes);
     }
     const float distance = distance_m_[static_cast<std::size_t>(x)];
     if (!has_vertex) {

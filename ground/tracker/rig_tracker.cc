@@ -122,7 +122,7 @@ LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
 
 bool RigTracker::IsConvincing(const TrackingResult& result) const {
   // In front of a plane or a cylinder the rig may be anywhere along it.
-  if (result.verdict() != Verdict::kTracked || !result.motion.measured) return false;
+  if (result.quality() != TrackingQuality::kTracked || !result.motion.measured) return false;
   if (result.agreement < relocaliser_options_.expert().min_agreement() ||
       result.overlap_ratio < relocaliser_options_.expert().min_overlap()) {
     return false;
@@ -213,7 +213,8 @@ void RigTracker::Trust(const TrackingResult& result, CaptureTime time) {
   if (alignment_)
     alignment_->End(motion_.before_last(), *motion_.last(), uncertainty_.surface_sigma_m());
   if (result.iterations == 0) return;  // Not tracked against anything.
-  if (motion_.before_last() && result.verdict() == Verdict::kTracked) speed_is_known_ = true;
+  if (motion_.before_last() && result.quality() == TrackingQuality::kTracked)
+    speed_is_known_ = true;
   constexpr double kNewFraction = 0.1;
   const double fraction = std::max(kNewFraction, 1.0 / (1.0 + usual_.frames));
   const double depth_m = result.motion.mean_depth_m;

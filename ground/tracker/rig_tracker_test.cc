@@ -111,7 +111,7 @@ TEST_F(RigTrackerTest, ASmoothViewIsNotBelievedAfterALossButFollowedBefore) {
   ASSERT_TRUE(tracker_->Begin(Prepare(wall, TruePose(0)), Time(0), TruePose(0)).tracked());
   LookFrom(TruePose(0));
   const TrackingResult before = Track(Prepare(wall, TruePose(1)), 1);
-  EXPECT_EQ(before.verdict(), Verdict::kDegraded);
+  EXPECT_EQ(before.quality(), TrackingQuality::kDegraded);
   ShowNothing(2);
   for (int i = 3; i < 11; ++i) EXPECT_FALSE(Track(Prepare(wall, TruePose(i)), i).tracked()) << i;
   EXPECT_EQ(tracker_->state(), State::kLost) << "the rig may be anywhere along the wall";

@@ -15,7 +15,7 @@
 namespace isotherm {
 namespace {
 
-using testing::Verdict;
+using testing::Tribool;
 using Planes = float[kFrustumPlanes][4];
 
 /// Blocks that CullBlocks keeps; fails where it differs from the scalar reference.
@@ -30,9 +30,9 @@ std::int32_t Compare(const Planes& planes, const std::vector<std::int32_t>& coor
   for (std::int32_t block = 0; block < count; ++block) {
     const bool kept = next < found && inside[static_cast<std::size_t>(next)] == block;
     next += kept ? 1 : 0;
-    const Verdict verdict = reference::CullBlock(planes, &coordinates[3 * block], precision);
-    if (verdict != Verdict::kEither) {
-      EXPECT_EQ(kept, verdict == Verdict::kYes) << "block " << block << " of " << count;
+    const Tribool decision = reference::CullBlock(planes, &coordinates[3 * block], precision);
+    if (decision != Tribool::kEither) {
+      EXPECT_EQ(kept, decision == Tribool::kYes) << "block " << block << " of " << count;
     }
   }
   EXPECT_EQ(next, found) << "something that is no block, or not in order";

@@ -16,7 +16,7 @@ namespace isotherm {
 namespace {
 
 using testing::Random;
-using testing::Verdict;
+using testing::Tribool;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -79,7 +79,7 @@ class MakeSampleRowTest : public ::testing::Test {
       ASSERT_EQ(weight_code, 0);
       return;
     }
-    if (truth.has_normal == Verdict::kEither) return;
+    if (truth.has_normal == Tribool::kEither) return;
     const Eigen::Vector3d n(static_cast<std::int16_t>(sample.normal_xy & 0xFFFF),
                             sample.normal_xy >> 16, sample.normal_z_weight >> 16);
     ASSERT_EQ(sample.depth_m, depths_[static_cast<std::size_t>(x)]);

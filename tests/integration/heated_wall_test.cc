@@ -201,7 +201,7 @@ class WallScan {
       outcome_.min_unobservable = std::min(outcome_.min_unobservable, unobservable);
       outcome_.max_unobservable = std::max(outcome_.max_unobservable, unobservable);
     }
-    outcome_.degraded += report.tracking.verdict() == Verdict::kDegraded ? 1 : 0;
+    outcome_.degraded += report.tracking.quality() == TrackingQuality::kDegraded ? 1 : 0;
     Compare(report.pose.T_map_depth, truth);
   }
 

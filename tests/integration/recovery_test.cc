@@ -254,7 +254,7 @@ TEST(DegenerateSceneTest, F54ABarePlaneNeitherSlidesNorExplodes) {
   for (int i = 0; i < 30 * kSeconds; ++i) {
     const DepthReport report = scan.Show(pose(i));
     ASSERT_TRUE(report.tracked) << i << ' ' << ToString(report.tracking.lost);
-    if (report.tracking.verdict() == Verdict::kDegraded) ++degraded;
+    if (report.tracking.quality() == TrackingQuality::kDegraded) ++degraded;
   }
   // Without any structure the velocity is not known either: the prior is at rest.
   const RigidTransform truth = pose(30 * kSeconds - 1);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ground/evaluation/surface_evaluation.h"
-#include "ground/export/surface.h"
+#include "ground/mesh/surface.h"
 #include "ground/pipeline/ground_pipeline.h"
 
 namespace isotherm::testing {

@@ -6,25 +6,36 @@
 namespace isotherm::lint {
 namespace {
 
-using Folders = std::set<std::string>;
-
-Folders With(Folders folders, const Folders& more) {
-  folders.insert(more.begin(), more.end());
-  return folders;
-}
-
-}  // namespace
-
-const FolderArrows& AllowedArrows() {
-  static const auto with = With;
-  // Only what is at the end of the link knows the middleware, only what needs scenes the
-  // simulation.
-  static const Folders kCommon = {"common/base",        "common/time",     "common/simd",
-                                  "common/concurrency", "common/geometry", "common/radiometry",
-                                  "common/stamping",    "common/frame",    "common/doubts",
+/// The folders of `common` that every folder of edge and ground may include. Only what is at the
+/// end of the link knows the middleware, only what needs scenes the simulation.
+const Folders& SharedFolders() {
+  static const Folders kShared = {"common/base",        "common/time",     "common/simd",
+                                  "common/concurrency", "common/geometry", "common/frame",
+                                  "common/radiometry",  "common/stamping", "common/doubts",
                                   "common/messages",    "common/png",      "common/codec",
                                   "common/rig",         "common/options",  "common/recording"};
-  static const FolderArrows kAllowed = {
+  return kShared;
+}
+
+/// SDK header prefixes, each at home in one folder, in .cc files only.
+const std::map<std::string, std::string>& SdkHomes() {
+  static const std::map<std::string, std::string> kHomes = {
+      {"dds/", "common/transport"},
+      {"isotherm_frames.h", "common/transport"},  // Generated from idl/, as is the next.
+      {"isotherm_control.h", "common/transport"},
+      {"OpenNI", "edge/openni"},
+      {"Driver/Oni", "edge/openni/testing"},
+      {"PS1080.h", "edge/openni"},
+      {"libusb", "edge/usb"},
+      {"umockdev", "edge/usb/testing"},
+      {"png.h", "common/png"},
+      {"systemd/", "common/base"},
+  };
+  return kHomes;
+}
+
+const FolderArrows& Arrows() {
+  static const FolderArrows kListed = {
       {"common/base", {}},
       {"common/time", {"common/base"}},
       {"common/simd", {}},
@@ -52,82 +63,103 @@ const FolderArrows& AllowedArrows() {
       {"common/transport",
        {"common/base", "common/time", "common/geometry", "common/frame", "common/messages"}},
       // The edge: what a camera is; stamps, shutter, frames; where they go; what joins it.
-      {"edge/options", with(kCommon, {})},
-      {"edge/frame_counters", with(kCommon, {})},
-      {"edge/timestamper", with(kCommon, {"edge/options"})},
-      {"edge/source", with(kCommon, {"common/simulation", "edge/options"})},
-      {"edge/camera_process", with(kCommon, {"edge/source"})},
-      {"edge/openni", with(kCommon, {"edge/options", "edge/source"})},
-      {"edge/usb", with(kCommon, {})},
-      {"edge/thermal_camera", with(kCommon, {"edge/options", "edge/source", "edge/usb"})},
-      {"edge/nuc", with(kCommon, {"edge/options", "edge/source"})},
-      {"edge/spool", with(kCommon, {"edge/options", "edge/frame_counters"})},
-      {"edge/publisher", with(kCommon, {"common/transport"})},
-      {"edge/pipeline", with(kCommon, {"edge/options", "edge/frame_counters", "edge/timestamper",
-                                       "edge/source", "edge/nuc", "edge/spool", "edge/publisher"})},
+      {"edge/options", {}},
+      {"edge/frame_counters", {}},
+      {"edge/timestamper", {"edge/options"}},
+      {"edge/source", {"common/simulation", "edge/options"}},
+      {"edge/camera_process", {"edge/source"}},
+      {"edge/openni", {"edge/options", "edge/source"}},
+      {"edge/usb", {}},
+      {"edge/thermal_camera", {"edge/options", "edge/source", "edge/usb"}},
+      {"edge/nuc", {"edge/options", "edge/source"}},
+      {"edge/spool", {"edge/options", "edge/frame_counters"}},
+      {"edge/publisher", {"common/transport"}},
+      {"edge/pipeline",
+       {"edge/options", "edge/frame_counters", "edge/timestamper", "edge/source", "edge/nuc",
+        "edge/spool", "edge/publisher"}},
       {"edge/daemon",
-       with(kCommon, {"common/transport", "edge/options", "edge/frame_counters", "edge/source",
-                      "edge/camera_process", "edge/openni", "edge/thermal_camera", "edge/spool",
-                      "edge/publisher", "edge/pipeline"})},
+       {"common/transport", "edge/options", "edge/frame_counters", "edge/source",
+        "edge/timestamper", "edge/camera_process", "edge/openni", "edge/thermal_camera",
+        "edge/spool", "edge/publisher", "edge/pipeline"}},
       // The ground: frames in; poses; the model; what is made of it; what joins, assesses and runs
       // it.
-      {"ground/options", with(kCommon, {})},
-      {"ground/subscriber", with(kCommon, {"common/transport"})},
-      {"ground/assembler", with(kCommon, {})},
-      {"ground/surface", with(kCommon, {"ground/options"})},
-      {"ground/tsdf", with(kCommon, {"ground/options", "ground/surface"})},
-      {"ground/icp", with(kCommon, {"ground/options", "ground/surface"})},
-      {"ground/relocaliser",
-       with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/icp"})},
-      {"ground/thermal", with(kCommon, {"ground/options", "ground/surface", "ground/tsdf"})},
-      {"ground/atlas", with(kCommon, {"ground/options", "ground/surface", "ground/tsdf",
-                                      "ground/relocaliser", "ground/thermal"})},
-      {"ground/stage_times", with(kCommon, {})},
+      {"ground/options", {}},
+      {"ground/json", {}},
+      {"ground/limits", {}},
+      {"ground/subscriber", {"common/transport"}},
+      {"ground/assembler", {}},
+      {"ground/surface", {"ground/options"}},
+      {"ground/tsdf", {"ground/options", "ground/surface"}},
+      {"ground/icp", {"ground/options", "ground/surface"}},
+      {"ground/relocaliser", {"ground/options", "ground/surface", "ground/tsdf", "ground/icp"}},
+      {"ground/thermal", {"ground/options", "ground/limits", "ground/surface", "ground/tsdf"}},
+      {"ground/atlas",
+       {"ground/options", "ground/surface", "ground/tsdf", "ground/relocaliser", "ground/thermal"}},
+      {"ground/stage_times", {}},
       {"ground/tracker",
-       with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/icp",
-                      "ground/relocaliser", "ground/atlas", "ground/stage_times"})},
-      {"ground/model",
-       with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal"})},
-      {"ground/renderer",
-       with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal"})},
-      {"ground/export", with(kCommon, {"ground/options", "ground/surface", "ground/tsdf",
-                                       "ground/thermal", "ground/renderer"})},
-      {"ground/feedback", with(kCommon, {"ground/options", "ground/surface", "ground/tsdf",
-                                         "ground/thermal", "ground/renderer"})},
-      {"ground/pipeline", with(kCommon, {"ground/options", "ground/surface", "ground/tsdf",
-                                         "ground/icp", "ground/thermal", "ground/atlas",
-                                         "ground/stage_times", "ground/tracker", "ground/model"})},
-      {"ground/guidance", with(kCommon, {"ground/options", "ground/renderer", "ground/thermal",
-                                         "ground/feedback", "ground/pipeline"})},
-      {"ground/evaluation", with(kCommon, {"common/dataset", "ground/thermal"})},
-      {"ground/experiment",
-       with(kCommon, {"common/simulation", "ground/evaluation", "ground/options", "ground/surface",
-                      "ground/tsdf", "ground/thermal", "ground/renderer", "ground/export",
-                      "ground/pipeline", "ground/guidance"})},
-      {"ground/calibration", with(kCommon, {"ground/options", "ground/tsdf", "ground/pipeline"})},
+       {"ground/options", "ground/surface", "ground/tsdf", "ground/icp", "ground/relocaliser",
+        "ground/atlas", "ground/stage_times"}},
+      {"ground/model", {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal"}},
+      {"ground/renderer", {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal"}},
+      {"ground/mesh", {"ground/tsdf", "ground/thermal"}},
+      {"ground/interpretation",
+       {"ground/options", "ground/json", "ground/surface", "ground/renderer", "ground/mesh"}},
+      {"ground/export",
+       {"ground/options", "ground/json", "ground/surface", "ground/tsdf", "ground/thermal",
+        "ground/renderer", "ground/mesh", "ground/interpretation"}},
+      {"ground/feedback",
+       {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal", "ground/renderer"}},
+      {"ground/pipeline",
+       {"ground/options", "ground/surface", "ground/tsdf", "ground/icp", "ground/thermal",
+        "ground/atlas", "ground/stage_times", "ground/tracker", "ground/model"}},
+      {"ground/guidance",
+       {"ground/options", "ground/renderer", "ground/thermal", "ground/feedback",
+        "ground/pipeline"}},
+      {"ground/calibration", {"ground/options", "ground/tsdf", "ground/pipeline"}},
       {"ground/results",
-       with(kCommon, {"ground/options", "ground/surface", "ground/thermal", "ground/renderer",
-                      "ground/export", "ground/pipeline", "ground/calibration"})},
+       {"common/dataset", "ground/options", "ground/json", "ground/surface", "ground/thermal",
+        "ground/renderer", "ground/interpretation", "ground/export", "ground/pipeline",
+        "ground/calibration"}},
+      {"ground/evaluation",
+       {"common/dataset", "ground/options", "ground/json", "ground/thermal", "ground/results"}},
+      {"ground/experiment",
+       {"common/simulation", "ground/options", "ground/surface", "ground/tsdf", "ground/thermal",
+        "ground/renderer", "ground/json", "ground/mesh", "ground/pipeline", "ground/guidance",
+        "ground/evaluation"}},
       {"ground/option_validation",
-       with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/icp",
-                      "ground/relocaliser", "ground/thermal", "ground/renderer", "ground/export",
-                      "ground/feedback", "ground/calibration"})},
+       {"ground/options", "ground/surface", "ground/tsdf", "ground/icp", "ground/relocaliser",
+        "ground/thermal", "ground/renderer", "ground/interpretation", "ground/export",
+        "ground/feedback", "ground/calibration"}},
       {"ground/offline",
-       with(kCommon, {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal",
-                      "ground/renderer", "ground/assembler", "ground/export", "ground/pipeline",
-                      "ground/calibration", "ground/results"})},
+       {"ground/options", "ground/surface", "ground/tsdf", "ground/thermal", "ground/renderer",
+        "ground/assembler", "ground/export", "ground/pipeline", "ground/calibration",
+        "ground/results"}},
       {"ground/service",
-       with(kCommon, {"common/transport", "ground/options", "ground/subscriber", "ground/assembler",
-                      "ground/export", "ground/thermal", "ground/pipeline", "ground/guidance",
-                      "ground/calibration", "ground/results", "ground/option_validation"})},
+       {"common/transport", "ground/options", "ground/json", "ground/subscriber",
+        "ground/assembler", "ground/export", "ground/thermal", "ground/pipeline", "ground/guidance",
+        "ground/calibration", "ground/results", "ground/option_validation"}},
       {"ground/cli",
-       with(kCommon,
-            {"common/transport", "common/simulation", "common/dataset", "ground/options",
-             "ground/subscriber", "ground/surface", "ground/tsdf", "ground/thermal", "ground/model",
-             "ground/renderer", "ground/export", "ground/evaluation", "ground/experiment",
-             "ground/calibration", "ground/option_validation", "ground/offline"})},
+       {"common/transport",      "common/simulation",  "common/dataset", "ground/options",
+        "ground/subscriber",     "ground/surface",     "ground/tsdf",    "ground/thermal",
+        "ground/model",          "ground/json",        "ground/limits",  "ground/mesh",
+        "ground/interpretation", "ground/renderer",    "ground/export",  "ground/evaluation",
+        "ground/experiment",     "ground/calibration", "ground/results", "ground/option_validation",
+        "ground/offline"}},
   };
-  return kAllowed;
+  return kListed;
+}
+
+}  // namespace
+
+bool DependencyRule::Allows(std::string_view folder, std::string_view target) const {
+  if (!folder.starts_with("common/") && shared.contains(target)) return true;
+  const auto listed = arrows.find(folder);
+  return listed != arrows.end() && listed->second.contains(target);
+}
+
+const DependencyRule& RepositoryRule() {
+  static const DependencyRule kRule = {Arrows(), SharedFolders(), SdkHomes()};
+  return kRule;
 }
 
 std::vector<std::string> FindCircle(const FolderArrows& arrows) {

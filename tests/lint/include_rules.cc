@@ -12,22 +12,9 @@
 namespace isotherm::lint {
 namespace {
 
-/// SDK header prefixes, each at home in one folder, in .cc files only.
-const std::map<std::string_view, std::string_view>& SdkHomes() {
-  static const std::map<std::string_view, std::string_view> kHomes = {
-      {"dds/", "common/transport"},
-      {"ddsi/", "common/transport"},
-      {"isotherm_idl.h", "common/transport"},
-      {"OpenNI", "edge/openni"},
-      {"Driver/Oni", "edge/openni"},
-      {"PS1080.h", "edge/openni"},
-      {"libusb", "edge/usb"},
-      {"umockdev", "edge/usb/testing"},
-      {"png.h", "common/png"},
-      {"systemd/", "common/base"},
-  };
-  return kHomes;
-}
+/// Tests play peers with the middleware itself.
+constexpr std::string_view kTransport = "common/transport";
+constexpr std::string_view kPeers = "tests/link/peers";
 
 /// Heavy headers that would slow down everybody who includes one of our shared headers.
 constexpr std::string_view kSourceOnly[] = {
@@ -96,18 +83,18 @@ std::string CheckOwn(const SourceFile& file, std::string_view header) {
   if (to == "tests" || target.ends_with("/testing")) return "test helpers are for tests only";
   if (target.ends_with("/reference")) return "references of kernels are for tests only";
   if (folder == target) return {};
-  const auto rule = AllowedArrows().find(folder);
-  if (rule == AllowedArrows().end()) {
+  const DependencyRule& rule = RepositoryRule();
+  if (!rule.arrows.contains(folder)) {
     return "folder " + folder + " has no rule yet: add it to tests/lint/folder_arrows.cc";
   }
-  if (rule->second.contains(std::string(target))) return {};
+  if (rule.Allows(folder, target)) return {};
   return folder + " must not include " + std::string(target);
 }
 
 /// A folder, what imitates the device for its tests, and for DDS the peers that tests play.
 bool IsHome(std::string_view folder, std::string_view home) {
   return folder == home || folder == std::string(home) + "/testing" ||
-         (home == "common/transport" && folder == "tests/link/peers");
+         (home == kTransport && folder == kPeers);
 }
 
 /// Why `file` must not include a library's header; empty if it may.
@@ -118,10 +105,9 @@ std::string CheckLibrary(const SourceFile& file, std::string_view header) {
       return "<" + std::string(header) + "> is not used here: " + std::string(forbidden.reason);
     }
   }
-  for (const auto& [prefix, home] : SdkHomes()) {
+  for (const auto& [prefix, home] : RepositoryRule().sdk_homes) {
     if (!header.starts_with(prefix)) continue;
-    if (!IsHome(file.folder(), home))
-      return std::string(header) + " belongs to " + std::string(home) + " only";
+    if (!IsHome(file.folder(), home)) return std::string(header) + " belongs to " + home + " only";
     if (!file.IsSource()) return std::string(header) + " may be included by .cc files only";
   }
   return {};
@@ -163,6 +149,40 @@ bool IsOurs(const Include& include) {
          include.header.starts_with(".");
 }
 
+/// Which folders the programs' files of each folder include; the folder itself does not count.
+FolderArrows ArrowsOf(const std::vector<SourceFile>& files) {
+  FolderArrows arrows;
+  for (const SourceFile& file : files) {
+    if (!file.IsCode() || file.IsTest()) continue;
+    for (const std::string& line : file.lines) {
+      const std::optional<Include> include = ParseInclude(line);
+      if (!include || !IsOurs(*include)) continue;
+      const std::size_t slash = include->header.rfind('/');
+      if (slash == std::string::npos) continue;
+      const std::string target = include->header.substr(0, slash);
+      if (target != file.folder()) arrows[file.folder()].insert(target);
+    }
+  }
+  return arrows;
+}
+
+Folders FoldersOf(const std::vector<SourceFile>& files) {
+  Folders folders;
+  for (const SourceFile& file : files) folders.insert(file.folder());
+  return folders;
+}
+
+/// Says whether `folder` includes a header that begins like this.
+bool IncludesAny(const std::vector<SourceFile>& files, std::string_view folder,
+                 std::string_view prefix) {
+  return std::ranges::any_of(files, [&](const SourceFile& file) {
+    return file.folder() == folder && std::ranges::any_of(file.lines, [&](const std::string& line) {
+             const std::optional<Include> include = ParseInclude(line);
+             return include && include->header.starts_with(prefix);
+           });
+  });
+}
+
 }  // namespace
 
 std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files) {
@@ -179,7 +199,7 @@ std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files) {
       if (message.empty() && shared.contains(file.path) && !file.IsTest() && !part_of_kernel) {
         message = CheckWeight(include->header);
       }
-      const bool sdk = std::any_of(SdkHomes().begin(), SdkHomes().end(), [&](const auto& home) {
+      const bool sdk = std::ranges::any_of(RepositoryRule().sdk_homes, [&](const auto& home) {
         return include->header.starts_with(home.first);
       });
       if (message.empty() && !sdk && IsOurs(*include)) message = CheckOwn(file, include->header);
@@ -192,23 +212,48 @@ std::vector<Violation> CheckIncludes(const std::vector<SourceFile>& files) {
 }
 
 std::vector<Violation> CheckCircles(const std::vector<SourceFile>& files) {
-  FolderArrows arrows;
-  for (const SourceFile& file : files) {
-    if (!file.IsCode() || file.IsTest()) continue;
-    for (const std::string& line : file.lines) {
-      const std::optional<Include> include = ParseInclude(line);
-      if (!include || !IsOurs(*include)) continue;
-      const std::size_t slash = include->header.rfind('/');
-      if (slash == std::string::npos) continue;
-      const std::string target = include->header.substr(0, slash);
-      if (target != file.folder()) arrows[file.folder()].insert(target);
-    }
-  }
-  const std::vector<std::string> circle = FindCircle(arrows);
+  const std::vector<std::string> circle = FindCircle(ArrowsOf(files));
   if (circle.empty()) return {};
   std::string message = "folders include each other in a circle: " + circle.front();
   for (std::size_t i = 1; i < circle.size(); ++i) message += " -> " + circle[i];
   return {{circle.front(), 0, std::move(message)}};
+}
+
+std::vector<Violation> CheckListed(const std::vector<SourceFile>& files,
+                                   const DependencyRule& rule) {
+  std::vector<Violation> violations;
+  const auto report = [&](std::string message) {
+    violations.push_back({"tests/lint/folder_arrows.cc", 0, std::move(message)});
+  };
+  const FolderArrows used = ArrowsOf(files);
+  const auto is_used = [&](std::string_view folder, const std::string& target) {
+    const auto found = used.find(folder);
+    return found != used.end() && found->second.contains(target);
+  };
+  const Folders folders = FoldersOf(files);
+  for (const auto& [folder, targets] : rule.arrows) {
+    if (!folders.contains(folder)) report(folder + " is listed, but there is no such folder");
+    for (const std::string& target : targets) {
+      if (!folder.starts_with("common/") && rule.shared.contains(target)) {
+        report(folder + " is listed with " + target + ", which every folder may include");
+      } else if (!is_used(folder, target)) {
+        report(folder + " is listed with " + target + ", but includes nothing of it");
+      }
+    }
+  }
+  for (const std::string& shared : rule.shared) {
+    const bool any = std::ranges::any_of(used, [&](const auto& arrows) {
+      return !arrows.first.starts_with("common/") && arrows.second.contains(shared);
+    });
+    if (!any) report("edge and ground may include " + shared + ", but neither does");
+  }
+  for (const auto& [prefix, home] : rule.sdk_homes) {
+    if (!IncludesAny(files, home, prefix))
+      report(home + " is the home of <" + prefix + "...>, but does not include it");
+  }
+  if (!rule.sdk_homes.empty() && !folders.contains(kPeers))
+    report(std::string(kPeers) + " may include the middleware, but there is no such folder");
+  return violations;
 }
 
 }  // namespace isotherm::lint

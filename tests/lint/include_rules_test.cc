@@ -67,6 +67,8 @@ TEST(IncludeRulesTest, SdkHeadersStayInOneFolderAndInSources) {
               ElementsAre(HasSubstr(".cc files only")));
   EXPECT_THAT(MessagesFor("ground/subscriber/subscriber.cc", "#include <libusb-1.0/libusb.h>"),
               ElementsAre(HasSubstr("belongs to edge/usb only")));
+  EXPECT_THAT(MessagesFor("ground/service/live_scan.cc", "#include <isotherm_frames.h>"),
+              ElementsAre(HasSubstr("belongs to common/transport only")));
   EXPECT_THAT(MessagesFor("common/transport/participant.cc", "#include \"dds/dds.h\""), IsEmpty());
 }
 
@@ -120,7 +122,50 @@ TEST(IncludeRulesTest, OddWaysToIncludeAreRefused) {
 TEST(IncludeRulesTest, NoFoldersStandOnEachOther) {
   const std::vector<Violation> violations = CheckCircles(ReadSourceTree(ISOTHERM_SOURCE_DIR));
   EXPECT_TRUE(violations.empty()) << ToString(violations);
-  EXPECT_THAT(FindCircle(AllowedArrows()), IsEmpty()) << "the table itself has a circle";
+  EXPECT_THAT(FindCircle(RepositoryRule().arrows), IsEmpty()) << "the table itself has a circle";
+}
+
+TEST(IncludeRulesTest, TheTableListsNothingThatIsNotSo) {
+  const std::vector<Violation> violations =
+      CheckListed(ReadSourceTree(ISOTHERM_SOURCE_DIR), RepositoryRule());
+  EXPECT_TRUE(violations.empty()) << ToString(violations);
+}
+
+TEST(IncludeRulesTest, ListedArrowsThatNobodyUsesAreFound) {
+  const SourceFile icp = {"ground/icp/icp.cc",
+                          {"#include \"ground/surface/maps.h\"", "#include <png.h>"}};
+  const SourceFile icp_test = {"ground/icp/icp_test.cc", {"#include \"ground/tsdf/grid.h\""}};
+  const SourceFile maps = {"ground/surface/maps.cc", {"#include \"common/base/status.h\""}};
+  const SourceFile peers = {"tests/link/peers/peer.cc", {}};
+  const std::vector<SourceFile> files = {icp, icp_test, maps, peers};
+  const DependencyRule rule = {{{"ground/icp", {"ground/surface"}}, {"ground/surface", {}}},
+                               {"common/base"},
+                               {{"png.h", "ground/icp"}}};
+  EXPECT_THAT(CheckListed(files, rule), IsEmpty());
+
+  const auto messages = [&](const DependencyRule& changed) {
+    std::vector<std::string> texts;
+    for (const Violation& violation : CheckListed(files, changed))
+      texts.push_back(violation.message);
+    return texts;
+  };
+  DependencyRule wrong = rule;
+  wrong.arrows["ground/icp"].insert("ground/tsdf");  // Its test includes it, which does not count.
+  EXPECT_THAT(messages(wrong), ElementsAre("ground/icp is listed with ground/tsdf, but includes "
+                                           "nothing of it"));
+  wrong = rule;
+  wrong.arrows["ground/nowhere"] = {};
+  EXPECT_THAT(messages(wrong), ElementsAre(HasSubstr("ground/nowhere is listed, but there is no")));
+  wrong = rule;
+  wrong.arrows["ground/surface"] = {"common/base"};
+  EXPECT_THAT(messages(wrong), ElementsAre(HasSubstr("which every folder may include")));
+  wrong = rule;
+  wrong.shared.insert("common/png");
+  EXPECT_THAT(messages(wrong), ElementsAre(HasSubstr("may include common/png, but neither does")));
+  wrong = rule;
+  wrong.sdk_homes = {{"png.h", "ground/png"}, {"libusb", "ground/icp"}};
+  EXPECT_THAT(messages(wrong), ElementsAre(HasSubstr("ground/icp is the home of <libusb...>"),
+                                           HasSubstr("ground/png is the home of <png.h...>")));
 }
 
 TEST(IncludeRulesTest, ACircleOfFoldersIsFound) {
@@ -150,7 +195,7 @@ TEST(IncludeRulesTest, AStageKnowsItsOptionsAndItsInputButNeverThePipeline) {
               ElementsAre(HasSubstr("edge/nuc must not include edge/pipeline")));
   EXPECT_THAT(MessagesFor("ground/pipeline/x.h", "#include \"ground/service/live_scan.h\""),
               ElementsAre(HasSubstr("ground/pipeline must not include ground/service")));
-  for (const auto& [folder, targets] : AllowedArrows()) {
+  for (const auto& [folder, targets] : RepositoryRule().arrows) {
     if (targets.contains("ground/pipeline")) {
       EXPECT_THAT(folder, AnyOf("ground/experiment", "ground/calibration", "ground/results",
                                 "ground/offline", "ground/guidance", "ground/service"));

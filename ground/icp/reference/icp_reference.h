@@ -14,7 +14,7 @@ namespace isotherm::reference {
 
 using testing::AtLeastZero;
 using testing::Both;
-using testing::Verdict;
+using testing::Tribool;
 
 /// Rounding of a sum of a few products in single precision.
 inline constexpr double kIcpPrecision = 2e-6;
@@ -30,8 +30,8 @@ inline Vertex At(const SurfaceMaps& maps, int x, int y) {
 
 /// Holds what AccumulateIcpRows must add for one pixel.
 struct Pair {
-  Verdict candidate = Verdict::kNo;
-  Verdict inlier = Verdict::kNo;
+  Tribool candidate = Tribool::kNo;
+  Tribool inlier = Tribool::kNo;
   std::array<double, 28> terms{};
 };
 
@@ -48,7 +48,7 @@ inline Pair MakePair(const IcpKernelArgs& a, int x, int y) {
   const Vertex current = At(*a.current, x, y);
   const Eigen::Vector3d arm = matrix(a.R_map_depth) * current.p;
   const Eigen::Vector3d p = arm + vector(a.t_map_depth);
-  result.candidate = current.p.z() > 0.0 ? Verdict::kYes : Verdict::kNo;
+  result.candidate = current.p.z() > 0.0 ? Tribool::kYes : Tribool::kNo;
   const Eigen::Vector3d above = p - vector(a.volume_min);
   const Eigen::Vector3d below = vector(a.volume_max) - p;
   for (int axis = 0; axis < 3; ++axis) {
@@ -61,12 +61,12 @@ inline Pair MakePair(const IcpKernelArgs& a, int x, int y) {
   result.inlier = Both(result.candidate, AtLeastZero(q.z(), kIcpPrecision));
   for (const double pixel : {u, v}) {
     if (std::abs(pixel - std::round(pixel)) < kNearPixelBorder)
-      result.inlier = Both(result.inlier, Verdict::kEither);
+      result.inlier = Both(result.inlier, Tribool::kEither);
   }
   const int width = a.model->width();
   const int height = a.model->height();
   if (!(u >= 0.0 && u < width && v >= 0.0 && v < height)) {
-    if (result.inlier == Verdict::kYes) result.inlier = Verdict::kNo;
+    if (result.inlier == Tribool::kYes) result.inlier = Tribool::kNo;
     return result;
   }
   const Vertex model = At(*a.model, static_cast<int>(u), static_cast<int>(v));

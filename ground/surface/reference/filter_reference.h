@@ -78,7 +78,7 @@ inline HalfPixel HalvePixel(const HalfRowArgs& a, int x) {
 inline std::optional<double> FillPixel(const FillRowArgs& a, int x) {
   using testing::AtLeastZero;
   using testing::Both;
-  using testing::Verdict;
+  using testing::Tribool;
   constexpr double kSlack = 1e-4;
   const int side = 2 * a.radius + 1;
   if (a.rows[a.radius][x] > 0.0F) return a.rows[a.radius][x];
@@ -97,12 +97,12 @@ inline std::optional<double> FillPixel(const FillRowArgs& a, int x) {
   // The plane 1 / z = (1 + k . (dx, dy, 1)) / nearest, weighted by z.
   Eigen::Matrix3d M = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  Verdict certain = Verdict::kYes;
+  Tribool certain = Tribool::kYes;
   const auto for_used = [&](const auto& visit) {
     for_depths([&](double z, const Eigen::Vector3d& offset) {
-      const Verdict used = AtLeastZero(a.max_step_ratio - (z / nearest - 1.0), 1e-6);
-      if (used == Verdict::kEither) certain = Verdict::kEither;
-      if (used != Verdict::kNo) visit(z / nearest, offset);
+      const Tribool used = AtLeastZero(a.max_step_ratio - (z / nearest - 1.0), 1e-6);
+      if (used == Tribool::kEither) certain = Tribool::kEither;
+      if (used != Tribool::kNo) visit(z / nearest, offset);
     });
   };
   for_used([&](double r, const Eigen::Vector3d& offset) {
@@ -112,11 +112,11 @@ inline std::optional<double> FillPixel(const FillRowArgs& a, int x) {
   const Eigen::Vector2d mean = M.block<2, 1>(0, 2) / M(2, 2);
   const Eigen::Matrix2d scatter = M.topLeftCorner<2, 2>() - M(2, 2) * mean * mean.transpose();
   const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(scatter).eigenvalues()(0);
-  Verdict good = AtLeastZero(least - 0.5 * a.radius * a.radius, kSlack);
+  Tribool good = AtLeastZero(least - 0.5 * a.radius * a.radius, kSlack);
   good = Both(good, AtLeastZero(0.7 * a.radius - mean.cwiseAbs().maxCoeff(), kSlack));
   good = Both(good, AtLeastZero(M(2, 2) - 4.5, kSlack));
-  if (certain == Verdict::kEither) return std::nullopt;
-  if (good == Verdict::kNo) return 0.0;
+  if (certain == Tribool::kEither) return std::nullopt;
+  if (good == Tribool::kNo) return 0.0;
   const Eigen::Vector3d k = M.fullPivLu().solve(right);
   double squared_error = 0.0;
   double squares = 0.0;  // The kernel subtracts sums of this size.
@@ -127,8 +127,8 @@ inline std::optional<double> FillPixel(const FillRowArgs& a, int x) {
   const double allowed = 1.3 * a.noise_at_1m * nearest;
   good = Both(good, AtLeastZero(allowed * allowed - squared_error / M(2, 2),
                                 10.0 * testing::kSinglePrecision * (squares + allowed * allowed)));
-  if (good == Verdict::kNo) return 0.0;
-  if (good == Verdict::kEither) return std::nullopt;
+  if (good == Tribool::kNo) return 0.0;
+  if (good == Tribool::kEither) return std::nullopt;
   return nearest / (1.0 + k.z());
 }
 

@@ -13,11 +13,11 @@ namespace isotherm::reference {
 
 using testing::AtLeastZero;
 using testing::Both;
-using testing::Verdict;
+using testing::Tribool;
 
 /// Holds what SurfaceMapRow must make of a pixel.
 struct MapPixel {
-  Verdict has_normal = Verdict::kNo;
+  Tribool has_normal = Tribool::kNo;
   Eigen::Vector3d p, n;
   double n_slack = 0.0;
 };
@@ -39,9 +39,9 @@ inline MapPixel MakeMapPixel(const SurfaceMapArgs& a, int x, int y) {
   const Eigen::Vector3d down = vertex(x, y + a.reach);
   const double z = result.p.z();
   const double slack = testing::kSinglePrecision * (z + 1e-3);
-  result.has_normal = z > 0.0 ? Verdict::kYes : Verdict::kNo;
+  result.has_normal = z > 0.0 ? Tribool::kYes : Tribool::kNo;
   for (const double neighbour : {left.z(), right.z(), up.z(), down.z()}) {
-    if (!(neighbour > 0.0)) result.has_normal = Verdict::kNo;
+    if (!(neighbour > 0.0)) result.has_normal = Tribool::kNo;
     result.has_normal =
         Both(result.has_normal, AtLeastZero(a.max_step * z - std::abs(neighbour - z), slack));
   }

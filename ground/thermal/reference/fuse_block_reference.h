@@ -16,12 +16,12 @@ namespace isotherm::reference {
 
 using testing::AtLeastZero;
 using testing::Both;
-using testing::Verdict;
+using testing::Tribool;
 
 /// Holds what FuseBlock must do with one voxel.
 struct VoxelFusion {
-  Verdict considered = Verdict::kNo;
-  Verdict assigned = Verdict::kNo;
+  Tribool considered = Tribool::kNo;
+  Tribool assigned = Tribool::kNo;
   double code = 0.0;  ///< Code of the temperature, before rounding.
   double slack = 0.0;
   std::int32_t classes = 0;
@@ -38,23 +38,23 @@ inline constexpr double kPixelError = 1e-4;       ///< Of a projection.
 inline constexpr double kStepsPerKelvin = 1.0 / 0.025;
 
 /// kEither: too near the border of two pixels to say which.
-inline Verdict FindPixel(const FusionKernelArgs& a, const Eigen::Vector3d& p, PixelHit& hit) {
+inline Tribool FindPixel(const FusionKernelArgs& a, const Eigen::Vector3d& p, PixelHit& hit) {
   constexpr double kNearPixelBorder = 2e-3;  // Pixels.
-  if (!(p.z() > 0.0)) return Verdict::kNo;
+  if (!(p.z() > 0.0)) return Tribool::kNo;
   const double u = a.fx * p.x() / p.z() + a.cx;
   const double v = a.fy * p.y() / p.z() + a.cy;
   const double column = std::floor(u + 0.5);
   const double row = std::floor(v + 0.5);
   const double to_border =
       std::min(std::abs(u + 0.5 - std::round(u + 0.5)), std::abs(v + 0.5 - std::round(v + 0.5)));
-  if (to_border < kNearPixelBorder) return Verdict::kEither;
-  if (!(column >= 0.0 && column < a.width && row >= 0.0 && row < a.height)) return Verdict::kNo;
+  if (to_border < kNearPixelBorder) return Tribool::kEither;
+  if (!(column >= 0.0 && column < a.width && row >= 0.0 && row < a.height)) return Tribool::kNo;
   hit = {static_cast<int>(row) * a.width + static_cast<int>(column), u - column, v - row};
-  return Verdict::kYes;
+  return Tribool::kYes;
 }
 
 /// Whether the voxel lies near where its line of sight meets the plane of the pixel's surface.
-inline Verdict IsNearPlane(const FusionKernelArgs& a, const Eigen::Vector3d& p,
+inline Tribool IsNearPlane(const FusionKernelArgs& a, const Eigen::Vector3d& p,
                            const PixelHit& hit) {
   const double per_u = static_cast<std::int16_t>(a.planes[hit.index] & PixelPlane::kUMask);
   const double per_v = a.planes[hit.index] >> PixelPlane::kVShift;
@@ -78,7 +78,7 @@ inline void AssessCode(const ThermalPixel& pixel, const PixelHit& hit, VoxelFusi
 }
 
 /// Algorithm 6; kEither where the rounding of codes, which the kernel compares, decides.
-inline Verdict Replaces(const VoxelFusion& fusion, ThermalVoxel old, SigmaPair sigma) {
+inline Tribool Replaces(const VoxelFusion& fusion, ThermalVoxel old, SigmaPair sigma) {
   const ThermalVoxel conditions{static_cast<std::uint32_t>(fusion.classes)};
   const double apart = std::abs(fusion.code - static_cast<double>(ThermalLayout::Code(old.bits)));
   const auto replaces = [&](double steps_apart) {
@@ -86,17 +86,17 @@ inline Verdict Replaces(const VoxelFusion& fusion, ThermalVoxel old, SigmaPair s
     return ReplacesMeasurement(conditions.distance_class(), conditions.angle_class(),
                                conditions.motion_class(), old, sigma);
   };
-  if (replaces(std::max(0.0, apart - fusion.slack))) return Verdict::kYes;
-  return replaces(apart + fusion.slack) ? Verdict::kEither : Verdict::kNo;
+  if (replaces(std::max(0.0, apart - fusion.slack))) return Tribool::kYes;
+  return replaces(apart + fusion.slack) ? Tribool::kEither : Tribool::kNo;
 }
 
 /// Of temperatures under good conditions the lowest is kept.
 inline void KeepLowest(ThermalVoxel old, VoxelFusion& result) {
   const double margin = static_cast<double>(ThermalLayout::Code(old.bits)) - result.code;
   if (std::abs(margin) <= result.slack + 0.5) {
-    result.assigned = result.assigned == Verdict::kNo ? Verdict::kNo : Verdict::kEither;
+    result.assigned = result.assigned == Tribool::kNo ? Tribool::kNo : Tribool::kEither;
   } else if (margin < 0.0) {
-    result.assigned = Verdict::kNo;
+    result.assigned = Tribool::kNo;
   }
 }
 
@@ -106,8 +106,8 @@ inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   if (!voxel.observed() || std::abs(TsdfLayout::TsdfCode(voxel.bits)) > a.max_tsdf_code)
     return result;
   PixelHit hit;
-  const Verdict found = FindPixel(a, p, hit);
-  if (found != Verdict::kYes) {
+  const Tribool found = FindPixel(a, p, hit);
+  if (found != Tribool::kYes) {
     result.considered = result.assigned = found;
     return result;
   }
@@ -122,9 +122,9 @@ inline VoxelFusion FuseVoxel(const FusionKernelArgs& a, const Eigen::Vector3d& p
   const bool lowest = a.keep_lowest && result.classes == static_cast<std::int32_t>(kAllGood);
   if (a.validate) {
     const SigmaPair sigma{.now = ThermalPixel::Sigma(pixel.flags), .before = old_sigma};
-    const Verdict replaces = Replaces(result, old, lowest ? SigmaPair{} : sigma);
+    const Tribool replaces = Replaces(result, old, lowest ? SigmaPair{} : sigma);
     result.assigned = Both(result.assigned, replaces);
-    if (result.assigned == Verdict::kNo && replaces != Verdict::kYes) {
+    if (result.assigned == Tribool::kNo && replaces != Tribool::kYes) {
       result.code = result.slack = 0.0;
       return result;
     }

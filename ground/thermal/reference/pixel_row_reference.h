@@ -15,7 +15,7 @@ namespace isotherm::reference {
 
 using testing::AtLeastZero;
 using testing::Both;
-using testing::Verdict;
+using testing::Tribool;
 
 /// Rounding of a sum of a few products in single precision.
 inline constexpr double kPixelPrecision = 2e-6;
@@ -28,9 +28,9 @@ struct Pixel {
   double plane_slack = 0.0;
   double smear_px = 0.0;
   double sigma_k = 0.0;
-  Verdict surface = Verdict::kNo, seen = Verdict::kNo;
-  Verdict occluded = Verdict::kNo, assignable = Verdict::kNo;
-  Verdict sharp = Verdict::kNo, still = Verdict::kNo, even = Verdict::kNo;
+  Tribool surface = Tribool::kNo, seen = Tribool::kNo;
+  Tribool occluded = Tribool::kNo, assignable = Tribool::kNo;
+  Tribool sharp = Tribool::kNo, still = Tribool::kNo, even = Tribool::kNo;
   double cosine = 0.0;
   int distance_class = 0;
   int angle_class = 0;
@@ -53,9 +53,9 @@ inline void AssessSmear(const PixelRowArgs& a, int x, Pixel& result) {
   result.still = AtLeastZero(a.smear_good_px - smear_px, kRelative * (1.0 + smear_px));
 }
 
-inline Verdict Not(Verdict v) {
-  if (v == Verdict::kEither) return v;
-  return v == Verdict::kYes ? Verdict::kNo : Verdict::kYes;
+inline Tribool Not(Tribool v) {
+  if (v == Tribool::kEither) return v;
+  return v == Tribool::kYes ? Tribool::kNo : Tribool::kYes;
 }
 
 inline int ConditionCode(double value, double good_low, double good_high, double low, double high) {
@@ -123,7 +123,7 @@ inline double SigmaOf(const PixelRowArgs& a, int x, const Pixel& pixel) {
 }
 
 /// Whether a point lies before the depth camera and within its image.
-inline Verdict SeenByDepthCamera(const PixelRowArgs& a, const Eigen::Vector3d& p) {
+inline Tribool SeenByDepthCamera(const PixelRowArgs& a, const Eigen::Vector3d& p) {
   const Eigen::Matrix3d R =
       Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(a.R_depth).cast<double>();
   const Eigen::Vector3d q = R * p + Eigen::Map<const Eigen::Vector3f>(a.t_depth).cast<double>();
@@ -179,11 +179,11 @@ inline Pixel MakePixel(const PixelRowArgs& a, int x) {
   // Codes stop at their limits, temperatures do not.
   const double error_k = slope_k * std::max(double{a.uncertainty_px}, result.smear_px);
   result.even =
-      slope_k > 400.0 ? Verdict::kNo : AtLeastZero(a.max_error_k - error_k, 1e-4 * (1.0 + error_k));
+      slope_k > 400.0 ? Tribool::kNo : AtLeastZero(a.max_error_k - error_k, 1e-4 * (1.0 + error_k));
   result.assignable = Both(result.seen, Not(result.occluded));
   result.assignable = Both(result.assignable, Both(result.sharp, result.even));
   result.assignable = Both(result.assignable, AtLeastZero(cosine, 1e-5));
-  if (std::isnan(a.celsius[x])) result.assignable = Verdict::kNo;
+  if (std::isnan(a.celsius[x])) result.assignable = Tribool::kNo;
   result.sigma_k = SigmaOf(a, x, result);
   return result;
 }

@@ -14,7 +14,7 @@ namespace isotherm::reference {
 
 using testing::AtLeastZero;
 using testing::Both;
-using testing::Verdict;
+using testing::Tribool;
 
 struct Vertex {
   Eigen::Vector3d p, n;
@@ -25,7 +25,7 @@ inline Vertex At(const SurfaceMaps& maps, int x, int y) {
           Eigen::Vector3d(maps.nx.At(x, y), maps.ny.At(x, y), maps.nz.At(x, y))};
 }
 
-inline Verdict OnOneSurface(const Vertex& a, const Vertex& b, double max_distance) {
+inline Tribool OnOneSurface(const Vertex& a, const Vertex& b, double max_distance) {
   const auto within = [&](const Eigen::Vector3d& n) {
     return AtLeastZero(max_distance - std::abs(n.dot(b.p - a.p)), testing::kSinglePrecision);
   };
@@ -34,7 +34,7 @@ inline Verdict OnOneSurface(const Vertex& a, const Vertex& b, double max_distanc
 
 /// Holds what UpsampleRow must make of a fine pixel.
 struct FinePixel {
-  Verdict has_vertex = Verdict::kYes;
+  Tribool has_vertex = Tribool::kYes;
   Vertex vertex;
   double distance_with = 0.0;     ///< If there is a vertex,
   double distance_without = 0.0;  ///< and if not.

@@ -12,12 +12,12 @@ namespace isotherm::reference {
 
 using testing::AtLeastZero;
 using testing::Both;
-using testing::Verdict;
+using testing::Tribool;
 
 /// Returns whether CullBlocks keeps a block. With `precision` 0 all sums are exact.
-inline Verdict CullBlock(const float (&planes)[kFrustumPlanes][4], const std::int32_t* block,
+inline Tribool CullBlock(const float (&planes)[kFrustumPlanes][4], const std::int32_t* block,
                          double precision) {
-  Verdict inside = Verdict::kYes;
+  Tribool inside = Tribool::kYes;
   for (const auto& plane : planes) {
     double value = plane[3];
     double magnitude = std::abs(value);

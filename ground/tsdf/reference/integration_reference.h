@@ -16,14 +16,14 @@
 namespace isotherm::reference {
 
 using testing::AtLeastZero;
-using testing::Verdict;
+using testing::Tribool;
 
 /// Holds what MakeSampleRow must make of a pixel, before it is rounded to a DepthSample.
 struct Sample {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   double weight = 0.0;
-  Verdict has_normal = Verdict::kNo;
+  Tribool has_normal = Tribool::kNo;
 };
 
 inline Sample MakeSample(const SampleRowArgs& a, int x) {
@@ -39,7 +39,7 @@ inline Sample MakeSample(const SampleRowArgs& a, int x) {
   sample.p = depth * ray;
   sample.weight = std::clamp(std::pow(kReferenceDepth / depth, 2), kMinWeight, 1.0);
   sample.has_normal = AtLeastZero(n.dot(to_camera), testing::kSinglePrecision);
-  const bool has_normal = sample.has_normal == Verdict::kYes;
+  const bool has_normal = sample.has_normal == Tribool::kYes;
   sample.n = has_normal && !a.along_ray ? n : to_camera;
   sample.weight *= has_normal ? std::min(1.0, n.dot(to_camera)) : kEdgeWeight;
   return sample;

@@ -1,4 +1,4 @@
-#include "ground/cli/result_folder.h"
+#include "ground/results/result_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "common/options/text_proto.h"
 #include "common/testing/temporary_directory.h"
-#include "ground/export/message_json.h"
+#include "ground/json/message_json.h"
 
 namespace isotherm {
 namespace {

@@ -1,4 +1,4 @@
-#include "ground/export/surface.h"
+#include "ground/mesh/surface.h"
 
 #include <gtest/gtest.h>
 

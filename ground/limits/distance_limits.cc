@@ -1,35 +1,11 @@
-#include "common/radiometry/optics.h"
+#include "ground/limits/distance_limits.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "common/base/check.h"
-
 namespace isotherm {
-
-DepthOfField ComputeDepthOfField(double focal_length_m, double f_number, double circle_m,
-                                 double focus_m) {
-  CHECK(focal_length_m > 0.0 && f_number > 0.0 && circle_m > 0.0 && focus_m > focal_length_m);
-  // Symbols as in (2.20): D, f, N, c.
-  const double D = focus_m;
-  const double f2 = focal_length_m * focal_length_m;
-  const double cND = circle_m * f_number * (D - focal_length_m);
-  return {D * f2 / (f2 + cND),
-          f2 > cND ? D * f2 / (f2 - cND) : std::numeric_limits<double>::infinity()};
-}
-
-double HyperfocalDistance(double focal_length_m, double f_number, double circle_m) {
-  return focal_length_m * focal_length_m / (circle_m * f_number) + focal_length_m;
-}
-
-PixelFootprint FootprintOfPixel(double ifov_rad, double distance_m, double angle_rad) {
-  const double across_m = ifov_rad * distance_m;
-  return {across_m, across_m / std::cos(angle_rad)};
-}
 
 Result<DistanceLimits> LimitDistances(const DepthOfField& sharp, double ifov_rad, double detail_m,
                                       double angle_rad, const DetailPixels& pixels) {

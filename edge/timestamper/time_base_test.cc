@@ -1,4 +1,4 @@
-#include "edge/pipeline/time_base.h"
+#include "edge/timestamper/time_base.h"
 
 #include <gtest/gtest.h>
 

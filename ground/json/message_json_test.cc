@@ -1,4 +1,4 @@
-#include "ground/export/message_json.h"
+#include "ground/json/message_json.h"
 
 #include <gtest/gtest.h>
 

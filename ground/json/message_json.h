@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "common/base/status.h"
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 
 namespace google::protobuf {
 class Message;

@@ -1,4 +1,4 @@
-#include "ground/cli/uncertainty_text.h"
+#include "ground/evaluation/uncertainty_text.h"
 
 #include <fmt/format.h>
 

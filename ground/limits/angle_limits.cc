@@ -1,4 +1,4 @@
-#include "common/radiometry/angle_limits.h"
+#include "ground/limits/angle_limits.h"
 
 #include <fmt/format.h>
 

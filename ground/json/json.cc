@@ -1,4 +1,4 @@
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 
 #include <nlohmann/json.hpp>
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "ground/evaluation/uncertainty_evaluation.h"
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 
 namespace isotherm {
 

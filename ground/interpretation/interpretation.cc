@@ -1,4 +1,4 @@
-#include "ground/export/interpretation.h"
+#include "ground/interpretation/interpretation.h"
 
 #include <fmt/format.h>
 

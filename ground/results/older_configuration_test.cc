@@ -1,12 +1,12 @@
 // What an earlier version wrote into its results is read as this version's options.
 
-#include "ground/cli/older_configuration.h"
+#include "ground/results/older_configuration.h"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "ground/export/message_json.h"
+#include "ground/json/message_json.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {

@@ -1,4 +1,4 @@
-#include "common/radiometry/optics.h"
+#include "ground/limits/distance_limits.h"
 
 #include <gtest/gtest.h>
 

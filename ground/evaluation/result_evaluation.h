@@ -9,7 +9,7 @@
 #include "ground/evaluation/temperature_evaluation.h"
 #include "ground/evaluation/thermal_coverage.h"
 #include "ground/evaluation/trajectory_evaluation.h"
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 
 namespace isotherm {
 

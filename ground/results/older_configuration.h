@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ground/export/json.h"
+#include "ground/json/json.h"
 
 namespace google::protobuf {
 class Descriptor;

@@ -1,4 +1,4 @@
-#include "ground/export/marching_cubes.h"
+#include "ground/mesh/marching_cubes.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "ground/export/surface.h"
+#include "ground/mesh/surface.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "common/base/check.h"
 #include "common/concurrency/thread_pool.h"
-#include "ground/export/marching_cubes.h"
+#include "ground/mesh/marching_cubes.h"
 #include "ground/thermal/condition_record.h"
 #include "ground/thermal/temperature_review.h"
 #include "ground/tsdf/raycaster.h"

@@ -1,4 +1,4 @@
-#include "ground/cli/result_evaluation.h"
+#include "ground/evaluation/result_evaluation.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,11 @@
 #include "common/base/units.h"
 #include "common/dataset/trajectory.h"
 #include "common/rig/rig_calibration.h"
-#include "ground/cli/result_folder.h"
-#include "ground/cli/uncertainty_text.h"
 #include "ground/evaluation/point_sets.h"
 #include "ground/evaluation/true_poses.h"
+#include "ground/evaluation/uncertainty_text.h"
+#include "ground/options/ground_options.pb.h"
+#include "ground/results/result_folder.h"
 #include "ground/thermal/thermal_options.h"
 
 namespace isotherm {

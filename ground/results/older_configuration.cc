@@ -1,4 +1,4 @@
-#include "ground/cli/older_configuration.h"
+#include "ground/results/older_configuration.h"
 
 #include <google/protobuf/descriptor.h>
 

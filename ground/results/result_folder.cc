@@ -1,4 +1,4 @@
-#include "ground/cli/result_folder.h"
+#include "ground/results/result_folder.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 
 #include "common/dataset/text_lines.h"
 #include "common/dataset/trajectory.h"
-#include "ground/cli/older_configuration.h"
-#include "ground/export/message_json.h"
+#include "ground/json/message_json.h"
+#include "ground/results/older_configuration.h"
 
 namespace isotherm {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "common/frame/image.h"
 #include "common/radiometry/radiometry.h"
-#include "ground/export/json.h"
-#include "ground/export/surface.h"
+#include "ground/json/json.h"
+#include "ground/mesh/surface.h"
 #include "ground/renderer/view_maps.h"
 #include "ground/surface/surface_maps.h"
 
