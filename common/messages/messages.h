@@ -61,6 +61,8 @@ struct StreamMode {
   Encoding encoding = Encoding::kRaw16;
   std::string serial{};  ///< Serial number of the camera; empty = unknown.
   std::string model{};   ///< Driver and model, for people; empty = not a camera, or unknown.
+
+  friend bool operator==(const StreamMode&, const StreamMode&) = default;
 };
 
 /// "640x480@30".

@@ -66,6 +66,8 @@ class RecordingWriter {
                                                          const RecordingOptions& options);
   virtual ~RecordingWriter() = default;
 
+  /// A rig that follows another one holds for the whole recording: a camera that came late is in
+  /// it.
   virtual Status Write(const Rig& rig) = 0;
   virtual Status Write(const EncodedDepthFrame& frame,
                        const std::optional<CaptureTime>& arrival) = 0;
@@ -141,7 +143,8 @@ class RecordingReader {
   virtual ~RecordingReader() = default;
 
   virtual const RecordingInfo& info() const = 0;
-  /// The first rig calibration in the file that can be read; kNotFound if it has none.
+  /// The rig calibration: the last one that was written, or if it cannot be read the first that
+  /// can; kNotFound if there is none.
   virtual Result<Rig> ReadRig() = 0;
   /// Next item in log-time order; nullopt at the end. kDataLoss for a message that cannot be read:
   /// the next call goes on behind it. kResourceExhausted once, before the end, if the file takes

@@ -130,18 +130,10 @@ class McapRecordingReader final : public RecordingReader {
   const RecordingInfo& info() const override { return info_; }
 
   Result<Rig> ReadRig() override {
-    Status problem = NotFound("the recording has no rig calibration");
-    if (!info_.messages_by_topic.contains(std::string(rec::kRigTopic))) return Err(problem);
-    mcap::MessageStream stream(*source_, index_);
-    while (true) {
-      const auto message = stream.Next();
-      if (!message) continue;  // A damaged chunk: there is another copy behind it.
-      if (!message->has_value()) return Err(problem);
-      if (ContentOfChannel((*message)->channel_id) != Content::kRig) continue;
-      Result<Rig> rig = ParseRig(**message);
-      if (rig) return rig;
-      if (problem.code() == StatusCode::kNotFound) problem = rig.error();
+    if (const std::optional<std::uint64_t> since = RigSince()) {
+      if (Result<Rig> newest = FirstRig(*since)) return newest;
     }
+    return FirstRig(0);
   }
 
   Result<std::optional<RecordedItem>> Next() override {
@@ -164,6 +156,35 @@ class McapRecordingReader final : public RecordingReader {
   }
 
  private:
+  /// The log time of the first copy of a rig that was written anew; nullopt if none was.
+  std::optional<std::uint64_t> RigSince() const {
+    const auto metadata = info_.metadata.find(std::string(kRigMetadataName));
+    if (metadata == info_.metadata.end()) return std::nullopt;
+    const auto value = metadata->second.find(std::string(kRigSince));
+    if (value == metadata->second.end()) return std::nullopt;
+    const std::string& text = value->second;
+    std::uint64_t since = 0;
+    const auto end = std::from_chars(text.data(), text.data() + text.size(), since);
+    return end.ec == std::errc() ? std::optional(since) : std::nullopt;
+  }
+
+  /// The first rig at or after a log time that can be read.
+  Result<Rig> FirstRig(std::uint64_t since) const {
+    Status problem = NotFound("the recording has no rig calibration");
+    if (!info_.messages_by_topic.contains(std::string(rec::kRigTopic))) return Err(problem);
+    mcap::MessageStream stream(*source_, index_);
+    if (since > 0) stream.Seek(since);
+    while (true) {
+      const auto message = stream.Next();
+      if (!message) continue;  // A damaged chunk: there is another copy behind it.
+      if (!message->has_value()) return Err(problem);
+      if (ContentOfChannel((*message)->channel_id) != Content::kRig) continue;
+      Result<Rig> rig = ParseRig(**message);
+      if (rig) return rig;
+      if (problem.code() == StatusCode::kNotFound) problem = rig.error();
+    }
+  }
+
   static Result<Rig> ParseRig(const mcap::Message& message) {
     Result<rec::RigRecord> record = ParseAs<rec::RigRecord>(message);
     if (!record) return Err(record.error().WithContext("rig calibration"));

@@ -19,4 +19,9 @@ inline constexpr std::string_view kRecordingMetadataName = "isotherm.recording";
 inline constexpr int kRecordingMajorVersion = 1;
 inline constexpr int kRecordingMinorVersion = 0;
 
+/// Metadata of a recording whose rig was written anew: the log time of the first copy that holds,
+/// ns.
+inline constexpr std::string_view kRigMetadataName = "isotherm.rig";
+inline constexpr std::string_view kRigSince = "since_ns";
+
 }  // namespace isotherm

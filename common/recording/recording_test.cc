@@ -114,6 +114,30 @@ TEST_P(RecordingTest, TemperaturesComeBackInTheirScale) {
   EXPECT_EQ(recorded[0].frame.scale, thermal.scale);
 }
 
+TEST_P(RecordingTest, TheRigThatWasWrittenLastHolds) {
+  Rig rig = MakeRig();
+  for (const bool has_frames_behind : {false, true}) {
+    *disk_ = {};
+    auto writer = WriterTo(disk_, options_);
+    ASSERT_TRUE(writer->Write(rig).ok());
+    // Copies of the first one stand in between.
+    for (int i = 0; i < 3; ++i)
+      ASSERT_TRUE(writer->Write(MakeDepth(i, kScanStart + i * 12s), std::nullopt).ok());
+    Rig anew = rig;
+    anew.thermal_scale = {0.02, 12.5};
+    ASSERT_TRUE(writer->Write(anew).ok());
+    if (has_frames_behind) {
+      ASSERT_TRUE(writer->Write(MakeDepth(3, kScanStart + 60s), std::nullopt).ok());
+    }
+    ASSERT_TRUE(writer->Close().ok());
+    const auto reader = Reader();
+    const Result<Rig> read = reader->ReadRig();
+    ASSERT_TRUE(read.has_value()) << read.error().message();
+    EXPECT_EQ(read->thermal_scale, anew.thermal_scale) << has_frames_behind;
+    EXPECT_EQ(ReadAll(*reader).All<RecordedDepth>().size(), has_frames_behind ? 4U : 3U);
+  }
+}
+
 TEST_P(RecordingTest, AScaleThatCannotBeIsDamage) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const std::pair<RadiometricScale, const char*> cases[] = {

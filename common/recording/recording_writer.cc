@@ -24,10 +24,17 @@ class McapRecordingWriter final : public RecordingWriter {
   ~McapRecordingWriter() override { static_cast<void>(Close()); }
 
   Status Write(const Rig& rig) override {
-    // Before the first frame nothing says what time it is.
+    const bool follows_another = rig_written_at_.has_value();
     rig_ = rig;
     rig_written_at_.reset();
-    return last_time_ ? WriteRig(*last_time_) : OkStatus();
+    // Before the first frame nothing says what time it is.
+    if (!last_time_) return OkStatus();
+    if (!follows_another) return WriteRig(*last_time_);
+    // Behind all copies of the one before; the reader must not have to search the file for it.
+    const CaptureTime time = *last_time_ + Nanoseconds(1);
+    ISOTHERM_RETURN_IF_ERROR(WriteRig(time));
+    return WriteMetadata(kRigMetadataName,
+                         {{std::string(kRigSince), fmt::format("{}", ToNanoseconds(time))}});
   }
 
   Status Write(const EncodedDepthFrame& frame, const std::optional<CaptureTime>& arrival) override {

@@ -100,9 +100,9 @@ Result<std::unique_ptr<Spool>> MakeSpool(const EdgeOptions& options, const EdgeS
   const auto files = std::make_shared<RecordingFiles>(
       RecordingDescription{*path, FromSeconds(options.spool().expert().flush_interval_s()),
                            start.rig, RecordingMetadata(options, start)});
-  auto spool = std::make_unique<Spool>(SpoolParts{[files] { return files->Next(); },
-                                                  [path] { return FreeDiskBytes(*path); },
-                                                  options.spool(), clock, counters});
+  auto spool = std::make_unique<Spool>(SpoolParts{
+      [files] { return files->Next(); }, [path] { return FreeDiskBytes(*path); }, options.spool(),
+      clock, counters, [files](const RigUpdate& update) { files->Update(update); }});
   if (options.exit_at_end()) {
     if (Status begun = spool->Begin(); !begun.ok()) return Err(begun);
   }
@@ -228,7 +228,8 @@ int Capture(const EdgeOptions& options, const EdgeSession& start, FrameSource& s
   pipeline.StartCapture();
   Housekeeping housekeeping(clock, pipeline, publisher, counters, health,
                             options.display().image_file());
-  RigAnnouncer announcer(options, start, health, publisher);
+  RigAnnouncer announcer(options, start, health, publisher,
+                         [&pipeline](RigUpdate update) { pipeline.RecordRig(std::move(update)); });
   RunUntilStopped(options, pipeline, housekeeping, announcer, stop);
   NotifyStopping();
   return Leave(options, ending, pipeline, housekeeping, publisher, clock, stop);

@@ -9,8 +9,13 @@
 namespace isotherm {
 
 RigAnnouncer::RigAnnouncer(const EdgeOptions& options, EdgeSession start,
-                           const CameraHealth& health, Publisher& publisher)
-    : options_(options), health_(health), publisher_(publisher), announced_(std::move(start)) {}
+                           const CameraHealth& health, Publisher& publisher,
+                           std::function<void(RigUpdate)> record)
+    : options_(options),
+      health_(health),
+      publisher_(publisher),
+      record_(std::move(record)),
+      announced_(std::move(start)) {}
 
 bool RigAnnouncer::IsAnnounced(Sensor sensor) const {
   return std::ranges::any_of(announced_.cameras, [sensor](const CameraDescription& camera) {
@@ -26,6 +31,7 @@ void RigAnnouncer::Tick() {
     if (announced_.rig && sensor == Sensor::kThermal && !camera->counts_only)
       TakeScale(camera->thermal_scale, *announced_.rig);
     announced_.cameras.push_back(std::move(*camera));
+    record_({announced_.rig, CameraMetadata(announced_.cameras)});
     is_due_ = true;
   }
   if (!is_due_) return;

@@ -33,21 +33,26 @@ class RigAnnouncerTest : public ::testing::Test {
     camera.thermal_scale = kHotScale;
     return camera;
   }
-  RigAnnouncer Make() { return {options_, start_, health_, publisher_}; }
+  RigAnnouncer Make() {
+    return {options_, start_, health_, publisher_,
+            [this](RigUpdate update) { recorded_.push_back(std::move(update)); }};
+  }
 
   EdgeOptions options_;
   EdgeSession start_;
   CameraHealth health_;
   FakePublisher publisher_;
+  std::vector<RigUpdate> recorded_;
 };
 
 TEST_F(RigAnnouncerTest, WhatWasThereAtTheStartIsNotAnnouncedAgain) {
   RigAnnouncer announcer = Make();
   announcer.Tick();
   EXPECT_TRUE(publisher_.announced().empty());
+  EXPECT_TRUE(recorded_.empty());
 }
 
-TEST_F(RigAnnouncerTest, ACameraThatComesLateIsAnnouncedOnceWithItsOwnScale) {
+TEST_F(RigAnnouncerTest, ACameraThatComesLateIsAnnouncedAndRecordedOnceWithItsOwnScale) {
   EXPECT_EQ(DescribeRig(options_, start_).thermal.encoding, Encoding::kThermalRans)
       << "at the start nothing but the calibration is known";
   RigAnnouncer announcer = Make();
@@ -73,6 +78,10 @@ TEST_F(RigAnnouncerTest, ACameraThatComesLateIsAnnouncedOnceWithItsOwnScale) {
   EXPECT_EQ(announced.thermal.serial, "T1");
   EXPECT_EQ(announced.depth.serial, "D1") << "and what was known stays";
   EXPECT_EQ(announced.session, start_.session());
+  ASSERT_EQ(recorded_.size(), 1U);
+  EXPECT_EQ(recorded_[0].rig->thermal_scale, kHotScale);
+  EXPECT_EQ(recorded_[0].cameras.at("thermal_serial"), "T1");
+  EXPECT_EQ(recorded_[0].cameras.at("depth_serial"), "D1");
 }
 
 TEST_F(RigAnnouncerTest, WhatTheLinkDoesNotTakeIsTriedAgain) {
@@ -86,6 +95,7 @@ TEST_F(RigAnnouncerTest, WhatTheLinkDoesNotTakeIsTriedAgain) {
   for (int i = 0; i < 3; ++i) announcer.Tick();
   ASSERT_EQ(publisher_.announced().size(), 1U);
   EXPECT_EQ(publisher_.announced()[0].rig.thermal_scale, kHotScale);
+  EXPECT_EQ(recorded_.size(), 1U) << "the recording needs no link";
 }
 
 TEST_F(RigAnnouncerTest, ACameraOfCountsLeavesTheCalibrationsScale) {

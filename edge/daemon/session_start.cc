@@ -36,20 +36,6 @@ Encoding EncodingOf(const CameraDescription& camera) {
   return camera.counts_only ? Encoding::kCounts16 : TemperatureEncoding(camera.thermal_scale);
 }
 
-/// Returns what the recording says of the cameras.
-std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
-  std::map<std::string, std::string> metadata;
-  for (const CameraDescription& camera : cameras) {
-    const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
-    metadata[name] = ModelText(camera);
-    metadata[name + "_serial"] = camera.serial;
-    metadata[name + "_mode"] =
-        fmt::format("{}x{}@{:g}", camera.width, camera.height, camera.rate_hz);
-    metadata[name + "_settings"] = camera.settings;
-  }
-  return metadata;
-}
-
 }  // namespace
 
 std::optional<Rig> AsPublished(std::optional<Rig> rig, const FrameSource& source) {
@@ -89,6 +75,19 @@ RigDescription DescribeRig(const EdgeOptions& options, const EdgeSession& start)
               EncodingOf(camera), camera.serial, ModelText(camera)};
   }
   return description;
+}
+
+std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
+  std::map<std::string, std::string> metadata;
+  for (const CameraDescription& camera : cameras) {
+    const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
+    metadata[name] = ModelText(camera);
+    metadata[name + "_serial"] = camera.serial;
+    metadata[name + "_mode"] =
+        fmt::format("{}x{}@{:g}", camera.width, camera.height, camera.rate_hz);
+    metadata[name + "_settings"] = camera.settings;
+  }
+  return metadata;
 }
 
 RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/messages/messages.h"
@@ -35,7 +37,9 @@ struct EdgeSession {
 
 /// Returns what the link says of the session.
 RigDescription DescribeRig(const EdgeOptions& options, const EdgeSession& start);
-/// Returns what the recording says of it.
+/// Returns what a recording says of the cameras.
+std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras);
+/// Returns what the recording says of the session.
 RecordingDescription::Metadata RecordingMetadata(const EdgeOptions& options,
                                                  const EdgeSession& start);
 

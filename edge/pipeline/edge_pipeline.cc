@@ -118,7 +118,7 @@ Status EdgePipeline::StopRecording() {
   spool_thread_.request_stop();
   if (spool_thread_.joinable()) spool_thread_.join();
   if (!spool_) return recording_status_;
-  RecordFeedback();
+  RecordMessages();
   if (feedback_to_record_.dropped() > 0) {
     LOG(Spool, Warning) << "feedback not recorded, messages=" << feedback_to_record_.dropped();
   }
@@ -311,13 +311,18 @@ void EdgePipeline::Record(const std::stop_token& stop) {
     const std::optional<EncodedFramePtr> frame = spool_queue_.PopFor(kIdle, stop);
     if (!frame && stop.stop_requested()) return;
     const ThreadProgress::Work step(recording_, clock_.SteadyNow());
-    RecordFeedback();
+    RecordMessages();
     if (frame) spool_->Add(**frame);
     spool_->Tend(/*idle=*/!frame);
   }
 }
 
-void EdgePipeline::RecordFeedback() {
+void EdgePipeline::RecordRig(RigUpdate update) {
+  if (spool_) rig_to_record_.Set(std::move(update));
+}
+
+void EdgePipeline::RecordMessages() {
+  if (const std::optional<RigUpdate> update = rig_to_record_.Take()) spool_->Add(*update);
   while (feedback_to_record_.size() > 0) {
     const std::optional<ReceivedFeedback> received = feedback_to_record_.Pop({});
     spool_->Add(received->feedback, received->arrival);

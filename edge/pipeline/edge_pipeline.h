@@ -72,6 +72,8 @@ class EdgePipeline {
   /// The second part, which the recording needs: what follows needs the link.
   Status StopRecording();
 
+  /// Describes the rig anew in the recording, if there is one. Thread-safe.
+  void RecordRig(RigUpdate update);
   /// Answers what the ground has asked for since the last call.
   void AnswerCommands();
 
@@ -117,7 +119,7 @@ class EdgePipeline {
   void NoteStamped(const RawFrame& raw, const Stamp& stamp);
   FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
   void Record(const std::stop_token& stop);
-  void RecordFeedback();
+  void RecordMessages();
   void Publish(const std::stop_token& stop);
   /// On the capture thread, which alone talks to the camera.
   void ServeNucCommands();
@@ -166,6 +168,7 @@ class EdgePipeline {
   FeedbackMonitor feedback_;
   /// Feedback of several seconds, for the spool thread to take along with the frames.
   BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
+  LatestValue<RigUpdate> rig_to_record_;  ///< The same for a camera that came late.
   BoundedQueue<CommandResult> nuc_answers_{64, OverflowPolicy::kDropOldest};
   // Commands that come faster than they can be executed are refused, the oldest first.
   const std::function<void(const Command&)> refuse_ = [this](const Command& command) {

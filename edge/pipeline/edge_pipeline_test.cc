@@ -26,6 +26,16 @@ TEST_F(EdgePipelineTest, FeedbackIsKeptAndRecordedWithTheScan) {
   EXPECT_EQ(recording_.messages.size(), 2U);
 }
 
+TEST_F(EdgePipelineTest, ARigThatIsDescribedAnewIsRecordedWithTheScan) {
+  Start("5*d");
+  RigUpdate update;
+  update.rig.emplace().thermal_serial = "T1";
+  pipeline_->RecordRig(update);
+  EXPECT_TRUE(RunToTheEnd().ok());
+  ASSERT_EQ(recording_.rigs.size(), 1U);
+  EXPECT_EQ(recording_.rigs[0].thermal_serial, "T1");
+}
+
 TEST_F(EdgePipelineTest, EveryFrameIsRecordedAndPublishedOnceAndInOrder) {
   Start("100*d 130*t 50*d");
   EXPECT_TRUE(RunToTheEnd().ok());

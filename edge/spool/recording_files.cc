@@ -7,6 +7,7 @@
 #include "common/recording/recording_parts.h"
 
 namespace isotherm {
+
 Result<RecordingFile> RecordingFiles::Next() {
   const bool is_device = IsDevice(description_.path);
   const int part = is_device ? 1 : NextFreePart(description_.path, part_);
@@ -27,6 +28,11 @@ Result<RecordingFile> RecordingFiles::Next() {
     return Err(written);
   }
   return RecordingFile{path, std::move(*writer)};
+}
+
+void RecordingFiles::Update(const RigUpdate& update) {
+  if (update.rig) description_.rig = update.rig;
+  description_.metadata["cameras"] = update.cameras;
 }
 
 Status RecordingFiles::WriteBeginning(RecordingWriter& writer) const {

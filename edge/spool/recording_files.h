@@ -30,11 +30,13 @@ class RecordingFiles {
       : description_(std::move(description)) {}
 
   Result<RecordingFile> Next();
+  /// What has changed stands at the beginning of the files that follow.
+  void Update(const RigUpdate& update);
 
  private:
   Status WriteBeginning(RecordingWriter& writer) const;
 
-  const RecordingDescription description_;
+  RecordingDescription description_;
   int part_ = 0;
 };
 

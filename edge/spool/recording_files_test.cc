@@ -51,6 +51,26 @@ TEST_F(RecordingFilesTest, EachFileHasTheWholeBeginning) {
   }
 }
 
+TEST_F(RecordingFilesTest, ACameraThatCameLateIsInTheFilesThatFollow) {
+  RecordingFiles files(Description());
+  ASSERT_TRUE(files.Next().has_value());
+  RigUpdate update;
+  update.rig.emplace().thermal =
+      CameraModel{.width = 382, .height = 288, .fx = 500.0, .fy = 500.0, .cx = 190.5, .cy = 143.5};
+  update.rig->thermal_scale = {0.02, 0.0};
+  update.cameras = {{"thermal", "optris-sdk"}};
+  files.Update(update);
+  Result<RecordingFile> file = files.Next();
+  ASSERT_TRUE(file.has_value());
+  ASSERT_TRUE(file->writer->Close().ok());
+  const auto reader = RecordingReader::Open(file->path);
+  ASSERT_TRUE(reader.has_value());
+  const Result<Rig> rig = (*reader)->ReadRig();
+  ASSERT_TRUE(rig.has_value()) << rig.error().message();
+  EXPECT_EQ(rig->thermal_scale, update.rig->thermal_scale);
+  EXPECT_EQ((*reader)->info().metadata.at("cameras"), update.cameras);
+}
+
 TEST_F(RecordingFilesTest, F37AFileThatExistsStaysAsItIs) {
   std::ofstream(path_) << "precious";
   RecordingFiles files(Description());

@@ -53,6 +53,16 @@ void Spool::Add(const EncodedFrame& frame) {
   UpdateCounters();
 }
 
+void Spool::Add(const RigUpdate& update) {
+  if (parts_.update) parts_.update(update);
+  if (IsRecording()) Note(WriteRig(update));
+}
+
+Status Spool::WriteRig(const RigUpdate& update) {
+  if (update.rig) ISOTHERM_RETURN_IF_ERROR(file_->writer->Write(*update.rig));
+  return file_->writer->WriteMetadata("cameras", update.cameras);
+}
+
 void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
   if (IsRecording()) Note(WriteFeedback(feedback, arrival, *file_->writer, newest_));
 }

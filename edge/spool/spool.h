@@ -30,6 +30,12 @@ struct RecordingFile {
   std::unique_ptr<RecordingWriter> writer;
 };
 
+/// Says what a camera that came late has changed.
+struct RigUpdate {
+  std::optional<Rig> rig;
+  std::map<std::string, std::string> cameras;  ///< Metadata.
+};
+
 /// Holds what a spool is put together from. `clock` and `counters` must outlive it.
 struct SpoolParts {
   /// Begins the recording's next file, with all that stands at a file's beginning.
@@ -39,6 +45,8 @@ struct SpoolParts {
   const SpoolOptions& options;
   const Clock& clock;
   FrameCounters& counters;
+  /// Takes what stands at the beginning of the next files from now on. May be empty.
+  std::function<void(const RigUpdate&)> update{};
 };
 
 /// Holds the state of the recording.
@@ -69,6 +77,8 @@ class Spool {
   /// ok. Otherwise Tend() begins it, again and again if need be.
   Status Begin();
   void Add(const EncodedFrame& frame);
+  /// Describes the rig anew, in this file and in those that follow.
+  void Add(const RigUpdate& update);
   /// `arrival` on the edge's wall clock.
   void Add(const Feedback& feedback, CaptureTime arrival);
   /// To be called several times a second. `idle`: no frame came for a moment, so that nothing but
@@ -88,6 +98,7 @@ class Spool {
   void AskForFreeBytes();
   void EndAtReserve();
   Status WriteFrame(const EncodedFrame& frame);
+  Status WriteRig(const RigUpdate& update);
   void NoteShutter(const EncodedThermalFrame& frame);
   /// A step that a dropped frame would have told of is told by the next one.
   Status WriteClockStep(const EncodedFrame& frame);

@@ -1,5 +1,7 @@
 #include "ground/service/distributor.h"
 
+#include <tuple>
+
 #include <memory>
 
 #include "common/base/log.h"
@@ -20,7 +22,8 @@ std::uint64_t SessionOf(const SessionItem& item) {
 }  // namespace
 
 void Distributor::OnRig(const RigDescription& rig) {
-  if (rig.session == session_ || over_) return;
+  if (over_) return;
+  if (rig.session == session_) return OnRigAnew(rig);
   if (session_ && single_scan_) {  // The edge was started anew: the one scan is over.
     over_ = true;
     SessionCounters end;
@@ -39,6 +42,15 @@ void Distributor::OnRig(const RigDescription& rig) {
   for (SessionItem& item : early) {
     if (SessionOf(item) == session_) Send(std::move(item));
   }
+}
+
+void Distributor::OnRigAnew(const RigDescription& rig) {
+  const auto cameras = [](const RigDescription& described) {
+    return std::tuple(described.depth, described.thermal, described.rig.thermal_scale);
+  };
+  if (cameras(rig) == cameras(start_.rig)) return;
+  start_.rig = rig;
+  SendMark(rig);
 }
 
 void Distributor::OnFrame(SessionItem item) {

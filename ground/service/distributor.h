@@ -37,6 +37,7 @@ class Distributor {
   /// Nothing is waited for any more when `stop` is requested.
   void SetStop(std::stop_token stop) { stop_ = std::move(stop); }
 
+  /// Begins a session, or takes what is new of its cameras.
   void OnRig(const RigDescription& rig);
   void OnFrame(SessionItem item);
   void OnClock(const SessionClock& clock) { recording_.Offer(clock, {}, stop_); }
@@ -44,6 +45,7 @@ class Distributor {
   void OnSessionEnd(const SessionCounters& counters);
 
  private:
+  void OnRigAnew(const RigDescription& rig);
   /// To both consumers.
   void Send(SessionItem item);
   /// A beginning or an end: to both, whatever waits there.

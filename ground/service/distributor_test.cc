@@ -47,10 +47,13 @@ class DistributorTest : public ::testing::Test {
     distributor_->OnFrame(Frame(number, session));
   }
 
-  /// S<session> for a beginning, E<session> for an end, and numbers of frames.
+  /// S<session> for a beginning, R<session> for a rig described anew, E<session> for an end, and
+  /// numbers of frames.
   static std::string Name(const SessionItem& item) {
     if (const auto* start = std::get_if<SessionStart>(&item))
       return "S" + std::to_string(start->rig.session);
+    if (const auto* rig = std::get_if<RigDescription>(&item))
+      return "R" + std::to_string(rig->session);
     if (const auto* end = std::get_if<SessionCounters>(&item))
       return "E" + std::to_string(end->session);
     if (const auto* depth = std::get_if<ReceivedDepth>(&item))
@@ -134,6 +137,22 @@ TEST_F(DistributorTest, ARigThatSaysTheSameAgainChangesNothing) {
   Rig();
   Rig();
   EXPECT_EQ(Names(Reconstructed()), "S7");
+}
+
+TEST_F(DistributorTest, ACameraThatComesLateIsToldToBoth) {
+  Start();
+  Rig();
+  Depth(0);
+  RigDescription rig;
+  rig.session = kSession;
+  rig.thermal = {.width = 382, .height = 288, .serial = "T1"};
+  rig.rig.thermal_scale = {0.02, 0.0};
+  for (int i = 0; i < 2; ++i) distributor_->OnRig(rig);
+  Depth(1);
+  const std::vector<SessionItem> recorded = Recorded();
+  EXPECT_EQ(Names(recorded), "S7 0 R7 1") << "once";
+  EXPECT_EQ(std::get<RigDescription>(recorded.at(2)).thermal.serial, "T1");
+  EXPECT_EQ(Names(Reconstructed()), "S7 0 R7 1");
 }
 
 TEST_F(DistributorTest, ASessionThatFollowsHasAFolderOfItsOwn) {

@@ -54,6 +54,11 @@ void ReconstructionLoop::Handle(const SessionStart& start) {
   }
 }
 
+void ReconstructionLoop::Handle(const RigDescription& rig) {
+  start_.rig = rig;
+  LogCameras(rig);  // Frames carry their scale themselves, and the calibration is as it was.
+}
+
 void ReconstructionLoop::Handle(const SessionCounters& counters) {
   LOG(Ground, Info) << "scan ended, session=" << counters.session;
   End();

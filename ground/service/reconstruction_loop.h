@@ -38,6 +38,7 @@ class ReconstructionLoop {
 
  private:
   void Handle(const SessionStart& start);
+  void Handle(const RigDescription& rig);
   void Handle(const SessionCounters& counters);
   void Handle(const ExternalOdometrySample& sample);
   void Handle(const ReceivedDepth& frame);

@@ -63,6 +63,11 @@ void RecordingLoop::Handle(const SessionStart& start) {
   Enter();
 }
 
+void RecordingLoop::Handle(const RigDescription& rig) {
+  start_.rig = rig;
+  if (recorder_) recorder_->Write(rig);
+}
+
 template <typename Frame>
 void RecordingLoop::HandleFrame(const Frame& frame, Sensor sensor) {
   if (!recorder_) return;
@@ -96,25 +101,31 @@ std::uint64_t RecordingLoop::ReserveBytes(std::uint64_t capacity) const {
          std::max(expected + expected / 2, std::min(kMaxReserveBytes, capacity / kReservePart));
 }
 
+std::optional<std::filesystem::space_info> RecordingLoop::SpaceOfDisk(
+    const std::filesystem::path& folder) {
+  std::error_code error;
+  const std::filesystem::space_info space = std::filesystem::space(folder, error);
+  return error ? std::nullopt : std::optional(space);
+}
+
 void RecordingLoop::LookAtDisk() {
   const SteadyTime now = clock_.SteadyNow();
   if (now < next_look_) return;
   next_look_ = now + kLookInterval;
-  std::error_code error;
-  const auto space = std::filesystem::space(start_.folder, error);
-  if (error) return;  // Writing will say what is wrong.
-  const std::uint64_t reserve = ReserveBytes(space.capacity);
+  const std::optional<std::filesystem::space_info> space = look_at_space_(start_.folder);
+  if (!space) return;  // Writing will say what is wrong.
+  const std::uint64_t reserve = ReserveBytes(space->capacity);
   const double elapsed_s = ToSeconds(now - opened_);
   start_.recording->Update([&](auto& progress) {
-    progress.free_bytes = space.available;
+    progress.free_bytes = space->available;
     progress.reserve_bytes = reserve;
     constexpr double kTooShort_s = 3.0;
     if (elapsed_s > kTooShort_s)
       progress.bytes_per_s = static_cast<double>(progress.bytes) / elapsed_s;
   });
   const bool before =
-      std::exchange(nearly_full_, space.available <= (nearly_full_ ? 2 * reserve : reserve));
-  if (nearly_full_ && !before) StopForReserve(space.available, reserve);
+      std::exchange(nearly_full_, space->available <= (nearly_full_ ? 2 * reserve : reserve));
+  if (nearly_full_ && !before) StopForReserve(space->available, reserve);
   if (before && !nearly_full_) {
     LOG(Ground, Warning) << "there is room on the disk again, the recording goes on; "
                             "frames not recorded="

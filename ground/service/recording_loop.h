@@ -2,8 +2,12 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
+#include <utility>
 
 #include "common/time/clock.h"
 #include "common/time/thread_progress.h"
@@ -20,9 +24,17 @@ namespace isotherm {
 /// Thread-bound to the recording thread.
 class RecordingLoop {
  public:
+  /// Says how large a folder's disk is and how much of it is free; nullopt if nobody can tell.
+  using LookAtSpace =
+      std::function<std::optional<std::filesystem::space_info>(const std::filesystem::path&)>;
+
   RecordingLoop(const GroundOptions& options, const Clock& clock, const ScanBoard& board,
-                ThreadProgress& progress)
-      : options_(options), clock_(clock), board_(board), progress_(progress) {}
+                ThreadProgress& progress, LookAtSpace look_at_space = SpaceOfDisk)
+      : options_(options),
+        clock_(clock),
+        board_(board),
+        progress_(progress),
+        look_at_space_(std::move(look_at_space)) {}
 
   /// Until stop is requested and the queue is empty.
   void Run(RecordingQueue& queue, const std::stop_token& stop);
@@ -31,6 +43,7 @@ class RecordingLoop {
 
  private:
   void Handle(const SessionStart& start);
+  void Handle(const RigDescription& rig);
   void Handle(const SessionCounters& /*counters*/) { End(); }
   void Handle(const Feedback& feedback);
   void Handle(const SessionClock& clock);
@@ -39,6 +52,8 @@ class RecordingLoop {
   void Handle(const ReceivedThermal& frame) { HandleFrame(frame, Sensor::kThermal); }
   template <typename Frame>
   void HandleFrame(const Frame& frame, Sensor sensor);
+  static std::optional<std::filesystem::space_info> SpaceOfDisk(
+      const std::filesystem::path& folder);
   /// Looks from time to time how much is free, and whether that is for the results.
   void LookAtDisk();
   std::uint64_t ReserveBytes(std::uint64_t capacity) const;
@@ -51,6 +66,7 @@ class RecordingLoop {
   const Clock& clock_;
   const ScanBoard& board_;
   ThreadProgress& progress_;
+  const LookAtSpace look_at_space_;
   SessionStart start_;
   std::unique_ptr<ScanRecorder> recorder_;
   bool nearly_full_ = false;  ///< What is free is for the results.

@@ -20,8 +20,10 @@ using testing::kScanStart;
 constexpr std::uint64_t kSession = 42;
 /// Longer than the loop waits between two looks at the disk.
 constexpr Nanoseconds kNextLook = 250ms;
+/// What the loop is told of the disk, whatever this computer's is like.
+constexpr std::uint64_t kFreeBytes = 10ULL << 30;
 
-/// A loop on a thread of its own that writes to a real disk.
+/// A loop on a thread of its own that writes to a real disk, and is told how much is free there.
 class RecordingLoopTest : public ::testing::Test {
  protected:
   ~RecordingLoopTest() override { End(); }
@@ -86,7 +88,6 @@ class RecordingLoopTest : public ::testing::Test {
     EXPECT_TRUE(reader) << reader.error().message();
     return (*reader)->info().messages_by_topic.contains("/feedback");
   }
-  std::uint64_t FreeBytes() const { return std::filesystem::space(folder_.path()).available; }
 
   const testing::TemporaryDirectory folder_;
   FakeClock clock_{kScanStart};
@@ -94,7 +95,11 @@ class RecordingLoopTest : public ::testing::Test {
   ScanBoard board_;
   ThreadProgress progress_;
   RecordingQueue queue_{{.items = 1000, .bytes = 1U << 30}};
-  RecordingLoop loop_{options_, clock_, board_, progress_};
+  RecordingLoop loop_{options_, clock_, board_, progress_, [](const std::filesystem::path&) {
+                        return std::filesystem::space_info{.capacity = 4 * kFreeBytes,
+                                                           .free = kFreeBytes,
+                                                           .available = kFreeBytes};
+                      }};
   std::shared_ptr<RecordingTracker> tracker_;
   std::uint64_t number_ = 0;
   std::jthread thread_;
@@ -130,18 +135,17 @@ TEST_F(RecordingLoopTest, ANewSessionEndsTheOneBeforeAndItsEndClosesIt) {
 }
 
 TEST_F(RecordingLoopTest, F43WhatIsKeptForTheResultsIsNotTakenByFrames) {
-  ASSERT_GT(FreeBytes(), 1ULL << 30) << "the test needs a disk with 1 GB free";
   Run();
   Start();
   EXPECT_EQ(FrameAtNextLook().left_out(), 0U);
-  board_.result_bytes = 2 * FreeBytes();
+  board_.result_bytes = 2 * kFreeBytes;
   RecordingProgress progress = FrameAtNextLook();
   EXPECT_TRUE(progress.paused);
   EXPECT_THAT(progress.status.message(), HasSubstr("are kept for the results"));
   Depths(2);
   EXPECT_EQ(Await().left_out(NotRecorded::kDiskNearlyFull), 3U);
   // Half as much again as the results are expected to take is kept, and to go on twice that.
-  board_.result_bytes = FreeBytes() / 2;
+  board_.result_bytes = kFreeBytes / 2;
   EXPECT_TRUE(FrameAtNextLook().paused) << "it must not begin and end all the time";
   board_.result_bytes = 0;
   progress = FrameAtNextLook();
@@ -158,11 +162,26 @@ TEST_F(RecordingLoopTest, F43WhatIsKeptForTheResultsIsNotTakenByFrames) {
 }
 
 TEST_F(RecordingLoopTest, HalfOfTheDiskIsRoomEnoughToBeginWith) {
-  ASSERT_GT(FreeBytes(), 1ULL << 30) << "the test needs a disk with 1 GB free";
-  board_.result_bytes = FreeBytes() / 2;
+  board_.result_bytes = kFreeBytes / 2;
   Run();
   Start();
   EXPECT_EQ(FrameAtNextLook().left_out(), 0U);
+}
+
+TEST_F(RecordingLoopTest, ACameraThatComesLateIsRecorded) {
+  Start();
+  Depths(1);
+  RigDescription anew;
+  anew.session = kSession;
+  anew.rig = testing::MakeRig();
+  anew.rig.thermal_scale = {0.02, 0.0};
+  queue_.Push(anew);
+  Depths(1);
+  Run();
+  End();
+  const auto reader = RecordingReader::Open(Folder(kSession) / "scan.mcap");
+  ASSERT_TRUE(reader.has_value());
+  EXPECT_EQ((*reader)->ReadRig()->thermal_scale, anew.rig.thermal_scale);
 }
 
 TEST_F(RecordingLoopTest, FeedbackOnTheSessionBeforeIsNotRecorded) {

@@ -79,13 +79,22 @@ Status ScanRecorder::BeginFile() {
 void ScanRecorder::WriteBeginning() {
   Note(writer_->WriteMetadata("configuration",
                               {{"program", "isotherm-ground"}, {"options", options_text_}}));
+  WriteRig();
+  if (is_recording() && rig_clock_) Note(WriteClockStep());
+  if (is_recording() && rig_clock_) Note(WriteClockMetadata());
+}
+
+void ScanRecorder::WriteRig() {
   if (is_recording()) Note(writer_->Write(rig_.rig));
   std::map<std::string, std::string> cameras;
   AddCamera("depth", rig_.depth, cameras);
   AddCamera("thermal", rig_.thermal, cameras);
   if (is_recording() && !cameras.empty()) Note(writer_->WriteMetadata("cameras", cameras));
-  if (is_recording() && rig_clock_) Note(WriteClockStep());
-  if (is_recording() && rig_clock_) Note(WriteClockMetadata());
+}
+
+void ScanRecorder::Write(const RigDescription& rig) {
+  rig_ = rig;
+  WriteRig();
 }
 
 template <typename Frame>

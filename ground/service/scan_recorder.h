@@ -55,6 +55,8 @@ class ScanRecorder {
   void Tend();
   void Write(const ReceivedDepth& depth) { WriteFrame(Sensor::kDepth, depth); }
   void Write(const ReceivedThermal& thermal) { WriteFrame(Sensor::kThermal, thermal); }
+  /// What is known of the same rig from here on, in this file and in those that follow.
+  void Write(const RigDescription& rig);
   void Write(const Feedback& feedback);
   void Write(const ExternalOdometrySample& sample);
   /// Keeps what is known of the rig's clock, and writes what changed in kind: synchronisation,
@@ -85,6 +87,7 @@ class ScanRecorder {
   void WriteFrame(Sensor sensor, const Frame& frame);
   Status BeginFile();
   void WriteBeginning();
+  void WriteRig();
   Status WriteClockStep();
   Status WriteClockMetadata();
   /// An error of the disk ends the file; a message that was wrong ends nothing.
@@ -98,7 +101,7 @@ class ScanRecorder {
 
   const std::filesystem::path path_;
   const std::string options_text_;
-  const RigDescription rig_;
+  RigDescription rig_;
   const Clock& clock_;
   const CreateWriter create_;
   std::unique_ptr<RecordingWriter> writer_;

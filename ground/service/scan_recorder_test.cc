@@ -141,6 +141,27 @@ TEST_F(ScanRecorderTest, EachFileHasTheRigTheOptionsAndTheClock) {
   }
 }
 
+TEST_F(ScanRecorderTest, ACameraThatComesLateIsInTheFileAndInThoseThatFollow) {
+  Depths(2);
+  RigDescription rig = rig_;
+  rig.rig.thermal_scale = {0.02, 0.0};
+  rig.thermal.model = "optris-sdk, Xi 400";
+  rig.thermal.serial = "T1";
+  recorder_.Write(rig);
+  Depths(2);
+  recorder_.EndFile(nearly_full_);
+  Depths(2);
+  static_cast<void>(recorder_.Close());
+  ASSERT_EQ(recorder_.files().size(), 2U);
+  for (const std::filesystem::path& file : recorder_.files()) {
+    const auto reader = Read(file.string());
+    const Result<Rig> read = reader->ReadRig();
+    ASSERT_TRUE(read.has_value()) << file << read.error().message();
+    EXPECT_EQ(read->thermal_scale, rig.rig.thermal_scale) << file;
+    EXPECT_EQ(reader->info().metadata.at("cameras").at("thermal_serial"), "T1") << file;
+  }
+}
+
 TEST_F(ScanRecorderTest, F43ADiskThatStaysBrokenIsTriedWithABackOffAndLeavesNoFile) {
   disk_works_ = false;
   const SteadyTime begin = clock_.SteadyNow();

@@ -19,7 +19,9 @@ struct SessionStart {
   std::shared_ptr<RecordingTracker> recording;
 };
 
-using SessionItem = std::variant<SessionStart, ReceivedDepth, ReceivedThermal,
+/// What the line from the link to reconstruction and recording carries. A RigDescription describes
+/// the session's rig anew: a camera came late.
+using SessionItem = std::variant<SessionStart, RigDescription, ReceivedDepth, ReceivedThermal,
                                  ExternalOdometrySample, SessionCounters, Feedback, SessionClock>;
 using SessionQueue = BoundedQueue<SessionItem>;
 

@@ -17,6 +17,7 @@ namespace isotherm {
 struct FakeRecording {
   std::vector<std::uint64_t> depth_frames;
   std::vector<std::uint64_t> thermal_frames;
+  std::vector<Rig> rigs;
   std::vector<NucEvent> nuc_events;
   std::vector<ClockStep> clock_steps;
   std::vector<ExternalOdometry> external_odometry;
@@ -35,7 +36,10 @@ class FakeRecordingWriter final : public RecordingWriter {
   explicit FakeRecordingWriter(FakeRecording& recording, std::uint64_t room = UINT64_MAX)
       : recording_(recording), room_(room) {}
 
-  Status Write(const Rig&) override { return OkStatus(); }
+  Status Write(const Rig& rig) override {
+    recording_.rigs.push_back(rig);
+    return OkStatus();
+  }
   Status Write(const EncodedDepthFrame& frame, const std::optional<CaptureTime>&) override {
     return Take(frame.header.frame_number, recording_.depth_frames);
   }
