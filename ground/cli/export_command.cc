@@ -65,14 +65,7 @@ void PrintSummary(const Interpretation& interpretation, const ResultSummary& sum
                   const std::string& folder) {
   fmt::print("surface  {} points, {} with a temperature; {} triangles\n", summary.points,
              summary.measured_points, summary.triangles);
-  for (std::size_t i = 0; i < interpretation.parts().size(); ++i) {
-    const InterpretedPart& part = interpretation.parts()[i];
-    fmt::print("{:<8} {}: emissivity {:g}, {:g} °C reflected: {} points measured\n",
-               i == 0 ? "applied" : "", part.name, part.emissivity, part.reflected_celsius,
-               summary.interpretation[i].measured);
-  }
-  for (const std::string& sentence : interpretation.Overlaps())
-    fmt::print("         {}\n", sentence);
+  fmt::print("{}", AppliedText(interpretation, summary.interpretation));
   if (summary.measured_points > 0) {
     fmt::print("         {:.1f} to {:.1f} °C, mean {:.1f} °C (object temperature)\n",
                summary.temperatures.min_celsius, summary.temperatures.max_celsius,
@@ -95,10 +88,7 @@ int Run(const ExportArguments& arguments) {
   if (!summary) return Fail(summary.error());
   progress.Finish();
   PrintSummary(interpretation, *summary, arguments.output);
-  int status = 0;
-  for (const std::string& sentence : interpretation.Errors(summary->interpretation))
-    status = Fail(FailedPrecondition(sentence));
-  return status;
+  return FailWhereUnsolved(interpretation, summary->interpretation);
 }
 
 }  // namespace
@@ -107,32 +97,9 @@ void AddExportCommand(CLI::App& app, CommandBody& body) {
   CLI::App* command = app.add_subcommand(
       "export", "Writes a saved model's results, with temperatures interpreted anew");
   auto arguments = std::make_shared<ExportArguments>();
-  InterpretationArguments& interpretation = arguments->interpretation;
   command->add_option("model", arguments->model, "Model (model.iso) or result folder")->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->required();
-  command->add_option("--emissivity", interpretation.emissivity,
-                      "Of the whole model, above 0 and at most 1");
-  command->add_option("--reflected", interpretation.reflected_celsius,
-                      "Temperature of what the whole model reflects, °C");
-  command->add_option("--material", interpretation.material,
-                      "The emissivity depends on the angle like that of this material "
-                      "(isotherm limits --list); --emissivity is along the normal");
-  command->add_option("--emissivity-sigma", interpretation.emissivity_sigma,
-                      "Standard uncertainty of the emissivity");
-  command->add_option("--reflected-sigma", interpretation.reflected_sigma_k,
-                      "Standard uncertainty of the reflected temperature, K");
-  command
-      ->add_option("--box", interpretation.boxes,
-                   "A region: two corners (metres, world), a colon, its values; repeatable")
-      ->take_all()
-      ->type_name("\"X Y Z X Y Z: emissivity=E reflected=T\"");
-  command->add_option("--regions", interpretation.regions, "File with regions (text format)");
-  command
-      ->add_option("--label", interpretation.labels,
-                   "Other values for a region of the file; repeatable")
-      ->take_all()
-      ->type_name("\"NAME: emissivity=E reflected=T\"");
-  command->add_option("--band", interpretation.band, "Of the thermal camera, \"min max\" um");
+  AddInterpretationOptions(*command, arguments->interpretation);
   command->add_option("--threads", arguments->threads, "Threads; 0 = one per core");
   AddConfigurationArguments(*command, arguments->configuration);
   command->footer(kExportFooter);

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 
 #include "common/dataset/text_lines.h"
 #include "common/options/nearest_name.h"
 #include "common/options/text_proto.h"
+#include "ground/cli/command.h"
 #include "ground/cli/numbers.h"
+#include "ground/interpretation/interpretation.h"
 #include "ground/options/option_geometry.h"
 
 namespace isotherm {
@@ -89,6 +92,54 @@ Status ChangeLabel(const std::string& text, InterpretationOptions& options) {
 }
 
 }  // namespace
+
+void AddInterpretationOptions(CLI::App& command, InterpretationArguments& arguments) {
+  command.add_option("--emissivity", arguments.emissivity,
+                     "Of the whole model, above 0 and at most 1");
+  command.add_option("--reflected", arguments.reflected_celsius,
+                     "Temperature of what the whole model reflects, °C");
+  command.add_option("--material", arguments.material,
+                     "The emissivity depends on the angle like that of this material "
+                     "(isotherm limits --list); --emissivity is along the normal");
+  command.add_option("--emissivity-sigma", arguments.emissivity_sigma,
+                     "Standard uncertainty of the emissivity");
+  command.add_option("--reflected-sigma", arguments.reflected_sigma_k,
+                     "Standard uncertainty of the reflected temperature, K");
+  command
+      .add_option("--box", arguments.boxes,
+                  "A region: two corners (metres, world), a colon, its values; repeatable")
+      ->take_all()
+      ->type_name("\"X Y Z X Y Z: emissivity=E reflected=T\"");
+  command.add_option("--regions", arguments.regions, "File with regions (text format)");
+  command
+      .add_option("--label", arguments.labels, "Other values for a region of the file; repeatable")
+      ->take_all()
+      ->type_name("\"NAME: emissivity=E reflected=T\"");
+  command.add_option("--band", arguments.band, "Of the thermal camera, \"min max\" um");
+}
+
+std::string AppliedText(const Interpretation& interpretation,
+                        const std::vector<PartReport>& reports) {
+  std::string text;
+  for (std::size_t i = 0; i < interpretation.parts().size(); ++i) {
+    const InterpretedPart& part = interpretation.parts()[i];
+    text += fmt::format("{:<8} {}: emissivity {:g}{}, {:g} °C reflected: {} points measured\n",
+                        i == 0 ? "applied" : "", part.name, part.emissivity,
+                        part.material.empty() ? "" : " (by angle as " + part.material + ")",
+                        part.reflected_celsius, reports[i].measured);
+  }
+  for (const std::string& sentence : interpretation.Overlaps())
+    text += fmt::format("         {}\n", sentence);
+  return text;
+}
+
+int FailWhereUnsolved(const Interpretation& interpretation,
+                      const std::vector<PartReport>& reports) {
+  int status = 0;
+  for (const std::string& sentence : interpretation.Errors(reports))
+    status = Fail(FailedPrecondition(sentence));
+  return status;
+}
 
 Status ApplyArguments(const InterpretationArguments& arguments, InterpretationOptions& options) {
   if (!arguments.regions.empty()) {

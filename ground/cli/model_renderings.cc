@@ -21,13 +21,15 @@ bool IsPng(const fs::path& path) { return path.extension() == ".png"; }
 
 }  // namespace
 
-ModelSurface SurfaceOf(const LoadedModel& model, const GroundOptions& options, ThreadPool& pool) {
-  const Surface surface =
+ModelSurface SurfaceOf(const LoadedModel& model, const GroundOptions& options,
+                       const Interpretation* interpretation, ThreadPool& pool) {
+  Surface surface =
       ExtractSurface(*model.tsdf, *model.thermal,
                      {.min_weight = static_cast<float>(options.export_().expert().min_weight()),
                       .triangles = false},
                      pool);
   ModelSurface result;
+  if (interpretation != nullptr) result.interpretation = interpretation->Apply(surface);
   result.points_m.reserve(surface.points.size());
   result.celsius.reserve(surface.points.size());
   for (const CloudPoint& point : surface.points) {
@@ -102,11 +104,18 @@ Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& optio
                    static_cast<float>(options.export_().expert().min_weight()), pool, maps);
     SampleView(maps, T_world_camera.translation(), *model.tsdf, *model.thermal, pool, view);
     empty += std::ranges::all_of(view.cos_view.pixels(), [](float c) { return std::isnan(c); });
-    if (ShowsRecords(request.layers)) SampleRecords(maps, *model.tsdf, *model.thermal, pool, view);
+    // The angle of each measurement is in its record.
+    if (ShowsRecords(request.layers) || request.interpretation != nullptr)
+      SampleRecords(maps, *model.tsdf, *model.thermal, pool, view);
     std::optional<ContourField> contours;
     if (thermal && renderer.draws_lines()) {
       contours = SampleContours(maps, *model.tsdf, *model.thermal,
                                 options.renderer().expert().isotherm_smoothing_px(), pool);
+    }
+    if (request.interpretation != nullptr) {
+      if (contours) request.interpretation->Apply(maps, view, contours->celsius);
+      request.interpretation->Apply(maps, view);
+      view.celsius_meaning = "object temperature";
     }
     for (const RenderLayer layer : request.layers) {
       const RgbImage rendering = renderer.Draw(layer, view, scale, contours ? &*contours : nullptr);

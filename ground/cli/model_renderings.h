@@ -9,6 +9,7 @@
 #include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
+#include "ground/interpretation/interpretation.h"
 #include "ground/model/load_model.h"
 #include "ground/renderer/layers.h"
 #include "ground/renderer/temperature_scale.h"
@@ -17,10 +18,13 @@ namespace isotherm {
 
 /// Holds what a saved model shows, whatever the view: the points that cloud.ply would have.
 struct ModelSurface {
-  std::vector<Eigen::Vector3f> points_m;  ///< In `world`.
-  std::vector<float> celsius;             ///< As many; NaN = never measured.
+  std::vector<Eigen::Vector3f> points_m;   ///< In `world`.
+  std::vector<float> celsius;              ///< As many; NaN = never measured, or not interpreted.
+  std::vector<PartReport> interpretation;  ///< One per part; empty without an interpretation.
 };
-ModelSurface SurfaceOf(const LoadedModel& model, const GroundOptions& options, ThreadPool& pool);
+/// Temperatures stay apparent if `interpretation` is nullptr.
+ModelSurface SurfaceOf(const LoadedModel& model, const GroundOptions& options,
+                       const Interpretation* interpretation, ThreadPool& pool);
 
 /// Renderings to be made of a model.
 struct RenderingRequest {
@@ -28,6 +32,7 @@ struct RenderingRequest {
   std::vector<RigidTransform> views;  ///< T_world_camera.
   CameraModel camera;
   std::filesystem::path output;  ///< A .png if there is one rendering, else a folder that exists.
+  const Interpretation* interpretation = nullptr;  ///< nullptr: temperatures stay apparent.
 };
 
 /// The files of a request, view by view: LAYER.png, or LAYER_000.png and so on for several views.

@@ -10,9 +10,11 @@
 #include "common/geometry/pose_text.h"
 #include "ground/cli/command.h"
 #include "ground/cli/configuration_arguments.h"
+#include "ground/cli/interpretation_arguments.h"
 #include "ground/cli/model_renderings.h"
 #include "ground/cli/numbers.h"
 #include "ground/cli/simulation_files.h"
+#include "ground/interpretation/interpretation.h"
 #include "ground/renderer/palette.h"
 #include "ground/renderer/renderer.h"
 #include "ground/renderer/viewpoint.h"
@@ -27,7 +29,13 @@ limits of classes are those that it was made with. Without a view, the rendering
 from where it was scanned. Places and poses are in `world`, in metres; a pose is T_world_camera,
 x right, y down, z forward. All renderings of one call have the same colours for the same temperature.
 
-Layers: thermal       apparent temperature: palette, isotherms, bands
+Temperatures are apparent, those that black bodies would have, unless an emissivity is given: then they
+are those of the objects, as `isotherm export` has them (which says more of regions). With a material the
+emissivity is that at the angle at which each point was measured. What a result was made with does not
+count. Points that were measured but fit no temperature look as if they were not, are counted, and make
+the exit status 65; all renderings are written.
+
+Layers: thermal       apparent temperature, or the objects': palette, isotherms, bands
         distance      class of the measurement distance
         angle         class of the emission angle
         motion        class of the smear while the temperature was measured
@@ -46,11 +54,13 @@ Examples:
   isotherm render out -o hot.png --bands "150.." --unit fahrenheit
   isotherm render out -o side.png --view-from "0.6 -0.2 -0.8" --look-at "0 0 0"
   isotherm render out -o orbit --orbit 36 --layer thermal,coverage
+  isotherm render out -o paint.png --emissivity 0.94 --reflected 23 --material paint
   isotherm render out/model.iso -o last.png --view last --set renderer.expert.shading=false)";
 
 struct RenderArguments {
   std::string model, output;
   ConfigurationArguments configuration;
+  InterpretationArguments interpretation;
   std::vector<std::string> layers = {"thermal"};
   std::string view, from, at, up;
   std::optional<int> orbit;
@@ -104,6 +114,7 @@ GroundOptions CollectOptions(const RenderArguments& arguments, Problems& problem
     *options.mutable_export_() = made_with->export_();
   }
   Apply(arguments.configuration, options, problems);
+  problems.Add(ApplyArguments(arguments.interpretation, *options.mutable_interpretation()));
   SetLook(arguments, *options.mutable_renderer(), problems);
   AddInvalid(options, problems);
   return options;
@@ -260,14 +271,17 @@ int Run(const RenderArguments& arguments) {
   const auto model = LoadModel(*file, options);
   if (!model) return Fail(model.error());
   ThreadPool pool(ChosenThreads(arguments.threads));
-  const ModelSurface surface = SurfaceOf(*model, options, pool);
+  const Interpretation all = Interpretation::Create(options.interpretation()).value();
+  const Interpretation* const interpretation = all.changes_nothing() ? nullptr : &all;
+  const ModelSurface surface = SurfaceOf(*model, options, interpretation, pool);
   if (surface.points_m.empty()) {
     return Fail(DataLoss(file->string() + ": the model has no surface that was seen often enough "
                                           "(export.expert.min_weight)"));
   }
   const auto views = ChooseViews(arguments, *model, surface.points_m, *camera);
   if (!views) return Fail(views.error());
-  const RenderingRequest request{*layers, views->T_world_camera, *camera, arguments.output};
+  const RenderingRequest request{*layers, views->T_world_camera, *camera, arguments.output,
+                                 interpretation};
   if (const Status status = PrepareRenderings(request); !status.ok()) return Fail(status);
   const auto scale = ChooseScale(options.renderer(), surface.celsius);
   const std::vector<std::filesystem::path> files = RenderingFiles(request);
@@ -281,12 +295,13 @@ int Run(const RenderArguments& arguments) {
   if (!empty) return Fail(empty.error());
   fmt::print("model    {}: {} points, voxels {:g} mm\n", file->string(), surface.points_m.size(),
              1e3 * options.volume().voxel_size_m());
+  if (interpretation != nullptr) fmt::print("{}", AppliedText(all, surface.interpretation));
   PrintSummary(*views, options, scale, files);
   if (*empty > 0) {
     fmt::print(stderr, "isotherm: {} of {} views show nothing of the model\n", *empty,
                views->T_world_camera.size());
   }
-  return 0;
+  return interpretation == nullptr ? 0 : FailWhereUnsolved(all, surface.interpretation);
 }
 
 void AddViewOptions(CLI::App& command, RenderArguments& arguments) {
@@ -339,6 +354,7 @@ void AddRenderCommand(CLI::App& app, CommandBody& body) {
   command->add_option(
       "--bands", arguments->bands,
       "Painted (\"80..100#ff00ff\") or, without a colour, highlighted temperatures");
+  AddInterpretationOptions(*command, arguments->interpretation);
   command->add_flag("--no-legend", arguments->no_legend, "The view only");
   command->add_flag("--no-shading", arguments->no_shading, "The same brightness at every angle");
   AddConfigurationArguments(*command, arguments->configuration);

@@ -72,7 +72,28 @@ class ToolTest : public isotherm::testing::ToolRun {
         Run("render out -o away.png --view-from \"0 0 -9\" --look-at \"0 0 -10\" --size 64x48");
     EXPECT_EQ(away.status, 0);
     EXPECT_THAT(away.err, HasSubstr("show nothing of the model"));
+    RenderObjects();
     RefusedRenders();
+  }
+
+  // The same with the temperatures of the objects; without a legend only pixels can differ.
+  void RenderObjects() const {
+    const auto rendering = [&](const std::string& name, const std::string& arguments) {
+      const Outcome outcome = Run("render out -o " + name + ".png --scale 20..60 --size 320x240 " +
+                                  "--no-legend " + arguments);
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      EXPECT_EQ(outcome.out.find("emissivity 0.9") != std::string::npos, !arguments.empty());
+      return ReadAll(folder_ / (name + ".png"));
+    };
+    const std::string grey = rendering("grey", "--emissivity 0.9");
+    const std::string paint = rendering("paint", "--emissivity 0.9 --material paint");
+    EXPECT_NE(grey, rendering("apparent", ""));
+    EXPECT_NE(paint, grey) << "the emissivity falls with the angle";
+    const std::string uncertainty = "--layer uncertainty --emissivity 0.9 ";
+    EXPECT_NE(rendering("a", uncertainty), rendering("b", uncertainty + "--emissivity-sigma 0.1"));
+    const Outcome mirror = Run("render out -o mirror.png --emissivity 0.2 --reflected 300");
+    EXPECT_EQ(mirror.status, kData);
+    EXPECT_THAT(mirror.err, HasSubstr("more would be reflected"));
   }
 
   void RefusedRenders() const {
@@ -92,6 +113,10 @@ class ToolTest : public isotherm::testing::ToolRun {
     refused("out -o x.png --look-at \"1 2 3\"", kUsage, "--view-from");
     refused("out -o x.png --palette jet --scale wide --isotherms warm", kConfiguration, "'jet'");
     refused("out -o x.png --isotherms warm", kConfiguration, "'warm' is no temperature");
+    refused("out -o x.png --material paint", kConfiguration,
+            "give the emissivity along the normal");
+    refused("out -o x.png --emissivity 0.9 --material chalk", kConfiguration, "is not known");
+    refused("out -o x.png --emissivity 1.2", kConfiguration, "at most 1, got 1.2");
   }
 
   // Results of out/model.iso with object temperatures; ASSERT needs a function of its own.
