@@ -125,8 +125,10 @@ void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSitu
       return value >= (due ? off : on);
     };
     hurries_ = stays(hurries_, Hurry(s), 1.0, kSlowEnough);
-    smears_ = stays(smears_, view.too_fast, options_.expert().advise_fraction(),
-                    options_.expert().withdraw_fraction());
+    // What is smeared on the way to a view is measured later: to creep takes several times as long
+    // as to go there and hold still.
+    smears_ = !s.is_on_the_way && stays(smears_, view.too_fast, options_.expert().advise_fraction(),
+                                        options_.expert().withdraw_fraction());
     Due(AdviceKind::kSlower) = hurries_ || smears_ || s.ground_is_behind;
   }
   for (const AdviceKind kind : kHindrances) {

@@ -34,6 +34,8 @@ struct ScanSituation {
   double rotation_rate_deg_s = 0.0;
   double max_speed_m_s = 0.0;  ///< Beyond these the model is not updated; 0 = no limit.
   double max_rotation_rate_deg_s = 0.0;
+  /// The rig goes to the next view, and is not near it yet.
+  bool is_on_the_way = false;
   bool ground_is_behind = false;  ///< Thermal frames are left out to keep up.
   /// The fraction of the whole surface that is measured well, of what is not out of reach; nullopt
   /// while it is not known.

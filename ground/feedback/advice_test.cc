@@ -109,6 +109,20 @@ TEST_F(AdviceTest, TurningTooFastIsTooFast) {
   EXPECT_EQ(Settled().reason, "turning at 30 deg/s, the model follows up to 18 deg/s");
 }
 
+TEST_F(AdviceTest, OnTheWayToANextViewSmearDoesNotMatterButHurryDoes) {
+  view_.too_fast = 0.4;
+  view_.smear_px = 1.5;
+  situation_.speed_m_s = 0.25;
+  situation_.is_on_the_way = true;
+  EXPECT_EQ(Settled().kind, AdviceKind::kNone);
+  situation_.speed_m_s = 0.31;
+  EXPECT_EQ(Settled().kind, AdviceKind::kSlower) << "the model does not follow";
+  situation_.speed_m_s = 0.2;
+  EXPECT_EQ(Settled().kind, AdviceKind::kNone);
+  situation_.is_on_the_way = false;
+  EXPECT_EQ(Settled().kind, AdviceKind::kSlower) << "it has arrived, and is not at rest";
+}
+
 TEST_F(AdviceTest, MotionThatSmearsTheThermalImageIsTooFast) {
   view_.too_fast = 0.4;
   view_.smear_px = 1.25;

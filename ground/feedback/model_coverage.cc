@@ -93,6 +93,13 @@ std::uint64_t CellKey(const GridIndex& block, const Eigen::Vector3d& normal) {
 
 }  // namespace
 
+std::uint64_t PieceOf(const VoxelGrid& grid, const Eigen::Vector3d& p_map,
+                      const Eigen::Vector3d& normal_map) {
+  const GridIndex block =
+      ((p_map - grid.min_m) / grid.block_size_m()).array().floor().matrix().cast<int>();
+  return CellKey(block, normal_map);
+}
+
 void SurfaceAreas::Add(MeasurementQuality quality, double area_m2) {
   switch (quality) {
     case MeasurementQuality::kGood:

@@ -51,6 +51,11 @@ struct LackingSurface {
   double area_m2 = 0.0;
 };
 
+/// Returns which piece of the model (LackingSurface::cell) a surface point belongs to that faces
+/// `normal_map`.
+std::uint64_t PieceOf(const VoxelGrid& grid, const Eigen::Vector3d& p_map,
+                      const Eigen::Vector3d& normal_map);
+
 /// Knows how well the whole model is measured. It is brought up to date a part at a time, so that
 /// it costs the same whatever the model's size. Thread-compatible.
 class ModelCoverage {
@@ -70,6 +75,11 @@ class ModelCoverage {
   std::vector<LackingSurface> Lacking(
       std::size_t max_count,
       const std::function<bool(std::uint64_t cell, double area_m2)>& wanted = {}) const;
+  /// Calls `visit(cell, area_m2)` for each piece with what is lacking there, square metres.
+  template <typename Visit>
+  void ForEachPiece(const Visit& visit) const {
+    for (const auto& [key, cell] : cells_) visit(key, cell.area_m2);
+  }
   /// Returns what is lacking in a cell, square metres.
   double LackingArea(std::uint64_t cell) const;
 

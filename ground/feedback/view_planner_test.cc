@@ -35,6 +35,8 @@ class ViewPlannerTest : public ::testing::Test {
   }
   const Vector3d centre_{0.51, 0.51, 0.51};
   bool is_measuring_ = true;
+  /// In front of the scene, looking along z.
+  RigidTransform here_ = MakeTransform({0.5, 0.5, -0.1}, Eigen::Quaterniond::Identity());
 
   /// All is measured well but where `is_missing`.
   template <typename IsMissing>
@@ -44,11 +46,10 @@ class ViewPlannerTest : public ::testing::Test {
     });
     coverage_.Update(tsdf_, thermal_, kNothingSpilled, tsdf_.block_count() + 1, pool_);
   }
-  /// The best view after this many steps with the rig in front of the scene, looking along z.
+  /// The best view after this many steps with the rig held `here_`.
   std::optional<NextView> Plan(ViewPlanner& planner, int steps = 60) {
-    const RigidTransform here = MakeTransform({0.5, 0.5, -0.1}, Eigen::Quaterniond::Identity());
     for (int i = 0; i < steps; ++i)
-      planner.Step(tsdf_, thermal_, coverage_, here, is_measuring_, pool_);
+      planner.Step(tsdf_, thermal_, coverage_, here_, is_measuring_, pool_);
     return planner.best();
   }
   ViewPlanner Planner() { return {options_, limits_, rig_, 1.0F}; }
@@ -75,6 +76,10 @@ TEST_F(ViewPlannerTest, TheBestViewLooksAtTheSideThatIsMissing) {
        {Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)}) {
     // A cap of 35 degrees around `side`: a third of a metre wide.
     Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, side) < 35.0; });
+    // The rig is held on that side: elsewhere a nearer view may be worth more.
+    const Vector3d x = side.unitOrthogonal();
+    here_.linear() << x, x.cross(side), -side;
+    here_.translation() = centre_ + 0.8 * side;
     ViewPlanner planner = Planner();
     const std::optional<NextView> view = Plan(planner);
     ASSERT_TRUE(view.has_value()) << side.transpose();
@@ -221,6 +226,105 @@ TEST_F(ViewPlannerTest, AModelThatIsMeasuredWellNeedsNoView) {
   Measure([](const Vector3d&) { return false; });
   ViewPlanner planner = Planner();
   EXPECT_FALSE(Plan(planner).has_value());
+}
+
+/// A wall that faces -z with two bare squares that were never measured, at x = 0.2 and x = 0.8.
+constexpr double kLeft_m = 0.2, kRight_m = 0.8;
+bool IsInSquareAt(double x_m, const Vector3d& p) {
+  return std::abs(p.x() - x_m) < 0.07 && std::abs(p.y() - 0.5) < 0.07;
+}
+
+TEST_F(ViewPlannerTest, OfTwoViewsThatGainTheSameTheNearerOneIsTakenFirst) {
+  testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
+  Measure([](const Vector3d& p) { return IsInSquareAt(kLeft_m, p) || IsInSquareAt(kRight_m, p); });
+  is_measuring_ = false;  // Nothing is looked at in vain.
+  for (const double x : {kLeft_m, kRight_m}) {
+    here_ = MakeTransform({x, 0.5, 0.25}, Eigen::Quaterniond::Identity());
+    ViewPlanner planner = Planner();
+    const std::optional<NextView> view = Plan(planner);
+    ASSERT_TRUE(view.has_value()) << x;
+    EXPECT_NEAR(Thermal(*view).translation().x(), x, 0.15);
+  }
+}
+
+TEST_F(ViewPlannerTest, WhereTheRigWouldSlideViewsComeLast) {
+  is_measuring_ = false;  // Nothing is looked at in vain.
+  here_ = MakeTransform({0.5, 0.5, 0.25}, Eigen::Quaterniond::Identity());
+  // Around one of two squares that are equally far stand blocks that hold the rig.
+  for (const double x : {kLeft_m, kRight_m}) {
+    const auto block = [&](const Vector3d& p, double dx, double dy) {
+      const Vector3d d =
+          (p - Vector3d(x + dx, 0.5 + dy, 0.66)).cwiseAbs() - Vector3d::Constant(0.05);
+      return d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
+    };
+    testing::FillVolume(tsdf_, [&](const Vector3d& p) {
+      return std::min({0.7 - p.z(), block(p, 0.14, 0.0), block(p, -0.14, 0.0), block(p, 0.0, 0.14),
+                       block(p, 0.0, -0.14)});
+    });
+    Measure([](const Vector3d& p) {
+      return p.z() > 0.69 && (IsInSquareAt(kLeft_m, p) || IsInSquareAt(kRight_m, p));
+    });
+    ViewPlanner planner = Planner();
+    const std::optional<NextView> view = Plan(planner, 120);
+    ASSERT_TRUE(view.has_value()) << x;
+    EXPECT_NEAR(Thermal(*view).translation().x(), x, 0.25);
+    EXPECT_GT(view->firmness, 0.3);
+  }
+}
+
+TEST_F(ViewPlannerTest, WhatWasLookedAtInVainIsOutOfReach) {
+  testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
+  Measure([](const Vector3d& p) { return IsInSquareAt(0.5, p); });
+  // The rig is held before the square, which is never measured well, whatever hinders it.
+  here_ = MakeTransform({0.5, 0.5, 0.25}, Eigen::Quaterniond::Identity());
+  ViewPlanner planner = Planner();
+  ASSERT_TRUE(Plan(planner, 3).has_value());
+  EXPECT_EQ(planner.OutOfReach(coverage_), 0.0) << "it may take a moment";
+  for (int i = 0; i < 12; ++i) {  // It sways a little.
+    here_.translation().x() += 0.002;
+    here_.translation().y() -= 0.001;
+    Plan(planner, 1);
+  }
+  const std::optional<NextView> view = Plan(planner, 1);
+  constexpr double kSquare_m2 = 0.14 * 0.14;
+  // What is left is at its border, where points of both kinds are near each other.
+  constexpr double kBorder = 0.3;
+  EXPECT_LT(view ? view->gain_m2 : 0.0, kBorder * kSquare_m2);
+  EXPECT_NEAR(planner.OutOfReach(coverage_), kSquare_m2, kBorder * kSquare_m2);
+}
+
+/// A strip that was never measured.
+bool IsInStrip(const Vector3d& p) {
+  return p.x() > 0.4 && p.x() < 0.5 && std::abs(p.y() - 0.5) < 0.1;
+}
+
+TEST_F(ViewPlannerTest, WhereTheKnownSurfaceEndsThereMayBeMore) {
+  here_ = MakeTransform({0.3, 0.5, 0.25}, Eigen::Quaterniond::Identity());
+  testing::FillVolume(tsdf_, [](const Vector3d& p) { return p.x() < 0.5 ? 0.7 - p.z() : 0.3; });
+  Measure(IsInStrip);
+  ViewPlanner planner = Planner();
+  ASSERT_TRUE(Plan(planner, 3).has_value());
+  EXPECT_GT(planner.Unseen(), 0.01);
+}
+
+TEST_F(ViewPlannerTest, WhereAllIsKnownThereIsNoMore) {
+  here_ = MakeTransform({0.3, 0.5, 0.25}, Eigen::Quaterniond::Identity());
+  testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
+  Measure(IsInStrip);
+  ViewPlanner planner = Planner();
+  ASSERT_TRUE(Plan(planner, 3).has_value());
+  EXPECT_EQ(planner.Unseen(), 0.0) << "the wall goes on to the volume's end";
+}
+
+TEST_F(ViewPlannerTest, AViewThatTheRigWasLostOnTheWayToIsNotProposedAgain) {
+  testing::FillSphere(tsdf_, centre_, 0.2);
+  Measure([&](const Vector3d& p) { return AngleDeg(p - centre_, {-1, 0, 0}) < 20.0; });
+  ViewPlanner planner = Planner();
+  const std::optional<NextView> first = Plan(planner);
+  ASSERT_TRUE(first.has_value());
+  planner.GiveUpBest();
+  const std::optional<NextView> second = Plan(planner, 120);
+  EXPECT_TRUE(!second || TranslationDistance(first->T_map_depth, second->T_map_depth) > 0.05);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "ground/feedback/confidence_image.h"
@@ -15,6 +16,13 @@ namespace {
 /// Coverage of the view is assessed by this many pixels per row at least, whatever the image's
 /// size.
 constexpr int kMinColumns = 160;
+
+/// The rig is on the way to the next view while it comes nearer at this fraction of a walking pace,
+/// and for so long after it did: to come to rest, or to turn round when it is sent elsewhere.
+constexpr double kMinPace = 0.25;
+constexpr double kTurnRound_s = 0.6;
+/// Nearer than this, in seconds of walking, it is there.
+constexpr double kThere_s = 0.25;
 
 /// Once parts of the model are on the disk, only blocks within this distance of the rig are
 /// counted.
@@ -147,6 +155,12 @@ double FeedbackMaker::OutOfReach() const {
   return sum_m2;
 }
 
+double FeedbackMaker::Unseen() const {
+  double most_m2 = 0.0;
+  for (const auto& [map, planner] : planners_) most_m2 = std::max(most_m2, planner.Unseen());
+  return most_m2;
+}
+
 CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan, ThreadPool& pool) {
   const ModelView& model = scan.view;
   view_.Resize(0, 0);
@@ -169,10 +183,34 @@ Image<float> FeedbackMaker::Smear(const ScanModel& scan) const {
   return SmearInView(maps_, T_map_thermal, motion, *rig_.thermal, rig_.thermal_sensor);
 }
 
+void FeedbackMaker::NoteWay(const FeedbackMoment& moment, const ScanModel& scan) {
+  const CaptureTime now = moment.header.capture_time;
+  const auto planner = planners_.find(scan.atlas.active_index());
+  if (!moment.report.tracked) {
+    const bool is_there = way_s_ && *way_s_ <= kThere_s;
+    if ((is_on_the_way_ || is_there) && planner != planners_.end()) planner->second.GiveUpBest();
+    is_on_the_way_ = false;
+    way_s_ = {};
+    on_the_way_until_ = {};
+    return;
+  }
+  const bool has_view = planner != planners_.end() && planner->second.best();
+  const std::optional<double> before_s = std::exchange(way_s_, {});
+  if (has_view)
+    way_s_ = WalkTime(moment.report.pose.T_map_depth, planner->second.best()->T_map_depth);
+  if (before_s && way_s_ && way_noted_at_ &&
+      *before_s - *way_s_ >= kMinPace * ToSeconds(now - *way_noted_at_)) {
+    on_the_way_until_ = now + FromSeconds(kTurnRound_s);
+  }
+  way_noted_at_ = now;
+  is_on_the_way_ = way_s_ && on_the_way_until_ && now < *on_the_way_until_;
+}
+
 ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   ScanSituation situation;
   situation.tracking_lost = !moment.report.tracked;
   situation.nuc_running = moment.nuc_running;
+  situation.is_on_the_way = is_on_the_way_;
   situation.ground_is_behind = moment.ground_is_behind;
   situation.speed_m_s = moment.speed_m_s;
   situation.rotation_rate_deg_s = moment.rotation_rate_deg_s;
@@ -187,7 +225,8 @@ ScanSituation FeedbackMaker::Situation(const FeedbackMoment& moment) const {
   const SurfaceAreas all = areas();
   if (!complete || !(all.total_m2() > 0.0)) return situation;
   situation.out_of_reach_m2 = std::min(OutOfReach(), all.total_m2() - all.good_m2);
-  const double within_reach_m2 = all.total_m2() - situation.out_of_reach_m2;
+  // What may be beyond the ends of the known surface is not measured well yet.
+  const double within_reach_m2 = all.total_m2() - situation.out_of_reach_m2 + Unseen();
   if (within_reach_m2 > 0.0) situation.model_good = all.good_m2 / within_reach_m2;
   return situation;
 }
@@ -220,6 +259,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
     feedback.T_world_depth = pose->T_world_depth;
     feedback.pose_covariance = pose->covariance;
   }
+  NoteWay(moment, scan);
   const CoverageSummary view = LookAtView(scan, pool);
   feedback.view = ToFractions(view);
   feedback.model = ToFractions(areas());

@@ -50,12 +50,18 @@ class FeedbackMaker {
   /// known.
   Image<float> Smear(const ScanModel& scan) const;
   ScanSituation Situation(const FeedbackMoment& moment) const;
+  /// Notes whether the rig came nearer to the next view since the message before. A track that is
+  /// lost on the way there, or there, gives the view up.
+  void NoteWay(const FeedbackMoment& moment, const ScanModel& scan);
   void AddNextPose(const DepthReport& report, const ScanModel& scan, Feedback& feedback) const;
   /// The coverage of the active sub-map, in whose coordinates the planner works too.
   ModelCoverage& ActiveCoverage(const ScanModel& scan);
   ViewPlanner* Planner(const ScanModel& scan);
   /// Returns the surface that no view was found for, in all sub-maps, square metres.
   double OutOfReach() const;
+  /// Returns the surface that may be where nobody looked yet, square metres: in the sub-map where
+  /// most of it may be.
+  double Unseen() const;
 
   const GroundOptions options_;
   const Rig rig_;
@@ -67,6 +73,11 @@ class FeedbackMaker {
   std::map<int, ViewPlanner> planners_;  ///< By sub-map. None without a calibrated thermal camera.
   SurfaceMaps maps_;                     ///< Every n-th pixel of the model's view.
   ViewMaps view_;
+  /// How far the next view was with the last message, in seconds of walking, and until when the rig
+  /// counts as on the way to it; nullopt if it was lost, or there was none.
+  std::optional<double> way_s_;
+  std::optional<CaptureTime> way_noted_at_, on_the_way_until_;
+  bool is_on_the_way_ = false;
   bool is_measuring_ = false;  ///< With the last message: views can be gone to and measured.
   std::uint64_t messages_ = 0;
 };
