@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "common/simulation/scene_builder.h"
+#include "ground/experiment/bar_wall.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/experiment_scan.h"
 #include "ground/experiment/model_check.h"
@@ -10,34 +10,18 @@ namespace isotherm {
 namespace {
 
 constexpr double kDuration_s = 3.2;
-constexpr double kCold_celsius = 30.0, kHot_celsius = 60.0;
-constexpr double kFirstBar_m = 0.02, kBar_m = 0.016, kWall_m = 0.80;
 /// That of the simulated detector, and what the pipeline is told.
 constexpr double kTimeConstant_s = 0.010;
 /// No smear is too much.
 constexpr double kAnySmear_px = 1e6;
 
-/// A wall of hot and cold bars, flush, which the rig sweeps along at up to 0.8 m/s, resting for a
-/// moment at either end. Black bodies, so that a temperature is wrong only by motion and blur.
+/// The rig sweeps along the bars at up to 0.8 m/s, resting for a moment at either end.
 StagedScene SweepAlongBars() {
-  SceneBuilder scene(23.0);
-  scene.UseMaterial({1.0, 1.0, 0.0, false});
-  bool hot = false;
-  for (double x = kFirstBar_m; x < 0.94; x += kBar_m, hot = !hot) {
-    scene.Box(hot ? "hot bar" : "cold bar", {x, 0.02, kWall_m}, {x + kBar_m, 0.76, kWall_m + 0.05})
-        .temperature = Uniform(hot ? kHot_celsius : kCold_celsius);
-  }
-  // The tracker holds on to these.
-  scene.Box("sill", {0.02, 0.76, 0.62}, {0.94, 0.82, 0.86}).temperature = Uniform(kCold_celsius);
-  scene.RotatedBox("carton", {0.24, 0.68, 0.70}, {0.12, 0.14, 0.10}, {0, 30, 0}).temperature =
-      Uniform(kCold_celsius);
-  scene.Sphere("knob", {0.66, 0.70, 0.72}, 0.06).temperature = Uniform(kCold_celsius);
-  scene.RotatedBox("box", {0.48, 0.71, 0.70}, {0.08, 0.10, 0.08}, {0, 15, 0}).temperature =
-      Uniform(kCold_celsius);
+  SceneBuilder scene = BarWall::Make();
   ScanPath path;
   path.target_x_m = {0.48, 0.16, 1.25};
   path.target_y_m = {0.52};
-  path.target_z_m = {kWall_m};
+  path.target_z_m = {BarWall::kWall_m};
   path.distance_m = {0.52};
   return {scene.Build("sweep along bars"), path, {}};
 }
@@ -64,8 +48,8 @@ GroundOptions WithSmearLimits(bool limited) {
 constexpr double kBorder_m = 0.004;
 
 bool IsAtBorder(const CheckedPoint& point) {
-  const double bars = (point.truth.p_world.x() - kFirstBar_m) / kBar_m;
-  return std::abs(bars - std::round(bars)) * kBar_m < kBorder_m;
+  const double bars = (point.truth.p_world.x() - BarWall::kFirst_m) / BarWall::kBar_m;
+  return std::abs(bars - std::round(bars)) * BarWall::kBar_m < kBorder_m;
 }
 
 ExperimentTable::Row DescribeModel(const char* label, const PlayedScan& played,
@@ -106,7 +90,7 @@ Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool) {
   report.table.columns = {"points",           "assigned",         "smeared pixels left out",
                           "median error [K]", "99.9 % error [K]", "largest error [K]",
                           "coverage [%]",     "within sigma [%]", "within 1.96 sigma [%]"};
-  RendererOptions renderer_options = FixedScale(kCold_celsius, kHot_celsius);
+  RendererOptions renderer_options = FixedScale(BarWall::kCold_celsius, BarWall::kHot_celsius);
   renderer_options.mutable_expert()->set_shading(false);
   const Renderer renderer(renderer_options, ThermalOptions());
   constexpr const char* kLabels[] = {"believed", "left out"};

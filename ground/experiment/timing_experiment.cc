@@ -10,7 +10,7 @@
 
 #include "common/base/units.h"
 #include "common/geometry/rigid_transform.h"
-#include "common/simulation/scene_builder.h"
+#include "ground/experiment/bar_wall.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/experiment_scan.h"
 #include "ground/experiment/model_check.h"
@@ -28,8 +28,6 @@ constexpr double kPoseErrorRatio = 0.10;  ///< Of the motion between two frames.
 
 // The scan: bars that the rig passes at nearly constant speed.
 constexpr double kDuration_s = 3.0, kPassing_s = 1.2;
-constexpr double kBar_m = 0.016, kFirstBar_m = 0.02, kWall_m = 0.80;
-constexpr double kCold_celsius = 30.0, kHot_celsius = 60.0;
 
 /// The rig after so much of the time between two frames that are both true.
 using PoseAt = RigidTransform (*)(double seconds);
@@ -99,27 +97,14 @@ Analysis Analyse(ExperimentReport& report) {
 }
 
 StagedScene PassAlongBars() {
-  SceneBuilder scene(23.0);
-  scene.UseMaterial({1.0, 1.0, 0.0, false});
-  bool hot = false;
-  for (double x = kFirstBar_m; x < 0.94; x += kBar_m, hot = !hot) {
-    scene.Box(hot ? "hot bar" : "cold bar", {x, 0.02, kWall_m}, {x + kBar_m, 0.76, kWall_m + 0.05})
-        .temperature = Uniform(hot ? kHot_celsius : kCold_celsius);
-  }
-  // The tracker holds on to these.
-  scene.Box("sill", {0.02, 0.76, 0.62}, {0.94, 0.82, 0.86}).temperature = Uniform(kCold_celsius);
-  scene.RotatedBox("carton", {0.24, 0.68, 0.70}, {0.12, 0.14, 0.10}, {0, 30, 0}).temperature =
-      Uniform(kCold_celsius);
-  scene.Sphere("knob", {0.66, 0.70, 0.72}, 0.06).temperature = Uniform(kCold_celsius);
-  scene.RotatedBox("box", {0.48, 0.71, 0.70}, {0.08, 0.10, 0.08}, {0, 15, 0}).temperature =
-      Uniform(kCold_celsius);
+  SceneBuilder scene = BarWall::Make();
   ScanPath path;
   // A small part of a wide swing.
   constexpr double kAmplitude_m = 1.5;
   path.target_x_m = {0.48, kAmplitude_m, 2.0 * std::numbers::pi * kAmplitude_m / kSpeed_m_s,
                      -0.5 * kSpeed_m_s * (kDuration_s - 0.8) / kAmplitude_m};
   path.target_y_m = {0.52};
-  path.target_z_m = {kWall_m};
+  path.target_z_m = {BarWall::kWall_m};
   path.distance_m = {0.55};
   return {scene.Build("pass along bars"), path, {}};
 }
@@ -142,7 +127,7 @@ double EdgeOffset(const std::map<int, std::pair<double, int>>& celsius_by_bin, d
   std::vector<std::pair<double, double>> profile;
   for (const auto& [bin, sum] : celsius_by_bin)
     profile.emplace_back((bin + 0.5) * bin_m, sum.first / sum.second);
-  constexpr double kMiddle_celsius = 0.5 * (kHot_celsius + kCold_celsius);
+  constexpr double kMiddle_celsius = 0.5 * (BarWall::kHot_celsius + BarWall::kCold_celsius);
   double sums_m[2] = {};
   int counts[2] = {};
   for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
@@ -151,9 +136,9 @@ double EdgeOffset(const std::map<int, std::pair<double, int>>& celsius_by_bin, d
     if ((celsius - kMiddle_celsius) * (next_celsius - kMiddle_celsius) > 0.0) continue;
     const double crossing =
         std::lerp(x, next_x, (kMiddle_celsius - celsius) / (next_celsius - celsius));
-    const double bars = (crossing - kFirstBar_m) / kBar_m;
+    const double bars = (crossing - BarWall::kFirst_m) / BarWall::kBar_m;
     const int rising = next_celsius > celsius ? 1 : 0;
-    sums_m[rising] += (bars - std::round(bars)) * kBar_m;
+    sums_m[rising] += (bars - std::round(bars)) * BarWall::kBar_m;
     ++counts[rising];
   }
   if (counts[0] == 0 || counts[1] == 0) return std::nan("");
@@ -169,7 +154,7 @@ double MeasureOffset(const SimulatedScan& scan, const ScanModel& model, ThreadPo
        CheckModel(scan.scene(), scan.band(), model.tsdf(), model.thermal(), pool)) {
     const Eigen::Vector3d& p = point.truth.p_world;
     if (!point.measured() || p.x() < kFrom_x_m || p.x() > kTo_x_m || p.y() < kFrom_y_m ||
-        p.y() > kTo_y_m || std::abs(p.z() - kWall_m) > 1e-6)
+        p.y() > kTo_y_m || std::abs(p.z() - BarWall::kWall_m) > 1e-6)
       continue;
     auto& [sum, count] = celsius_by_bin[static_cast<int>(std::floor(p.x() / kBin_m))];
     sum += static_cast<double>(point.point.celsius);
