@@ -5,8 +5,10 @@ namespace isotherm {
 SceneBuilder BarWall::Make() {
   SceneBuilder scene(23.0);
   scene.UseMaterial({1.0, 1.0, 0.0, false});
-  bool hot = false;
-  for (double x = kFirst_m; x < 0.94; x += kBar_m, hot = !hot) {
+  constexpr int kBars = 58;
+  for (int i = 0; i < kBars; ++i) {
+    const double x = kFirst_m + i * kBar_m;
+    const bool hot = i % 2 == 1;
     scene.Box(hot ? "hot bar" : "cold bar", {x, 0.02, kWall_m}, {x + kBar_m, 0.76, kWall_m + 0.05})
         .temperature = Uniform(hot ? kHot_celsius : kCold_celsius);
   }
