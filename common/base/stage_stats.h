@@ -12,11 +12,15 @@ class StageStats {
   /// Durations that are negative or not finite are bugs of the caller's clock; they are counted as
   /// 0.
   void Add(double ms);
+  /// Adds to the processor time that the calls so far took on all threads together.
+  void AddProcessorTime(double ms) { processor_ms_ += ms; }
 
   std::uint64_t count() const { return count_; }
   /// All 0 before the first Add.
   double mean_ms() const { return count_ == 0 ? 0.0 : total_ms_ / static_cast<double>(count_); }
   double total_ms() const { return total_ms_; }
+  /// 0 where nobody counts it.
+  double processor_ms() const { return processor_ms_; }
   double min_ms() const { return min_ms_; }
   double max_ms() const { return max_ms_; }
   /// The duration that `percent` of the calls (0..100, nearest rank) did not exceed.
@@ -29,6 +33,7 @@ class StageStats {
   std::array<std::uint32_t, kBins> bins_{};
   std::uint64_t count_ = 0;
   double total_ms_ = 0.0;
+  double processor_ms_ = 0.0;
   double min_ms_ = 0.0;
   double max_ms_ = 0.0;
 };

@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <ctime>
 #include <numeric>
 #include <thread>
 #include <vector>
 
+#include "common/base/processor_time.h"
 #include "common/concurrency/bounded_queue.h"
 #include "common/concurrency/latest_value.h"
 #include "common/concurrency/thread_pool.h"
@@ -66,6 +69,22 @@ TEST(LatestValueTest, TakeEmptiesTheMailboxAndGetDoesNot) {
   EXPECT_EQ(mailbox.Get(), 2);
   EXPECT_EQ(mailbox.Take(), 2);
   EXPECT_EQ(mailbox.Get(), std::nullopt);
+}
+
+/// All else in this process rests meanwhile, so its processor time is that of the loop.
+TEST(ThreadPoolTest, WorkOfTheThreadsCountsForTheCaller) {
+  ThreadPool pool(3);
+  const auto process_s = [] { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; };
+  const double process_before_s = process_s();
+  const auto before = ThreadProcessorTime();
+  pool.ParallelFor(30, [&](int) {
+    const auto start = ThreadProcessorTime();
+    while (ThreadProcessorTime() - start < std::chrono::milliseconds(5)) {
+    }
+  });
+  const double counted_s = std::chrono::duration<double>(ThreadProcessorTime() - before).count();
+  EXPECT_GE(counted_s, 0.149);
+  EXPECT_NEAR(counted_s, process_s() - process_before_s, 0.02);
 }
 
 TEST(ThreadPoolTest, EachIndexIsVisitedOnceWhateverTheThreadCount) {

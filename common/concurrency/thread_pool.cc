@@ -1,6 +1,7 @@
 #include "common/concurrency/thread_pool.h"
 
 #include "common/base/check.h"
+#include "common/base/processor_time.h"
 
 namespace isotherm {
 
@@ -32,15 +33,18 @@ void ThreadPool::ParallelFor(int count, const std::function<void(int)>& body) {
     count_ = count;
     next_ = 0;
     running_ = static_cast<int>(workers_.size());
+    worked_ = std::chrono::nanoseconds(0);
     ++generation_;
   }
   wake_.notify_all();
   RunFractions(body, count);
   MutexLock lock(mutex_);
   done_.wait(lock, [this]() REQUIRES(mutex_) { return running_ == 0; });
+  AddProcessorTimeOfHelpers(worked_);
 }
 
 void ThreadPool::Work(std::stop_token stop) {
+  NameThread("pool");
   long seen = 0;
   while (true) {
     const std::function<void(int)>* body = nullptr;
@@ -52,8 +56,10 @@ void ThreadPool::Work(std::stop_token stop) {
       body = body_;
       count = count_;
     }
+    const auto before = ThreadProcessorTime();
     RunFractions(*body, count);
     MutexLock lock(mutex_);
+    worked_ += ThreadProcessorTime() - before;
     if (--running_ == 0) done_.notify_one();
   }
 }

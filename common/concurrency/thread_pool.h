@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <stop_token>
@@ -14,7 +15,7 @@ namespace isotherm {
 
 /// A fixed set of threads for parallel loops over blocks or rows. The calling thread works too, so
 /// a pool of one has no thread of its own and runs everything inline. Thread-bound: one ParallelFor
-/// at a time.
+/// at a time. What its threads work counts as processor time of the caller (ThreadProcessorTime).
 class ThreadPool {
  public:
   /// `threads` >= 1 counts the calling thread.
@@ -48,6 +49,7 @@ class ThreadPool {
   const std::function<void(int)>* body_ GUARDED_BY(mutex_) = nullptr;
   int count_ GUARDED_BY(mutex_) = 0;
   int running_ GUARDED_BY(mutex_) = 0;
+  std::chrono::nanoseconds worked_ GUARDED_BY(mutex_){0};  ///< By the threads, in this loop.
   long generation_ GUARDED_BY(mutex_) = 0;
   std::atomic<int> next_{0};
   std::vector<std::jthread> workers_;

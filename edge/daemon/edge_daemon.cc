@@ -14,6 +14,7 @@
 
 #include "common/base/exit_deadline.h"
 #include "common/base/log.h"
+#include "common/base/processor_time.h"
 #include "common/doubts/doubts.h"
 #include "common/rig/rig_calibration.h"
 #include "common/transport/join_domain.h"
@@ -168,7 +169,26 @@ struct Ending {
   const FrameCounters& counters;
   const CameraHealth& health;
   bool recording = false;
+  const Clock& clock;
+  const SteadyTime start = clock.SteadyNow();
+  const ProcessorTimes processor_before = ReadProcessorTimes();
 };
+
+/// Returns what the capture has cost, to be asked for while its threads still live.
+std::string ProcessorText(const Ending& ending) {
+  return "processor " + ToText(ReadProcessorTimes() - ending.processor_before,
+                               ToSeconds(ending.clock.SteadyNow() - ending.start));
+}
+
+/// Completes that, once the processes of cameras have ended.
+void PrintProcessorText(const std::string& text) {
+  const double cameras_s = ProcessorTimeOfChildren_s();
+  std::fputs(text.c_str(), stdout);
+  std::fputs(
+      cameras_s > 0.0 ? fmt::format("; processes of cameras {:.1f} s\n", cameras_s).c_str() : "\n",
+      stdout);
+  std::fflush(stdout);
+}
 
 void PrintSummary(const Ending& ending, const Publisher& publisher, const EdgePipeline& pipeline) {
   std::fputs(
@@ -185,7 +205,11 @@ void PrintSummary(const Ending& ending, const Publisher& publisher, const EdgePi
 int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeline,
           Housekeeping& housekeeping, Publisher& publisher, const Clock& clock,
           const std::stop_token& stop) {
-  const auto say = [&] { PrintSummary(ending, publisher, pipeline); };
+  const std::string processor = ProcessorText(ending);
+  const auto say = [&] {
+    PrintSummary(ending, publisher, pipeline);
+    PrintProcessorText(processor);
+  };
   // With a signal the time already runs.
   ending.deadline.ArmFirst(stop_limits::kCameras + stop_limits::kDisk, kExitRecording, "a camera",
                            say);
@@ -216,7 +240,7 @@ int Capture(const EdgeOptions& options, const EdgeSession& start, FrameSource& s
             Publisher& publisher, Leaving& leaving, const Clock& clock,
             const std::stop_token& stop) {
   if (spool != nullptr) leaving.status_if_stuck = kExitRecording;
-  const Ending ending{leaving.deadline, counters, health, spool != nullptr};
+  const Ending ending{leaving.deadline, counters, health, spool != nullptr, clock};
   EdgePipeline pipeline(options, {source, publisher, counters, health, clock, std::move(spool),
                                   start.session(), start.rig_thermal_delay_s});
   pipeline.StartReceiving();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/processor_time.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -16,7 +17,7 @@ constexpr std::size_t kCodecQueueFrames = 16;
 /// Without a frame for this long, the recording brings to the disk what it has collected.
 constexpr Nanoseconds kIdle = std::chrono::milliseconds(250);
 /// A disk may stall for some seconds, and the link may wait for the ground for ten
-/// (PublisherOptions::flow_timeout). What takes longer than these hangs.
+/// (PublisherOptions::flow_timeout). A step that takes longer than these limits hangs.
 constexpr Nanoseconds kStuck = std::chrono::seconds(10);
 constexpr Nanoseconds kLinkStuck = std::chrono::seconds(15);
 constexpr Nanoseconds kNoLimit = std::chrono::hours(24 * 365);
@@ -73,6 +74,7 @@ EdgePipeline::~EdgePipeline() { static_cast<void>(Stop()); }
 
 void EdgePipeline::StartReceiving() {
   receive_thread_ = std::jthread([this](const std::stop_token& stop) {
+    NameThread("receive");
     PublisherHandlers handlers;
     handlers.command = [this, &stop](const Command& command) { commands_.Push(command, stop); };
     handlers.feedback = [this, &stop](const Feedback& feedback, CaptureTime arrival) {
@@ -85,13 +87,20 @@ void EdgePipeline::StartReceiving() {
 }
 
 void EdgePipeline::StartCapture() {
-  if (spool_) spool_thread_ = std::jthread([this](const std::stop_token& stop) { Record(stop); });
-  publish_thread_ = std::jthread([this](const std::stop_token& stop) { Publish(stop); });
-  codec_thread_ = std::jthread([this](const std::stop_token& stop) { Encode(stop); });
+  const auto start = [this](const char* name, void (EdgePipeline::*work)(const std::stop_token&)) {
+    return std::jthread([this, name, work](const std::stop_token& stop) {
+      NameThread(name);
+      (this->*work)(stop);
+    });
+  };
+  if (spool_) spool_thread_ = start("record", &EdgePipeline::Record);
+  publish_thread_ = start("publish", &EdgePipeline::Publish);
+  codec_thread_ = start("codec", &EdgePipeline::Encode);
   std::promise<void> ended;
   capture_ended_ = ended.get_future();
   capture_thread_ = std::jthread(
       [this](const std::stop_token& stop, std::promise<void> at_end) {
+        NameThread("capture");
         Capture(stop);
         at_end.set_value();
       },
@@ -186,7 +195,8 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
     WatchClock();
     if (RawFrame* raw = std::get_if<RawFrame>(&*item)) Process(std::move(*raw), stop);
-    if (ExternalOdometry* pose = std::get_if<ExternalOdometry>(&*item)) Keep(std::move(*pose));
+    if (ExternalOdometry* pose = std::get_if<ExternalOdometry>(&*item))
+      BufferOdometryPose(std::move(*pose));
   }
   source_.Close();
   while (std::optional<RawFrame> raw = source_.TakeUnread()) Process(std::move(*raw), stop);
@@ -223,7 +233,7 @@ void EdgePipeline::Process(RawFrame raw, const std::stop_token& stop) {
   }
 }
 
-void EdgePipeline::Keep(ExternalOdometry pose) {
+void EdgePipeline::BufferOdometryPose(ExternalOdometry pose) {
   // Cameras that stopped must not make the buffer grow.
   constexpr std::size_t kMax = 1024;
   if (external_odometry_.size() == kMax) external_odometry_.erase(external_odometry_.begin());
@@ -238,7 +248,7 @@ void EdgePipeline::ProcessDepth(RawFrame raw, const std::stop_token& stop) {
   EncodedDepthFrame frame;
   frame.header = Header(raw, stamp);
   frame.depth_scale = raw.depth_scale;
-  Forward({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
+  QueueForCodec({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
 }
 
 void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
@@ -255,7 +265,7 @@ void EdgePipeline::ProcessThermal(RawFrame raw, const std::stop_token& stop) {
   frame.scale = thermal_is_counts_ ? kCentikelvin : raw.thermal_scale;
   frame.housekeeping = raw.housekeeping;
   nuc_report_.Set(nuc_.Report());
-  Forward({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
+  QueueForCodec({{std::move(frame), raw.arrival_wall}, std::move(raw.pixels)}, stop);
 }
 
 void EdgePipeline::NoteStamped(const RawFrame& raw, const Stamp& stamp) {
@@ -268,12 +278,13 @@ FrameHeader EdgePipeline::Header(const RawFrame& raw, const Stamp& stamp) const 
   return {session_, raw.frame_number, raw.device_ticks, stamp.time, stamp.sigma};
 }
 
-void EdgePipeline::Forward(FrameToEncode frame, const std::stop_token& stop) {
+void EdgePipeline::QueueForCodec(FrameToEncode frame, const std::stop_token& stop) {
   frame.encoded.external_odometry = std::exchange(external_odometry_, {});
   frame.encoded.log = nuc_.TakeLog();
   if (time_base_ == TimeBase::kWallClock) frame.encoded.wall_minus_time = step_watch_.total();
   const Sensor sensor = frame.encoded.sensor();
   if (codec_queue_.Push(std::move(frame), stop)) return;
+  // The stop came while the frame waited for room: a queue that is full is why it is lost.
   if (spool_) counters_.Count(sensor, FrameFate::kRecordQueueFull);
   counters_.Count(sensor, FrameFate::kPublishQueueFull);
 }
@@ -288,12 +299,14 @@ void EdgePipeline::Encode(const std::stop_token& stop) {
       thermal->image = is_counts ? PackCounts(frame->pixels)
                                  : thermal_encoder_.Encode(frame->pixels, thermal->scale);
     }
-    Emit(std::move(frame->encoded), stop);
+    QueueForSinks(std::move(frame->encoded), stop);
   }
 }
 
-void EdgePipeline::Emit(EncodedFrame encoded, const std::stop_token& stop) {
+void EdgePipeline::QueueForSinks(EncodedFrame encoded, const std::stop_token& stop) {
   const auto frame = std::make_shared<const EncodedFrame>(std::move(encoded));
+  // Live, Push makes room and counts by itself what it drops (CountDropsAs). Unpaced playback waits
+  // for room, and false says that there was none when the stop came.
   if (spool_ && !spool_queue_.Push(frame, stop)) {
     counters_.Count(frame->sensor(), FrameFate::kRecordQueueFull);
   }

@@ -51,10 +51,10 @@ struct EdgeParts {
 ///    (supervised)                 (thermal only)                +-> queue -> Publisher
 ///   |------------ capture thread -----------|  codec thread     spool and publish threads
 ///
-/// Frames are stamped while earlier ones are still packed. Capture waits for neither disk nor
-/// network: full queues drop the oldest frame and count it. Only
-/// unpaced playback (rate 0) waits, because there is nothing to miss. A receive thread serves the
-/// ground's messages. Thread-bound to the thread that starts and stops it, except where noted.
+/// Frames are stamped while earlier ones are still being packed. Capture waits for neither disk nor
+/// network: full queues drop the oldest frame and count it. Only unpaced playback (rate 0) waits,
+/// because there is nothing to miss. A receive thread serves the ground's messages. Thread-bound to
+/// the thread that starts and stops it, except where noted.
 class EdgePipeline {
  public:
   EdgePipeline(const EdgeOptions& options, EdgeParts parts);
@@ -63,13 +63,15 @@ class EdgePipeline {
   /// Starts listening to the ground; frames flow from StartCapture on.
   void StartReceiving();
   void StartCapture();
-  /// Ends capture, empties the queues, closes the recording. Idempotent. The recording's first
-  /// error, or ok.
+  /// Ends capture, empties the queues, closes the recording, then ends the threads of the link.
+  /// Returns the recording's first error, or ok. Idempotent.
   Status Stop();
-  /// The first part of it. False: the source did not end within `limit`. It is left behind, the
-  /// rest can be stopped all the same; the pipeline cannot be destroyed before the source ends.
+  /// The first part of Stop. Returns false if the source did not end within `limit`. It is then
+  /// left behind: the rest can be stopped all the same, but the pipeline cannot be destroyed before
+  /// the source ends.
   bool StopCapture(Nanoseconds limit);
-  /// The second part, which the recording needs: what follows needs the link.
+  /// The second part of Stop: writes what waits for the disk and closes the recording. Does not
+  /// wait for the link, which is left to Stop.
   Status StopRecording();
 
   /// Describes the rig anew in the recording, if there is one. Thread-safe.
@@ -77,9 +79,10 @@ class EdgePipeline {
   /// Answers what the ground has asked for since the last call.
   void AnswerCommands();
 
-  /// The source has ended and each of its frames has met its fate. Thread-safe.
+  /// Returns true when the source has ended and each of its frames was recorded and published, or
+  /// dropped and counted. Thread-safe.
   bool finished() const;
-  /// The correction as of the newest thermal frame. Thread-safe.
+  /// Returns the state of the camera's correction as of the newest thermal frame. Thread-safe.
   NucReport nuc() const { return nuc_report_.Get().value_or(NucReport()); }
   /// Steps of the wall clock since the start and their sum, which capture times do not follow: the
   /// wall clock is ahead of them by this much. Thread-safe.
@@ -108,20 +111,21 @@ class EdgePipeline {
   void WatchClock();
   CaptureTime TimeLineNow() const { return step_watch_.At(clock_.SteadyNow()); }
   /// Keeps the pose for the next frame to take along.
-  void Keep(ExternalOdometry pose);
+  void BufferOdometryPose(ExternalOdometry pose);
   void PublishExternalOdometry(const EncodedFrame& frame, const std::stop_token& stop);
   void ProcessDepth(RawFrame raw, const std::stop_token& stop);
   void ProcessThermal(RawFrame raw, const std::stop_token& stop);
-  void Forward(FrameToEncode frame, const std::stop_token& stop);
+  void QueueForCodec(FrameToEncode frame, const std::stop_token& stop);
   void Encode(const std::stop_token& stop);
-  void Emit(EncodedFrame encoded, const std::stop_token& stop);
+  /// To the recording and to the link.
+  void QueueForSinks(EncodedFrame encoded, const std::stop_token& stop);
   /// Notes how certain the stamp is, and how long it took from arrival to here.
   void NoteStamped(const RawFrame& raw, const Stamp& stamp);
   FrameHeader Header(const RawFrame& raw, const Stamp& stamp) const;
   void Record(const std::stop_token& stop);
   void RecordMessages();
   void Publish(const std::stop_token& stop);
-  /// On the capture thread, which alone talks to the camera.
+  /// Runs on the capture thread, which alone talks to the camera.
   void ServeNucCommands();
   void Execute(const Command& command);
   void Answer(const CommandResult& result);
@@ -168,7 +172,8 @@ class EdgePipeline {
   FeedbackMonitor feedback_;
   /// Feedback of several seconds, for the spool thread to take along with the frames.
   BoundedQueue<ReceivedFeedback> feedback_to_record_{64, OverflowPolicy::kDropOldest};
-  LatestValue<RigUpdate> rig_to_record_;  ///< The same for a camera that came late.
+  /// The rig with a camera that came late, for the spool thread, too.
+  LatestValue<RigUpdate> rig_to_record_;
   BoundedQueue<CommandResult> nuc_answers_{64, OverflowPolicy::kDropOldest};
   // Commands that come faster than they can be executed are refused, the oldest first.
   const std::function<void(const Command&)> refuse_ = [this](const Command& command) {

@@ -6,16 +6,13 @@
 #include <utility>
 
 #include "common/base/log.h"
+#include "common/base/processor_time.h"
+#include "common/frame/sensor_name.h"
 
 namespace isotherm {
 namespace {
 
-// A Read waits for a frame at most this long.
-constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
-
-std::string_view NameOf(Sensor sensor) {
-  return sensor == Sensor::kDepth ? "depth camera" : "thermal camera";
-}
+std::string CameraNameOf(Sensor sensor) { return fmt::format("{} camera", NameOf(sensor)); }
 
 }  // namespace
 
@@ -33,37 +30,37 @@ CameraPair::~CameraPair() { Close(); }
 Status CameraPair::Open() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
     members_[i]->opened = {};
-    members_[i]->goes_on = {};
+    members_[i]->may_run = {};
     members_[i]->ended = false;
     members_[i]->thread = std::jthread([this, i](const std::stop_token& stop) { Run(i, stop); });
   }
   std::string missing;
-  std::optional<Status> hopeless;
+  std::optional<Status> impossible;  // Trying again would not help.
   std::size_t working = 0;
   for (const std::unique_ptr<Member>& member : members_) {
     const Opened opened = member->opened.get_future().get();
-    Keep(opened);
+    AddDescription(opened);
     if (opened.status.ok()) {
       ++working;
       continue;
     }
-    const Status named = opened.status.WithContext(NameOf(member->camera.sensor));
-    if (named.code() == StatusCode::kInvalidArgument) hopeless = named;
+    const Status named = opened.status.WithContext(CameraNameOf(member->camera.sensor));
+    if (named.code() == StatusCode::kInvalidArgument) impossible = named;
     missing += (missing.empty() ? "" : "; ") + named.message();
   }
-  const bool goes_on = working > 0 && !hopeless;
-  for (const std::unique_ptr<Member>& member : members_) member->goes_on.set_value(goes_on);
-  if (goes_on) {
+  const bool runs = working > 0 && !impossible;
+  for (const std::unique_ptr<Member>& member : members_) member->may_run.set_value(runs);
+  if (runs) {
     if (!missing.empty()) {
       LOG(Source, Warning) << "starting without a camera, which is tried again: " << missing;
     }
     return OkStatus();
   }
   Close();
-  return hopeless ? *hopeless : Unavailable("no camera: " + missing);
+  return impossible ? *impossible : Unavailable("no camera: " + missing);
 }
 
-void CameraPair::Keep(const Opened& opened) {
+void CameraPair::AddDescription(const Opened& opened) {
   descriptions_.insert(descriptions_.end(), opened.descriptions.begin(), opened.descriptions.end());
   if (!opened.rig) return;
   if (!rig_) {
@@ -76,7 +73,7 @@ void CameraPair::Keep(const Opened& opened) {
 
 Result<SourceItem> CameraPair::Read(std::stop_token stop) {
   reading_ = true;
-  return queue_.Pop(kLongestWait, stop);
+  return queue_.Pop(kReadWait, stop);
 }
 
 void CameraPair::Close() {
@@ -128,13 +125,14 @@ std::vector<ControlAnswer> CameraPair::TakeControlAnswers() {
 }
 
 void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
+  NameThread("camera");
   Member& member = *members_[index];
   SupervisedSource& source = *member.camera.source;
   const Status opened = source.Open();
   member.opened.set_value({opened, opened.ok() ? source.rig() : std::nullopt, source.cameras()});
-  const bool goes_on = member.goes_on.get_future().get();
-  if (goes_on && !opened.ok()) source.KeepTrying(opened);
-  while (goes_on && !stop.stop_requested()) {
+  const bool runs = member.may_run.get_future().get();
+  if (runs && !opened.ok()) source.KeepTrying(opened);
+  while (runs && !stop.stop_requested()) {
     PassOrders(member);
     source.SetIdle(!reading_ && !waits_);
     Result<SourceItem> item = source.Read(stop);

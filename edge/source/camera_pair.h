@@ -25,9 +25,9 @@ namespace isotherm {
 ///   thermal camera -> SupervisedSource -> queue -+
 ///
 /// The cameras run from Open on; what they deliver counts from the first Read on, unless the queue
-/// makes them wait: then nothing is thrown away. A camera that is
-/// missing at the start is tried again like one that is lost later. Thread-bound,
-/// as any source; the cameras' threads are its own.
+/// makes them wait: then nothing is thrown away. A camera that is missing at the start is tried
+/// again like one that is lost later. Thread-bound, as any source; the cameras' threads are its
+/// own.
 class CameraPair final : public FrameSource {
  public:
   static constexpr std::size_t kMaxOrders = 8;
@@ -39,7 +39,7 @@ class CameraPair final : public FrameSource {
   struct Queue {
     std::size_t capacity = 8;  ///< Frames per camera.
     OverflowPolicy policy = OverflowPolicy::kDropOldest;
-    std::function<void(Sensor)> on_drop;  ///< May count, no more.
+    std::function<void(Sensor)> on_drop;  ///< Called with the queue locked: may count, no more.
   };
 
   /// One or two cameras.
@@ -74,7 +74,7 @@ class CameraPair final : public FrameSource {
     BoundedQueue<CameraControl> orders{kMaxOrders, OverflowPolicy::kBlock};
     BoundedQueue<ControlAnswer> answers{kMaxOrders, OverflowPolicy::kBlock};
     std::promise<Opened> opened;
-    std::promise<bool> goes_on;      ///< Whether a camera that is missing is tried again.
+    std::promise<bool> may_run;      ///< False: the pair could not be opened, its threads end.
     std::atomic<bool> ended{false};  ///< Its thread takes no orders any more.
     std::jthread thread;
   };
@@ -82,12 +82,13 @@ class CameraPair final : public FrameSource {
   void Run(std::size_t index, const std::stop_token& stop);
   static void PassOrders(Member& member);
   Member* Thermal() const;
-  void Keep(const Opened& opened);
+  /// Adds a camera to what is known of the rig and its cameras.
+  void AddDescription(const Opened& opened);
 
   std::vector<std::unique_ptr<Member>> members_;
-  std::size_t open_orders_ = 0;  ///< Given and not answered; of the reader's thread.
+  std::size_t open_orders_ = 0;  ///< Given and not answered; only the reader's thread uses it.
   std::atomic<bool> reading_{false};
-  const bool waits_;  ///< Full queues do.
+  const bool waits_;  ///< A full queue makes its camera wait (OverflowPolicy::kBlock).
   MergeQueue queue_;
   std::optional<Rig> rig_;
   std::vector<CameraDescription> descriptions_;

@@ -313,14 +313,17 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
   if (Status status = PrepareOutputDir(request.output_dir); !status.ok()) return Err(status);
 
   const auto start = std::chrono::steady_clock::now();
+  const ProcessorTimes before = ReadProcessorTimes();
   InlineDriver driver(request, *scan->reader, *scan->rig, pipeline);
   if (Status status = driver.Run(); !status.ok()) return Err(status);
+  const ProcessorTimes used = ReadProcessorTimes() - before;
   const DelayReport delay = driver.CheckDelay();
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
 
   Json stats = DescribeScan(pipeline.model(), options);
   stats["source"] = DescribeSource(request, info, driver);
   stats["elapsed_s"] = elapsed.count();
+  stats["processor"] = DescribeProcessor(used, pipeline.model().trajectory);
   const auto progress = [&](std::string_view what, double fraction) {
     constexpr double kBefore = kFramesFraction + kMergeFraction + kDelayFraction;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);

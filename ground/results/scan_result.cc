@@ -31,6 +31,7 @@ Json DescribeStage(const StageStats& stats) {
   stage["p99_ms"] = stats.Percentile(99);
   stage["max_ms"] = stats.max_ms();
   stage["total_s"] = stats.total_ms() * 1e-3;
+  if (stats.processor_ms() > 0.0) stage["processor_s"] = stats.processor_ms() * 1e-3;
   return stage;
 }
 
@@ -51,7 +52,7 @@ std::uint64_t Sum(const EnumArray<LostReason, std::uint64_t>& counts) {
   return sum;
 }
 
-/// Counts by name, of those that occurred.
+/// Writes the counts of the reasons that occurred, by name.
 template <typename Reason>
 void DescribeReasons(const EnumArray<Reason, std::uint64_t>& counts, const char* key, Json& json) {
   for (const Reason reason : AllValues<Reason>()) {
@@ -59,7 +60,7 @@ void DescribeReasons(const EnumArray<Reason, std::uint64_t>& counts, const char*
   }
 }
 
-/// Returns what odometry poses were and did.
+/// Describes the odometry poses of a scan: how many came, were accepted and were used.
 Json DescribeOdometry(const OdometryPrior& odometry) {
   Json json;
   const OdometryStreamCounts& samples = odometry.stream().counts();
@@ -230,6 +231,16 @@ Json DescribeScan(const ScanModel& scan, const GroundOptions& options) {
   *complete.mutable_thermal() = WithAnglesOfMaterial(options.thermal());
   json["configuration"] = ToJson(complete);
   if (!scan.thermal_status.ok()) json["thermal_not_fused_because"] = scan.thermal_status.message();
+  return json;
+}
+
+Json DescribeProcessor(const ProcessorTimes& used, const Trajectory& trajectory) {
+  Json json;
+  json["total_s"] = used.total_s;
+  const std::vector<StampedPose>& poses = trajectory.poses();
+  const double data_s = poses.empty() ? 0.0 : ToSeconds(poses.back().time - poses.front().time);
+  if (data_s > 0.0) json["per_second_of_data_s"] = used.total_s / data_s;
+  for (const auto& [name, thread_s] : used.by_thread_s) json["by_thread_s"][name] = thread_s;
   return json;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/processor_time.h"
 #include "common/base/status.h"
 #include "common/doubts/doubts.h"
 #include "ground/calibration/delay_check.h"
@@ -19,6 +20,10 @@ Json DescribeStage(const StageStats& stats);
 
 /// Frames, stages, volume and calibration of a scan as they go into stats.json.
 Json DescribeScan(const ScanModel& scan, const GroundOptions& options);
+
+/// What a scan cost: processor time by thread, and per second of its data, as it goes into
+/// stats.json.
+Json DescribeProcessor(const ProcessorTimes& used, const Trajectory& trajectory);
 
 struct WrittenScan {
   std::string text;  ///< One screen for the user.

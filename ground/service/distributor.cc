@@ -1,8 +1,7 @@
 #include "ground/service/distributor.h"
 
-#include <tuple>
-
 #include <memory>
+#include <tuple>
 
 #include "common/base/log.h"
 #include "ground/service/live_scan.h"
@@ -53,7 +52,7 @@ void Distributor::OnRigAnew(const RigDescription& rig) {
   SendMark(rig);
 }
 
-void Distributor::OnFrame(SessionItem item) {
+void Distributor::OnItem(SessionItem item) {
   if (over_) return;
   if (SessionOf(item) == session_) {
     Send(std::move(item));
@@ -97,24 +96,23 @@ void Distributor::Reconstruct(SessionItem item) {
 
 void Distributor::Record(const SessionItem& item) {
   if (!options_.live().record()) return;
+  if (const auto* depth = std::get_if<ReceivedDepth>(&item)) {
+    RecordFrame(*depth, Sensor::kDepth);
+  } else if (const auto* thermal = std::get_if<ReceivedThermal>(&item)) {
+    RecordFrame(*thermal, Sensor::kThermal);
+  } else {
+    recording_.Offer(item, {}, stop_);
+  }
+}
+
+template <typename Frame>
+void Distributor::RecordFrame(Frame frame, Sensor sensor) {
   // A live edge does not wait for us, so nothing may hold up reception; a replay does.
   constexpr Nanoseconds kPatience = std::chrono::seconds(1);
   const Nanoseconds patience = start_.rig.waits_for_ground ? kPatience : Nanoseconds(0);
-  bool taken = true;
-  if (const auto* depth = std::get_if<ReceivedDepth>(&item)) {
-    // Pixels are for the reconstruction.
-    taken = recording_.Offer(ReceivedDepth{nullptr, depth->encoded, depth->arrival, depth->queued},
-                             patience, stop_);
-    if (!taken) start_.recording->CountLeftOut(Sensor::kDepth, NotRecorded::kDiskTooSlow);
-  } else if (const auto* thermal = std::get_if<ReceivedThermal>(&item)) {
-    taken = recording_.Offer(
-        ReceivedThermal{nullptr, thermal->encoded, thermal->arrival, thermal->queued}, patience,
-        stop_);
-    if (!taken) start_.recording->CountLeftOut(Sensor::kThermal, NotRecorded::kDiskTooSlow);
-  } else {
-    recording_.Offer(item, {}, stop_);
-    return;
-  }
+  frame.frame.reset();  // Pixels are for the reconstruction.
+  const bool taken = recording_.Offer(std::move(frame), patience, stop_);
+  if (!taken) start_.recording->CountLeftOut(sensor, NotRecorded::kDiskTooSlow);
   LogRecording(taken);
 }
 

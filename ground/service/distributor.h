@@ -39,8 +39,10 @@ class Distributor {
 
   /// Begins a session, or takes what is new of its cameras.
   void OnRig(const RigDescription& rig);
-  void OnFrame(SessionItem item);
+  /// Takes a frame or an odometry pose.
+  void OnItem(SessionItem item);
   void OnClock(const SessionClock& clock) { recording_.Offer(clock, {}, stop_); }
+  /// Takes a frame that came too late for the reconstruction: it is only recorded.
   void OnLate(SessionItem item) { Record(std::move(item)); }
   void OnSessionEnd(const SessionCounters& counters);
 
@@ -52,6 +54,9 @@ class Distributor {
   void SendMark(const SessionItem& mark);
   void Reconstruct(SessionItem item);
   void Record(const SessionItem& item);
+  /// Records a frame, or counts it as left out if there is no room for it.
+  template <typename Frame>
+  void RecordFrame(Frame frame, Sensor sensor);
   void LogRecording(bool taken);
 
   const GroundOptions& options_;
@@ -63,7 +68,7 @@ class Distributor {
   ThreadProgress& progress_;
   std::stop_token stop_;
   std::optional<std::uint64_t> session_;
-  SessionStart start_;  ///< That session's.
+  SessionStart start_;  ///< How the session that runs began.
   bool over_ = false;   ///< The single scan has ended.
   bool recording_behind_ = false;
   std::deque<SessionItem> early_;

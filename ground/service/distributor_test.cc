@@ -44,7 +44,7 @@ class DistributorTest : public ::testing::Test {
     return {frame, encoded, {}, {}};
   }
   void Depth(std::uint64_t number, std::uint64_t session = kSession) {
-    distributor_->OnFrame(Frame(number, session));
+    distributor_->OnItem(Frame(number, session));
   }
 
   /// S<session> for a beginning, R<session> for a rig described anew, E<session> for an end, and

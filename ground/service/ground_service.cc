@@ -117,14 +117,15 @@ SubscriberOptions GroundService::LinkOptions() const {
   return link;
 }
 
+/// The way from the subscriber to the distributor: what each message of the link calls there.
 SubscriberHandlers GroundService::Handlers() {
   SubscriberHandlers handlers;
   Distributor& to = distributor_;
-  handlers.depth = [&to](ReceivedDepth depth) { to.OnFrame(std::move(depth)); };
-  handlers.thermal = [&to](ReceivedThermal thermal) { to.OnFrame(std::move(thermal)); };
+  handlers.depth = [&to](ReceivedDepth depth) { to.OnItem(std::move(depth)); };
+  handlers.thermal = [&to](ReceivedThermal thermal) { to.OnItem(std::move(thermal)); };
   handlers.late_depth = [&to](ReceivedDepth depth) { to.OnLate(std::move(depth)); };
   handlers.late_thermal = [&to](ReceivedThermal thermal) { to.OnLate(std::move(thermal)); };
-  handlers.external_odometry = [&to](const ExternalOdometrySample& pose) { to.OnFrame(pose); };
+  handlers.external_odometry = [&to](const ExternalOdometrySample& pose) { to.OnItem(pose); };
   handlers.rig = [&to](const RigDescription& rig) { to.OnRig(rig); };
   handlers.clock = [&to](const SessionClock& clock) { to.OnClock(clock); };
   handlers.session_end = [&to](const SessionCounters& counters) { to.OnSessionEnd(counters); };
@@ -155,12 +156,13 @@ int GroundService::Run() {
   ReconstructionLoop reconstruction(options_, clock_, *subscriber_, to_recording_, results, board_,
                                     health_.reconstruction);
   {
-    Worker result_thread([&](const std::stop_token& stop) { results.Run(stop); });
+    Worker result_thread("results", [&](const std::stop_token& stop) { results.Run(stop); });
     Worker recording_thread(
-        [&](const std::stop_token& stop) { recording.Run(to_recording_, stop); });
-    Worker reconstruction_thread(
-        [&](const std::stop_token& stop) { reconstruction.Run(to_reconstruction_, stop); });
-    Worker receive_thread([&](const std::stop_token& stop) {
+        "record", [&](const std::stop_token& stop) { recording.Run(to_recording_, stop); });
+    Worker reconstruction_thread("reconstruct", [&](const std::stop_token& stop) {
+      reconstruction.Run(to_reconstruction_, stop);
+    });
+    Worker receive_thread("receive", [&](const std::stop_token& stop) {
       distributor_.SetStop(stop);
       subscriber_->Run(stop);
       health_.receive.Idle();

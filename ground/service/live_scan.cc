@@ -68,6 +68,11 @@ void LiveScan::Add(const ExternalOdometrySample& sample) {
 void LiveScan::FinishFrames(const std::function<void(double fraction)>& progress) {
   while (const auto frame = assembler_.Flush()) Process(*frame);
   pipeline_->Finish(progress);
+  processor_after_ = ReadProcessorTimes();
+}
+
+ProcessorTimes LiveScan::processor_times() const {
+  return (processor_after_ ? *processor_after_ : ReadProcessorTimes()) - processor_before_;
 }
 
 BehindCounts LiveScan::behind() const {
@@ -102,7 +107,9 @@ void LiveScan::NoteQueueTime(const void* frame) {
 }
 
 void LiveScan::KeepUp(Nanoseconds queued) {
-  // The rest is for the other stream's next frame.
+  // Fractions of live.expert.max_wait_s. What the model misses least goes first: every second
+  // thermal frame; depth frames are always tracked. All are well below 1 because `queued` is not
+  // the whole wait: the assembler holds a frame until the next one of the other stream has come.
   constexpr double kHalfThermalFraction = 0.35;
   constexpr double kThermalFraction = 0.45;
   constexpr double kIntegrationFraction = 0.7;

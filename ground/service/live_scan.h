@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <deque>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <variant>
 
+#include "common/base/processor_time.h"
 #include "common/base/stage_stats.h"
 #include "common/base/status.h"
 #include "common/messages/messages.h"
@@ -40,21 +40,28 @@ class LiveScan {
 
   void Add(const ReceivedDepth& depth);
   void Add(const ReceivedThermal& thermal);
-  /// Not held back: frames wait for each other, so poses are there before them.
+  /// Poses are not held back. Frames wait for each other, so that a pose is there before its frame.
   void Add(const ExternalOdometrySample& sample);
   /// Processes what the assembler still holds back.
   void FinishFrames(const std::function<void(double fraction)>& progress = {});
-  /// After that: whether the delay that the edge added to thermal stamps is right.
+  /// To be called after FinishFrames: says whether the delay that the edge added to thermal stamps
+  /// is right.
   DelayReport CheckDelay(const std::function<void()>& progress = {});
 
-  /// Feedback on the newest depth frame if one is due (LiveOptions.feedback_hz, by capture time).
+  /// Returns feedback on the newest depth frame if a message is due (live.expert.feedback_hz, by
+  /// capture time).
   std::optional<Feedback> TakeFeedback();
-  /// To be called when that was sent: prepares the next. Left out while frames wait.
+  /// To be called when the feedback was sent: prepares the next message. Does nothing while frames
+  /// wait.
   void ThinkAhead();
+  /// Returns what this process has used since the scan began, results and delay check left out once
+  /// the frames are finished. Two scans that overlap both count.
+  ProcessorTimes processor_times() const;
   /// Coverage of the whole model as it goes into stats.json.
   Json DescribeFeedback() const;
 
-  /// From a frame's arrival to its turn: in queues, and for the other stream.
+  /// Returns how long frames waited from their arrival to their turn: in queues, and for the other
+  /// stream.
   const StageStats& waiting() const { return waiting_; }
 
   std::uint64_t session() const { return session_; }
@@ -70,7 +77,7 @@ class LiveScan {
   }
   /// Returns what all frames so far have given.
   ScanModel model() const { return pipeline_->model(); }
-  /// For the results.
+  /// Lends the results the pipeline's threads.
   ThreadPool& pool() { return pipeline_->pool(); }
   const Rig& rig() const { return rig_; }
 
@@ -79,7 +86,7 @@ class LiveScan {
            std::unique_ptr<GroundPipeline> pipeline);
   void Process(const Assembler::Frame& frame);
   void NoteQueueTime(const void* frame);
-  /// Leaves work out while frames wait too long in the queue (LiveOptions.max_wait_s).
+  /// Leaves work out while frames wait too long in the queue (live.expert.max_wait_s).
   void KeepUp(Nanoseconds queued);
   void LogWhenDone();
 
@@ -101,6 +108,8 @@ class LiveScan {
   StageStats waiting_;
   StageStats making_, thinking_;  ///< Feedback, and what is prepared after it.
   bool reported_behind_ = false;
+  const ProcessorTimes processor_before_ = ReadProcessorTimes();
+  std::optional<ProcessorTimes> processor_after_;  ///< Since the frames are finished.
 };
 
 }  // namespace isotherm

@@ -112,8 +112,8 @@ void ReconstructionLoop::End() {
   board_.feedback.Take();
   board_.behind.Take();
   ended_result_bytes_ += std::exchange(result_bytes_, 0);
-  progress_.Idle();  // If it has to wait, then for the results of others.
-  results_.Hand({std::move(start_), std::move(scan_), std::exchange(unprocessed_, 0)}, stop_);
+  progress_.Idle();  // Enqueue may wait for the results of other scans.
+  results_.Enqueue({std::move(start_), std::move(scan_), std::exchange(unprocessed_, 0)}, stop_);
   progress_.Busy(clock_.SteadyNow());
 }
 

@@ -60,8 +60,8 @@ class ReconstructionLoop {
   ScanBoard& board_;
   ThreadProgress& progress_;
   std::stop_token stop_;
-  bool started_ = false;  ///< A session; without a scan if that could not be begun.
-  SessionStart start_;    ///< That session's.
+  bool started_ = false;  ///< A session runs; without a scan if none could be begun.
+  SessionStart start_;    ///< How the session that runs began.
   std::unique_ptr<LiveScan> scan_;
   std::uint64_t unprocessed_ = 0;  ///< Frames of this session.
   std::uint64_t result_bytes_ = 0;

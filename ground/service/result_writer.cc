@@ -40,6 +40,7 @@ Json DescribeEnd(LiveScan& scan, const GroundOptions& options, const SessionCoun
   }
   DescribeCounters(counters, recording, link);
   stats["feedback"] = scan.DescribeFeedback();
+  stats["processor"] = DescribeProcessor(scan.processor_times(), scan.model().trajectory);
   return stats;
 }
 
@@ -52,7 +53,7 @@ fs::path SecondFolder(const fs::path& folder) {
          ("isotherm-" + (name.has_filename() ? name : name.parent_path()).filename().string());
 }
 
-/// Returns what to do next, for whoever holds the rig.
+/// Returns what the operator should do next.
 std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
                            const RecordingProgress& recording) {
   std::string text;
@@ -78,7 +79,7 @@ std::string ConclusionText(const LiveScan& scan, const GroundOptions& options,
 
 }  // namespace
 
-void ResultWriter::Hand(EndedScan ended, const std::stop_token& stop) {
+void ResultWriter::Enqueue(EndedScan ended, const std::stop_token& stop) {
   ++board_.scans_being_written;
   const Nanoseconds patience = ended.start.rig.waits_for_ground ? kReplayPatience : Nanoseconds(0);
   MutexLock lock(mutex_);
@@ -126,7 +127,7 @@ std::optional<EndedScan> ResultWriter::Take(const std::stop_token& stop) {
 void ResultWriter::Run(const std::stop_token& stop) {
   while (std::optional<EndedScan> ended = Take(stop)) {
     progress_.Busy(clock_.SteadyNow());
-    Write(std::move(*ended));
+    FinishScan(std::move(*ended));
     progress_.Idle();
     // The reserve on the disk was for these results; a scan under way says again what it needs.
     if (--board_.scans_being_written == 0) board_.result_bytes = 0;
@@ -134,7 +135,7 @@ void ResultWriter::Run(const std::stop_token& stop) {
   }
 }
 
-void ResultWriter::Write(EndedScan ended) {
+void ResultWriter::FinishScan(EndedScan ended) {
   if (!ended.scan) return;  // Recorded only.
   LiveScan& scan = *ended.scan;
   const auto go_on = [this] { progress_.Busy(clock_.SteadyNow()); };
@@ -144,7 +145,7 @@ void ResultWriter::Write(EndedScan ended) {
   const RecordingProgress recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
   const SessionCounters counters = counters_(scan.session());
   const Json stats = DescribeEnd(scan, options_, counters, recording, ended.unprocessed);
-  const Result<std::string> text = WriteSomewhere(scan, delay, stats, ended.start.folder);
+  const Result<std::string> text = WriteWithFallback(scan, delay, stats, ended.start.folder);
   if (!text) {
     status_ = text.error();
     LOG(Ground, Error) << status_.message();
@@ -156,8 +157,8 @@ void ResultWriter::Write(EndedScan ended) {
   std::fflush(stdout);
 }
 
-Result<std::string> ResultWriter::WriteSomewhere(LiveScan& scan, const DelayReport& delay,
-                                                 const Json& stats, const fs::path& folder) {
+Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayReport& delay,
+                                                    const Json& stats, const fs::path& folder) {
   const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
   const auto write = [&](const fs::path& to) -> Result<std::string> {
     if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);

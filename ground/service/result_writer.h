@@ -27,9 +27,9 @@ struct EndedScan {
 
 /// Writes the results of one scan after the other, so that the next scan can be received and
 /// reconstructed meanwhile. At most one more waits: there are never more than three models in
-/// memory. Who brings another one to a disk that is stuck loses its results, and never waits for
-/// long: the recording has its frames. Hand() is for the reconstruction thread; the rest is bound
-/// to the thread of results.
+/// memory. If the disk is stuck, the results of one more are lost, and nobody waits for long: the
+/// recording has its frames. Enqueue() is for the reconstruction thread; the rest is bound to the
+/// thread of results.
 class ResultWriter {
  public:
   /// Returns what is known of a session's frames by now.
@@ -44,11 +44,11 @@ class ResultWriter {
         progress_(progress),
         written_(std::move(written)) {}
 
-  /// Takes a scan, or gives its results up, counted and said, if there is no room for it. A live
-  /// rig does not wait for us; a replay does for kReplayPatience, and who was asked to stop
-  /// receives nothing meanwhile.
-  void Hand(EndedScan ended, const std::stop_token& stop);
-  /// Until stop is requested and no scan waits.
+  /// Takes a scan, or gives its results up, counted and logged, if there is no room for it. With a
+  /// live rig, which does not wait for us, it decides at once; with a replay after kReplayPatience.
+  /// After a stop it waits until there is room: nothing is received meanwhile.
+  void Enqueue(EndedScan ended, const std::stop_token& stop);
+  /// Writes until stop is requested and no scan waits.
   void Run(const std::stop_token& stop);
   /// The last failure. Not while it runs.
   const Status& status() const { return status_.ok() ? given_up_ : status_; }
@@ -61,10 +61,11 @@ class ResultWriter {
       REQUIRES(mutex_);
   void GiveUp(const EndedScan& ended);
   std::optional<EndedScan> Take(const std::stop_token& stop);
-  void Write(EndedScan ended);
-  /// Into the scan's folder or, if that fails, into another. The summary.
-  Result<std::string> WriteSomewhere(LiveScan& scan, const DelayReport& delay, const Json& stats,
-                                     const std::filesystem::path& folder);
+  /// Processes a scan's last frames, checks its delay and writes its results.
+  void FinishScan(EndedScan ended);
+  /// Writes into the scan's folder or, if that fails, into another. Returns the summary.
+  Result<std::string> WriteWithFallback(LiveScan& scan, const DelayReport& delay, const Json& stats,
+                                        const std::filesystem::path& folder);
 
   const GroundOptions& options_;
   const Clock& clock_;

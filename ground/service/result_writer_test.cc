@@ -58,12 +58,12 @@ class ResultWriterTest : public ::testing::Test {
   /// Hands the scan over on another thread.
   std::future<void> Hand(EndedScan ended) {
     return std::async(std::launch::async, [this, ended = std::move(ended)]() mutable {
-      writer_.Hand(std::move(ended), stop_.get_token());
+      writer_.Enqueue(std::move(ended), stop_.get_token());
     });
   }
   /// Results of one scan are stuck, another one waits.
   void FillUp() {
-    writer_.Hand(Scan(1), stop_.get_token());
+    writer_.Enqueue(Scan(1), stop_.get_token());
     ASSERT_EQ(reached_.get_future().wait_for(kPatience), std::future_status::ready);
     ASSERT_EQ(Hand(Scan(2)).wait_for(kPatience), std::future_status::ready);
   }

@@ -6,16 +6,19 @@
 #include <thread>
 #include <utility>
 
+#include "common/base/processor_time.h"
+
 namespace isotherm {
 
 /// A thread whose end can be waited for with a deadline, because it may be stuck in a system call.
 /// The destructor waits for it. Thread-compatible.
 class Worker {
  public:
-  /// `body` gets a std::stop_token.
+  /// `body` gets a std::stop_token; `name` is that of the thread (NameThread).
   template <typename Body>
-  explicit Worker(Body body)
-      : thread_([this, body = std::move(body)](const std::stop_token& stop) {
+  Worker(const char* name, Body body)
+      : thread_([this, name, body = std::move(body)](const std::stop_token& stop) {
+          NameThread(name);
           body(stop);
           end_.set_value_at_thread_exit();
         }) {}

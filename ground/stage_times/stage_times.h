@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common/base/enum_array.h"
+#include "common/base/processor_time.h"
 #include "common/base/stage_stats.h"
 
 namespace isotherm {
@@ -44,7 +45,8 @@ class StageTimes {
   EnumArray<Stage, std::optional<StageStats>> stats_;
 };
 
-/// Adds the time from construction to Stop() or destruction to a stage.
+/// Adds the time from construction to Stop() or destruction to a stage, and the processor time that
+/// this thread and those of its pools used in it.
 class StageTimer {
  public:
   explicit StageTimer(StageStats& stats) : stats_(&stats) {}
@@ -54,15 +56,16 @@ class StageTimer {
 
   void Stop() {
     if (stats_ == nullptr) return;
-    const std::chrono::duration<double, std::milli> elapsed =
-        std::chrono::steady_clock::now() - start_;
-    stats_->Add(elapsed.count());
+    using Milliseconds = std::chrono::duration<double, std::milli>;
+    stats_->Add(Milliseconds(std::chrono::steady_clock::now() - start_).count());
+    stats_->AddProcessorTime(Milliseconds(ThreadProcessorTime() - processor_start_).count());
     stats_ = nullptr;
   }
 
  private:
   StageStats* stats_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const std::chrono::nanoseconds processor_start_ = ThreadProcessorTime();
 };
 
 }  // namespace isotherm
