@@ -48,7 +48,7 @@ class DepthSensorTest : public ::testing::Test {
 
   SceneBuilder builder_;
   CameraModel camera_;
-  SimulatedDepthOptions options_;
+  SimulatedDepthOptions options_ = IdealDepthCamera({});
 };
 
 TEST_F(DepthSensorTest, WithoutNoiseAndStepsDepthIsTrue) {

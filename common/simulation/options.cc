@@ -52,12 +52,15 @@ void CheckDepth(const SimulatedDepthOptions& depth, RangeCheck& check) {
         360'000.0);
 }
 
-void CheckLens(const SimulatedThermalExpertOptions& expert, RangeCheck& check) {
+void CheckRays(const SimulatedThermalExpertOptions& expert, RangeCheck& check) {
   const SimulatedLensOptions& lens = expert.lens();
   check("thermal.expert.rays_per_pixel_side", expert.rays_per_pixel_side(), 1.0, 16.0);
   check("thermal.expert.lens.focus_m", lens.focus_m(), 0.0, 1000.0);
   check("thermal.expert.lens.focal_length_mm", lens.focal_length_mm(), 0.1, 1000.0);
   check("thermal.expert.lens.f_number", lens.f_number(), 0.1, 1000.0);
+  check.Require(expert.time_constant_s() == 0.0 || expert.rays_per_pixel_side() >= 3,
+                "thermal.expert.rays_per_pixel_side must be 3 or more with time_constant_s: the "
+                "rays are spread over time, too");
   if (lens.focus_m() == 0.0) return;
   check.Require(lens.focus_m() > 2.0 * kMetresPerMillimetre * lens.focal_length_mm(),
                 "thermal.expert.lens.focus_m must be 0 (sharp everywhere) or more than twice the "
@@ -88,7 +91,17 @@ void CheckThermal(const SimulatedThermalOptions& thermal, RangeCheck& check) {
         SceneInfluence::kMinSigma_px, SceneInfluence::kMaxSigma_px);
   check("thermal.expert.scene_influence.total_fraction", influence.total_fraction(), 0.0,
         SceneInfluence::kMaxFraction);
-  CheckLens(thermal.expert(), check);
+  CheckRays(thermal.expert(), check);
+}
+
+SimulationOptions WithCamerasAsAsked(const SimulationOptions& options) {
+  SimulationOptions filled = options;
+  if (options.has_ideal_cameras() && !options.ideal_cameras()) return filled;
+  *filled.mutable_thermal() = IdealThermalCamera(options.thermal());
+  *filled.mutable_depth() = IdealDepthCamera(options.depth());
+  filled.mutable_drift()->set_error_per_kelvin(
+      options.drift().has_error_per_kelvin() ? options.drift().error_per_kelvin() : 0.0);
+  return filled;
 }
 
 void CheckClock(const std::string& name, const ClockOptions& clock, RangeCheck& check) {
@@ -111,7 +124,8 @@ void SetClock(double offset_s, double drift_ppm, double delay_s, double jitter_s
 
 }  // namespace
 
-Status Validate(const SimulationOptions& options) {
+Status Validate(const SimulationOptions& as_given) {
+  const SimulationOptions options = WithCamerasAsAsked(as_given);
   constexpr double kHour = 3600.0;
   RangeCheck check;
   check("duration_s", options.duration_s(), 0.0, kHour);
@@ -149,7 +163,7 @@ Status Validate(const SimulationOptions& options) {
 }
 
 SimulationOptions Resolved(const SimulationOptions& options) {
-  SimulationOptions resolved = options;
+  SimulationOptions resolved = WithCamerasAsAsked(options);
   if (!options.has_depth_clock()) {
     SetClock(1000.0, 18.0, 0.021, 0.0012, 0.015, 0.030, *resolved.mutable_depth_clock());
   }
@@ -157,6 +171,33 @@ SimulationOptions Resolved(const SimulationOptions& options) {
     SetClock(52.0, -31.0, 0.034, 0.0016, 0.02, 0.045, *resolved.mutable_thermal_clock());
   }
   return resolved;
+}
+
+SimulatedThermalOptions IdealThermalCamera(const SimulatedThermalOptions& set) {
+  SimulatedThermalOptions ideal;
+  SimulatedThermalExpertOptions& expert = *ideal.mutable_expert();
+  // Inertia and defocus, where they are asked for, take several rays.
+  if (!set.expert().has_time_constant_s() && !set.expert().lens().has_focus_m())
+    expert.set_rays_per_pixel_side(1);
+  expert.mutable_lens()->set_focus_m(0.0);
+  expert.set_time_constant_s(0.0);
+  expert.set_readout_s(0.0);
+  expert.set_pattern_k_per_sqrt_minute(0.0);
+  expert.set_flicker_k(0.0);
+  expert.mutable_scene_influence()->set_near_fraction(0.0);
+  expert.mutable_scene_influence()->set_total_fraction(0.0);
+  ideal.MergeFrom(set);
+  return ideal;
+}
+
+SimulatedDepthOptions IdealDepthCamera(const SimulatedDepthOptions& set) {
+  SimulatedDepthOptions ideal;
+  SimulatedDepthExpertOptions& expert = *ideal.mutable_expert();
+  expert.set_flying_fraction(0.0);
+  expert.set_readout_s(0.0);
+  expert.set_warm_up_stretch(0.0);
+  ideal.MergeFrom(set);
+  return ideal;
 }
 
 Rig DefaultSimulatedRig() {
@@ -200,9 +241,17 @@ void TellLens(const SimulatedLensOptions& lens, Rig& rig) {
   rig.thermal_sensor.lens = LensModel{focal_length_m, lens.f_number(), lens.focus_m()};
 }
 
+/// What is ideal is not told: the rig's own word stands.
+void TellTimes(const SimulatedThermalExpertOptions& expert, Rig& rig) {
+  if (expert.time_constant_s() > 0.0) rig.thermal_sensor.time_constant_s = expert.time_constant_s();
+  if (expert.readout_s() > 0.0)
+    rig.thermal_sensor.row_readout_s = expert.readout_s() / rig.thermal->height;
+}
+
 }  // namespace
 
-Result<Rig> SimulatedRig(const SimulationOptions& options) {
+Result<Rig> SimulatedRig(const SimulationOptions& as_given) {
+  const SimulationOptions options = WithCamerasAsAsked(as_given);
   Rig rig = DefaultSimulatedRig();
   if (!options.rig_file().empty()) {
     Result<Rig> loaded = LoadRigCalibration(options.rig_file());
@@ -216,6 +265,7 @@ Result<Rig> SimulatedRig(const SimulationOptions& options) {
   rig.depth_scale = options.depth().expert().depth_scale();
   rig.thermal_scale = ScaleOf(options.thermal());
   rig.thermal_sensor.scene_influence = InfluenceOf(options.thermal());
+  TellTimes(options.thermal().expert(), rig);
   TellLens(options.thermal().expert().lens(), rig);
   return rig;
 }

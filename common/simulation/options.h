@@ -7,14 +7,20 @@
 
 namespace isotherm {
 
+class SimulatedDepthOptions;
 class SimulatedThermalOptions;
 class SimulationOptions;
 
 /// Checks ranges and relations; the message names the field.
 Status Validate(const SimulationOptions& options);
 
-/// The options with everything that may be left out filled in (clocks).
+/// The options with everything that may be left out filled in (clocks, ideal cameras).
 SimulationOptions Resolved(const SimulationOptions& options);
+
+/// Returns cameras without what makes real ones worse than their data sheets, but for what is set:
+/// `simulation.ideal_cameras` for a camera alone.
+SimulatedThermalOptions IdealThermalCamera(const SimulatedThermalOptions& set);
+SimulatedDepthOptions IdealDepthCamera(const SimulatedDepthOptions& set);
 
 /// The rig of the thesis: a PrimeSense Carmine 1.09 below an Optris PI 450.
 Rig DefaultSimulatedRig();

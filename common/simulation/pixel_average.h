@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "common/frame/image.h"
@@ -16,18 +18,25 @@ namespace isotherm {
 class SimulatedThermalOptions;
 
 /// Makes each pixel the mean radiance of many rays instead of that of the one through its middle.
-/// They are spread over the pixel's area and over the aperture of a thin lens; those of one pixel
-/// meet at the focus distance, so that what is nearer or farther is blurred (thesis eq. 2.20) and
-/// what is near hides only a part of what is behind it. Only pixels around which the image through
-/// a pinhole is uneven take the time: a part that no ray through the middle of a pixel meets stays
-/// unseen. Thread-safe (immutable); scratch memory is the caller's.
+/// They are spread over the pixel's area, over the aperture of a thin lens and over the time that
+/// the detector remembers. Those of one pixel meet at the focus distance, so that what is nearer or
+/// farther is blurred (thesis eq. 2.20) and what is near hides only a part of what is behind it.
+/// Their ages have the distribution of an exponential answer, moved so that their mean is 0. Only
+/// pixels from which a ray may meet something uneven in the image through a pinhole take the time:
+/// a part that no ray through the middle of a pixel meets stays unseen. Thread-safe (immutable);
+/// scratch memory is the caller's.
 class PixelAverage {
  public:
   PixelAverage(const CameraModel& camera, const SimulatedThermalOptions& options);
 
+  /// T_world_camera when these rows are read, `age_s` earlier (negative: later).
+  using PoseOfRows = std::function<RigidTransform(int first_row, double age_s)>;
+
   struct Scratch {
-    Image<std::uint8_t> uneven;           ///< 1 = the radiance is no plane there.
-    std::vector<Eigen::Vector2i> pixels;  ///< Those that take many rays.
+    Image<std::uint8_t> uneven;  ///< 1 = the radiance is no plane there.
+    Image<int> uneven_sums;
+    Image<int> reach;  ///< How far from a pixel its rays may meet; one value per tile.
+    std::vector<Eigen::Vector2i> pixels;  ///< Those that take many rays, of a few rows.
     std::vector<Eigen::Vector2f> rays;
     std::vector<RayHit> hits;
     std::vector<double> sums;
@@ -39,18 +48,25 @@ class PixelAverage {
   /// may be infinite.
   double BlurDiameterPx(double z_m) const;
 
-  /// Changes `radiance`, which is that of the middles of the pixels, and `hits` what they met.
+  /// Changes `radiance`, which is that of the middles of the pixels, and `hits` what they met. Asks
+  /// for poses once per `strip_rows`, a multiple of RayGrid::kTileHeight.
   void Apply(const Scene& scene, const RayGrid& grid, const BandRadiance& band,
-             const EmissivityTables& emissivity, const RigidTransform& T_world_camera,
+             const EmissivityTables& emissivity, const PoseOfRows& T_world_camera, int strip_rows,
              const HitImage& hits, Image<float>& radiance, Scratch& scratch) const;
 
  private:
   struct Ray {
     Eigen::Vector2f pixel_offset;  ///< From the pixel's middle, pixels.
     Eigen::Vector2d lens_m;        ///< Where it passes the lens, from its middle.
+    double age_s;
   };
-  /// Fills scratch.pixels, neighbours together.
-  void FindPixels(const HitImage& hits, const Image<float>& radiance, Scratch& scratch) const;
+  /// Returns the ages of as many rays, youngest first.
+  static std::vector<double> Ages(double time_constant_s, int count);
+  /// Fills scratch.reach. Returns the largest.
+  int FindReach(const RayGrid& grid, const PoseOfRows& T_world_camera, const HitImage& hits,
+                Scratch& scratch) const;
+  /// Fills scratch.pixels with those of some rows, neighbours together.
+  static void FindPixels(int first_row, int end_row, Scratch& scratch);
   Eigen::Vector2f RayThrough(const RayGrid& grid, const Eigen::Vector2i& pixel,
                              const Ray& ray) const;
 
@@ -59,6 +75,7 @@ class PixelAverage {
   const double focus_m_;
   const double negligible_;  ///< Radiance.
   std::vector<Ray> rays_;
+  double youngest_s_ = 0.0, oldest_s_ = 0.0;  ///< Of the rays.
 };
 
 }  // namespace isotherm

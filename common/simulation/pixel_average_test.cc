@@ -68,7 +68,7 @@ class PixelAverageTest : public ::testing::Test {
   }
 
   CameraModel camera_;
-  SimulatedThermalOptions options_;
+  SimulatedThermalOptions options_ = IdealThermalCamera({});
 };
 
 /// Area of the unit square around the origin where x cos + y sin > -distance, by fine strips.
@@ -116,6 +116,7 @@ TEST_F(PixelAverageTest, WhatIsEvenTakesNoFurtherRaysAndStaysTheSame) {
   Primitive& wall = builder.Box("wall", {-3, -3, kWall_m}, {3, 3, 0.6});
   wall.temperature = Linear(wall, {-0.1, 0, kWall_m}, 30.0, {0.1, 0, kWall_m}, 60.0);
   const Scene scene = builder.Build("wall");
+  expert().set_rays_per_pixel_side(1);
   const Image<double> single = HotFractions(scene);
   expert().set_rays_per_pixel_side(4);
   FocusAt(0.6);
@@ -207,6 +208,12 @@ TEST(LensOptionsTest, AreCheckedAndSayWhatIsWrong) {
            Case{"rays_per_pixel_side", [](auto& o) { o.set_rays_per_pixel_side(0); }},
            Case{"rays_per_pixel_side", [](auto& o) { o.set_rays_per_pixel_side(17); }},
            Case{"rays_per_pixel_side must be 3", [](auto& o) { o.set_rays_per_pixel_side(2); }},
+           Case{"3 or more with time_constant_s",
+                [](auto& o) {
+                  o.mutable_lens()->set_focus_m(0.0);
+                  o.set_time_constant_s(0.01);
+                  o.set_rays_per_pixel_side(2);
+                }},
            Case{"lens.focus_m", [](auto& o) { o.mutable_lens()->set_focus_m(-0.5); }},
            Case{"lens.focus_m", [](auto& o) { o.mutable_lens()->set_focus_m(NAN); }},
            Case{"lens.focus_m", [](auto& o) { o.mutable_lens()->set_focus_m(HUGE_VAL); }},

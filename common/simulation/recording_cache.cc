@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 /// Raise when the same options give another recording: scenes, sensors, noise, clocks or the file's
 /// layout changed.
-constexpr int kRenderVersion = 4;
+constexpr int kRenderVersion = 5;
 
 /// FNV-1a.
 std::uint64_t Hash(const std::string& text) {

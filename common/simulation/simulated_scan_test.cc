@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/frame/frame.h"
+#include "common/simulation/options.h"
 #include "common/simulation/scene_builder.h"
 #include "common/simulation/simulation_options.pb.h"
 
@@ -138,6 +139,22 @@ TEST_F(SimulatedScanTest, OptionsOutOfRangeAreRefusedWithASceneOfOnesOwnToo) {
   const auto scan = SimulatedScan::Create(options_, PolishedWallAndOperator(false));
   ASSERT_FALSE(scan.has_value());
   EXPECT_NE(scan.error().message().find("thermal.expert.time_constant_s"), std::string::npos);
+}
+
+TEST_F(SimulatedScanTest, IdealCamerasAreWorseOnlyByWhatIsSet) {
+  options_.mutable_thermal()->mutable_expert()->set_flicker_k(0.3);
+  options_.mutable_depth()->mutable_expert()->set_flying_fraction(0.2);
+  const SimulationOptions ideal = Resolved(options_);
+  EXPECT_EQ(ideal.thermal().expert().time_constant_s(), 0.0);
+  EXPECT_EQ(ideal.thermal().expert().lens().focus_m(), 0.0);
+  EXPECT_EQ(ideal.thermal().expert().flicker_k(), 0.3);
+  EXPECT_EQ(ideal.depth().expert().flying_fraction(), 0.2);
+  EXPECT_EQ(ideal.drift().error_per_kelvin(), 0.0);
+  options_.set_ideal_cameras(false);
+  const SimulationOptions real = Resolved(options_);
+  EXPECT_EQ(real.thermal().expert().time_constant_s(), 0.01);
+  EXPECT_EQ(real.thermal().expert().lens().focus_m(), 0.6);
+  EXPECT_EQ(real.drift().error_per_kelvin(), 4.0);
 }
 
 TEST_F(SimulatedScanTest, TheDepthCameraWarmsUpAsTheOptionsSay) {

@@ -15,7 +15,7 @@ namespace isotherm {
 void AddKelvin(double kelvin, const RadiometricScale& scale, Image<std::uint16_t>& counts);
 
 /// Adds to each pixel a part of how much warmer its surroundings and the whole image are, both
-/// means over pixels with a value. °C; NaN is no value. Takes some 20 ms.
+/// means over pixels with a value. °C; NaN is no value.
 void AddSceneInfluence(const SceneInfluence& influence, Image<float>& celsius);
 
 /// Adds normally distributed errors of this standard deviation, the same for the same `stream`.

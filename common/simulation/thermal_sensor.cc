@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
-#include <utility>
 
 #include "common/base/noise.h"
 #include "common/frame/frame.h"
@@ -16,40 +14,20 @@ namespace {
 
 constexpr double kNetd_celsius = 30.0;  // Temperature at which makers state the NETD.
 
+/// The discrete Gaussian (Lindeberg 1990, eq. 19): its variance on the pixels' grid is that of the
+/// Gaussian, which samples of a narrow one miss by half.
 std::vector<float> GaussianWeights(double sigma_px) {
-  constexpr double kCutOffSigmas = 3.0;
-  const int radius = sigma_px > 0.0 ? static_cast<int>(std::ceil(kCutOffSigmas * sigma_px)) : 0;
+  constexpr double kNegligible = 1e-4;  // Of the whole, on one side.
+  const double variance = sigma_px * sigma_px;
   std::vector<double> weights;
   double sum = 0.0;
-  for (int i = 0; i <= radius; ++i) {
-    weights.push_back(radius == 0 ? 1.0 : std::exp(-0.5 * i * i / (sigma_px * sigma_px)));
+  for (int i = 0; sum < 1.0 - 2.0 * kNegligible; ++i) {
+    weights.push_back(std::exp(-variance) * std::cyl_bessel_i(i, variance));
     sum += weights.back() * (i == 0 ? 1.0 : 2.0);
   }
   std::vector<float> normalized;
   for (const double weight : weights) normalized.push_back(static_cast<float>(weight / sum));
   return normalized;
-}
-
-/// Delays between radiation and its reading: an exponential distribution cut into
-/// parts of equal weight, each at its median, moved so that the mean is 0.
-std::vector<double> ResponseDelays(double time_constant_s) {
-  constexpr int kParts = 24;
-  if (time_constant_s <= 0.0) return {0.0};
-  std::vector<double> delays_s;
-  double sum = 0.0;
-  for (int i = 0; i < kParts; ++i) {
-    delays_s.push_back(-time_constant_s * std::log(1.0 - (i + 0.5) / kParts));
-    sum += delays_s.back();
-  }
-  for (double& delay_s : delays_s) delay_s -= sum / kParts;
-  return delays_s;
-}
-
-/// Fraction of the exposure at `times[i]` in what is interpolated linearly at `time_s`.
-double InterpolationWeight(const std::vector<double>& times_s, std::size_t i, double time_s) {
-  if (times_s.size() == 1) return 1.0;
-  const double step_s = times_s[1] - times_s[0];
-  return std::max(0.0, 1.0 - std::abs(time_s - times_s[i]) / step_s);
 }
 
 }  // namespace
@@ -63,63 +41,47 @@ ThermalSensor::ThermalSensor(const CameraModel& camera, const SimulatedThermalOp
                       PlanckBandRadianceSlope(kNetd_celsius, band_.band())),
       readout_s_(options.expert().readout_s()),
       influence_(InfluenceOf(options)),
-      delays_s_(ResponseDelays(options.expert().time_constant_s())),
       blur_weights_(GaussianWeights(options.expert().blur_px())) {}
 
 Image<std::uint16_t> ThermalSensor::Render(const Scene& scene,
                                            const RigidTransform& T_world_thermal,
                                            std::uint64_t noise_stream, Scratch& scratch) const {
-  Expose(scene, T_world_thermal, scratch);
-  return Detect(noise_stream, scratch);
-}
-
-void ThermalSensor::Expose(const Scene& scene, const RigidTransform& T_world_thermal,
-                           Scratch& scratch) const {
-  CastRays(scene, grid_, T_world_thermal, scratch.hits);
-  const EmissivityTables emissivity(scene);
-  FillRadiance(RadianceView(scene, band_, emissivity, T_world_thermal), scratch);
-  if (!average_.IsSingleRay())
-    average_.Apply(scene, grid_, band_, emissivity, T_world_thermal, scratch.hits, scratch.radiance,
-                   scratch.average);
-  Blur(scratch);
+  return RenderMoving(
+      scene, [&](double) { return T_world_thermal; }, noise_stream, scratch);
 }
 
 Image<std::uint16_t> ThermalSensor::RenderMoving(const Scene& scene,
                                                  const PoseAfter& T_world_thermal,
                                                  std::uint64_t noise_stream,
                                                  Scratch& scratch) const {
-  const double first_s = -delays_s_.back() - 0.5 * readout_s_;
-  const double last_s = -delays_s_.front() + 0.5 * readout_s_;
-  if (first_s == last_s || T_world_thermal(first_s).isApprox(T_world_thermal(last_s), 1e-12))
-    return Render(scene, T_world_thermal(0.0), noise_stream, scratch);
-  constexpr int kExposures = 13;
-  std::vector<double> times_s;
-  for (int i = 0; i < kExposures; ++i)
-    times_s.push_back(first_s + (last_s - first_s) * i / (kExposures - 1));
-  scratch.smeared.Resize(grid_.width(), grid_.height());
-  scratch.smeared.Fill(0.0F);
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    Expose(scene, T_world_thermal(times_s[i]), scratch);
-    AddSmear(times_s, i, scratch);
-  }
-  std::swap(scratch.radiance, scratch.smeared);
+  Expose(scene, T_world_thermal, scratch);
   return Detect(noise_stream, scratch);
 }
 
-void ThermalSensor::AddSmear(const std::vector<double>& exposure_times_s, std::size_t exposure,
-                             Scratch& scratch) const {
+void ThermalSensor::Expose(const Scene& scene, const PoseAfter& T_world_thermal,
+                           Scratch& scratch) const {
   const int height = grid_.height();
-  for (int y = 0; y < height; ++y) {
-    const double read_s = readout_s_ * ((y + 0.5) / height - 0.5);
-    double weight = 0.0;
-    for (const double delay_s : delays_s_)
-      weight += InterpolationWeight(exposure_times_s, exposure, read_s - delay_s);
-    weight /= static_cast<double>(delays_s_.size());
-    if (weight <= 0.0) continue;
-    const std::span<const float> in = scratch.radiance.Row(y);
-    const std::span<float> out = scratch.smeared.Row(y);
-    for (std::size_t x = 0; x < out.size(); ++x) out[x] += static_cast<float>(weight) * in[x];
+  const int strip_rows = readout_s_ > 0.0 ? RayGrid::kTileHeight : height;
+  const auto pose_of_rows = [&](int first_row, double age_s) {
+    const double middle = first_row + 0.5 * std::min(strip_rows, height - first_row);
+    return T_world_thermal(readout_s_ * (middle / height - 0.5) - age_s);
+  };
+  const auto pose_of_row = [&](int first_row) { return pose_of_rows(first_row, 0.0); };
+  if (readout_s_ > 0.0) {
+    CastRays(scene, grid_, pose_of_row, scratch.hits);
+  } else {
+    CastRays(scene, grid_, T_world_thermal(0.0), scratch.hits);
   }
+  const EmissivityTables emissivity(scene);
+  scratch.radiance.Resize(grid_.width(), height);
+  for (int row = 0; row < height; row += strip_rows) {
+    const RadianceView view(scene, band_, emissivity, pose_of_row(row));
+    FillRadiance(view, row, std::min(row + strip_rows, height), scratch);
+  }
+  if (!average_.IsSingleRay())
+    average_.Apply(scene, grid_, band_, emissivity, pose_of_rows, strip_rows, scratch.hits,
+                   scratch.radiance, scratch.average);
+  Blur(scratch);
 }
 
 Image<std::uint16_t> ThermalSensor::RenderShutter(double shutter_celsius,
@@ -130,9 +92,9 @@ Image<std::uint16_t> ThermalSensor::RenderShutter(double shutter_celsius,
   return Detect(noise_stream, scratch);
 }
 
-void ThermalSensor::FillRadiance(const RadianceView& view, Scratch& scratch) const {
-  scratch.radiance.Resize(grid_.width(), grid_.height());
-  for (int y = 0; y < grid_.height(); ++y) {
+void ThermalSensor::FillRadiance(const RadianceView& view, int first_row, int end_row,
+                                 Scratch& scratch) const {
+  for (int y = first_row; y < end_row; ++y) {
     for (int x = 0; x < grid_.width(); ++x) {
       scratch.radiance.At(x, y) = static_cast<float>(
           view.At(scratch.hits.primitive.At(x, y), grid_.Ray(x, y), scratch.hits.z_m.At(x, y)));

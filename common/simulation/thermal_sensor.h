@@ -32,7 +32,6 @@ class ThermalSensor {
     PixelAverage::Scratch average;
     Image<float> radiance;
     Image<float> rows;
-    Image<float> smeared;
     Image<float> celsius;
   };
   /// T_world_thermal this many seconds after the capture time.
@@ -55,13 +54,10 @@ class ThermalSensor {
   const BandRadiance& band() const { return band_; }
 
  private:
-  void FillRadiance(const RadianceView& view, Scratch& scratch) const;
+  void FillRadiance(const RadianceView& view, int first_row, int end_row, Scratch& scratch) const;
   void Blur(Scratch& scratch) const;
-  /// Computes what the optics throw on the detector, into scratch.radiance.
-  void Expose(const Scene& scene, const RigidTransform& T_world_thermal, Scratch& scratch) const;
-  /// Adds one exposure's part, which depends on the row, to scratch.smeared.
-  void AddSmear(const std::vector<double>& exposure_times_s, std::size_t exposure,
-                Scratch& scratch) const;
+  /// Computes what the detector answers, into scratch.radiance.
+  void Expose(const Scene& scene, const PoseAfter& T_world_thermal, Scratch& scratch) const;
   /// Adds what each pixel gets of others, in temperature, to scratch.radiance.
   void AddInfluence(Scratch& scratch) const;
   Image<std::uint16_t> Detect(std::uint64_t noise_stream, Scratch& scratch) const;
@@ -73,7 +69,6 @@ class ThermalSensor {
   const double noise_radiance_;
   const double readout_s_;
   const SceneInfluence influence_;
-  std::vector<double> delays_s_;     ///< Equal parts of the detector's answer; their mean is 0.
   std::vector<float> blur_weights_;  ///< From the centre outwards; one weight = sharp.
 };
 

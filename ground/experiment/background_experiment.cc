@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/simulation/options.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/still_image.h"
 #include "ground/thermal/scene_influence_corrector.h"
@@ -51,7 +52,7 @@ struct Reading {
 
 Reading Measure(const Setup& setup, double disc_celsius, ThreadPool& pool) {
   const SceneInfluence influence = InfluenceOfPi450();
-  SimulatedThermalOptions options;
+  SimulatedThermalOptions options = IdealThermalCamera({});
   SceneInfluenceOptions& simulated = *options.mutable_expert()->mutable_scene_influence();
   simulated.set_near_fraction(influence.near_fraction);
   simulated.set_near_sigma_px(influence.near_sigma_px);

@@ -29,6 +29,13 @@ SimulatedDepthOptions DepthCameraAtHalfSize() {
   return options;
 }
 
+/// Nothing is said about temperatures: one ray per pixel will do.
+SimulatedThermalOptions SharpThermalCamera() {
+  SimulatedThermalOptions options = IdealThermalCamera({});
+  options.mutable_expert()->set_rays_per_pixel_side(1);
+  return options;
+}
+
 /// One scan as it goes on, frame by frame.
 class ClosedLoop {
  public:
@@ -36,8 +43,8 @@ class ClosedLoop {
              std::unique_ptr<GroundPipeline> pipeline)
       : setup_(setup),
         rig_(rig),
-        depth_sensor_(*rig_.depth, DepthCameraAtHalfSize()),
-        thermal_sensor_(*rig_.thermal, SimulatedThermalOptions()),
+        depth_sensor_(*rig_.depth, IdealDepthCamera(DepthCameraAtHalfSize())),
+        thermal_sensor_(*rig_.thermal, SharpThermalCamera()),
         pipeline_(std::move(pipeline)),
         feedback_(options, {.session = 1, .rig = rig_, .depth = {}, .thermal = {}}),
         pace_(options.live().expert().feedback_hz()),

@@ -34,7 +34,7 @@ GroundOptions Conditional(bool conditional) {
 }  // namespace
 
 Result<ExperimentReport> RunConditionalIntegrationExperiment(ThreadPool& pool) {
-  SimulationOptions cameras = ExperimentCameras(kDuration_s);
+  SimulationOptions cameras = ExperimentCameras(kDuration_s, kFar_m);
   cameras.mutable_thermal()->set_rate_hz(1.0);  // Shape is all that matters.
   cameras.mutable_depth()->mutable_expert()->set_readout_s(kReadout_s);
   const auto far =

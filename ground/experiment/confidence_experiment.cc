@@ -129,7 +129,8 @@ Agreement Compare(const PlayedScan& played, const ThermalOptions& limits, Thread
 Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool) {
   // The boards' slants, 0, 25 and 50 degrees, lie in the middle of its classes.
   const GroundOptions options = OptionsForSlantedSurfaces();
-  const auto played = Play(ExperimentCameras(kDuration_s), SlantedBoards(), {options}, pool);
+  const auto played =
+      Play(ExperimentCameras(kDuration_s, kSharpEverywhere), SlantedBoards(), {options}, pool);
   if (!played) return Err(played.error());
   const Agreement agreement = Compare(*played, options.thermal(), pool);
   ExperimentReport report;

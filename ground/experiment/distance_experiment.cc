@@ -82,7 +82,7 @@ ExperimentReport Describe(const std::vector<BarGroup>& close_up,
 
 Result<ExperimentReport> RunDistanceExperiment(ThreadPool& pool) {
   const auto scan =
-      SimulatedScan::Create(ExperimentCameras(kDuration_s),
+      SimulatedScan::Create(ExperimentCameras(kDuration_s, kSharpEverywhere),
                             MakeResolutionTarget(kBarWidths_m, FromTo(0.40, 0.90, kDuration_s)));
   if (!scan) return Err(scan.error());
   const auto with = StartPipeline(FineModel(true), **scan, pool);

@@ -95,6 +95,7 @@ Result<ExperimentReport> RunAngleExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunShadingExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunConfidenceExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunMotionExperiment(ThreadPool& pool);
+Result<ExperimentReport> RunMergingExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucExperiment(ThreadPool& pool);
 Result<ExperimentReport> RunNucDriftExperiment(ThreadPool& pool);

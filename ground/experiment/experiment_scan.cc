@@ -55,11 +55,13 @@ ThermalFramePtr ToThermalFrame(RawFrame raw, CaptureTime time, const SimulatedSc
 
 }  // namespace
 
-SimulationOptions ExperimentCameras(double duration_s) {
+SimulationOptions ExperimentCameras(double duration_s, double focus_m) {
   constexpr double kThermal_hz = 20.0;
   SimulationOptions options;
   options.set_duration_s(duration_s);
+  options.set_ideal_cameras(false);
   options.mutable_thermal()->set_rate_hz(kThermal_hz);
+  options.mutable_thermal()->mutable_expert()->mutable_lens()->set_focus_m(focus_m);
   options.mutable_shutter()->set_interval_s(0.0);
   return options;
 }

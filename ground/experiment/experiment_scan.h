@@ -12,9 +12,13 @@
 
 namespace isotherm {
 
+/// A focus for scans whose distances vary more than a lens of f/0.8 has depth of field.
+inline constexpr double kSharpEverywhere = 0.0;
+
 /// Cameras of the thesis's rig for a scan of some seconds, without shutter events, and with as many
-/// thermal frames as are needed.
-SimulationOptions ExperimentCameras(double duration_s);
+/// thermal frames as are needed. The operator has focused the thermal camera at `focus_m`; 0 = a
+/// lens that is sharp everywhere.
+SimulationOptions ExperimentCameras(double duration_s, double focus_m);
 
 /// Defaults, but slanted surfaces get temperatures, too: good up to 40 degrees from the normal and
 /// acceptable up to 60, whatever the material.

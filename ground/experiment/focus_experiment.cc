@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "common/simulation/options.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/experiment_scan.h"
 #include "ground/experiment/model_check.h"
@@ -43,7 +44,7 @@ struct HoleReading {
 /// The pixel at the middle of the hole, by a lens that is focused at this distance.
 HoleReading ReadHole(double focus_m, ThreadPool& pool) {
   const CameraModel camera = StillCamera();
-  SimulatedThermalOptions options;
+  SimulatedThermalOptions options = IdealThermalCamera({});
   Focus(focus_m, kStillRays, options);
   FlatTarget target;
   target.distance_m = kHoleDistance_m;
@@ -112,7 +113,7 @@ struct ScanResult {
 };
 
 Result<ScanResult> ScanBars(ThreadPool& pool, ExperimentReport& report) {
-  SimulationOptions cameras = ExperimentCameras(kDuration_s);
+  SimulationOptions cameras = ExperimentCameras(kDuration_s, kScanFocus_m);
   cameras.mutable_thermal()->set_rate_hz(10.0);
   Focus(kScanFocus_m, kScanRays, *cameras.mutable_thermal());
   const auto scan = SimulatedScan::Create(

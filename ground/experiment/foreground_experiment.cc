@@ -4,7 +4,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDuration_s = 3.5;
+constexpr double kDuration_s = 3.5, kFocus_m = 0.75;
 
 /// A hot plate in front of a wall. The rig passes it to the right and comes closer, so that the
 /// plate leaves the depth camera's view over the left border while the thermal camera, which is
@@ -30,7 +30,7 @@ StagedScene PlateBeforeWall() {
 }  // namespace
 
 Result<ExperimentReport> RunForegroundExperiment(ThreadPool& pool) {
-  return CompareParallaxFilters({PlateBeforeWall(), kDuration_s, 0.2, true}, pool);
+  return CompareParallaxFilters({PlateBeforeWall(), kDuration_s, kFocus_m, 0.2, true}, pool);
 }
 
 }  // namespace isotherm

@@ -168,7 +168,7 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
                           "within 1.96 sigma [%]"};
   const Renderer renderer(ScaleOf(scan.scene()), ThermalOptions());
   const RigidTransform T_world_depth = scan.PoseAt(scan.depth_times().front().exposure);
-  const ThermalOptions limits = WithAnglesOfMaterial(ThermalOptions());
+  const ThermalOptions limits = CompleteLimits(ThermalOptions(), scan.rig().thermal_sensor);
   std::optional<std::vector<std::size_t>> truly_seen;
   for (const Method& method : contest.methods()) {
     const std::vector<CheckedPoint> points =
@@ -194,7 +194,8 @@ ExperimentReport Compare(const HiddenSurfaceSetup& setup, const SimulatedScan& s
 }  // namespace
 
 Result<ExperimentReport> CompareParallaxFilters(const HiddenSurfaceSetup& setup, ThreadPool& pool) {
-  const auto scan = SimulatedScan::Create(ExperimentCameras(setup.duration_s), setup.staged);
+  const auto scan =
+      SimulatedScan::Create(ExperimentCameras(setup.duration_s, setup.focus_m), setup.staged);
   if (!scan) return Err(scan.error());
   const GroundOptions options;
   auto pipeline = StartPipeline(options, **scan, pool);

@@ -9,7 +9,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDuration_s = 3.2;
+constexpr double kDuration_s = 3.2, kDistance_m = 0.52;
 /// That of the simulated detector, and what the pipeline is told.
 constexpr double kTimeConstant_s = 0.010;
 /// No smear is too much.
@@ -22,12 +22,12 @@ StagedScene SweepAlongBars() {
   path.target_x_m = {0.48, 0.16, 1.25};
   path.target_y_m = {0.52};
   path.target_z_m = {BarWall::kWall_m};
-  path.distance_m = {0.52};
+  path.distance_m = {kDistance_m};
   return {scene.Build("sweep along bars"), path, {}};
 }
 
 SimulationOptions CamerasWithInertia() {
-  SimulationOptions options = ExperimentCameras(kDuration_s);
+  SimulationOptions options = ExperimentCameras(kDuration_s, kDistance_m);
   options.mutable_thermal()->mutable_expert()->set_time_constant_s(kTimeConstant_s);
   return options;
 }

@@ -19,7 +19,7 @@ StagedScene CoolCorner() {
 
 /// Three closings of 0.4, 0.7 and 1.0 s.
 SimulationOptions CamerasWithShutter() {
-  SimulationOptions options = ExperimentCameras(kDuration_s);
+  SimulationOptions options = ExperimentCameras(kDuration_s, kSharpEverywhere);
   ShutterOptions& shutter = *options.mutable_shutter();
   shutter.set_first_s(0.8);
   shutter.set_interval_s(1.4);

@@ -7,7 +7,7 @@
 namespace isotherm {
 namespace {
 
-constexpr double kDuration_s = 5.0;
+constexpr double kDuration_s = 5.0, kDistance_m = 0.56;
 constexpr const char* kPatch = "polished patch";
 constexpr double kShowsPipe_celsius = 80.0;
 
@@ -33,7 +33,7 @@ StagedScene DoorWithPatch(bool polished) {
   path.target_z_m = {0.74};
   path.azimuth_rad = FromTo(0.02, 0.72, kDuration_s - 0.4);
   path.elevation_rad = {0.05, 0.04, 2.0};
-  path.distance_m = {0.56};
+  path.distance_m = {kDistance_m};
   return {scene.Build("door with a polished patch"), path, {}};
 }
 
@@ -103,11 +103,11 @@ Detection DetectIn(const PlayedScan& played, std::size_t pipeline, ThreadPool& p
 Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
   GroundOptions lowest;
   lowest.mutable_thermal()->mutable_expert()->set_policy(LOWEST_GOOD);
-  const auto played =
-      Play(ExperimentCameras(kDuration_s), DoorWithPatch(true), {GroundOptions(), lowest}, pool);
+  const auto played = Play(ExperimentCameras(kDuration_s, kDistance_m), DoorWithPatch(true),
+                           {GroundOptions(), lowest}, pool);
   if (!played) return Err(played.error());
-  const auto painted =
-      Play(ExperimentCameras(kDuration_s), DoorWithPatch(false), {GroundOptions()}, pool);
+  const auto painted = Play(ExperimentCameras(kDuration_s, kDistance_m), DoorWithPatch(false),
+                            {GroundOptions()}, pool);
   if (!painted) return Err(painted.error());
   const SimulatedScan& scan = *played->scan;
   ExperimentReport report;

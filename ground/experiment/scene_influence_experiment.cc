@@ -17,7 +17,7 @@ namespace {
 
 // As in the thesis: holes of a cardboard at room temperature in front of a calibrator, 22 cm away.
 constexpr double kRadii_m[] = {0.010, 0.020, 0.030, 0.045, 0.070};
-constexpr double kDistance_m = 0.22;
+constexpr double kDistance_m = 0.22, kScanDistance_m = 0.50;
 constexpr double kDisc_celsius = 120.0, kCardboard_celsius = 24.0;
 constexpr double kEmissivity = 0.95, kIndex = 1.5;
 constexpr double kDuration_s = 5.0;
@@ -83,7 +83,9 @@ struct HoleErrors {
 
 /// What the middle of the disc is off by, against the same image of a camera without influence.
 Result<HoleErrors> MeasureHole(double radius_m) {
-  SimulationOptions cameras = ExperimentCameras(1.0);
+  SimulationOptions cameras = ExperimentCameras(1.0, kDistance_m);
+  cameras.mutable_thermal()->mutable_expert()->mutable_scene_influence()->set_near_fraction(0.0);
+  cameras.mutable_thermal()->mutable_expert()->mutable_scene_influence()->set_total_fraction(0.0);
   const auto clean = SimulatedScan::Create(cameras, DiscBeforeCardboard(radius_m, kDistance_m));
   if (!clean) return Err(clean.error());
   SetInfluence(cameras);
@@ -102,7 +104,7 @@ Result<HoleErrors> MeasureHole(double radius_m) {
 }
 
 StagedScene ScanOfDisc() {
-  StagedScene staged = DiscBeforeCardboard(kRadii_m[2], 0.5);
+  StagedScene staged = DiscBeforeCardboard(kRadii_m[2], kScanDistance_m);
   staged.path.azimuth_rad = FromTo(-20.0 * kRadPerDeg, 20.0 * kRadPerDeg, kDuration_s - 0.4);
   staged.path.elevation_rad = FromTo(-8.0 * kRadPerDeg, 8.0 * kRadPerDeg, kDuration_s - 0.4);
   return staged;
@@ -148,7 +150,7 @@ Result<ExperimentReport> RunSceneInfluenceExperiment(ThreadPool& pool) {
     if (!(std::abs(hole->corrected_k) <= largest_corrected_k))  // NaN is not met.
       largest_corrected_k = std::abs(hole->corrected_k);
   }
-  SimulationOptions cameras = ExperimentCameras(kDuration_s);
+  SimulationOptions cameras = ExperimentCameras(kDuration_s, kScanDistance_m);
   SetInfluence(cameras);
   const auto played =
       Play(cameras, ScanOfDisc(), {WithCorrection(false), WithCorrection(true)}, pool);

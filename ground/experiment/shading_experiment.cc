@@ -86,8 +86,8 @@ Status AddRange(const char* name, double hot_celsius, ThreadPool& pool, Experime
   SceneOptions scene_options;
   scene_options.set_scene(CALIBRATOR);
   scene_options.set_hot_celsius(hot_celsius);
-  const auto played = Play(ExperimentCameras(kDuration_s), MakeScene(scene_options),
-                           {OptionsForSlantedSurfaces()}, pool);
+  const auto played = Play(ExperimentCameras(kDuration_s, kSharpEverywhere),
+                           MakeScene(scene_options), {OptionsForSlantedSurfaces()}, pool);
   if (!played) return played.error();
   const ScanModel model = played->pipelines.front()->model();
   const CameraModel& camera = *played->scan->rig().depth;

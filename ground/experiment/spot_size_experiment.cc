@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "common/simulation/options.h"
 #include "ground/experiment/experiment.h"
 #include "ground/experiment/pixel_response.h"
 #include "ground/experiment/still_image.h"
@@ -39,7 +40,7 @@ Spot LookThroughOpening(double distance_m, Phase phase, ThreadPool& pool) {
   const double offset_px = phase == Phase::kOnPixel ? 0.0 : 0.5;
   const Eigen::Vector2d pixel(std::round(camera.cx) + offset_px, std::round(camera.cy) + offset_px);
   target.patch_middle_m = distance_m * Unproject(camera, pixel);
-  SimulatedThermalOptions options;
+  SimulatedThermalOptions options = IdealThermalCamera({});
   options.mutable_expert()->set_blur_px(0.0);  // A sharp lens: what is left is the pixel's area.
   options.mutable_expert()->set_rays_per_pixel_side(16);
   const Scene scene = MakeFlatTarget(target);

@@ -19,7 +19,7 @@ class StageFusionTest : public ::testing::Test {
  protected:
   StageFusionTest() {
     scan_ = SimulatedScan::Create(
-                ExperimentCameras(0.5),
+                ExperimentCameras(0.5, 0.6),
                 CornerScene("corner",
                             {.back_wall = 30.0, .side_wall = 40.0, .floor = 35.0, .sphere = 70.0}))
                 .value();

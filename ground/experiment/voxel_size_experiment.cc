@@ -25,7 +25,7 @@ ScanPath AroundRelief() {
 }  // namespace
 
 Result<ExperimentReport> RunVoxelSizeExperiment(ThreadPool& pool) {
-  SimulationOptions cameras = ExperimentCameras(kDuration_s);
+  SimulationOptions cameras = ExperimentCameras(kDuration_s, kDistance_m);
   cameras.mutable_thermal()->set_rate_hz(1.0);  // Shape is all that matters.
   std::vector<GroundOptions> options(kVoxels_m.size());
   for (std::size_t i = 0; i < kVoxels_m.size(); ++i)
