@@ -205,6 +205,12 @@ HWY_INLINE VF Slope(const RowLoader& load, const float* before, const float* aft
   return hn::IfThenElseZero(hn::Eq(half, half), half);
 }
 
+/// Second difference with the neighbours, kelvin per pixel squared; 0 if either has no value.
+HWY_INLINE VF Curvature(const RowLoader& load, VF here, const float* before, const float* after) {
+  const VF second = hn::NegMulAdd(hn::Set(d, 2.0F), here, hn::Add(load(after), load(before)));
+  return hn::IfThenElseZero(hn::Eq(second, second), second);
+}
+
 HWY_INLINE VI PackSlopes(VF slope_u, VF slope_v) {
   const auto code = [](VF slope) {
     const VF limit = hn::Set(d, static_cast<float>(ThermalPixel::kMaxSlopeCode));
@@ -228,6 +234,12 @@ HWY_INLINE VF Variance(const PixelRowArgs& a, const RowLoader& load, VF celsius,
       hn::Mul(hn::Sub(celsius, hn::Set(d, s.scene_celsius)), hn::Set(d, s.scene_influence));
   VF sum = hn::MulAdd(load(a.noise_gain), hn::Set(d, s.noise_k2), hn::Set(d, s.even_k2));
   sum = hn::MulAdd(Dot(slope, slope), place_px2, sum);
+  const ImageVector curvature{
+      Curvature(load, celsius, a.celsius - 1, a.celsius + 1),
+      Curvature(load, celsius, a.celsius - a.celsius_stride, a.celsius + a.celsius_stride)};
+  const VF mean = hn::Mul(hn::Set(d, 0.5F), hn::Add(curvature.u, curvature.v));
+  const VF curved = hn::MulAdd(hn::Set(d, 0.5F), Dot(curvature, curvature), hn::Mul(mean, mean));
+  sum = hn::MulAdd(hn::Mul(place_px2, place_px2), curved, sum);
   sum = hn::MulAdd(hn::Mul(rate, rate), time_s2, sum);
   return hn::MulAdd(scene, scene, sum);
 }

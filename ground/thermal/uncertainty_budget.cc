@@ -17,7 +17,7 @@ constexpr double kReprojectionError_px = 0.141;
 double UncertaintyBudget::Combined() const {
   double squares = 0.0;
   for (const double term_k :
-       {noise_k, drift_k, resolution_k, registration_k, footprint_k, smear_k, scene_k})
+       {noise_k, drift_k, resolution_k, registration_k, footprint_k, curvature_k, smear_k, scene_k})
     squares += term_k * term_k;
   return std::sqrt(squares);
 }
@@ -31,8 +31,14 @@ UncertaintyBudget BudgetOf(const FrameUncertainty& frame, const PixelUncertainty
   budget.drift_k = frame.drift_k;
   budget.resolution_k = double{ThermalLayout::kStep_k} * sigma_of_uniform;
   budget.registration_k = std::hypot(slope_k_px * frame.registration_px, rate_k_s * frame.time_s);
-  budget.footprint_k =
-      slope_k_px * sigma_of_uniform * std::hypot(1.0, frame.voxel_m / pixel.spot_m);
+  const double footprint_px = sigma_of_uniform * std::hypot(1.0, frame.voxel_m / pixel.spot_m);
+  budget.footprint_k = slope_k_px * footprint_px;
+  // Moments of a quadratic form of a normally distributed place: mean and variance, squared.
+  const double place_px2 =
+      footprint_px * footprint_px + frame.registration_px * frame.registration_px;
+  const double mean_k_px2 = 0.5 * pixel.curvature_k_px2.sum();
+  budget.curvature_k =
+      place_px2 * std::sqrt(mean_k_px2 * mean_k_px2 + 0.5 * pixel.curvature_k_px2.squaredNorm());
   budget.smear_k = std::abs(rate_k_s) * pixel.smear_s;
   budget.scene_k = frame.scene_influence * std::abs(pixel.celsius - frame.scene_celsius);
   return budget;

@@ -44,6 +44,8 @@ struct PixelUncertainty {
   /// Variance of the noise after resampling, as a fraction of that before (ThermalRectifier).
   double noise_gain = 1.0;
   Eigen::Vector2d slope_k_px = Eigen::Vector2d::Zero();  ///< Of the temperature in the image.
+  /// Second derivatives of the temperature along the image's axes.
+  Eigen::Vector2d curvature_k_px2 = Eigen::Vector2d::Zero();
   Eigen::Vector2d speed_px_s = Eigen::Vector2d::Zero();  ///< Of the surface in the image.
   double smear_s = 0.0;  ///< How long motion smears the pixel's row.
   double spot_m = 1.0;   ///< What a pixel covers of a surface at right angles.
@@ -57,6 +59,7 @@ struct UncertaintyBudget {
   double resolution_k = 0.0;    ///< Of a voxel's code.
   double registration_k = 0.0;  ///< Pose, extrinsic calibration and time, by the slope.
   double footprint_k = 0.0;     ///< Pixel and voxel, by the slope.
+  double curvature_k = 0.0;     ///< What a slope leaves out over an uncertain place.
   double smear_k = 0.0;
   double scene_k = 0.0;
 

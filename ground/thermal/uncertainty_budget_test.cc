@@ -68,6 +68,28 @@ TEST(UncertaintyBudgetTest, ASlopeTurnsUncertainPlacesIntoKelvin) {
   EXPECT_NEAR(BudgetOf(frame, pixel).registration_k, 0.5, kExact);
 }
 
+TEST(UncertaintyBudgetTest, BetweenHotAndHotterASlopeOfNothingIsNotCertain) {
+  const FrameUncertainty frame{.registration_px = 0.3, .voxel_m = 0.002};
+  const Eigen::Vector2d curvature(0.8, -0.3);
+  const UncertaintyBudget budget = BudgetOf(frame, {.curvature_k_px2 = curvature, .spot_m = 0.002});
+  EXPECT_EQ(budget.footprint_k, 0.0);
+  // The mean square over places that lie normally around the pixel's centre, by quadrature.
+  const double sigma_px = std::sqrt(0.3 * 0.3 + 2.0 / 12.0);
+  double sum = 0.0, weights = 0.0;
+  constexpr double kStep = 0.05;
+  for (double u = -8.0; u <= 8.0; u += kStep) {
+    for (double v = -8.0; v <= 8.0; v += kStep) {
+      const double weight = std::exp(-0.5 * (u * u + v * v));
+      const double off_k =
+          0.5 * sigma_px * sigma_px * (curvature.x() * u * u + curvature.y() * v * v);
+      sum += weight * off_k * off_k;
+      weights += weight;
+    }
+  }
+  constexpr double kQuadrature = 1e-6;
+  EXPECT_NEAR(budget.curvature_k, std::sqrt(sum / weights), kQuadrature);
+}
+
 TEST(UncertaintyBudgetTest, TheRestOfTheImagePullsAtWhatDiffersFromIt) {
   const FrameUncertainty frame{.scene_influence = 0.04, .scene_celsius = 30.0};
   EXPECT_NEAR(BudgetOf(frame, {.celsius = 130.0}).scene_k, 4.0, kExact);
@@ -76,10 +98,10 @@ TEST(UncertaintyBudgetTest, TheRestOfTheImagePullsAtWhatDiffersFromIt) {
 }
 
 TEST(UncertaintyBudgetTest, EveryTermIsInTheSum) {
-  for (const auto term :
-       {&UncertaintyBudget::noise_k, &UncertaintyBudget::drift_k, &UncertaintyBudget::resolution_k,
-        &UncertaintyBudget::registration_k, &UncertaintyBudget::footprint_k,
-        &UncertaintyBudget::smear_k, &UncertaintyBudget::scene_k}) {
+  for (const auto term : {&UncertaintyBudget::noise_k, &UncertaintyBudget::drift_k,
+                          &UncertaintyBudget::resolution_k, &UncertaintyBudget::registration_k,
+                          &UncertaintyBudget::footprint_k, &UncertaintyBudget::curvature_k,
+                          &UncertaintyBudget::smear_k, &UncertaintyBudget::scene_k}) {
     UncertaintyBudget budget;
     budget.*term = 2.0;
     EXPECT_EQ(budget.Combined(), 2.0);

@@ -112,10 +112,16 @@ inline double SigmaOf(const PixelRowArgs& a, int x, const Pixel& pixel) {
     const double half = 0.5 * (double{after} - before);
     return std::isnan(half) ? 0.0 : half;
   };
+  const auto curvature = [&](float before, float after) {
+    const double second = double{before} - 2.0 * double{a.celsius[x]} + double{after};
+    return std::isnan(second) ? 0.0 : second;
+  };
   return BudgetOf(frame,
                   {.celsius = a.celsius[x],
                    .noise_gain = a.noise_gain[x],
                    .slope_k_px = {slope(a.celsius[x - 1], a.celsius[x + 1]), slope(*above, *below)},
+                   .curvature_k_px2 = {curvature(a.celsius[x - 1], a.celsius[x + 1]),
+                                       curvature(*above, *below)},
                    .speed_px_s = {a.fx * speed.x(), a.fy * speed.y()},
                    .smear_s = a.smear_s,
                    .spot_m = pixel.depth_m / a.fx})
