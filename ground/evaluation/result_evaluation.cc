@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -44,8 +45,13 @@ Result<TrajectoryErrors> CompareTrajectory(const EvaluationRequest& request) {
   return EvaluateTrajectory(*estimated, *truth, options);
 }
 
-/// About this many poses stand for the whole path.
-constexpr std::size_t kPosesForCoverage = 40;
+/// What a single image shows may be a matter of half a pixel.
+constexpr int kMinPoses = 2;
+/// Limits that are no result's own, so that results are compared like for like: of what could be
+/// measured at all, and of what could be measured well.
+constexpr WellSeenLimits kMeasurable{kMinPoses, 0.30, 0.90, 0.0, 60.0};
+constexpr WellSeenLimits kMeasurableWell{kMinPoses, 0.30, 0.60, 0.0, 40.0};
+constexpr int kThreads = 2;
 constexpr float kCoveredWithin_m = 0.005F;
 
 /// What the result was told to measure under (stats.json), or the defaults.
@@ -55,32 +61,36 @@ Result<WellSeenLimits> LimitsOf(const EvaluationRequest& request, const Rig& rig
   if (Status status = Validate(options); !status.ok())
     return Err(status.WithContext((request.result_dir / "stats.json").string()));
   const ThermalOptions limits = CompleteLimits(options, rig.thermal_sensor);
-  return WellSeenLimits{limits.distance().min_m(), limits.distance().max_m(),
+  return WellSeenLimits{kMinPoses, limits.distance().min_m(), limits.distance().max_m(),
                         limits.angle().min_deg(), limits.angle().max_deg()};
 }
 
-Result<ThermalCoverage> CompareCoverage(const EvaluationRequest& request, const TrueSurface& truth,
-                                        const MeasuredCloud& cloud,
-                                        const std::vector<Eigen::Vector3f>& positions,
-                                        WellSeenLimits& limits) {
+Result<std::vector<CoverageUnderLimits>> CompareCoverage(
+    const EvaluationRequest& request, const TrueSurface& truth, const MeasuredCloud& cloud,
+    const std::vector<Eigen::Vector3f>& positions) {
   const auto rig = LoadRigCalibration(*request.rig);
   if (!rig) return Err(rig.error());
   if (Status status = CheckThermalFusion(*rig); !status.ok()) return Err(std::move(status));
-  const auto known = LimitsOf(request, *rig);
-  if (!known) return Err(known.error());
-  limits = *known;
+  const auto own = LimitsOf(request, *rig);
+  if (!own) return Err(own.error());
   const auto poses = ReadTruePoses(request.groundtruth);
   if (!poses) return Err(poses.error());
   std::vector<RigidTransform> T_truth_thermal;
-  const std::size_t step = std::max<std::size_t>(1, poses->size() / kPosesForCoverage);
-  for (std::size_t i = 0; i < poses->size(); i += step)
-    T_truth_thermal.push_back((*poses)[i].T_world_depth * rig->T_thermal_depth->inverse());
-  std::vector<Eigen::Vector3f> assigned;
+  for (const StampedPose& pose : *poses)
+    T_truth_thermal.push_back(pose.T_world_depth * rig->T_thermal_depth->inverse());
+  AssignedPoints assigned;
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (std::isfinite(cloud.celsius[i])) assigned.push_back(positions[i]);
+    if (!std::isfinite(cloud.celsius[i])) continue;
+    assigned.positions_m.push_back(positions[i]);
+    assigned.good.push_back(QualityOfPoint(cloud, i) == MeasurementQuality::kGood);
   }
-  return EvaluateThermalCoverage(truth, *rig->thermal, T_truth_thermal, limits, assigned,
-                                 kCoveredWithin_m);
+  const std::array limits = {*own, kMeasurable, kMeasurableWell};
+  ThreadPool pool(kThreads);
+  const std::vector<ThermalCoverage> found = EvaluateThermalCoverage(
+      truth, *rig->thermal, T_truth_thermal, limits, assigned, kCoveredWithin_m, pool);
+  std::vector<CoverageUnderLimits> result;
+  for (std::size_t k = 0; k < limits.size(); ++k) result.push_back({limits[k], found[k]});
+  return result;
 }
 
 void KeepInside(const Eigen::AlignedBox3f& box, TruePoints& points) {
@@ -126,7 +136,7 @@ Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) 
   if (!temperature) return temperature.error();
   report.temperature = *temperature;
   if (!request.rig) return OkStatus();
-  const auto coverage = CompareCoverage(request, truth, *cloud, positions, report.well_seen_limits);
+  const auto coverage = CompareCoverage(request, truth, *cloud, positions);
   if (!coverage) return coverage.error();
   report.coverage = *coverage;
   return OkStatus();
@@ -185,6 +195,37 @@ std::string TemperatureText(const TemperatureReport& temperature) {
   return text + Line("all", temperature.any.all) + ToText(temperature.uncertainty);
 }
 
+double Fraction(std::size_t part, std::size_t whole) {
+  return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(1, whole));
+}
+
+std::string CoverageText(const std::vector<CoverageUnderLimits>& coverage) {
+  std::string text = fmt::format(
+      "coverage (true points that the thermal camera saw at least {} times: with a temperature "
+      "within {:g} mm, the nearest one measured well)\n",
+      kMinPoses, kMillimetres * static_cast<double>(kCoveredWithin_m));
+  for (const auto& [limits, part] : coverage) {
+    text +=
+        fmt::format("  {:<26}{:.2f} %, {:.2f} % of {} points\n",
+                    fmt::format("{:.3g}-{:.3g} m, {:g}-{:g} degrees", limits.min_distance_m,
+                                limits.max_distance_m, limits.min_angle_deg, limits.max_angle_deg),
+                    100.0 * Fraction(part.covered, part.well_seen),
+                    100.0 * Fraction(part.measured_well, part.well_seen), part.well_seen);
+  }
+  return text;
+}
+
+Json CoverageJson(const CoverageUnderLimits& part) {
+  Json json;
+  json["distance_m"] = {part.limits.min_distance_m, part.limits.max_distance_m};
+  json["angle_deg"] = {part.limits.min_angle_deg, part.limits.max_angle_deg};
+  json["min_poses"] = part.limits.min_poses;
+  json["well_seen"] = part.coverage.well_seen;
+  json["covered"] = part.coverage.covered;
+  json["measured_well"] = part.coverage.measured_well;
+  return json;
+}
+
 }  // namespace
 
 Result<EvaluationReport> Evaluate(const EvaluationRequest& request) {
@@ -221,17 +262,7 @@ std::string ToText(const EvaluationReport& report) {
         "completeness", 100.0 * s.completeness, s.surface_points, 100.0 * s.fitted_completeness);
   }
   if (report.temperature) text += TemperatureText(*report.temperature);
-  if (report.coverage) {
-    const WellSeenLimits& limits = report.well_seen_limits;
-    text += fmt::format(
-        "  {:<26}{:.2f} % of {} true points seen by the thermal camera from {:.3g} to {:.3g} m at "
-        "{:g} to {:g} degrees have a temperature within 5 mm\n",
-        "coverage",
-        100.0 * static_cast<double>(report.coverage->covered) /
-            static_cast<double>(std::max<std::size_t>(1, report.coverage->well_seen)),
-        report.coverage->well_seen, limits.min_distance_m, limits.max_distance_m,
-        limits.min_angle_deg, limits.max_angle_deg);
-  }
+  if (!report.coverage.empty()) text += CoverageText(report.coverage);
   return text;
 }
 
@@ -265,14 +296,8 @@ Json ToJson(const EvaluationReport& report) {
     temperature["all"] = ClassJson(report.temperature->any);
     temperature["uncertainty"] = ToJson(report.temperature->uncertainty);
   }
-  if (report.coverage) {
-    json["coverage"]["well_seen"] = report.coverage->well_seen;
-    json["coverage"]["covered"] = report.coverage->covered;
-    json["coverage"]["distance_m"] = {report.well_seen_limits.min_distance_m,
-                                      report.well_seen_limits.max_distance_m};
-    json["coverage"]["angle_deg"] = {report.well_seen_limits.min_angle_deg,
-                                     report.well_seen_limits.max_angle_deg};
-  }
+  for (const CoverageUnderLimits& part : report.coverage)
+    json["coverage"].push_back(CoverageJson(part));
   return json;
 }
 

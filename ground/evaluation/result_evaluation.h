@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <vector>
 
 #include "ground/evaluation/surface_evaluation.h"
 #include "ground/evaluation/temperature_evaluation.h"
@@ -32,13 +33,20 @@ struct EvaluationRequest {
   std::function<void(double fraction)> progress{};
 };
 
+struct CoverageUnderLimits {
+  WellSeenLimits limits;
+  ThermalCoverage coverage;
+};
+
 struct EvaluationReport {
   TrajectoryErrors trajectory;
   std::optional<SurfaceErrors> surface;
   std::size_t cloud_points = 0;
   std::optional<TemperatureReport> temperature;
-  std::optional<ThermalCoverage> coverage;
-  WellSeenLimits well_seen_limits;  ///< Of the coverage.
+  /// What the true poses showed at least twice in the thermal image, first under the limits that
+  /// the result was measured under, then under others that are the same for all results. Empty: not
+  /// evaluated.
+  std::vector<CoverageUnderLimits> coverage;
 };
 
 Result<EvaluationReport> Evaluate(const EvaluationRequest& request);

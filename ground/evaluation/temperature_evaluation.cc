@@ -10,16 +10,9 @@
 #include "common/base/check.h"
 #include "common/radiometry/radiometry.h"
 #include "ground/evaluation/expected_temperature.h"
-#include "ground/thermal/measurement_quality.h"
 
 namespace isotherm {
 namespace {
-
-/// Results of before smear was assessed have no motion class: it counts as unchecked.
-MeasurementQuality QualityOfPoint(const MeasuredCloud& cloud, std::size_t i) {
-  return QualityOf(cloud.distance_class[i], cloud.angle_class[i],
-                   cloud.motion_class.empty() ? kNeverMeasured : cloud.motion_class[i]);
-}
 
 struct Errors {
   std::vector<double> all;
@@ -117,6 +110,11 @@ Status CheckInput(const MeasuredCloud& cloud, const TrueSurface& truth,
 }
 
 }  // namespace
+
+MeasurementQuality QualityOfPoint(const MeasuredCloud& cloud, std::size_t i) {
+  return QualityOf(cloud.distance_class[i], cloud.angle_class[i],
+                   cloud.motion_class.empty() ? kNeverMeasured : cloud.motion_class[i]);
+}
 
 Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
                                                const std::vector<Eigen::Vector3f>& positions,

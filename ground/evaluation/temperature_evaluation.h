@@ -6,6 +6,7 @@
 #include "ground/evaluation/error_statistics.h"
 #include "ground/evaluation/true_surface.h"
 #include "ground/evaluation/uncertainty_evaluation.h"
+#include "ground/thermal/measurement_quality.h"
 
 namespace isotherm {
 
@@ -49,6 +50,10 @@ struct TemperatureReport {
   /// angle of each measurement is that to the cloud's normal.
   UncertaintyReport uncertainty;
 };
+
+/// How well a point of the cloud was measured. Results of before smear was assessed have no motion
+/// class: it counts as unchecked.
+MeasurementQuality QualityOfPoint(const MeasuredCloud& cloud, std::size_t i);
 
 /// Compares temperatures of the cloud with the apparent temperature that the true temperature of
 /// the nearest surface implies for a black-body camera (thesis eq. 3.1). `positions`: the cloud's

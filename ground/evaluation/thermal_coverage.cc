@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -115,24 +116,33 @@ class View {
 
 }  // namespace
 
-ThermalCoverage EvaluateThermalCoverage(const TrueSurface& truth, const CameraModel& camera,
-                                        std::span<const RigidTransform> T_truth_thermal,
-                                        const WellSeenLimits& limits,
-                                        std::span<const Eigen::Vector3f> assigned, float radius_m) {
-  std::vector<bool> seen(truth.points().positions_m.size(), false);
+std::vector<ThermalCoverage> EvaluateThermalCoverage(
+    const TrueSurface& truth, const CameraModel& camera,
+    std::span<const RigidTransform> T_truth_thermal, std::span<const WellSeenLimits> limits,
+    const AssignedPoints& assigned, float radius_m, ThreadPool& pool) {
+  const std::size_t points = truth.points().positions_m.size();
+  // Poses that see a point, by limits and then by point.
+  std::vector<std::atomic<int>> poses_seeing(limits.size() * points);
   const Image<Eigen::Vector2f> lines_of_sight = LinesOfSight(camera);
-  for (const RigidTransform& pose : T_truth_thermal) {
-    const View view(truth, camera, lines_of_sight, pose);
-    for (std::size_t i = 0; i < seen.size(); ++i) {
-      if (!seen[i]) seen[i] = view.SeesWell(i, limits);
+  pool.ParallelFor(static_cast<int>(T_truth_thermal.size()), [&](int pose) {
+    const View view(truth, camera, lines_of_sight, T_truth_thermal[static_cast<std::size_t>(pose)]);
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      for (std::size_t i = 0; i < points; ++i) {
+        std::atomic<int>& seeing = poses_seeing[k * points + i];
+        if (seeing < limits[k].min_poses && view.SeesWell(i, limits[k])) ++seeing;
+      }
     }
-  }
-  const PointIndex index(assigned);
-  ThermalCoverage coverage;
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (!seen[i]) continue;
-    ++coverage.well_seen;
-    if (index.Nearest(truth.points().positions_m[i], radius_m)) ++coverage.covered;
+  });
+  const PointIndex index(assigned.positions_m);
+  std::vector<ThermalCoverage> coverage(limits.size());
+  for (std::size_t i = 0; i < points; ++i) {
+    const auto nearest = index.Nearest(truth.points().positions_m[i], radius_m);
+    for (std::size_t k = 0; k < limits.size(); ++k) {
+      if (poses_seeing[k * points + i] < limits[k].min_poses) continue;
+      ++coverage[k].well_seen;
+      coverage[k].covered += nearest ? 1 : 0;
+      coverage[k].measured_well += nearest && assigned.good[nearest->index] ? 1 : 0;
+    }
   }
   return coverage;
 }

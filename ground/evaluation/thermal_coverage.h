@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <span>
+#include <vector>
 
+#include "common/concurrency/thread_pool.h"
 #include "common/geometry/camera.h"
 #include "common/geometry/rigid_transform.h"
 #include "ground/evaluation/true_surface.h"
@@ -11,6 +13,7 @@ namespace isotherm {
 
 /// When a true point counts as seen under acceptable conditions by the thermal camera.
 struct WellSeenLimits {
+  int min_poses = 1;  ///< So many poses must see it under these conditions.
   double min_distance_m = 0.30;
   double max_distance_m = 0.90;
   double min_angle_deg = 0.0;
@@ -19,18 +22,24 @@ struct WellSeenLimits {
 
 /// Counts how much of what could be measured has a temperature.
 struct ThermalCoverage {
-  std::size_t well_seen = 0;  ///< True points that some pose saw under acceptable conditions.
-  std::size_t covered = 0;    ///< Those with an assigned point of the cloud near by.
+  std::size_t well_seen = 0;      ///< True points that were seen under acceptable conditions.
+  std::size_t covered = 0;        ///< Those with an assigned point of the cloud near by.
+  std::size_t measured_well = 0;  ///< Those whose nearest assigned point is of class good.
 };
 
-/// `T_truth_thermal`: true poses of the thermal camera. A true point is seen by a pose if it
-/// projects into the image that `camera` takes, through its lens, and no other part of the true
-/// surface lies before it: the samples' discs are drawn into a depth image at the camera's
-/// resolution. It is covered if a point
-/// of `assigned` (in the truth's world) lies within `radius_m`.
-ThermalCoverage EvaluateThermalCoverage(const TrueSurface& truth, const CameraModel& camera,
-                                        std::span<const RigidTransform> T_truth_thermal,
-                                        const WellSeenLimits& limits,
-                                        std::span<const Eigen::Vector3f> assigned, float radius_m);
+/// The points of a cloud that have a temperature, in the truth's world.
+struct AssignedPoints {
+  std::vector<Eigen::Vector3f> positions_m;
+  std::vector<bool> good;  ///< Of class good in distance, angle and motion.
+};
+
+/// For each of `limits`. `T_truth_thermal`: true poses of the thermal camera. A true point is seen
+/// by a pose if it projects into the image that `camera` takes, through its lens, and no other part
+/// of the true surface lies before it: the samples' discs are drawn into a depth image at the
+/// camera's resolution. It is covered if a point of `assigned` lies within `radius_m`.
+std::vector<ThermalCoverage> EvaluateThermalCoverage(
+    const TrueSurface& truth, const CameraModel& camera,
+    std::span<const RigidTransform> T_truth_thermal, std::span<const WellSeenLimits> limits,
+    const AssignedPoints& assigned, float radius_m, ThreadPool& pool);
 
 }  // namespace isotherm

@@ -29,8 +29,16 @@ class ThermalCoverageTest : public ::testing::Test {
       }
     }
   }
-  ThermalCoverage Evaluate(const WellSeenLimits& limits = {}) const {
-    return EvaluateThermalCoverage(*truth_, camera_, poses_, limits, assigned_, 0.003F);
+  ThermalCoverage Evaluate(const WellSeenLimits& limits = {}) {
+    return EvaluateThermalCoverage(*truth_, camera_, poses_, {&limits, 1}, assigned_, 0.003F, pool_)
+        .front();
+  }
+  std::size_t EvaluateFrom(std::size_t pose) {
+    const WellSeenLimits limits;
+    return EvaluateThermalCoverage(*truth_, camera_, {&poses_[pose], 1}, {&limits, 1}, assigned_,
+                                   0.003F, pool_)
+        .front()
+        .well_seen;
   }
   double Fraction(std::size_t count) const {
     return static_cast<double>(count) / static_cast<double>(truth_->points().positions_m.size());
@@ -38,7 +46,8 @@ class ThermalCoverageTest : public ::testing::Test {
 
   CameraModel camera_;
   std::vector<RigidTransform> poses_{RigidTransform::Identity()};
-  std::vector<Eigen::Vector3f> assigned_;
+  AssignedPoints assigned_;
+  ThreadPool pool_{2};
   std::optional<TrueSurface> truth_;
 };
 
@@ -89,10 +98,25 @@ TEST_F(ThermalCoverageTest, DistanceAndAngleLimitWhatCounts) {
 
 TEST_F(ThermalCoverageTest, CoveredIsWhatHasAnAssignedPointNearBy) {
   for (const Eigen::Vector3f& p : truth_->points().positions_m) {
-    if (p.z() < 0.55F) assigned_.push_back(p + Eigen::Vector3f(0.001F, 0.0F, 0.001F));
+    if (p.z() > 0.55F) continue;
+    assigned_.positions_m.push_back(p + Eigen::Vector3f(0.001F, 0.0F, 0.001F));
+    assigned_.good.push_back(p.x() < 0.0F);
   }
   const ThermalCoverage coverage = Evaluate();
   EXPECT_NEAR(Fraction(coverage.covered), 0.1 / 0.4, kEdges);
+  EXPECT_NEAR(Fraction(coverage.measured_well), 0.05 / 0.4, kEdges) << "half of them was good";
+}
+
+TEST_F(ThermalCoverageTest, WhatOnePoseSawDoesNotCountAsSeenTwice) {
+  const std::size_t once = Evaluate().well_seen;
+  EXPECT_EQ(Evaluate({.min_poses = 2}).well_seen, 0U);
+  poses_.push_back(RigidTransform::Identity());
+  EXPECT_EQ(Evaluate({.min_poses = 2}).well_seen, once);
+  // Seen by one or the other and seen by both are together what each one sees.
+  poses_.back() = MakeTransform({0.25, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+  const std::size_t twice = Evaluate({.min_poses = 2}).well_seen;
+  EXPECT_LT(twice, Evaluate().well_seen);
+  EXPECT_EQ(Evaluate().well_seen + twice, once + EvaluateFrom(1));
 }
 
 }  // namespace
