@@ -18,8 +18,9 @@ struct FindDelayOptions {
 };
 
 /// The delay, to be added to the stamps, at which the thermal images of a scan agree about the
-/// surface. Its sigma holds, beside the spread of parts of the scan, a millisecond for what is
-/// wrong in all of it alike, and what the drift of its poses can be taken for (DelaySigmaOfDrift).
+/// surface: those of each part of the scan by itself if the rig reverses within seconds. Its sigma
+/// holds, beside the spread of the parts, up to a millisecond for what is wrong in all of them
+/// alike, and what the drift of the poses can be taken for (DelaySigmaOfDrift).
 /// Fails and says what the scan lacks. Deterministic. `progress` gets the fraction done, 0..1.
 Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& options,
                                 ThreadPool& pool, const std::function<void(double)>& progress);

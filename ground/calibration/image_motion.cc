@@ -28,6 +28,24 @@ Eigen::Vector3d MiddleOfSurface(const ScanViews& views) {
   return middle;
 }
 
+/// The velocities less their mean over the part of the motion that they are in.
+std::vector<StampedVelocity> WithoutMeans(std::vector<StampedVelocity> motion, double part_s) {
+  const auto part_of =
+      [&, start = motion.empty() ? CaptureTime() : motion.front().time](const StampedVelocity& at) {
+        return std::floor(ToSeconds(at.time - start) / part_s);
+      };
+  for (auto first = motion.begin(); first != motion.end();) {
+    const double part = part_of(*first);
+    const auto end = std::find_if(first, motion.end(),
+                                  [&](const StampedVelocity& at) { return part_of(at) != part; });
+    Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+    for (auto at = first; at != end; ++at)
+      mean += at->velocity_px_s / static_cast<double>(end - first);
+    for (; first != end; ++first) first->velocity_px_s -= mean;
+  }
+  return motion;
+}
+
 }  // namespace
 
 std::vector<StampedVelocity> ImageVelocities(const ScanViews& views) {
@@ -70,19 +88,18 @@ std::optional<double> PixelsPerMetre(const ScanViews& views) {
   return views.thermal_camera.fx * count / depth_m;
 }
 
-double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px) {
+double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px,
+                         double part_s) {
   // Least squares: delay = sum(drift . change) / sum(change . change), where change is the velocity
   // without its mean. Its variance sums the drift's covariance over all pairs of times.
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const StampedVelocity& at : motion)
-    mean += at.velocity_px_s / static_cast<double>(motion.size());
+  const std::vector<StampedVelocity> changes = WithoutMeans(motion, part_s);
   double squares = 0.0, all_squares = 0.0, variance = 0.0;
-  for (const StampedVelocity& a : motion) {
-    squares += (a.velocity_px_s - mean).squaredNorm();
-    all_squares += a.velocity_px_s.squaredNorm();
-    for (const StampedVelocity& b : motion) {
+  for (const StampedVelocity& at : motion) all_squares += at.velocity_px_s.squaredNorm();
+  for (const StampedVelocity& a : changes) {
+    squares += a.velocity_px_s.squaredNorm();
+    for (const StampedVelocity& b : changes) {
       const double correlation = std::exp(-std::abs(ToSeconds(a.time - b.time)) / kDriftMemory_s);
-      variance += correlation * (a.velocity_px_s - mean).dot(b.velocity_px_s - mean);
+      variance += correlation * a.velocity_px_s.dot(b.velocity_px_s);
     }
   }
   if (!(squares > kMinChange * all_squares)) return std::numeric_limits<double>::infinity();

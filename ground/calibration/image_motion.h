@@ -30,7 +30,8 @@ std::optional<double> PixelsPerMetre(const ScanViews& views);
 /// `drift_px` (one sigma along each axis of the image, forgotten within seconds): what of the drift
 /// goes along with the velocity is taken for a delay. A rig that reverses often averages it out,
 /// one that goes one way does not: a constant velocity says nothing about a delay. Infinite without
-/// a change of it.
-double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px);
+/// a change of it. Images are compared within parts of `part_s` seconds; infinity: within the scan.
+double DelaySigmaOfDrift(const std::vector<StampedVelocity>& motion, double drift_px,
+                         double part_s);
 
 }  // namespace isotherm

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "common/base/noise.h"
@@ -13,6 +14,7 @@ namespace {
 
 constexpr CaptureTime kBegin{std::chrono::seconds(50)};
 constexpr double kMemory_s = 4.0;  // As documented: a drift is forgotten within seconds.
+constexpr double kWholeScan_s = std::numeric_limits<double>::infinity();
 constexpr double kFocal_px = 200.0, kDistance_m = 0.5;
 
 /// `count` velocities along u, `step_s` apart.
@@ -34,40 +36,61 @@ TEST(ImageMotionTest, ManySwingsAverageADriftOutAsItsSpectrumSays) {
   const double density = 2.0 * kMemory_s / (1.0 + omega_tau * omega_tau);
   const double energy = kLength_s * kAmplitude_px_s * kAmplitude_px_s / 2.0;
   const double expected_s = kDrift_px * std::sqrt(density / energy);
-  EXPECT_NEAR(DelaySigmaOfDrift(motion, kDrift_px), expected_s, 0.05 * expected_s);
+  EXPECT_NEAR(DelaySigmaOfDrift(motion, kDrift_px, kWholeScan_s), expected_s, 0.05 * expected_s);
 }
 
-/// Drifts are drawn, and what of each goes along with the velocity is taken for a delay.
-TEST(ImageMotionTest, SigmaIsTheSpreadOfDelaysThatDrawnDriftsMake) {
+/// Drifts are drawn, and what of each goes along with the velocity is taken for a delay: over the
+/// whole scan, and by parts of it.
+class DrawnDriftTest : public ::testing::TestWithParam<double> {};
+
+TEST_P(DrawnDriftTest, SigmaIsTheSpreadOfTheDelaysTheyMake) {
   constexpr double kStep_s = 0.1, kDrift_px = 0.3;
-  constexpr int kDraws = 2000;
-  const std::vector<StampedVelocity> motion = Swing(20.0, 9.0, kStep_s, 120);
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const StampedVelocity& at : motion) mean += at.velocity_px_s / 120.0;
+  constexpr int kDraws = 2000, kCount = 120;
+  const double part_s = GetParam();
+  const std::vector<StampedVelocity> motion = Swing(20.0, 9.0, kStep_s, kCount);
+  const int in_part = std::isinf(part_s) ? kCount : static_cast<int>(std::lround(part_s / kStep_s));
+  std::vector<double> changes;
+  for (int i = 0; i < kCount; ++i) {
+    const int first = i - i % in_part;
+    double mean = 0.0;
+    for (int k = first; k < first + in_part; ++k)
+      mean += motion[static_cast<std::size_t>(k)].velocity_px_s.x() / in_part;
+    changes.push_back(motion[static_cast<std::size_t>(i)].velocity_px_s.x() - mean);
+  }
   const double kept = std::exp(-kStep_s / kMemory_s);
   double squares_of_delay = 0.0;
   for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
     const std::uint64_t stream = NoiseStream(draw, 3, 0);
     double drift_px = kDrift_px * NormalNoise(stream, 0), along = 0.0, energy = 0.0;
-    for (std::uint64_t i = 0; i < motion.size(); ++i) {
-      const double change = motion[i].velocity_px_s.x() - mean.x();
-      along += drift_px * change;
-      energy += change * change;
+    for (std::uint64_t i = 0; i < changes.size(); ++i) {
+      along += drift_px * changes[i];
+      energy += changes[i] * changes[i];
       drift_px =
           kept * drift_px + kDrift_px * std::sqrt(1.0 - kept * kept) * NormalNoise(stream, i + 1);
     }
     squares_of_delay += along / energy * along / energy;
   }
   const double spread_s = std::sqrt(squares_of_delay / kDraws);
-  EXPECT_NEAR(DelaySigmaOfDrift(motion, kDrift_px), spread_s, 0.05 * spread_s);
+  EXPECT_NEAR(DelaySigmaOfDrift(motion, kDrift_px, part_s), spread_s, 0.05 * spread_s);
+}
+
+INSTANTIATE_TEST_SUITE_P(Parts, DrawnDriftTest, ::testing::Values(kWholeScan_s, 4.0, 2.0));
+
+TEST(ImageMotionTest, WithinPartsASlowSwingIsNoChangeThatDriftCouldBeTakenFor) {
+  std::vector<StampedVelocity> motion = Swing(20.0, 2.0, 0.05, 240);
+  const std::vector<StampedVelocity> slow = Swing(60.0, 25.0, 0.05, 240);
+  const double fast_alone_s = DelaySigmaOfDrift(motion, 0.1, 2.0);
+  for (std::size_t i = 0; i < motion.size(); ++i) motion[i].velocity_px_s += slow[i].velocity_px_s;
+  EXPECT_NEAR(DelaySigmaOfDrift(motion, 0.1, 2.0), fast_alone_s, 0.3 * fast_alone_s);
+  EXPECT_GT(DelaySigmaOfDrift(motion, 0.1, kWholeScan_s), 2.0 * fast_alone_s);
 }
 
 TEST(ImageMotionTest, AConstantVelocitySaysNothing) {
-  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift(Swing(0.0, 1.0, 0.1, 50), 0.1)));
+  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift(Swing(0.0, 1.0, 0.1, 50), 0.1, kWholeScan_s)));
   std::vector<StampedVelocity> steady;
   for (int i = 0; i < 333; ++i) steady.push_back({kBegin + FromSeconds(0.025 * i), {30.1, -7.3}});
-  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift(steady, 0.1)));
-  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift({}, 0.1)));
+  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift(steady, 0.1, kWholeScan_s)));
+  EXPECT_TRUE(std::isinf(DelaySigmaOfDrift({}, 0.1, kWholeScan_s)));
   EXPECT_EQ(RmsSpeed({}), 0.0);
 }
 

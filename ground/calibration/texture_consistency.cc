@@ -53,8 +53,15 @@ std::optional<RigidTransform> InterpolatePose(const std::vector<StampedPose>& tr
                      ToSeconds(time - before->time) / gap_s);
 }
 
-TextureConsistency::TextureConsistency(const ScanViews& views, double part_s, ThreadPool& pool)
-    : views_(views), pool_(pool) {
+double PartLength(const ScanViews& views, double part_s) {
+  if (views.frames.empty()) return part_s;
+  return std::max(part_s,
+                  ToSeconds(views.frames.back().time - views.frames.front().time) / kMaxParts);
+}
+
+TextureConsistency::TextureConsistency(const ScanViews& views, double part_s,
+                                       ComparedImages compared, ThreadPool& pool)
+    : views_(views), compared_(compared), pool_(pool) {
   MakeParts(part_s);
   WeighAt(0.0);
 }
@@ -62,8 +69,7 @@ TextureConsistency::TextureConsistency(const ScanViews& views, double part_s, Th
 void TextureConsistency::MakeParts(double part_s) {
   if (views_.frames.empty()) return;
   const CaptureTime start = views_.frames.front().time;
-  const double length_s =
-      std::max(part_s, ToSeconds(views_.frames.back().time - start) / kMaxParts);
+  const double length_s = PartLength(views_, part_s);
   for (std::size_t i = 0; i < views_.frames.size(); ++i) {
     if (views_.frames[i].visible.empty()) continue;
     const auto part = static_cast<std::size_t>(ToSeconds(views_.frames[i].time - start) / length_s);
@@ -96,7 +102,44 @@ std::vector<double> TextureConsistency::Measure(double delay_s, std::size_t poin
                                                 const std::vector<PartWeights>& resamplings) const {
   points = std::min(points, views_.points.size());
   const std::vector<std::vector<PointSums>> parts = MeasureParts(delay_s, points);
+  return compared_ == ComparedImages::kOfPart ? VarianceWithinParts(parts, resamplings)
+                                              : VarianceOverScan(parts, resamplings);
+}
+
+std::vector<double> TextureConsistency::VarianceWithinParts(
+    const std::vector<std::vector<PointSums>>& parts,
+    const std::vector<PartWeights>& resamplings) const {
+  struct PartSums {
+    double squares = 0.0, freedom = 0.0;
+  };
+  std::vector<PartSums> sums(parts.size());
+  pool_.ParallelFor(static_cast<int>(parts.size()), [&](int index) {
+    const auto part = static_cast<std::size_t>(index);
+    for (std::size_t i = 0; i < parts[part].size(); ++i) {
+      const PointSums& point = parts[part][i];
+      if (!(weights_[i] > 0.0) || point.count < 2.0) continue;
+      sums[part].squares +=
+          weights_[i] * std::max(0.0, point.squares - point.value * point.value / point.count);
+      sums[part].freedom += point.count - 1.0;
+    }
+  });
+  std::vector<double> result;
+  for (const PartWeights& times : resamplings) {
+    double total = 0.0, freedom = 0.0;
+    for (std::size_t part = 0; part < sums.size(); ++part) {
+      total += times[part] * sums[part].squares;
+      freedom += times[part] * sums[part].freedom;
+    }
+    result.push_back(freedom > 0.0 ? total / freedom : INFINITY);
+  }
+  return result;
+}
+
+std::vector<double> TextureConsistency::VarianceOverScan(
+    const std::vector<std::vector<PointSums>>& parts,
+    const std::vector<PartWeights>& resamplings) const {
   std::vector<double> result(resamplings.size());
+  const std::size_t points = parts.empty() ? 0 : parts.front().size();
   pool_.ParallelFor(static_cast<int>(resamplings.size()), [&](int index) {
     const PartWeights& times = resamplings[static_cast<std::size_t>(index)];
     double total = 0.0, freedom = 0.0;

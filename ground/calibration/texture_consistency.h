@@ -48,14 +48,24 @@ struct ScanViews {
 std::optional<RigidTransform> InterpolatePose(const std::vector<StampedPose>& trajectory,
                                               CaptureTime time);
 
+/// Says which images are compared about a point: those of a part of the scan, so that what drifts
+/// more slowly is the same for all of them, or those of the whole scan.
+enum class ComparedImages : std::uint8_t { kOfPart, kOfScan };
+
+/// Returns the length in seconds of the parts of a scan that are to be `part_s` long: longer if
+/// they would be too many to hold enough images each.
+double PartLength(const ScanViews& views, double part_s);
+
 /// Projects thermal images onto the surface at poses that a delay puts them at, and measures how
-/// much they disagree about each point: its variance over the scan, relative to what noise and half
-/// a pixel of misalignment would give there, so that hot edges do not outweigh everything else.
-/// Samples and their weights are the same for all delays. Thread-compatible.
+/// much they disagree about each point: its variance over the compared images, relative to what
+/// noise and half a pixel of misalignment would give there, so that hot edges do not outweigh
+/// everything else. Samples and their weights are the same for all delays. Thread-compatible.
 class TextureConsistency {
  public:
-  /// `views` and `pool` must outlive it. The scan is resampled in parts of about `part_s` seconds.
-  TextureConsistency(const ScanViews& views, double part_s, ThreadPool& pool);
+  /// `views` and `pool` must outlive it. The scan is resampled in parts of `part_s` seconds (see
+  /// PartLength).
+  TextureConsistency(const ScanViews& views, double part_s, ComparedImages compared,
+                     ThreadPool& pool);
 
   /// Weighs points by what they show at this delay; by delay 0 to begin with.
   void WeighAt(double delay_s);
@@ -72,12 +82,17 @@ class TextureConsistency {
     double count = 0.0, value = 0.0, squares = 0.0, gradient = 0.0;
   };
 
+  std::vector<double> VarianceWithinParts(const std::vector<std::vector<PointSums>>& parts,
+                                          const std::vector<PartWeights>& resamplings) const;
+  std::vector<double> VarianceOverScan(const std::vector<std::vector<PointSums>>& parts,
+                                       const std::vector<PartWeights>& resamplings) const;
   std::vector<PointSums> MeasurePart(const std::vector<std::size_t>& frames, double delay_s,
                                      std::size_t points) const;
   std::vector<std::vector<PointSums>> MeasureParts(double delay_s, std::size_t points) const;
   void MakeParts(double part_s);
 
   const ScanViews& views_;
+  const ComparedImages compared_;
   ThreadPool& pool_;
   std::vector<std::vector<std::size_t>> parts_;  ///< Indices of frames.
   std::vector<double> weights_;                  ///< By point, 1/K^2; 0 = seen too rarely.
