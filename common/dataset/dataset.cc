@@ -16,8 +16,7 @@ namespace fs = std::filesystem;
 constexpr char kRigFile[] = "rig.textproto";
 constexpr char kLayout[] =
     "A dataset folder holds rig.textproto, depth.txt with depth/*.png and, optionally, thermal.txt "
-    "with "
-    "thermal/*.png, nuc.txt and groundtruth.txt.";
+    "with thermal/*.png, nuc.txt and groundtruth.txt.";
 
 bool Exists(const fs::path& path) {
   std::error_code error;

@@ -83,8 +83,7 @@ void CheckOverlap(const StreamTimes& depth, const StreamTimes& thermal, Doubts& 
   if (common_s >= kMinOverlap * shorter_s - uncertainty_s) return;
   doubts.push_back(fmt::format(
       "thermal frames begin {:+.3f} s after the depth frames, and the two overlap for {:.3f} s "
-      "only: "
-      "they seem to be stamped by two clocks; give both streams stamps of one clock, or the "
+      "only: they seem to be stamped by two clocks; give both streams stamps of one clock, or the "
       "difference as thermal_delay_s of the calibration",
       ToSeconds(thermal.first - depth.first), std::max(0.0, common_s)));
 }

@@ -30,7 +30,8 @@ class Walker {
     Next();
   }
 
-  /// Up to what closes the message, or to the end. `type` is nullptr in a field that is not known.
+  /// Reads up to what closes the message, or to the end. `type` is nullptr in a field that is not
+  /// known.
   void Fields(const pb::Descriptor* type, int depth) {
     while (!at_end_ && !Is("}") && !Is(">")) {
       if (tokens_.current().type != Tokenizer::TYPE_IDENTIFIER) {
@@ -41,14 +42,14 @@ class Walker {
       const pb::FieldDescriptor* field =
           type == nullptr ? nullptr : type->FindFieldByName(name.text);
       if (type != nullptr && field == nullptr && type->IsReservedName(name.text))
-        found.push_back({name.line, name.column, type, name.text});
+        found_.push_back({name.line, name.column, type, name.text});
       Next();
       if (Is(":")) Next();
       Value(field == nullptr ? nullptr : field->message_type(), depth);
     }
   }
 
-  std::vector<ReservedField> found;
+  std::vector<ReservedField> TakeFound() { return std::move(found_); }
 
  private:
   void Next() { at_end_ = !tokens_.Next(); }
@@ -57,7 +58,7 @@ class Walker {
   void Value(const pb::Descriptor* type, int depth) {
     if (Is("{") || Is("<")) {
       Next();
-      if (depth >= kMaxNesting) return;
+      if (depth >= kMaxNesting) return;  // The parser refuses such a text, with a message.
       Fields(type, depth + 1);
       if (!at_end_) Next();
     } else if (Is("[")) {
@@ -82,6 +83,7 @@ class Walker {
   NoErrors no_errors_;
   Tokenizer tokens_;
   bool at_end_ = false;
+  std::vector<ReservedField> found_;
 };
 
 }  // namespace
@@ -89,7 +91,7 @@ class Walker {
 std::vector<ReservedField> FindReservedFields(const std::string& text, const pb::Descriptor& type) {
   Walker walker(text);
   walker.Fields(&type, 0);
-  return std::move(walker.found);
+  return walker.TakeFound();
 }
 
 }  // namespace isotherm

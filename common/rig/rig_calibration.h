@@ -20,7 +20,7 @@ Result<Rig> LoadRigCalibration(const std::filesystem::path& path);
 Result<Rig> ParseRigCalibration(const std::string& text, std::string_view source_name);
 std::string ToText(const Rig& rig);
 
-/// Conversions between the calibration message and the types that the stages use. No checks:
+/// Conversions between the rig file's proto (RigCalibration) and the stages' types. No checks:
 /// Validate(Rig) says whether the result makes sense; a quaternion of any length but zero is
 /// normalised.
 CameraModel FromProto(const CameraIntrinsics& intrinsics);

@@ -65,7 +65,7 @@ HWY_INLINE void StoreFirst(VF v, std::size_t count, float* p) {
   std::memcpy(p, all, sizeof(float) * count);
 }
 
-/// 1 / v to about 22 bits.
+/// 1 / v to about 22 bits: x86 estimates 12, a Newton step doubles them. NEON's 8 would not do.
 HWY_INLINE VF Reciprocal(VF v) {
 #if HWY_ARCH_X86
   const VF estimate = hn::ApproximateReciprocal(v);

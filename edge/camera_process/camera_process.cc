@@ -24,12 +24,11 @@ extern char** environ;
 namespace isotherm {
 namespace {
 
-constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
 // A camera that is let go properly is there for whoever opens it next.
 constexpr Nanoseconds kTimeToLeave = std::chrono::seconds(1);
 // A process that is killed is gone in milliseconds, unless the kernel waits for its device.
 constexpr Nanoseconds kTimeToDie = std::chrono::milliseconds(250);
-// Some minutes of frames: who claims more is not believed.
+// Some minutes of frames. A process that claims to have lost more is not believed.
 constexpr std::uint64_t kMaxMissing = 100'000;
 
 /// Starts `program` with the link as descriptor 3, the pixels as 4 and nothing else open.
@@ -116,7 +115,7 @@ Status CameraProcess::Start() {
 Status CameraProcess::WaitUntilOpened() {
   while (clock_.SteadyNow() - last_heard_ < settings_.open_timeout) {
     FromCamera message;
-    const CameraLink::Received received = link_->Receive(&message, kLongestWait);
+    const CameraLink::Received received = link_->Receive(&message, kReadWait);
     if (received == CameraLink::Received::kClosed) return Ended();
     if (settings_.stop.stop_requested()) break;
     if (received == CameraLink::Received::kNothingYet) continue;
@@ -126,7 +125,7 @@ Status CameraProcess::WaitUntilOpened() {
     if (!cameras) return cameras.error();
     rig_ = RigOf(message.opened());
     cameras_ = std::move(*cameras);
-    if (message.opened().has_sandbox()) LogSandbox(FromLink(message.opened().sandbox()));
+    if (message.opened().has_sandbox()) NoteSandbox(FromLink(message.opened().sandbox()));
     last_heard_ = clock_.SteadyNow();
     return OkStatus();
   }
@@ -138,7 +137,7 @@ Status CameraProcess::WaitUntilOpened() {
                                  ToSeconds(settings_.open_timeout)));
 }
 
-void CameraProcess::LogSandbox(const Status& sandbox) {
+void CameraProcess::NoteSandbox(const Status& sandbox) {
   for (CameraDescription& camera : cameras_) {
     camera.settings += sandbox.ok() ? ", confined" : ", not confined";
   }
@@ -154,7 +153,7 @@ void CameraProcess::LogSandbox(const Status& sandbox) {
 Result<SourceItem> CameraProcess::Read(std::stop_token stop) {
   if (stop.stop_requested()) return NothingYet{};
   FromCamera message;
-  const CameraLink::Received received = link_->Receive(&message, kLongestWait);
+  const CameraLink::Received received = link_->Receive(&message, kReadWait);
   if (received == CameraLink::Received::kClosed) return Err(Ended());
   if (received == CameraLink::Received::kMessage) {
     last_heard_ = clock_.SteadyNow();
@@ -258,7 +257,7 @@ std::optional<Status> CameraProcess::Control(const CameraControl& control) {
   } else if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
     order.set_automatic_nuc(automatic->on);
   } else {
-    // Whoever supervises it closes and opens it instead, which starts another process.
+    // SupervisedSource closes and opens it instead, which starts another process.
     return FailedPrecondition("the camera's process takes no such order");
   }
   if (!link_->Send(order)) return Unavailable("the camera's process does not listen");

@@ -37,7 +37,7 @@ class CameraProcess final : public FrameSource {
   struct Settings {
     std::string name;  ///< For messages.
     std::string program;
-    std::vector<std::string> arguments;  ///< That make `program` call ServeCamera.
+    std::vector<std::string> arguments;  ///< With these `program` calls ServeCamera.
     /// Without a sign of life for this long the process is killed.
     Nanoseconds hang_timeout = std::chrono::seconds(2);
     /// Libraries load firmware when they open a camera.
@@ -67,7 +67,8 @@ class CameraProcess final : public FrameSource {
  private:
   Status Start();
   Status WaitUntilOpened();
-  void LogSandbox(const Status& sandbox);
+  /// Logs whether the process is confined, and adds it to its cameras' settings.
+  void NoteSandbox(const Status& sandbox);
   Result<SourceItem> Take(const FromCamera& message);
   void TakeAnswer(const Status& status);
   /// Returns why nothing more comes.

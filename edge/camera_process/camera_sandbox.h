@@ -26,7 +26,7 @@ struct CameraSandbox {
 /// kernel's messages that a camera was plugged in would not arrive either. Files are kept away by
 /// Landlock.
 ///
-/// Not ok: something could not be kept away, and why; the rest was.
+/// Fails if something could not be kept away, and says why; the rest is kept away all the same.
 Status EnterSandbox(const CameraSandbox& sandbox);
 
 }  // namespace isotherm

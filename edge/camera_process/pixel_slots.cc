@@ -23,7 +23,7 @@ constexpr std::size_t kBytes = kPixelBytes + kCounterBytes;
 
 Result<PixelSlots> PixelSlots::Create() {
   const int descriptor = ::memfd_create("isotherm-pixels", MFD_CLOEXEC | MFD_ALLOW_SEALING);
-  // Who reads memory that the other side has taken away is ended by a signal.
+  // Sealed: a process that reads memory which the other side took away is ended by a signal.
   if (descriptor < 0 || ::ftruncate(descriptor, static_cast<off_t>(kBytes)) != 0 ||
       ::fcntl(descriptor, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
     const int error = errno;

@@ -12,10 +12,10 @@
 namespace isotherm {
 
 /// Shared memory for pixels on their way from a camera's process to the edge: a fixed number of
-/// slots, so that it never grows. Pages that no frame needs stay without memory. Who may write
-/// which slot is agreed over the socket. Neither side can change its size. Also holds the camera's
-/// side's count of frames that it had no slot for, which is still there when that side has ended,
-/// however it did. Thread-compatible.
+/// slots, so that it never grows. Pages that no frame needs stay without memory. Which side
+/// may write which slot is agreed over the socket. Neither side can change its size. Also holds the
+/// camera's side's count of frames that it had no slot for, which is still there when that side has
+/// ended, however it did. Thread-compatible.
 class PixelSlots {
  public:
   static constexpr int kSlots = 8;

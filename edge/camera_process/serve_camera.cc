@@ -16,7 +16,7 @@
 namespace isotherm {
 namespace {
 
-// Twenty of them before the other side gives up.
+// The other side gives up after twenty that did not come (CameraProcess::Settings::hang_timeout).
 constexpr Nanoseconds kSignOfLifeInterval = std::chrono::milliseconds(100);
 constexpr Nanoseconds kNoWait{0};
 

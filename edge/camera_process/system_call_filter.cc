@@ -95,7 +95,7 @@ void AddSockets(FilterProgram& filter, bool local_sockets) {
   filter.LoadArgument(0);
   if (local_sockets) filter.ReturnIf(AF_UNIX, kAllow);
   filter.SkipUnless(AF_NETLINK, 3);
-  // That a device was plugged in or out; nothing about the network.
+  // Messages that a device was plugged in or out; none about the network.
   filter.LoadArgument(2);
   filter.ReturnIf(NETLINK_KOBJECT_UEVENT, kAllow);
   filter.Return(kRefuseSocket);

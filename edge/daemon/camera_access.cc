@@ -32,7 +32,7 @@ void AddPaths(const std::string& separated, std::vector<std::string>& paths) {
   }
 }
 
-/// Those that somebody has named, so that a typing error is not silent.
+/// Adds the paths that somebody has named, so that a typing error is not silent.
 void AddNamedPaths(const google::protobuf::RepeatedPtrField<std::string>& named, const char* option,
                    std::vector<std::string>& paths) {
   for (const std::string& path : named) {

@@ -25,7 +25,7 @@ std::string NucText(const NucReport& nuc) {
   return text;
 }
 
-// By default the ground raises an alarm at this difference, too (LiveOptions.max_clock_offset_s).
+// By default the ground raises an alarm at this difference, too (live.expert.max_clock_offset_s).
 constexpr double kDoubtfulClock_s = 0.05;
 
 std::uint64_t Dropped(const SensorCounters& counters) {
@@ -33,20 +33,21 @@ std::uint64_t Dropped(const SensorCounters& counters) {
          counters.record_failed + counters.publish_queue_full + counters.publish_failed;
 }
 
-/// "captured 900 = recorded 890 + rejected 0 + queue full 10 + write failed 0".
+/// At the end of a scan, when no frame may be on its way any more:
+/// "captured 900 = recorded 890 + rejected 0 + queue full 10 + failed 0".
 std::string Equation(std::string_view done, const SensorCounters& counters, std::uint64_t succeeded,
-                     std::uint64_t queue_full, std::uint64_t failed, std::int64_t on_the_way) {
+                     std::uint64_t queue_full, std::uint64_t failed, std::int64_t unaccounted) {
   std::string text =
       fmt::format("captured {} = {} {} + rejected {} + queue full {} + failed {}",
                   counters.captured, done, succeeded, counters.rejected, queue_full, failed);
   if (counters.left_out != 0) {
     text += fmt::format(" + no free slot in the camera's process {}", counters.left_out);
   }
-  if (on_the_way != 0) text += fmt::format(" + unaccounted {}", on_the_way);
+  if (unaccounted != 0) text += fmt::format(" + unaccounted {}", unaccounted);
   return text;
 }
 
-/// " (lost)" behind a rate; nothing for a camera that works.
+/// " (camera lost)" or " (camera blind)", behind a rate; nothing for a camera that works.
 std::string StateText(const CameraReport& camera) {
   if (camera.state == CameraState::kLost) return " (camera lost)";
   return camera.state == CameraState::kBlind ? " (camera blind)" : "";
@@ -122,16 +123,14 @@ std::string CameraSummary(const CameraReport& depth, const CameraReport& thermal
 std::optional<std::string> ClockProblem(const KernelClock& clock) {
   if (!clock.synchronised) {
     return "the wall clock is not synchronised: capture times are right among themselves, but not "
-           "as "
-           "UTC, and the recording says so. Install chrony with a server that the rig reaches "
+           "as UTC, and the recording says so. Install chrony with a server that the rig reaches "
            "(deploy/chrony, docs/timing.md); chronyc tracking says how it is doing";
   }
   const double off_s = std::max(std::abs(clock.offset_s), clock.estimated_error_s);
   if (!(off_s > kDoubtfulClock_s)) return std::nullopt;
   return fmt::format(
       "the wall clock is off by about {:.0f} ms by its own estimate: wait until chrony has "
-      "corrected "
-      "it (chronyc waitsync), or see chronyc sources for a better server",
+      "corrected it (chronyc waitsync), or see chronyc sources for a better server",
       1e3 * off_s);
 }
 

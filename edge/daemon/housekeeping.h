@@ -62,7 +62,7 @@ class Housekeeping {
   bool GetsOn(SteadyTime now);
   /// Logs what became of the cameras since the last status.
   void LogCameras(const EdgeStatus& before) const;
-  /// That synchronisation was lost or found; how it is at the start is told there.
+  /// Logs that synchronisation was lost or found; how it is at the start, the start logs.
   void LogClock();
   void Log();
   void FeedWatchdog(SteadyTime now);

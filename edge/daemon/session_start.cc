@@ -7,6 +7,7 @@
 
 #include "common/base/log.h"
 #include "common/codec/codec.h"
+#include "common/frame/sensor_name.h"
 #include "common/options/text_proto.h"
 #include "common/recording/clock_record.h"
 #include "edge/daemon/edge_report.h"
@@ -80,7 +81,7 @@ RigDescription DescribeRig(const EdgeOptions& options, const EdgeSession& start)
 std::map<std::string, std::string> CameraMetadata(const std::vector<CameraDescription>& cameras) {
   std::map<std::string, std::string> metadata;
   for (const CameraDescription& camera : cameras) {
-    const std::string name = camera.sensor == Sensor::kDepth ? "depth" : "thermal";
+    const std::string name(NameOf(camera.sensor));
     metadata[name] = ModelText(camera);
     metadata[name + "_serial"] = camera.serial;
     metadata[name + "_mode"] =

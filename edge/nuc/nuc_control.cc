@@ -44,7 +44,7 @@ NucOrder OrderOf(const CameraControl& control) {
   return automatic->on ? NucOrder::kAutomaticOn : NucOrder::kAutomaticOff;
 }
 
-/// As a recording has it.
+/// Returns the level's name in recordings.
 std::string LevelName(LogLevel level) {
   switch (level) {
     case LogLevel::kDebug:

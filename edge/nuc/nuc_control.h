@@ -53,9 +53,9 @@ class NucControl {
   ImageWatch images_;
   NucStatus status_;
   ThermalHousekeeping housekeeping_;
-  const Nanoseconds patience_;               ///< With the camera's answer.
+  const Nanoseconds patience_;               ///< Time that the camera has for an answer.
   std::optional<CaptureTime> triggered_at_;  ///< An order that the camera has not answered yet.
-  int answers_too_late_ = 0;                 ///< That are still to come and mean nothing any more.
+  int answers_too_late_ = 0;                 ///< Still to come, and not waited for any more.
   std::vector<std::uint64_t> waiting_;       ///< Commands that the camera's next answer answers.
   std::vector<CommandResult> answers_;
   std::vector<RecordedLog> log_;

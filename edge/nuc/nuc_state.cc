@@ -30,7 +30,7 @@ constexpr Row kRows[] = {
     {kIdle, [](const NucFacts&, NucState) { return true; }},
 };
 
-/// Who is told late, or not at all, could take the shutter for the scene.
+/// An edge that learns late of a correction, or never, could take the shutter for the scene.
 bool IsToldInTime(const NucFacts& facts) {
   return facts.camera ? facts.camera->source == NucSource::kInBand : facts.is_shutter_reported;
 }

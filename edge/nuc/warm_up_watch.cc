@@ -45,7 +45,7 @@ WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeepi
   const State housing = Assess(housing_, time, housekeeping.housing_celsius);
   const State detector = Assess(detector_, time, housekeeping.fpa_celsius);
   const auto either = [&](State state) { return housing == state || detector == state; };
-  // Who was cold stays so until all is known to be warm.
+  // A camera that was cold counts as cold until all its parts are known to be warm.
   if (either(State::kCold)) {
     state_ = State::kCold;
   } else if (!either(State::kNotAssessed)) {

@@ -8,11 +8,6 @@
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
-namespace {
-
-constexpr Nanoseconds kLongestWait = std::chrono::milliseconds(50);
-
-}  // namespace
 
 OpenniDepthSource::OpenniDepthSource(const DepthCameraOptions& options, double file_rate,
                                      const Clock& clock)
@@ -39,7 +34,7 @@ Status OpenniDepthSource::Open() {
 
 Result<SourceItem> OpenniDepthSource::Read(std::stop_token stop) {
   if (stop.stop_requested()) return NothingYet{};
-  Result<std::optional<OpenniDevice::Frame>> frame = device_->Wait(kLongestWait);
+  Result<std::optional<OpenniDevice::Frame>> frame = device_->Wait(kReadWait);
   if (!frame) return Err(frame.error());
   if (*frame) return ToRawFrame(std::move(**frame));
   if (device_->ended()) return EndOfStream{};

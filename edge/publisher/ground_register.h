@@ -10,14 +10,14 @@
 namespace isotherm {
 
 /// Knows who of the domain is a ground station, and which of them follow this rig. A ground station
-/// has said so in its hello, in our wire version; whoever else reads the frames is an onlooker.
+/// has said so in its hello, in our wire version; another reader of the frames is an onlooker.
 /// Pure. Thread-compatible.
 class GroundRegister {
  public:
   enum class Follows : std::uint8_t { kNotSaid, kThisRig, kAnotherRig };
 
   struct Ground {
-    std::uint64_t hello_writer = 0;  ///< There as long as this writer is.
+    std::uint64_t hello_writer = 0;  ///< The ground is there while this writer is.
     PeerHandle peer = 0;
     Follows follows = Follows::kNotSaid;
   };
@@ -48,13 +48,13 @@ class GroundRegister {
   }
 
   bool empty() const { return grounds_.empty(); }
-  /// One that says that it follows this rig, and reads its frames.
+  /// Returns whether a ground says that it follows this rig, and reads its frames.
   bool HasFollower(const std::function<bool(PeerHandle)>& reads_frames) const {
     return std::ranges::any_of(grounds_, [&](const Ground& ground) {
       return ground.follows == Follows::kThisRig && reads_frames(ground.peer);
     });
   }
-  /// As above, or one that has not said yet whom it follows: worth waiting for.
+  /// Counts those, too, that have not said yet whom they follow: they are worth waiting for.
   bool MayHaveFollower(const std::function<bool(PeerHandle)>& reads_frames) const {
     return std::ranges::any_of(grounds_, [&](const Ground& ground) {
       return ground.follows != Follows::kAnotherRig && reads_frames(ground.peer);

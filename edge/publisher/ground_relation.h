@@ -47,7 +47,7 @@ class GroundRelation {
            "\"; start one of them with the name of the other (--edge-id)";
   }
 
-  /// As Problem(), but only when it has changed since the last call.
+  /// Returns Problem() if it has changed since the last call.
   std::optional<std::string> News(SteadyTime now) {
     std::string problem = Problem(now);
     if (problem == reported_) return std::nullopt;

@@ -11,7 +11,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 constexpr std::uint64_t kOurs = 7;   // The session of the rig that is called "drone".
-constexpr std::uint64_t kHello = 1;  // Who writes the hellos of kGround.
+constexpr std::uint64_t kHello = 1;  // Writer of kGround's hellos.
 constexpr PeerHandle kGround = 100;
 constexpr PeerHandle kOnlooker = 200;
 

@@ -11,6 +11,7 @@
 #include "common/base/mutex.h"
 #include "common/concurrency/latest_value.h"
 #include "common/transport/endpoints.h"
+#include "common/transport/poll_interval.h"
 #include "common/transport/qos.h"
 #include "edge/publisher/edge_endpoints.h"
 #include "edge/publisher/ground_watch.h"
@@ -22,9 +23,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Nanoseconds kPresenceInterval =
-    100ms;                                   // How often Run looks whether the ground is there.
-constexpr Nanoseconds kPollInterval = 20ms;  // For what the middleware does not signal.
+/// Run looks this often whether the ground is there.
+constexpr Nanoseconds kPresenceInterval = 100ms;
 
 Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link is too slow"); }
 
@@ -104,7 +104,7 @@ class DdsPublisher final : public Publisher {
     return grounds_.IsAwaited([&](PeerHandle peer) { return writer.Reaches(peer); },
                               clock_.SteadyNow());
   }
-  /// Returns the same, or whether somebody reads who has just come.
+  /// Returns whether IsAwaited, or whether a reader has just come that may be the ground's.
   template <typename Frame>
   bool MayBeAwaited(const Writer<Frame>& writer, OutgoingStream* stream, SteadyTime now) const
       REQUIRES(mutex_) {
@@ -238,7 +238,7 @@ std::optional<RefusalCause> DdsPublisher::RefusalOf(const Feedback& feedback,
 
 void DdsPublisher::LookForGround() {
   MutexLock lock(mutex_);
-  // The next one may be another version.
+  // After one ground has left, the next may have another version, and other readers.
   const bool left = grounds_.Look(clock_.SteadyNow(), [this](std::uint64_t hello_writer) {
     return ends_.peers.PeerOf(hello_writer) != 0;
   });

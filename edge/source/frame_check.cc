@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "common/frame/sensor_name.h"
 #include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
@@ -11,8 +12,6 @@ namespace {
 
 /// The last count stands for all that is hotter.
 constexpr std::uint16_t kLastCount = 65534;
-
-std::string_view StreamOf(Sensor sensor) { return sensor == Sensor::kDepth ? "depth" : "thermal"; }
 
 }  // namespace
 
@@ -31,13 +30,13 @@ Status FrameCheck::Process(RawFrame& frame) {
   const int height = frame.pixels.height();
   if (frame.pixels.empty()) {
     return DataLoss(
-        fmt::format("{} frame {} has no pixels", StreamOf(frame.sensor), frame.frame_number));
+        fmt::format("{} frame {} has no pixels", NameOf(frame.sensor), frame.frame_number));
   }
   Size& expected = expected_[static_cast<std::size_t>(frame.sensor)];
   if (expected.width == 0) expected = {width, height};
   if (width != expected.width || height != expected.height) {
     return DataLoss(fmt::format("{} frame {} is {}x{} pixels instead of {}x{}",
-                                StreamOf(frame.sensor), frame.frame_number, width, height,
+                                NameOf(frame.sensor), frame.frame_number, width, height,
                                 expected.width, expected.height));
   }
   if (frame.sensor == Sensor::kThermal && !keep_counts_)

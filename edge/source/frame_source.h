@@ -61,12 +61,15 @@ struct CameraDescription {
 /// reads and closes.
 class FrameSource {
  public:
+  /// A Read that waits for its device waits this long: half of what is allowed.
+  static constexpr Nanoseconds kReadWait = std::chrono::milliseconds(50);
+
   virtual ~FrameSource() = default;
 
   virtual std::string_view name() const = 0;
   virtual Status Open() = 0;
-  /// Waits a bounded time (at most 0.1 s) for the next frame; returns at once when stop is
-  /// requested. A failure means that the source must be closed and opened again.
+  /// Waits a bounded time (at most 0.1 s; sources use kReadWait) for the next frame; returns at
+  /// once when stop is requested. A failure means that the source must be closed and opened again.
   virtual Result<SourceItem> Read(std::stop_token stop) = 0;
   virtual void Close() = 0;
   /// After Close: a frame that was captured but not read, until there is none. Sources with threads
@@ -75,8 +78,8 @@ class FrameSource {
   /// By Sensor: frames that were captured since the last call and left out before Read could give
   /// them, because they were not read in time; they leave holes in the numbers. Also after Close.
   virtual std::array<std::uint64_t, 2> TakeLeftOut() { return {}; }
-  /// Tells the camera what to do; takes at most some milliseconds. The camera's answer, as in
-  /// ControlAnswer; nullopt if it comes later with TakeControlAnswers.
+  /// Tells the camera what to do; takes at most some milliseconds. Returns the camera's answer, as
+  /// in ControlAnswer, or nullopt if it comes later with TakeControlAnswers.
   virtual std::optional<Status> Control(const CameraControl& /*control*/) {
     return FailedPrecondition("the source has no shutter to command");
   }

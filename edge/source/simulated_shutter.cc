@@ -1,6 +1,7 @@
 #include "edge/source/simulated_shutter.h"
 
 #include "common/base/noise.h"
+#include "common/simulation/options.h"
 #include "common/simulation/simulated_scan.h"
 #include "common/simulation/simulation_options.pb.h"
 #include "common/simulation/thermal_errors.h"
@@ -8,7 +9,7 @@
 namespace isotherm {
 
 SimulatedShutter::SimulatedShutter(const SimulationOptions& options)
-    : options_(std::make_unique<const SimulationOptions>(options)) {}
+    : options_(std::make_unique<const SimulationOptions>(Resolved(options))) {}
 
 SimulatedShutter::~SimulatedShutter() = default;
 

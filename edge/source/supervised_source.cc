@@ -27,7 +27,7 @@ SupervisedSource::SupervisedSource(std::unique_ptr<FrameSource> source,
       next_wait_(retry_min_) {}
 
 Status SupervisedSource::Open() {
-  ISOTHERM_RETURN_IF_ERROR(OpenSame());
+  ISOTHERM_RETURN_IF_ERROR(OpenAndCheckIdentity());
   const std::optional<Rig> rig = source_->rig();
   if (rig && !sizes_are_calibrated_) check_.Expect(*rig);
   return OkStatus();
@@ -40,14 +40,15 @@ void SupervisedSource::Expect(const Rig& rig) {
 }
 
 void SupervisedSource::KeepTrying(const Status& reason) {
+  // The rig is described before the camera is there: frames of temperatures are promised.
   if (!counts_only_) counts_only_ = false;
   ScheduleReopen(reason);
 }
 
-Status SupervisedSource::OpenSame() {
+Status SupervisedSource::OpenAndCheckIdentity() {
   ISOTHERM_RETURN_IF_ERROR(source_->Open());
   for (const CameraDescription& camera : source_->cameras()) {
-    if (Status same = CheckSame(camera); !same.ok()) {
+    if (Status same = CheckIdentity(camera); !same.ok()) {
       source_->Close();
       return same;
     }
@@ -77,7 +78,7 @@ Status SupervisedSource::CheckSerial(const CameraDescription& camera) const {
   return OkStatus();
 }
 
-Status SupervisedSource::CheckSame(const CameraDescription& camera) {
+Status SupervisedSource::CheckIdentity(const CameraDescription& camera) {
   ISOTHERM_RETURN_IF_ERROR(CheckSerial(camera));
   serials_[static_cast<std::size_t>(camera.sensor)] = camera.serial;
   if (camera.sensor != Sensor::kThermal) return OkStatus();
@@ -107,7 +108,7 @@ Result<SourceItem> SupervisedSource::Read(std::stop_token stop) {
     ScheduleReopen(item.error());
     return NothingYet{};
   }
-  if (RawFrame* frame = std::get_if<RawFrame>(&*item)) return Check(std::move(*frame));
+  if (RawFrame* frame = std::get_if<RawFrame>(&*item)) return Handle(std::move(*frame));
   return item;
 }
 
@@ -147,7 +148,7 @@ void SupervisedSource::CountMissing(Sensor sensor, std::uint64_t number) {
   if (missing > explained && on_loss_) on_loss_(sensor, Loss::kInCamera, missing - explained);
 }
 
-SourceItem SupervisedSource::Check(RawFrame frame) {
+SourceItem SupervisedSource::Handle(RawFrame frame) {
   std::uint64_t& thrown_away = thrown_away_[static_cast<std::size_t>(frame.sensor)];
   if (idle_) {
     thrown_away = frame.frame_number + 1;
@@ -199,7 +200,7 @@ SourceItem SupervisedSource::ReopenWhenDue(const std::stop_token& stop) {
   }
   reopen_at_.reset();
   ++reopened_;
-  if (const Status opened = OpenSame(); !opened.ok()) {
+  if (const Status opened = OpenAndCheckIdentity(); !opened.ok()) {
     ScheduleReopen(opened);
   } else {
     is_first_ = {true, true};

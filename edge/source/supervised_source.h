@@ -43,13 +43,14 @@ class SupervisedSource final : public FrameSource {
   /// `clock` must outlive the source. `longest_pause` bounds one Read while waiting.
   SupervisedSource(std::unique_ptr<FrameSource> source, const FrameCheckOptions& options,
                    const Clock& clock, FrameCallback on_frame, FrameCallback on_rejected,
-                   Nanoseconds longest_pause = std::chrono::milliseconds(50));
+                   Nanoseconds longest_pause = kReadWait);
 
   std::string_view name() const override { return source_->name(); }
   /// The first opening is not retried by itself: a wrong path or an absent camera at start ends the
   /// program with a sentence.
   Status Open() override;
-  /// Instead: goes on after an Open that failed as if the source had failed later.
+  /// To be called after an Open that failed, to go on all the same: the source is tried again as if
+  /// it had failed later.
   void KeepTrying(const Status& reason);
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override;
@@ -61,29 +62,31 @@ class SupervisedSource final : public FrameSource {
 
   /// Expected sizes and serial numbers, from a calibration that overrides the source's own.
   void Expect(const Rig& rig);
-  /// Idle: frames are read, so that the camera keeps going, and thrown away unseen and uncounted.
+  /// While idle, frames are read, so that the camera keeps going, and thrown away uncounted.
   /// Numbers start from 0 with the first frame after it.
   void SetIdle(bool idle) { idle_ = idle; }
   void OnWorks(WorksCallback on_works) { on_works_ = std::move(on_works); }
   /// Called for each camera whenever it was opened and is used.
   void OnOpened(OpenedCallback on_opened) { on_opened_ = std::move(on_opened); }
-  /// For sources that number frames from 0.
+  /// Reports lost frames of sources that number theirs from 0.
   void OnLoss(LossCallback on_loss) { on_loss_ = std::move(on_loss); }
   std::uint64_t reopened() const { return reopened_; }
 
  private:
-  SourceItem Check(RawFrame frame);
+  /// Numbers, counts and checks a frame; too many bad ones in a row schedule a reopening.
+  SourceItem Handle(RawFrame frame);
   void CountLeftOut();
   /// Counts the numbers that are missing before this one.
   void CountMissing(Sensor sensor, std::uint64_t number);
   SourceItem ReopenWhenDue(const std::stop_token& stop);
   void ScheduleReopen(const Status& reason);
   /// Opens, and refuses a camera that was not calibrated or is not the one from the start.
-  Status OpenSame();
-  Status CheckSame(const CameraDescription& camera);
+  Status OpenAndCheckIdentity();
+  Status CheckIdentity(const CameraDescription& camera);
   Status CheckSerial(const CameraDescription& camera) const;
   void ReportState(bool works);
 
+  /// A camera, its process or a recording, as edge/daemon/make_source.cc and make_camera.cc say.
   const std::unique_ptr<FrameSource> source_;
   const Clock& clock_;
   const FrameCallback on_frame_;
@@ -102,7 +105,7 @@ class SupervisedSource final : public FrameSource {
   bool idle_ = false;
   std::array<std::uint64_t, 2> thrown_away_{};  ///< By Sensor: frame numbers before the first.
   std::array<std::uint64_t, 2> expected_numbers_{};
-  std::array<std::uint64_t, 2> left_out_{};  ///< Whose numbers are not yet seen to be missing.
+  std::array<std::uint64_t, 2> left_out_{};  ///< Frames whose missing numbers are still to come.
   std::array<std::string, 2> calibrated_serials_;  ///< By Sensor; empty: any.
   std::array<std::string, 2> serials_;  ///< By Sensor, of the cameras from the start; empty: any.
   /// Says whether the thermal camera sends counts only, known from the start; a scan that begins

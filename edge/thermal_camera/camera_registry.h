@@ -13,10 +13,10 @@ namespace isotherm {
 
 class ThermalCameraOptions;
 
-/// The thermal cameras for which there is a driver, connected or not.
+/// Returns the thermal cameras for which there is a driver, connected or not.
 std::vector<DeviceDescription> SupportedThermalCameras();
 
-/// Those of them that are connected.
+/// Returns the thermal cameras that are connected.
 Result<std::vector<DeviceDescription>> ListThermalCameras();
 
 /// The camera of `devices` that the options ask for. `pinned_serial` is the serial number of the

@@ -51,13 +51,13 @@ class P3Assembler {
 
   void AddTransfer(Bytes bytes, const HostStamp& stamp);
   void NoteLost() { frame_.incomplete = in_frame_; }
-  /// The next frame: bytes between the markers, time stamp of the start marker.
+  /// Returns the next frame: bytes between the markers, time stamp of the start marker.
   std::optional<UvcFrame> Pop() { return finished_.Pop(); }
   bool has_frame() const { return !finished_.empty(); }
 
  private:
   void Finish(const UvcPayloadHeader& end);
-  /// Puts aside what has come of the frame.
+  /// Ends the frame, complete or not; Pop returns it.
   void Conclude();
 
   const std::size_t data_bytes_;

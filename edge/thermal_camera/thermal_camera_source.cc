@@ -12,11 +12,6 @@
 namespace isotherm {
 namespace {
 
-using std::chrono::milliseconds;
-
-// One Read waits for an image at most this long.
-constexpr Nanoseconds kWait = milliseconds(50);
-
 ThermalGain GainOf(ThermalGainOption gain) {
   switch (gain) {
     case HIGH_GAIN:
@@ -103,7 +98,7 @@ void ThermalCameraSource::Close() {
 Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
   if (!camera_) return Err(FailedPrecondition(name_ + " is not open"));
   if (stop.stop_requested()) return NothingYet{};
-  Result<std::optional<RawThermalFrame>> raw = camera_->Read(kWait);
+  Result<std::optional<RawThermalFrame>> raw = camera_->Read(kReadWait);
   if (!raw) return Err(raw.error());
   if (*raw) {
     last_frame_at_ = clock_.SteadyNow();

@@ -59,7 +59,7 @@ class ThermalCameraSource final : public FrameSource {
   Status Open() override;
   Result<SourceItem> Read(std::stop_token stop) override;
   void Close() override;
-  /// Is not restarted by itself: whoever supervises it closes and opens it.
+  /// Is not restarted by itself: SupervisedSource closes and opens it.
   std::optional<Status> Control(const CameraControl& control) override;
   std::vector<CameraDescription> cameras() const override;
 
@@ -89,7 +89,7 @@ class ThermalCameraSource final : public FrameSource {
   SteadyTime last_frame_at_{};
   std::uint64_t next_frame_number_ = 0;
   bool frozen_ = false;
-  bool incomplete_ = false;             ///< The last frame was.
+  bool incomplete_ = false;             ///< The last frame was incomplete.
   std::uint64_t incomplete_since_ = 0;  ///< Since the last whole frame.
   ThermalCameraCounts counts_;
 };

@@ -1,13 +1,10 @@
 #include "edge/thermal_camera/thermal_camera_source.h"
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <deque>
-#include <fstream>
 #include <functional>
-#include <sstream>
 
 #include "edge/options/edge_options.pb.h"
 
@@ -342,17 +339,6 @@ TEST_F(ThermalCameraSourceTest, TheVendorsLibraryIsUsedOnlyIfNamed) {
   EXPECT_EQ(Make()->Open().code(), StatusCode::kUnavailable);
   options_.set_driver(OPTRIS_SDK);
   EXPECT_TRUE(Make()->Open().ok());
-}
-
-TEST(CameraRegistryTest, EveryCameraWithADriverHasAUdevRule) {
-  std::ostringstream rules;
-  rules << std::ifstream(ISOTHERM_SOURCE_DIR "/deploy/udev/60-isotherm-thermal.rules").rdbuf();
-  for (const DeviceDescription& camera : SupportedThermalCameras()) {
-    EXPECT_THAT(rules.str(),
-                HasSubstr(fmt::format("ATTR{{idVendor}}==\"{:04x}\", ATTR{{idProduct}}==\"{:04x}\"",
-                                      camera.vendor_id, camera.product_id)))
-        << camera.product;
-  }
 }
 
 TEST_F(ThermalCameraSourceTest, CameraWithoutTemperaturesSendsCountsUnlessTheOptionsRelateThem) {

@@ -8,7 +8,7 @@ class SourceOptions;
 
 /// Says how capture times relate to the edge's wall clock.
 enum class TimeBase : std::uint8_t {
-  kWallClock,  ///< They are on it.
+  kWallClock,  ///< Capture times are on it.
   kShifted,    ///< A recording's own, played in real time: off by a constant that is not known.
   kOther,      ///< They pass at another pace.
 };

@@ -31,8 +31,7 @@ Status Validate(const SubMapOptions& o) {
         o.expert().max_travel_m() >= 0.0 && o.expert().start_after_lost_s() >= 0.0)) {
     return InvalidArgument(fmt::format(
         "submaps.expert: max_rotation_deg must be 0..180 degrees, max_travel_m and "
-        "start_after_lost_s not "
-        "negative, got {}, {} m and {} s",
+        "start_after_lost_s not negative, got {}, {} m and {} s",
         o.expert().max_rotation_deg(), o.expert().max_travel_m(), o.expert().start_after_lost_s()));
   }
   if (o.expert().max_maps() < 1 || o.expert().max_maps() > 1000)

@@ -41,7 +41,7 @@ void ResetSignals() {
 /// `failure` if the program cannot be started.
 [[noreturn]] void Become(char* const* words, const char* log, pid_t parent, int failure) {
   ResetSignals();
-  // Whoever kills the parent does not leave the child behind; it may flush its files.
+  // If the parent is killed, the child is not left behind; it may flush its files.
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (::getppid() != parent) ::_exit(kCannotStart);  // Gone before that.
   if (UseLog(log)) ::execv(words[0], words);

@@ -37,7 +37,7 @@ struct OtherMessage {
   std::string data;
 };
 
-/// Those messages in order of time.
+/// Gives these messages in order of time.
 class OtherMessages {
  public:
   OtherMessages(std::unique_ptr<ByteSource> source, mcap::FileIndex index)

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/codec/codec.h"
+#include "common/frame/sensor_name.h"
 #include "ground/export/png_file.h"
 #include "ground/options/ground_options.pb.h"
 #include "ground/renderer/legend.h"
@@ -98,8 +99,8 @@ Status RenderFrame(RecordingReader& reader, Sensor sensor, std::uint64_t place,
     return WritePng(*rendering, png);
   }
   return InvalidArgument(
-      fmt::format("there is no {} frame {}: the recording has {} (numbered from 0)",
-                  sensor == Sensor::kDepth ? "depth" : "thermal", place, seen));
+      fmt::format("there is no {} frame {}: the recording has {} (numbered from 0)", NameOf(sensor),
+                  place, seen));
 }
 
 }  // namespace isotherm

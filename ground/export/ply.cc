@@ -47,8 +47,7 @@ std::string Header(const PlyStyle& style, std::string_view what, std::size_t ver
       "comment coordinate frame: world (edges of the scan volume), metres; unit normals towards "
       "the observed side\n"
       "comment to see it upright, turn it by 180 degrees about x: y points down and z away from "
-      "the "
-      "camera\n"
+      "the camera\n"
       "comment scalar_temperature: ";
   text += style.interpreted
               ? "temperature of the object in degrees Celsius; nan = never measured, or no "

@@ -138,8 +138,7 @@ Status Validate(const TrackerOptions& o) {
         o.expert().max_step_deg() > 0.0)) {
     return InvalidArgument(
         "tracker.expert: min_inlier_ratio must be 0..1; max_residual_m, max_step_m and "
-        "max_step_deg must "
-        "be positive");
+        "max_step_deg must be positive");
   }
   if (!(o.expert().min_observed() >= 0.0 && o.expert().min_observed() <= 0.1)) {
     return InvalidArgument(

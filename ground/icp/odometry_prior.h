@@ -72,7 +72,7 @@ class OdometryPrior {
   /// Frames tracked since the set of observed directions changed, oldest first: what the newest is
   /// compared with, so that slow contradictions add up.
   std::deque<StampedMapPose> anchors_;
-  int unobservable_axes_ = 0;  ///< Those of the anchors.
+  int unobservable_axes_ = 0;  ///< How many the anchors' frames have.
   bool trusted_ = true;
   int agreeing_ = 0;
   int missing_in_a_row_ = 0;

@@ -48,8 +48,7 @@ std::string FindProblem(const InterpretedPart& part, bool has_emissivity,
   if (!part.material.empty() && !has_emissivity) {
     return fmt::format(
         "{}material '{}' says how the emissivity depends on the angle; give the emissivity along "
-        "the "
-        "normal as well, measured (docs/materials.md)",
+        "the normal as well, measured (docs/materials.md)",
         prefix, part.material);
   }
   return {};

@@ -83,7 +83,7 @@ class Interpretation {
   /// One sentence per part in which points have no temperature although they were measured, or
   /// which could not be interpreted.
   std::vector<std::string> Errors(const std::vector<PartReport>& reports) const;
-  /// As it goes into stats.json.
+  /// Returns what goes into stats.json.
   Json Describe(const std::vector<PartReport>& reports) const;
 
  private:

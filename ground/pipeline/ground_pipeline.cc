@@ -110,7 +110,7 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   const PreparedDepth& depth = Prepare(frame);
   TrackedFrame tracked = Track(depth, frame.header.capture_time);
   const bool integrated = Integrate(depth, tracked);
-  Look(tracked);
+  Raycast(tracked);
   timer.Stop();
   FuseThermal(depth, tracked);
   return Report(tracked, integrated);
@@ -217,8 +217,7 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
   spiller_.Trim(*map.tsdf, *map.thermal);
   if (before == 0 && spiller_.spilled() > 0) {
     LOG(Ground, Info)
-        << "the model has outgrown volume.max_memory_bytes: what is far from the view "
-           "goes to "
+        << "the model has outgrown volume.max_memory_bytes: what is far from the view goes to "
         << options_.volume().spill_dir();
   }
   if (spiller_.spilled() > 0) FetchNearView(T_map_depth);
@@ -238,12 +237,12 @@ void GroundPipeline::FetchNearView(const RigidTransform& T_map_depth) {
   spiller_.Expect(near_view_.Find(*map.tsdf, camera, T_map_depth), *map.tsdf, *map.thermal);
 }
 
-void GroundPipeline::Look(const TrackedFrame& frame) {
+void GroundPipeline::Raycast(const TrackedFrame& frame) {
   // The tracker has followed if another sub-map is active now.
-  if (frame.outcome != TrackedFrame::Outcome::kLost) LookFrom(tracker_.pose().T_map_depth);
+  if (frame.outcome != TrackedFrame::Outcome::kLost) RaycastFrom(tracker_.pose().T_map_depth);
 }
 
-void GroundPipeline::LookFrom(const RigidTransform& T_map_depth) {
+void GroundPipeline::RaycastFrom(const RigidTransform& T_map_depth) {
   tracker_.LookFrom(T_map_depth, gate_.bootstrapping(), pool_);
 }
 
@@ -318,9 +317,9 @@ void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
   const std::vector<StampedPose>& poses = tracker_.trajectory().poses();
   if (joined) {
     tracker_.Rebase(T_world_map);
-    LookFrom(tracker_.view().T_map_depth);
+    RaycastFrom(tracker_.view().T_map_depth);
   } else if (!poses.empty()) {
-    LookFrom(poses.back().T_world_depth);
+    RaycastFrom(poses.back().T_world_depth);
   }
 }
 

@@ -29,8 +29,8 @@ namespace isotherm {
 enum class LoadShedding : std::uint8_t {
   kNone,
   kHalfThermal,  ///< Every second thermal frame is left out ("behind").
-  kNoThermal,    ///< All of them are.
-  kEverySecond,  ///< And only every second depth frame is integrated; all are tracked.
+  kNoThermal,    ///< All thermal frames are left out.
+  kEverySecond,  ///< So are they, and every second depth frame is tracked but not integrated.
 };
 
 /// The straight line from frames to a validated thermogram (algorithm 1 and chapter 6), one frame
@@ -81,7 +81,8 @@ class GroundPipeline {
   TrackedFrame Track(const PreparedDepth& depth, CaptureTime time);
   /// True if the frame became part of the surface. A first frame that shows none is lost.
   bool Integrate(const PreparedDepth& depth, TrackedFrame& frame);
-  void Look(const TrackedFrame& frame);
+  /// Casts the model from the rig's pose: the view that the next frame is tracked against.
+  void Raycast(const TrackedFrame& frame);
   void FuseThermal(const PreparedDepth& depth, const TrackedFrame& frame);
   DepthReport Report(const TrackedFrame& frame, bool integrated) const;
 
@@ -94,7 +95,7 @@ class GroundPipeline {
   void FetchNearView(const RigidTransform& T_map_depth);
   /// Returns why no thermal frame can be fused now, if so.
   std::optional<LeftOutReason> WhyNoThermal() const;
-  void LookFrom(const RigidTransform& T_map_depth);
+  void RaycastFrom(const RigidTransform& T_map_depth);
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);
 

@@ -10,10 +10,10 @@
 namespace isotherm {
 namespace {
 
-/// What a rig in the hand stays below for 95 % of the time is two standard deviations of it.
+/// A bound that a hand-held rig keeps for 95 % of the time is two standard deviations.
 constexpr double kSigmasOfBound = 2.0;
-/// Of what the scene adds, after it was taken out: its parameters are known to about a tenth, where
-/// somebody measured them with a disc and patterns (thesis 5.1).
+/// Fraction of the scene influence that is left after it was taken out: its parameters are known to
+/// about a tenth, if they were measured with a disc and patterns (thesis 5.1).
 constexpr double kLeftOfSceneInfluence = 0.1;
 
 CameraUncertainty UncertaintyOf(const ThermalOptions& options, const ThermalSensorModel& sensor) {

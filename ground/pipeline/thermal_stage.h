@@ -24,8 +24,8 @@ namespace isotherm {
 struct TrackedDepth {
   const Image<float>& depth_m;            ///< The frame itself; 0 = no return.
   const ModelView& view;                  ///< The model from its pose.
-  std::optional<StampedMapPose> earlier;  ///< The frame before that before it; nullopt = not known.
-  std::optional<StampedMapPose> before;   ///< The frame before it; nullopt = not known.
+  std::optional<StampedMapPose> earlier;  ///< Two frames before; nullopt = not known.
+  std::optional<StampedMapPose> before;   ///< One frame before; nullopt = not known.
   StampedMapPose now;
   double surface_sigma_rad = 0.0;  ///< One standard deviation of the pose, as a shift of surface
                                    ///< over its mean depth.
@@ -47,7 +47,7 @@ class ThermalStage {
   ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight,
                PipelineCounts& counts, StageStats& timing);
 
-  /// Keeps a frame, or counts why not. In order of capture time. True if it was kept.
+  /// Keeps a frame, or counts why not. Frames come in order of capture time. True if it was kept.
   bool Add(ThermalFramePtr frame);
   /// Fuses, or counts as left out, what was captured up to `depth.now`.
   void FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool);

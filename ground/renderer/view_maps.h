@@ -24,7 +24,7 @@ struct ViewMaps {
       cos_view;  ///< |cos| of the angle between normal and line of sight; NaN = no surface.
   Image<float> distance_m;  ///< From the viewer to the surface; NaN = no surface.
 
-  /// Whose temperatures `celsius` holds, for legends.
+  /// Says what the temperatures in `celsius` are, for legends.
   const char* celsius_meaning = "apparent temperature";
 
   // Of the measurements' records, NaN = not known. Empty unless SampleRecords was called.

@@ -14,8 +14,7 @@ constexpr EnumArray<LostReason, std::string_view> kLost = {
      "the image does not tell the motion (a bare plane?); keep edges in view"},
     {LostReason::kNotFound,
      "looked for the place and did not find it; go back to what was scanned, or scan a larger "
-     "volume "
-     "(--volume) if the rig left it"},
+     "volume (--volume) if the rig left it"},
     {LostReason::kOutsideVolume,
      "nothing in view lies in the scan volume; check --initial-pose, --volume and --volume-min"},
 };
@@ -30,8 +29,7 @@ constexpr EnumArray<LeftOutReason, std::string_view> kLeftOut = {
     {LeftOutReason::kPoseUnknown, "taken while the rig was lost or before the first depth frame"},
     {LeftOutReason::kPoseUncertain,
      "the pose was less certain than thermal.expert.max_registration_px; keep edges in view, and "
-     "see "
-     "that no depth frames are lost"},
+     "see that no depth frames are lost"},
     {LeftOutReason::kDepthGap,
      "depth frames were missing around them for longer than thermal.expert.max_wait_s"},
     {LeftOutReason::kBehind,

@@ -12,7 +12,7 @@
 
 namespace isotherm {
 
-/// The way to the disk, which may be slow or stuck: whoever offers waits for a bounded time, once,
+/// The way to the disk, which may be slow or stuck: the producer waits for a bounded time, once,
 /// and memory is bounded by items and by bytes. Thread-safe.
 class RecordingQueue {
  public:

@@ -8,6 +8,7 @@
 #include "common/base/units.h"
 
 namespace isotherm {
+
 void ClockWatch::Update(const EdgeStatus& status, const std::optional<ClockOffset>& offset,
                         const KernelClock& own, SteadyTime now) {
   const bool is_first = !seen_ || session_clock_.session != status.session;
@@ -60,8 +61,7 @@ void ClockWatch::Log(const ClockReport& before, bool is_first) {
   if (rig.steps != before.steps) {
     LOG(Subscriber, Warning) << fmt::format(
         "the rig's clock was set by {:+.3f} s; capture times do not follow: from here on UTC = "
-        "capture "
-        "time {:+.3f} s",
+        "capture time {:+.3f} s",
         rig.step_sum_s - before.step_sum_s, rig.step_sum_s);
   }
 }
@@ -79,11 +79,8 @@ void ClockWatch::LogAlarm(const KernelClock& own, SteadyTime now) {
   reported_at_ = now;
   LOG(Subscriber, Warning) << fmt::format(
       "CLOCK ALARM: the rig's clock is {}; {:.0f} ms are allowed (live.expert.max_clock_offset_s). "
-      "The "
-      "rig says "
-      "that it is {}; ours is {}. One of them follows a wrong time server, or none: look at "
-      "chronyc "
-      "sources on both (docs/timing.md)",
+      "The rig says that it is {}; ours is {}. One of them follows a wrong time server, or none: "
+      "look at chronyc sources on both (docs/timing.md)",
       OffsetText(*session_clock_.offset), kMsPerS * ToSeconds(max_offset_),
       ToText(session_clock_.rig), ToText(ToReport(own)));
 }

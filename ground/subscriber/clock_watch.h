@@ -34,10 +34,10 @@ class ClockWatch {
   void LogAlarm(const KernelClock& own, SteadyTime now);
 
   Nanoseconds max_offset_;
-  bool seen_ = false;  ///< A status.
+  bool seen_ = false;  ///< A status has come.
   SessionClock session_clock_;
-  std::optional<SteadyTime> reported_at_;  ///< The alarm.
-  bool reported_ = false;                  ///< That it is on.
+  std::optional<SteadyTime> reported_at_;  ///< When the alarm was last logged.
+  bool reported_ = false;                  ///< The log says that the alarm is on.
 };
 
 /// "0.3 ms ahead of ours (+-0.4 ms)", "80.1 ms behind ours (+-0.4 ms)".

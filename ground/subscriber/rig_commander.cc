@@ -5,12 +5,13 @@
 #include <optional>
 #include <utility>
 
+#include "common/transport/poll_interval.h"
+
 namespace isotherm {
 namespace {
 
 using namespace std::chrono_literals;
 
-constexpr Nanoseconds kPollInterval = 20ms;  // For what the middleware does not signal.
 // Rigs on one network answer a newcomer within some milliseconds of each other.
 constexpr Nanoseconds kOthersToo = 300ms;
 

@@ -53,7 +53,7 @@ void RigGate::Add(PeerHandle peer, RigSample&& sample, SteadyTime now) {
   if (process == nullptr) return refuse_(sample, RefusalCause::kOtherWriter);
   process->heard = now;
   if (owner_ == 0) owner_ = peer;
-  // Who announces a session comes before who only sent something.
+  // A process that announces a session comes before one that only sent something.
   if (peer != owner_ && Is<RigDescription>(sample)) {
     if (process->rig) refuse_(*process->rig, RefusalCause::kOtherWriter);
     process->rig = std::move(sample);
@@ -204,7 +204,7 @@ std::vector<RigGate::Rival> RigGate::rivals() const {
   std::vector<Rival> rivals;
   for (const Process& process : processes_) {
     if (process.peer == owner_ || !process.refused) continue;
-    // Whoever had the place before and was never heard again: an edge that was killed.
+    // The owner before, never heard again since: an edge that was killed.
     if (process.heard < process.since) continue;
     rivals.push_back({.peer = process.peer, .session = process.rig ? SessionOf(*process.rig) : 0});
   }

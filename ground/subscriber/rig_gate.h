@@ -69,7 +69,7 @@ class RigGate {
   /// A process that is refused although it calls itself the rig.
   struct Rival {
     PeerHandle peer = 0;
-    std::uint64_t session = 0;  ///< That it has announced; 0 = none.
+    std::uint64_t session = 0;  ///< The session that it has announced; 0 = none.
     friend bool operator==(const Rival&, const Rival&) = default;
   };
   std::vector<Rival> rivals() const;
@@ -114,7 +114,7 @@ class RigGate {
   PeerHandle owner_ = 0;
   bool announced_ = false;     ///< The owner has announced session_.
   std::uint64_t session_ = 0;  ///< Newest that an owner announced.
-  bool closed_ = false;        ///< session_ is.
+  bool closed_ = false;        ///< session_ is closed.
   std::deque<std::uint64_t> over_;
   std::uint64_t overflowed_ = 0;
 };

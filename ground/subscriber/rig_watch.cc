@@ -15,7 +15,7 @@ RigSighting RigWatch::Look(SteadyTime now, const std::string& edge_id, bool has_
   RigSighting sighting;
   sighting.sessions_to_refuse = LookAtRivals(now, edge_id);
   TellOverflow(now, edge_id);
-  // That writers live is known within their lease of a second; who they are, for ten.
+  // A writer that is gone is known within its lease of a second, its participant within ten.
   sighting.present = has_status_writer && (is_present(gate_.owner()) || roster_.Has(edge_id));
   const std::string others_text =
       sighting.present || edge_id.empty() ? "" : OtherRigsText(edge_id, roster_.Others(edge_id));

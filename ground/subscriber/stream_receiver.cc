@@ -85,10 +85,10 @@ bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, 
   ReceivedFrame item = Unpacked(std::move(encoded), std::move(*pixels), arrival);
   if (newest_) {
     if (const auto cause = CheckFollows(*newest_, mark)) {
-      return Suspect(std::move(item), mark, *cause);
+      return AddPending(std::move(item), mark, *cause);
     }
   }
-  RefuseAside();
+  RefusePending();
   Accept(std::move(item), mark);
   return true;
 }
@@ -119,35 +119,35 @@ void StreamReceiver<ReceivedFrame>::Accept(ReceivedFrame&& item, const FrameMark
 }
 
 template <typename ReceivedFrame>
-bool StreamReceiver<ReceivedFrame>::Suspect(ReceivedFrame&& item, const FrameMark& mark,
-                                            RefusalCause cause) {
-  if (FollowsGap() && MayFollowGap(aside_.back().mark, mark, item.arrival)) {
-    BelieveAside();
+bool StreamReceiver<ReceivedFrame>::AddPending(ReceivedFrame&& item, const FrameMark& mark,
+                                               RefusalCause cause) {
+  if (PendingFollowsGap() && MayFollowGap(pending_.back().mark, mark, item.arrival)) {
+    AcceptPending();
     if (!CheckFollows(*newest_, mark)) {
       Accept(std::move(item), mark);
       return true;
     }
-  } else if (!aside_.empty()) {
-    const FrameMark& last = aside_.back().mark;
-    if (mark.number <= last.number || CheckFollows(last, mark)) RefuseAside();
+  } else if (!pending_.empty()) {
+    const FrameMark& last = pending_.back().mark;
+    if (mark.number <= last.number || CheckFollows(last, mark)) RefusePending();
   }
-  aside_.push_back({std::move(item), mark, cause});
-  if (aside_.size() < kConfirm) return false;
-  BelieveAside();
+  pending_.push_back({std::move(item), mark, cause});
+  if (pending_.size() < kConfirm) return false;
+  AcceptPending();
   return true;
 }
 
 template <typename ReceivedFrame>
-bool StreamReceiver<ReceivedFrame>::FollowsGap() const {
-  return replay_ && newest_ && !aside_.empty() &&
-         MayFollowGap(*newest_, aside_.front().mark, aside_.front().item.arrival);
+bool StreamReceiver<ReceivedFrame>::PendingFollowsGap() const {
+  return replay_ && newest_ && !pending_.empty() &&
+         MayFollowGap(*newest_, pending_.front().mark, pending_.front().item.arrival);
 }
 
 template <typename ReceivedFrame>
-void StreamReceiver<ReceivedFrame>::BelieveAside() {
-  const bool gap = FollowsGap();
-  std::vector<Aside> believed = std::exchange(aside_, {});
-  const FrameMark& first = believed.front().mark;
+void StreamReceiver<ReceivedFrame>::AcceptPending() {
+  const bool gap = PendingFollowsGap();
+  std::vector<Pending> accepted = std::exchange(pending_, {});
+  const FrameMark& first = accepted.front().mark;
   const double advance_s = ToSeconds(first.time - newest_->time);
   if (gap) {
     LOG(Subscriber, Info) << "the recording that is played has a gap in its " << name_
@@ -161,19 +161,19 @@ void StreamReceiver<ReceivedFrame>::BelieveAside() {
   Flush();
   sequencer_->Resync(first.number);
   newest_.reset();
-  for (Aside& next : believed) Accept(std::move(next.item), next.mark);
+  for (Pending& next : accepted) Accept(std::move(next.item), next.mark);
 }
 
 template <typename ReceivedFrame>
-void StreamReceiver<ReceivedFrame>::SettleAside() {
-  if (FollowsGap()) return BelieveAside();
-  RefuseAside();
+void StreamReceiver<ReceivedFrame>::SettlePending() {
+  if (PendingFollowsGap()) return AcceptPending();
+  RefusePending();
 }
 
 template <typename ReceivedFrame>
-void StreamReceiver<ReceivedFrame>::RefuseAside() {
-  for (const Aside& aside : aside_) Refuse(aside.cause, aside.item.frame->header);
-  aside_.clear();
+void StreamReceiver<ReceivedFrame>::RefusePending() {
+  for (const Pending& pending : pending_) Refuse(pending.cause, pending.item.frame->header);
+  pending_.clear();
 }
 
 template <typename ReceivedFrame>
@@ -203,7 +203,7 @@ StreamReceipt StreamReceiver<ReceivedFrame>::receipt(std::uint64_t session) cons
 
 template <typename ReceivedFrame>
 void StreamReceiver<ReceivedFrame>::DeliverDue(SteadyTime now) {
-  if (!aside_.empty() && now >= aside_.front().mark.arrival + kMaxAside) SettleAside();
+  if (!pending_.empty() && now >= pending_.front().mark.arrival + kMaxPending) SettlePending();
   while (std::optional<ReceivedFrame> item = sequencer_->Next(now)) {
     if (deliver_) deliver_(std::move(*item));
   }
@@ -211,7 +211,7 @@ void StreamReceiver<ReceivedFrame>::DeliverDue(SteadyTime now) {
 
 template <typename ReceivedFrame>
 void StreamReceiver<ReceivedFrame>::DeliverAll() {
-  SettleAside();
+  SettlePending();
   Flush();
 }
 

@@ -18,20 +18,21 @@ namespace isotherm {
 
 /// The way of one stream from the link to its consumer: session, number and payload are checked,
 /// the payload is unpacked, the order is restored. A session that another one has followed does not
-/// come back. A frame whose number or capture time cannot
-/// follow those before is kept aside: when kConfirm in a row agree with each other, the stream has
-/// really jumped and goes on with them; otherwise they are refused, and one wild frame stops none
-/// behind it. A replay as fast as the ground takes it passes over the gaps of its recording: one
-/// more frame confirms those, and none contradicts the last. ReceivedFrame is ReceivedDepth or
-/// ReceivedThermal. No DDS, no clock. Thread-compatible.
+/// come back. Add takes a frame, DeliverDue and DeliverAll hand frames on.
+///
+/// A frame whose number or capture time cannot follow those before is pending: when kConfirm in a
+/// row agree with each other, the stream has really jumped and goes on with them; otherwise they
+/// are refused, and one wild frame stops none behind it. A replay as fast as the ground takes it
+/// passes over the gaps of its recording: one more frame confirms those, and none contradicts the
+/// last. ReceivedFrame is ReceivedDepth or ReceivedThermal. No DDS, no clock. Thread-compatible.
 template <typename ReceivedFrame>
 class StreamReceiver {
  public:
   using Encoded = std::remove_const_t<typename decltype(ReceivedFrame::encoded)::element_type>;
   using Consumer = std::function<void(ReceivedFrame)>;
   static constexpr std::size_t kConfirm = 3;
-  /// Frames that are kept aside are refused after this time.
-  static constexpr Nanoseconds kMaxAside = std::chrono::seconds(1);
+  /// Frames that are pending for longer are refused.
+  static constexpr Nanoseconds kMaxPending = std::chrono::seconds(1);
 
   /// `refusals` are this stream's and must outlive the receiver. `deliver` gets frames in order;
   /// `deliver_late` those behind the reorder window. Empty consumers are skipped.
@@ -40,7 +41,8 @@ class StreamReceiver {
 
   /// Says whether the frames of this session come as fast as the ground takes them.
   void SetReplay(bool replay) { replay_ = replay; }
-  /// Takes a frame that has passed the transport's checks; true if it was good and new.
+  /// Takes a frame that has passed the transport's checks, and delivers none. Returns true if it
+  /// was good and new.
   bool Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now);
   /// Delivers what is in order or has waited long enough.
   void DeliverDue(SteadyTime now);
@@ -64,15 +66,17 @@ class StreamReceiver {
   bool IsWanted(const FrameHeader& header);
   void BeginSession(const FrameHeader& header);
   void Accept(ReceivedFrame&& item, const FrameMark& mark);
-  /// Keeps a frame aside that `cause` speaks against; true if it is believed now.
-  bool Suspect(ReceivedFrame&& item, const FrameMark& mark, RefusalCause cause);
-  /// The frames kept aside are where the stream goes on.
-  void BelieveAside();
-  void RefuseAside();
-  /// No other frame will say whether those kept aside are right.
-  void SettleAside();
-  bool FollowsGap() const;  ///< What is aside.
-  void Flush();             ///< Delivers all that waits for its turn, and nothing that is aside.
+  /// Makes a frame pending that `cause` speaks against. Returns true if it was accepted at once.
+  bool AddPending(ReceivedFrame&& item, const FrameMark& mark, RefusalCause cause);
+  /// Lets the stream go on with the pending frames.
+  void AcceptPending();
+  void RefusePending();
+  /// Accepts or refuses the pending frames; to be called when no other frame can decide it.
+  void SettlePending();
+  /// Returns whether the pending frames follow a gap in a recording that is played.
+  bool PendingFollowsGap() const;
+  /// Delivers all that waits for its turn, and nothing that is pending.
+  void Flush();
   void Refuse(RefusalCause cause, const FrameHeader& header);
 
   const std::string_view name_;
@@ -82,13 +86,13 @@ class StreamReceiver {
   const Nanoseconds reorder_window_;
   std::optional<Sequencer> sequencer_;  ///< Never empty; a new one for each session.
   std::optional<FrameMark> newest_;     ///< The newest of the session's frames that were taken.
-  struct Aside {
+  struct Pending {
     ReceivedFrame item;
     FrameMark mark;
     RefusalCause cause;
   };
   bool replay_ = false;
-  std::vector<Aside> aside_;        ///< Each follows the one before it.
+  std::vector<Pending> pending_;    ///< Each follows the one before it.
   StreamTally tally_;               ///< But for what sequencer_ and refusals_ count.
   RefusalCounts refused_before_{};  ///< When the session began.
   std::optional<StreamTally> previous_;

@@ -186,7 +186,7 @@ TEST_F(StreamReceiverTest, F23AWildFirstNumberDoesNotMakeAllOthersLate) {
 TEST_F(StreamReceiverTest, AJumpThatNothingConfirmsIsRefusedInTheEnd) {
   Add(At(1, 0, 0ms));
   Add(At(1, 1, 24h));
-  now_ += StreamReceiver<ReceivedThermal>::kMaxAside;
+  now_ += StreamReceiver<ReceivedThermal>::kMaxPending;
   receiver_.DeliverDue(now_);
   EXPECT_EQ(refusals_.count(RefusalCause::kImplausibleTime), 1U);
   Add(At(1, 1, 24h));
@@ -248,7 +248,7 @@ TEST_F(ReplayLaneTest, TheLastFrameOfAScanIsNotWaitedForLong) {
   Add(0, 1s);
   Add(1, 1h);
   EXPECT_THAT(Numbers(delivered_), ElementsAre(0));
-  now_ += StreamReceiver<ReceivedThermal>::kMaxAside;
+  now_ += StreamReceiver<ReceivedThermal>::kMaxPending;
   receiver_.DeliverDue(now_);
   EXPECT_THAT(Numbers(delivered_), ElementsAre(0, 1));
 }

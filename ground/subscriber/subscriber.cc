@@ -26,12 +26,15 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int kFramesPerTurn = 8;  // Of one stream before the other has its turn.
+/// Frames that are taken of one stream before the other has its turn.
+constexpr int kFramesPerTurn = 8;
 constexpr int kMessagesPerTurn = 64;
-constexpr int kMaxTurnsBehindFrames =
-    32;  // More frames than a reader keeps: somebody sends without end.
-constexpr int kFramesPerReceipt = 8;          // A fast sender must not wait for the next interval.
-constexpr Nanoseconds kIdleInterval = 100ms;  // How often presence is looked at.
+/// These are more frames than a reader keeps: somebody sends without end.
+constexpr int kMaxTurnsBehindFrames = 32;
+/// A fast sender must not wait for the next interval.
+constexpr int kFramesPerReceipt = 8;
+/// Presence is looked at this often.
+constexpr Nanoseconds kIdleInterval = 100ms;
 
 class DdsSubscriber final : public Subscriber {
  public:
@@ -64,15 +67,15 @@ class DdsSubscriber final : public Subscriber {
   void SendReceipt(SteadyTime now);
   Nanoseconds TimeToNextDuty(SteadyTime now) const;
   void OnPeer(const Received<Hello>& peer);
-  // The gate lets these through.
-  void On(const RigDescription& rig, CaptureTime arrival);
-  void On(const EdgeStatus& status, CaptureTime arrival);
-  void On(const ExternalOdometrySample& sample, CaptureTime arrival);
-  void On(const CommandResult& result, CaptureTime arrival);
-  void On(EncodedDepthFrame&& frame, CaptureTime arrival) {
+  // What the gate lets through: the lambda that the constructor gives it calls one of these.
+  void OnAdmitted(const RigDescription& rig, CaptureTime arrival);
+  void OnAdmitted(const EdgeStatus& status, CaptureTime arrival);
+  void OnAdmitted(const ExternalOdometrySample& sample, CaptureTime arrival);
+  void OnAdmitted(const CommandResult& result, CaptureTime arrival);
+  void OnAdmitted(EncodedDepthFrame&& frame, CaptureTime arrival) {
     OnFrame(std::move(frame), &depth_, arrival);
   }
-  void On(EncodedThermalFrame&& frame, CaptureTime arrival) {
+  void OnAdmitted(EncodedThermalFrame&& frame, CaptureTime arrival) {
     OnFrame(std::move(frame), &thermal_, arrival);
   }
   template <typename ReceivedFrame>
@@ -97,7 +100,7 @@ class DdsSubscriber final : public Subscriber {
   PeerTable peers_;
   RigGate gate_;
   std::vector<std::pair<PeerHandle, RigSample>> descriptions_;  ///< Not yet at the gate.
-  int turns_behind_frames_ = 0;                                 ///< That they have waited.
+  int turns_behind_frames_ = 0;  ///< For so many turns they have waited.
   RigWatch watch_{gate_};
   SteadyTime look_due_{};
   SessionTracker sessions_;
@@ -127,7 +130,7 @@ DdsSubscriber::DdsSubscriber(const Clock& clock, const SubscriberOptions& option
                handlers_.late_thermal),
       gate_(
           [this](RigSample&& sample) {
-            std::visit([&](auto&& message) { On(std::move(message), sample.arrival); },
+            std::visit([&](auto&& message) { OnAdmitted(std::move(message), sample.arrival); },
                        std::move(sample.content));
           },
           [this](const RigSample& sample, RefusalCause cause) { refusals_.Add(sample, cause); }),
@@ -200,6 +203,7 @@ int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
   return reader->Take(
       [this, reader](Received<Message>&& received) {
         if (!IsFollowed(received.edge_id)) return;
+        // Comes back in OnAdmitted, now or later, if it is the rig's.
         gate_.Add(peers_.Identify(*reader, received.writer),
                   {.content = std::move(received.message), .arrival = clock_.Now()},
                   clock_.SteadyNow());
@@ -207,7 +211,7 @@ int DdsSubscriber::TakeSamples(Reader<Message>* reader, int max_samples) {
       max_samples);
 }
 
-void DdsSubscriber::On(const RigDescription& rig, CaptureTime /*arrival*/) {
+void DdsSubscriber::OnAdmitted(const RigDescription& rig, CaptureTime /*arrival*/) {
   // What still waits for its turn belongs to the session before.
   if (std::exchange(described_session_, rig.session) != rig.session) {
     depth_.DeliverAll();
@@ -218,15 +222,15 @@ void DdsSubscriber::On(const RigDescription& rig, CaptureTime /*arrival*/) {
   if (handlers_.rig) handlers_.rig(rig);
 }
 
-void DdsSubscriber::On(const ExternalOdometrySample& sample, CaptureTime /*arrival*/) {
+void DdsSubscriber::OnAdmitted(const ExternalOdometrySample& sample, CaptureTime /*arrival*/) {
   if (handlers_.external_odometry) handlers_.external_odometry(sample);
 }
 
-void DdsSubscriber::On(const CommandResult& result, CaptureTime /*arrival*/) {
+void DdsSubscriber::OnAdmitted(const CommandResult& result, CaptureTime /*arrival*/) {
   if (handlers_.command_result) handlers_.command_result(result);
 }
 
-void DdsSubscriber::On(const EdgeStatus& status, CaptureTime /*arrival*/) {
+void DdsSubscriber::OnAdmitted(const EdgeStatus& status, CaptureTime /*arrival*/) {
   const ClockReading now = ReadClocks(clock_);
   if (status.clock_echo) clock_comparison_.Add(*status.clock_echo, now.steady);
   clock_watch_.Update(status, clock_comparison_.Offset(now), ReadKernelClock(), now.steady);

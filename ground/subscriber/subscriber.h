@@ -25,10 +25,10 @@ namespace isotherm {
 struct SubscriberHandlers {
   std::function<void(ReceivedDepth)> depth;      ///< In order of frame number, no duplicates.
   std::function<void(ReceivedThermal)> thermal;  ///< In order of frame number, no duplicates.
-  /// Arrived behind the reorder window: not for the reconstruction, good for the recording.
+  /// Get frames that came too late for their place in the order: only the recording takes them.
   std::function<void(ReceivedDepth)> late_depth;
   std::function<void(ReceivedThermal)> late_thermal;
-  /// As they come: numbers may be missing.
+  /// Gets poses as they come: numbers may be missing.
   std::function<void(const ExternalOdometrySample&)> external_odometry;
   std::function<void(const RigDescription&)> rig;
   std::function<void(const EdgeStatus&)> status;

@@ -109,14 +109,15 @@ Rig MakeRig() {
 
 /// A depth image of half the size has half the disparity.
 SimulatedDepthOptions DepthNoise() {
-  SimulatedDepthOptions options;
+  SimulatedDepthOptions options = IdealDepthCamera({});
   options.mutable_expert()->set_disparity_noise_px(0.5 * options.expert().disparity_noise_px());
   options.mutable_expert()->set_disparity_step_px(0.5 * options.expert().disparity_step_px());
   return options;
 }
 
 SimulatedThermalOptions ThermalNoise(double netd_k) {
-  SimulatedThermalOptions options;
+  SimulatedThermalOptions options = IdealThermalCamera({});
+  options.mutable_expert()->set_rays_per_pixel_side(1);
   options.mutable_expert()->set_netd_kelvin(netd_k);
   return options;
 }

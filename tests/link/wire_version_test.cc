@@ -85,7 +85,7 @@ struct OwnEnds {
   Ends<EdgeStatus> status;
   Ends<Command> command;
   Ends<Receipt> receipt;
-  // Last: who has met this one has met the others, as the middleware announces them in order.
+  // Last: an edge that has met this one has met the others, announced in order by the middleware.
   Ends<Hello> hello;
 };
 

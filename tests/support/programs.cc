@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "common/codec/codec.h"
+#include "common/frame/sensor_name.h"
 
 namespace isotherm::system_test {
 namespace {
@@ -107,7 +108,7 @@ RecordingContent ReadRecording(const std::filesystem::path& path) {
 }
 
 FrameCountersText CountersOf(const std::string& output, Sensor sensor, const std::string& done) {
-  const std::string name = sensor == Sensor::kDepth ? "depth" : "thermal";
+  const std::string name(NameOf(sensor));
   // A blank in the format stands for any number of them in the text.
   const std::string format = name + " captured %ld = " + done +
                              " %ld + rejected %ld + queue full %ld + failed %ld"
@@ -124,8 +125,7 @@ FrameCountersText CountersOf(const std::string& output, Sensor sensor, const std
 }
 
 long LostInCamera(const std::string& output, Sensor sensor) {
-  const std::string format = std::string(sensor == Sensor::kDepth ? "depth" : "thermal") +
-                             " lost in the camera or its library %ld";
+  const std::string format = std::string(NameOf(sensor)) + " lost in the camera or its library %ld";
   std::istringstream lines(output);
   for (std::string line; std::getline(lines, line);) {
     long lost = 0;

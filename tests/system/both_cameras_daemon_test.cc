@@ -240,7 +240,7 @@ TEST_F(BothCamerasTest, F38AStopIsPromptAlthoughACamerasProcessCannotBeEnded) {
     if (CommandLineOf(child).find("--camera-process\0depth"s) != std::string::npos) camera = child;
   }
   ASSERT_GT(camera, 0);
-  // Whoever traces a process is the only one that can take its end.
+  // Only the process that traces another one can take its end.
   if (::ptrace(PTRACE_SEIZE, camera, nullptr, nullptr) != 0) {
     GTEST_SKIP() << "processes may not be traced here";
   }

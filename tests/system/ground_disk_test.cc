@@ -105,7 +105,7 @@ TEST_F(GroundDiskTest, F39TheWatchdogIsNotFedAnyMoreWhenTheDiskIsStuckForLong) {
   while (
       !ground.WaitForOutput("the recording (is the disk stuck?) has not gone on", Seconds(0.1))) {
     ASSERT_LT(std::chrono::steady_clock::now(), deadline) << ground.output();
-    manager.Forget();  // Who does not listen holds the service up.
+    manager.Forget();  // A manager that does not listen holds the service up.
   }
   manager.Forget();
   EXPECT_FALSE(manager.WaitFor("WATCHDOG=1", Seconds(3))) << "fed six times as often before";

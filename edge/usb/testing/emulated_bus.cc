@@ -33,6 +33,10 @@ constexpr const char* kSysPath = "/sys/devices/usb1/1-1";
 // again: it gets its answer after this time, or when there is something.
 constexpr Nanoseconds kLookAgainAfter = std::chrono::milliseconds(5);
 constexpr Nanoseconds kAnswerNothingAfter = std::chrono::milliseconds(2);
+// With nothing due, the bus looks around this often.
+constexpr Nanoseconds kIdlePoll = std::chrono::milliseconds(100);
+// It does not spin when something is overdue.
+constexpr Nanoseconds kMinWait = std::chrono::microseconds(50);
 
 Nanoseconds Now() { return steady_clock::now().time_since_epoch(); }
 
@@ -308,10 +312,10 @@ void EmulatedBus::Impl::Run(const std::stop_token& stop) {
       const auto also = [&wake](Nanoseconds due) { wake = wake ? std::min(*wake, due) : due; };
       if (reaping_ != nullptr) also(reap_until_);
       if (requests_ && !gone_) {
-        if (const auto due = requests_->NextDue(now)) also(*due);
+        if (const auto next_urb_due = requests_->NextDue(now)) also(*next_urb_due);
       }
-      const Nanoseconds wait = wake ? *wake - now : std::chrono::milliseconds(100);
-      changed_.wait_for(lock, stop, std::max(wait, Nanoseconds(50'000)),
+      const Nanoseconds wait = wake ? *wake - now : kIdlePoll;
+      changed_.wait_for(lock, stop, std::max(wait, kMinWait),
                         [this]() REQUIRES(mutex_) { return std::exchange(poked_, false); });
     }
     UnplugIfItWants();

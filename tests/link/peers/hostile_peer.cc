@@ -161,7 +161,7 @@ int Main(int domain) {
   SendThermal(thermal);
   std::puts("sent");
   std::fflush(stdout);
-  pause();  // Until a signal ends it: who has left cannot be asked who it was.
+  pause();  // Until a signal ends it: a peer that has left cannot be asked who it was.
   return 0;
 }
 

@@ -185,7 +185,7 @@ class Peer {
                                        TopicId::kCommand, topics_ + "command"};
   Ends<isotherm_wire_Receipt> receipt_{participant_, waiter_, isotherm_wire_Receipt_desc,
                                        TopicId::kReceipt, topics_ + "receipt"};
-  // Last: who has met this one has met the others, as the middleware announces them in order.
+  // Last: an edge that has met this one has met the others, announced in order by the middleware.
   Ends<isotherm_wire_Hello> hello_{participant_, waiter_, isotherm_wire_Hello_desc, TopicId::kHello,
                                    "isotherm/hello"};
 };
