@@ -23,6 +23,7 @@ namespace {
   } else {  // The bound over all stages had passed when this one began.
     LOG(Service, Warning) << "no time was left for " << what << "; leaving without it";
   }
+  // Not exit(): destructors and atexit handlers may wait for what hangs.
   _exit(status);
 }
 
@@ -31,6 +32,7 @@ namespace {
   if (last_words) {
     std::packaged_task<void()> saying(last_words);
     const std::future<void> said = saying.get_future();
+    // In a thread of their own: standard error may be a pipe that nobody reads.
     std::thread speaker(std::move(saying));
     if (said.wait_for(ExitDeadline::kTimeForLastWords) != std::future_status::ready) {
       LeaveNow(limit, status, what);  // One that hangs is not waited for.
@@ -70,6 +72,7 @@ void ExitDeadline::Start(Armed armed) {
 
 void ExitDeadline::Wait() {
   if (bound_) armed_->end = std::min(armed_->end, *bound_);
+  // Assigning stops and joins the thread that waited before.
   thread_ = std::jthread([armed = *armed_](const std::stop_token& disarmed) {
     std::mutex mutex;
     std::condition_variable_any never;

@@ -41,6 +41,8 @@ class ExitDeadline {
 
  private:
   using Clock = std::chrono::steady_clock;
+  /// Holds what a deadline was armed with: its time span, the exit status and whom to name if it
+  /// passes.
   struct Armed {
     Clock::time_point begin, end;
     int status = 0;

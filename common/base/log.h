@@ -5,6 +5,8 @@
 
 namespace isotherm {
 
+/// Orders lines by how much they matter; the journal gets them as its levels debug, info, warning
+/// and err.
 enum class LogLevel { kDebug, kInfo, kWarning, kError };
 
 /// Least severe level that is written. Default: kInfo. Thread-safe.

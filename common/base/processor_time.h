@@ -20,8 +20,8 @@ void AddProcessorTimeOfHelpers(std::chrono::nanoseconds worked);
 /// Processor time of a process in seconds, user and system together.
 struct ProcessorTimes {
   double total_s = 0.0;
-  /// Of all living threads that bear a name together. What is missing of the total was used by
-  /// threads that have ended.
+  /// Processor time of all living threads that bear a name together. The rest of the total was used
+  /// by threads that have ended.
   std::map<std::string, double> by_thread_s;
 };
 
@@ -36,8 +36,8 @@ double ProcessorTimeOfChildren_s();
 /// belongs to no thread that lives at the second reading.
 ProcessorTimes operator-(const ProcessorTimes& after, const ProcessorTimes& before);
 
-/// "4.1 s, 0.21 of a core: codec 0.11, record 0.05, others 0.05" over `seconds` of work: threads by
-/// their share, those below 1 % of a core together.
+/// Returns, for example, "4.1 s, 0.21 of a core: codec 0.11, record 0.05, others 0.05" over
+/// `seconds` of work: threads by their fraction of a core, those below 1 % of a core together.
 std::string ToText(const ProcessorTimes& used, double seconds);
 
 }  // namespace isotherm

@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::Ge;
 using ::testing::Le;
 
-/// The kernel's own account of the calling thread, by another way than the code under test.
+/// Returns the kernel's own measure of the calling thread, by another way than the code under test.
 double RusageOfThread_s() {
   rusage usage{};
   getrusage(RUSAGE_THREAD, &usage);

@@ -53,6 +53,7 @@ void ProgressBar::Finish() {
 }
 
 std::string ProgressBar::Line(double fraction, bool finished) const {
+  // With title, percent and counts the line stays within 80 columns.
   constexpr int kWidth = 24;
   const auto filled = static_cast<std::size_t>(fraction * kWidth);
   std::string line = fmt::format("{}  [{}{}] {:3.0f} %", title_, std::string(filled, '#'),
@@ -62,6 +63,7 @@ std::string ProgressBar::Line(double fraction, bool finished) const {
     line += fmt::format("  {}/{} {}", done, total_, unit_);
   }
   const double elapsed_s = ElapsedSeconds();
+  // Of the first percent the time that is left cannot be told: starting takes longer than going on.
   constexpr double kTooEarlyToTell = 0.01;
   if (finished) {
     line += fmt::format("  done in {:.1f} s", elapsed_s);

@@ -27,6 +27,7 @@ class StageStats {
   double Percentile(double percent) const;
 
  private:
+  /// ln(1e11) / ln(1.01): 100 ns to three hours in steps of a percent.
   static constexpr int kBins = 2560;
   static int BinOf(double ms);
 

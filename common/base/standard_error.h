@@ -15,6 +15,7 @@ namespace isotherm {
 /// (IgnoreBrokenPipes()). Thread-safe.
 class UnblockedOutput {
  public:
+  /// As much as a pipe holds, once more.
   static constexpr std::size_t kKeptBytes = 64U << 10;
 
   /// `descriptor` stays the caller's and may be pointed elsewhere in between (dup2).
@@ -31,6 +32,8 @@ class UnblockedOutput {
   void Flush(int patience_ms);
 
  private:
+  /// Tells how a write can be made that never waits: the descriptor itself may belong to other
+  /// processes, so its flags are not touched.
   enum class Kind : std::uint8_t { kDirect, kReopened, kSocket, kPolled };
 
   void LookAtDescriptor() REQUIRES(mutex_);

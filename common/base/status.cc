@@ -51,6 +51,7 @@ int ExitCode(const Status& status) {
     case StatusCode::kOk:
       return 0;
     case StatusCode::kInvalidArgument:
+      // Numbers of sysexits.h; docs/architecture.md lists what they mean here.
       return 64;
     case StatusCode::kNotFound:
       return 66;

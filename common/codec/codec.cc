@@ -13,6 +13,7 @@ namespace {
 Status DecodeRaw(std::span<const std::uint8_t> payload, Image<std::uint16_t>& image) {
   const std::uint8_t* byte = payload.data();
   for (std::uint16_t& pixel : image.pixels()) {
+    // Little-endian whatever the computer; compilers make one load of it.
     pixel = static_cast<std::uint16_t>(byte[0] | byte[1] << 8);
     byte += sizeof(pixel);
   }
@@ -46,6 +47,7 @@ Status DecodePixels(const EncodedImage& encoded, Image<std::uint16_t>& image) {
     case Encoding::kPng16:
       return DecodeGrey16Png(encoded.payload, image);
     case Encoding::kDepthRans: {
+      // Its tables are large: they are kept for each thread that decodes.
       thread_local codec::DepthCodec decoder;
       return decoder.Decode(encoded.payload, image);
     }
@@ -112,6 +114,7 @@ EncodedImage PackCounts(const Image<std::uint16_t>& counts) {
 Result<Image<std::uint16_t>> DecodeTemperatures(const EncodedImage& encoded,
                                                 std::size_t max_pixels) {
   Result<Image<std::uint16_t>> image = Decode(encoded, max_pixels);
+  // Counts without a scale must not pass for temperatures.
   if (image && encoded.encoding == Encoding::kCounts16) return Image<std::uint16_t>();
   return image;
 }

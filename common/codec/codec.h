@@ -18,6 +18,8 @@ class DepthEncoder {
   std::unique_ptr<Scratch> scratch_;
 };
 
+/// Encodes thermal images without loss and keeps its buffers from one to the next.
+/// Thread-compatible.
 class ThermalEncoder {
  public:
   ThermalEncoder();

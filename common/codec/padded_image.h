@@ -30,9 +30,9 @@ class PaddedImage {
   const std::uint16_t* RowAbove(int y) {
     return y == FirstRow(1) ? cells_.data() : Row(y) - stride();
   }
-  /// Call before a row is coded ...
+  /// Call this before a row is coded.
   void PadLeft(int y) { Row(y)[0] = RowAbove(y)[1]; }
-  /// ... and when it is complete.
+  /// Call this when a row is complete.
   void PadRight(int y) { Row(y)[width_ + 1] = Row(y)[width_]; }
 
  private:

@@ -31,6 +31,9 @@ constexpr int Activity(const Neighbours& pixels) {
 /// the western and northern neighbours are holes.
 struct DepthModel {
   static constexpr bool kHasHoles = true;
+  /// How different the neighbours are chooses one of these statistics. More: each is learnt from
+  /// fewer pixels and its table costs bytes; fewer: edges spoil the statistics of smooth surface.
+  /// Fixed by the format.
   static constexpr int kActivityLevels = 6;
   /// Most differences are so small that their token says it all.
   static constexpr bool kRawBitsAreRare = true;
@@ -44,6 +47,7 @@ struct DepthModel {
 /// plane through the neighbours or, at an edge, the neighbour on the pixel's side.
 struct ThermalModel {
   static constexpr bool kHasHoles = false;
+  /// As above. Fixed by the format.
   static constexpr int kActivityLevels = 12;
   static constexpr bool kRawBitsAreRare = false;
 

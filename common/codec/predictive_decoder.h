@@ -38,6 +38,7 @@ class PredictiveDecoder {
  private:
   using Tables = DecodeTables<kContexts<Model>>;
 
+  /// Reads the tokens and the raw bits of one of an image's two strips.
   struct Strip {
     RansDecoder tokens;
     BitReader bits;

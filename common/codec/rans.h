@@ -45,7 +45,7 @@ class RansEncoder {
   explicit RansEncoder(std::uint16_t* end) : next_(end) {}
 
   void Put(const EncodeSymbol& symbol) {
-    // Without a branch: when a word is due, nothing foretells.
+    // Without a branch, which a processor could not predict: a word is due at irregular places.
     const bool full = state_ >= static_cast<std::uint64_t>(symbol.frequency) << (32 - kScaleBits);
     next_[-1] = static_cast<std::uint16_t>(state_);
     next_ -= full ? 1 : 0;
@@ -73,8 +73,10 @@ class RansEncoder {
 template <std::size_t kContexts>
 class DecodeTables {
  public:
+  /// Tokens of 16-bit residuals are below it, and a symbol fits a byte.
   static constexpr std::size_t kMaxSymbols = 128;
 
+  /// Says where a symbol's slots begin in the table of its context and how many there are.
   struct Place {
     std::uint16_t frequency = 0;
     std::uint16_t start = 0;

@@ -12,20 +12,23 @@ namespace isotherm::codec {
 inline constexpr int kDirectTokens = 16;
 inline constexpr int kResidualTokens = kDirectTokens + 12 * 4;
 
-/// 0, -1, 1, -2, 2, ... -> 0, 1, 2, 3, 4, ...
+/// Maps 0, -1, 1, -2, 2, ... to 0, 1, 2, 3, 4, ...
 constexpr int ZigZag(int residual) {
   const auto value = static_cast<std::int16_t>(residual);
   return static_cast<std::uint16_t>(value << 1 ^ value >> 15);
 }
 constexpr int UnZigZag(int value) { return value >> 1 ^ -(value & 1); }
 
+/// Holds a residual as the entropy coder takes it: its magnitude class, and the bits below it that
+/// are stored as they are.
 struct Token {
   int token = 0;
   int raw_bits = 0;  ///< How many of the lowest bits follow.
 };
 
-/// Without branches or tables, so that it becomes vector instructions: the exponent and the two
-/// leading bits of the mantissa of a float are just what a token is made of.
+/// Returns the token of a value. It has no branches or tables, so that it becomes vector
+/// instructions: the exponent and the two leading bits of the mantissa of a float are just what a
+/// token is made of.
 constexpr Token TokenOf(int value) {
   constexpr int kMantissaBits = 23;
   constexpr int kBias = 127;
@@ -41,7 +44,8 @@ struct TokenRange {
   std::uint16_t raw_bits = 0;
 };
 
-/// The inverse of TokenOf: token 4 e + m is that of the values from (4 + m) 2^(e-2), e >= 4.
+/// Returns the inverse of TokenOf: token 4 e + m stands for the values from (4 + m) 2^(e-2), e >=
+/// 4.
 constexpr std::array<TokenRange, kResidualTokens> MakeTokenRanges() {
   std::array<TokenRange, kResidualTokens> ranges{};
   for (int token = 0; token < kResidualTokens; ++token) {
@@ -54,7 +58,7 @@ constexpr std::array<TokenRange, kResidualTokens> MakeTokenRanges() {
   return ranges;
 }
 inline constexpr std::array<TokenRange, kResidualTokens> kTokenRanges = MakeTokenRanges();
-/// The first and the last value of each range have its token.
+/// Returns whether the first and the last value of each range have its token.
 constexpr bool RangesAreThoseOfTokens() {
   for (int token = 0; token < kResidualTokens; ++token) {
     const TokenRange range = kTokenRanges[static_cast<std::size_t>(token)];
@@ -66,11 +70,12 @@ constexpr bool RangesAreThoseOfTokens() {
 }
 static_assert(RangesAreThoseOfTokens());
 
-/// Number of bits of `value`, which must be below 2^22: for one pixel after the other ...
+/// Returns the number of bits of `value`, which must be below 2^22, for one pixel after the other.
 constexpr int BitWidth(int value) {
   return static_cast<int>(std::bit_width(static_cast<unsigned>(value) << 1 | 1U)) - 1;
 }
-/// ... and the same for many at once.
+/// Returns the same without the instruction that counts bits, so that many values fit into a
+/// vector.
 constexpr int BitWidthForVectors(int value) {
   return (std::bit_cast<int>(static_cast<float>(value << 1 | 1)) >> 23) - 127;
 }

@@ -30,6 +30,7 @@ std::vector<std::string> NamesIn(const fs::path& folder) {
        entry.increment(error)) {
     names.push_back(entry->path().filename().string());
   }
+  // Suggestions must not depend on the order of the file system.
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -45,6 +46,7 @@ Status CheckFolder(const fs::path& folder) {
   if (!fs::is_directory(status)) {
     return InvalidArgument(fmt::format("{}: is not a folder. {}", folder.string(), kLayout));
   }
+  // Permissions show only when it is read.
   const fs::directory_iterator first(folder, error);
   if (error)
     return IoError(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
@@ -75,6 +77,7 @@ Result<Rig> ReadRig(const DatasetOptions& options, const std::vector<std::string
 Status ReadExternalOdometry(const fs::path& path, std::vector<ExternalOdometry>& poses) {
   const Result<std::vector<StampedPose>> read = ReadTrajectory(path);
   if (!read) return read.error();
+  // As many as the link carries (kMaxIdBytes).
   constexpr std::size_t kMaxSourceBytes = 32;
   for (const StampedPose& stamped : *read) {
     ExternalOdometry& pose = poses.emplace_back();
@@ -143,6 +146,8 @@ Result<std::vector<ImageEntry>> ReadImageList(const fs::path& list, const fs::pa
                                        "fx: .. fy: .. cx: .. cy: .. }}'",
                                        list.string(), sensor, sensor)));
   }
+  // All are looked for before the first is read: an import of an hour should not end at the last
+  // image.
   if (Status status = CheckImagesExist(*entries, list); !status.ok()) return Err(std::move(status));
   return entries;
 }

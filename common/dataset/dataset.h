@@ -28,6 +28,7 @@ struct NucInterval {
   CaptureTime end;
 };
 
+/// Says where a dataset lies and which of its files are replaced by others.
 struct DatasetOptions {
   std::filesystem::path folder;
   /// Instead of thermal.txt; as given, or else inside the folder. Image names stay relative to the
@@ -52,7 +53,7 @@ struct Dataset {
   std::vector<StampedPose> groundtruth;
   std::vector<ExternalOdometry> external_odometry;  ///< Their source is the name of the file.
   std::vector<std::string>
-      notes;  ///< What a user should know although it is no error, a sentence each.
+      notes;  ///< Things that a user should know although they are no errors, a sentence each.
 };
 
 /// Reads lists and calibration of a dataset folder. Any inconsistency is an error with file, line

@@ -12,6 +12,7 @@
 namespace isotherm {
 namespace {
 
+// A 16-bit image of 16 megapixels is half of it: what is larger is no image of these cameras.
 constexpr std::uint64_t kMaxFileBytes = 64 << 20;
 
 Status CheckFormat(const PngHead& head, int width, int height) {

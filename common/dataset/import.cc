@@ -121,6 +121,7 @@ class Importer {
       Status status = image.error().WithContext(place);
       return Err(Status(status.code(), status.message() + " (--skip-bad leaves such images out)"));
     }
+    // A frame number stays unused for each: gaps show where images were left out.
     ++summary_.skipped_images;
     if (summary_.skipped_images <= kMaxSkipNotes) {
       summary_.notes.push_back("left out: " + image.error().WithContext(place).message());
@@ -155,6 +156,7 @@ class Importer {
     ThermalFrame marked;
     marked.header = Header(entry, index);
     marked.temperature_raw = std::move(**image);
+    // Before the image is encoded: `valid` is part of the message.
     nuc_.Mark(marked);
     EncodedThermalFrame frame;
     frame.header = marked.header;
@@ -169,6 +171,7 @@ class Importer {
     return writer_.Write(frame, std::nullopt);
   }
 
+  // Files that are skipped are named up to here, then only counted.
   static constexpr std::uint64_t kMaxSkipNotes = 10;
 
   const ImportRequest& request_;
@@ -206,6 +209,7 @@ Result<ImportSummary> ImportDataset(const ImportRequest& request) {
   if (!dataset) return Err(dataset.error());
   Result<ImportSummary> summary = WriteRecording(request, *dataset, target->path());
   if (!summary) return summary;
+  // The recording gets its name when it is complete.
   if (Status status = target->Commit(); !status.ok()) return Err(std::move(status));
   summary->notes.insert(summary->notes.begin(), dataset->notes.begin(), dataset->notes.end());
   return summary;

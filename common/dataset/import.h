@@ -14,6 +14,7 @@
 
 namespace isotherm {
 
+/// Says which dataset becomes which recording.
 struct ImportRequest {
   DatasetOptions dataset;
   std::filesystem::path recording;
@@ -26,6 +27,7 @@ struct ImportRequest {
   std::stop_token stop;  ///< Ends it early; nothing is left then.
 };
 
+/// Counts what an import wrote and left out.
 struct ImportSummary {
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;
@@ -36,7 +38,7 @@ struct ImportSummary {
   std::uint64_t image_bytes = 0;  ///< Raw pixels.
   std::uint64_t recording_bytes = 0;
   std::vector<std::string> notes;
-  Doubts doubts;  ///< What was recorded although it cannot be right.
+  Doubts doubts;  ///< Recorded all the same, although it cannot be right.
 };
 
 /// Writes a dataset folder as one recording, in order of time. The recording is built beside its

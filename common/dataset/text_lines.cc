@@ -26,6 +26,7 @@ bool AllDigits(std::string_view text) {
 
 // "123.456" without exponent or sign: exact, which a double is not for stamps since 1970.
 bool ParseDecimal(std::string_view word, Nanoseconds& time) {
+  // kMaxStamp_s has ten digits before the point; nanoseconds have nine behind it.
   constexpr std::size_t kMaxIntegerDigits = 10;
   constexpr std::size_t kNanoDigits = 9;
   const std::size_t dot = word.find('.');
@@ -39,6 +40,7 @@ bool ParseDecimal(std::string_view word, Nanoseconds& time) {
   digits.resize(kNanoDigits, '0');
   std::int64_t nanoseconds = 0;
   std::from_chars(digits.data(), digits.data() + digits.size(), nanoseconds);
+  // Rounded, as a double would be.
   if (fraction.size() > kNanoDigits && fraction[kNanoDigits] >= '5') ++nanoseconds;
   if (static_cast<double>(seconds) > kMaxStamp_s) return false;
   time = std::chrono::seconds(seconds) + Nanoseconds(nanoseconds);
@@ -62,6 +64,7 @@ Result<std::string> ReadTextFile(const std::filesystem::path& path) {
 }
 
 std::vector<TextLine> ContentLines(std::string_view text) {
+  // Editors on Windows write it.
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::vector<TextLine> lines;
@@ -82,6 +85,7 @@ std::string_view NextWord(std::string_view& rest) {
 }
 
 Result<double> ParseNumber(std::string_view word) {
+  // from_chars takes no plus sign, and unlike strtod it never reads a decimal comma by locale.
   const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
   double value = 0.0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -114,6 +118,7 @@ std::string FormatStamp(CaptureTime time) {
   constexpr std::int64_t kPerSecond = 1'000'000'000;
   const std::int64_t ns = ToNanoseconds(time);
   const std::uint64_t magnitude =
+      // The most negative number has no positive counterpart.
       ns < 0 ? 0 - static_cast<std::uint64_t>(ns) : static_cast<std::uint64_t>(ns);
   return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", magnitude / kPerSecond,
                      magnitude % kPerSecond);

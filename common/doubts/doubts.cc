@@ -12,17 +12,26 @@
 namespace isotherm {
 namespace {
 
+// These limits lie far outside of what such cameras and rigs do, so that a value beyond one is a
+// wrong unit or a wrong column rather than an unusual scan. Wider: mistakes by a factor of ten
+// pass; narrower: somebody's odd rig is doubted, which costs a sentence and nothing else.
+// doubts_test has both sides of each.
 constexpr double kMaxCameraDistance_m = 1.0;
 constexpr double kMaxDelay_s = 1.0;
+// Coarser than a decimetre per unit is metres written as whole numbers.
 constexpr double kMinDepthScale = 10.0;
+// Depth and thermal cameras deliver between a few frames a second and 200.
 constexpr double kMinRate_hz = 1.0;
 constexpr double kMaxRate_hz = 1000.0;
 /// The slowest that may be meant: a time lapse.
 constexpr double kMaxPeriod_s = 600.0;
-/// The least overlap, as a fraction of the shorter stream.
+/// Streams of one scan begin and end together, within seconds. Two clocks put them hours apart.
 constexpr double kMinOverlap = 0.5;
+// Medians of whole images: structured light and time of flight measure neither nearer nor farther.
 constexpr double kMinDepth_m = 0.2, kMaxDepth_m = 20.0;
+// Means of whole images, from a cold store to the inside of a furnace.
 constexpr double kMinMean_celsius = -40.0, kMaxMean_celsius = 1500.0;
+// Something in the image may be too hot for the scale; all of it only if the scale is wrong.
 constexpr double kMaxSaturated = 0.99;
 /// A reading of numbers in another unit must lie in here to be named as the cause.
 constexpr double kLikelyMin_celsius = -20.0, kLikelyMax_celsius = 500.0;
@@ -79,6 +88,7 @@ void CheckOverlap(const StreamTimes& depth, const StreamTimes& thermal, Doubts& 
       ToSeconds(std::min(depth.last, thermal.last) - std::max(depth.first, thermal.first));
   const double shorter_s =
       std::min(ToSeconds(depth.last - depth.first), ToSeconds(thermal.last - thermal.first));
+  // Stamps of the first and the last frame are each off by up to a period of the slower stream.
   const double uncertainty_s = 2.0 * std::max(depth.period_s, thermal.period_s);
   if (common_s >= kMinOverlap * shorter_s - uncertainty_s) return;
   doubts.push_back(fmt::format(

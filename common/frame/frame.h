@@ -12,6 +12,7 @@
 
 namespace isotherm {
 
+/// Names the sensor of a frame. The values are part of recordings and of the wire.
 enum class Sensor : std::uint8_t { kDepth = 0, kThermal = 1 };
 
 /// Says where the knowledge about the shutter comes from.
@@ -59,6 +60,8 @@ struct FrameHeader {
 inline constexpr std::uint16_t kNoDepth = 0;
 inline constexpr std::uint16_t kNoDepthSaturated = 65535;
 
+/// Holds one depth image. Depth is along the optical axis (z), not along the line of sight. Frames
+/// are shared between threads and never changed once they have left their source.
 struct DepthFrame {
   FrameHeader header;
   Image<std::uint16_t> depth_raw;  ///< height x width, row-major, `depth_scale` units per metre
@@ -66,6 +69,9 @@ struct DepthFrame {
   double depth_scale = 1000.0;     ///< Raw units per metre.
 };
 
+/// Holds one thermal image: apparent temperatures, that is of a black body with the same radiance;
+/// emissivity and reflections are corrected on the ground. Frames are shared between threads and
+/// never changed once they have left their source.
 struct ThermalFrame {
   FrameHeader header;
   Image<std::uint16_t> temperature_raw;  ///< height x width, row-major, apparent temperature in
@@ -102,7 +108,7 @@ struct RawFrame {
   SteadyTime arrival_steady{};
   Image<std::uint16_t> pixels;       ///< As DepthFrame::depth_raw or ThermalFrame::temperature_raw.
   double depth_scale = 1000.0;       ///< Raw depth units per metre (depth only).
-  RadiometricScale thermal_scale{};  ///< Of the pixels (thermal only).
+  RadiometricScale thermal_scale{};  ///< Scale of the pixels (thermal only).
   bool shutter_closed = false;       ///< Thermal only: the camera says so (in band).
   /// Thermal only: more than the shutter flag; nullopt = the camera says nothing.
   std::optional<CameraNuc> camera_nuc;
@@ -135,6 +141,8 @@ constexpr bool IsRaw(Encoding encoding) {
          encoding == Encoding::kScaledRaw16;
 }
 
+/// Holds an image of 16-bit pixels in its encoded form; Decode (codec.h) checks it before anything
+/// is allocated.
 struct EncodedImage {
   Encoding encoding = Encoding::kRaw16;
   int width = 0;
@@ -150,6 +158,7 @@ struct EncodedDepthFrame {
   double depth_scale = 1000.0;
 };
 
+/// The same for thermal frames. The raw counts mean nothing without `scale`.
 struct EncodedThermalFrame {
   FrameHeader header;
   EncodedImage image;

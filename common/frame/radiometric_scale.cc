@@ -10,10 +10,13 @@ namespace {
 
 /// Steps that are coarser hide what such cameras resolve.
 constexpr double kMaxStep_k = 1.0;
+/// Larger offsets are typing errors: no camera's scale begins beyond the hottest thing there is.
 constexpr double kMaxOffset_k = 10'000.0;
 /// A scale that reaches none of these is a typing error.
 constexpr double kColdest_celsius = -100.0;
 constexpr double kHottest_celsius = 1500.0;
+/// ScaleForRange takes the finest that reaches: 0.01 K to 382 °C with an offset of 0, as most
+/// cameras have it, then steps that still lie below the noise of such cameras (0.04 K).
 constexpr double kSteps_k[] = {0.01, 0.02, 0.03, 0.05};
 
 }  // namespace

@@ -57,6 +57,7 @@ CameraModel RectifiedCamera(const CameraModel& camera) {
                 (kMaxGrowth * camera.height - 1.0) / camera.fy / border.sizes().y()});
   result.fx *= shortened;
   result.fy *= shortened;
+  // A border that is whole pixels but for rounding must not cost another row.
   constexpr double kRounding_px = 1e-6;
   const auto place = [](double focal_px, double min, double max, double& principal, int& size) {
     const double first = std::floor(focal_px * min + principal + kRounding_px);

@@ -129,6 +129,7 @@ std::string ToText(const ClockReport& clock) {
     }
   }
   if (clock.steps > 0) {
+    // Signed: capture times do not follow such steps, so this is what UTC differs by.
     text += fmt::format(", set {} time{} by {:+.3f} s in all", clock.steps,
                         clock.steps == 1 ? "" : "s", clock.step_sum_s);
   }
@@ -153,6 +154,7 @@ std::string StampText(const CameraReport& depth, const CameraReport& thermal) {
 
 Status CheckCompatible(const Hello& own, const Hello& peer) {
   if (own.wire_major == peer.wire_major) return OkStatus();
+  // The older side is the one to be updated, whichever of them says this.
   const Hello& old = own.wire_major < peer.wire_major ? own : peer;
   return FailedPrecondition(
       fmt::format("{}, {}: update the {}", Describe(own), Describe(peer), NameOf(old.role)));

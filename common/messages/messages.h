@@ -38,6 +38,7 @@ inline constexpr std::size_t kMaxAdvice = 8;
 inline constexpr std::size_t kMaxStageLatencies = 16;
 inline constexpr std::size_t kMaxConfidenceImageBytes = 20'000;  ///< Confidence image.
 
+/// Names the two ends of the link.
 enum class Role : std::uint8_t { kEdge = 0, kGround = 1 };
 
 /// Says who a process is and what it speaks. Its wire type is frozen. It is written once at start
@@ -85,6 +86,7 @@ struct ExternalOdometrySample {
   ExternalOdometry pose;
 };
 
+/// Says how far the edge's session has come.
 enum class ScanState : std::uint8_t {
   kIdle = 0,      ///< No session yet.
   kScanning = 1,  ///< Frames are being published.
@@ -97,6 +99,7 @@ enum class PublishPolicy : std::uint8_t {
   kLossless = 1,  ///< Wait for receipts, so that every frame arrives.
 };
 
+/// Says who orders corrections of the thermal camera.
 enum class NucPolicy : std::uint8_t {
   kAutomatic = 0,  ///< The edge decides, by drift and interval.
   kManual = 1,     ///< Only by command.
@@ -122,6 +125,7 @@ struct NucReport {
   std::string reason{};  ///< Why the state is as it is; empty = nothing to say.
 };
 
+/// Counts the frames that were dropped for one reason.
 struct DropCount {
   std::string reason{};
   std::uint64_t frames = 0;
@@ -147,6 +151,7 @@ struct FeedbackLatency {
   double p99_s = std::numeric_limits<double>::quiet_NaN();
 };
 
+/// Says what became of a camera.
 enum class CameraState : std::uint8_t {
   kNone = 0,  ///< Not a camera: a replay, a simulation, nothing.
   kWorking = 1,
@@ -209,13 +214,14 @@ struct EdgeStatus {
   std::uint64_t spool_frames = 0;  ///< Recorded but not yet published.
   ClockReport clock;
   std::optional<ClockEcho> clock_echo;
-  std::uint64_t disk_free_bytes = 0;  ///< Of the rig's disk; 0 = not known, 1 = none.
+  std::uint64_t disk_free_bytes = 0;  ///< Free space on the rig's disk; 0 = not known, 1 = none.
   double cpu_temperature_celsius = std::numeric_limits<double>::quiet_NaN();
   FeedbackLatency feedback;  ///< Feedback in this session.
   CameraReport depth_camera;
   CameraReport thermal_camera;
 };
 
+/// Names what the ground can order.
 enum class CommandKind : std::uint8_t {
   kStartScan = 0,
   kStopScan = 1,
@@ -235,8 +241,10 @@ struct Command {
   double hold_s = 0.0;                                  ///< For kHoldNuc; 0 ends a hold.
 };
 
+/// Says what became of a command: kRefused was not tried, kFailed was.
 enum class CommandOutcome : std::uint8_t { kDone = 0, kRefused = 1, kFailed = 2 };
 
+/// Answers the command of the same number.
 struct CommandResult {
   std::uint64_t number = 0;
   CommandOutcome outcome = CommandOutcome::kDone;
@@ -266,6 +274,8 @@ enum class SessionVerdict : std::uint8_t {
   kOtherRig = 1,  ///< Refused: another process has this name, and it came first.
 };
 
+/// Tells the edge what the ground has handled, a few times a second. In a lossless replay the edge
+/// publishes no further than receipts allow; live, they only say what got lost.
 struct Receipt {
   std::uint64_t session = 0;  ///< 0 = none: the ground follows this rig and waits for it.
   StreamReceipt depth;
@@ -274,9 +284,12 @@ struct Receipt {
   SessionVerdict verdict = SessionVerdict::kFollowed;
 };
 
+/// Says whether the ground knows where the rig is. kDegraded: not all directions of its motion were
+/// observed; the motion before stands in for the others.
 enum class TrackingState : std::uint8_t { kWaiting = 0, kTracked = 1, kDegraded = 2, kLost = 3 };
 std::string_view ToString(TrackingState state);
 
+/// Tells the operator what to do next.
 enum class Advice : std::uint8_t {
   kMoveCloser = 0,
   kMoveFarther = 1,
@@ -299,6 +312,7 @@ struct CoverageFractions {
   float never_measured = std::numeric_limits<float>::quiet_NaN();
 };
 
+/// Holds the duration of one stage of the reconstruction: median and 99th percentile.
 struct StageLatency {
   std::string stage{};
   float p50_s = 0.0F;
@@ -309,8 +323,9 @@ struct StageLatency {
 /// counts.
 struct Feedback {
   std::uint64_t session = 0;
-  std::uint64_t frame_number = 0;  ///< Depth frame this is about, ...
-  CaptureTime capture_time{};  ///< ... and its capture time: the age of the feedback on the edge.
+  std::uint64_t frame_number = 0;  ///< The depth frame that this is about.
+  CaptureTime
+      capture_time{};  ///< Capture time of that frame, by which the edge knows the feedback's age.
   TrackingState tracking_state = TrackingState::kWaiting;
   std::optional<RigidTransform>
       T_world_depth;             ///< Absent while lost, and in a sub-map that is not joined.

@@ -16,7 +16,7 @@ class Message;
 
 namespace isotherm {
 
-/// What the command lines of both daemons have in common.
+/// Holds the arguments that the command lines of both daemons have in common.
 struct DaemonArguments {
   std::optional<std::string> config;
   std::vector<std::string> overrides;

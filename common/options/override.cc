@@ -35,6 +35,7 @@ std::vector<std::string> FieldNames(const pb::Descriptor& type) {
 template <typename T>
 Result<T> ParseNumber(std::string_view text, std::string_view kind) {
   std::string_view digits = text;
+  // std::from_chars takes no plus sign, and people write one.
   if (digits.starts_with('+')) digits.remove_prefix(1);
   T value{};
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
@@ -75,6 +76,7 @@ std::string_view Unquoted(std::string_view text) {
 Status SetScalar(pb::Message& message, const FieldDescriptor* field, std::string_view text) {
   const pb::Reflection& reflection = *message.GetReflection();
   if (IsListOfTexts(*field)) {
+    // Shells take quotes away, configuration management may not.
     reflection.AddString(&message, field, std::string(Unquoted(text)));
     return OkStatus();
   }

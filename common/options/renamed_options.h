@@ -12,6 +12,7 @@ namespace isotherm {
 
 /// Names an option that was called or placed differently once.
 struct RenamedOption {
+  /// Tells where the option was written: in options, or in the rig file.
   enum class Place { kOptions, kRigFile };
 
   std::string_view type;    ///< The message that it was in, without the package.

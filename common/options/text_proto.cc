@@ -24,6 +24,7 @@ namespace {
 namespace pb = google::protobuf;
 
 constexpr std::uint64_t kMaxFileBytes = 1U << 20;  // Far above any configuration.
+// A file with more mistakes is no configuration; the list would scroll away.
 constexpr std::size_t kMaxErrors = 50;
 constexpr std::size_t kMaxMessageBytes = 300;  // Protobuf quotes what it found, however long.
 // Text that is parsed again and again to list all errors: enough for any real file.
@@ -116,6 +117,7 @@ void ExplainUnknownField(const pb::Descriptor& root, TextError& error) {
   if (!error.message.starts_with(kType) || field == std::string::npos) return;
   const std::string type_name = error.message.substr(kType.size(), field - kType.size());
   std::string name = error.message.substr(field + kField.size());
+  // Longer than any field of ours: the rest is whatever stands in the file.
   constexpr std::size_t kMaxNameBytes = 64;
   name.resize(std::min({name.find('"'), name.size(), kMaxNameBytes}));
   const pb::Descriptor* type = root.file()->pool()->FindMessageTypeByName(type_name);

@@ -46,7 +46,7 @@ int ChannelsOf(std::uint8_t colour_type) {
 
 /// Holds what libpng reads from or writes to, and what it says if it fails.
 struct Stream {
-  Bytes rest;                                ///< What is left of the file that is read.
+  Bytes rest;                                ///< The part of the file that is not read yet.
   std::vector<std::uint8_t>* out = nullptr;  ///< The file that is written.
   std::array<char, 128> error{};
 };
@@ -89,12 +89,15 @@ class PngReader {
   /// libpng reports errors by a jump: nothing in here has a destructor.
   bool Decode(std::uint32_t width, std::uint32_t height, png_bytep pixels, std::size_t row_bytes) {
     if (setjmp(png_jmpbuf(png_)) != 0) return false;
+    // Text and colour profiles of any length could be in a file; nothing is kept of them.
     constexpr int kAllButPixels = -1;
     png_set_keep_unknown_chunks(png_, PNG_HANDLE_CHUNK_NEVER, nullptr, kAllButPixels);
+    // The head was read before: a second, larger one must not decide what is allocated.
     png_set_user_limits(png_, width, height);
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_QUIET_USE);
     png_read_info(png_, info_);
     if (png_get_rowbytes(png_, info_) != row_bytes) return false;
+    // PNG is big-endian.
     if (std::endian::native == std::endian::little) png_set_swap(png_);
     const int passes = png_set_interlace_handling(png_);
     png_read_update_info(png_, info_);

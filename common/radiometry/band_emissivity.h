@@ -27,6 +27,7 @@ class BandEmissivity {
   double At(double angle_rad) const;
 
  private:
+  /// Holds the complex refractive index n + i kappa of one part of the band.
   struct WeightedIndex {
     double n;
     double kappa;

@@ -27,6 +27,7 @@ constexpr int kInverseIntervals = 2048;
 
 /// Integral of x^3 / (e^x - 1) from x to infinity (series in e^-nx).
 double PlanckTail(double x) {
+  // A term below the last digit of the sum.
   constexpr double kNegligible = 1e-17;
   double sum = 0.0;
   for (int i = 1;; ++i) {
@@ -56,7 +57,10 @@ double KelvinSlope(double kelvin, const SpectralBand& band) {
 }
 
 double InvertExactly(double radiance, double first_guess, const SpectralBand& band) {
+  // Newton's method from the table's value takes two or three steps; the limit ends what NaN would
+  // not.
   constexpr int kMaxIterations = 30;
+  // Far below any use, above the rounding of a radiance.
   constexpr double kConverged_k = 1e-9;
   double celsius = first_guess;
   for (int i = 0; i < kMaxIterations; ++i) {

@@ -38,6 +38,7 @@ class BandRadiance {
   const SpectralBand& band() const { return band_; }
 
  private:
+  /// Holds a support point of a cubic Hermite interpolation.
   struct Knot {
     double value;
     double slope;  ///< Times the knot spacing.

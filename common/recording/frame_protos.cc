@@ -31,6 +31,7 @@ template <typename Message>
 Result<FrameHeader> GetHeader(const Message& message, CaptureTime log_time,
                               std::uint32_t sequence) {
   FrameHeader header;
+  // Recordings of other programs may have no more than MCAP's own fields.
   header.capture_time = log_time;
   header.frame_number = sequence;
   if (message.has_timestamp()) {
@@ -42,6 +43,7 @@ Result<FrameHeader> GetHeader(const Message& message, CaptureTime log_time,
   const FrameInfo& frame = message.frame();
   header.session = frame.session();
   header.frame_number = frame.frame_number();
+  // Ticks are microseconds; beyond this, arithmetic in nanoseconds would overflow.
   constexpr std::int64_t kMaxTicks = kMaxRecordedNanoseconds / 1000;
   if (frame.device_ticks() > kMaxTicks || frame.device_ticks() < -kMaxTicks)
     return Err(DataLoss("its camera's clock is out of range"));
@@ -58,6 +60,7 @@ std::optional<CaptureTime> GetArrival(const Message& message) {
 
 std::vector<std::uint8_t> TakeBytes(std::string* data) { return {data->begin(), data->end()}; }
 
+/// Sides that no camera has, so that width times height stays far from overflowing.
 constexpr std::uint32_t kMaxImageSide = 1U << 16;
 
 Result<EncodedImage> TakeImage(foxglove::CompressedImage& message) {
@@ -129,6 +132,7 @@ Image ToMessage(const EncodedThermalFrame& frame, const std::optional<CaptureTim
   thermal.set_nuc_source(static_cast<std::uint32_t>(frame.nuc_source));
   if (frame.seconds_since_nuc) thermal.set_seconds_since_nuc(*frame.seconds_since_nuc);
   const ThermalHousekeeping& housekeeping = frame.housekeeping;
+  // Absent is how a message says "not known": readers elsewhere may not expect NaN.
   if (!std::isnan(housekeeping.fpa_celsius)) thermal.set_fpa_celsius(housekeeping.fpa_celsius);
   if (!std::isnan(housekeeping.housing_celsius)) {
     thermal.set_housing_celsius(housekeeping.housing_celsius);
@@ -168,6 +172,7 @@ Result<RecordedDepth> ToDepth(Image& message, CaptureTime log_time, std::uint32_
   if (!header) return Err(std::move(header.error()));
   depth.frame.header = *header;
   depth.arrival = GetArrival(message);
+  // Otherwise millimetres, as nearly all programs write them.
   if (message.has_depth()) depth.frame.depth_scale = message.depth().depth_scale();
   Result<EncodedImage> image = TakeImage(message);
   if (!image) return Err(std::move(image.error()));
@@ -194,6 +199,7 @@ Result<RecordedThermal> ToThermal(Image& message, CaptureTime log_time, std::uin
   if (info.has_fpa_celsius()) frame.housekeeping.fpa_celsius = info.fpa_celsius();
   if (info.has_housing_celsius()) frame.housekeeping.housing_celsius = info.housing_celsius();
   if (info.has_shutter_celsius()) frame.housekeeping.shutter_celsius = info.shutter_celsius();
+  // Absent reads as false: temperatures of other programs are not trusted unless they say so.
   frame.valid = info.valid();
   Result<EncodedImage> image = TakeImage(message);
   if (!image) return Err(std::move(image.error()));

@@ -22,6 +22,7 @@ Status CheckMagic(const ByteSource& source) {
   if (magic == kMagic) return OkStatus();
   constexpr std::size_t kVersionPosition = 5;
   const char version = static_cast<char>(magic[kVersionPosition]);
+  // Without the version, everything else must fit.
   magic[kVersionPosition] = kMagic[kVersionPosition];
   if (magic != kMagic) return DataLoss("not an MCAP file: it starts with other bytes");
   return FailedPrecondition(fmt::format(
@@ -99,6 +100,7 @@ bool AddSummaryRecord(const ByteSource& source, const RecordWalker::Record& reco
                                .start = chunk.start,
                                .end = chunk.end});
       file.compressions.insert(chunk.compression);
+      // Written so that the sum cannot overflow.
       return chunk.chunk_offset <= source.size() &&
              chunk.chunk_length <= source.size() - chunk.chunk_offset;
     }
@@ -133,6 +135,7 @@ std::optional<FileIndex> ReadSummary(const ByteSource& source) {
   }
   auto& [file, statistics, metadata_bytes] = summary;
   file.complete = true;
+  // A summary that is only almost right would hide messages: then the file is scanned.
   if (!walker.AtEnd() || !statistics || !CoversEverything(file, *statistics)) return std::nullopt;
   file.message_counts = std::move(statistics->channel_message_counts);
   std::sort(file.segments.begin(), file.segments.end(),

@@ -21,6 +21,7 @@ struct FileIndex {
   bool complete = false;            ///< Ends with a summary that is whole.
   std::uint64_t bytes_ignored = 0;  ///< Damaged or unfinished parts that are not read.
   std::vector<Gap> gaps;            ///< Where they are, in file order; the first kMaxGaps.
+  /// A file with more damaged places is described by its first ones; bytes_ignored counts all.
   static constexpr std::size_t kMaxGaps = 1000;
   Definitions definitions;
   std::vector<Segment> segments;       ///< In file order.

@@ -16,17 +16,21 @@ MessageStream::MessageStream(const ByteSource& source, const FileIndex& index,
       order_(index.segments.size()),
       budget_(source.size()) {
   std::iota(order_.begin(), order_.end(), std::size_t{0});
+  // Chunks overlap in time where threads wrote into the file: they are opened by their beginnings
+  // and merged like sorted lists, by a heap of one cursor each.
   std::stable_sort(order_.begin(), order_.end(), [this](std::size_t a, std::size_t b) {
     return index_.segments[a].start < index_.segments[b].start;
   });
 }
 
 bool MessageStream::IsLater(const Cursor& a, const Cursor& b) {
+  // At equal times in file order, so that reading is deterministic.
   return std::pair(a.log_time(), a.segment) > std::pair(b.log_time(), b.segment);
 }
 
 void MessageStream::Seek(std::uint64_t log_time) {
   begin_ = log_time;
+  // A seek reads chunks again, which is no attack.
   budget_ = UnpackBudget(source_.size());
   open_messages_ = 0;
   next_in_order_ = 0;
@@ -39,8 +43,10 @@ Result<std::optional<Message>> MessageStream::Next() {
   if (budget_.exhausted()) return std::nullopt;
   while (next_in_order_ < order_.size()) {
     const std::size_t segment = order_[next_in_order_];
+    // A chunk that begins behind the next message cannot hold anything before it.
     if (!cursors_.empty() && index_.segments[segment].start > cursors_.front().log_time()) break;
     ++next_in_order_;
+    // Skipped without being unpacked: that is what makes seeking fast.
     if (index_.segments[segment].end < begin_) continue;
     if (Status status = OpenSegment(segment); !status.ok()) return Err(std::move(status));
   }
@@ -53,6 +59,7 @@ Result<std::optional<Message>> MessageStream::Next() {
     CloseLastCursor();
     return Err(std::move(content.error()));
   }
+  // Kept until the next call, since the message that is returned refers to it.
   current_ = std::move(*content);
   const std::optional<Message> message = MessageAt(*current_, cursor.entries[cursor.position]);
   if (!message) {
@@ -62,6 +69,7 @@ Result<std::optional<Message>> MessageStream::Next() {
   if (++cursor.position < cursor.entries.size()) {
     std::push_heap(cursors_.begin(), cursors_.end(), IsLater);
   } else {
+    // It was read to its end and will not be asked for again.
     cache_.remove_if([&cursor](const Cached& cached) { return cached.segment == cursor.segment; });
     CloseLastCursor();
   }
@@ -76,6 +84,7 @@ void MessageStream::CloseLastCursor() {
 Status MessageStream::OpenSegment(std::size_t segment) {
   auto content = Content(segment);
   if (!content) return content.error();
+  // A file whose chunks all claim the same times would have all of them open at once.
   if ((*content)->entries.size() > kMaxOpenMessages - open_messages_) {
     return DataLoss(fmt::format("chunk at byte {}: too many chunks overlap it in time",
                                 index_.segments[segment].offset));
@@ -96,6 +105,7 @@ Result<std::shared_ptr<const SegmentContent>> MessageStream::Content(std::size_t
     return cached.segment == segment;
   });
   if (found != cache_.end()) {
+    // Newest use first, so that the one dropped is the one not needed for longest.
     cache_.splice(cache_.begin(), cache_, found);
     return cache_.front().content;
   }

@@ -15,7 +15,10 @@ namespace isotherm::mcap {
 /// Thread-compatible.
 class MessageStream {
  public:
+  /// Eight unpacked chunks of 4 MB. Smaller: chunks that overlap in time are unpacked again and
+  /// again while they are merged. Not tuned.
   static constexpr std::size_t kDefaultCacheBytes = 32U << 20;
+  /// Entries of 16 bytes that may be open at once: 16 MB, whatever a file claims.
   static constexpr std::size_t kMaxOpenMessages = 1U << 20;
 
   /// `source` and `index` must outlive the stream.
@@ -39,6 +42,7 @@ class MessageStream {
 
     std::uint64_t log_time() const { return entries[position].log_time; }
   };
+  /// Keeps a segment's content for messages that are read out of order.
   struct Cached {
     std::size_t segment = 0;
     std::shared_ptr<const SegmentContent> content;

@@ -13,6 +13,8 @@ class RecordWriter {
  public:
   RecordWriter(Opcode opcode, Bytes& out) : out_(out) {
     out_.push_back(static_cast<std::uint8_t>(opcode));
+    // The length is not known yet; the destructor writes it here, since a record's end is where its
+    // scope ends.
     Put(std::uint64_t{0});
     content_begin_ = out_.size();
   }
@@ -23,6 +25,7 @@ class RecordWriter {
   template <std::unsigned_integral T>
   void Put(T value) {
     for (std::size_t i = 0; i < sizeof(T); ++i) {
+      // MCAP is little-endian; shifts give that on every processor.
       out_.push_back(static_cast<std::uint8_t>(static_cast<std::uint64_t>(value) >> (8 * i)));
     }
   }
@@ -104,6 +107,7 @@ class FieldReader {
       Value value{};
       entries.Get(key);
       entries.Get(value);
+      // Damage inside of the map counts as damage of the record.
       ok_ = entries.ok();
       map[std::move(key)] = std::move(value);
     }
@@ -111,6 +115,8 @@ class FieldReader {
 
  private:
   std::span<const std::uint8_t> Take(std::size_t count) {
+    // Lengths come from the file and may be anything: nothing is believed beyond the bytes that are
+    // there.
     if (!ok_ || count > rest_.size()) {
       ok_ = false;
       rest_ = {};

@@ -22,6 +22,7 @@ inline constexpr std::size_t kRecordPrefixBytes = 1 + 8;
 /// The footer record and the magic behind it have a fixed size.
 inline constexpr std::size_t kFooterRecordBytes = kRecordPrefixBytes + 8 + 8 + 4;
 
+/// Names the kinds of records.
 enum class Opcode : std::uint8_t {
   kHeader = 0x01,
   kFooter = 0x02,
@@ -43,17 +44,20 @@ enum class Opcode : std::uint8_t {
 using ChannelId = std::uint16_t;
 using SchemaId = std::uint16_t;
 
+/// The first record of a file.
 struct Header {
   std::string profile;
   std::string library;
 };
 
+/// The last record: where the summary lies. A file that was cut off has none.
 struct Footer {
   std::uint64_t summary_start = 0;  ///< 0 = no summary.
   std::uint64_t summary_offset_start = 0;
   std::uint32_t summary_crc = 0;  ///< 0 = not computed.
 };
 
+/// Describes the type of a channel's messages.
 struct Schema {
   SchemaId id = 0;
   std::string name;
@@ -61,6 +65,7 @@ struct Schema {
   std::string data;
 };
 
+/// Describes one stream of messages.
 struct Channel {
   ChannelId id = 0;
   SchemaId schema_id = 0;  ///< 0 = none.
@@ -94,6 +99,7 @@ struct MessageIndex {
   std::vector<std::pair<std::uint64_t, std::uint64_t>> entries;
 };
 
+/// Tells where a chunk lies and what time it spans, so that a reader can seek without reading it.
 struct ChunkIndex {
   std::uint64_t start = 0;
   std::uint64_t end = 0;
@@ -106,6 +112,7 @@ struct ChunkIndex {
   std::uint64_t uncompressed_size = 0;
 };
 
+/// Counts what is in the file.
 struct Statistics {
   std::uint64_t message_count = 0;
   std::uint16_t schema_count = 0;
@@ -118,23 +125,27 @@ struct Statistics {
   std::map<ChannelId, std::uint64_t> channel_message_counts;
 };
 
+/// Holds a named set of texts.
 struct Metadata {
   std::string name;
   std::map<std::string, std::string> values;
 };
 
+/// Tells where a metadata record lies.
 struct MetadataIndex {
   std::uint64_t offset = 0;
   std::uint64_t length = 0;  ///< With opcode and length.
   std::string name;
 };
 
+/// Tells where the records of one kind lie in the summary.
 struct SummaryOffset {
   Opcode group = Opcode::kSchema;
   std::uint64_t start = 0;
   std::uint64_t length = 0;
 };
 
+/// Separates the data from the summary.
 struct DataEnd {
   std::uint32_t data_section_crc = 0;  ///< 0 = not computed.
 };
@@ -178,6 +189,7 @@ class RecordWalker {
   explicit RecordWalker(std::span<const std::uint8_t> records)
       : rest_(records), size_(records.size()) {}
 
+  /// Refers to one record within the walked bytes.
   struct Record {
     Opcode opcode{};
     std::size_t offset = 0;  ///< Place of the opcode.

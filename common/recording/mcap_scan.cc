@@ -37,7 +37,10 @@ class Scanner {
     offset = std::min(offset + (closed_ ? kMagic.size() : 0), source_.size());
     if (offset < source_.size())
       AddGap({.offset = offset, .length = source_.size() - offset, .message_counts = {}});
+    // Order matters: counting first, because it reads chunks that the check of the tail need not
+    // read again.
     CountUnindexedChunks();
+    // Without a footer the last chunk may be half written, with a header that looks whole.
     if (!closed_) DropDamagedTail();
     file_.definitions.Merge(std::move(loose_definitions_));
     std::sort(file_.gaps.begin(), file_.gaps.end(),
@@ -124,6 +127,7 @@ class Scanner {
     constexpr std::uint64_t kEntryBytes = 16;
     constexpr std::uint64_t kFieldsBytes = 2 + 4;
     std::array<std::uint8_t, sizeof(ChannelId)> id{};
+    // Indexes follow their chunk; those behind a gap say what was lost in it.
     if (indexed_ == Indexed::kNothing || counts_ == kMaxCounts ||
         !source_.Read(record.offset + kRecordPrefixBytes, id).ok()) {
       return;
@@ -143,6 +147,8 @@ class Scanner {
     if (!source_.Read(record.offset + kRecordPrefixBytes, fields).ok() || !Parse(fields, message)) {
       return AddGap({.offset = record.offset, .length = record.length(), .message_counts = {}});
     }
+    // Messages without chunks are joined into stretches, so that a file of millions of them has an
+    // index of bounded size.
     const bool continues =
         !scanned_.empty() && !scanned_.back().segment.is_chunk &&
         scanned_.back().segment.length < kLooseSegmentBytes &&
@@ -169,6 +175,7 @@ class Scanner {
     const std::uint64_t room = record.opcode == Opcode::kMetadata
                                    ? kMaxMetadataBytes - metadata_bytes_
                                    : kMaxDefinitionBytes;
+    // Many small definitions could add up to any size.
     if (record.content_length > room) return;
     Bytes content(static_cast<std::size_t>(record.content_length));
     if (!source_.Read(record.offset + kRecordPrefixBytes, content).ok()) return;
@@ -181,6 +188,8 @@ class Scanner {
   }
 
   bool IsUnknown(const Scanned& scanned) const {
+    // A chunk without indexes, or with channels that nothing described yet, must be unpacked to be
+    // counted.
     return scanned.counts.empty() ||
            std::any_of(scanned.counts.begin(), scanned.counts.end(), [this](const auto& count) {
              return !file_.definitions.channels.contains(count.first);

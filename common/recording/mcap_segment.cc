@@ -61,6 +61,7 @@ Result<Bytes> UnpackChunk(const Segment& segment, const Bytes& bytes, UnpackBudg
   if (header.compressed_size > content.size() - fields_bytes) {
     return Err(Damaged(segment, "claims more bytes than it has"));
   }
+  // Before the memory is allocated: a few kilobytes can claim to unpack to gigabytes.
   if (Status status = budget.Take(header.uncompressed_size); !status.ok())
     return Err(std::move(status));
   const auto packed = content.subspan(static_cast<std::size_t>(fields_bytes),
@@ -79,6 +80,8 @@ Status IndexRecords(const Segment& segment, SegmentContent& content) {
     if (record->opcode != Opcode::kMessage) continue;
     Message message;
     if (!Parse(record->content, message)) return Damaged(segment, "holds a damaged message");
+    // Empty messages take few bytes each; without a limit a chunk of them would fill the memory
+    // with entries.
     if (content.entries.size() == kMaxChunkMessages) {
       return Damaged(segment, fmt::format("holds more than {} messages", kMaxChunkMessages));
     }
@@ -86,6 +89,7 @@ Status IndexRecords(const Segment& segment, SegmentContent& content) {
         {.log_time = message.log_time, .offset = record->offset, .channel_id = message.channel_id});
   }
   if (!walker.AtEnd()) return Damaged(segment, "its records are damaged");
+  // Stable, so that messages of one time keep the order in which they were written.
   std::stable_sort(content.entries.begin(), content.entries.end(),
                    [](const auto& a, const auto& b) { return a.log_time < b.log_time; });
   return OkStatus();
@@ -102,6 +106,7 @@ Status UnpackBudget::Take(std::uint64_t bytes) {
     left_ -= bytes;
     return OkStatus();
   }
+  // For good, even if a later chunk is small: the file does not become a scan by that.
   exhausted_ = true;
   return ResourceExhausted(fmt::format(
       "reading was given up: unpacking the file takes more than {} MB and {} times its size, which "
@@ -131,6 +136,8 @@ void Definitions::Merge(Definitions other) {
 
 void Definitions::AddNew(Schema schema) {
   const std::size_t size = schema.name.size() + schema.encoding.size() + schema.data.size();
+  // Definitions are repeated in each chunk; the first one counts, and one that differs later cannot
+  // change what was read.
   if (schema.id == 0 || schemas.contains(schema.id) || !Fits(size)) return;
   const SchemaId id = schema.id;
   schemas.emplace(id, std::move(schema));

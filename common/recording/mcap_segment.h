@@ -21,7 +21,9 @@ inline constexpr std::size_t kMaxMetadataBytes = 4U << 20;
 /// for long. Frames of real cameras pack to a tenth at best.
 class UnpackBudget {
  public:
+  /// Small files may unpack to this much in any case.
   static constexpr std::uint64_t kFloorBytes = 64U << 20;
+  /// Twenty times what frames of real cameras reach; compression bombs go beyond 1000.
   static constexpr std::uint64_t kMaxRatio = 200;
 
   explicit UnpackBudget(std::uint64_t file_bytes) : left_(kFloorBytes + kMaxRatio * file_bytes) {}
@@ -68,6 +70,7 @@ class Definitions {
 
 /// The uncompressed records of a segment and where its messages are in them.
 struct SegmentContent {
+  /// Says when a message was logged and where it lies.
   struct Entry {
     std::uint64_t log_time = 0;
     std::size_t offset = 0;  ///< Place of the message record.

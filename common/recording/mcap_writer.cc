@@ -39,6 +39,7 @@ Result<std::unique_ptr<Writer>> Writer::Create(std::unique_ptr<ByteSink> sink,
 
 SchemaId Writer::AddSchema(std::string_view name, std::string_view encoding,
                            std::string_view data) {
+  // 0 means "no schema" in the format.
   const auto id = static_cast<SchemaId>(schemas_.size() + 1);
   schemas_.push_back({.id = id,
                       .name = std::string(name),
@@ -72,6 +73,8 @@ Status Writer::WriteMessage(ChannelId channel, std::uint64_t log_time, std::uint
   if (!chunk_.records.empty()) {
     const std::uint64_t start = std::min(chunk_.start, log_time);
     const std::uint64_t end = std::max(chunk_.end, log_time);
+    // A chunk ends before this message if the message would make it too long in time or too large
+    // for a reader. By log time and not by the clock, so that the same messages give the same file.
     if (end - start > options_.chunk_duration_ns ||
         chunk_.records.size() + data.size() > kMaxMessageBytes) {
       ISOTHERM_RETURN_IF_ERROR(Flush());
@@ -98,6 +101,8 @@ MessageIndex& Writer::IndexFor(ChannelId channel) {
                    [channel](const auto& index) { return index.channel_id == channel; });
   if (found != chunk_.indexes.end()) return *found;
   const Channel& definition = channels_[channel - 1U];
+  // Each chunk repeats what its messages need: a reader that finds only this chunk, behind damage,
+  // understands it.
   if (definition.schema_id != 0 && chunk_.schemas.insert(definition.schema_id).second) {
     Append(schemas_[definition.schema_id - 1U], chunk_.records);
   }
@@ -110,6 +115,7 @@ Status Writer::WriteMetadata(const Metadata& metadata) {
   if (!failure_.ok()) return failure_;
   out_.clear();
   Append(metadata, out_);
+  // Before the write, which moves the offset.
   const MetadataIndex index{.offset = offset_, .length = out_.size(), .name = metadata.name};
   ISOTHERM_RETURN_IF_ERROR(WriteBytes(out_));
   metadata_indexes_.push_back(index);
@@ -120,6 +126,7 @@ Status Writer::WriteMetadata(const Metadata& metadata) {
 Status Writer::Flush() {
   if (!failure_.ok()) return failure_;
   if (chunk_.records.empty()) return OkStatus();
+  // Kept for the case that the sync fails: what was counted meanwhile is taken back then.
   Statistics before = statistics_;
   ISOTHERM_RETURN_IF_ERROR(WriteChunk());
   if (!options_.sync) return OkStatus();
@@ -159,6 +166,7 @@ Status Writer::WriteChunk() {
   ISOTHERM_RETURN_IF_ERROR(WriteBytes(out_));
   // From here on the messages are in the file, even if their indexes do not fit.
   AddToStatistics(chunk_);
+  // The summary's index of this chunk is added only when its message indexes are complete.
   ISOTHERM_RETURN_IF_ERROR(WriteMessageIndexes(index));
   chunk_indexes_.push_back(std::move(index));
   return OkStatus();
@@ -171,6 +179,7 @@ Status Writer::WriteMessageIndexes(ChunkIndex& index) {
     Append(messages, out_);
   }
   index.message_index_length = out_.size();
+  // Also if the write below fails: the chunk is in the file, and must not be written twice.
   chunk_.records.clear();
   chunk_.indexes.clear();
   chunk_.schemas.clear();
@@ -204,6 +213,8 @@ std::uint64_t Writer::unsynced_count(ChannelId channel) const {
 Status Writer::Close() {
   if (closed_) return failure_;
   const Status flushed = Flush();
+  // Also after a failure: the sink is closed in any case, and a second call returns what the first
+  // did.
   closed_ = true;
   if (flushed.ok()) {
     Bytes end;
@@ -270,6 +281,7 @@ Status Writer::WriteBytes(std::span<const std::uint8_t> bytes) {
     failure_ = std::move(status);
     return failure_;
   }
+  // Indexes and checksum count what the sink has taken, not what it was offered.
   offset_ += bytes.size();
   data_crc_ = Crc32(bytes, data_crc_);
   return OkStatus();

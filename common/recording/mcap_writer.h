@@ -13,11 +13,12 @@ struct ZSTD_CCtx_s;
 
 namespace isotherm::mcap {
 
+/// Says how chunks are cut and stored.
 struct WriterOptions {
   std::string library;                 ///< Who wrote the file.
   std::size_t chunk_bytes = 4U << 20;  ///< A chunk is closed when its records reach this size.
-  std::uint64_t chunk_duration_ns =
-      500'000'000;   ///< ... or before it would span more log time than this.
+  /// A chunk is closed before it would span more log time than this.
+  std::uint64_t chunk_duration_ns = 500'000'000;
   bool sync = true;  ///< Sync the sink after each chunk.
   int zstd_level = 1;
 };
@@ -55,9 +56,12 @@ class Writer {
   /// Bytes handed to the sink.
   std::uint64_t bytes() const { return offset_; }
 
+  /// A raw frame of 4096 x 4096 pixels of 16 bit fits; a message that is larger would make a chunk
+  /// that readers refuse (kMaxChunkBytes).
   static constexpr std::size_t kMaxMessageBytes = 36U << 20;
 
  private:
+  /// Frees a compressor.
   struct ZstdDeleter {
     void operator()(ZSTD_CCtx_s* context) const;
   };

@@ -11,7 +11,7 @@
 #include "common/recording/recording_topics.h"
 #include "common/time/time_types.h"
 
-/// What several messages of a recording have in common.
+/// Converts the parts that several messages of a recording have in common.
 namespace isotherm::recording {
 
 inline constexpr char kDepthFrame[] = "depth";

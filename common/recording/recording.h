@@ -29,7 +29,7 @@ struct NucEvent {
 struct ClockStep {
   CaptureTime time{};              ///< Capture time of the first frame after it.
   Nanoseconds step{0};             ///< Positive = ahead.
-  Nanoseconds wall_minus_time{0};  ///< What to add to capture times from here on to get UTC.
+  Nanoseconds wall_minus_time{0};  ///< Added to capture times from here on, it gives UTC.
 };
 
 /// Tells how images are stored. kViewable stores foxglove.RawImage and the place of the thermal
@@ -38,11 +38,12 @@ struct ClockStep {
 /// third smaller).
 enum class ImageStorage { kViewable, kCompact };
 
+/// Says how a recording is stored.
 struct RecordingOptions {
   ImageStorage image_storage = ImageStorage::kCompact;
   std::size_t chunk_bytes = 4U << 20;  ///< A chunk is closed when it holds this much.
   Nanoseconds flush_interval =
-      std::chrono::milliseconds(500);  ///< ... or is this old (capture time); at most 1 s.
+      std::chrono::milliseconds(500);  ///< A chunk is closed at this age (capture time), <= 1 s.
   bool sync = true;  ///< fdatasync after each chunk, so that a power cut costs at most the last.
 };
 
@@ -52,7 +53,7 @@ struct RecordingStats {
   std::uint64_t thermal_frames = 0;
   std::uint64_t failed = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t unsynced = 0;  ///< Of `failed`: the disk took them but did not confirm it.
+  std::uint64_t unsynced = 0;  ///< Part of `failed`: the disk took these but did not confirm them.
 };
 
 /// Writes a scan as MCAP: chunks with zstd and CRC, message indexes, a summary at the end. The file
@@ -95,14 +96,17 @@ class RecordingWriter {
   virtual RecordingStats stats() const = 0;
 };
 
+/// Holds a frame and when it arrived where it was recorded; nullopt: the recording does not say.
 struct RecordedDepth {
   EncodedDepthFrame frame;
   std::optional<CaptureTime> arrival;
 };
+/// The same for a thermal frame.
 struct RecordedThermal {
   EncodedThermalFrame frame;
   std::optional<CaptureTime> arrival;
 };
+/// Holds a pose of one of the streams "groundtruth" and "trajectory".
 struct RecordedPose {
   std::string stream;
   StampedPose pose;

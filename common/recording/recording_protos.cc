@@ -27,6 +27,7 @@ foxglove::CameraCalibration ToMessage(CaptureTime time, std::string_view frame_i
   message.set_height(static_cast<std::uint32_t>(camera.height));
   message.set_distortion_model("plumb_bob");
   for (const double d : {camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}) message.add_d(d);
+  // Row-major K, R and P as ROS defines them: no rectification, and P is K without a baseline.
   for (const double k : {camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0}) {
     message.add_k(k);
   }
@@ -46,6 +47,8 @@ foxglove::PoseInFrame ToMessage(const ExternalOdometry& pose) {
   SetQuaternion(pose.rotation, *message.mutable_pose()->mutable_orientation());
   ExternalOdometryInfo& info = *message.mutable_external_odometry();
   info.set_time_sigma_ns(pose.time_sigma.count());
+  // A position that is not measured has an infinite sigma and keeps it; one whose sigma is not
+  // known has none.
   if (!std::isnan(pose.position_sigma_m)) info.set_position_sigma_m(pose.position_sigma_m);
   if (!std::isnan(pose.rotation_sigma_rad)) info.set_rotation_sigma_rad(pose.rotation_sigma_rad);
   return message;
@@ -72,6 +75,8 @@ foxglove::FrameTransform ToMessage(const StampedPose& pose) {
 }
 
 foxglove::FrameTransform ThermalTransform(CaptureTime time, const RigidTransform& T_thermal_depth) {
+  // Foxglove's transforms give the child's pose in the parent, which is the inverse of what the rig
+  // file says.
   return MakeTransformMessage(time, kDepthFrame, kThermalFrame, T_thermal_depth.inverse());
 }
 
@@ -124,6 +129,7 @@ Result<StampedPose> FromMessage(const foxglove::FrameTransform& message) {
   if (!time) return Err(DataLoss("its timestamp is out of range"));
   const Eigen::Vector3d translation = ToVector(message.translation());
   const Eigen::Quaterniond rotation = ToQuaternion(message.rotation());
+  // Shorter quaternions have no direction left to normalise.
   constexpr double kMinNorm = 1e-6;
   if (!translation.allFinite() || !(rotation.norm() > kMinNorm) ||
       !std::isfinite(rotation.norm())) {

@@ -37,6 +37,7 @@ bool Is(std::string_view schema_name) {
 
 Content ContentOf(std::string_view topic, std::string_view schema_name) {
   if (topic == rec::kDepthTopic) {
+    // Topic and schema must both fit: other programs use "/depth" for their own messages.
     if (Is<foxglove::RawImage>(schema_name)) return Content::kRawDepth;
     if (Is<foxglove::CompressedImage>(schema_name)) return Content::kCompressedDepth;
   }
@@ -90,6 +91,7 @@ Result<std::optional<RecordedItem>> ParseThermal(const mcap::Message& message, C
 }
 
 CaptureTime ToCaptureTime(std::uint64_t log_time) {
+  // A damaged log time must not become a negative one.
   constexpr auto kLast = static_cast<std::uint64_t>(rec::kMaxRecordedNanoseconds);
   return CaptureTimeFromNanoseconds(static_cast<std::int64_t>(std::min(log_time, kLast)));
 }
@@ -114,6 +116,7 @@ class McapRecordingReader final : public RecordingReader {
                           : ContentOf(channel.topic, schema->second.name);
     }
     for (const auto& [id, count] : index_.message_counts) {
+      // Summed up: two channels may carry one topic, for example after files were merged.
       info_.messages_by_topic[TopicOf(id)] += count;
     }
     for (const mcap::Segment& segment : index_.segments) {
@@ -130,6 +133,8 @@ class McapRecordingReader final : public RecordingReader {
   const RecordingInfo& info() const override { return info_; }
 
   Result<Rig> ReadRig() override {
+    // A camera that came late is in the rig that was written anew; if that cannot be read, the
+    // first one is better than none.
     if (const std::optional<std::uint64_t> since = RigSince()) {
       if (Result<Rig> newest = FirstRig(*since)) return newest;
     }
@@ -142,6 +147,7 @@ class McapRecordingReader final : public RecordingReader {
       if (!message) return Err(message.error());
       if (!message->has_value()) return std::nullopt;
       const Content content = ContentOfChannel((*message)->channel_id);
+      // Copies of the rig are for readers that seek (ReadRig), not items of the scan.
       if (content == Content::kOther || content == Content::kRig) continue;
       auto item = ParseMessage(content, **message);
       if (item) return item;
@@ -181,6 +187,7 @@ class McapRecordingReader final : public RecordingReader {
       if (ContentOfChannel((*message)->channel_id) != Content::kRig) continue;
       Result<Rig> rig = ParseRig(**message);
       if (rig) return rig;
+      // The first problem says more than the last: later copies mostly fail by the same damage.
       if (problem.code() == StatusCode::kNotFound) problem = rig.error();
     }
   }
@@ -239,6 +246,7 @@ class McapRecordingReader final : public RecordingReader {
         message, [&](const foxglove::FrameTransform& transform) -> Result<RecordedPose> {
           Result<StampedPose> pose = rec::FromMessage(transform);
           if (!pose) return Err(std::move(pose.error()));
+          // Without the topic's slash.
           return RecordedPose{.stream = TopicOf(message.channel_id).substr(1), .pose = *pose};
         });
   }
@@ -258,6 +266,7 @@ Status CheckVersion(const mcap::FileIndex& index) {
     if (version == metadata.values.end()) continue;
     const std::string& text = version->second;
     int major = 0;
+    // Stops at the dot: a minor version only adds what older readers skip.
     std::from_chars(text.data(), text.data() + text.size(), major);
     if (major == kRecordingMajorVersion) continue;
     return FailedPrecondition(fmt::format(

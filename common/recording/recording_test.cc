@@ -266,7 +266,7 @@ INSTANTIATE_TEST_SUITE_P(Storage, RecordingTest,
                            return test.param == ImageStorage::kViewable ? "Viewable" : "Compact";
                          });
 
-/// What an odometry source said is evidence: it is kept as it came, right or wrong.
+/// An odometry source's word is evidence: it is kept as it came, right or wrong.
 TEST(RecordingTest, OdometryPosesComeBackAsTheyWere) {
   ExternalOdometry pose;
   pose.source = "vio";

@@ -49,6 +49,7 @@ CameraIntrinsics ToProto(const CameraModel& camera) {
   intrinsics.set_fy(camera.fy);
   intrinsics.set_cx(camera.cx);
   intrinsics.set_cy(camera.cy);
+  // Zeros are left out, so that a file of an ideal camera says no more than was known.
   if (camera.HasDistortion()) {
     intrinsics.set_k1(camera.k1);
     intrinsics.set_k2(camera.k2);

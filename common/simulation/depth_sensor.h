@@ -23,11 +23,12 @@ class DepthSensor {
  public:
   DepthSensor(const CameraModel& camera, const SimulatedDepthOptions& options);
 
+  /// Keeps buffers from one image to the next.
   struct Scratch {
     HitImage hits;
     Image<float> white;        ///< Independent noise.
-    Image<float> rows;         ///< ... smoothed along rows.
-    std::vector<float> noise;  ///< ... and along columns, one row.
+    Image<float> rows;         ///< The noise, smoothed along rows.
+    std::vector<float> noise;  ///< One row of the noise, smoothed along rows and columns.
     std::vector<std::int32_t> raw;
     Image<std::uint8_t> lit;  ///< 1 = the projector reaches it.
   };

@@ -28,15 +28,15 @@ Eigen::Vector2d ToDisc(const Eigen::Vector2d& in_square) {
   return radius * Eigen::Vector2d(std::cos(angle_rad), std::sin(angle_rad));
 }
 
-/// Whether the next pixel in this direction shows another part, or the radiance bends by more than
-/// `limit`. `step`: to the next pixel.
+/// Returns whether the next pixel on either side shows another part, or the radiance bends by more
+/// than `limit`. `step` is the distance to the next pixel in the array.
 bool IsUneven(const std::int16_t* primitive, const float* radiance, std::ptrdiff_t step,
               float limit) {
   return primitive[0] != primitive[step] || primitive[0] != primitive[-step] ||
          std::abs(radiance[step] + radiance[-step] - 2.0F * radiance[0]) > limit;
 }
 
-/// Whether a pixel that touches this one at a corner shows another part.
+/// Returns whether a pixel that touches this one at a corner shows another part.
 bool IsCorner(const Image<std::int16_t>& primitive, int x, int y) {
   if (x == 0 || y == 0 || x + 1 == primitive.width() || y + 1 == primitive.height()) return false;
   const std::int16_t own = primitive.At(x, y);
@@ -97,6 +97,7 @@ DepthRange RangeAround(const Image<DepthRange>& depths, int x, int y) {
 /// How far what a ray meets at this depth is from the ray, seen from elsewhere. In normalised image
 /// coordinates.
 double ShiftOf(const Eigen::Vector2f& ray, float z_m, const RigidTransform& T_moved_camera) {
+  // Stands for infinity: from here on a shift of the camera moves nothing by a pixel.
   constexpr float kFarAway_m = 1e3F;
   const Eigen::Vector3d p_camera =
       static_cast<double>(std::min(z_m, kFarAway_m)) * ray.cast<double>().homogeneous();
@@ -214,6 +215,7 @@ void PixelAverage::Apply(const Scene& scene, const RayGrid& grid, const BandRadi
 
 int PixelAverage::FindReach(const RayGrid& grid, const PoseOfRows& T_world_camera,
                             const HitImage& hits, Scratch& scratch) const {
+  // Rays begin anywhere in the pixel.
   constexpr double kPixelRadius_px = 0.5;
   const Image<DepthRange> depths = DepthsOfTiles(hits.z_m);
   const int middle = grid.height() / 2;

@@ -32,11 +32,12 @@ class PixelAverage {
   /// T_world_camera when these rows are read, `age_s` earlier (negative: later).
   using PoseOfRows = std::function<RigidTransform(int first_row, double age_s)>;
 
+  /// Keeps buffers from one image to the next.
   struct Scratch {
     Image<std::uint8_t> uneven;  ///< 1 = the radiance is no plane there.
     Image<int> uneven_sums;
     Image<int> reach;  ///< How far from a pixel its rays may meet; one value per tile.
-    std::vector<Eigen::Vector2i> pixels;  ///< Those that take many rays, of a few rows.
+    std::vector<Eigen::Vector2i> pixels;  ///< The pixels that take many rays, in a few rows.
     std::vector<Eigen::Vector2f> rays;
     std::vector<RayHit> hits;
     std::vector<double> sums;
@@ -55,6 +56,8 @@ class PixelAverage {
              const HitImage& hits, Image<float>& radiance, Scratch& scratch) const;
 
  private:
+  /// Holds one of the rays whose mean is a pixel: it samples the pixel's area, the lens and the
+  /// detector's time constant at once.
   struct Ray {
     Eigen::Vector2f pixel_offset;  ///< From the pixel's middle, pixels.
     Eigen::Vector2d lens_m;        ///< Where it passes the lens, from its middle.
@@ -75,7 +78,7 @@ class PixelAverage {
   const double focus_m_;
   const double negligible_;  ///< Radiance.
   std::vector<Ray> rays_;
-  double youngest_s_ = 0.0, oldest_s_ = 0.0;  ///< Of the rays.
+  double youngest_s_ = 0.0, oldest_s_ = 0.0;  ///< Ages of the youngest and the oldest ray.
 };
 
 }  // namespace isotherm

@@ -20,6 +20,7 @@ enum class Shape : std::uint8_t {
 
 /// True temperature on a primitive's surface, in the primitive's coordinates.
 struct TemperatureField {
+  /// Names the form of the field.
   enum class Kind : std::uint8_t {
     kUniform,  ///< `near_celsius` everywhere.
     kLinear,  ///< From `near_celsius` at `origin` to `far_celsius` at `length_m` along `direction`.

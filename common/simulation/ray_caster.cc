@@ -34,6 +34,8 @@ void SetBounds(const Primitive& primitive, const RigidTransform& T_camera_primit
     low = low.cwiseMin(normalized);
     high = high.cwiseMax(normalized);
   }
+  // Nearer corners have projections without bound, or are behind the camera: such a box may be
+  // anywhere.
   constexpr double kNear_m = 0.01;
   constexpr double kMargin = 1e-5;  // Float rounding.
   seen.min_z = static_cast<float>(std::max(0.0, min_z - kMargin));
@@ -63,6 +65,7 @@ std::vector<SeenPrimitive> LookAt(const Scene& scene, const RigidTransform& T_wo
     SetBounds(primitive, T_camera_primitive, one);
     seen.push_back(one);
   }
+  // Stable, so that two primitives at the same depth are always met in the same order.
   std::stable_sort(seen.begin(), seen.end(),
                    [](const auto& a, const auto& b) { return a.min_z < b.min_z; });
   return seen;
@@ -129,6 +132,8 @@ RayGrid::RayGrid(const CameraModel& camera)
       tile.x0 = x0;
       tile.y0 = y0;
       for (int i = 0; i < kTilePixels; ++i) {
+        // Tiles are whole, so that the kernel needs no tests at the border; the rays beyond it are
+        // not stored.
         const int x = std::min(x0 + i % kTileWidth, width_ - 1);
         const int y = std::min(y0 + i / kTileWidth, height_ - 1);
         tile.ray_x[i] = rays_x_.At(x, y);
@@ -159,6 +164,7 @@ void CastRays(const Scene& scene, const RayGrid& grid,
   int row_of_pose = -1;
   TileHits tile_hits;
   for (const RayGrid::Tile& tile : grid.tiles()) {
+    // Tiles go row by row: one pose serves all tiles of a row.
     if (tile.y0 != row_of_pose) {
       seen = LookAt(scene, T_world_camera(tile.y0));
       row_of_pose = tile.y0;
@@ -178,6 +184,7 @@ void CastRays(const Scene& scene, std::span<const Eigen::Vector2f> rays,
     const std::size_t count =
         std::min(rays.size() - first, static_cast<std::size_t>(RayGrid::kTilePixels));
     for (std::size_t i = 0; i < RayGrid::kTilePixels; ++i) {
+      // The rest of the last tile repeats a ray: bounds stay tight.
       const Eigen::Vector2f& ray = rays[first + std::min(i, count - 1)];
       tile.ray_x[i] = ray.x();
       tile.ray_y[i] = ray.y();

@@ -23,6 +23,8 @@ struct HitImage {
 /// Thread-safe (immutable).
 class RayGrid {
  public:
+  /// Primitives that a tile cannot meet are skipped for all of its rays. Larger: fewer are skipped;
+  /// smaller: more of that test. Not tuned.
   static constexpr int kTileWidth = 32;
   static constexpr int kTileHeight = 8;
   static constexpr int kTilePixels = kTileWidth * kTileHeight;
@@ -64,7 +66,7 @@ void CastRays(const Scene& scene, const RayGrid& grid, const RigidTransform& T_w
 void CastRays(const Scene& scene, const RayGrid& grid,
               const std::function<RigidTransform(int row)>& T_world_camera, HitImage& hits);
 
-/// What a single ray sees.
+/// Holds what a single ray meets.
 struct RayHit {
   float z_m;               ///< Metres along the optical axis; infinity = nothing.
   std::int16_t primitive;  ///< Index into Scene::primitives(); -1 = nothing.
@@ -81,6 +83,7 @@ class CameraView {
  public:
   CameraView(const Scene& scene, const RigidTransform& T_world_camera);
 
+  /// Holds what a sensor needs to know of the surface that a ray met.
   struct Surface {
     float cosine;   ///< Cosine of the angle between normal and line of sight, 0..1.
     float celsius;  ///< True temperature.
@@ -90,6 +93,7 @@ class CameraView {
   float CosineAt(int primitive, const Eigen::Vector2f& ray, float z_m) const;
 
  private:
+  /// Holds a primitive and the camera in its coordinates.
   struct Local {
     const Primitive* primitive;
     Eigen::Matrix3f R_primitive_camera;
@@ -97,7 +101,7 @@ class CameraView {
   };
   /// A point on the line of sight, in the primitive's coordinates.
   struct Point {
-    Eigen::Vector3f direction;  ///< Of the line of sight.
+    Eigen::Vector3f direction;  ///< Direction of the line of sight.
     Eigen::Vector3d p_primitive;
   };
   static Point PointAt(const Local& local, const Eigen::Vector2f& ray, float z_m);

@@ -40,7 +40,8 @@ bool IsComplete(const fs::path& path) {
 
 constexpr const char* kUnfinished = ".unfinished";
 
-/// Removes what killed runs left behind. A run that is alive writes at least every few seconds.
+/// Removes what killed runs left behind. A run that is alive writes at least every few seconds, so
+/// ten minutes of silence are the end of it.
 void RemoveLeftovers(const fs::path& cache_dir) {
   constexpr auto kAbandoned = std::chrono::minutes(10);
   const auto now = fs::file_time_type::clock::now();

@@ -88,6 +88,7 @@ struct Worker {
     thermal.valid = !raw.shutter_closed;
     const CaptureTime time = thermal.header.capture_time;
     const std::optional<CaptureTime> opening = scan.LastOpening(time);
+    // The worker's frame is used again.
     thermal.seconds_since_nuc.reset();
     if (opening) thermal.seconds_since_nuc = ToSeconds(time - *opening);
     thermal.scale = raw.thermal_scale;

@@ -9,6 +9,8 @@ namespace {
 
 /// Time that runs slowly at first: the speed is 1 - exp(-t / tau).
 double EaseIn(double time_s) {
+  // A person sets a rig in motion within a second; with a jump in speed the first frames would be
+  // lost.
   constexpr double kTau_s = 0.3;
   const double t = std::max(0.0, time_s);
   return t - kTau_s * (1.0 - std::exp(-t / kTau_s));

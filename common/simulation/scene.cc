@@ -96,6 +96,7 @@ double TrueRadiance(const Scene& scene, const BandRadiance& band, const SurfaceP
   if (material.mirror) {
     const Vector3d incoming = (point.p_world - viewer_world).normalized();
     const Vector3d outgoing = incoming - 2.0 * incoming.dot(point.n_world) * point.n_world;
+    // A reflected ray must not meet the surface that it leaves.
     constexpr double kLeaveSurface_m = 1e-6;
     const auto hit = scene.Intersect(point.p_world + kLeaveSurface_m * point.n_world, outgoing);
     // What is seen in the mirror is taken as black: one bounce only.

@@ -11,13 +11,13 @@ class ClockOptions;
 /// The three times of a simulated frame.
 struct SimulatedFrameTime {
   CaptureTime exposure;      ///< True middle of the exposure.
-  DeviceTicks device_ticks;  ///< What the camera's counter said then.
+  DeviceTicks device_ticks;  ///< The camera's counter at that moment.
   CaptureTime arrival;       ///< When the frame reached the computer.
 };
 
-/// A camera's free-running counter and the way of its frames to the computer (thesis 5.3): offset
-/// and drift of the counter; constant delay, jitter and impulses of the arrival. Exposures are
-/// equidistant in the camera's own time. Thread-compatible.
+/// Simulates a camera's free-running counter and the transport of its frames to the computer
+/// (thesis 5.3): offset and drift of the counter; constant delay, jitter and impulses of the
+/// arrival. Exposures are equidistant in the camera's own time. Thread-compatible.
 class SimulatedClock {
  public:
   /// The first exposure is at `first_exposure`, the following every 1 / `rate_hz` by the camera's

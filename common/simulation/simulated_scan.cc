@@ -65,6 +65,8 @@ void SimulatedScan::ScheduleFrames() {
     for (std::size_t i = 0; i < frames; ++i) times.push_back(clock.Next());
     return times;
   };
+  // Both clocks run before anything is rendered, so that frames can be rendered in any order and on
+  // any thread.
   depth_times_ =
       schedule(options_->depth_clock(), options_->depth().rate_hz(), start_, kDepthClock);
   thermal_times_ =
@@ -75,6 +77,7 @@ void SimulatedScan::ScheduleFrames() {
 void SimulatedScan::ScheduleShutter() {
   const ShutterOptions& shutter = options_->shutter();
   if (shutter.duration_s() <= 0.0) return;
+  // Otherwise it would be closed again before it has opened.
   const double interval_s = std::max(shutter.interval_s(), shutter.duration_s());
   const bool by_drift = shutter.expert().drift_k() > 0.0;
   if (!by_drift && shutter.interval_s() <= 0.0) return;
@@ -85,6 +88,7 @@ void SimulatedScan::ScheduleShutter() {
                                                          static_cast<double>(nuc_events_.size());
     nuc_events_.push_back({closed, closed + FromSeconds(duration_s), NucSource::kInBand});
     const double next_s = at_s + interval_s;
+    // Drift counts from when the shutter opened: that correction is the new reference.
     const double drifted_s = by_drift ? NextDrift(at_s + duration_s) : next_s;
     at_s = by_drift && shutter.interval_s() <= 0.0 ? drifted_s : std::min(next_s, drifted_s);
   }
@@ -199,6 +203,7 @@ Image<std::uint16_t> SimulatedScan::ThermalPixels(std::uint64_t frame_number,
           ? thermal_sensor_.RenderMoving(scene(), pose_after, noise, scratch.thermal)
           : thermal_sensor_.RenderMoving(SceneAround(staged_, PoseAt(time)), pose_after, noise,
                                          scratch.thermal);
+  // Added to the finished counts: the camera's own errors are not those of optics or detector.
   AddErrors(time, pixels);
   return pixels;
 }
@@ -219,6 +224,8 @@ void SimulatedScan::AddErrors(CaptureTime time, Image<std::uint16_t>& temperatur
 }
 
 ThermalHousekeeping SimulatedScan::HousekeepingAt(CaptureTime time) const {
+  // The detector of an uncooled camera runs a few kelvins above its housing; only the change of
+  // either is ever used.
   constexpr double kFpaAboveHousing_k = 4.0;
   ThermalHousekeeping housekeeping;
   housekeeping.housing_celsius = static_cast<float>(HousingCelsius(ToSeconds(time - start_)));

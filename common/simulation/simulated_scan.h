@@ -29,6 +29,7 @@ class SimulatedScan {
                                                        StagedScene staged);
   ~SimulatedScan();
 
+  /// Keeps buffers from one image to the next; one for each thread that renders.
   struct Scratch {
     DepthSensor::Scratch depth;
     ThermalSensor::Scratch thermal;

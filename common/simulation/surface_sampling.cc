@@ -61,6 +61,7 @@ class LocalSampler {
   }
 
  private:
+  // Samples lie in the middle of equal pieces, so that each stands for the same area.
   int Count(double length) const {
     return std::max(1, static_cast<int>(std::lround(length / spacing_m_)));
   }
@@ -91,6 +92,7 @@ class LocalSampler {
     const int rings = Count(kFullCircle / 2.0 * radius);
     for (int ring = 0; ring < rings; ++ring) {
       const double polar = kFullCircle / 2.0 * (ring + 0.5) / rings;
+      // Fewer points on smaller rings, so that each stands for the same area.
       const int count = Count(kFullCircle * radius * std::sin(polar));
       for (int i = 0; i < count; ++i) {
         const double angle = kFullCircle * i / count;
@@ -144,6 +146,7 @@ void AppendLittleEndian(std::uint16_t value, std::string& out) {
 }  // namespace
 
 std::vector<SurfaceSample> SampleSurface(const Scene& scene, double spacing_m) {
+  // Far above rounding and far below any gap that is meant.
   constexpr double kTouching_m = 1e-6;
   std::vector<SurfaceSample> samples;
   for (std::size_t i = 0; i < scene.primitives().size(); ++i) {
@@ -151,6 +154,7 @@ std::vector<SurfaceSample> SampleSurface(const Scene& scene, double spacing_m) {
     const int index = static_cast<int>(i);
     for (const auto& local : LocalSampler(primitive, spacing_m).Run()) {
       const Vector3d p_world = primitive.T_world_primitive * local.p;
+      // Where primitives touch or overlap, their faces inside are no surface of the scene.
       if (scene.IsCovered(p_world, index, kTouching_m)) continue;
       samples.push_back({{p_world, primitive.T_world_primitive.linear() * local.n,
                           primitive.temperature.CelsiusAt(local.p), index}});
@@ -161,12 +165,14 @@ std::vector<SurfaceSample> SampleSurface(const Scene& scene, double spacing_m) {
 
 void CountSeen(const Scene& scene, const CameraModel& camera, const RigidTransform& T_world_camera,
                double max_distance_m, SeenBy seen_by, std::span<SurfaceSample> samples) {
+  // A ray to a point meets the point's own surface, up to rounding at grazing angles.
   constexpr double kSameSurface_m = 1e-4;
   const Vector3d camera_world = T_world_camera.translation();
   const RigidTransform T_camera_world = T_world_camera.inverse();
   for (SurfaceSample& sample : samples) {
     const Vector3d to_point = sample.point.p_world - camera_world;
     const double distance = to_point.norm();
+    // The cheap tests go first; the last one walks through the scene.
     if (distance > max_distance_m || to_point.dot(sample.point.n_world) >= 0.0) continue;
     const auto pixel = Project(camera, T_camera_world * sample.point.p_world);
     if (!pixel || pixel->x() < 0.0 || pixel->y() < 0.0 || pixel->x() > camera.width - 1 ||

@@ -10,6 +10,7 @@
 namespace isotherm {
 namespace {
 
+/// Where the Gaussian ends: 0.3 % of it lie beyond, along each axis.
 constexpr double kInfluenceSigmas = 3.0;
 
 std::uint16_t CountOrNone(double value) {
@@ -36,7 +37,7 @@ Image<float> SumAlongRowsAndTranspose(const Image<float>& in, const std::vector<
   return out;
 }
 
-/// Of an image of cells; sigma of the image of pixels.
+/// Smooths an image of cells by a Gaussian of `sigma_px` pixels of the full image.
 Image<float> GaussianSum(const Image<float>& cells, double sigma_px) {
   // Means over cells, and interpolation between them, spread what is in them already.
   constexpr double kCellVariance_px2 = (kCell_px * kCell_px - 1.0) / 12.0;
@@ -51,7 +52,7 @@ Image<float> GaussianSum(const Image<float>& cells, double sigma_px) {
 
 int Cells(int pixels) { return (pixels + kCell_px - 1) / kCell_px; }
 
-/// Which two cells a pixel lies between, and how far towards the second.
+/// Says which two cells a pixel lies between, and how far towards the second.
 struct BetweenCells {
   int first, second;
   float fraction;

@@ -22,8 +22,8 @@ void AddSceneInfluence(const SceneInfluence& influence, Image<float>& celsius);
 void AddPattern(double sigma_kelvin, std::uint64_t stream, const RadiometricScale& scale,
                 Image<std::uint16_t>& counts);
 
-/// What all pixels go up and down by together at a time, kelvin: normally distributed with this
-/// standard deviation, and forgotten within twice `memory_s`.
+/// Returns by how much all pixels are too warm together at `time_s`, kelvin: normally distributed
+/// with this standard deviation, and forgotten within twice `memory_s`.
 double FlickerKelvin(double sigma_kelvin, double memory_s, double time_s, std::uint64_t stream);
 
 }  // namespace isotherm

@@ -63,11 +63,14 @@ void ThermalSensor::Expose(const Scene& scene, const PoseAfter& T_world_thermal,
   const int height = grid_.height();
   const int strip_rows = readout_s_ > 0.0 ? RayGrid::kTileHeight : height;
   const auto pose_of_rows = [&](int first_row, double age_s) {
+    // The capture time is that of the middle row; the rows above it were read before, those below
+    // later.
     const double middle = first_row + 0.5 * std::min(strip_rows, height - first_row);
     return T_world_thermal(readout_s_ * (middle / height - 0.5) - age_s);
   };
   const auto pose_of_row = [&](int first_row) { return pose_of_rows(first_row, 0.0); };
   if (readout_s_ > 0.0) {
+    // A detector that is read row by row sees each strip from where the rig is then.
     CastRays(scene, grid_, pose_of_row, scratch.hits);
   } else {
     CastRays(scene, grid_, T_world_thermal(0.0), scratch.hits);
@@ -113,6 +116,7 @@ void ThermalSensor::Blur(Scratch& scratch) const {
     for (int x = 0; x < width; ++x) {
       float sum = blur_weights_[0] * in[x];
       for (int i = 1; i <= radius; ++i) {
+        // The border's pixel stands for what lies beyond the image.
         sum += blur_weights_[static_cast<std::size_t>(i)] *
                (in[std::max(0, x - i)] + in[std::min(width - 1, x + i)]);
       }
@@ -149,6 +153,7 @@ void ThermalSensor::AddInfluence(Scratch& scratch) const {
 }
 
 Image<std::uint16_t> ThermalSensor::Detect(std::uint64_t noise_stream, Scratch& scratch) const {
+  // Before the noise: what falls on a pixel is mixed with its neighbours', its own noise is not.
   AddInfluence(scratch);
   Image<std::uint16_t> temperature_raw(grid_.width(), grid_.height());
   const auto radiance = scratch.radiance.pixels();

@@ -27,6 +27,7 @@ class ThermalSensor {
  public:
   ThermalSensor(const CameraModel& camera, const SimulatedThermalOptions& options);
 
+  /// Keeps buffers from one image to the next.
   struct Scratch {
     HitImage hits;
     PixelAverage::Scratch average;

@@ -23,6 +23,7 @@ EnvelopeClock::EnvelopeClock(const EnvelopeOptions& options)
       median_(static_cast<std::size_t>(options.median_window)) {}
 
 Stamp EnvelopeClock::Process(DeviceTicks ticks, CaptureTime arrival) {
+  // A camera that was plugged in again counts from another zero, which would tear the line.
   if (last_ticks_ && IsFromAnotherCounter(ticks, arrival)) {
     ++resets_;
     Restart();
@@ -46,6 +47,7 @@ bool EnvelopeClock::IsFromAnotherCounter(DeviceTicks ticks, CaptureTime arrival)
   if (ticks < *last_ticks_) return true;
   if (!warm()) return false;
   const Sample sample = Relative(ticks, arrival);
+  // A frame cannot arrive before it was captured: one far below the line is of another counter.
   return sample.y < line_.At(sample.x) - options_.early_limit_s;
 }
 
@@ -57,6 +59,7 @@ void EnvelopeClock::BeginCounter() {
 
 EnvelopeClock::Sample EnvelopeClock::Relative(DeviceTicks ticks, CaptureTime arrival) const {
   const Nanoseconds device = ticks - first_ticks_;
+  // Relative to the first frame: doubles of seconds since 1970 resolve no microseconds.
   return {.x = ToSeconds(device), .y = ToSeconds(arrival - first_arrival_ - device)};
 }
 
@@ -73,12 +76,14 @@ void EnvelopeClock::Add(const Sample& sample) {
   line_.Add(sample);
   median_.Add(FromSeconds(sample.y));
   recent_.push_back(sample);
+  // One sample before the window stays, so that Floor() knows whether the window is full.
   while (recent_[1 < recent_.size() ? 1 : 0].x < sample.x - options_.residual_window_s)
     recent_.pop_front();
 }
 
 Stamp EnvelopeClock::WarmUp(double now_s) {
   const double median_s = ToSeconds(median_.Median());
+  // After a restart the excess is known from before.
   estimate_s_ = median_s - median_excess_s_;
   estimated_at_s_ = now_s;
   Stamp stamp{.time = StampTime(now_s), .sigma = median_.Sigma()};
@@ -95,6 +100,8 @@ void EnvelopeClock::Follow(double now_s) {
   const double expected_s = estimate_s_ + line_.slope() * elapsed_s;
   const double limit_s = elapsed_s * (caught_up_ ? 1e-6 * options_.max_slew_ppm : kCatchUpSlew);
   const double behind_s = line_.At(now_s) - expected_s;
+  // Stamps must not jump when the line is fitted anew: intervals between frames would be wrong, and
+  // the tracker uses them.
   estimate_s_ = expected_s + std::clamp(behind_s, -limit_s, limit_s);
   estimated_at_s_ = now_s;
   caught_up_ = caught_up_ || (line_.groups() >= kSettledGroups &&

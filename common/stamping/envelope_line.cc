@@ -46,6 +46,8 @@ void EnvelopeLine::TakeTurns(Point sample) {
     hull_.Add(sample);
     while (!groups_.empty() && groups_.front().x < hull_.first_x()) groups_.pop_front();
   }
+  // A hull cannot forget points: a second one begins when the first is as old as the window, and
+  // takes over one window later. So the line rests on one to two windows.
   if (sample.x - hull_.first_x() >= window_s_) next_hull_.Add(sample);
 }
 
@@ -66,6 +68,8 @@ double EnvelopeLine::Reach(const LowerHull::Line& base) const {
 }
 
 void EnvelopeLine::Fit() {
+  // The hull rests on single frames; the line is fitted to all groups that are near it, which is
+  // less noisy.
   const LowerHull::Line base = hull_.Below((hull_.first_x() + hull_.last_x()) / 2.0, max_slope_);
   const double reach = Reach(base);
   const auto counts = [&](const Point& lowest) { return lowest.y - base.At(lowest.x) <= reach; };
@@ -90,6 +94,7 @@ void EnvelopeLine::Fit() {
   }
   moment_ = xx;
   slope_ = xx > 0.0 ? std::clamp(xy / xx, -max_slope_, max_slope_) : 0.0;
+  // Two points always lie on their line.
   variance_ = used_ < 3 ? 0.0
                         : std::max(0.0, yy - 2.0 * slope_ * xy + slope_ * slope_ * xx) /
                               static_cast<double>(used_ - 2);

@@ -37,6 +37,8 @@ LowerHull::Line LowerHull::Below(double x, double max_slope) const {
     const Point& left = *(after - 1);
     slope = std::clamp((right.y - left.y) / (right.x - left.x), -max_slope, max_slope);
   }
+  // With the slope limited, the line may no longer pass through the edge: it is moved down until it
+  // is below all corners.
   double at_zero = std::numeric_limits<double>::infinity();
   for (const Point& point : points_) at_zero = std::min(at_zero, point.y - slope * point.x);
   return {.slope = slope, .at_zero = at_zero};

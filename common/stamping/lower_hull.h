@@ -9,10 +9,12 @@ namespace isotherm {
 /// Lower convex hull of points that come in order of x. Thread-compatible.
 class LowerHull {
  public:
+  /// A point of the plane: x is the device's clock, y the host's.
   struct Point {
     double x = 0.0;
     double y = 0.0;
   };
+  /// A line of the plane, y = at_zero + slope * x.
   struct Line {
     double slope = 0.0;
     double at_zero = 0.0;

@@ -16,6 +16,7 @@ constexpr double kMedianEfficiency = 1.2533;
 Nanoseconds MedianOfSorted(const std::vector<Nanoseconds>& sorted) {
   const std::size_t middle = sorted.size() / 2;
   if (sorted.size() % 2 == 1) return sorted[middle];
+  // Not the sum of both over two, which could overflow.
   return sorted[middle - 1] + (sorted[middle] - sorted[middle - 1]) / 2;
 }
 
@@ -50,6 +51,7 @@ Nanoseconds SlidingMedian::Sigma() const {
   const double spread_ns = kSigmaPerMad * static_cast<double>(MedianOfSorted(deviations).count());
   const double sigma_ns =
       kMedianEfficiency * spread_ns / std::sqrt(static_cast<double>(sorted_.size()));
+  // A quiet computer may show no spread at all, which does not make ticks exact.
   return std::max(kTickResolution, Nanoseconds(std::llround(sigma_ns)));
 }
 
@@ -65,6 +67,7 @@ void MedianClock::BeginCounter() {
 }
 
 Stamp MedianClock::Process(DeviceTicks ticks, CaptureTime arrival) {
+  // A counter that goes back is another one.
   if (last_ticks_ && ticks < *last_ticks_) BeginCounter();
   last_ticks_ = ticks;
 

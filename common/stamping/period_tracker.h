@@ -41,11 +41,15 @@ class PeriodTracker {
   void BeginClock();
   DeviceTicks CountedTicks() const;
 
+  /// Says when a frame arrived.
   struct Arrival {
     std::uint64_t frame_number;
     CaptureTime time;
   };
 
+  /// Intervals whose median is the first period: a second at 30 Hz. With a jitter of milliseconds
+  /// the median is then within kMaxPeriodError_ppm; fewer frames begin sooner and slip more often.
+  /// Not tuned.
   static constexpr std::size_t kWarmUpFrames = 32;
   const EnvelopeOptions options_;
   SlidingMedian intervals_{kWarmUpFrames};

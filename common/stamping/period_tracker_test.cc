@@ -35,8 +35,8 @@ class PeriodTrackerTest : public testing::Test {
   }
 
   PeriodTracker tracker_{EnvelopeOptions{}};
-  std::int64_t exposure_ = 0;  ///< What the camera did, ...
-  std::uint64_t number_ = 0;   ///< ... and what the source counted.
+  std::int64_t exposure_ = 0;  ///< Exposures that the camera made.
+  std::uint64_t number_ = 0;   ///< The source's count of frames.
   Nanoseconds begin_{0};       ///< Later exposures are later by this.
   Stamp stamp_;
 };

@@ -3,6 +3,8 @@
 namespace isotherm {
 
 ClockReading ReadClocks(const Clock& clock) {
+  // The two clocks are read one after the other; of three readings the one that took least was not
+  // interrupted in between.
   constexpr int kTries = 3;
   ClockReading best;
   Nanoseconds shortest = Nanoseconds::max();

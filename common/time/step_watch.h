@@ -36,7 +36,11 @@ class StepWatch {
   /// Wall clock minus time line: what to add to a capture time to get the wall clock's.
   Nanoseconds total() const { return total_; }
 
+  /// chrony slews offsets of this size and does not step them. Smaller: an interrupted reading
+  /// looks like a step; larger: a step moves stamps unnoticed by this much.
   static constexpr Nanoseconds kMinStep = std::chrono::milliseconds(1);
+  /// Readings in a row, a frame apart: one that was interrupted between the clocks does not repeat
+  /// itself. Not tuned.
   static constexpr int kConfirmations = 3;
 
  private:

@@ -63,7 +63,8 @@ std::optional<RefusalCause> FromWirePoses(const isotherm_wire_Feedback& from, Fe
   return std::nullopt;
 }
 
-/// The upper triangle of 6 x 6 has this many.
+/// Numbers of the upper triangle of a 6 x 6 matrix. They cross the link as floats: Cyclone DDS
+/// 0.10.2 checks a sequence of 8-byte elements only up to half of its length.
 constexpr std::size_t kCovarianceNumbers = 21;
 
 /// The upper triangle, row by row.
@@ -92,6 +93,7 @@ std::optional<RefusalCause> FromWireLists(const isotherm_wire_Feedback& from, Fe
     to->latencies.push_back(
         {.stage = ReadText(latency.stage), .p50_s = latency.p50_s, .p99_s = latency.p99_s});
   }
+  // The wire keeps its old word until its next major version (see docs/subscribing.md).
   const auto image = Elements(from.picture);
   to->image.assign(image.begin(), image.end());
   return std::nullopt;
@@ -148,6 +150,7 @@ void ToWire(const Receipt& from, isotherm_wire_Receipt* to) {
 std::optional<RefusalCause> FromWire(const isotherm_wire_Receipt& from, Receipt* to) {
   to->session = from.session;
   to->clock_ping = from.clock_ping;
+  // Each enum is checked against its last value before the cast: others would be undefined.
   if (const auto cause = CheckEnum(from.verdict, SessionVerdict::kOtherRig)) return cause;
   to->verdict = static_cast<SessionVerdict>(from.verdict);
   if (const auto cause = FromWireReceipt(from.depth, &to->depth)) return cause;
@@ -203,6 +206,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_Feedback& from, Feedbac
   to->model = FromWireFractions(from.model);
   to->view = FromWireFractions(from.view);
   const std::span<const float> covariance = Elements(from.pose_covariance);
+  // An empty list is a ground that does not know it, or one of an earlier minor version.
   if (!covariance.empty() && covariance.size() != kCovarianceNumbers)
     return RefusalCause::kOutOfRange;
   if (!covariance.empty()) to->pose_covariance = FromWireCovariance(covariance);

@@ -42,6 +42,7 @@ EncodedImage CopyImage(const isotherm_wire_PackedImage& packed) {
   image.encoding = static_cast<Encoding>(packed.encoding);
   image.width = static_cast<int>(packed.width);
   image.height = static_cast<int>(packed.height);
+  // Copied: the middleware reuses its buffer as soon as the sample is given back.
   image.payload.assign(packed.payload._buffer, packed.payload._buffer + packed.payload._length);
   return image;
 }
@@ -57,9 +58,10 @@ FrameFields FieldsOf(const isotherm_wire_FrameStamp& stamp,
           .payload_bytes = image.payload._length};
 }
 
-/// What a frame's counts mean. An old edge does not say, and sends centi-kelvin.
+/// Reads the scale of a frame's counts. An old edge does not send one: its counts are centi-kelvin.
 std::optional<RefusalCause> FromWireScale(const isotherm_wire_ThermalFrame& from,
                                           EncodedThermalFrame* to) {
+  // Centi-kelvin are said by the encoding alone, so that a scale beside it cannot contradict it.
   if (!IsScaled(to->image.encoding)) return std::nullopt;
   if (!from.has_scale) return RefusalCause::kOutOfRange;
   to->scale = {from.kelvin_per_count, from.offset_kelvin};
@@ -155,6 +157,7 @@ std::optional<RefusalCause> FromWire(const isotherm_wire_OutsidePose& from,
   const isotherm_wire_Pose& T = from.t_reference_body;
   pose.translation_m = {T.tx, T.ty, T.tz};
   pose.rotation = Eigen::Quaterniond(T.qw, T.qx, T.qy, T.qz);
+  // Out of range or not, it goes to the odometry stream, which counts what is wrong by cause.
   pose.position_sigma_m =
       from.has_position ? from.position_sigma_m : ExternalOdometry::kNotMeasured;
   pose.rotation_sigma_rad = from.rotation_sigma_rad;

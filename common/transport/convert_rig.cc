@@ -10,7 +10,8 @@
 namespace isotherm {
 namespace {
 
-constexpr double kQuaternionTolerance = 1e-3;  // Float rounding of a sender is far below.
+constexpr double kQuaternionTolerance =
+    1e-3;  // Float rounding of a sender is far below; a pose that is none is far above.
 
 isotherm_wire_Camera ToWireCamera(const CameraModel& camera) {
   return {.width = static_cast<std::uint32_t>(camera.width),
@@ -87,6 +88,8 @@ void ToWireSensors(const Rig& rig, isotherm_wire_Rig* to) {
 }
 
 void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
+  // Edges before wire 2.2 do not send these; their members read as zeros, which would be wrong
+  // values rather than the rig's defaults.
   if (!from.has_sensors) return;
   rig->depth_sensor = {.near_range_m = from.depth_sensor.near_range_m,
                        .min_depth_m = from.depth_sensor.min_depth_m,
@@ -101,6 +104,7 @@ void FromWireSensors(const isotherm_wire_Rig& from, Rig* rig) {
 }
 
 void FromWireScale(const isotherm_wire_Rig& from, Rig* rig) {
+  // As with the sensors: an earlier edge does not send it, and centi-kelvin is its default.
   if (from.has_thermal_scale) rig->thermal_scale = {from.thermal_scale, from.thermal_offset};
 }
 
@@ -142,6 +146,7 @@ isotherm_wire_Pose ToWirePose(const RigidTransform& pose) {
 std::optional<RigidTransform> FromWirePose(const isotherm_wire_Pose& pose) {
   const Eigen::Vector3d t(pose.tx, pose.ty, pose.tz);
   const Eigen::Quaterniond q(pose.qw, pose.qx, pose.qy, pose.qz);
+  // Written so that NaN is refused, too.
   if (!t.allFinite() || !(std::abs(q.norm() - 1.0) < kQuaternionTolerance)) return std::nullopt;
   return MakeTransform(t, q);
 }

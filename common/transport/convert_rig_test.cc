@@ -33,7 +33,7 @@ TEST(ConvertRigTest, SensorsArriveAsTheyWereWritten) {
   EXPECT_FALSE(received.rig.thermal_sensor.lens.has_value());
 }
 
-/// What ends before them, or within them, reads as zeros from there on.
+/// In a sample that ends before the sensors, or within them, the rest reads as zeros.
 TEST(ConvertRigTest, AnEdgeBefore22HasTheSensorsOfAnOldRigFile) {
   isotherm_wire_Rig wire{};
   ToWire(SomeRig(), &wire);
@@ -97,8 +97,8 @@ TEST(ConvertRigTest, AThermalScaleThatCannotBeIsRefused) {
   }
 }
 
-/// What ends before the scale, or within it, reads as zeros from there on: nobody knows what its
-/// counts mean.
+/// In a sample that ends before the scale, or within it, the rest reads as zeros: nobody knows what
+/// its counts mean.
 TEST(ConvertThermalFrameTest, AScaledImageWithoutItsScaleIsRefused) {
   EncodedThermalFrame sent;
   sent.image = {Encoding::kScaledRaw16, 2, 1, {1, 2, 3, 4}};

@@ -29,6 +29,8 @@ void ToWireStream(const StreamStatus& from, isotherm_wire_StreamStatus* to) {
 
 std::optional<RefusalCause> FromWireStream(const isotherm_wire_StreamStatus& from,
                                            StreamStatus* to) {
+  // What cannot be is refused here, where it arrives, so that nobody behind has to doubt it: sums
+  // of these counters are compared with what was received.
   if (from.next_frame_number > kMaxFrameNumber + 1 || from.published > from.next_frame_number) {
     return RefusalCause::kImpossibleNumber;
   }
@@ -59,6 +61,7 @@ std::optional<RefusalCause> FromWireCamera(const isotherm_wire_CameraReport& fro
   const auto infinite =
       CheckFiniteOrUnknown({from.stamping_p50_s, from.stamping_p99_s, from.stamp_sigma_s});
   if (infinite) return infinite;
+  // NaN passes: it is not known.
   if (from.stamp_sigma_s < 0.0) return RefusalCause::kOutOfRange;
   *to = {.state = static_cast<CameraState>(from.state),
          .failures = from.failures,
@@ -97,6 +100,7 @@ std::optional<RefusalCause> FromWireClock(const isotherm_wire_EdgeStatus& from, 
                .max_error_s = from.clock_error_s,
                .steps = from.clock_steps,
                .step_sum_s = from.clock_step_sum_s};
+  // An edge that has not been asked, or is older than the question, sends zeros.
   if (from.echo_ping == 0) return std::nullopt;
   if (const auto cause = CheckClockTime(from.echo_received_ns)) return cause;
   if (const auto cause = CheckClockTime(from.echo_sent_ns)) return cause;
@@ -112,6 +116,8 @@ void ToWireNuc(const NucReport& from, isotherm_wire_EdgeStatus* to) {
   to->nuc_policy = static_cast<std::uint8_t>(from.policy);
   to->nuc_seconds_since = from.seconds_since;
   to->nuc_closings_per_minute = from.closings_per_minute;
+  // The wire keeps its old word until its next major version: members are compared by name before
+  // two versions talk.
   to->nuc_closed_share = from.closed_fraction;
   to->nuc_storm = from.storm;
   to->nuc_warming_up = from.warming_up;
@@ -164,6 +170,7 @@ void ToWire(const EdgeStatus& from, isotherm_wire_EdgeStatus* to) {
 }
 
 std::optional<RefusalCause> FromWire(const isotherm_wire_EdgeStatus& from, EdgeStatus* to) {
+  // Numbers and enumerations first, and nothing is allocated before they are right.
   if (const auto cause = CheckClockTime(from.time_ns)) return cause;
   if (const auto cause = CheckEnum(from.scan_state, ScanState::kEnded)) return cause;
   if (const auto cause = CheckEnum(from.publish_policy, PublishPolicy::kLossless)) return cause;

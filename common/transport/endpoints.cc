@@ -65,6 +65,7 @@ PeerHandle TakePeer(dds_builtintopic_endpoint_t* endpoint) {
     peer = (peer ^ byte) * 0x100000001B3ULL;
   }
   dds_builtintopic_free_endpoint(endpoint);
+  // 0 means that nobody is known.
   return peer == 0 ? 1 : peer;
 }
 
@@ -104,6 +105,8 @@ Status Writer<Message>::Write(std::string_view edge_id, const Message& message) 
   const dds_return_t code = dds_write(writer_.value(), &sample.wire);
   if (code == DDS_RETCODE_OK) return OkStatus();
   const std::string text = fmt::format("{}: {}", TopicName(kTopic), dds_strretcode(code));
+  // Callers tell the two apart: a frame that met slow readers is dropped and counted, one that is
+  // too large will be each time.
   if (code == DDS_RETCODE_TIMEOUT) return Unavailable(text + " (readers too slow)");
   if (code == DDS_RETCODE_BAD_PARAMETER) return InvalidArgument(text + " (message too large)");
   return Internal(text);
@@ -118,6 +121,7 @@ int Writer<Message>::matched_readers() const {
 
 template <typename Message>
 bool Writer<Message>::Reaches(PeerHandle peer) const {
+  // More readers of one topic than a network of rigs has; those beyond are not known.
   constexpr std::size_t kMaxReaders = 64;
   std::array<dds_instance_handle_t, kMaxReaders> readers{};
   const dds_return_t count =
@@ -163,6 +167,7 @@ struct Reader<Message>::Impl {
     Received<Message> received;
     received.writer = writer;
     received.edge_id = ReadText(sample.wire.edge_id);
+    // Everything from the link is checked before it is used; the sender may be anybody.
     if (const auto cause = isotherm::Receive(sample.wire, &received.message)) {
       refusals->Add(*cause, fmt::format("topic={} edge_id={}", TopicName(TopicOf<Message>::kId),
                                         received.edge_id));
@@ -206,6 +211,7 @@ int Reader<Message>::Take(const std::function<void(Received<Message>&&)>& handle
   while (taken < max_samples) {
     void* samples[1] = {&impl_->sample.wire};
     dds_sample_info_t info{};
+    // One at a time: a batch would keep as many large samples alive at once.
     if (dds_take(impl_->reader.value(), samples, &info, 1, 1) <= 0) break;
     ++taken;
     if (info.instance_state == DDS_NOT_ALIVE_NO_WRITERS_INSTANCE_STATE) {

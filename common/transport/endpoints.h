@@ -44,10 +44,11 @@ class Writer {
 };
 
 template <typename Message>
+/// Holds a message and where it came from.
 struct Received {
   std::string edge_id;
   Message message;
-  std::uint64_t writer = 0;  ///< Which one wrote it; for Reader::PeerOf.
+  std::uint64_t writer = 0;  ///< The writer that it came from, for Reader::PeerOf.
 };
 
 /// Reads one topic. What cannot be right is refused before anything is allocated for it, and

@@ -11,6 +11,7 @@
 namespace isotherm {
 namespace {
 
+// `waiting` is called this often: callers feed the service manager's watchdog in it.
 constexpr Nanoseconds kReportInterval = std::chrono::milliseconds(250);
 
 void Sleep(const std::stop_token& stop, Nanoseconds duration) {

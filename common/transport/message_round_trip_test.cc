@@ -160,7 +160,7 @@ TEST_F(MessageRoundTripTest, RigArrivesAsItWasWritten) {
   EXPECT_EQ(rig.depth.rate_hz, 30.0);
 }
 
-/// What a source says is assessed where it is used, so wrong numbers arrive as they are.
+/// Poses are assessed where they are used, so wrong numbers arrive as they are.
 TEST_F(MessageRoundTripTest, ExternalOdometryArrivesAsItWasWrittenRightOrWrong) {
   ExternalOdometrySample sent{.session = 3, .number = 12, .pose = {}};
   sent.pose.source = "vio";

@@ -24,9 +24,12 @@ struct Profile {
   dds_duration_t liveliness;
 };
 
+// See MakeReaderQos. Sixteen samples of small topics are kilobytes.
 constexpr std::int32_t kMinReaderHistory = 16;
 constexpr dds_duration_t kFrameBlocking = kMaxFrameBlocking.count();
 constexpr dds_duration_t kSmallBlocking = kMaxMessageBlocking.count();
+// Smaller: a peer on a busy network or computer counts as gone while it is there; larger: a link
+// that was cut is noticed later. Not tuned.
 constexpr dds_duration_t kLease = DDS_SECS(1);
 
 // The major version is in the names, so that what a peer of another one sends is not even

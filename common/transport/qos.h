@@ -17,11 +17,15 @@ inline constexpr int kMaxFlowWindowFrames = kFrameHistory - 4;
 /// Odometry poses that are kept per rig: more than two seconds at 200 Hz.
 inline constexpr int kExternalOdometryHistory = 512;
 
-/// The longest time that a write of a frame may wait for room in the middleware's buffers, ...
+/// A write of a frame waits at most this long for room in the middleware's buffers: three frames at
+/// 30 Hz. Longer: the publish thread notices later that the link is stuck; shorter: a short stall
+/// of the network costs frames. Not tuned.
 inline constexpr Nanoseconds kMaxFrameBlocking = std::chrono::milliseconds(100);
-/// ... and a write of anything else.
+/// A write of any other message waits at most this long. The edge's time to stop contains it
+/// (stop_limits.h).
 inline constexpr Nanoseconds kMaxMessageBlocking = std::chrono::milliseconds(50);
 
+/// Frees a set of qualities of service.
 struct DdsQosDeleter {
   void operator()(dds_qos* qos) const;
 };

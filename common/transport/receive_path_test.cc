@@ -118,7 +118,7 @@ class Mutator {
   std::mt19937_64 random_{kSeed};
 };
 
-/// What follows holds for a message that our checks let through, written down anew.
+/// The rest holds for a message that our checks let through, written down anew.
 template <typename Enum>
 bool IsOneOf(Enum value, int count) {
   return static_cast<int>(value) < count;

@@ -9,11 +9,15 @@ namespace {
 constexpr std::uint32_t kMaxEdgePixels = 16384;  // As for CameraModel.
 // Codes may expand noise a little; twice the raw size is beyond all of them.
 constexpr std::size_t kMaxBytesPerPixel = 4;
+// Tables that a code carries besides its pixels.
 constexpr std::size_t kMaxCodeOverheadBytes = 4096;
 constexpr double kAbsoluteZero_celsius = -kCelsiusZero_k;
 constexpr double kMaxHousekeeping_celsius = 1000.0;  // No camera survives that.
+// Thirty years: a camera's counter may be wild, but must not overflow a clock.
 constexpr double kMaxSecondsSinceNuc = 1e9;
+// A micrometre per unit: 16 bit would reach 6 cm.
 constexpr double kMaxDepthScale = 1e6;
+// Later times are bytes that are none, and would overflow sums of times.
 constexpr std::int64_t kYear2100_ns = 4'102'444'800'000'000'000;
 constexpr float kFractionTolerance = 1e-3F;  // Rounding of four floats.
 

@@ -18,6 +18,7 @@ struct isotherm_wire_Hello;
 
 namespace isotherm {
 
+/// Names the topics of the link; TopicName and MakeQos say what they are on the wire.
 enum class TopicId : std::uint8_t {
   kDepth,
   kThermal,

@@ -16,8 +16,11 @@ namespace {
 // Blocks below this size come from the heap, which keeps them, instead of from the kernel each
 // time.
 constexpr int kMmapThresholdBytes = 32 << 20;
+// Freed memory at the heap's end goes back to the kernel only beyond this, so that frames do not
+// fault their pages in again.
 constexpr int kTrimThresholdBytes = 256 << 20;
 
+// The middleware may complain with every packet; what is left out is counted in the next line.
 constexpr int kMaxLogLinesPerSecond = 10;
 
 LogLevel LevelOf(std::uint32_t category) {

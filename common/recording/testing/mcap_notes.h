@@ -54,6 +54,7 @@ class McapTest : public ::testing::Test {
     ASSERT_TRUE(writer->Close().ok());
   }
 
+  /// Holds everything that a reader finds in a file.
   struct Contents {
     FileIndex index;
     std::vector<Note> notes;

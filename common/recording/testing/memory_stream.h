@@ -17,6 +17,7 @@ namespace isotherm {
 /// a real disk.
 class MemorySink final : public ByteSink {
  public:
+  /// Plays the disk; it can be full, and it knows what a power cut would leave.
   struct Disk {
     std::vector<std::uint8_t> bytes;
     std::size_t capacity = std::numeric_limits<std::size_t>::max();
@@ -44,6 +45,7 @@ class MemorySink final : public ByteSink {
   std::shared_ptr<Disk> disk_;
 };
 
+/// Reads a file that lies in memory.
 class MemorySource final : public ByteSource {
  public:
   explicit MemorySource(std::vector<std::uint8_t> bytes) : bytes_(std::move(bytes)) {}

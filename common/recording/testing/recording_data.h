@@ -149,6 +149,7 @@ inline ReadBack ReadAll(RecordingReader& reader) {
 }
 
 inline CaptureTime TimeOf(const RecordedItem& item) {
+  /// Finds the time of each kind of item.
   struct Visitor {
     CaptureTime operator()(const RecordedDepth& depth) { return depth.frame.header.capture_time; }
     CaptureTime operator()(const RecordedThermal& thermal) {
