@@ -25,6 +25,8 @@ class CameraLink {
   CameraLink(const CameraLink&) = delete;
   CameraLink& operator=(const CameraLink&) = delete;
 
+  /// Says what came within the timeout. kClosed: the other process has ended, or sent bytes that
+  /// are no message.
   enum class Received { kMessage, kNothingYet, kClosed };
   /// Waits at most `timeout`.
   Received Receive(FromCamera* message, Nanoseconds timeout);

@@ -48,6 +48,7 @@ Result<pid_t> Spawn(const std::string& program, const std::vector<std::string>& 
   posix_spawn_file_actions_adddup2(&actions, pixels, spare + 1);
   posix_spawn_file_actions_adddup2(&actions, spare, kCameraLinkDescriptor);
   posix_spawn_file_actions_adddup2(&actions, spare + 1, kCameraPixelsDescriptor);
+  // It inherits neither sockets nor files of the edge.
   posix_spawn_file_actions_addclosefrom_np(&actions, kCameraPixelsDescriptor + 1);
   pid_t pid = -1;
   const int error =
@@ -159,6 +160,7 @@ Result<SourceItem> CameraProcess::Read(std::stop_token stop) {
     last_heard_ = clock_.SteadyNow();
     return Take(message);
   }
+  // The process reports even without frames; silence means that its library hangs.
   if (clock_.SteadyNow() - last_heard_ < settings_.hang_timeout) return NothingYet{};
   Reap(Nanoseconds(0));
   return Err(Unavailable(fmt::format("its library hung for {:.1f} s and was killed",

@@ -34,6 +34,7 @@ namespace isotherm {
 /// it, and no other is started until it is gone. Thread-bound.
 class CameraProcess final : public FrameSource {
  public:
+  /// Says which program is started and how long it may be silent.
   struct Settings {
     std::string name;  ///< For messages.
     std::string program;

@@ -18,6 +18,9 @@ namespace isotherm {
 /// ended, however it did. Thread-compatible.
 class PixelSlots {
  public:
+  /// A quarter of a second at 30 Hz for the edge to take frames. More: memory (8 MB a slot, if
+  /// used) and older frames; fewer: a busy computer loses frames (docs/performance-log.md counts
+  /// them).
   static constexpr int kSlots = 8;
   /// 2048 x 2048: more than any camera here has.
   static constexpr std::size_t kPixelsPerSlot = std::size_t{1} << 22U;

@@ -173,11 +173,13 @@ Status ApplyCommandLine(const CommandLine& line, EdgeOptions& options) {
     source.set_kind(CAMERAS);
     source.mutable_depth_camera()->set_uri(*line.depth_camera);
   }
+  // Behind the options that imply a source: what is said outright wins.
   if (line.source) source.set_kind(KindNamed(*line.source));
   if (line.rig) source.set_rig_file(*line.rig);
   if (line.rate) source.set_rate(*line.rate);
   if (line.record) options.mutable_spool()->set_record(*line.record);
   if (line.edge_id) options.mutable_link()->set_edge_id(*line.edge_id);
+  // After all that may name it. Two rigs with the default of one file would push each other out.
   if (options.link().edge_id().empty()) options.mutable_link()->set_edge_id(HostRigName());
   if (line.domain) options.mutable_link()->set_domain(*line.domain);
   if (line.wait_for_ground) options.mutable_link()->set_wait_for_ground(true);
@@ -198,10 +200,12 @@ int Main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
+    // CLI11 has exit codes of its own; --help and --version are 0.
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
   SetLogLevel(line.shared.log_level);
   LimitProtobufLog();
+  // Before any thread or signal handler of the edge exists: the child must be nothing but a camera.
   if (!line.camera_process.empty()) {
     return RunCameraProcess(line.camera_process, line.camera_options, SystemClock());
   }

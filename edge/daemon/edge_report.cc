@@ -43,6 +43,7 @@ std::string Equation(std::string_view done, const SensorCounters& counters, std:
   if (counters.left_out != 0) {
     text += fmt::format(" + no free slot in the camera's process {}", counters.left_out);
   }
+  // Never seen if the counters are right: said rather than hidden.
   if (unaccounted != 0) text += fmt::format(" + unaccounted {}", unaccounted);
   return text;
 }
@@ -84,6 +85,7 @@ StreamStatus ToStreamStatus(const SensorCounters& counters, double rate_hz) {
 }
 
 std::uint64_t ToReport(std::optional<std::uint64_t> disk_free_bytes) {
+  // On the wire 0 stands for "not known", so that a full disk is one byte.
   return disk_free_bytes ? std::max<std::uint64_t>(*disk_free_bytes, 1) : 0;
 }
 
@@ -126,6 +128,8 @@ std::optional<std::string> ClockProblem(const KernelClock& clock) {
            "as UTC, and the recording says so. Install chrony with a server that the rig reaches "
            "(deploy/chrony, docs/timing.md); chronyc tracking says how it is doing";
   }
+  // The kernel's offset is what is still being slewed away; its error is what the time service
+  // estimates.
   const double off_s = std::max(std::abs(clock.offset_s), clock.estimated_error_s);
   if (!(off_s > kDoubtfulClock_s)) return std::nullopt;
   return fmt::format(
@@ -167,6 +171,8 @@ std::vector<std::string> StatusParts(const EdgeStatus& status, const FrameCounte
   std::vector<std::string> ground = {"ground: absent"};
   if (ground_present) ground = {"ground: no feedback yet"};
   if (ground_present && feedback) ground = FeedbackParts(*feedback);
+  // The terminal shows as many parts as fit: first what needs the operator, last what is only nice
+  // to know.
   std::vector<std::string> parts = {ground.front()};
   parts.insert(parts.end(), problems.begin(), problems.end());
   for (const auto& [name, camera] :

@@ -10,9 +10,14 @@
 namespace isotherm {
 namespace {
 
+/// The rate that the ground counts on: it takes an edge that is silent for two of these for gone
+/// (RigGate::kSilence).
 constexpr Nanoseconds kStatusInterval = std::chrono::seconds(1);
+/// A line in the journal this often shows that all is well, and fills no disk.
 constexpr Nanoseconds kLogInterval = std::chrono::seconds(10);
-// A camera that works sends something, or its source says that it is lost.
+// A camera that works sends something within this time, or its source says that it is lost. Longer
+// than any correction of a thermal camera and any stall limit of the sources; shorter, and the
+// service manager restarts an edge whose camera is only slow.
 constexpr Nanoseconds kNoFrames = std::chrono::seconds(10);
 
 }  // namespace
@@ -45,9 +50,11 @@ Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher
 void Housekeeping::Tick() {
   pipeline_.AnswerCommands();
   const SteadyTime now = clock_.SteadyNow();
+  // First: what follows may take its time on a slow terminal.
   FeedWatchdog(now);
   ShowFeedback();
   if (now < next_status_) return;
+  // From the deadline and not from now, so that the rate holds.
   next_status_ += kStatusInterval;
   const bool ended = pipeline_.finished();
   const EdgeStatus before = std::exchange(status_, {});
@@ -183,6 +190,7 @@ std::vector<std::string> Housekeeping::Problems() const {
 
 void Housekeeping::ReportStatus() {
   std::vector<std::string> problems = Problems();
+  // Said when it changes: the service manager shows the last text until then.
   if (problems == reported_) return;
   reported_ = std::move(problems);
   std::string text;

@@ -106,6 +106,8 @@ std::unique_ptr<FrameSource> MakeCameraProcess(Sensor sensor, const SourceOption
 int RunCameraProcess(const std::string& sensor_name, const std::string& source_options,
                      const Clock& clock) {
   SourceOptions options;
+  // The parent checked these options; they are parsed again because they came through a command
+  // line.
   Status status = ParseTextProto(source_options, "--camera-options", options);
   const Sensor sensor = sensor_name == "depth" ? Sensor::kDepth : Sensor::kThermal;
   if (status.ok()) {

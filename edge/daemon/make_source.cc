@@ -24,11 +24,13 @@ std::unique_ptr<SupervisedSource> Supervise(std::unique_ptr<FrameSource> source,
   auto supervised = std::make_unique<SupervisedSource>(
       std::move(source), options.frame_check(), context.clock, count_as(FrameFate::kCaptured),
       count_as(FrameFate::kRejected));
+  // A camera of another size or serial number must not be used with this calibration.
   if (context.calibration) supervised->Expect(*context.calibration);
   return supervised;
 }
 
 void Report(Sensor sensor, const std::string& problem, ToldProblems& told) {
+  // The source is made again and again until a camera can be used; each problem is told once.
   if (std::exchange(told[sensor], problem) == problem) return;
   LOG(Edge, Warning) << problem;
 }
@@ -61,6 +63,7 @@ Result<std::unique_ptr<FrameSource>> MakeCameras(const EdgeOptions& options,
   CameraPair::Queue queue;
   queue.capacity = static_cast<std::size_t>(options.source().expert().capture_queue_frames());
   queue.policy = source.rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
+  // A frame that is dropped here reaches neither the recording nor the link: it counts for both.
   queue.on_drop = [&counters = context.counters](Sensor sensor) {
     counters.Count(sensor, FrameFate::kRecordQueueFull);
     counters.Count(sensor, FrameFate::kPublishQueueFull);

@@ -8,6 +8,7 @@
 namespace isotherm {
 namespace {
 
+// As long as the key of the link's topics.
 constexpr std::size_t kMaxBytes = 32;
 
 }  // namespace

@@ -19,15 +19,15 @@ inline constexpr Nanoseconds kTick = milliseconds(50);
 /// Time to let the ground confirm the last frames when a signal says to leave.
 inline constexpr Nanoseconds kLingerAfterSignal = milliseconds(500);
 
-/// The cameras end first, a vendor's process within one second, ...
+/// The cameras end first. A vendor's process is given one second of this before it is killed.
 inline constexpr Nanoseconds kCameras = milliseconds(1750);
-/// ... then the recording: a disk may take this long to answer, ...
+/// The recording is closed next; a disk may take this long to answer.
 inline constexpr Nanoseconds kDisk = milliseconds(3500);
-/// ... the link takes no more than this by itself, if nothing in it hangs: the frames under way,
-/// the last status and the ground's confirmation, for which it is asked once a tick, ...
+/// The link takes no more than this by itself if nothing in it hangs: the frames under way, the
+/// last status and the ground's confirmation, for which it is asked once a tick.
 inline constexpr Nanoseconds kLink =
     StopBudget::kMaxTotal + kMaxMessageBlocking + kLingerAfterSignal + kTick;
-/// ... and with its network interface down the middleware never ends by itself.
+/// The middleware ends last; with its network interface down it never does by itself.
 inline constexpr Nanoseconds kMiddleware = milliseconds(400);
 
 /// From the signal on, for all of them together: they cannot add up.

@@ -20,6 +20,7 @@ class Problems {
   /// `value` must lie in [lowest, highest]. NaN does not.
   template <typename T>
   void CheckRange(std::string_view field, T value, T lowest, T highest) {
+    // Written so that NaN fails.
     if (value >= lowest && value <= highest) return;
     Add(field, fmt::format("is {}, must be from {} to {}", value, lowest, highest));
   }
@@ -49,6 +50,7 @@ void CheckDepthCamera(const SourceOptions& source, Problems& problems) {
   problems.CheckRange("rate_hz", options.rate_hz(), 1, 240);
   problems.CheckRange("expert.stall_timeout_s", options.expert().stall_timeout_s(), 0.2, 60.0);
   problems.Stage("source");
+  // OpenNI2 plays a file at any rate; beside a real camera it must keep to real time.
   const bool is_file = options.uri().ends_with(".oni") && !source.thermal_camera().enabled();
   if (source.rate() != 1.0 && !is_file) {
     problems.Add("rate", fmt::format("is {}, but cameras have a pace of their own: leave it at 1",
@@ -90,6 +92,7 @@ void CheckThermalCamera(const ThermalCameraOptions& options, Problems& problems)
                  fmt::format("is {}, must be above optris_min_celsius, which is {}",
                              options.optris_max_celsius(), options.optris_min_celsius()));
   } else if (options.has_optris_min_celsius()) {
+    // Found out now instead of when the camera is opened.
     const auto scale = ScaleForRange(options.optris_min_celsius(), options.optris_max_celsius());
     if (!scale) problems.Add("optris_max_celsius", scale.error().message());
   }
@@ -123,6 +126,7 @@ void CheckFrames(const FrameCheckOptions& options, Problems& problems) {
   problems.CheckRange("expert.retry_min_s", options.expert().retry_min_s(), 0.01, 60.0);
   problems.CheckRange("expert.min_valid_ratio", options.expert().min_valid_ratio(), 0.0, 1.0);
   problems.CheckRange("expert.blind_after_s", options.expert().blind_after_s(), 0.0, 60.0);
+  // The longest wait is not below the first one: the back-off only grows.
   problems.CheckRange("expert.retry_max_s", options.expert().retry_max_s(),
                       options.expert().retry_min_s(), 600.0);
 }

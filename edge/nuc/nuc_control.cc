@@ -76,6 +76,8 @@ NucControl::NucControl(const EdgeOptions& options, FrameSource& source)
       patience_(FromSeconds(options.nuc().expert().answer_s())) {}
 
 NucStatus NucControl::Process(const RawFrame& frame, CaptureTime time) {
+  // Answers first: they are to orders of earlier frames, and may withdraw what this frame would
+  // wait for.
   TakeCameraAnswers();
   CheckPatience(time);
   NucObservation seen;
@@ -101,6 +103,8 @@ void NucControl::Pass(NucOrder order, CaptureTime time) {
 void NucControl::TakeCameraAnswers() {
   for (const ControlAnswer& answer : source_.TakeControlAnswers()) {
     const NucOrder order = OrderOf(answer.control);
+    // Answers come in the order of the orders. Those that were given up on must not be taken for
+    // the answer to the newest.
     const bool too_late = order == NucOrder::kTrigger && answers_too_late_ > 0;
     if (too_late) {
       --answers_too_late_;
@@ -115,6 +119,7 @@ void NucControl::TakeCameraAnswers() {
 
 void NucControl::CheckPatience(CaptureTime time) {
   if (!triggered_at_ || time - *triggered_at_ < patience_) return;
+  // The answer may still come; it is then skipped above.
   ++answers_too_late_;
   OnCameraAnswer(
       NucOrder::kTrigger,

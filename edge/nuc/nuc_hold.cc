@@ -24,6 +24,7 @@ Result<std::string> NucHold::Hold(CaptureTime now, double seconds) {
         fmt::format("corrections were held for the {:.0f} s that are allowed; one must come first",
                     max_hold_s_)));
   }
+  // Renewing a hold does not extend it beyond max_hold_s from its first beginning.
   if (!started_) started_ = now;
   const CaptureTime last = *started_ + FromSeconds(max_hold_s_);
   // What is longer than any scan must not overflow the clock.
@@ -39,6 +40,7 @@ void NucHold::Update(CaptureTime now, const std::string& due) {
   if (!until_ || now < *until_) return;
   until_.reset();
   started_.reset();
+  // If nothing became due meanwhile, nothing was put off, and the next hold may be as long again.
   is_used_up_ = !due.empty();
   notices_.Add(LogLevel::kInfo, due.empty() ? "hold is over" : "hold is over; due: " + due);
 }

@@ -12,6 +12,7 @@ namespace {
 /// Empty if `now` is within `limit_k` of `then`, if either is not known, or without a limit.
 std::string DriftOf(const char* part, float then_celsius, float now_celsius, double limit_k) {
   const double drift_k = static_cast<double>(now_celsius) - static_cast<double>(then_celsius);
+  // Written so that NaN, a temperature that is not known, is no reason.
   if (limit_k <= 0.0 || !(std::abs(drift_k) > limit_k)) return "";
   return fmt::format("the {} is {:+.2f} K off the last correction", part, drift_k);
 }
@@ -40,6 +41,7 @@ void NucNeed::OnGivenUp() {
 }
 
 void NucNeed::OnCameraAway() {
+  // A camera that was switched off has lost its correction.
   if (rules_.before_scan) seen_ = waived_ = false;
 }
 

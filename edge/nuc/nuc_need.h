@@ -35,6 +35,7 @@ class NucNeed {
  private:
   std::string Drift(const ThermalHousekeeping& now) const;
 
+  /// Holds the options that say when a correction is due.
   struct Rules {
     bool require_first;  ///< Nothing is valid before a first correction.
     bool before_scan;

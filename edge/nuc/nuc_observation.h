@@ -12,7 +12,7 @@ namespace isotherm {
 struct NucObservation {
   CaptureTime time{};
   bool shutter_closed = false;        ///< The camera says so in the frame.
-  std::optional<CameraNuc> camera{};  ///< What else the camera says; nullopt = nothing.
+  std::optional<CameraNuc> camera{};  ///< The camera's own report; nullopt = none.
   ThermalHousekeeping housekeeping{};
   ImageEvidence image{};
 };

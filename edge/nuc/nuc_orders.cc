@@ -17,6 +17,7 @@ NucOrders::NucOrders(const NucOptions& options, NucNotices& notices)
 
 void NucOrders::Request() {
   requested_ = true;
+  // A person may ask again of a camera that has refused: it may have been changed meanwhile.
   impossible_ = false;
   attempts_ = 0;
 }
@@ -25,6 +26,7 @@ CaptureTime NucOrders::EarliestTrigger(CaptureTime now,
                                        std::optional<CaptureTime> opened_at) const {
   CaptureTime earliest = now;
   if (last_trigger_) earliest = std::max(earliest, *last_trigger_ + limits_.min_interval);
+  // Corrections of the camera's own count, too: what matters is how often the shutter is closed.
   if (opened_at) earliest = std::max(earliest, *opened_at + limits_.min_interval);
   return earliest;
 }
@@ -78,6 +80,7 @@ void NucOrders::OnShutterOpened() {
 }
 
 void NucOrders::OnCameraAway() {
+  // It may be another camera, or the same as it was built: its mode is set again at the next frame.
   automatic_.reset();
   if (state_ == State::kUnanswered) state_ = State::kNone;
   impossible_ = false;

@@ -29,6 +29,8 @@ enum class NucOrder : std::uint8_t { kTrigger, kAutomaticOn, kAutomaticOff, kRes
 /// has opened or somebody asks again. Times are those of frames. Thread-compatible.
 class NucOrders {
  public:
+  /// Says how far an order to correct has come: kUnanswered by the camera, or kAwaited: accepted,
+  /// but its shutter has not closed yet.
   enum class State : std::uint8_t { kNone, kUnanswered, kAwaited };
   /// Says how to go on after the camera's answer to an order to correct.
   enum class Consequence : std::uint8_t {
@@ -76,6 +78,7 @@ class NucOrders {
   const std::string& ordered_for() const { return ordered_for_; }
 
  private:
+  /// Holds the options that bound attempts and waiting.
   struct Limits {
     Nanoseconds min_interval, answer;
     int max_attempts;

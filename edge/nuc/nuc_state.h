@@ -8,7 +8,7 @@ namespace isotherm {
 
 /// Holds what the state of the correction at one frame is decided by.
 struct NucFacts {
-  std::optional<CameraNuc> camera{};  ///< What the camera says of itself.
+  std::optional<CameraNuc> camera{};  ///< The camera's own report.
   bool is_stuck = false;              ///< The shutter, or frozen images, for too long.
   bool is_closed = false;             ///< The shutter.
   bool is_settling = false;           ///< Open for less than the settle time.

@@ -36,6 +36,8 @@ NucSupervisor::NucSupervisor(const NucOptions& options, Role role)
       warm_up_(options, role == Role::kSupervise, notices_) {}
 
 NucStatus NucSupervisor::Update(const NucObservation& seen) {
+  // The order matters: the shutter is known before orders are assessed by it, needs before a state
+  // is named by them, and the state before an order changes it.
   Advance(seen);
   FollowShutter(seen);
   if (orders_.IsLastOneMissed(clock_.now())) GiveUp();
@@ -58,6 +60,7 @@ void NucSupervisor::Advance(const NucObservation& seen) {
   if (!clock_.has_begun()) need_.SetReference(seen.housekeeping);
   const Nanoseconds passed = clock_.Advance(seen.time);
   notices_.SetTime(seen.time);
+  // Recordings may have pauses; their camera is not there to be set.
   if (passed <= kSilence || role_ == Role::kFollow) return;
   orders_.OnCameraAway();
   need_.OnCameraAway();
@@ -70,6 +73,7 @@ void NucSupervisor::FollowShutter(const NucObservation& seen) {
   shutter_.Update(clock_.now(), seen, orders_.is_pending());
   if (shutter_.just_closed()) orders_.OnShutterClosed();
   if (!shutter_.just_opened()) return;
+  // Not when it closed: a correction that never ends is none, and the request for it stays open.
   orders_.OnShutterOpened();
   need_.OnCorrected(seen.housekeeping);
   hold_.OnCorrected();
@@ -81,8 +85,11 @@ void NucSupervisor::GiveUp() {
 }
 
 std::string NucSupervisor::DueReason(const NucObservation& seen) const {
+  // While the shutter is closed the wish is being fulfilled. A correction before the camera is warm
+  // would soon be due again.
   if (shutter_.is_closed() || role_ == Role::kFollow || warm_up_.is_waiting()) return "";
   if (orders_.is_requested()) return "asked for";
+  // A person's request passes this line, whatever the policy: it stands above.
   if (policy_ != NucPolicy::kAutomatic || orders_.is_impossible()) return "";
   return need_.Reason(seen, Age());
 }
@@ -112,7 +119,10 @@ NucFacts NucSupervisor::Facts(const NucObservation& seen) const {
 
 std::optional<NucOrder> NucSupervisor::NextOrder() {
   if (role_ == Role::kFollow) return std::nullopt;
+  // At most one order per frame, the most urgent first: frozen frames give neither temperatures nor
+  // a sign whether any other order is followed.
   if (shutter_.TakeRestart(clock_.now())) return NucOrder::kRestartCamera;
+  // During a hold the camera's own corrections are switched off, too, where it allows that.
   const bool automatic = policy_ == NucPolicy::kCamera && !hold_.is_held();
   if (const std::optional<NucOrder> mode = orders_.SwitchAutomatic(automatic)) return mode;
   const bool is_forbidden = shutter_.is_closed() || hold_.is_held() || shutter_.is_storm();
@@ -171,6 +181,8 @@ void NucSupervisor::OnTriggerAnswered(const Status& answer) {
     case NucOrders::Consequence::kGiveUp:
       return GiveUp();
     case NucOrders::Consequence::kAwaitShutter:
+      // A camera that tells of its shutter must be seen to close it. Of any other the order is all
+      // that is known: it counts as closed for the usual time.
       if (shutter_.is_reported()) return orders_.Await(clock_.now());
       return shutter_.CloseBlindly(clock_.now());
   }
@@ -192,6 +204,7 @@ Result<std::string> NucSupervisor::Request() {
   }
   if (shutter_.is_storm()) return Err(FailedPrecondition(shutter_.StormText()));
   if (orders_.state() == NucOrders::State::kAwaited) return "a correction was ordered already";
+  // The order under way serves this request as well; its answer answers both.
   if (orders_.state() == NucOrders::State::kUnanswered) return "";
   orders_.Request();
   if (warm_up_.is_waiting()) return "as soon as the camera is warm";
@@ -210,6 +223,7 @@ Result<std::string> NucSupervisor::Hold(double seconds) {
 Status NucSupervisor::SetPolicy(NucPolicy policy) {
   if (role_ == Role::kFollow) return CheckCommandable();
   policy_ = policy;
+  // A new policy gets new attempts: the old one may have used them up.
   orders_.Renew();
   notices_.Add(LogLevel::kInfo, fmt::format("policy: {}", ToString(policy)));
   return OkStatus();

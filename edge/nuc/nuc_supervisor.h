@@ -65,6 +65,7 @@ struct NucStatus {
 /// Thread-compatible.
 class NucSupervisor {
  public:
+  /// Says whether there is a camera that can be ordered.
   enum class Role : std::uint8_t {
     kFollow,     ///< A recording is played: nothing can be ordered, nothing is missed.
     kSupervise,  ///< There is a camera.

@@ -18,7 +18,7 @@ using enum NucState;
 
 struct Transition {
   const char* name;
-  std::vector<std::pair<Shows, double>> before;  ///< What is shown, and for how many seconds.
+  std::vector<std::pair<Shows, double>> before;  ///< Shown before, each for so many seconds.
   Shows then;
   NucState state;
   bool valid;

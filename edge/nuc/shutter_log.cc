@@ -5,6 +5,7 @@
 namespace isotherm {
 namespace {
 
+// Closings are counted over a minute, as nuc.expert.max_closings_per_minute says.
 constexpr Nanoseconds kWindow = std::chrono::minutes(1);
 
 }  // namespace

@@ -32,6 +32,7 @@ class ShutterLog {
   std::uint64_t closings() const { return closings_; }  ///< In all.
 
  private:
+  /// Spans the time from the shutter's closing to its opening.
   struct Closing {
     CaptureTime start, end;
   };

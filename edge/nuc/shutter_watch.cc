@@ -35,6 +35,8 @@ ShutterWatch::ShutterWatch(const NucOptions& options, NucNotices& notices)
       notices_(notices) {}
 
 void ShutterWatch::Update(CaptureTime now, const NucObservation& seen, bool ordered) {
+  // For good: a camera that has told of its shutter once tells of it always, and its images need
+  // not be guessed from.
   is_reported_ = is_reported_ || seen.shutter_closed || seen.camera;
   log_.Update(now, ClosedBy(now, seen));
   is_frozen_ =
@@ -58,11 +60,14 @@ void ShutterWatch::Update(CaptureTime now, const NucObservation& seen, bool orde
 }
 
 std::optional<NucSource> ShutterWatch::ClosedBy(CaptureTime now, const NucObservation& seen) const {
+  // From the surest witness to the weakest. A driver that found its frames frozen is asked before
+  // the camera's own state, which freezes with them.
   if (FoundFrozenByDriver(seen)) return NucSource::kInferred;
   if (seen.camera && seen.camera->state == NucState::kInProgress) return seen.camera->source;
   if (seen.shutter_closed) return NucSource::kInBand;
   if (seen.image.is_frozen) return NucSource::kInferred;
   if (seen.image.is_like_shutter && !is_reported_) return NucSource::kInferred;
+  // Only for cameras that tell nothing: the order is taken for done.
   if (commanded_until_ && now < *commanded_until_) return NucSource::kCommanded;
   return std::nullopt;
 }
@@ -102,6 +107,7 @@ void ShutterWatch::CloseBlindly(CaptureTime now) { commanded_until_ = now + limi
 
 bool ShutterWatch::TakeRestart(CaptureTime now) {
   if (!is_stuck_ || !is_frozen_ || !limits_.restarts_frozen) return false;
+  // A camera needs time to come back; restarting it again meanwhile would keep it away.
   if (last_restart_ && now - *last_restart_ < limits_.restart_pause) return false;
   last_restart_ = now;
   return true;

@@ -57,6 +57,7 @@ class ShutterWatch {
   bool LastsTooLong() const;
   void NoteStuck();
 
+  /// Holds the options and bounds by which closings are found normal.
   struct Limits {
     Nanoseconds settle_time, longest, longest_frozen, commanded, restart_pause;
     bool restarts_frozen;

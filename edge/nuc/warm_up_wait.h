@@ -22,6 +22,7 @@ class WarmUpWait {
   bool is_waiting() const { return mode_ == Mode::kWait && state_ != WarmUpWatch::State::kWarm; }
 
  private:
+  /// Says what a cold camera means: nothing, a warning, or that the scan waits.
   enum class Mode { kIgnore, kWarn, kWait };
   static Mode ModeOf(const NucOptions& options, bool is_camera);
   void NoteCold();

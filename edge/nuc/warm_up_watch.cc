@@ -8,6 +8,8 @@
 namespace isotherm {
 namespace {
 
+/// Housekeeping temperatures change by fractions of a kelvin a minute, and cameras send them with
+/// every frame: one a second keeps a window of minutes short. Smaller: more memory, no better rate.
 constexpr Nanoseconds kSampleInterval = std::chrono::seconds(1);
 constexpr double kSecondsPerMinute = 60.0;
 
@@ -33,11 +35,13 @@ WarmUpWatch::WarmUpWatch(const NucOptions& options)
 WarmUpWatch::State WarmUpWatch::Update(CaptureTime time, const ThermalHousekeeping& housekeeping) {
   if (state_ == State::kWarm) return state_;
   if (!start_) start_ = time;
+  // For good: a value that is missing once is not a camera that does not tell.
   detector_.is_told = detector_.is_told || std::isfinite(housekeeping.fpa_celsius);
   housing_.is_told = housing_.is_told || std::isfinite(housekeeping.housing_celsius);
   change_.reset();
   if (!detector_.is_told && !housing_.is_told) {
     left_ = std::max(Nanoseconds(0), blind_ - (time - *start_));
+    // Without any temperature only the time since the start says something.
     state_ = left_ > Nanoseconds(0) ? State::kCold : State::kWarm;
     return state_;
   }

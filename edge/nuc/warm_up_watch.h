@@ -20,6 +20,7 @@ class TemperatureRate {
   std::optional<double> k_per_min() const { return k_per_min_; }
 
  private:
+  /// Holds a temperature that the camera reported.
   struct Sample {
     CaptureTime time;
     double celsius;
@@ -37,6 +38,7 @@ class TemperatureRate {
 /// warm, it stays so: what changes later is drift. Thread-compatible.
 class WarmUpWatch {
  public:
+  /// Says whether the camera has warmed up.
   enum class State {
     kNotAssessed,  ///< Watched for too short a time.
     kCold,         ///< Still changing, or the time is not over.
@@ -60,6 +62,7 @@ class WarmUpWatch {
   Nanoseconds left() const { return left_; }
 
  private:
+  /// Watches one of the two temperatures that cameras report.
   struct Part {
     const char* name;
     const double limit_k_per_min;

@@ -22,6 +22,7 @@ Status OpenniDepthSource::Open() {
   Result<std::unique_ptr<OpenniDevice>> device = OpenniDevice::Open(*options_, file_rate_);
   if (!device) return device.error();
   device_ = std::move(*device);
+  // The camera's counter starts anew when it is opened.
   unwrapper_ = {};
   missed_.emplace(1);
   last_frame_at_ = clock_.SteadyNow();
@@ -61,6 +62,8 @@ RawFrame OpenniDepthSource::ToRawFrame(OpenniDevice::Frame frame) {
 }
 
 std::uint64_t OpenniDepthSource::Number(int index) {
+  // Frames that the library dropped leave holes in its index; they become holes in our numbers, so
+  // that they are counted.
   next_number_ += missed_->Process(static_cast<std::uint64_t>(std::int64_t{index}));
   return next_number_++;
 }
@@ -70,7 +73,10 @@ void OpenniDepthSource::PlaceInTime(RawFrame& raw) {
     file_start_ = raw.arrival_wall;
     file_first_ticks_ = raw.device_ticks;
   }
+  // Played faster or slower than it was recorded, the moment of arrival says nothing; the camera's
+  // own clock does.
   raw.arrival_wall = *file_start_ + (raw.device_ticks - file_first_ticks_);
+  // Says that these times are not of this computer's clock.
   raw.arrival_steady = {};
 }
 

@@ -19,6 +19,7 @@ class DepthCameraOptions;
 /// and an idle thread until the process ends, because OpenNI2 cannot close it safely. Thread-bound.
 class OpenniDevice {
  public:
+  /// Holds a depth image as the library delivers it.
   struct Frame {
     /// Row-major, `depth_scale` units per metre, 0 = no return. Empty if the library's buffer does
     /// not have the size it says.

@@ -16,7 +16,7 @@ namespace {
 
 // The zero plane is described for the sensor's full width.
 constexpr double kZeroPlaneWidth_px = 1280.0;
-// Fields of view outside this range are not a camera's, radians.
+// Fields of view outside of 3 to 166 degrees are not a camera's, radians.
 constexpr double kMinFov_rad = 0.05;
 constexpr double kMaxFov_rad = 2.9;
 
@@ -49,6 +49,8 @@ openni::VideoMode WantedMode(const DepthCameraOptions& options) {
 Status SetMode(const DepthCameraOptions& options, openni::VideoStream& stream) {
   const openni::VideoMode wanted = WantedMode(options);
   const std::vector<std::string> modes = DepthModes(stream);
+  // A driver may accept a mode that it does not have and run another: it is checked before and
+  // after.
   if (std::find(modes.begin(), modes.end(), ModeText(wanted)) == modes.end()) {
     std::string has;
     for (const std::string& mode : modes) has += (has.empty() ? "" : ", ") + mode;
@@ -67,6 +69,8 @@ Status SetRegistration(bool on, openni::Device& device) {
     return InvalidArgument(
         "source.depth_camera.expert.registration: the camera cannot register depth");
   }
+  // Cameras keep the setting of the program before; so it is set also when it is wanted off, and
+  // read back.
   if (device.isPropertySupported(openni::DEVICE_PROPERTY_IMAGE_REGISTRATION)) {
     device.setImageRegistrationMode(mode);
   }
@@ -76,6 +80,7 @@ Status SetRegistration(bool on, openni::Device& device) {
 }
 
 Status SetCloseRange(bool on, openni::VideoStream& stream) {
+  // An extension of PrimeSense's: not part of OpenNI2.
   if (!stream.isPropertySupported(XN_STREAM_PROPERTY_CLOSE_RANGE)) {
     return InvalidArgument(
         "source.depth_camera.expert.close_range: the camera has no such setting; leave it out");
@@ -113,6 +118,7 @@ std::optional<double> ZeroPlaneFocalLength(const openni::VideoStream& stream, in
       distance_mm == 0 || !(pixel_mm > 0.0)) {
     return std::nullopt;
   }
+  // A mode of half the width has pixels twice as wide.
   return static_cast<double>(distance_mm) / pixel_mm * width / kZeroPlaneWidth_px;
 }
 
@@ -129,6 +135,7 @@ OpenniLibrary::~OpenniLibrary() { openni::OpenNI::shutdown(); }
 std::string OpenniError() {
   std::string text = openni::OpenNI::getExtendedError();
   for (char& c : text) {
+    // The library's messages have lines of their own; a log entry is one line.
     if (c == '\n' || c == '\t' || c == '\r') c = ' ';
   }
   const std::size_t end = text.find_last_not_of(' ');
@@ -137,6 +144,7 @@ std::string OpenniError() {
 }
 
 std::string SerialOf(const openni::Device& device) {
+  // The last byte stays zero, whether or not the driver ends its text with one.
   char serial[256] = {};
   int size = sizeof(serial) - 1;
   if (!device.isPropertySupported(openni::DEVICE_PROPERTY_SERIAL_NUMBER) ||
@@ -197,6 +205,7 @@ Result<ActiveSettings> ReadSettings(const openni::Device& device,
   active.rate_hz = mode.getFps();
   active.depth_scale =
       mode.getPixelFormat() == openni::PIXEL_FORMAT_DEPTH_100_UM ? 10'000.0 : 1000.0;
+  // Whatever was asked for: a driver that keeps mirroring is undone by the source.
   active.mirrored =
       stream.isPropertySupported(openni::STREAM_PROPERTY_MIRRORING) && stream.getMirroringEnabled();
   const bool registered = device.getImageRegistrationMode() != openni::IMAGE_REGISTRATION_OFF;
@@ -223,6 +232,7 @@ std::optional<CameraModel> NominalIntrinsics(const openni::VideoStream& stream, 
     camera.fy = *fy;
     return camera;
   }
+  // PrimeSense's own cameras tell their zero plane even where the field of view is missing.
   const std::optional<double> focal_length = ZeroPlaneFocalLength(stream, width);
   if (!focal_length) return std::nullopt;
   camera.fx = camera.fy = *focal_length;  // Its pixels are square.

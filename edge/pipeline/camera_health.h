@@ -37,6 +37,7 @@ class CameraHealth {
   std::optional<CameraDescription> opened(Sensor sensor) const;
 
  private:
+  /// Collects what the threads of one camera report; the thread that writes the status reads it.
   struct Entry {
     std::atomic<CameraState> state{CameraState::kNone};  ///< But for kBlind.
     std::atomic<bool> blind{false};

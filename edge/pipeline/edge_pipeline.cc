@@ -20,7 +20,7 @@ constexpr Nanoseconds kIdle = std::chrono::milliseconds(250);
 /// (PublisherOptions::flow_timeout). A step that takes longer than these limits hangs.
 constexpr Nanoseconds kStuck = std::chrono::seconds(10);
 constexpr Nanoseconds kLinkStuck = std::chrono::seconds(15);
-constexpr Nanoseconds kNoLimit = std::chrono::hours(24 * 365);
+constexpr Nanoseconds kNoLimit = std::chrono::hours(24 * 365);  // For waits that end by event.
 
 OverflowPolicy PolicyFor(const EdgeOptions& options) {
   return options.source().rate() > 0.0 ? OverflowPolicy::kDropOldest : OverflowPolicy::kBlock;
@@ -112,6 +112,7 @@ bool EdgePipeline::StopCapture(Nanoseconds limit) {
   // Along the line, so that each stage can still pass on what it has.
   capture_thread_.request_stop();
   if (capture_thread_.joinable()) {
+    // A driver that hangs cannot be ended; its thread is left behind rather than the recording.
     capture_left_behind_ = capture_ended_.wait_for(limit) != std::future_status::ready;
     if (!capture_left_behind_) capture_thread_.join();
   }
@@ -199,6 +200,7 @@ void EdgePipeline::Capture(const std::stop_token& stop) {
       BufferOdometryPose(std::move(*pose));
   }
   source_.Close();
+  // What was captured before the stop is still processed: captured = recorded + dropped must hold.
   while (std::optional<RawFrame> raw = source_.TakeUnread()) Process(std::move(*raw), stop);
   ServeNucCommands();
   nuc_.End();

@@ -165,6 +165,7 @@ class EdgePipeline {
   ThreadProgress recording_;
   ThreadProgress publishing_;
 
+  /// Holds feedback and when it came, by the edge's wall clock.
   struct ReceivedFeedback {
     Feedback feedback;
     CaptureTime arrival;

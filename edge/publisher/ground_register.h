@@ -14,8 +14,10 @@ namespace isotherm {
 /// Pure. Thread-compatible.
 class GroundRegister {
  public:
+  /// Says which rig a ground follows, as its receipts tell.
   enum class Follows : std::uint8_t { kNotSaid, kThisRig, kAnotherRig };
 
+  /// Holds one ground that is there.
   struct Ground {
     std::uint64_t hello_writer = 0;  ///< The ground is there while this writer is.
     PeerHandle peer = 0;

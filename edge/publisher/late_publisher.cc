@@ -28,12 +28,15 @@ void LatePublisher::Run(std::stop_token stop, const PublisherHandlers& handlers)
     MutexLock lock(mutex_);
     owned_ = std::move(*connected);
     problem_.clear();
+    // What was asked for before the network was there is caught up on, under the lock: a
+    // BeginSession in between would otherwise be lost or overtaken.
     if (policy_) owned_->SetPolicy(*policy_);
     if (rig_) {
       if (const Status begun = owned_->BeginSession(*rig_); !begun.ok()) {
         LOG(Publisher, Warning) << "the session is not announced: " << begun.message();
       }
     }
+    // Last: from here on other threads use the link without the lock.
     link_ = owned_.get();
     changed_.notify_all();
   }

@@ -45,6 +45,7 @@ class PublishedStream {
  private:
   static constexpr std::size_t kRemembered = 1024;  ///< Half a minute.
 
+  /// Holds a published frame's number and time, which feedback must repeat.
   struct Frame {
     std::uint64_t number = 0;
     CaptureTime capture_time{};

@@ -23,8 +23,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Run looks this often whether the ground is there.
-constexpr Nanoseconds kPresenceInterval = 100ms;
+constexpr Nanoseconds kPresenceInterval = 100ms;  ///< To look whether the ground is there.
 
 Status NoTimeLeft() { return Unavailable("not sent: told to stop, and the link is too slow"); }
 
@@ -284,9 +283,11 @@ void DdsPublisher::WaitForRoom(const Writer<Frame>& writer, OutgoingStream* stre
                                const std::stop_token& stop) {
   MutexLock lock(mutex_);
   bool waited = false;
+  // An onlooker that sends no receipts must not stop the scan.
   while (!stream->window().HasRoom() && MayBeAwaited(writer, stream, clock_.SteadyNow())) {
     const SteadyTime now = clock_.SteadyNow();
     if (stop.stop_requested() && !stop_budget_.MayWait(now)) break;
+    // Opens the window until the next receipt: a ground that is gone costs its timeout once.
     if (stream->window().GiveUp(now)) {
       ++flow_timeouts_;
       LOG(Publisher, Warning) << "no receipt from the ground, publishing without, timeout_s="
@@ -360,11 +361,11 @@ bool DdsPublisher::Drain(Nanoseconds timeout) {
   const auto left = [&] {
     return std::max(Nanoseconds(0), Nanoseconds(deadline - clock_.SteadyNow()));
   };
-  // The middleware has delivered; ...
+  // Acknowledged means delivered to the ground's reader, which may still refuse or drop it.
   if (!ends_.depth.WaitForAcknowledgments(left())) return false;
   if (!ends_.thermal.WaitForAcknowledgments(left())) return false;
   if (!ends_.status.WaitForAcknowledgments(left())) return false;
-  // ... and the ground has taken it.
+  // Only the ground's receipts say that it has used or counted everything.
   for (TakeReceipts(); !IsHandled(); TakeReceipts()) {
     if (HasNobodyToWaitFor()) return true;
     if (left() == Nanoseconds(0)) return false;

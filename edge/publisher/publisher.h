@@ -23,6 +23,7 @@ struct PublisherHandlers {
   std::function<void(const Feedback&, CaptureTime arrival)> feedback;
 };
 
+/// Counts the frames of one stream that were given to the middleware.
 struct StreamPublished {
   std::uint64_t published = 0;
   std::uint64_t failed = 0;             ///< Refused by the middleware (too large, buffer full).

@@ -8,6 +8,7 @@
 
 namespace isotherm {
 
+/// Says as whom and with which patience an edge publishes.
 struct PublisherOptions {
   std::string edge_id = "edge";  ///< Key of everything this rig writes; 1..32 bytes.
   std::string software_version;  ///< Goes into the hello.

@@ -29,6 +29,7 @@ CameraPair::~CameraPair() { Close(); }
 
 Status CameraPair::Open() {
   for (std::size_t i = 0; i < members_.size(); ++i) {
+    // Promises are used up by an opening; the pair may be opened again.
     members_[i]->opened = {};
     members_[i]->may_run = {};
     members_[i]->ended = false;
@@ -38,6 +39,8 @@ Status CameraPair::Open() {
   std::optional<Status> impossible;  // Trying again would not help.
   std::size_t working = 0;
   for (const std::unique_ptr<Member>& member : members_) {
+    // All are opened at the same time, each on its thread: a camera that takes seconds to fail does
+    // not add to the other's.
     const Opened opened = member->opened.get_future().get();
     AddDescription(opened);
     if (opened.status.ok()) {
@@ -48,6 +51,8 @@ Status CameraPair::Open() {
     if (named.code() == StatusCode::kInvalidArgument) impossible = named;
     missing += (missing.empty() ? "" : "; ") + named.message();
   }
+  // Nobody reads a camera before it is known that the pair works: otherwise one would deliver while
+  // the other ends the program.
   const bool runs = working > 0 && !impossible;
   for (const std::unique_ptr<Member>& member : members_) member->may_run.set_value(runs);
   if (runs) {
@@ -77,6 +82,7 @@ Result<SourceItem> CameraPair::Read(std::stop_token stop) {
 }
 
 void CameraPair::Close() {
+  // All are asked to stop before any is waited for, so that their times do not add up.
   for (const std::unique_ptr<Member>& member : members_) member->thread.request_stop();
   for (const std::unique_ptr<Member>& member : members_) {
     if (member->thread.joinable()) member->thread.join();
@@ -107,6 +113,7 @@ std::optional<Status> CameraPair::Control(const CameraControl& control) {
         fmt::format("the thermal camera has not answered the last {} orders", kMaxOrders));
   }
   ++open_orders_;
+  // Never waits: the queue has room for kMaxOrders, and no more are open.
   thermal->orders.Push(control, {});
   return std::nullopt;
 }
@@ -134,6 +141,8 @@ void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
   if (runs && !opened.ok()) source.KeepTrying(opened);
   while (runs && !stop.stop_requested()) {
     PassOrders(member);
+    // Before the first Read the camera is kept going and its frames thrown away, so that the scan
+    // begins with fresh ones; a recording that waits must lose none.
     source.SetIdle(!reading_ && !waits_);
     Result<SourceItem> item = source.Read(stop);
     if (!item || std::holds_alternative<EndOfStream>(*item)) break;
@@ -143,6 +152,8 @@ void CameraPair::Run(std::size_t index, const std::stop_token& stop) {
   for (ControlAnswer& answer : source.TakeControlAnswers()) {
     member.answers.Push(std::move(answer), {});
   }
+  // Behind the last answer, so that whoever sees it finds all answers in the queue
+  // (TakeControlAnswers).
   member.ended = true;
   queue_.End(index);
 }

@@ -30,12 +30,16 @@ namespace isotherm {
 /// own.
 class CameraPair final : public FrameSource {
  public:
+  /// An edge has one or two orders under way. A camera that answers none is refused more, so that
+  /// neither queue can block the other's thread.
   static constexpr std::size_t kMaxOrders = 8;
 
+  /// Holds one of the cameras that a pair reads.
   struct Camera {
     Sensor sensor = Sensor::kDepth;
     std::unique_ptr<SupervisedSource> source;
   };
+  /// Says how frames wait for their turn; each camera has a queue of its own.
   struct Queue {
     std::size_t capacity = 8;  ///< Frames per camera.
     OverflowPolicy policy = OverflowPolicy::kDropOldest;
@@ -68,6 +72,7 @@ class CameraPair final : public FrameSource {
     std::optional<Rig> rig;
     std::vector<CameraDescription> descriptions;
   };
+  /// Holds a camera, the thread that reads it and what both exchange.
   struct Member {
     Camera camera;
     // Never full: no more than kMaxOrders are under way.

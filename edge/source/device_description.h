@@ -11,7 +11,7 @@ namespace isotherm {
 /// A camera that is connected to this computer.
 struct DeviceDescription {
   Sensor sensor = Sensor::kThermal;
-  std::string driver;            ///< What Isotherm uses it with, e.g. "lepton-uvc".
+  std::string driver;            ///< Isotherm's driver for it, e.g. "lepton-uvc".
   std::string product;           ///< As the device calls itself.
   std::string serial;            ///< Empty: it has none.
   std::string bus_port;          ///< Where it is plugged in, e.g. "1-2.3".

@@ -31,6 +31,7 @@ class FrameCheck {
   std::uint64_t masked_pixels() const { return masked_pixels_; }
 
  private:
+  /// Holds the size of a stream's images, which must not change.
   struct Size {
     int width = 0;
     int height = 0;

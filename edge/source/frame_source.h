@@ -49,7 +49,7 @@ struct CameraDescription {
   int width = 0;         ///< Pixels.
   int height = 0;        ///< Pixels.
   double rate_hz = 0.0;  ///< 0 = not known.
-  std::string settings;  ///< What else was set, for people: "unit 1 mm, mirroring off".
+  std::string settings;  ///< Other settings, for people: "unit 1 mm, mirroring off".
   /// Thermal only: its pixels are counts that nothing relates to temperatures.
   bool counts_only = false;
   /// Thermal only: what its pixels mean otherwise.

@@ -58,6 +58,8 @@ MergeQueue::CameraQueue* MergeQueue::Next() {
   CameraQueue* next = nullptr;
   for (CameraQueue& queue : queues_) {
     if (queue.items.empty()) continue;
+    // Only the frames at the fronts are compared: an empty queue is not waited for, since its
+    // camera may be gone. So order of arrival holds as far as both deliver in time.
     if (next == nullptr || ArrivalOf(queue.items.front()) < ArrivalOf(next->items.front())) {
       next = &queue;
     }

@@ -19,6 +19,7 @@ namespace isotherm {
 /// queue the one that arrived first comes out first. Thread-safe.
 class MergeQueue {
  public:
+  /// A rig has a depth and a thermal camera.
   static constexpr std::size_t kMaxCameras = 2;
 
   /// `capacity` frames per camera. `on_drop` is called for each frame that makes room for a newer

@@ -17,6 +17,7 @@ namespace isotherm {
 /// Thread-compatible.
 class MissedFrames {
  public:
+  /// Half a minute at 30 Hz: the sources' stall limits are seconds.
   static constexpr std::uint64_t kMaxMissed = 1000;
 
   /// `step`: how much the counter grows from frame to frame, nominally; at least 1.

@@ -20,6 +20,7 @@ Status SimulatedShutter::Control(const CameraControl& control) {
     return OkStatus();
   }
   if (const auto* automatic = std::get_if<SetAutomaticNuc>(&control)) {
+    // A camera that cannot be told to stop correcting itself says so, and so does this one.
     const bool has_own = shutter.interval_s() > 0.0 || shutter.expert().drift_k() > 0.0;
     if (automatic->on || !has_own) return OkStatus();
     return FailedPrecondition(
@@ -60,6 +61,7 @@ void SimulatedShutter::FollowOrder(CaptureTime time) {
 void SimulatedShutter::Correct(const RawFrame& frame) {
   const float housing_celsius = frame.housekeeping.housing_celsius;
   if (closed_by_scan_) {
+    // The rendered drift begins anew with each closing of the scan.
     scan_reference_celsius_ = housing_celsius;
     correction_k_ = 0.0;
     return;
@@ -71,6 +73,7 @@ void SimulatedShutter::Correct(const RawFrame& frame) {
 void SimulatedShutter::ShowShutter(RawFrame& frame) const {
   const ShutterOptions& shutter = options_->shutter();
   if (shutter.expert().appearance() == ShutterOptions::FREEZE) {
+    // As cameras do that repeat the last image while they correct.
     if (!last_open_.empty()) frame.pixels = last_open_;
     return;
   }
@@ -85,6 +88,7 @@ void SimulatedShutter::ShowShutter(RawFrame& frame) const {
 }
 
 void SimulatedShutter::Say(RawFrame& frame, bool closed) {
+  // Then the edge must infer the shutter from the images, which this is to try.
   if (!options_->shutter().expert().reports_shutter()) {
     frame.shutter_closed = false;
     frame.camera_nuc.reset();

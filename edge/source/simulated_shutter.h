@@ -45,7 +45,7 @@ class SimulatedShutter {
   bool was_closed_ = false;
   bool closed_by_scan_ = false;
   std::optional<float> scan_reference_celsius_;  ///< Housing when the scan was last corrected.
-  double correction_k_ = 0.0;  ///< What the last ordered correction takes off the scan's error.
+  double correction_k_ = 0.0;  ///< The last ordered correction takes this off the scan's error.
   Image<std::uint16_t> last_open_;
 };
 

@@ -54,6 +54,8 @@ Status SupervisedSource::OpenAndCheckIdentity() {
     }
   }
   for (const CameraDescription& camera : source_->cameras()) {
+    // Told only when all cameras passed: an opening that is refused never happened for anybody
+    // else.
     if (on_opened_) on_opened_(camera);
   }
   return OkStatus();
@@ -118,6 +120,7 @@ std::optional<Status> SupervisedSource::Control(const CameraControl& control) {
     return restart ? OkStatus() : Unavailable("the camera does not work; it is being opened again");
   }
   std::optional<Status> done = source_->Control(control);
+  // A source that cannot restart its camera alone is restarted as a whole.
   if (!restart || !done || done->ok()) return done;
   ScheduleReopen(Unavailable("its thermal frames are frozen"));
   return OkStatus();
@@ -143,6 +146,8 @@ void SupervisedSource::CountMissing(Sensor sensor, std::uint64_t number) {
   const std::uint64_t expected = std::exchange(expected_numbers_[index], number + 1);
   if (number <= expected) return;
   const std::uint64_t missing = number - expected;
+  // A hole in the numbers is either known (left out on the way here) or lost in the camera: each is
+  // counted once, by its cause.
   const std::uint64_t explained = std::min(missing, left_out_[index]);
   left_out_[index] -= explained;
   if (missing > explained && on_loss_) on_loss_(sensor, Loss::kInCamera, missing - explained);
@@ -151,6 +156,7 @@ void SupervisedSource::CountMissing(Sensor sensor, std::uint64_t number) {
 SourceItem SupervisedSource::Handle(RawFrame frame) {
   std::uint64_t& thrown_away = thrown_away_[static_cast<std::size_t>(frame.sensor)];
   if (idle_) {
+    // The camera's numbers go on while nobody wants its frames; the session's begin at 0.
     thrown_away = frame.frame_number + 1;
     expected_numbers_[static_cast<std::size_t>(frame.sensor)] = 0;
     return NothingYet{};
@@ -162,6 +168,8 @@ SourceItem SupervisedSource::Handle(RawFrame frame) {
   const Status verdict = check_.Process(frame);
   if (verdict.ok()) {
     bad_in_a_row = 0;
+    // Only a good frame ends a failure. Opening alone does not: a camera that opens and delivers
+    // nothing would be reopened without any pause.
     next_wait_ = retry_min_;
     failure_.clear();
     ReportState(true);
@@ -169,6 +177,7 @@ SourceItem SupervisedSource::Handle(RawFrame frame) {
     return frame;
   }
   on_rejected_(frame.sensor);
+  // The first of a run says why; the rest is counted.
   if (bad_in_a_row == 0) {
     LOG(Source, Warning) << "dropped: " << verdict.message();
   }
@@ -189,6 +198,7 @@ void SupervisedSource::ScheduleReopen(const Status& reason) {
   ReportState(false);
   reopen_at_ = clock_.SteadyNow() + next_wait_;
   next_wait_ = std::min(2 * next_wait_, retry_max_);
+  // Both cameras start anew: the one that worked was closed as well.
   bad_in_a_row_ = {};
 }
 

@@ -10,6 +10,7 @@ namespace isotherm {
 
 class SpoolOptions;
 
+/// Says how much room a recording has left.
 enum class DiskLevel : std::uint8_t {
   kEnough,
   kLow,      ///< Within spool.expert.warn_s the reserve will be reached.
@@ -36,6 +37,7 @@ class DiskWatch {
   const double max_reserve_bytes_;
   const double reserve_s_;
   const double warn_s_;
+  /// Holds how much had been written at a time.
   struct Mark {
     SteadyTime time{};
     std::uint64_t bytes = 0;

@@ -20,7 +20,7 @@ struct EncodedFrame {
   /// The odometry that came since the frame before: it travels along, so that order and back
   /// pressure are the same.
   std::vector<ExternalOdometrySample> external_odometry{};
-  std::vector<RecordedLog> log{};  ///< What happened since then, for the recording.
+  std::vector<RecordedLog> log{};  ///< Events since then, for the recording.
 
   Sensor sensor() const {
     return std::holds_alternative<EncodedDepthFrame>(content) ? Sensor::kDepth : Sensor::kThermal;

@@ -30,7 +30,7 @@ class RecordingFiles {
       : description_(std::move(description)) {}
 
   Result<RecordingFile> Next();
-  /// What has changed stands at the beginning of the files that follow.
+  /// Writes a change of the rig; the files that follow begin with it.
   void Update(const RigUpdate& update);
 
  private:

@@ -15,8 +15,12 @@
 namespace isotherm {
 namespace {
 
+/// Free space is asked for once a second: at some megabytes a second nothing is missed, and a slow
+/// disk is not asked with each frame.
 constexpr Nanoseconds kLookInterval = std::chrono::seconds(1);
-// A disk that takes this much more is well again; one that fails sooner is still the same failure.
+// A disk that takes this much more is well again; one that fails sooner is still the same failure,
+// which is not reported again. The writer's chunks are synced every half second, so that several
+// have reached the disk by then.
 constexpr Nanoseconds kProven = std::chrono::seconds(3);
 
 }  // namespace
@@ -36,6 +40,8 @@ Status Spool::BeginFile() {
   file_ = std::move(*file);
   path_ = file_->path;
   begun_at_ = parts_.clock.SteadyNow();
+  // Each file tells the clock's steps from its own beginning, so that it can be read without the
+  // others.
   wall_minus_time_ = Nanoseconds(0);
   LOG(Spool, Info) << "recording to " << path_.string();
   return OkStatus();
@@ -47,6 +53,7 @@ void Spool::BeginFileWhenDue() {
 }
 
 void Spool::Add(const EncodedFrame& frame) {
+  // Counted before anything can fail: what no file has is then known as not recorded.
   ++offered_[static_cast<std::size_t>(frame.sensor())];
   BeginFileWhenDue();
   if (IsRecording()) Note(WriteFrame(frame));
@@ -68,6 +75,7 @@ void Spool::Add(const Feedback& feedback, CaptureTime arrival) {
 }
 
 void Spool::Tend(bool idle) {
+  // A chunk is closed by the next frame's time; when none comes, nobody else closes it.
   if (idle && IsRecording()) Note(file_->writer->Flush());
   if (IsRecording()) NoteWorks();
   LookAtDisk();
@@ -102,6 +110,7 @@ void Spool::LookAtDisk() {
 void Spool::AskForFreeBytes() {
   const Result<std::uint64_t> free = parts_.free_bytes();
   free_bytes_ = free ? std::optional(*free) : std::nullopt;
+  // Reported when it changes, not every second.
   if (std::exchange(free_bytes_unknown_, !free) == !free) return;
   if (free) {
     LOG(Spool, Info) << "the free space of the disk of " << path_.string() << " is known again";
@@ -127,6 +136,7 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
   const CaptureTime time =
       std::visit([](const auto& content) { return content.header.capture_time; }, frame.content);
   newest_ = std::max(newest_.value_or(time), time);
+  // What happened before the frame stands before it in the file, so that a replay gets it in time.
   for (const ExternalOdometrySample& sample : frame.external_odometry)
     ISOTHERM_RETURN_IF_ERROR(writer.Write(sample.pose));
   for (const RecordedLog& log : frame.log)
@@ -137,6 +147,7 @@ Status Spool::WriteFrame(const EncodedFrame& frame) {
   }
   const auto& thermal = std::get<EncodedThermalFrame>(frame.content);
   NoteShutter(thermal);
+  // Noting the shutter may have ended the file: then there is no writer any more.
   return IsRecording() ? writer.Write(thermal, frame.arrival) : OkStatus();
 }
 
@@ -154,6 +165,8 @@ void Spool::NoteShutter(const EncodedThermalFrame& frame) {
   const bool closed =
       frame.nuc_state == NucState::kInProgress || frame.nuc_state == NucState::kError;
   if (closed && !shutter_closed_at_) shutter_closed_at_ = time;
+  // An event is written when it is over, since it has both times. One that lasts to the end of the
+  // scan has no record; its frames say what they are.
   if (closed || !shutter_closed_at_) return;
   Note(file_->writer->Write(NucEvent{*shutter_closed_at_, time, frame.nuc_source}));
   shutter_closed_at_.reset();
@@ -191,6 +204,7 @@ void Spool::Note(const Status& status) {
 
 void Spool::Fail(const Status& status) {
   if (first_error_.ok()) first_error_ = status;
+  // The cause is known already; closing after it mostly fails for the same reason.
   if (IsRecording()) static_cast<void>(CloseFile());
   retry_at_ = parts_.clock.SteadyNow() + back_off_.Next();
   if (problem_.ok()) {
@@ -218,6 +232,8 @@ std::uint64_t Spool::NotRecorded() const {
 }
 
 void Spool::UpdateCounters() {
+  // Remembered while all is well, so that the message at the end of a failure says what that
+  // failure cost.
   if (problem_.ok()) not_recorded_before_ = NotRecorded();
   const RecordingStats open = IsRecording() ? file_->writer->stats() : RecordingStats();
   const auto set = [this](Sensor sensor, std::uint64_t recorded) {

@@ -91,6 +91,7 @@ DeviceDescription DescribeKnown(const KnownCamera& known) {
 }
 
 DeviceDescription Describe(const UsbDeviceInfo& info) {
+  // ListUsbDevices was told to list known ones only.
   DeviceDescription device = DescribeKnown(*Find(info.vendor_id, info.product_id));
   if (!info.product.empty()) device.product = info.product;
   device.serial = info.serial;
@@ -159,6 +160,8 @@ Result<DeviceDescription> ChooseThermalCamera(const std::vector<DeviceDescriptio
                     Text(devices))));
   }
   const std::string& serial = options.serial().empty() ? pinned_serial : options.serial();
+  // A camera may have no serial number, and most rigs have one thermal camera: the first one will
+  // do.
   if (serial.empty()) return fitting.front();
   for (const DeviceDescription& device : fitting) {
     if (device.serial == serial) return device;

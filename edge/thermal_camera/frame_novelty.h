@@ -11,6 +11,7 @@ namespace isotherm {
 
 /// Holds what a frame is in relation to those before it.
 struct Novelty {
+  /// Says whether an image is new.
   enum class Kind {
     kNew,
     kRepeat,  ///< The same image again, as the camera may do; nothing is lost without it.

@@ -21,6 +21,7 @@ constexpr Size kSizes[] = {{160, 120}, {80, 60}};  // Lepton 3.x and 2.x.
 // Images leave the camera at this rate: it has 26 Hz inside, of which export rules let every third
 // image out.
 constexpr double kRate_hz = 8.7;
+// So the frame counter of images that follow each other differs by 3.
 constexpr int kCounterStep = 3;
 
 // Extension units of the firmware; GUIDs are plain text.

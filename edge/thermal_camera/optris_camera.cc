@@ -72,6 +72,7 @@ struct OptrisCamera::Library {
   const char* FindAll() {
     Find("evo_irimager_get_serial", get_serial);
     Find("evo_irimager_set_temperature_range", set_range);
+    // All are looked up at once, so that an unfit library is found before the camera is touched.
     if (!Find("evo_irimager_usb_init", usb_init)) return "evo_irimager_usb_init";
     if (!Find("evo_irimager_terminate", terminate)) return "evo_irimager_terminate";
     if (!Find("evo_irimager_get_thermal_image_size", get_size)) {
@@ -106,6 +107,8 @@ OptrisCamera::~OptrisCamera() { Close(); }
 
 Status OptrisCamera::Load() {
   auto library = std::make_unique<Library>();
+  // Its symbols stay local: it links libraries of its own that must not replace ours. Unresolved
+  // ones show now, not in the middle of a scan.
   library->handle.reset(dlopen(settings_.library.c_str(), RTLD_NOW | RTLD_LOCAL));
   if (!library->handle) {
     return FailedPrecondition(fmt::format(
@@ -128,6 +131,7 @@ Status OptrisCamera::Open() {
         "source.thermal_camera.optris_config is empty; name the camera's XML file");
   }
   ISOTHERM_RETURN_IF_ERROR(Load());
+  // usb_init may have succeeded before something else failed: the camera must be given back.
   const Status done = Initialise();
   if (!done.ok()) Close();
   return done;
@@ -198,6 +202,7 @@ Result<std::optional<RawThermalFrame>> OptrisCamera::Read(Nanoseconds) {
   std::memcpy(&metadata, room.data(), sizeof(metadata));
   raw.first_packet = {clock_.Now(), clock_.SteadyNow()};
   raw.encoding = kEncoding;
+  // 100 ns to microseconds.
   raw.device_ticks = DeviceTicks(std::chrono::microseconds(metadata.timestamp_media / 10));
   raw.device_counter = counter_.Process(metadata.counter_hw);
   raw.nuc = CameraNuc{StateOf(metadata.flag_state), NucSource::kInBand, std::nullopt};

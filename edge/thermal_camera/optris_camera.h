@@ -10,6 +10,7 @@
 
 namespace isotherm {
 
+/// Says where the vendor's library and its files are and how the camera is set.
 struct OptrisSettings {
   std::string library;  ///< The vendor's, a path or a name that the loader finds.
   std::string config;   ///< The camera's XML file, as the vendor's programs take it.

@@ -31,7 +31,9 @@ constexpr std::uint16_t kStatusIndex = 0x0200;
 // and shows uncorrected images for up to 8.75 s.
 constexpr Nanoseconds kAnswersAfter = milliseconds(3000);
 constexpr Nanoseconds kSettledAfter = seconds(9);
+// Until the first frame: twice what the camera takes to answer.
 constexpr Nanoseconds kStartTime = seconds(6);
+// Each question costs some milliseconds of the camera's bus.
 constexpr Nanoseconds kAskEvery = milliseconds(200);
 constexpr Nanoseconds kTryAgainAfter = seconds(1);
 constexpr int kMaxUnanswered = 5;
@@ -78,6 +80,7 @@ Result<std::optional<RawThermalFrame>> P2ProCamera::Read(Nanoseconds timeout) {
   Result<std::optional<UvcFrame>> received = camera_->Read(timeout);
   if (!received) return Err(received.error());
   const SteadyTime now = clock_.SteadyNow();
+  // On the reading thread, between two images: a request takes milliseconds, an image 40.
   ConfigureWhenDue(now);
   AskShutterWhenDue(now);
   if (!*received) return std::optional<RawThermalFrame>();
@@ -87,6 +90,7 @@ Result<std::optional<RawThermalFrame>> P2ProCamera::Read(Nanoseconds timeout) {
   if (raw.incomplete) return std::optional(std::move(raw));
   Result<Image<std::uint16_t>> counts = ParseP2ProFrame(frame.bytes);
   if (!counts) return Err(counts.error());
+  // There is no image yet, and those that follow are uncorrected for a while.
   if (IsP2ProColdStart(*counts)) {
     started_cold_ = true;
     return std::optional<RawThermalFrame>();
@@ -94,6 +98,7 @@ Result<std::optional<RawThermalFrame>> P2ProCamera::Read(Nanoseconds timeout) {
   raw.counts = std::move(*counts);
   raw.nuc = shutter_.At(now);
   raw.shutter_closed = raw.nuc && raw.nuc->state == NucState::kInProgress;
+  // A camera that was on already shows corrected images at once.
   if (!raw.shutter_closed && started_cold_ && now - opened_at_ < kSettledAfter) {
     raw.nuc = CameraNuc{NucState::kSettling, NucSource::kInferred, std::nullopt};
   }
@@ -134,6 +139,7 @@ void P2ProCamera::AskShutterWhenDue(SteadyTime now) {
       return shutter_.NoteState(state->front() == 1, now);
     }
   }
+  // An old answer must not hold: "closed" would make the rest of the scan invalid.
   shutter_.ForgetState();
   // What does not answer is asked ever more seldom.
   if (++unanswered_ >= kMaxUnanswered) next_command_at_ = now + unanswered_ * kTryAgainAfter;
@@ -166,6 +172,7 @@ Status P2ProCamera::ApplyGain() {
   const std::uint32_t wanted = gain_ == ThermalGain::kHigh ? 1 : 0;
   if (!keep) ISOTHERM_RETURN_IF_ERROR(SetParameter(kP2ProGain, wanted));
   const Result<std::uint16_t> found = GetParameter(kP2ProGain);
+  // Firmware that cannot be asked must still work as it is.
   if (!found) return keep ? OkStatus() : found.error().WithContext("reading the gain back");
   const ThermalGain gain = *found != 0 ? ThermalGain::kHigh : ThermalGain::kLow;
   if (!keep && gain != gain_) {

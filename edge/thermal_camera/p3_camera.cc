@@ -20,6 +20,7 @@ constexpr std::uint8_t kEndpoint = 0x81;
 // Smaller than a frame, so that the first bytes are stamped soon; transfers of the camera end with
 // frames and markers.
 constexpr int kTransferBytes = 16'384;
+// 128 kB under way that the kernel can take while this process does not run. Not tuned.
 constexpr int kTransfers = 8;
 
 // Vendor requests.
@@ -45,6 +46,7 @@ constexpr std::uint16_t kSerialBytes = 64;
 // The vendor's program waits this long between the steps of the start.
 constexpr Nanoseconds kBeforeStream = seconds(1);
 constexpr Nanoseconds kAfterStream = seconds(2);
+// Until the first frame: the waits above and two seconds more. Not tuned.
 constexpr Nanoseconds kStartTime = seconds(5);
 
 }  // namespace

@@ -30,11 +30,13 @@ inline constexpr std::size_t kP3MarkerBytes = 12;
 /// Ticks of a marker's time stamp per microsecond: 600 000 per frame of 40 ms.
 inline constexpr std::uint64_t kP3TicksPerMicrosecond = 15;
 
+/// Holds what is used of the rows below the image.
 struct P3Metadata {
   std::uint16_t frame_counter = 0;  ///< Stands still while the camera corrects itself.
   bool correcting = false;
 };
 
+/// Holds an image and what the camera says about it.
 struct P3Frame {
   Image<std::uint16_t> counts;
   P3Metadata metadata;

@@ -24,12 +24,14 @@ constexpr std::uint8_t kIn = 0xC1;
 constexpr int kSleeps = 3;
 // The first frame after a start sometimes lacks its beginning (libseek-thermal, SeekCam.cpp).
 constexpr int kMaxStarts = 3;
+// The start reads the factory settings, some hundred requests, and then the first frame. Not tuned.
 constexpr Nanoseconds kStartTime = seconds(5);
 // Nine frames per second; a correction takes longer than a frame.
 constexpr double kRate_hz = 9.0;
 constexpr Nanoseconds kFrameTimeout = seconds(1);
 // Rests of a frame follow each other closely.
 constexpr Nanoseconds kSilence = milliseconds(20);
+// More than a frame has; a camera that sends without end must not be waited for.
 constexpr int kMaxDrained = 64;
 
 }  // namespace

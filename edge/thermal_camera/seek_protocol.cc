@@ -42,6 +42,7 @@ void AppendFirmwareInfo(std::uint8_t what, std::vector<SeekRequest>& requests) {
   requests.push_back({kGetFirmwareInfo, {}, 64});
 }
 
+// The requests and their order are those of libseek-thermal; what each does is not documented.
 void AppendCompact(std::vector<SeekRequest>& requests) {
   AppendFactorySettings(0x20, 0x30, requests);
   AppendFactorySettings(0x20, 0x50, requests);
@@ -192,6 +193,8 @@ Result<SeekDeadPixels> SeekDeadPixels::Find(const Image<std::uint16_t>& first) {
   SeekDeadPixels result;
   result.width_ = first.width();
   result.height_ = first.height();
+  // From the border of a dead patch inwards: each round fills those that have a neighbour by now.
+  // It ends, since at least half of the detectors work.
   while (!left.empty()) {
     std::vector<std::uint32_t> amid_others;
     const std::size_t round = result.dead_.size();
@@ -231,6 +234,7 @@ Result<std::optional<SeekImage>> SeekImageMaker::Process(SeekRawFrame frame) {
     if (!found) return Err(found.error());
     dead_pixels_ = std::move(*found);
   }
+  // Before the first shutter frame there is nothing to measure an image against.
   const bool shows = is_shutter || frame.kind == SeekFrameKind::kImage;
   if (!shows || (!is_shutter && shutter_.empty())) return std::optional<SeekImage>();
   SeekImage image;

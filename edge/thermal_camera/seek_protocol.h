@@ -55,6 +55,7 @@ SeekRequest SeekFrameRequest(const SeekModel& model);
 /// Its answer tells cameras apart.
 inline constexpr std::uint8_t kSeekReadChipId = 54;
 
+/// Tells the camera's frames apart: only some of them are images.
 enum class SeekFrameKind : std::uint8_t {
   kFirst,    ///< After the start; detectors that do not work are dark in it.
   kShutter,  ///< The closed shutter: what an image is measured against.
@@ -62,6 +63,7 @@ enum class SeekFrameKind : std::uint8_t {
   kOther,  ///< The camera's own business, or bytes out of step.
 };
 
+/// Holds a frame before the shutter's is subtracted.
 struct SeekRawFrame {
   SeekFrameKind kind = SeekFrameKind::kOther;
   std::uint16_t counter = 0;
@@ -103,6 +105,7 @@ class SeekDeadPixels {
   std::size_t count() const { return dead_.size(); }
 
  private:
+  /// Holds a detector that does not work and those that its value is made of.
   struct Dead {
     std::uint32_t pixel = 0;
     std::vector<std::uint32_t> neighbours;  ///< Alive, or filled before.
@@ -112,6 +115,7 @@ class SeekDeadPixels {
   std::vector<Dead> dead_;  ///< In the order in which they can be filled.
 };
 
+/// Holds an image relative to the shutter.
 struct SeekImage {
   Image<std::uint16_t> counts;  ///< kSeekMiddle = as the shutter; 0 = no value.
   std::uint16_t counter = 0;

@@ -38,6 +38,8 @@ struct RawThermalFrame {
   std::uint64_t dropped_before = 0;  ///< Frames that came before it and were not read in time.
 };
 
+/// Names the measuring ranges of cameras that have two: kHigh resolves finely, kLow reaches higher
+/// temperatures.
 enum class ThermalGain { kKeep, kHigh, kLow };
 
 /// "high" or "low".
@@ -51,6 +53,7 @@ struct MeasuringRange {
   double max_celsius = 0.0;
 };
 
+/// Describes a connected camera.
 struct ThermalCameraInfo {
   std::string driver;    ///< E.g. "lepton-uvc".
   std::string product;   ///< As the camera calls itself.
@@ -59,7 +62,7 @@ struct ThermalCameraInfo {
   int width = 0;
   int height = 0;
   double rate_hz = 0.0;  ///< Nominal.
-  std::string settings;  ///< What it was set to or found at, for people: "gain low".
+  std::string settings;  ///< Its settings, made or found, for people: "gain low".
   /// As set, after SetGain; nullopt = not known.
   std::optional<MeasuringRange> range;
   /// It measures no temperatures: no frame is radiometric.

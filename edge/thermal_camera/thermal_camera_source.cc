@@ -110,6 +110,8 @@ Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
 }
 
 Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
+  // Cameras without a counter: what the driver dropped is all that is known. With one, the
+  // counter's holes say it below, and would count the same frames again.
   if (camera_->info().counter_step == 0) {
     counts_.lost += raw.dropped_before;
     next_frame_number_ += raw.dropped_before;
@@ -120,6 +122,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
     if (!std::exchange(incomplete_, true)) {
       LOG(Thermal, Warning) << name_ << ": incomplete frame, number=" << next_frame_number_;
     }
+    // Delivered without pixels, so that the frame check refuses and counts it under its number.
     raw.counts = {};
     return Convert(raw);
   }
@@ -142,6 +145,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
     return NothingYet{};
   }
   const bool frozen = novelty.kind == Novelty::Kind::kFrozen && !IsCorrecting(raw);
+  // Long enough to be no correction: the source is opened again, which cures cameras that hang so.
   if (frozen && ToSeconds(novelty.frozen_for) >= options_->expert().stall_timeout_s()) {
     return Err(Hangs("sends the same image", novelty.frozen_for));
   }
@@ -154,6 +158,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
     const bool would_say = raw.nuc && raw.nuc->source == NucSource::kInBand;
     const NucState state = would_say ? NucState::kError : NucState::kInProgress;
     raw.nuc = CameraNuc{state, NucSource::kInferred, std::nullopt};
+    // Whatever froze it, these are not the scene's temperatures now.
     raw.shutter_closed = true;
   }
   frozen_ = frozen;
@@ -193,6 +198,7 @@ PixelEncoding ThermalCameraSource::EncodingOf(const RawThermalFrame& raw) const 
 void ThermalCameraSource::UpdateTable(const PixelEncoding& encoding) {
   if (encoding == encoding_ && !raw_of_count_.empty()) return;
   encoding_ = encoding;
+  // A table of all counts: a frame is 110 000 pixels, and most cameras change their encoding never.
   raw_of_count_.resize(65'536);
   for (std::size_t count = 0; count < raw_of_count_.size(); ++count) {
     const double kelvin =

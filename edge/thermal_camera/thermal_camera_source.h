@@ -84,7 +84,7 @@ class ThermalCameraSource final : public FrameSource {
   std::unique_ptr<ThermalCamera> camera_;
   std::optional<FrameNovelty> novelty_;
   PixelEncoding encoding_;
-  std::optional<RadiometricScale> scale_;    ///< Of the frames; nullopt = never opened.
+  std::optional<RadiometricScale> scale_;    ///< Scale of the frames; nullopt = never opened.
   std::vector<std::uint16_t> raw_of_count_;  ///< 65536 values; 0 = no value.
   SteadyTime last_frame_at_{};
   std::uint64_t next_frame_number_ = 0;

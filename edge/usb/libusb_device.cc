@@ -15,7 +15,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A camera that is busy answers within some milliseconds; beyond this it is taken for hung.
+// A camera that is busy answers within some milliseconds; beyond this it is taken for hung. Longer:
+// an unplugged camera holds up the end of the program; shorter: one that is writing its flash
+// fails. Not tuned.
 constexpr milliseconds kControlTimeout{500};
 
 struct ContextDeleter {
@@ -51,6 +53,8 @@ std::string BusPort(libusb_device* device) {
   std::array<std::uint8_t, 8> ports{};
   const int count = libusb_get_port_numbers(device, ports.data(), ports.size());
   std::string text = std::to_string(libusb_get_bus_number(device));
+  // Devices at the root of some controllers have no ports; the address names them until they are
+  // replugged.
   if (count <= 0) return fmt::format("{}-a{}", text, libusb_get_device_address(device));
   for (int i = 0; i < count; ++i) {
     text += (i == 0 ? '-' : '.') + std::to_string(ports[static_cast<std::size_t>(i)]);
@@ -115,6 +119,7 @@ class DeviceList {
 /// The first configuration's descriptors with all class-specific ones, as the device sends them.
 Result<UsbConfiguration> ReadConfiguration(libusb_device_handle* handle) {
   std::vector<std::uint8_t> bytes(9);
+  // The header says how long the whole is.
   for (int pass = 0; pass < 2; ++pass) {
     const int size = static_cast<int>(bytes.size());
     const int got =
@@ -163,6 +168,7 @@ class UsbDevice::Impl {
       handle_ = OpenAndDescribe(device, info_, code);
       if (!handle_) return FromLibusb(code, "USB device " + bus_port);
       high_speed_ = libusb_get_device_speed(device) >= LIBUSB_SPEED_HIGH;
+      // Linux's video driver takes cameras of this kind; libusb gives them back to it at the end.
       libusb_set_auto_detach_kernel_driver(handle_.get(), 1);
       Result<UsbConfiguration> configuration = ReadConfiguration(handle_.get());
       if (!configuration) return configuration.error().WithContext("USB device " + bus_port);
@@ -288,6 +294,7 @@ Result<std::vector<std::uint8_t>> UsbDevice::BulkIn(std::uint8_t endpoint, std::
   const int code =
       libusb_bulk_transfer(impl_->handle_.get(), endpoint, bytes.data(), static_cast<int>(size),
                            &got, static_cast<unsigned>(wait.count()));
+  // What came before the timeout is delivered: bulk streams pause between frames.
   const bool timed_out = code == LIBUSB_ERROR_TIMEOUT;
   if (Status ok = impl_->Check(timed_out ? 0 : code, "a bulk transfer"); !ok.ok()) {
     return Err(std::move(ok));
@@ -305,6 +312,7 @@ Status UsbDevice::StartStream(const UsbStreamPlan& plan, PacketSink sink) {
   StopStream();
   auto stream = std::make_unique<LibusbStream>(impl_->context_.get(), impl_->handle_.get(), plan,
                                                impl_->clock_, std::move(sink));
+  // Some of its transfers may be under way already, so it cannot simply be destroyed.
   if (const int code = stream->Start(); code != 0) {
     impl_->Discard(std::move(stream));
     return impl_->Check(code, "starting its stream");

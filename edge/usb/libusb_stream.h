@@ -17,6 +17,7 @@ namespace isotherm {
 /// in flight any more. Thread-bound.
 class LibusbStream {
  public:
+  /// Says whether data still comes. kGone: the device was unplugged.
   enum class State { kRunning, kGone, kFailed };
 
   /// All must outlive it.

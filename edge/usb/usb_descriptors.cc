@@ -8,6 +8,7 @@
 namespace isotherm {
 namespace {
 
+// Descriptor types (USB 2.0, table 9-5); 0x24 is that of classes.
 constexpr std::uint8_t kConfiguration = 0x02;
 constexpr std::uint8_t kInterface = 0x04;
 constexpr std::uint8_t kEndpoint = 0x05;

@@ -8,6 +8,7 @@
 
 namespace isotherm {
 
+/// Names the transfer types with their codes in bmAttributes.
 enum class UsbTransferKind : std::uint8_t {
   kControl = 0,
   kIsochronous = 1,
@@ -15,6 +16,7 @@ enum class UsbTransferKind : std::uint8_t {
   kInterrupt = 3
 };
 
+/// Describes an endpoint of a device.
 struct UsbEndpoint {
   std::uint8_t address = 0;  ///< Bit 7: towards the host.
   UsbTransferKind kind = UsbTransferKind::kBulk;
@@ -24,6 +26,7 @@ struct UsbEndpoint {
   bool is_in() const { return (address & 0x80) != 0; }
 };
 
+/// Describes one alternate setting of an interface; they differ in the bandwidth that they reserve.
 struct UsbAlternate {
   int number = 0;
   std::uint8_t interface_class = 0;
@@ -33,11 +36,13 @@ struct UsbAlternate {
   std::vector<std::uint8_t> class_specific;
 };
 
+/// Describes an interface with all its alternate settings.
 struct UsbInterface {
   int number = 0;
   std::vector<UsbAlternate> alternates;
 };
 
+/// Describes a device's configuration.
 struct UsbConfiguration {
   int value = 0;
   std::vector<UsbInterface> interfaces;

@@ -20,6 +20,8 @@ constexpr std::uint8_t kGetCurrent = 0x81;
 constexpr std::uint16_t kProbe = 0x0100;
 constexpr std::uint16_t kCommit = 0x0200;
 
+// Transfers under way at a time: 64 ms of data that the kernel can take while this process does not
+// run. More: memory of the kernel, which bounds it; fewer: frames are torn under load. Not tuned.
 constexpr int kTransfers = 8;
 // A transfer spans this much time on the bus: what a frame may wait for its completion, against
 // wake-ups.
@@ -87,6 +89,7 @@ Status UvcCamera::Start(const UvcMode& mode) {
   Stop();
   ISOTHERM_RETURN_IF_ERROR(ClaimControl());
   ISOTHERM_RETURN_IF_ERROR(device_->Claim(function_.streaming_interface));
+  // From here on Stop has something to undo, also if the rest fails.
   started_ = true;
   ISOTHERM_RETURN_IF_ERROR(Negotiate(*format, *FindFrame(*format, mode)));
   const Result<UvcAlternate> alternate = ChooseAlternate();
@@ -106,6 +109,7 @@ Status UvcCamera::Start(const UvcMode& mode) {
 }
 
 void UvcCamera::Take(const UsbPacket& packet) {
+  // Before its data: the frame under way is incomplete, whatever comes next.
   if (packet.lost) assembler_->NoteLostPacket();
   if (!joiner_) return assembler_->AddPayload(packet.data, packet.stamp);
   if (packet.lost) return joiner_->NoteLost();
@@ -132,6 +136,7 @@ Status UvcCamera::Negotiate(const UvcFormat& format, const UvcFrameSize& frame) 
   const Status sent =
       device_->ControlOut({kSetInterface, kSetCurrent, kProbe, index}, PackUvcProbe(wanted, size));
   if (!sent.ok()) return sent.WithContext("agreeing on a mode");
+  // The camera may change what was asked for; only what it answers may be committed.
   const auto answer = device_->ControlIn({kGetInterface, kGetCurrent, kProbe, index}, size);
   if (!answer) return answer.error().WithContext("agreeing on a mode");
   const Result<UvcProbe> agreed = UnpackUvcProbe(*answer);
@@ -157,6 +162,8 @@ Result<UvcAlternate> UvcCamera::ChooseAlternate() const {
     const int bytes = alternate.endpoint.packet_bytes;
     if (alternate.endpoint.kind == UsbTransferKind::kBulk) return alternate;
     if (largest == nullptr || bytes > largest->endpoint.packet_bytes) largest = &alternate;
+    // The smallest that suffices: bandwidth that is reserved is lost to the depth camera on the
+    // same bus.
     if (bytes < static_cast<int>(payload_bytes_)) continue;
     if (best == nullptr || bytes < best->endpoint.packet_bytes) best = &alternate;
   }

@@ -8,6 +8,7 @@
 namespace isotherm {
 namespace {
 
+// Interface class and subclasses (UVC 1.5, tables ).
 constexpr std::uint8_t kVideoClass = 0x0E;
 constexpr std::uint8_t kVideoControl = 1;
 constexpr std::uint8_t kVideoStreaming = 2;
@@ -62,6 +63,7 @@ Status ReadStreaming(Bytes chain, UvcFunction& function) {
       in_uncompressed = true;
     } else if (subtype == kFrameUncompressed && in_uncompressed) {
       ISOTHERM_RETURN_IF_ERROR(NeedLength("a frame size", bytes, 26));
+      // Frame descriptors follow the format that they belong to.
       function.formats.back().frames.push_back(
           {bytes[3], Le16(bytes, 5), Le16(bytes, 7), Le32(bytes, 21)});
     }
@@ -74,6 +76,8 @@ void ReadAlternates(const UsbInterface& interface, UvcFunction& function) {
     for (const UsbEndpoint& endpoint : alternate.endpoints) {
       const bool streams =
           endpoint.kind == UsbTransferKind::kIsochronous || endpoint.kind == UsbTransferKind::kBulk;
+      // Alternate 0 of an isochronous camera reserves nothing and has no endpoint, or one of zero
+      // bytes.
       if (endpoint.is_in() && streams && endpoint.packet_bytes > 0) {
         function.alternates.push_back({alternate.number, endpoint});
       }
@@ -83,6 +87,7 @@ void ReadAlternates(const UsbInterface& interface, UvcFunction& function) {
 
 const UsbInterface* FindVideo(const UsbConfiguration& configuration, std::uint8_t subclass) {
   for (const UsbInterface& interface : configuration.interfaces) {
+    // All alternates of an interface have one class; only the first has class-specific descriptors.
     const UsbAlternate& first = interface.alternates.front();
     if (first.interface_class == kVideoClass && first.interface_subclass == subclass) {
       return &interface;

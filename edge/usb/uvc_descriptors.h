@@ -19,6 +19,7 @@ struct UvcUnit {
   UvcGuid guid{};
 };
 
+/// Holds an image size of a format.
 struct UvcFrameSize {
   std::uint8_t index = 0;
   int width = 0;
@@ -50,7 +51,8 @@ struct UvcFunction {
   std::vector<UvcUnit> units;
   int streaming_interface = 0;
   std::vector<UvcFormat> formats;
-  std::vector<UvcAlternate> alternates;  ///< Those with an endpoint that streams to the host.
+  std::vector<UvcAlternate>
+      alternates;  ///< The settings with an endpoint that streams to the host.
 
   /// Id of the extension unit with this GUID; nullopt if there is none.
   std::optional<std::uint8_t> UnitWithGuid(const UvcGuid& guid) const;

@@ -7,6 +7,7 @@ namespace isotherm {
 
 std::optional<UvcPayloadHeader> ParseUvcPayloadHeader(Bytes payload) {
   if (payload.size() < 2 || payload[0] < 2 || payload[0] > payload.size()) return std::nullopt;
+  // Bits of bmHeaderInfo, UVC 1.5, table 2-6.
   const std::uint8_t flags = payload[1];
   UvcPayloadHeader header;
   header.length = payload[0];
@@ -30,6 +31,7 @@ std::optional<UvcPayloadHeader> ParseUvcPayloadHeader(Bytes payload) {
 void WaitingFrames::Push(UvcFrame frame) {
   frames_.push_back(std::move(frame));
   if (frames_.size() <= kMax) return;
+  // The oldest goes; the next one tells the reader that it went.
   const std::uint64_t dropped = frames_.front().dropped_before + 1;
   frames_.pop_front();
   frames_.front().dropped_before += dropped;
@@ -49,14 +51,18 @@ bool UvcBulkJoiner::Add(Bytes transfer, const HostStamp& stamp) {
   }
   received_ += transfer.size();
   if (!skipping_) payload_.insert(payload_.end(), transfer.begin(), transfer.end());
+  // A short transfer ends a payload, and so does the size that was negotiated: a payload that fills
+  // its last transfer has no short one.
   const bool ends = transfer.size() < transfer_bytes_ || received_ >= max_payload_bytes_;
   if (!ends) return false;
   received_ = 0;
+  // A payload of which a transfer was lost is not given out: its header may be what is missing.
   return !std::exchange(skipping_, false) && !payload_.empty();
 }
 
 void UvcBulkJoiner::NoteLost() {
   received_ += transfer_bytes_;
+  // The lost transfer may have been the payload's last one.
   skipping_ = received_ < max_payload_bytes_;
   if (!skipping_) received_ = 0;
 }
@@ -70,6 +76,7 @@ void UvcAssembler::AddPayload(Bytes payload, const HostStamp& stamp) {
     return;
   }
   const Bytes data = payload.subspan(header->length);
+  // The frame ID toggles with each frame: a change ends a frame whose last packet was lost.
   if (in_frame_ && header->frame_id != frame_id_) Finish();
   if (!in_frame_) {
     // Strays of the frame that has ended.
@@ -92,6 +99,7 @@ void UvcAssembler::NoteLostPacket() {
 void UvcAssembler::Begin(const UvcPayloadHeader& header) {
   frame_ = {};
   frame_.bytes.resize(frame_bytes_);
+  // Packets that were lost between two frames may have been this one's first.
   frame_.incomplete = std::exchange(damaged_, false);
   frame_id_ = header.frame_id;
   in_frame_ = true;
@@ -114,6 +122,7 @@ void UvcAssembler::Append(const UvcPayloadHeader& header, Bytes data, const Host
 void UvcAssembler::Finish() {
   in_frame_ = false;
   if (frame_.received != frame_bytes_) frame_.incomplete = true;
+  // The stream is joined in the middle of a frame: its rest is no damage worth counting.
   if (!std::exchange(seen_a_frame_, true) && frame_.incomplete) return;
   finished_.Push(std::move(frame_));
 }

@@ -30,6 +30,7 @@ struct UvcPayloadHeader {
 /// Nullopt if the bytes cannot be a payload. A missing end-of-header bit is tolerated.
 std::optional<UvcPayloadHeader> ParseUvcPayloadHeader(Bytes payload);
 
+/// Holds an image as its packets were joined; it may be damaged.
 struct UvcFrame {
   std::vector<std::uint8_t> bytes;  ///< As many as were negotiated; what is missing is 0.
   std::size_t received = 0;         ///< Bytes that came, at most those negotiated.
@@ -44,6 +45,7 @@ struct UvcFrame {
 /// next one says how many. Thread-compatible.
 class WaitingFrames {
  public:
+  /// Frames come out of transfers in bursts; four are more than one transfer finishes.
   static constexpr std::size_t kMax = 4;
 
   void Push(UvcFrame frame);

@@ -13,13 +13,13 @@ enum class SandboxAttempt {
   kInternetDatagrams,
   kLocalSocket,
   kRouteSocket,   ///< The kernel's messages about the network.
-  kDeviceSocket,  ///< ... and about devices.
+  kDeviceSocket,  ///< Asks the kernel about devices.
   kReadForeign,
   kWriteForeign,
   kCreateFile,
   kReadAllowed,
   kWriteAllowed,
-  kReadParent,  ///< What the kernel says of the process that started it.
+  kReadParent,  ///< Reads what the kernel says of the process that started it.
   kSignalParent,
   kStartProgram,
   kIoRing,

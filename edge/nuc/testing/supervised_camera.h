@@ -74,6 +74,7 @@ inline NucObservation Observe(Shows shows) {
   return seen;
 }
 
+/// Feeds a supervisor with the frames of a scripted camera.
 class NucSupervisorTest : public ::testing::Test {
  protected:
   NucSupervisorTest() {

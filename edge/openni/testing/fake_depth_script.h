@@ -26,6 +26,7 @@ enum class FakeDepthFault {
 /// the camera is opened (and, for `connected`, all the time); its path is in the environment
 /// variable ISOTHERM_FAKE_DEPTH. Without the variable no camera is connected.
 struct FakeDepthScript {
+  /// Holds a fault and its extent.
   struct Fault {
     FakeDepthFault fault = FakeDepthFault::kNone;
     int frames = 1;            ///< How many frames it lasts (kShort, kWrongSize, kDrop).

@@ -104,7 +104,7 @@ class FakePublisher final : public Publisher {
     MutexLock lock(mutex_);
     return session_rig_;
   }
-  /// What was announced after the beginning of the session.
+  /// Returns the rigs that were announced after the beginning of the session.
   std::vector<RigDescription> announced() const {
     MutexLock lock(mutex_);
     return announced_;

@@ -58,9 +58,9 @@ class FakeSource final : public FrameSource {
     descriptions = {camera};
   }
 
-  RadiometricScale thermal_scale;               ///< Of its thermal frames.
-  std::vector<CameraDescription> descriptions;  ///< What it says of itself.
-  std::vector<CameraControl> controls;          ///< What was asked for.
+  RadiometricScale thermal_scale;               ///< Scale of its thermal frames.
+  std::vector<CameraDescription> descriptions;  ///< The source describes itself so.
+  std::vector<CameraControl> controls;          ///< Orders that it was given.
   Status control_answer = FailedPrecondition("the source has no shutter to command");
   int answers_after_reads = 0;  ///< 0: at once.
 
@@ -76,6 +76,7 @@ class FakeSource final : public FrameSource {
   }
 
  private:
+  /// Holds one letter of the script.
   struct Step {
     char what = '-';
     std::string fault;
@@ -86,6 +87,7 @@ class FakeSource final : public FrameSource {
   std::vector<Step> steps_;
   std::size_t next_ = 0;
   std::size_t reads_ = 0;
+  /// Holds an order that the camera has not answered yet.
   struct OpenOrder {
     CameraControl control;
     std::size_t answered_at;  ///< Index in `reads_`.

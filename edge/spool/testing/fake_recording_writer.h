@@ -25,7 +25,7 @@ struct FakeRecording {
   std::vector<RecordedLog> log;
   int writes_after_failure = 0;
   int flushes = 0;
-  std::uint64_t bytes = 0;   ///< What the writer says.
+  std::uint64_t bytes = 0;   ///< The writer reports this size.
   bool refuse_next = false;  ///< The next frame is not one that can be recorded.
   bool closed = false;
 };

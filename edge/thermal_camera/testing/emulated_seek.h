@@ -21,6 +21,7 @@ namespace isotherm {
 /// 1.3 s), and the steps of FaultScript.
 class EmulatedSeek final : public EmulatedDevice {
  public:
+  /// Says which camera is played and how it misbehaves at the start.
   struct Setup {
     SeekModel model = kSeekCompact;
     bool left_running = false;  ///< It refuses to be woken before it was put to sleep.
@@ -50,6 +51,7 @@ class EmulatedSeek final : public EmulatedDevice {
   static bool IsDead(int x, int y);
 
  private:
+  /// Holds a part of a frame and when it can be read first.
   struct Piece {
     std::vector<std::uint8_t> bytes;
     Nanoseconds not_before{0};

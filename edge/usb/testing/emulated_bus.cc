@@ -135,9 +135,9 @@ class EmulatedBus::Impl {
   std::string node_ GUARDED_BY(mutex_);
   int number_ GUARDED_BY(plug_mutex_) = 1;
   bool gone_ GUARDED_BY(mutex_) = true;
-  /// Waits for a finished request, ...
+  /// Client that waits for a finished request.
   UMockdevIoctlClient* reaping_ GUARDED_BY(mutex_) = nullptr;
-  /// ... whose address goes here.
+  /// Where that client wants the request's address.
   std::uintptr_t reap_into_ GUARDED_BY(mutex_) = 0;
   Nanoseconds reap_until_ GUARDED_BY(mutex_){0};
   /// The last time that it was asked.

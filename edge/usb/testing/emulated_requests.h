@@ -36,6 +36,7 @@ class EmulatedRequests {
   void EndAll();
 
  private:
+  /// Holds a transfer that the program submitted and has not been given back.
   struct Request {
     std::uintptr_t address = 0;
     std::uint8_t type = 0;

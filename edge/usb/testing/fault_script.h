@@ -10,7 +10,7 @@ namespace isotherm {
 /// One frame of an emulated camera, or something that happens instead.
 struct FaultStep {
   std::string what;   ///< "f", "-", "unplug", ...
-  std::string fault;  ///< What follows the colon.
+  std::string fault;  ///< The text behind the colon.
 };
 
 /// Holds what an emulated camera does, frame by frame. Steps are separated by blanks:

@@ -14,6 +14,7 @@ struct UvcCameraLayout {
   std::uint16_t version = 0x0100;
   std::vector<UvcUnit> units;
   std::string_view four_characters;
+  /// Holds an image size that the camera offers.
   struct Size {
     int width = 0;
     int height = 0;
