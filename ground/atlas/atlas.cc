@@ -50,6 +50,8 @@ Atlas::Atlas(const GroundOptions& options, const CameraModel& depth_camera, cons
 }
 
 std::unique_ptr<SubMap> Atlas::MakeMap() const {
+  // At least one, so that the volume can be made at all: a map without room stays empty, and the
+  // scan goes on in the one before.
   const std::int32_t max_blocks = std::max(1, BlocksLeft());
   const std::string& spill_dir = options_.volume().spill_dir();
   auto map = std::make_unique<SubMap>();
@@ -65,12 +67,14 @@ std::int32_t Atlas::BlocksLeft() const {
   // What is spilled takes no memory, and each sub-map has files of its own.
   if (!options_.volume().spill_dir().empty()) return max_blocks_;
   std::int32_t left = max_blocks_;
+  // While merging, the places of maps that are merged already are empty.
   for (const auto& map : maps_) left -= map ? map->tsdf->block_count() : 0;
   return std::max(0, left);
 }
 
 bool Atlas::IsFar(int index, const RigidTransform& T_map_depth) const {
   const SubMapOptions& limits = options_.submaps();
+  // A saved model has many anchors: near any of them its surface was scanned without much drift.
   return std::ranges::all_of(map(index).anchors, [&](const RigidTransform& anchor) {
     return (limits.expert().max_rotation_deg() > 0.0 &&
             RotationAngle(anchor, T_map_depth) > limits.expert().max_rotation_deg() * kRadPerDeg) ||
@@ -83,20 +87,27 @@ bool Atlas::Split(const RigidTransform& T_map_depth, std::span<const std::int32_
   if (size() >= options_.submaps().expert().max_maps()) return false;
   const int before = active_;
   std::unique_ptr<SubMap> map = MakeMap();
+  // The new map begins in the same coordinates, so that the tracker's poses, its velocity and its
+  // view of the model stay valid. The maps move apart only when a loop is closed.
   map->T_world_map = active().T_world_map;
   map->joined = active().joined;
   map->anchors = {T_map_depth};
   map->relocaliser->Add(T_map_depth);
   const SubMap& from = active();
+  // From here on a failure leaves the atlas as it was: the map joins it at the very end.
   if (!map->thermal->Commit(static_cast<std::int32_t>(blocks_in_view.size()))) return false;
   for (const std::int32_t block : blocks_in_view) {
     const std::int32_t copy = map->tsdf->FindOrAllocate(from.tsdf->block_coordinates(block));
     if (copy == TsdfVolume::kNoBlock) return false;
     std::ranges::copy(from.tsdf->voxels(block), map->tsdf->voxels(copy).begin());
     std::ranges::copy(from.thermal->voxels(block), map->thermal->voxels(copy).begin());
+    // Without this flag rays would pass through the copy, and the next frame had nothing to be
+    // tracked against.
     map->tsdf->set_may_end_rays(copy, from.tsdf->may_end_rays(block));
   }
   maps_.push_back(std::move(map));
+  // The maps agree here exactly. The link's uncertainty stands for the drift within the map that
+  // ends.
   links_.push_back({before, size() - 1, T_map_depth, T_map_depth, kDrift_m, kDrift_rad});
   Activate(size() - 1);
   return true;
@@ -111,9 +122,11 @@ bool Atlas::BeginElsewhere() {
 
 void Atlas::Activate(int index) {
   CHECK(index >= 0 && index < size());
+  // Pages of a spilled volume that nobody looks at for now make room for those of the new one.
   active().tsdf->Decommit(0, active().tsdf->block_count());
   active().thermal->Decommit(0, active().tsdf->block_count());
   active_ = index;
+  // Memory is one budget for all maps: whoever is active may use what is left of it.
   active().tsdf->LimitBlocks(active().tsdf->block_count() + BlocksLeft());
 }
 
@@ -146,6 +159,7 @@ std::vector<int> Atlas::ToVerify(const RigidTransform& T_map_depth) const {
   std::vector<int> candidates;
   for (int i = 0; i < size(); ++i) {
     if (i == active_ || IsLinked(i, active_)) continue;
+    // Without a pose one of the two is not joined, and may be anywhere.
     const auto pose = PoseIn(i, T_map_depth);
     if (!pose || IsNearView(i, *pose)) candidates.push_back(i);
   }
@@ -158,6 +172,8 @@ void Atlas::Link(int other, const RigidTransform& T_active_depth,
   std::vector<RigidTransform> T_world_map;
   for (const auto& map : maps_) T_world_map.push_back(map->T_world_map);
   if (active().joined && map(other).joined) {
+    // Measured before the optimiser moves anything: afterwards the gap is spread and cannot be
+    // seen.
     const RigidTransform gap = Mismatch(link, T_world_map[link.a], T_world_map[link.b]);
     drift_.last_gap_m = gap.translation().norm();
     drift_.last_gap_rad = RotationAngle(gap, RigidTransform::Identity());
@@ -165,7 +181,9 @@ void Atlas::Link(int other, const RigidTransform& T_active_depth,
     ++drift_.closures;
   }
   links_.push_back(link);
-  // A first guess for what has had no place so far; the optimiser starts from there.
+  // Maps that were not joined get a first guess by following links from those that are; the
+  // optimiser starts there. A newly joined map may join others, so this repeats until nothing
+  // changes.
   for (bool grows = true; grows;) {
     grows = false;
     for (const MapLink& known : links_) {
@@ -191,6 +209,7 @@ bool Atlas::Merge(double max_weight, ThreadPool& pool,
   for (int i = 1; i < size(); ++i) {
     const SubMap& map = *maps_[i];
     if (!map.joined) continue;
+    // The map that was merged last has given its blocks back.
     world.tsdf->LimitBlocks(world.tsdf->block_count() + BlocksLeft());
     has_room = MergeVolume({*map.tsdf, *map.thermal, map.T_world_map},
                            static_cast<float>(max_weight), pool, *world.tsdf, *world.thermal) &&
@@ -199,7 +218,8 @@ bool Atlas::Merge(double max_weight, ThreadPool& pool,
       world.relocaliser->Add(map.T_world_map * pose);
     world.integrated += map.integrated;
     maps_[i].reset();
-    // From here on the map's place is empty; it is taken out below.
+    // From here on this place is empty (BlocksLeft knows); it is taken out below, so that indices
+    // stay valid meanwhile.
     if (progress) progress(static_cast<double>(i) / size());
   }
   std::erase(maps_, nullptr);

@@ -27,8 +27,9 @@ struct Sample {
   float weight = 0.0F;
 };
 
-/// Distance at continuous voxel coordinates; nullopt where a neighbour that counts was never
-/// observed. The weight is the neighbours' smallest.
+/// Returns the distance at continuous voxel coordinates; nullopt where a neighbour that counts was
+/// never observed. The weight is the neighbours' smallest: an interpolated value is no better known
+/// than its worst part.
 std::optional<Sample> SampleDistance(const TsdfVolume& volume, const Eigen::Vector3d& voxel) {
   const GridIndex low = voxel.array().floor().cast<int>();
   const Eigen::Vector3d fraction = voxel - low.cast<double>();
@@ -42,6 +43,8 @@ std::optional<Sample> SampleDistance(const TsdfVolume& volume, const Eigen::Vect
     constexpr double kNothing = 1e-6;  // On a voxel's centre but for rounding.
     if (part < kNothing) continue;
     const TsdfVoxel neighbour = volume.VoxelAt(low + step);
+    // A distance towards unobserved space would be invented, and would grow a rim around the
+    // source's surface.
     if (!neighbour.observed()) return std::nullopt;
     tsdf += part * neighbour.tsdf();
     weight = std::min(weight, neighbour.weight());
@@ -49,7 +52,7 @@ std::optional<Sample> SampleDistance(const TsdfVolume& volume, const Eigen::Vect
   return Sample{static_cast<float>(tsdf), weight};
 }
 
-/// Blocks of the target that the source's blocks reach, allocated.
+/// Allocates the blocks of the target that the source's blocks reach, and returns them.
 std::vector<std::int32_t> AllocateReached(const PlacedVolume& source, TsdfVolume& target) {
   std::vector<std::int32_t> reached;
   std::vector<bool> known(static_cast<std::size_t>(target.grid().block_count()), false);
@@ -70,6 +73,8 @@ std::vector<std::int32_t> AllocateReached(const PlacedVolume& source, TsdfVolume
         for (int x = first.x(); x <= last.x(); ++x) {
           const GridIndex b(x, y, z);
           if (!target.InGrid(b)) continue;
+          // Blocks of a turned source overlap in the target: each is allocated and merged once, or
+          // its distances would be averaged in twice.
           const auto place = static_cast<std::size_t>(
               x + target.grid().blocks.x() * (y + std::ptrdiff_t{target.grid().blocks.y()} * z));
           if (known[place]) continue;
@@ -107,6 +112,7 @@ void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const Tsd
   for (int i = 0; i < kBlockVoxels; ++i) {
     const Eigen::Vector3d at = source.tsdf.grid().ToVoxel(
         T_source_target * tsdf.grid().VoxelCentre(VoxelOf(tsdf, block, i)));
+    // The nearest voxel and not a mean: temperatures of different conditions are never averaged.
     const GridIndex nearest = (at.array() + 0.5).floor().cast<int>();
     const std::int32_t from = source.tsdf.Find(BlockOf(nearest));
     if (from == TsdfVolume::kNoBlock) continue;
@@ -120,6 +126,7 @@ void MergeTemperatures(const PlacedVolume& source, std::int32_t block, const Tsd
       continue;
     }
     voxels[i] = other;
+    // The record's directions are turned into the target's axes.
     AdoptRecord(source.thermal, from, offset, source.T_target_source.linear().cast<float>(), block,
                 i, thermal);
   }
@@ -132,8 +139,11 @@ bool MergeVolume(const PlacedVolume& source, float max_weight, ThreadPool& pool,
   CHECK(source.tsdf.grid().voxel_size_m == tsdf.grid().voxel_size_m);
   const std::vector<std::int32_t> reached = AllocateReached(source, tsdf);
   const bool has_room = thermal.Commit(tsdf.block_count());
+  // Resampling a block costs more than integrating one: smaller tasks balance better. Not tuned.
   constexpr int kBlocksPerTask = 16;
   const int count = static_cast<int>(reached.size());
+  // Tasks write disjoint blocks of the target and only read the source, so that the result does not
+  // depend on the number of threads.
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
     const int end = std::min(count, (task + 1) * kBlocksPerTask);
     for (int i = task * kBlocksPerTask; i < end; ++i) {

@@ -41,6 +41,8 @@ PoseJacobian Differentiate(const RigidTransform& T_world_map, const ResidualOf& 
 /// Place of each sub-map among the unknowns, -1 = does not move.
 std::vector<int> MovingMaps(std::span<const MapLink> links, std::size_t count) {
   std::vector<bool> connected(count, false);
+  // The first sub-map is held: links say only how maps lie to each other, and without it the system
+  // would have six directions that cost nothing.
   connected[0] = true;
   for (bool grows = true; grows;) {
     grows = false;
@@ -77,6 +79,8 @@ void OptimisePoseGraph(std::span<const MapLink> links, std::vector<RigidTransfor
       const RigidTransform& a = T_world_map[link.a];
       const RigidTransform& b = T_world_map[link.b];
       const PoseError residual = Residual(link, a, b);
+      // Both ends of a link move by a twist on their right side, in their own coordinates, as the
+      // step below does.
       const std::array<PoseJacobian, 2> jacobians = {
           Differentiate(a, [&](const RigidTransform& moved) { return Residual(link, moved, b); }),
           Differentiate(b, [&](const RigidTransform& moved) { return Residual(link, a, moved); })};
@@ -91,6 +95,7 @@ void OptimisePoseGraph(std::span<const MapLink> links, std::vector<RigidTransfor
       }
     }
     const Eigen::VectorXd step = H.ldlt().solve(-g);
+    // Links without finite uncertainties make the system singular: the poses so far are kept.
     if (!step.allFinite()) return;
     for (std::size_t i = 0; i < place.size(); ++i) {
       if (place[i] < 0) continue;

@@ -27,13 +27,14 @@ enum class DelayVerdict : std::uint8_t {
 };
 std::string_view ToString(DelayVerdict verdict);
 
+/// Says how the thermal camera's calibrated delay fits the scan.
 struct DelayReport {
   DelayVerdict verdict = DelayVerdict::kOff;
   std::string reason;  ///< Why the scan cannot tell.
   /// The stamps contain this delay by calibration, seconds; nullopt = an edge added it and did not
   /// say.
   std::optional<double> calibrated_s;
-  std::optional<DelayEstimate> off_by;  ///< What would have to be added to it.
+  std::optional<DelayEstimate> off_by;  ///< To be added to it.
   double elapsed_s = 0.0;               ///< Time that the check took.
 };
 

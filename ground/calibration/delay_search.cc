@@ -14,9 +14,12 @@ namespace {
 
 // Of the scan, for a spread between them to mean something.
 constexpr int kMinParts = 5;
+// Fractions of the progress; only what is shown depends on them.
 constexpr double kCoarseFraction = 0.4, kAgainFraction = 0.5;
 // To each side of the first minimum, when samples are weighed for it.
 constexpr int kAgainSteps = 4;
+// The weights depend on the delay they are made at: once at the first minimum and once at the one
+// found with those. Weights made for another delay pull the result towards it (docs/timing.md).
 constexpr int kWeighings = 2;
 // Grid points to either side of the lowest that the parabola is laid through.
 constexpr std::ptrdiff_t kParabolaReach = 3;

@@ -21,6 +21,7 @@ using DisagreementOf = std::function<std::vector<double>(
 /// result towards it, for its samples on edges count less than others.
 using WeighAt = std::function<void(double delay_s)>;
 
+/// Holds the grids that are searched and when their minimum counts as an estimate.
 struct DelaySearchOptions {
   double range_s = 0.15;  ///< The delay is looked for in [-range_s, range_s].
   double coarse_step_s = 0.005;
@@ -34,12 +35,13 @@ struct DelaySearchOptions {
   std::uint64_t seed = 1;
 };
 
+/// Holds a delay and how certain it is.
 struct DelayEstimate {
   double delay_s = 0.0;
-  double sigma_s = 0.0;        ///< Of SearchDelay: spread over resampled parts of the scan.
+  double sigma_s = 0.0;        ///< Spread over resampled parts of the scan (SearchDelay).
   double contrast = 0.0;       ///< Disagreement at the ends of the fine steps over the least.
   int parts = 0;               ///< Parts of the scan that were resampled.
-  double drift_sigma_s = 0.0;  ///< What of sigma_s the drift of poses makes (FindDelay).
+  double drift_sigma_s = 0.0;  ///< The part of sigma_s that the drift of poses makes (FindDelay).
 };
 
 /// The delay at which thermal images disagree least: on a grid, then on a fine grid around its

@@ -11,6 +11,7 @@
 
 namespace isotherm {
 
+/// Holds the search and the sample of the surface that it compares images on.
 struct FindDelayOptions {
   DelaySearchOptions search;
   std::size_t coarse_points = 6000;  ///< Points on the surface for the grid; more: slower.
@@ -25,8 +26,8 @@ struct FindDelayOptions {
 Result<DelayEstimate> FindDelay(const ScanViews& views, const FindDelayOptions& options,
                                 ThreadPool& pool, const std::function<void(double)>& progress);
 
-/// What to tell the user of an estimate whose uncertainty is mostly that of drifting poses, as the
-/// rig hardly reversed; empty for others.
+/// Returns what to tell the user of an estimate whose uncertainty is mostly that of drifting poses,
+/// since the rig hardly reversed; empty for others.
 std::string HintOfDrift(const DelayEstimate& estimate);
 
 }  // namespace isotherm

@@ -144,8 +144,8 @@ TEST(FindDelayTest, SeveralDelaysAreFoundWithinTheirUncertainty) {
   }
 }
 
-/// What tracked poses do in scans: they do not lag, they fall short of the rig's way. That looks
-/// like a delay as long as the rig goes one way, and averages out over its reversals.
+/// Tracked poses do not lag in scans, they fall short of the rig's path. That looks like a delay as
+/// long as the rig goes one way, and averages out over its reversals.
 TEST(FindDelayTest, DriftOfThePosesAveragesOutIfTheRigGoesBackAndForth) {
   constexpr int kSeeds = 10;
   constexpr double kMaxBias_s = 0.0003;

@@ -12,6 +12,7 @@ namespace {
 
 // To each side: longer than what the noise of single poses makes, shorter than a person's swing.
 constexpr double kHalfBaseline_s = 0.08;
+// Nearer points would move by thousands of pixels a second and decide alone.
 constexpr double kMinDepth_m = 0.05;
 // Less of the squared speed than this is rounding, not a change of it.
 constexpr double kMinChange = 1e-9;

@@ -41,7 +41,7 @@ struct ScanViews {
   std::vector<StampedPose> trajectory;  ///< By time.
   std::vector<TexturePoint> points;  ///< In random order, so that any number of the first will do.
   std::vector<StampedThermal> frames;  ///< By time.
-  double pose_drift_m = 0.0;  ///< What poses drift by within seconds, one sigma along each axis.
+  double pose_drift_m = 0.0;  ///< Drift of the poses within seconds, one sigma along each axis.
 };
 
 /// Interpolated; nullopt outside the trajectory and in its gaps.
@@ -78,6 +78,7 @@ class TextureConsistency {
                               const std::vector<PartWeights>& resamplings) const;
 
  private:
+  /// Sums what the images of one part of the scan show of one point.
   struct PointSums {
     double count = 0.0, value = 0.0, squares = 0.0, gradient = 0.0;
   };

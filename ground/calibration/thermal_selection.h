@@ -12,16 +12,18 @@ namespace isotherm {
 /// about when it was taken. Thread-compatible.
 class ThermalSelection {
  public:
-  /// `most` >= 2.
+  /// `max_frames` >= 2.
   explicit ThermalSelection(std::size_t max_frames);
 
-  /// In order of capture time. `speed`: of the image, in any unit, the same for all.
+  /// Takes the frames in order of capture time. `speed` is that of the image, in any unit, the same
+  /// for all.
   void Add(ThermalFramePtr frame, double speed);
 
-  /// By time; not more than `most`.
+  /// Returns the selected frames by time, not more than `max_frames`.
   std::vector<ThermalFramePtr> frames() const;
 
  private:
+  /// Holds a frame and how fast the image moved in it.
   struct Kept {
     ThermalFramePtr frame;
     double speed = 0.0;

@@ -85,7 +85,10 @@ ChildProcess::ChildProcess(ChildProcess&& other) noexcept
 ChildProcess::~ChildProcess() {
   if (pid_ < 0 || Poll()) return;
   Terminate();
+  // An edge leaves within two seconds while all answers (stop_limits.h); what takes longer is
+  // killed.
   constexpr auto kPatience = std::chrono::seconds(5);
+  // Short against what a user notices.
   constexpr auto kTick = std::chrono::milliseconds(20);
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   while (!Poll() && std::chrono::steady_clock::now() < deadline) std::this_thread::sleep_for(kTick);

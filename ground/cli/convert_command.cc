@@ -98,6 +98,7 @@ int Run(const ConvertArguments& arguments) {
   };
   const Result<ConvertSummary> summary = ConvertRecording(request);
   if (!summary) return Fail(summary.error());
+  // The recording gets its name when it is complete: an interrupted conversion leaves nothing.
   if (const Status named = target->Commit(); !named.ok()) return Fail(named);
   if (progress) progress->Finish();
   progress.reset();

@@ -22,6 +22,8 @@ namespace {
 
 namespace rec = recording;
 
+// The reader turns these into items; everything else is carried over as bytes. A topic that is
+// missing here would be in the new file twice.
 constexpr std::array<std::string_view, 13> kOwnTopics = {
     rec::kDepthTopic,      rec::kThermalTopic,          rec::kRigTopic,
     rec::kDepthInfoTopic,  rec::kThermalInfoTopic,      rec::kNucTopic,
@@ -58,6 +60,7 @@ class OtherMessages {
       return OtherMessage{
           channel->second.topic, &schema->second,
           CaptureTimeFromNanoseconds(static_cast<std::int64_t>(
+              // A damaged time must not overflow the order of messages.
               std::min<std::uint64_t>((*message)->log_time, rec::kMaxRecordedNanoseconds))),
           std::string(data.begin(), data.end())};
     }
@@ -134,6 +137,7 @@ class Converter {
     } else if (has(rec::kTrajectoryTopic)) {
       from_ = PosesFrom::kTrajectory;
       summary_.poses_from = "the recording's trajectory";
+      // Compact recordings keep feedback as it is: poses would be in them twice.
     } else if (has(kFeedbackRecordTopic) && request_.storage == ImageStorage::kViewable) {
       from_ = PosesFrom::kFeedback;
       summary_.poses_from = "the ground's feedback";
@@ -146,6 +150,7 @@ class Converter {
   /// As it was, and what was spoiled now in addition to what was before.
   Status WriteMetadata() {
     auto metadata = reader_.info().metadata;
+    // The writer describes the new file itself.
     metadata.erase(std::string(kRecordingMetadataName));
     if (request_.defect != DepthDefect::kNone) {
       std::string& done = metadata[std::string(kSpoiledMetadata)]["depth"];
@@ -167,6 +172,7 @@ class Converter {
   }
 
   void LeaveOut(const Status& why) {
+    // A damaged recording may have thousands; the summary counts them all.
     constexpr std::uint64_t kMaxTold = 10;
     if (++summary_.left_out > kMaxTold) return;
     LOG(Convert, Warning) << "left out: " << why.message();
@@ -260,6 +266,7 @@ class Converter {
       LeaveOut(pixels.error());
       return false;
     }
+    // Noise by frame number: the same recording is spoiled alike each time.
     AddDefect(request_.defect, NoiseStream(0, 0, frame.header.frame_number), *pixels);
     frame.image = depth_encoder_.Encode(*pixels);
     return true;
@@ -284,6 +291,7 @@ class Converter {
 Result<ConvertSummary> ConvertRecording(const ConvertRequest& request) {
   auto reader = RecordingReader::Open(request.recording);
   if (!reader) return Err(reader.error());
+  // A second reader of the same file: the first one hides what it does not know.
   auto source = OpenFileSource(request.recording);
   if (!source) return Err(source.error());
   auto index = mcap::ReadFileIndex(**source);

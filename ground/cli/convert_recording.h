@@ -18,6 +18,7 @@ namespace isotherm {
 /// Metadata of a recording whose images were made worse on purpose: what was done, by stream.
 inline constexpr std::string_view kSpoiledMetadata = "spoiled";
 
+/// Says which recording becomes which.
 struct ConvertRequest {
   std::filesystem::path recording;
   std::filesystem::path output;  ///< Must not exist.
@@ -30,6 +31,7 @@ struct ConvertRequest {
   std::stop_token stop;
 };
 
+/// Counts what was converted.
 struct ConvertSummary {
   std::uint64_t depth_frames = 0;
   std::uint64_t thermal_frames = 0;

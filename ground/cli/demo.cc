@@ -55,19 +55,13 @@ Result<fs::path> SimulatedRecording(const SimulationOptions& options, const std:
 
 std::vector<std::string> EdgeArguments(const DemoRequest& request, const fs::path& recording,
                                        const std::string& edge_id) {
-  return {"--recording",
-          recording.string(),
-          "--edge-id",
-          edge_id,
-          "--domain",
-          std::to_string(request.domain),
-          "--rate",
-          fmt::format("{}", request.rate),
-          "--wait-for-ground",
-          "--exit-at-end",
-          "--set",
-          "source.expert.rebase=false",
-          "--set",
+  return {"--recording", recording.string(), "--edge-id", edge_id, "--domain",
+          std::to_string(request.domain), "--rate", fmt::format("{}", request.rate),
+          "--wait-for-ground", "--exit-at-end", "--set",
+          // Stamps stay those of the simulation, so that poses can be compared with the truth.
+          "source.expert.rebase=false", "--set",
+          // The ground confirms the last frames when it has processed them, which may take minutes
+          // on a slow computer.
           "link.expert.linger_s=600"};
 }
 
@@ -76,6 +70,7 @@ Result<std::vector<std::string>> GroundArguments(const DemoRequest& request,
                                                  const std::string& edge_id) {
   const auto poses = ReadTruePoses(recording);
   if (!poses) return Err(poses.error());
+  // The result is then in the simulation's world, and the volume lies where the scene is.
   const PoseOptions first = ToOptions(poses->front().T_world_depth);
   std::vector<std::string> arguments{"--once",
                                      "--output",
@@ -166,6 +161,7 @@ Status CompareWithTruth(const DemoRequest& request, const SimulationOptions& sim
 }
 
 Status Scan(const DemoRequest& request, const fs::path& recording, const std::stop_token& stop) {
+  // A demo must not meet another one, or a rig, on the same network.
   const std::string edge_id = fmt::format("demo-{}", ::getpid());
   const auto edge_program = NeighbourProgram("isotherm-edge");
   if (!edge_program) return edge_program.error();
@@ -173,6 +169,7 @@ Status Scan(const DemoRequest& request, const fs::path& recording, const std::st
   if (!ground_program) return ground_program.error();
   const auto ground_arguments = GroundArguments(request, recording, edge_id);
   if (!ground_arguments) return ground_arguments.error();
+  // The ground first: an edge that waits for a ground would log that none is there.
   auto ground =
       ChildProcess::Start(*ground_program, *ground_arguments, request.output / "ground.log");
   if (!ground) return ground.error();

@@ -11,6 +11,7 @@
 
 namespace isotherm {
 
+/// Says what a demo scans and where its files go.
 struct DemoRequest {
   std::string scene = "furnace-door";
   double duration_s = 20.0;
@@ -25,6 +26,7 @@ struct DemoCounters {
   std::uint64_t arrived = 0;  ///< In the ground's recording.
 };
 
+/// Holds what came through the link and how near the result is to the truth.
 struct DemoReport {
   std::filesystem::path simulated_recording;
   DemoCounters depth, thermal;

@@ -58,7 +58,7 @@ Result<Eigen::AlignedBox3f> ParseBox(const std::string& text) {
 
 void Print(const std::string& text) { std::fwrite(text.data(), 1, text.size(), stdout); }
 
-/// What is known of the surface that was scanned; nullopt: nothing.
+/// Returns what the arguments say of the scanned surface; nullopt: nothing.
 Result<std::optional<SmoothSurface>> SurfaceOf(const EvaluationRequest& request) {
   if (request.emissivity.has_value() != request.refractive_index.has_value()) {
     return Err(InvalidArgument(
@@ -97,6 +97,7 @@ int RunHeldOut(const EvaluateArguments& arguments) {
     progress->Update(fraction);
   };
   const Result<HeldOutReport> report = PredictHeldOutViews(request, every, *surface);
+  // After a failure the bar must not say 100 %.
   if (report && progress) progress->Finish();
   progress.reset();
   if (!report) return Fail(report.error());

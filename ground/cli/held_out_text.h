@@ -7,7 +7,7 @@
 
 namespace isotherm {
 
-/// What `isotherm evaluate --held-out-views` says.
+/// Returns what `isotherm evaluate --held-out-views` prints.
 std::string ToText(const HeldOutReport& report);
 Json ToJson(const HeldOutReport& report);
 

@@ -41,6 +41,7 @@ Status ReadValues(std::string_view values, std::string_view option, InterpretedR
       any = true;
       continue;
     }
+    // The key is checked before its value, so that the message is about what is wrong first.
     InterpretedRegion ignored;
     if (equals == std::string_view::npos || !SetNumber(key, 0.0, ignored)) {
       return InvalidArgument(
@@ -76,6 +77,7 @@ Status AddBox(const std::string& text, InterpretationOptions& options) {
 }
 
 Status ChangeLabel(const std::string& text, InterpretationOptions& options) {
+  // The last one: names may hold colons.
   const std::size_t colon = text.rfind(':');
   const std::string name = text.substr(0, colon);
   const auto region = std::ranges::find_if(
@@ -158,6 +160,7 @@ Status ApplyArguments(const InterpretationArguments& arguments, InterpretationOp
     options.mutable_expert()->set_band_min_um(band->front());
     options.mutable_expert()->set_band_max_um(band->back());
   }
+  // Labels name regions of the file, so they come before boxes, which add regions.
   for (const std::string& label : arguments.labels)
     ISOTHERM_RETURN_IF_ERROR(ChangeLabel(label, options));
   for (const std::string& box : arguments.boxes) ISOTHERM_RETURN_IF_ERROR(AddBox(box, options));

@@ -31,6 +31,7 @@ double WithoutNegativeZero(double value) { return std::abs(value) < 0.005 ? 0.0 
 }  // namespace
 
 std::string ListMaterials(const SpectralBand& band) {
+  // The emissivity of a band depends on temperature only through the weights within the band.
   constexpr double kTypical_celsius = 50.0;
   std::string text = fmt::format("{:<20}{:>6}  {:<26}{}\n", "material", "eps", "source", "what");
   for (const OpticalMaterial& material : OpticalMaterials()) {

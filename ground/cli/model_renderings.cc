@@ -26,6 +26,7 @@ ModelSurface SurfaceOf(const LoadedModel& model, const GroundOptions& options,
   Surface surface =
       ExtractSurface(*model.tsdf, *model.thermal,
                      {.min_weight = static_cast<float>(options.export_().expert().min_weight()),
+                      // Views and scales need points only.
                       .triangles = false},
                      pool);
   ModelSurface result;
@@ -113,6 +114,7 @@ Result<int> WriteRenderings(const LoadedModel& model, const GroundOptions& optio
                                 options.renderer().expert().isotherm_smoothing_px(), pool);
     }
     if (request.interpretation != nullptr) {
+      // Contours first: they need the view's angles and parts as they were measured.
       if (contours) request.interpretation->Apply(maps, view, contours->celsius);
       request.interpretation->Apply(maps, view);
       view.celsius_meaning = "object temperature";

@@ -105,6 +105,7 @@ Status Run(const NucArguments& arguments) {
   const Result<CommandResult> answer = (*commander)->Send(*order, timeout);
   if (!answer) return answer.error();
   const std::string& rig = (*commander)->edge_id();
+  // Scripts tell a refusal by the exit status (69).
   if (answer->outcome != CommandOutcome::kDone) {
     return Unavailable(fmt::format(
         "{} {}: {}", rig, answer->outcome == CommandOutcome::kRefused ? "refuses" : "failed",
@@ -131,7 +132,9 @@ void AddNucCommand(CLI::App& app, CommandBody& body) {
                    "No correction for this long (nuc.expert.max_hold_s at most); 0 ends a hold")
       ->check(CLI::Range(0.0, 86400.0))
       ->type_name("SECONDS");
-  orders->add_option("--policy", arguments->policy, "automatic, manual or camera")
+  orders
+      ->add_option("--policy", arguments->policy, "automatic, manual or camera")
+      // The validator's empty description keeps CLI11 from listing numbers in the help.
       ->transform(CLI::Validator(NumberOfName(policies), ""))
       ->type_name("POLICY");
   orders->require_option(0, 1);

@@ -18,6 +18,7 @@ namespace {
 
 // " (date time UTC)"; nothing for stamps that do not count from 1970, as those of many data sets.
 std::string Utc(CaptureTime time) {
+  // Stamps that count from a camera's start lie in 1970.
   constexpr int kFirstPlausibleYear = 2000;
   const std::time_t seconds = static_cast<std::time_t>(ToSeconds(time.time_since_epoch()));
   std::tm utc{};
@@ -39,6 +40,7 @@ std::string Encodings(const StreamSummary& stream) {
   std::string text;
   for (const auto& [name, count] : stream.encodings) {
     text += (text.empty() ? "" : ", ") + name;
+    // Counts say something only where there are several.
     if (stream.encodings.size() > 1) text += fmt::format(" ({})", count);
   }
   return text;
@@ -83,7 +85,7 @@ void AppendFormat(const RecordingReport& report, std::string& text) {
       viewable ? "is smaller" : "Foxglove and Lichtblick show");
 }
 
-/// What was done to the images on purpose: nobody should take them for what a camera sent.
+/// Appends what was done to the images on purpose: nobody should take them for what a camera sent.
 void AppendSpoiled(const RecordingInfo& info, std::string& text) {
   const auto found = info.metadata.find(std::string(kSpoiledMetadata));
   if (found == info.metadata.end()) return;
@@ -161,6 +163,7 @@ void AppendSensors(const Rig& rig, std::string& text) {
 void AppendRig(const RecordingReport& report, std::string& text) {
   text += fmt::format("{:<14}", "calibration");
   if (!report.rig) {
+    // Texts from a file may hold escape sequences, which would reach the terminal.
     text += Printable(report.rig_problem) + "\n";
     return;
   }
@@ -207,6 +210,7 @@ void AppendOther(const RecordingReport& report, std::string& text) {
   }
   for (const auto& [name, values] : report.info.metadata) {
     for (const auto& [key, value] : values) {
+      // A whole configuration or rig file would fill the screen.
       const bool long_text = value.find('\n') != std::string::npos;
       text += fmt::format(
           "{:<22}{}: {}\n", Printable(name), Printable(key),
@@ -257,6 +261,7 @@ RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path&
   report.file = path.string();
   std::error_code error;
   report.file_bytes = std::filesystem::file_size(path, error);
+  // The file was opened a moment ago: without its size the report is still useful.
   if (error) report.file_bytes = 0;
   report.info = reader.info();
   if (Result<Rig> rig = reader.ReadRig()) {

@@ -16,7 +16,7 @@ struct RecordingReport {
   RecordingSummary summary;
   std::optional<Rig> rig;
   std::string rig_problem;  ///< Why there is no rig.
-  Doubts doubts;            ///< What cannot be right.
+  Doubts doubts;            ///< Contents that cannot be right.
 };
 
 RecordingReport MakeReport(RecordingReader& reader, const std::filesystem::path& path);

@@ -15,6 +15,7 @@ namespace {
 
 void CountNumbers(std::vector<std::pair<std::uint64_t, std::uint64_t>>& numbers,
                   StreamSummary& stream) {
+  // Frames may be recorded out of order. Numbers begin anew in each session.
   std::sort(numbers.begin(), numbers.end());
   for (std::size_t i = 1; i < numbers.size(); ++i) {
     if (numbers[i].first != numbers[i - 1].first) continue;
@@ -27,6 +28,7 @@ void CountNumbers(std::vector<std::pair<std::uint64_t, std::uint64_t>>& numbers,
 }
 
 void MeasurePeriods(std::vector<CaptureTime>& times, StreamSummary& stream) {
+  // A frame is missing when the next one is late by more than half a period: jitter is far less.
   constexpr double kGapPeriods = 1.5;
   std::sort(times.begin(), times.end());
   stream.first = times.front();
@@ -36,6 +38,7 @@ void MeasurePeriods(std::vector<CaptureTime>& times, StreamSummary& stream) {
     periods_s.push_back(ToSeconds(times[i] - times[i - 1]));
   if (periods_s.empty()) return;
   std::vector<double> ordered_s = periods_s;
+  // The median, since gaps would spoil a mean.
   stream.period_s = TakeMedian(ordered_s);
   for (std::size_t i = 0; i < periods_s.size(); ++i) {
     if (periods_s[i] <= kGapPeriods * stream.period_s) continue;
@@ -72,6 +75,7 @@ void RecordingSummarizer::AddFrame(const FrameHeader& header, const EncodedImage
                                    StreamSummary& stream, Stamps& stamps) {
   ++stream.frames;
   constexpr std::size_t kMaxKinds = RecordingSummary::kMaxKinds;
+  // A damaged file may hold any number of values: what grows is bounded.
   if (stream.sessions.size() < kMaxKinds) stream.sessions.insert(header.session);
   if (stream.sizes.size() < kMaxKinds) stream.sizes.insert({image.width, image.height});
   ++stream.encodings[EncodingName(image.encoding)];
@@ -151,6 +155,7 @@ namespace {
 
 void Show(const RecordedItem& item, PlausibilityCheck& plausibility) {
   if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
+    // Only some frames are looked at: decoding all would take as long as a reconstruction reads.
     if (!plausibility.AddDepth(depth->frame.header.capture_time)) return;
     if (const auto pixels = Decode(depth->frame.image))
       plausibility.LookAtDepth(*pixels, depth->frame.depth_scale);

@@ -45,6 +45,7 @@ struct NucRun {
   std::uint64_t frames = 0;
 };
 
+/// Counts what a recording has.
 struct RecordingSummary {
   StreamSummary depth;
   StreamSummary thermal;
@@ -55,11 +56,13 @@ struct RecordingSummary {
   std::vector<ClockStep> clock_steps;                      ///< The first kMaxLog.
   std::map<std::string, std::uint64_t> poses;              ///< By stream: groundtruth, trajectory.
   std::map<std::string, std::uint64_t> external_odometry;  ///< By source.
-  std::vector<RecordedLog> log;                            ///< What happened; the first kMaxLog.
+  std::vector<RecordedLog> log;                            ///< Logged events; the first kMaxLog.
   std::uint64_t log_left_out = 0;
+  /// Lines of the log that are shown; a scan of hours has more, in the recording.
   static constexpr std::size_t kMaxLog = 200;
   /// Longer lines are cut; more sources, sizes and sessions are not told apart.
   static constexpr std::size_t kMaxLogBytes = 4096;
+  /// Distinct values that are counted one by one, whatever a file holds.
   static constexpr std::size_t kMaxKinds = 1000;
   std::uint64_t unreadable = 0;  ///< Messages that could not be read.
 };
@@ -76,6 +79,7 @@ class RecordingSummarizer {
   RecordingSummary Finish();
 
  private:
+  /// Collects the stamps of one stream to find gaps, repeats and steps at the end.
   struct Stamps {
     std::vector<std::pair<std::uint64_t, std::uint64_t>> numbers;  // Session and frame number.
     std::vector<CaptureTime> times;

@@ -44,6 +44,7 @@ GroundOptions CollectOptions(const ScanArguments& arguments, Problems& problems)
       problems.Add(pose.error().WithContext("--initial-pose"));
     }
   }
+  // After the configuration, which the command line overrides.
   if (arguments.threads) options.set_threads(*arguments.threads);
   AddInvalid(options, problems);
   return options;
@@ -86,6 +87,7 @@ std::vector<CLI::Option*> AddScanOptions(CLI::App& command, ScanArguments& argum
 
 int CollectScanOptions(const ScanArguments& arguments, ReconstructRequest& request) {
   const std::string& file = arguments.configuration.file;
+  // A missing file is exit status 66, a wrong one 78.
   if (std::error_code error; !file.empty() && !std::filesystem::exists(file, error)) {
     return Fail(NotFound(file + ": there is no such configuration file"));
   }

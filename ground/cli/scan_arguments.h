@@ -14,7 +14,7 @@ class Option;
 
 namespace isotherm {
 
-/// What a command line says of a recording that is to be reconstructed.
+/// Holds what a command line says of a recording that is to be reconstructed.
 struct ScanArguments {
   std::string recording, rig;
   std::string volume, volume_min, initial_pose, initial_pose_from;

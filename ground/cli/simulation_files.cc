@@ -19,7 +19,9 @@
 namespace isotherm {
 namespace {
 
+// The default voxel: truth need not be finer than what is compared with it.
 constexpr double kSampleSpacing_m = 0.002;
+// Every tenth pose counts what is seen: 30 degrees a second move little in a third of a second.
 constexpr std::size_t kPoseStep = 10;
 
 }  // namespace

@@ -21,6 +21,8 @@ ExpectedTemperature ExpectTemperature(const BandRadiance& band, const SmoothSurf
         ApparentCelsius(band, true_celsius, surface.normal_emissivity, surface.reflected_celsius),
         0.0};
   }
+  // The slope is taken over a degree: about the uncertainty of the angle that it is multiplied
+  // with.
   constexpr double kStep_deg = 0.5;
   const double per_degree =
       (at(angle_deg + kStep_deg) - at(std::max(0.0, angle_deg - kStep_deg))) / (2.0 * kStep_deg);

@@ -7,8 +7,8 @@
 
 namespace isotherm {
 
-/// What a camera that takes everything for a black body shows of a place, by its true temperature
-/// and the angle at which it was measured (thesis eq. 3.1, B.2).
+/// Holds the temperature that a camera which takes everything for a black body shows of a place, by
+/// the place's true temperature and the angle at which it was measured (thesis eq. 3.1, B.2).
 struct ExpectedTemperature {
   double celsius = 0.0;
   double sigma_k = 0.0;  ///< Standard uncertainty, by that of the angle.

@@ -59,6 +59,7 @@ std::string_view NextLine(std::string_view& rest) {
   const std::size_t end = rest.find('\n');
   std::string_view line = rest.substr(0, end);
   rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+  // Files that passed through Windows.
   if (line.ends_with('\r')) line.remove_suffix(1);
   return line;
 }
@@ -110,6 +111,8 @@ Result<Header> ParseHeader(std::string_view& rest) {
     }
     if (keyword == "format") status = ParseFormat(NextWord(line), header);
     if (keyword == "element") {
+      // Elements before the vertices would have to be read over, lists included; no tool of this
+      // field writes them so.
       if (element.empty() && !line.starts_with(" vertex ")) {
         return Err(DataLoss("the first element of the PLY file must be 'vertex'"));
       }
@@ -121,6 +124,7 @@ Result<Header> ParseHeader(std::string_view& rest) {
         return Err(DataLoss(fmt::format("'{}' is no number of vertices", count)));
       }
     }
+    // Faces follow the vertices and are not read, lists included.
     if (keyword == "property" && element == "vertex") status = ParseProperty(line, header);
     if (!status.ok()) return Err(std::move(status));
   }
@@ -167,11 +171,13 @@ Status Truncated(std::size_t expected, std::size_t found) {
 Status ReadBinary(const Header& header, std::string_view bytes, PlyVertices& vertices) {
   std::size_t stride = 0;
   for (const Type type : header.types) stride += SizeOf(type);
+  // The count comes from the file: nothing is allocated before the bytes are known to be there.
   if (header.vertices > bytes.size() / stride)
     return Truncated(header.vertices, bytes.size() / stride);
   const bool swap =
       (header.format == Format::kBigEndian) != (std::endian::native == std::endian::big);
   std::size_t offset = 0;
+  // Column by column: callers ask for columns by name.
   for (std::size_t p = 0; p < header.types.size(); ++p) {
     std::vector<float>& column = vertices.columns[p];
     column.resize(header.vertices);
@@ -202,6 +208,7 @@ Status ReadAscii(const Header& header, std::string_view text, PlyVertices& verti
 }  // namespace
 
 const std::vector<float>* PlyVertices::Find(std::string_view name) const {
+  // CloudCompare writes its fields with this prefix, other programs without it.
   constexpr std::string_view kPrefix = "scalar_";
   const std::string_view bare = name.starts_with(kPrefix) ? name.substr(kPrefix.size()) : name;
   for (const std::string& candidate :

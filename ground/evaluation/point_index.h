@@ -13,6 +13,7 @@ namespace isotherm {
 /// found. Thread-safe (immutable).
 class PointIndex {
  public:
+  /// Holds a point by its index and how far away it is.
   struct Neighbour {
     std::uint32_t index = 0;
     float distance_m = 0.0F;
@@ -31,10 +32,13 @@ class PointIndex {
   }
 
  private:
+  /// Holds a point in the order of the tree.
   struct Point {
     Eigen::Vector3f position;
     std::uint32_t index;
   };
+  /// A leaf is searched point by point. Larger: more distances for each query; smaller: a deeper
+  /// tree. Not tuned.
   static constexpr std::size_t kLeafPoints = 12;
 
   void Build(std::size_t begin, std::size_t end);

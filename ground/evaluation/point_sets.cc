@@ -71,6 +71,7 @@ Result<TruePoints> ReadTruePoints(const std::filesystem::path& path) {
   points.positions_m = Vectors(*columns, 0);
   points.normals = Vectors(*columns, 3);
   for (std::size_t i = 0; i < vertices->count; ++i) {
+    // Normals are written with few digits.
     constexpr float kLengthTolerance = 0.01F;
     const bool unit = std::abs(points.normals[i].norm() - 1.0F) < kLengthTolerance;
     if (!points.positions_m[i].allFinite() || !unit) {
@@ -81,6 +82,7 @@ Result<TruePoints> ReadTruePoints(const std::filesystem::path& path) {
   points.celsius = Converted<float>(vertices->Find("scalar_temperature"));
   points.seen = Converted<std::uint32_t>(vertices->Find("seen"));
   points.primitive = Converted<std::uint32_t>(vertices->Find("primitive"));
+  // Surfaces from elsewhere count as one shape.
   if (points.primitive.empty()) points.primitive.assign(vertices->count, 0);
   if (points.positions_m.empty())
     return Err(DataLoss(fmt::format("{}: has no points", path.string())));

@@ -45,16 +45,19 @@ Result<TrajectoryErrors> CompareTrajectory(const EvaluationRequest& request) {
   return EvaluateTrajectory(*estimated, *truth, options);
 }
 
-/// What a single image shows may be a matter of half a pixel.
+/// A point counts as shown if at least this many true poses show it: one image alone may show it by
+/// half a pixel.
 constexpr int kMinPoses = 2;
 /// Limits that are no result's own, so that results are compared like for like: of what could be
 /// measured at all, and of what could be measured well.
 constexpr WellSeenLimits kMeasurable{kMinPoses, 0.30, 0.90, 0.0, 60.0};
 constexpr WellSeenLimits kMeasurableWell{kMinPoses, 0.30, 0.60, 0.0, 40.0};
+// More threads only make the evaluation quicker. Not tuned.
 constexpr int kThreads = 2;
+// As near as completeness asks (SurfaceEvaluationOptions), two and a half voxels of 2 mm.
 constexpr float kCoveredWithin_m = 0.005F;
 
-/// What the result was told to measure under (stats.json), or the defaults.
+/// Returns the limits that the result was measured under (stats.json), or the defaults.
 Result<WellSeenLimits> LimitsOf(const EvaluationRequest& request, const Rig& rig) {
   const ThermalOptions options =
       ConfigurationOf(request.result_dir).value_or(GroundOptions()).thermal();
@@ -112,6 +115,7 @@ Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) 
   if (cloud->positions_m.empty()) return DataLoss("cloud.ply has no points");
   auto points = ReadTruePoints(*request.surface);
   if (!points) return points.error();
+  // Surface outside of the scan volume cannot be in the model; it would count as missing.
   if (request.volume_box) KeepInside(*request.volume_box, *points);
   if (points->positions_m.empty())
     return InvalidArgument("no true surface lies inside the volume box");
@@ -121,11 +125,13 @@ Status CompareCloud(const EvaluationRequest& request, EvaluationReport& report) 
   report_fraction(0.1);
   const TrueSurface truth(std::move(*points));
   const std::vector<Eigen::Vector3f> positions =
+      // The result's `world` is where the first frame was; the truth has a frame of its own.
       Transformed(report.trajectory.T_truth_world, cloud->positions_m);
   report.cloud_points = positions.size();
   report_fraction(0.2);
   report.surface = EvaluateSurface(positions, truth, {});
   report_fraction(0.7);
+  // Without the object's emissivity, true and apparent temperatures cannot be compared.
   if (!request.emissivity) return OkStatus();
   TemperatureEvaluationOptions options;
   options.emissivity = *request.emissivity;

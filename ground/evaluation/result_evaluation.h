@@ -33,19 +33,21 @@ struct EvaluationRequest {
   std::function<void(double fraction)> progress{};
 };
 
+/// Holds a coverage and the limits that it was counted under.
 struct CoverageUnderLimits {
   WellSeenLimits limits;
   ThermalCoverage coverage;
 };
 
+/// Holds how far a result is from the truth.
 struct EvaluationReport {
   TrajectoryErrors trajectory;
   std::optional<SurfaceErrors> surface;
   std::size_t cloud_points = 0;
   std::optional<TemperatureReport> temperature;
-  /// What the true poses showed at least twice in the thermal image, first under the limits that
-  /// the result was measured under, then under others that are the same for all results. Empty: not
-  /// evaluated.
+  /// Coverage of the surface that the true poses showed at least twice in the thermal image, first
+  /// under the limits that the result was measured under, then under others that are the same for
+  /// all results. Empty: not evaluated.
   std::vector<CoverageUnderLimits> coverage;
 };
 

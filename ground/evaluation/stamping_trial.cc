@@ -14,9 +14,12 @@ namespace isotherm {
 namespace {
 
 constexpr CaptureTime kStart{std::chrono::seconds(1'700'000'000)};
+// A transport of usual length; it is the same for all methods, and taken out as their constant
+// delay.
 constexpr double kTransport_s = 0.012;
 // A frame that waited for the one before.
 constexpr double kTransfer_s = 50e-6;
+// A camera's crystal follows the temperature of its housing within minutes.
 constexpr double kWanderPeriod_s = 300.0;
 // As TimestamperOptions has them: half a second.
 constexpr double kMedianWindow_s = 0.5;
@@ -82,6 +85,8 @@ class SimulatedTransport {
       case JitterShape::kNormal:
         break;
     }
+    // An arrival is never early: the normal distribution is shifted by four sigmas, and the rest (3
+    // of 100 000) is cut.
     constexpr double kCutSigmas = 4.0;
     const auto normal = static_cast<double>(NormalNoise(stream_, counter_++));
     return scenario_.jitter_s * std::max(0.0, kCutSigmas + normal);

@@ -27,8 +27,9 @@ struct StampingScenario {
   double impulse_max_s = 0.040;
   double burst_period_s = 0.0;  ///< 0 = no bursts. The first begins half a period after the start.
   double burst_length_s = 0.0;
-  double burst_least_s = 0.0;  ///< Every frame of a burst is held up by at least this, ...
-  double burst_mean_s = 0.0;   ///< ... and by this more in the mean.
+  double burst_least_s = 0.0;  ///< Every frame of a burst is held up by at least this.
+  double burst_mean_s =
+      0.0;  ///< Mean of what a frame of a burst is held up by beyond burst_least_s.
 };
 
 /// The scenarios of the table in docs/timing.md.
@@ -45,13 +46,15 @@ inline constexpr std::array kStampingMethods = {StampingMethod::kArrival, Stampi
                                                 StampingMethod::kEnvelope, StampingMethod::kPeriod};
 std::string_view ToString(StampingMethod method);
 
+/// Describes the simulated camera clock and how long it is stamped.
 struct StampingTrialOptions {
   double rate_hz = 30.0;
   double duration_s = 120.0;  ///< Length of each run.
   double skip_s = 10.0;       ///< At its start, which does not count.
   int runs = 10;
-  double max_drift_ppm = 100.0;  ///< Each run's camera clock is off by up to this, ...
-  double wander_ppm = 2.0;       ///< ... and changes by this much with a period of five minutes.
+  double max_drift_ppm = 100.0;  ///< Each run's camera clock is off by up to this.
+  double wander_ppm =
+      2.0;  ///< The drift itself changes by this much, with a period of five minutes.
   std::uint64_t seed = 1;
 };
 
@@ -61,8 +64,8 @@ struct StampingResidual {
   double rms_s = 0.0;
   double p99_s = 0.0;  ///< 99th percentile of the absolute value.
   double worst_s = 0.0;
-  double within_sigma = 0.0;    ///< Fraction of stamps whose residual is within their sigma, ...
-  double within_3_sigma = 0.0;  ///< ... and within three.
+  double within_sigma = 0.0;    ///< Fraction of stamps whose residual is within their sigma.
+  double within_3_sigma = 0.0;  ///< Fraction of stamps whose residual is within three sigmas.
   std::uint64_t stamps = 0;
 };
 

@@ -31,6 +31,7 @@ std::vector<PlanePair> Pairs(const std::vector<Eigen::Vector3f>& cloud, std::siz
   }
   if (pairs.empty()) return pairs;
   std::vector<double> sorted = magnitudes;
+  // Skirts and surface that the truth lacks must not pull the fit.
   constexpr double kOutlierMedians = 3.0;
   const double limit = kOutlierMedians * TakeMedian(sorted);
   std::vector<PlanePair> inliers;
@@ -67,7 +68,10 @@ double Completeness(const std::vector<Eigen::Vector3f>& cloud, const TrueSurface
 }  // namespace
 
 RigidTransform FitToSurface(const std::vector<Eigen::Vector3f>& cloud, const TrueSurface& truth) {
+  // Points of the cloud that are fitted. More: more time; fewer: the noise of single points shows
+  // in the motion. Not tuned.
   constexpr std::size_t kSamples = 20000;
+  // Point-to-plane steps converge in a few; a fit that needs more begins too far away to be right.
   constexpr int kIterations = 15;
   constexpr double kConverged = 1e-7;  // Metres and radians.
   const std::size_t step = std::max<std::size_t>(1, cloud.size() / kSamples);

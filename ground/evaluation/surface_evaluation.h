@@ -7,18 +7,21 @@
 
 namespace isotherm {
 
+/// Says which true surface counts and when it counts as there.
 struct SurfaceEvaluationOptions {
-  /// Surface seen by at least so many sampled poses counts for completeness.
+  /// Surface counts for completeness if at least this many sampled poses see it.
   std::uint32_t min_seen = 3;
-  /// ... and is there if the cloud has a point within this distance.
+  /// Such surface is there if the cloud has a point within this distance.
   float complete_within_m = 0.005F;
 };
 
+/// Holds how far a point cloud is from the true surface and how much of it is there.
 struct SurfaceErrors {
   ErrorStatistics distance_m;         ///< Cloud to true surface, the first poses made equal.
   ErrorStatistics fitted_distance_m;  ///< The same after the rigid motion that fits the cloud best.
-  RigidTransform fit = RigidTransform::Identity();  ///< That motion, in the truth's world.
-  std::size_t surface_points = 0;                   ///< True points that count for completeness.
+  RigidTransform fit =
+      RigidTransform::Identity();  ///< The motion that fits the cloud, in the truth's world.
+  std::size_t surface_points = 0;  ///< True points that count for completeness.
   double completeness =
       0.0;  ///< Fraction of them with a point of the cloud nearby, first poses equal.
   double fitted_completeness = 0.0;

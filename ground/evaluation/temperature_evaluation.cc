@@ -51,13 +51,15 @@ double ValueOrNan(const std::vector<float>& column, std::size_t i) {
   return column.empty() ? std::numeric_limits<double>::quiet_NaN() : static_cast<double>(column[i]);
 }
 
-/// What is expected of the cloud's points, by the angle at which each was measured.
+/// Computes the temperatures expected of the cloud's points, by the angle at which each was
+/// measured.
 class ExpectedOfPoints {
  public:
   ExpectedOfPoints(const MeasuredCloud& cloud, const TemperatureEvaluationOptions& options)
       : cloud_(cloud),
         options_(options),
         surface_{.normal_emissivity = options.emissivity,
+                 // Not used without an angle.
                  .refractive_index = options.refractive_index.value_or(1.5),
                  .reflected_celsius = options.ambient_celsius} {}
 
@@ -145,6 +147,7 @@ Result<TemperatureReport> EvaluateTemperatures(const MeasuredCloud& cloud,
                         .expected_sigma_k = expected.sigma_k,
                         .distance_m = ValueOrNan(cloud.measured_distance_m, i),
                         .angle_deg = ValueOrNan(cloud.measured_angle_deg, i)});
+    // Edges of the truth: those of the cloud are what is assessed.
     const Eigen::Vector3f& q = truth.points().positions_m[foot->nearest];
     if (truth.CelsiusSpread(q, options.edge_radius_m) <= options.edge_kelvin)
       errors.away_from_edges.push_back(error);

@@ -10,6 +10,8 @@
 
 namespace isotherm {
 
+/// Says under which conditions a model's apparent temperatures become surface temperatures, and
+/// what an edge is.
 struct TemperatureEvaluationOptions {
   double emissivity = 1.0;  ///< At normal incidence, (0, 1].
   /// Index of a smooth surface, whose emissivity falls with the angle of each measurement (Fresnel;
@@ -33,6 +35,7 @@ struct TemperatureErrors {
   double gross_fraction = 0.0;  ///< Fraction above TemperatureEvaluationOptions::gross_kelvin.
 };
 
+/// Holds the errors of a class of points.
 struct ClassErrors {
   TemperatureErrors all;
   TemperatureErrors away_from_edges;
@@ -46,8 +49,8 @@ struct TemperatureReport {
   ClassErrors acceptable;
   ClassErrors bad;
   ClassErrors any;
-  /// Of all points together. With a refractive index, what is expected is uncertain as well: the
-  /// angle of each measurement is that to the cloud's normal.
+  /// Uncertainty of all points together. With a refractive index, the expected temperature is
+  /// uncertain as well: the angle of each measurement is that to the cloud's normal.
   UncertaintyReport uncertainty;
 };
 

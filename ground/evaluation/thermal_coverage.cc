@@ -18,6 +18,7 @@ namespace {
 constexpr float kMinFacing = 0.05F;
 /// Points that lie behind the first surface by no more than this many spacings belong to it.
 constexpr float kBehindSpacings = 3.0F;
+/// Nearer discs would fill the image and belong to no scan.
 constexpr float kMinDepth_m = 0.05F;
 
 /// Where the pixels of a camera look: through its lens, so that what it distorts out of the image

@@ -22,15 +22,16 @@ struct WellSeenLimits {
 
 /// Counts how much of what could be measured has a temperature.
 struct ThermalCoverage {
-  std::size_t well_seen = 0;      ///< True points that were seen under acceptable conditions.
-  std::size_t covered = 0;        ///< Those with an assigned point of the cloud near by.
-  std::size_t measured_well = 0;  ///< Those whose nearest assigned point is of class good.
+  std::size_t well_seen = 0;  ///< True points that were seen under acceptable conditions.
+  std::size_t covered = 0;  ///< Points of `well_seen` with an assigned point of the cloud near by.
+  std::size_t measured_well =
+      0;  ///< Points of `well_seen` whose nearest assigned point is of class good.
 };
 
 /// The points of a cloud that have a temperature, in the truth's world.
 struct AssignedPoints {
   std::vector<Eigen::Vector3f> positions_m;
-  std::vector<bool> good;  ///< Of class good in distance, angle and motion.
+  std::vector<bool> good;  ///< The point is of class good in distance, angle and motion.
 };
 
 /// For each of `limits`. `T_truth_thermal`: true poses of the thermal camera. A true point is seen

@@ -54,12 +54,14 @@ std::vector<Match> Associate(std::span<const StampedPose> estimated,
     }
     ++errors.truth_poses;
     const std::size_t i = NearestInTime(estimated, pose.time, options.tolerance, time_of);
+    // A pose counts once: two truths within the tolerance must not both match it.
     if (i == estimated.size() || used[i]) continue;
     used[i] = true;
     matches.push_back({estimated[i].T_world_depth, pose.T_world_depth});
   }
   for (const StampedPose& pose : estimated) {
     const bool beyond = !truth.empty() && pose.time > truth.back().time + options.tolerance;
+    // With --first N the truth ends early; what comes later is neither right nor wrong.
     if (beyond) break;
     if (NearestInTime(truth, pose.time, options.tolerance, time_of) == truth.size())
       ++errors.without_truth;
@@ -97,6 +99,7 @@ Result<TrajectoryErrors> EvaluateTrajectory(std::span<const StampedPose> estimat
     if (to.size() > 1) errors.length_m += (to.back() - to[to.size() - 2]).norm();
   }
   std::vector<double> aligned_m, aligned_rad, first_m, first_rad;
+  // Aligned, the error is that of the shape of the path; from the first pose, it is the drift.
   Compare(matches, AlignRigid(from, to), aligned_m, aligned_rad);
   errors.T_truth_world = matches.front().truth * matches.front().estimated.inverse();
   Compare(matches, errors.T_truth_world, first_m, first_rad);

@@ -9,6 +9,7 @@
 
 namespace isotherm {
 
+/// Says which poses are compared.
 struct TrajectoryEvaluationOptions {
   /// A pose and its truth are of the same frame if their stamps differ by no more. Nothing is
   /// interpolated.
@@ -19,6 +20,7 @@ struct TrajectoryEvaluationOptions {
   std::vector<CaptureTime> left_out;
 };
 
+/// Holds how far the poses of a trajectory are from the truth.
 struct TrajectoryErrors {
   std::size_t truth_poses = 0;  ///< In question: the first N without those left out.
   std::size_t left_out = 0;

@@ -11,6 +11,8 @@
 namespace isotherm {
 namespace {
 
+/// A frame may be stamped a little before the first or behind the last true pose (half an exposure,
+/// a delay).
 constexpr Nanoseconds kBeyondEnds = std::chrono::milliseconds(50);
 
 // Calls `visit(item)` for every item that can be read until it returns false.

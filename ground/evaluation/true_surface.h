@@ -18,6 +18,7 @@ class TrueSurface {
  public:
   explicit TrueSurface(TruePoints points);
 
+  /// Holds where a point meets the true surface.
   struct Foot {
     std::uint32_t nearest = 0;  ///< Nearest sample.
     std::uint32_t disc = 0;     ///< Sample of the nearest disc.

@@ -22,6 +22,7 @@ struct AssessedError {
 
 /// Counts values in bins of equal width around 0, and what lies beyond on either side.
 struct Histogram {
+  /// In standard uncertainties: beyond five there is no error whose uncertainty is right.
   static constexpr double kEnd = 5.0;
   static constexpr double kWidth = 0.5;
   static constexpr std::size_t kBins = 20;
@@ -44,6 +45,7 @@ struct ErrorCell {
 /// |error| by distance (rows) and angle (columns). Each limit begins a row or a column; what lies
 /// below the first or has no distance or angle is left out.
 struct ErrorTable {
+  /// Finer steps leave most cells with too few points for quantiles. Not tuned.
   static constexpr std::array kFrom_m = {0.0, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
   static constexpr std::array kFrom_deg = {0.0, 15.0, 30.0, 40.0, 50.0, 60.0};
   std::array<std::array<ErrorCell, kFrom_deg.size()>, kFrom_m.size()> cells{};
@@ -60,7 +62,7 @@ struct UncertaintyReport {
   double median_sigma_k = std::numeric_limits<double>::quiet_NaN();
   double p95_sigma_k = std::numeric_limits<double>::quiet_NaN();
   Histogram ratios;
-  ErrorTable table;  ///< Of all points.
+  ErrorTable table;  ///< All points, by distance and angle.
 };
 
 UncertaintyReport EvaluateUncertainty(std::span<const AssessedError> errors);

@@ -7,8 +7,8 @@
 
 namespace isotherm {
 
-/// What `isotherm evaluate` says of uncertainties: whether they are right, the histogram of error /
-/// sigma, and the table of errors by distance and angle.
+/// Returns what `isotherm evaluate` prints of uncertainties: whether they are right, the histogram
+/// of error / sigma, and the table of errors by distance and angle.
 std::string ToText(const UncertaintyReport& report);
 Json ToJson(const UncertaintyReport& report);
 

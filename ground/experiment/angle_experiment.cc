@@ -13,6 +13,7 @@
 namespace isotherm {
 namespace {
 
+// The rig goes round the disc up to kLastAngle_deg; returns become rare from 70 degrees on.
 constexpr double kDuration_s = 5.0, kDistance_m = 0.50;
 constexpr double kLastAngle_deg = 75.0;
 constexpr double kDisc_celsius = 100.0, kSurround_celsius = 23.0;
@@ -68,9 +69,9 @@ GroundOptions WithAngleLimits(bool validation) {
 struct DiscErrors {
   double mean_kelvin = 0.0;
   double largest_kelvin = 0.0;
-  std::size_t points = 0;      ///< With a temperature, ...
-  std::size_t all_points = 0;  ///< ... of these.
-  ErrorSummary apparent;       ///< Of their apparent temperatures.
+  std::size_t points = 0;      ///< Points of the disc with a temperature.
+  std::size_t all_points = 0;  ///< Points of the disc.
+  ErrorSummary apparent;       ///< Errors of their apparent temperatures.
 };
 
 /// Errors of the disc's temperature, found from the apparent one with the emissivity at right

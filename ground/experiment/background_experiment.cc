@@ -27,7 +27,7 @@ constexpr Setup kSetups[] = {{"40 cm", kNear_m, kDiscRadius_m},
                              {"40 cm, behind a hole", kNear_m, kHoleRadius_m},
                              {"85 cm", kFar_m, kDiscRadius_m}};
 
-/// What a PI 450 shows by the thesis's figures 5.6 to 5.9.
+/// Returns the scene influence of a PI 450, read from the thesis's figures 5.6 to 5.9.
 SceneInfluence InfluenceOfPi450() {
   return {.near_fraction = 0.0387, .near_sigma_px = 40.0, .total_fraction = 0.0387};
 }

@@ -14,8 +14,11 @@
 namespace isotherm {
 namespace {
 
+// A closed loop renders each frame when its pose is known, so that nothing can be prepared: both
+// cameras run at two thirds of the usual rate, and the operator moves in ten steps a frame.
 constexpr double kFrameRate_hz = 20.0;
 constexpr int kStepsPerFrame = 10;
+// A rig that is within this of a surface has touched it.
 constexpr double kHandWidth_m = 0.05;
 
 enum NoisePurpose : std::uint64_t { kDepthPixels, kThermalPixels };
@@ -150,6 +153,7 @@ Rig RigForClosedLoop() {
 }
 
 GroundOptions OptionsForClosedLoop() {
+  // Limits per frame are for cameras at 30 Hz.
   constexpr double kUsualRate_hz = 30.0;
   constexpr double kSlower = kUsualRate_hz / kFrameRate_hz;
   GroundOptions options;

@@ -13,18 +13,18 @@
 
 namespace isotherm {
 
-/// Cameras that are moved by somebody who looks at what comes of it: what they see next is not
-/// known before. Depth and thermal frames are taken at the same times, twenty times a second, the
-/// depth images at half size, to keep a scan of minutes affordable. The rig knows the detector's
-/// time constant, by which smear is judged; images are rendered sharp, since their temperatures are
-/// not looked at.
+/// Returns the rig of a scan in which somebody moves the cameras and looks at the feedback, so that
+/// the next view is not known before. Depth and thermal frames are taken at the same times, twenty
+/// times a second, the depth images at half size, to keep a scan of minutes affordable. The rig
+/// knows the detector's time constant, by which smear is assessed; images are rendered sharp, since
+/// their temperatures are not looked at.
 Rig RigForClosedLoop();
 
 /// Defaults for such frames: voxels of 3 mm, and the limits of motion from frame to frame that mean
 /// the same speed as the defaults do at 30 Hz.
 GroundOptions OptionsForClosedLoop();
 
-/// What an operator is to scan, and how.
+/// Says what an operator is to scan, and how.
 struct ClosedLoopSetup {
   const StagedScene& staged;
   const MeasurableSurface& surface;
@@ -35,10 +35,10 @@ struct ClosedLoopSetup {
   double max_duration_s = 120.0;
 };
 
-/// What came of it.
+/// Holds how the scan went.
 struct ClosedLoopLog {
   static constexpr double kSampleInterval_s = 10.0;
-  static constexpr std::size_t kAdviceKinds = 8;  ///< Of Advice.
+  static constexpr std::size_t kAdviceKinds = 8;  ///< Number of values of Advice.
 
   std::optional<double> done_s;  ///< When the feedback first said so, from the first frame.
   double end_s = 0.0;            ///< Done, the path complete, or no time left.
@@ -47,7 +47,7 @@ struct ClosedLoopLog {
   /// one is repeated by At().
   std::vector<double> measured_well;
   double measured_well_at_end = 0.0;
-  double way_m = 0.0;  ///< That the rig was moved.
+  double way_m = 0.0;  ///< Length of the rig's path.
   int depth_frames = 0, lost_frames = 0;
   int blocked_frames = 0;                  ///< The rig was nearer to something than a hand is wide.
   std::array<int, kAdviceKinds> advice{};  ///< Messages that say each.

@@ -58,6 +58,7 @@ std::vector<std::size_t> FramesWithPoses(const SimulatedScan& scan) {
 std::optional<TrueClasses> ClassesAt(const SimulatedScan& scan,
                                      const std::vector<std::size_t>& frames,
                                      const ThermalOptions& limits, const SurfacePoint& point) {
+  // Three voxels: within them the model's surface and classes may be those of the neighbour.
   constexpr double kBorder_m = 0.006;
   constexpr double kAbove_m = 0.008;  // The surface around is met from this high above the plane.
   const auto classes = ExpectClasses(TrueConditions(scan, frames, point), limits);
@@ -76,10 +77,10 @@ std::optional<TrueClasses> ClassesAt(const SimulatedScan& scan,
 }
 
 struct Agreement {
-  double all = 0.0;                                ///< Points of the surface, ...
-  double points = 0.0;                             ///< ... those that were measured, ...
-  double sure = 0.0;                               ///< ... those of them away from borders, ...
-  double distance = 0.0, angle = 0.0, both = 0.0;  ///< ... of which with the true class.
+  double all = 0.0;                                ///< Points of the surface.
+  double points = 0.0;                             ///< Points that were measured.
+  double sure = 0.0;                               ///< Measured points away from borders.
+  double distance = 0.0, angle = 0.0, both = 0.0;  ///< Sure points with the true class.
   double by_chance = 0.0;  ///< With the classes that are true of another point.
 };
 

@@ -13,7 +13,9 @@ namespace isotherm {
 
 /// A number that an experiment must reach.
 struct Requirement {
+  /// Says on which side of its limit a number must be.
   enum class Sense { kAtMost, kAtLeast };
+  /// Says what a requirement is for.
   enum class Role {
     kLimit,
     /// The same number without what the experiment shows. It must miss the limit: otherwise the
@@ -40,15 +42,17 @@ Requirement NegativeControl(const Requirement& requirement, std::string what, do
 
 /// Numbers by what was compared: one row per method or condition.
 struct ExperimentTable {
+  /// Holds the numbers of one method or condition.
   struct Row {
     std::string label;
     std::vector<double> values;  ///< As many as there are columns; NaN = does not apply.
   };
-  std::string rows_are;              ///< What the labels are, for example "method".
+  std::string rows_are;              ///< Kind of the labels, for example "method".
   std::vector<std::string> columns;  ///< With their units.
   std::vector<Row> rows;
 };
 
+/// Holds an image for the report.
 struct ExperimentRendering {
   std::string name;  ///< Part of the file's name.
   RgbImage rendering;
@@ -70,7 +74,7 @@ struct ExperimentReport {
 struct Experiment {
   std::string_view name;    ///< On the command line and in file names.
   std::string_view figure;  ///< The figure of the thesis that it repeats.
-  std::string_view claim;   ///< What it shows, one sentence.
+  std::string_view claim;   ///< The experiment's claim, one sentence.
   /// Fails only if something is wrong with the experiment itself, for example tracking was lost.
   Result<ExperimentReport> (*run)(ThreadPool& pool);
 };

@@ -62,6 +62,7 @@ SimulationOptions ExperimentCameras(double duration_s, double focus_m) {
   options.set_ideal_cameras(false);
   options.mutable_thermal()->set_rate_hz(kThermal_hz);
   options.mutable_thermal()->mutable_expert()->mutable_lens()->set_focus_m(focus_m);
+  // No corrections, unless the experiment is about them.
   options.mutable_shutter()->set_interval_s(0.0);
   return options;
 }
@@ -80,6 +81,7 @@ Swing FromTo(double from, double to, double duration_s) {
 }
 
 void PlayScan(const SimulatedScan& scan, ThreadPool& pool, const FrameSinks& sinks) {
+  // Threads wait for the slowest frame of a batch. More: less waiting and more memory. Not tuned.
   constexpr int kFramesPerThread = 4;
   const std::vector<ScheduledFrame> items = InOrderOfTime(scan);
   // Frames of a batch are rendered in parallel and passed on one after the other.

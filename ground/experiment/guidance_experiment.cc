@@ -16,9 +16,10 @@
 namespace isotherm {
 namespace {
 
-/// What the guided operator may take of the time of the fixed raster.
+/// The guided operator may take this much of the fixed raster's time.
 constexpr double kMaxTimePercent = 60.0;
-/// What is measured well then, of what the raster has measured well at its end.
+/// The guided operator must measure this much well then, of what the raster has measured well at
+/// its end.
 constexpr double kMinCoveragePercent = 90.0;
 
 struct Method {

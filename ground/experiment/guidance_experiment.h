@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// Which scenes are scanned, by whom, and for how long at most.
+/// Says which scenes are scanned, by whom, and for how long at most.
 struct GuidanceTrial {
   std::vector<SimulatedScene> scenes;
   std::vector<std::uint64_t> persons;  ///< A seed each.

@@ -40,6 +40,7 @@ RendererOptions ScaleOf(const Scene& scene) {
 std::vector<std::size_t> TrulySeen(const SimulatedScan& scan,
                                    const std::vector<CheckedPoint>& points,
                                    const ThermalOptions& limits) {
+  // Each takes rays for all frames. A sample is enough for a percentage.
   constexpr std::size_t kEvery = 20;
   std::vector<std::size_t> frames(scan.thermal_times().size());
   std::iota(frames.begin(), frames.end(), std::size_t{0});
@@ -77,6 +78,7 @@ class Contest {
     const auto min_weight = static_cast<float>(options.raycast().expert().min_weight());
     const ThermalSettings all{options.thermal(), scan.rig()};
     ThermalSettings without_any = all;
+    // One rule less at a time: what a rule is worth shows in what goes wrong without it.
     for (const ThermalRule& rule : ThermalRules()) {
       ThermalSettings without = all;
       rule.switch_off(without);

@@ -10,7 +10,7 @@ namespace isotherm {
 struct HiddenSurfaceSetup {
   StagedScene staged;
   double duration_s;
-  double focus_m;            ///< Of the thermal camera.
+  double focus_m;            ///< Focus distance of the thermal camera.
   double max_wrong_percent;  ///< With all rules of the pipeline.
   bool defeats_algorithm4;   ///< Algorithm 4, with the other rules, must not do as well.
 };

@@ -22,6 +22,8 @@ constexpr double kRoom_m = 0.12;
 /// Directions from a point to where it could be seen from: along the normal, and around it at half
 /// and at nearly all of the good angle.
 std::vector<Eigen::Vector3d> Directions(const Eigen::Vector3d& n_world, double good_rad) {
+  // Steps of 45 degrees: a view that is free only between two of them is hard to find for an
+  // operator, too.
   constexpr int kAround = 8;
   const Eigen::Vector3d u = n_world.unitOrthogonal(), v = n_world.cross(u);
   std::vector<Eigen::Vector3d> directions = {n_world};
@@ -37,6 +39,7 @@ std::vector<Eigen::Vector3d> Directions(const Eigen::Vector3d& n_world, double g
 
 /// Says whether an operator before the scene can hold the rig there.
 bool IsBefore(const SceneFront& front, const Eigen::Vector3d& viewer) {
+  // An operator may stand a little beside the scene, not behind it.
   constexpr double kBeside_m = 0.2;
   return viewer.z() < front.median_z_m &&
          front.region_m.exteriorDistance(viewer.head<2>()) <= kBeside_m;

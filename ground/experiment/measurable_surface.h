@@ -10,7 +10,7 @@ namespace isotherm {
 
 /// The part of a scene's true surface that an operator before it could measure well: some place
 /// from which a point is seen at a good distance and angle is free and before the scene's front.
-/// Points of a model are judged by it, whatever the model knows.
+/// Points of a model are assessed by it, whatever the model knows.
 class MeasurableSurface {
  public:
   /// `limits` come from CompleteLimits.

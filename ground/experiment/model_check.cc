@@ -12,6 +12,7 @@ namespace isotherm {
 namespace {
 
 std::optional<SurfacePoint> TruthAt(const Scene& scene, const CloudPoint& point) {
+  // Three voxels of 2 mm: further away it is another surface, or none.
   constexpr double kReach_m = 0.006;
   const Eigen::Vector3d n_world = point.normal.cast<double>();
   const Eigen::Vector3d above = point.position_m.cast<double>() + kReach_m * n_world;
@@ -36,6 +37,8 @@ std::vector<CheckedPoint> CheckModel(const Scene& scene, const BandRadiance& ban
                                      const TsdfVolume& tsdf, const ThermalVolume& thermal,
                                      ThreadPool& pool) {
   SurfaceOptions options;
+  // Also what was seen once: experiments count what is wrong in the model, not what an export
+  // leaves out.
   options.min_weight = 1.0F;
   options.triangles = false;
   std::vector<CheckedPoint> checked;

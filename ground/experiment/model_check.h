@@ -54,6 +54,7 @@ struct AssignmentCheck {
   std::size_t too_warm = 0;  ///< How many of those are too warm by more than kWrong_k.
   std::size_t too_cold = 0;
 
+  /// Far above noise and blur, below the difference between the surfaces that the scenes confuse.
   static constexpr double kWrong_k = 5.0;
   std::size_t wrong() const { return too_warm + too_cold; }
   double WrongPercent() const;

@@ -10,7 +10,7 @@ namespace isotherm {
 namespace {
 
 constexpr double kDuration_s = 3.2, kDistance_m = 0.52;
-/// That of the simulated detector, and what the pipeline is told.
+/// Time constant of the simulated detector; the pipeline is told the same.
 constexpr double kTimeConstant_s = 0.010;
 /// No smear is too much.
 constexpr double kAnySmear_px = 1e6;

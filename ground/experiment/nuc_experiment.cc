@@ -8,6 +8,7 @@ namespace isotherm {
 namespace {
 
 constexpr double kDuration_s = 4.9;
+// A shutter as warm as no part of the scene, so that its temperature shows wherever it got in.
 constexpr double kShutter_celsius = 60.0;
 /// Nothing in the scene is warmer than 30 °C: what is warmer than this was read off the shutter.
 constexpr double kFromShutter_celsius = 45.0;

@@ -10,6 +10,7 @@ double PixelResponse(double from_px, double to_px) {
 }
 
 double SquareResponse(double half_edge_px, double circle_px) {
+  // 400 x 400 points: the mean is right to about a thousandth.
   constexpr int kSteps = 400;
   const double radius = 0.5 * circle_px;
   double sum = 0.0;

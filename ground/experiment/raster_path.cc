@@ -85,6 +85,7 @@ class Pass {
 }  // namespace
 
 SceneFront FrontOf(const Scene& scene) {
+  // Finer than the parts that scenes are made of.
   constexpr double kStep_m = 0.01;
   SceneFront front;
   std::vector<double> depths_m;
@@ -102,6 +103,7 @@ SceneFront FrontOf(const Scene& scene) {
 }
 
 double RasterSpeed(const Rig& rig, const ThermalOptions& limits) {
+  // A fifth below the speed at which temperatures cease to be sharp.
   constexpr double kOfGood = 0.8;
   const double smear_per_m = rig.thermal->fx / RasterDistance(limits);  // Pixels.
   return kOfGood * limits.expert().motion().smear_good_px() /

@@ -9,6 +9,9 @@ namespace isotherm {
 namespace {
 
 constexpr double kMillimetres = 1e3;
+// The board's plane along z, and ridges of 5 mm on it, 6 mm wide with 6 mm between them: voxels of
+// 1.5 mm keep all of their height, of 4.5 mm 82 % (docs/experiments.md). Beside the ridges the
+// board is flat.
 constexpr double kPanelZ = 0.60, kRelief_m = 0.005;
 constexpr double kRidge_m = 0.006, kPeriod_m = 0.012, kFirstRidge_m = 0.40;
 constexpr int kRidges = 6;
@@ -72,6 +75,7 @@ ScanPath TowardsRelief(const Swing& distance_m) {
 }
 
 ReliefCheck MeasureRelief(const SimulatedScan& scan, const ScanModel& model, ThreadPool& pool) {
+  // Heights are taken in the middle millimetres of ridges and grooves, away from the ends.
   constexpr double kMiddle_m = 0.001, kBorder_m = 0.01, kReach_m = 0.012;
   Mean ridges_z, grooves_z;
   RootMeanSquare flat_m, scene_m;
@@ -85,6 +89,7 @@ ReliefCheck MeasureRelief(const SimulatedScan& scan, const ScanModel& model, Thr
       continue;
     if (p.x() > kFlatFrom_m && p.x() < kFlatTo_m) flat_m.Add(p.z() - kPanelZ);
     const double periods = (p.x() - kFirstRidge_m - 0.5 * kRidge_m) / kPeriod_m;
+    // The outer flanks have no groove beside them.
     if (periods < 0.25 || periods > kRidges - 1.25) continue;
     const double from_ridge_m = std::abs(periods - std::round(periods)) * kPeriod_m;
     if (from_ridge_m < kMiddle_m) ridges_z.Add(p.z());

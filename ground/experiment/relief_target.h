@@ -14,11 +14,11 @@ StagedScene MakeReliefTarget(const ScanPath& path);
 /// A path that looks at the middle of the board from this distance.
 ScanPath TowardsRelief(const Swing& distance_m);
 
-/// What a model shows of the board. NaN of what it does not show.
+/// Holds how a model shows the board; NaN where it does not show something.
 struct ReliefCheck {
   double kept_percent = 0.0;  ///< Height of the ridges above the grooves, of the true one.
-  double flat_rms_mm = 0.0;   ///< Of the flat part, off the true plane.
-  double scene_rms_mm = 0.0;  ///< Of all surfaces, along their normals, off the true ones.
+  double flat_rms_mm = 0.0;   ///< Distance of the flat part from the true plane.
+  double scene_rms_mm = 0.0;  ///< Distance of all surfaces from the true ones, along their normals.
   double points = 0.0;        ///< Points of the model.
 };
 ReliefCheck MeasureRelief(const SimulatedScan& scan, const ScanModel& model, ThreadPool& pool);

@@ -10,6 +10,7 @@
 namespace isotherm {
 namespace {
 
+// The panel's plane, along z; five pairs of bars of each width lie in it.
 constexpr double kPanelZ = 0.60;
 constexpr int kPeriods = 5;
 
@@ -58,6 +59,7 @@ std::vector<BarGroup> MeasureBars(const SimulatedScan& scan, const ScanModel& mo
         scan.scene().primitives()[static_cast<std::size_t>(point.truth.primitive)];
     if (!part.name.ends_with("bar")) continue;
     const Eigen::Vector3d p = part.T_world_primitive.inverse() * point.truth.p_world;
+    // `size` has half lengths.
     if (std::abs(p.x()) > 2.0 * kMiddleFraction * part.size.x()) continue;
     if (std::abs(p.y()) > 0.8 * part.size.y()) continue;
     for (std::size_t group = 0; group < bar_widths_m.size(); ++group) {

@@ -23,7 +23,7 @@ constexpr double kEmissivity = 0.95, kIndex = 1.5;
 constexpr double kDuration_s = 5.0;
 const Eigen::Vector3d kMiddle(0.48, 0.48, 0.50);
 
-/// What a PI 450 shows by the thesis's figures 5.6 to 5.9.
+/// Sets the scene influence of a PI 450, read from the thesis's figures 5.6 to 5.9.
 void SetInfluence(SimulationOptions& cameras) {
   SceneInfluenceOptions& influence =
       *cameras.mutable_thermal()->mutable_expert()->mutable_scene_influence();
@@ -81,7 +81,8 @@ struct HoleErrors {
   double radius_px, measured_k, corrected_k;
 };
 
-/// What the middle of the disc is off by, against the same image of a camera without influence.
+/// Measures how far the middle of the disc is off, against the same image of a camera without
+/// influence.
 Result<HoleErrors> MeasureHole(double radius_m) {
   SimulationOptions cameras = ExperimentCameras(1.0, kDistance_m);
   cameras.mutable_thermal()->mutable_expert()->mutable_scene_influence()->set_near_fraction(0.0);
@@ -120,6 +121,7 @@ GroundOptions WithCorrection(bool correct) {
 
 /// Median absolute error of the disc's points, away from its border.
 ErrorSummary MeasureDisc(const PlayedScan& played, const ScanModel& model, ThreadPool& pool) {
+  // Nearer the border the camera's blur mixes in the panel.
   constexpr double kBorder_m = 0.005;
   const SimulatedScan& scan = *played.scan;
   std::vector<CheckedPoint> points =

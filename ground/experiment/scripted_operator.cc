@@ -50,6 +50,7 @@ Eigen::Vector3d Steer(const Eigen::Vector3d& velocity, const Eigen::Vector3d& wa
 
 /// Sway about zero within -1..1, smooth: three slow sines with phases of their own.
 double Sway(double time_s, std::uint64_t stream) {
+  // Without a common period, so that the sway does not repeat within a scan. Not taken from people.
   constexpr double kPeriods_s[] = {1.7, 2.9, 4.3};
   double sum = 0.0;
   for (std::uint64_t i = 0; i < std::size(kPeriods_s); ++i) {

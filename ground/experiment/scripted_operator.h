@@ -17,8 +17,8 @@ struct OperatorTraits {
   double acceleration_m_s2 = 0.6;
   double angular_acceleration_deg_s2 = 60.0;
   double reaction_s = 0.4;  ///< From a message to its effect on the hand.
-  double sway_m = 0.003;    ///< Largest sway along each axis, ...
-  double sway_deg = 0.5;    ///< ... and about each.
+  double sway_m = 0.003;    ///< Largest sway along each axis.
+  double sway_deg = 0.5;    ///< Largest sway about each axis.
 };
 
 /// The traits of one of several persons: reactions of 0.3 to 0.5 s, sway of 2 to 4 mm.
@@ -51,7 +51,7 @@ struct Waypoint {
   double rotation_rate_deg_s;
 };
 
-/// What an operator heeds of what they are told.
+/// Says which instructions an operator heeds.
 struct Obedience {
   bool next_view = true;  ///< Off: the fixed path is followed.
   bool slower = true;     ///< Off: always as fast as the path or the person is.
@@ -80,11 +80,13 @@ class ScriptedOperator {
   bool path_complete() const { return !path_.empty() && next_waypoint_ == path_.size(); }
 
  private:
+  /// Holds what a message asks of the operator and when the operator begins to follow it.
   struct Instruction {
     double due_s;
-    RigidTransform T_world_goal;  ///< Where the message sends the rig, ...
-    bool has_goal;                ///< ... if anywhere.
-    bool is_urgent;               ///< To be gone to even by who follows a path: the rig is lost.
+    RigidTransform
+        T_world_goal;  ///< Where the message sends the rig; meaningful only with has_goal.
+    bool has_goal;     ///< The message sends the rig somewhere.
+    bool is_urgent;    ///< The rig is lost: also who follows a fixed path goes to the goal.
     bool hold_still;
     bool slower;
   };

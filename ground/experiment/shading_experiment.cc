@@ -43,9 +43,9 @@ std::optional<TruePixel> TruthAt(const Scene& scene, const CameraModel& camera,
 /// Edges between faces of one temperature that differ in slant, and how many of them a rendering
 /// shows.
 struct EdgeCount {
-  double all = 0.0;    ///< With the ones of which the model has no temperature on a side.
-  double edges = 0.0;  ///< With temperatures on both sides, ...
-  double visible_flat = 0.0, visible_shaded = 0.0;  ///< ... of which a rendering shows so many.
+  double all = 0.0;    ///< All edges, also those with no temperature on a side.
+  double edges = 0.0;  ///< Edges with temperatures on both sides.
+  double visible_flat = 0.0, visible_shaded = 0.0;  ///< How many of `edges` the rendering shows.
 };
 
 EdgeCount CountEdges(const Scene& scene, const CameraModel& camera,

@@ -24,7 +24,7 @@ enum class Phase { kOnPixel, kBetweenPixels };
 struct Spot {
   double opening_px = 0.0;
   double expected_celsius = 0.0;  ///< By the closed form.
-  double celsius = 0.0;           ///< Of the hottest pixel.
+  double celsius = 0.0;           ///< Reading of the hottest pixel.
   double one_ray_celsius = 0.0;   ///< The same if pixels had no area.
 };
 

@@ -15,7 +15,8 @@
 
 namespace isotherm {
 
-/// What decides about temperatures beside the model: options, and what is known of the rig.
+/// Holds what decides about temperatures beside the model: options, and the known properties of the
+/// rig.
 struct ThermalSettings {
   ThermalOptions options;
   Rig rig;
@@ -26,8 +27,8 @@ struct ThermalRule {
   std::string_view name;
   std::function<void(ThermalSettings&)> switch_off;
 };
-/// All that stand between a surface that the thermal camera sees and a temperature, but for the
-/// limits of distance and angle.
+/// Returns all rules that stand between a surface which the thermal camera sees and a temperature,
+/// but for the limits of distance and angle.
 std::span<const ThermalRule> ThermalRules();
 
 /// Follows a pipeline: gives the same thermal frames, at the same poses, to another thermal stage

@@ -17,6 +17,7 @@ CameraModel StillCamera();
 /// whose front is at `distance_m`, and on it, flush, a black patch at another, around a point of
 /// the plate.
 struct FlatTarget {
+  /// Names the shape of the warm patch.
   enum class Patch { kSquare, kDisc };
   double distance_m = 0.5;
   double plate_celsius = 23.0;
@@ -27,7 +28,7 @@ struct FlatTarget {
 };
 Scene MakeFlatTarget(const FlatTarget& target);
 
-/// What the camera shows, °C: the mean of forty images, as in the thesis (5.1).
+/// Returns the camera's image of the scene, °C: the mean of forty images, as in the thesis (5.1).
 Image<float> TakeStill(const Scene& scene, const SimulatedThermalOptions& options,
                        ThreadPool& pool);
 

@@ -17,6 +17,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 std::optional<Eigen::Vector2i> PixelOf(const CameraModel& camera, const Eigen::Vector3d& p_camera) {
   const auto pixel = Project(camera, p_camera);
   if (!pixel) return std::nullopt;
+  // Pixel centres are at integers.
   const Eigen::Vector2i nearest = (pixel->array() + 0.5).floor().cast<int>();
   if (nearest.x() < 0 || nearest.y() < 0 || nearest.x() >= camera.width ||
       nearest.y() >= camera.height) {
@@ -221,6 +222,7 @@ void ThesisFusion::AfterDepth(const Image<float>& depth_m, ThreadPool& pool) {
        waiting_.pop_front()) {
     const ThermalFrame& frame = *waiting_.front();
     const CaptureTime time = frame.header.capture_time;
+    // Older than both poses: frames before tracking began.
     if (time < before.time || !frame.valid) continue;
     const double alpha = ToSeconds(time - before.time) / ToSeconds(after.time - before.time);
     const RigidTransform T_world_depth =

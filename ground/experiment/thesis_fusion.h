@@ -21,10 +21,10 @@
 
 namespace isotherm {
 
-/// Which vertices of the depth camera's view are not given a temperature.
+/// Says which vertices of the depth camera's view are not given a temperature.
 enum class ParallaxFilter {
   kNone,
-  kAlgorithm4,  ///< Those behind another vertex that falls on the same thermal pixel.
+  kAlgorithm4,  ///< Vertices behind another one that falls on the same thermal pixel.
 };
 
 /// Rules beside the parallax filter that the pipeline has and the thesis has not: margin of edges,
@@ -90,7 +90,7 @@ class ThesisFuser {
 /// thermal volume of its own. Thread-compatible.
 class ThesisFusion {
  public:
-  /// Which rules assign temperatures beside the parallax filter.
+  /// Says which rules assign temperatures beside the parallax filter.
   enum class Rules {
     kOfTheThesis,
     kAlsoOurOthers,  ///< OtherRules.

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Whether something is in front of `p` by more than `tolerance_m`.
+/// Returns whether something is in front of `p` by more than `tolerance_m`.
 bool IsHidden(const Scene& scene, const Vector3d& viewer, const Vector3d& p, double tolerance_m) {
   const Vector3d to_point = p - viewer;
   const auto hit = scene.Intersect(viewer, to_point);
@@ -78,8 +78,10 @@ std::optional<TrueClasses> Best(const std::vector<TrueCondition>& conditions,
 std::vector<TrueCondition> TrueConditions(const SimulatedScan& scan,
                                           const std::vector<std::size_t>& frames,
                                           const SurfacePoint& point) {
+  // Room for errors of pose and rectification: within it the truth is left open.
   constexpr double kMargin_px = 6.0;
   constexpr double kSteepForDepth_deg = 62.0;  // Returns become rare at 70.
+  // A surface must have been seen a few times before the model has it.
   constexpr int kFramesUntilModelled = 3;
   std::vector<TrueCondition> conditions;
   int seen_in_a_row = 0;
@@ -111,6 +113,8 @@ std::vector<TrueCondition> TrueConditions(const SimulatedScan& scan,
 
 std::optional<TrueClasses> ExpectClasses(const std::vector<TrueCondition>& conditions,
                                          const ThermalOptions& limits) {
+  // By how much the model's surface and normals may be off: where the class would change with it,
+  // none is expected.
   constexpr double kDistance_m = 0.01, kAngle_deg = 5.0;
   const auto expected = Best(conditions, limits, {0.0, 0.0, true});
   if (!expected) return std::nullopt;

@@ -168,6 +168,8 @@ Status PrepareOutputDir(const fs::path& dir) {
     return IoError("creating the output folder " + dir.string() + ": " + error.message() +
                    "; choose a folder that can be written with -o");
   }
+  // Permissions, quotas and read-only mounts show only when something is written. It is tried now
+  // rather than after an hour of reconstruction.
   const fs::path probe = dir / ".isotherm-write-test";
   if (Status status = WriteFile(probe, "x"); !status.ok()) {
     return status.WithContext("the output folder cannot be written");
@@ -183,6 +185,7 @@ bool HoldsResults(const fs::path& dir) {
 }
 
 void RemoveOtherResults(const fs::path& dir, const std::set<std::string>& written) {
+  // Collected first: removing entries while a directory is read may skip others.
   std::vector<fs::path> others;
   ForEachResult(dir, [&](const fs::path& file) {
     if (!written.contains(file.lexically_relative(dir).string())) others.push_back(file);
@@ -199,6 +202,7 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
     if (progress) progress(what, fraction);
   };
   const ExportOptions& options = inputs.export_options;
+  // A full disk may refuse the cloud and still take the trajectory: all files are tried.
   FirstFailure failure;
   announce("trajectory.txt", 0.0);
   if (inputs.trajectory) failure.Add(WriteTrajectory(*inputs.trajectory, dir / "trajectory.txt"));
@@ -211,6 +215,7 @@ Result<ResultSummary> WriteResults(const ResultInputs& inputs, const fs::path& d
                         .triangles = options.mesh()},
                        threads);
     std::vector<PartReport> reports;
+    // Before the summary, which must describe the temperatures that are written.
     if (inputs.interpretation != nullptr) reports = inputs.interpretation->Apply(surface);
     summary = SummarizeSurface(surface, inputs.renderer_options);
     summary.interpretation = std::move(reports);

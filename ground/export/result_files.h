@@ -63,7 +63,8 @@ struct ResultInputs {
 struct ResultSummary {
   std::size_t points = 0;
   std::size_t measured_points = 0;  ///< Points with a temperature.
-  std::size_t good_points = 0;      ///< ... that is measured well (MeasurementQuality).
+  std::size_t good_points =
+      0;  ///< Points with a temperature that is measured well (MeasurementQuality).
   std::size_t triangles = 0;
   std::optional<TemperatureScale> scale;  ///< The scale of renderings and colours alike.
   TemperatureStatistics temperatures;

@@ -8,13 +8,14 @@ namespace isotherm {
 namespace {
 
 // A view with less surface than the first, as a fraction of the image, shows too little to assess;
-// it does again from the second on.
+// it does again from the second on. Two thresholds keep the advice from flickering, here and below.
+// None of these was tuned with people.
 constexpr double kTooLittleSurface = 0.02;
 constexpr double kEnoughSurface = 0.04;
 // "Slower" ends at this fraction of the fastest motion that the model follows.
 constexpr double kSlowEnough = 0.8;
-// The stop criterion is given up when the fraction falls so far below it: new surface came into
-// view.
+// The stop criterion is given up when the fraction falls this far below it: new surface came into
+// view, not a block that was counted anew.
 constexpr double kDoneSlack = 0.03;
 /// Less surface out of reach is not worth a word, square metres.
 constexpr double kWorthSaying_m2 = 0.005;
@@ -113,6 +114,7 @@ void OperatorAdviser::UpdateTriggers(const CoverageSummary& view, const ScanSitu
   if (s.tracking_lost) {
     Due(AdviceKind::kGoBack) = true;
   } else {
+    // Negative, since here less is worse and Trigger fires upwards.
     Trigger(AdviceKind::kGoBack, -view.surface, -kTooLittleSurface, -kEnoughSurface);
   }
   Due(AdviceKind::kHoldForNuc) = s.nuc_running;
@@ -146,6 +148,8 @@ AdviceKind OperatorAdviser::MostUrgent(const CoverageSummary& view) const {
   AdviceKind most = AdviceKind::kNone;
   double max_fraction = 0.0;
   for (const AdviceKind kind : kHindrances) {
+    // Whoever was said last has a head start, so that two hindrances of the same size do not
+    // alternate.
     const double fraction = Fraction(kind, view) * (kind == said_ ? kClearlyLarger : 1.0);
     if (!is_due(kind) || fraction <= max_fraction) continue;
     most = kind;

@@ -19,8 +19,10 @@ constexpr int kAlarmFrame_px = 3;
 
 // Few shades, so that the image packs well.
 constexpr int kShades = 4;
+// Slanted surface must not be mistaken for the background.
 constexpr double kDarkest = 0.4;
 
+// A smaller image is all frame when it shows the alarm.
 constexpr int kMinSide_px = 4;
 
 Rgb8 ColourOf(MeasurementQuality quality) {

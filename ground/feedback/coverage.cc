@@ -27,6 +27,8 @@ CoverageSummary SummarizeCoverage(const ViewMaps& view, const Image<float>& smea
       counts.acceptable += quality == MeasurementQuality::kAcceptable ? 1.0 : 0.0;
       counts.bad += quality == MeasurementQuality::kBad ? 1.0 : 0.0;
       counts.never_measured += quality == MeasurementQuality::kNever ? 1.0 : 0.0;
+      // Hindrances are only those of surface that is not measured well: the rest needs no better
+      // view.
       if (quality == MeasurementQuality::kGood) continue;
       const double distance_m = view.distance_m.At(x, y);
       const double cosine = view.cos_view.At(x, y);

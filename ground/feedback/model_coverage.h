@@ -45,7 +45,7 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
 /// Describes a piece of surface, about a hand in size, that is not yet measured well and faces one
 /// way.
 struct LackingSurface {
-  std::uint64_t cell = 0;  ///< Which piece of the model it is; the same as the scan goes on.
+  std::uint64_t cell = 0;  ///< Names the piece of the model; the same as the scan goes on.
   Eigen::Vector3d position_map;
   Eigen::Vector3d normal_map;  ///< Unit, towards the free side.
   double area_m2 = 0.0;
@@ -84,6 +84,7 @@ class ModelCoverage {
   double LackingArea(std::uint64_t cell) const;
 
  private:
+  /// Sums the surface of one cell.
   struct Cell {
     double area_m2 = 0.0;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< As in BlockSurface.

@@ -23,6 +23,7 @@ class Reach {
   double OutOfReach(const ModelCoverage& coverage) const;
 
  private:
+  /// Says how the views of one cell have fared.
   struct Assessment {
     double area_m2 = 0.0;  ///< When its views began to be tried.
     int views_left = 0;

@@ -6,10 +6,13 @@
 namespace isotherm {
 namespace {
 
+/// Side of the cells. Smaller: more memory, and holes between silhouettes count as never seen;
+/// larger: a whole view is one cell. Not tuned.
 constexpr double kSeenCell_m = 0.05;
 
 /// Cells are counted from the volume's corner: no index is negative.
 std::uint64_t SeenKey(const Eigen::Array3i& cell) {
+  // Three axes in 64 bits.
   constexpr int kBitsPerAxis = 21;
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis)

@@ -8,11 +8,14 @@ namespace isotherm {
 namespace {
 
 /// With less known surface in view than the first, as a fraction of the rays, the tracker soon has
-/// too few correspondences; more than the second makes nothing surer.
+/// too few correspondences (it gives up at 0.3 of the valid pixels); more than the second makes
+/// nothing surer. Not tuned.
 constexpr double kTooFewRays = 0.25, kEnoughRays = 0.65;
 
 /// Below the first tracking drifts along a direction when the rig stops or turns (below 0.0003 it
-/// is given up: tracker.expert.min_observed), beyond the second it is sure.
+/// is given up: tracker.expert.min_observed), beyond the second it is sure: scenes with structure
+/// are above 0.0026 (ADR 7). Larger: much of a nearly flat door (0.0005) is worth little; smaller:
+/// the rig is sent to where it slides.
 constexpr double kSlides = 0.0010, kHolds = 0.0030;
 
 double Ramp(double value, double low, double high) {

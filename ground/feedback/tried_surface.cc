@@ -5,16 +5,20 @@
 namespace isotherm {
 namespace {
 
-/// Larger than the distance between the rays of a look.
+/// Side of the cells, larger than the distance between the rays of a look (a centimetre), so that
+/// each look meets each cell.
 constexpr double kTriedCell_m = 0.016;
 
-/// Looks after which what is not measured well will not be: half a second of feedback.
+/// Looks after which surface that is not measured well will not be: half a second of feedback.
+/// Fewer: what one shutter event or one smeared frame kept from being measured is given up; more:
+/// the rig stands before edges that are too steep. Not tuned.
 constexpr int kEnoughLooks = 5;
 
-/// A cell in which nothing was lacking for so many looks is well.
+/// A cell in which nothing was lacking for this many looks is well.
 constexpr int kLooksBetween = 2;
 
 std::uint64_t Key(const Eigen::Vector3d& p_map) {
+  // Indices may be negative: their lowest 21 bits tell 2^21 cells apart, which is 31 km.
   constexpr int kBitsPerAxis = 21;
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis) {

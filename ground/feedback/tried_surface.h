@@ -16,12 +16,13 @@ class TriedSurface {
   /// A point was looked at so, and is measured well now or not. `piece` is the LackingSurface that
   /// it belongs to.
   void Note(const Eigen::Vector3d& p_map, std::uint64_t piece, bool is_well);
-  /// Returns whether looking there once more is in vain.
+  /// Returns whether another look there would not help.
   bool IsVain(const Eigen::Vector3d& p_map) const;
   /// The part of a piece of surface that is not worth another view, square metres.
   double VainArea(std::uint64_t piece) const;
 
  private:
+  /// Says how often a cell was looked at.
   struct Cell {
     std::uint64_t piece = 0;
     int looks = 0;
@@ -29,7 +30,8 @@ class TriedSurface {
   };
   int look_ = 0;
   std::unordered_map<std::uint64_t, Cell> cells_;
-  std::unordered_map<std::uint64_t, int> vain_;  ///< Number of cells in vain, by piece.
+  std::unordered_map<std::uint64_t, int>
+      vain_;  ///< Number of cells that another look would not help, by piece.
 };
 
 }  // namespace isotherm

@@ -11,17 +11,23 @@
 namespace isotherm {
 namespace {
 
-/// Width of the coarse cast, pixels: one ray per centimetre or so.
+/// Width of the coarse cast, pixels: one ray per centimetre or so at the good distances. More:
+/// slower by the square, and areas of millimetres count; fewer: posts and pipes fall between the
+/// rays.
 constexpr int kCastWidth = 48;
 
-/// A surface nearer to the camera than this fraction of the least distance is in its way.
+/// A surface nearer to the camera than this fraction of the least distance is in its way. 1 would
+/// forbid views beside something near that is itself not measured; smaller ones lead the rig
+/// against it. Not tuned.
 constexpr double kClearance = 0.7;
 
 /// From a view with less surface that the depth camera can measure than the first, as a fraction of
-/// the rays, or of what is in its view than the second, the rig would be lost.
+/// the rays, or of what is in its view than the second, the rig would be lost. Firmness
+/// (Trackability) grades what is above; not tuned by themselves.
 constexpr double kMinTrackable = 0.05, kMinTrackableOfView = 0.6;
 
-/// The depth camera has looked at a place up to this much more than the good distance away.
+/// The depth camera has looked at a place up to this much more than the good distance away: farther
+/// off, noise hides what is there. Larger: what is behind is taken for seen.
 constexpr double kSeenReserve = 1.3;
 
 CameraModel Coarse(CameraModel camera) {

@@ -26,7 +26,7 @@ struct Outlook {
 };
 
 /// Tells what views of the model would be good for, by casting the model coarsely from there, and
-/// remembers what was looked at in vain. Thread-compatible.
+/// remembers which surface several looks did not measure well. Thread-compatible.
 class ViewAssessor {
  public:
   /// `rig` must have both cameras and their relative pose (CHECK). Voxels lighter than `min_weight`

@@ -55,7 +55,7 @@ class ViewPlanner {
   const std::optional<NextView>& best() const { return best_; }
 
   /// Returns the surface of the model for which no view was found that would measure it well, or
-  /// that was looked at in vain, square metres.
+  /// that several looks did not measure well, square metres.
   double OutOfReach(const ModelCoverage& coverage) const;
 
   /// Returns how much surface there may be that was never seen, as far as one view shows, square
@@ -69,11 +69,12 @@ class ViewPlanner {
               const ThermalVolume& thermal, ThreadPool& pool);
 
  private:
+  /// Holds a view that could be suggested.
   struct Candidate {
     RigidTransform T_map_depth;
     std::uint64_t cell;  ///< The LackingSurface that it looks at.
   };
-  /// What a step works on.
+  /// Groups the model, the rig's pose and the threads that a step works with.
   struct Model {
     const TsdfVolume& tsdf;
     const ThermalVolume& thermal;
@@ -109,12 +110,12 @@ class ViewPlanner {
   std::optional<NextView> best_;
   std::vector<NextView> remembered_;
   std::optional<RigidTransform> T_map_depth_before_;
-  double unseen_m2_ = 0.0;                ///< See Unseen(): in the last round of candidates,
-  double unseen_in_round_m2_ = 0.0;       ///< ... and in this one.
-  bool is_firm_here_ = false;             ///< The rig is tracked firmly where it is.
-  int rounds_ = 0;                        ///< Of candidates.
-  int steps_at_best_ = 0;                 ///< How long the rig has been there,
-  int steps_proposed_ = 0;                ///< ... and how long it has been proposed.
+  double unseen_m2_ = 0.0;           ///< See Unseen(): the largest in the last round of candidates.
+  double unseen_in_round_m2_ = 0.0;  ///< The largest so far in this round.
+  bool is_firm_here_ = false;        ///< The rig is tracked firmly where it is.
+  int rounds_ = 0;                   ///< Rounds of candidates begun.
+  int steps_at_best_ = 0;            ///< Steps that the rig has been at the best view.
+  int steps_proposed_ = 0;           ///< Steps that the best view has been proposed.
   std::deque<RigidTransform> exhausted_;  ///< Views that gave nothing, or that nobody took.
 };
 

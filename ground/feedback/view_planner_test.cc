@@ -237,7 +237,7 @@ bool IsInSquareAt(double x_m, const Vector3d& p) {
 TEST_F(ViewPlannerTest, OfTwoViewsThatGainTheSameTheNearerOneIsTakenFirst) {
   testing::FillPlane(tsdf_, {0, 0, 0.7}, {0, 0, -1});
   Measure([](const Vector3d& p) { return IsInSquareAt(kLeft_m, p) || IsInSquareAt(kRight_m, p); });
-  is_measuring_ = false;  // Nothing is looked at in vain.
+  is_measuring_ = false;  // No surface counts as looked at without gain.
   for (const double x : {kLeft_m, kRight_m}) {
     here_ = MakeTransform({x, 0.5, 0.25}, Eigen::Quaterniond::Identity());
     ViewPlanner planner = Planner();
@@ -248,7 +248,7 @@ TEST_F(ViewPlannerTest, OfTwoViewsThatGainTheSameTheNearerOneIsTakenFirst) {
 }
 
 TEST_F(ViewPlannerTest, WhereTheRigWouldSlideViewsComeLast) {
-  is_measuring_ = false;  // Nothing is looked at in vain.
+  is_measuring_ = false;  // No surface counts as looked at without gain.
   here_ = MakeTransform({0.5, 0.5, 0.25}, Eigen::Quaterniond::Identity());
   // Around one of two squares that are equally far stand blocks that hold the rig.
   for (const double x : {kLeft_m, kRight_m}) {

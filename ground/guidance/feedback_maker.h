@@ -17,7 +17,7 @@ namespace isotherm {
 /// Holds what a message of feedback is about.
 struct FeedbackMoment {
   FrameHeader header;  ///< The newest depth frame's.
-  DepthReport report;  ///< What became of it.
+  DepthReport report;  ///< The pipeline's report on it.
   bool nuc_running = false;
   /// Say how the rig moved since the message before, and the time between two frames.
   double speed_m_s = 0.0;

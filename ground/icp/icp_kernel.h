@@ -28,8 +28,8 @@ struct IcpKernelArgs {
 struct IcpKernelSums {
   std::array<float, 28> sums{};
   std::int64_t inliers = 0;
-  std::int64_t candidates = 0;  ///< Valid pixels inside the volume, ...
-  std::int64_t overlap = 0;     ///< ... of which the model has a surface in the same direction.
+  std::int64_t candidates = 0;  ///< Valid pixels inside the volume.
+  std::int64_t overlap = 0;     ///< Candidates behind which the model has a surface, near or not.
 };
 
 /// Adds the pixels of rows [first_row, last_row) to `sums`.

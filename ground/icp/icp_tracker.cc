@@ -26,6 +26,8 @@ constexpr EnumArray<LostReason, std::string_view> kLostReasons = {
     {LostReason::kTooFewInliers, "too_few_inliers"},
     {LostReason::kTooFewPixels, "too_few_pixels"}};
 
+/// The finest level (480 rows) makes 60 tasks, the coarsest 15. More rows: threads wait for the
+/// last one at the coarse levels; fewer: more sums to add up afterwards. Not tuned.
 constexpr int kRowsPerTask = 8;
 
 IcpSums ToIcpSums(const IcpKernelSums& strip) {
@@ -50,13 +52,19 @@ void CopyTransform(const RigidTransform& transform, float* R, float* t) {
   std::copy_n(translation.data(), 3, t);
 }
 
-/// Noise of neighbouring pixels is not independent: about one of this many counts.
+/// The bilateral filter and the normals mix a pixel with its neighbours, so that errors within a
+/// window of 5 x 5 pixels are nearly the same: one pixel in that window counts. A smaller number
+/// makes the covariance too small, and thermal frames are then fused at a pose that is not known
+/// well enough. Not fitted to errors.
 constexpr double kPixelsPerSample = 25.0;
 
-/// Along the observed axes, from the residual and the normal equations of the last iteration.
+/// Returns the covariance along the observed axes, from the residual and the normal equations of
+/// the last iteration.
 Matrix6 ObservedCovariance(const IcpSums& sums, const TrackingResult& result) {
   const double weight = sums.H.topLeftCorner<3, 3>().trace();  // Normals have length 1.
   if (!(weight > 0.0) || result.motion.unobservable_axes == 6) return Matrix6::Zero();
+  // H was summed with weights relative to the reference depth; divided by their sum it is the
+  // information of one mean pixel.
   const double samples = static_cast<double>(sums.inliers) / kPixelsPerSample;
   const Observability& motion = result.motion;
   const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> basis =
@@ -67,7 +75,8 @@ Matrix6 ObservedCovariance(const IcpSums& sums, const TrackingResult& result) {
          (result.residual_m * result.residual_m / samples);
 }
 
-/// Axes that temperatures observe are unobservable no more.
+/// Makes the axes that temperatures observe observed ones: they go behind the axes that stay
+/// unobservable.
 void Adopt(const ThermalFit& fit, TrackingResult& result) {
   Observability& motion = result.motion;
   const Matrix6 before = motion.axes;
@@ -96,6 +105,7 @@ std::optional<Vector6> SolveStep(const IcpSums& sums, TrackingResult& result) {
     result.lost = LostReason::kTooFewInliers;
     return std::nullopt;
   }
+  // Only the observed directions are solved for. In the others noise decides where the minimum is.
   const std::optional<Vector6> step = result.motion.SolveObserved(sums.H, sums.g);
   if (!step) result.lost = LostReason::kSingular;
   return step;
@@ -212,6 +222,8 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   HoldUnobservable(depth, model, start, result);
   const IcpSums last = Iterate(depth, model, grid, pool, result);
   if (!result.tracked()) return result;
+  // A product of dozens of small rotations is no longer quite a rotation; the drift would add up
+  // over frames.
   result.T_map_depth.linear() =
       Eigen::Quaterniond(result.T_map_depth.linear()).normalized().toRotationMatrix();
   result.covariance = ObservedCovariance(last, result);
@@ -222,7 +234,9 @@ TrackingResult IcpTracker::Track(const PreparedDepth& depth, const ModelView& mo
   }
   result.step_m = TranslationDistance(model.T_map_depth, result.T_map_depth);
   result.step_rad = RotationAngle(model.T_map_depth, result.T_map_depth);
-  // The normals of a young model are too rough to reject correspondences fairly.
+  // The normals of a young model are too rough to reject correspondences fairly: with voxels of 1
+  // mm no second frame was accepted without this. Larger: a scan with small voxels does not begin;
+  // smaller: a wrong second frame passes.
   constexpr double kYoungFraction = 1.0 / 3.0;
   return Assess(result,
                 options_.expert().min_inlier_ratio() * (model.is_young ? kYoungFraction : 1.0));
@@ -235,11 +249,14 @@ IcpLimits IcpTracker::Limits() const {
 
 void IcpTracker::HoldUnobservable(const PreparedDepth& depth, const ModelView& model,
                                   const Start& start, TrackingResult& result) const {
-  // The normals of a young model are rough, and quantised as the frame's are.
+  // The normals of a young model are rough, and quantised in steps as the frame's are, so that
+  // their noise is not independent: a plane looks more structured than it is, and the limit is
+  // doubled for it.
   result.motion =
       MeasureObservability(depth.maps[kPyramidLevels - 1], start.guess, model, Limits(),
                            (model.is_young ? 2.0 : 1.0) * options_.expert().min_observed());
   if (result.motion.fully_observed()) return;
+  // ICP below cannot move the pose along these axes, so it starts there where the prior says.
   ApplyTwist(result.motion.UnobservablePart(TwistBetween(start.guess, start.prior)),
              result.T_map_depth);
   if (start.alignment != nullptr)
@@ -252,6 +269,8 @@ IcpSums IcpTracker::Iterate(const PreparedDepth& depth, const ModelView& model,
   const std::array<int, kPyramidLevels> iterations = {options_.expert().iterations_fine(),
                                                       options_.expert().iterations_middle(),
                                                       options_.expert().iterations_coarse()};
+  // Coarse to fine: at a quarter of the size a correspondence reaches four times as far, and costs
+  // a sixteenth.
   for (int level = kPyramidLevels - 1; level >= 0; --level) {
     for (int iteration = 0; iteration < iterations[level]; ++iteration) {
       const IcpSums sums =

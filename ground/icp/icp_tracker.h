@@ -56,6 +56,7 @@ inline constexpr float kIcpReferenceDepth = 0.5F;
 /// Frames with fewer pixels that have a depth are lost.
 inline constexpr int kMinTrackedPixels = 1000;
 
+/// Holds a frame's pose and the figures that say how well it was measured.
 struct TrackingResult {
   LostReason lost = LostReason::kNone;
   RigidTransform T_map_depth;  ///< The best estimate, meaningful only if not lost.
@@ -66,7 +67,7 @@ struct TrackingResult {
   double step_m = 0.0;         ///< Motion since the model view's pose.
   double step_rad = 0.0;
   int iterations = 0;
-  Observability motion;  ///< What of the motion was measured.
+  Observability motion;  ///< Says which directions of the motion were measured.
   /// The covariance of T_map_depth as a twist (translation, rotation about the camera's position)
   /// in `map`, m and rad. It is of what this frame measured, so 0 along axes that are not observed
   /// (PoseUncertainty has the rest).
@@ -79,6 +80,8 @@ struct TrackingResult {
   }
 };
 
+/// Says which pixels correspond: a point and the model's surface must be this near and this
+/// parallel.
 struct IcpLimits {
   float max_distance_m;
   float min_normal_cosine;
@@ -91,8 +94,8 @@ struct IcpSums {
   Eigen::Matrix<double, 6, 1> g = Eigen::Matrix<double, 6, 1>::Zero();
   double squared_residuals_m2 = 0.0;  ///< Unweighted.
   std::int64_t inliers = 0;
-  std::int64_t candidates = 0;  ///< Valid pixels inside the volume, ...
-  std::int64_t overlap = 0;     ///< ... of which the model has a surface in the same direction.
+  std::int64_t candidates = 0;  ///< Valid pixels inside the volume.
+  std::int64_t overlap = 0;     ///< Candidates behind which the model has a surface, near or not.
 
   double inlier_ratio() const { return Fraction(inliers, candidates); }
   double overlap_ratio() const { return Fraction(overlap, candidates); }

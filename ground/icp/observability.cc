@@ -48,6 +48,9 @@ MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_map_de
           T_map_depth.linear() * At(current.nx, current.ny, current.nz, x, y);
       if (!(n.dot(n_current) > double{limits.min_normal_cosine})) continue;
       Vector6 model_J;
+      // One factor has the model's normal, the other the frame's. Both have noise, but not the
+      // same: products average it out, where squares would add it to every direction, and a noisy
+      // plane would look structured (ADR 7).
       model_J << n, arm.cross(n);
       Vector6 current_J;
       current_J << n_current, arm.cross(n_current);
@@ -65,6 +68,8 @@ MotionSums Accumulate(const SurfaceMaps& current, const RigidTransform& T_map_de
 
 Vector6 Observability::UnobservablePart(const Vector6& twist) const {
   const Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 6> slides = axes.leftCols(unobservable_axes);
+  // Axes are orthonormal in scaled motions, where a rotation counts by what it moves at the scene's
+  // depth.
   const Vector6 motion = twist.cwiseQuotient(scale);
   return scale.cwiseProduct(slides * (slides.transpose() * motion));
 }
@@ -88,13 +93,16 @@ Observability MeasureObservability(const SurfaceMaps& current, const RigidTransf
                                    double min_strength) {
   Observability space;
   const MotionSums sums = Accumulate(current, T_map_depth, model, limits);
-  // A fraction of the pixels that are looked at.
+  // With fewer associations than this fraction of the pixels looked at, the sums say nothing
+  // (IcpTest checks that a few measure nothing). Larger: new ground beside a known rim is tracked
+  // without knowing what is unobservable. Not tuned.
   constexpr double kMinFraction = 0.05;
   const double looked_at =
       static_cast<double>(current.width()) * current.height() / (kStride * kStride);
   if (sums.count < kMinFraction * looked_at) return space;
   space.mean_depth_m = sums.depth / sums.weight;
   space.scale.tail<3>().setConstant(1.0 / space.mean_depth_m);
+  // The product of two different factors is symmetric only in the mean.
   const Matrix6 symmetric = 0.5 / sums.weight * (sums.H + sums.H.transpose());
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(space.scale.asDiagonal() * symmetric *
                                                       space.scale.asDiagonal());

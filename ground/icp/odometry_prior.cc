@@ -95,6 +95,7 @@ bool OdometryPrior::Contradicts(const TrackingResult& result, CaptureTime time,
     noise_m = std::hypot(noise_m, from->position_noise_m, to->position_noise_m);
     way_m += moved.translation().norm();
   } else {
+    // An attitude filter says nothing of positions.
     twist.head<3>().setZero();
   }
   const double difference_m =
@@ -113,6 +114,8 @@ void OdometryPrior::Note(const TrackingResult& result, CaptureTime time, const M
   const bool compared = !anchors_.empty() && result.motion.measured &&
                         result.motion.unobservable_axes < 6 && stream_.At(time).has_value();
   NoteTrust(!contradicts, compared);
+  // Poses from before are held differently, or proven wrong: differences to them are not the
+  // source's.
   if (contradicts || result.motion.unobservable_axes != unobservable_axes_) anchors_.clear();
   unobservable_axes_ = result.motion.unobservable_axes;
   anchors_.push_back({time, result.T_map_depth});

@@ -33,6 +33,7 @@ class OdometryPrior {
 
   void Add(const ExternalOdometry& sample) { stream_.Add(sample); }
 
+  /// Holds a pose and how wrong it may be.
   struct Prediction {
     RigidTransform T_map_depth;
     PriorError error;
@@ -57,6 +58,7 @@ class OdometryPrior {
   const OdometryPriorCounts& counts() const { return counts_; }
 
  private:
+  /// Holds the source's pose of a frame that was tracked.
   struct Used {
     CaptureTime time;
     OdometryStream::Estimate estimate;

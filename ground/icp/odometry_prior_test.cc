@@ -194,7 +194,8 @@ TEST_F(OdometryPriorTest, ASlowContradictionAddsUpUntilItIsSeen) {
   EXPECT_LE(first, 5);
 }
 
-/// What was held with an error is put right once it is measured again: the source is not to blame.
+/// A direction that was held with an error is corrected once it is measured again: the source is
+/// not to blame.
 TEST_F(OdometryPriorTest, ACorrectionAfterUnobservableDirectionsIsNoContradiction) {
   const double drift = 0.02;
   Feed(0.0, 2.0, True);

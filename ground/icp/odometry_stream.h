@@ -49,6 +49,7 @@ class OdometryStream {
   /// if the next one follows it, the source has started again, and all before is forgotten.
   void Add(const ExternalOdometry& sample);
 
+  /// Holds the depth camera's pose in the source's reference frame.
   struct Estimate {
     RigidTransform T_reference_depth;
     bool has_position = true;
@@ -63,6 +64,7 @@ class OdometryStream {
   const OdometryStreamCounts& counts() const { return counts_; }
 
  private:
+  /// Holds a pose that was found to be of use.
   struct Sample {
     CaptureTime time;
     Estimate estimate;

@@ -12,6 +12,8 @@ namespace isotherm {
 void PoseUncertainty::Update(const TrackingResult& result, const PriorError& prior) {
   const Observability& motion = result.motion;
   const Vector6 to_motion = motion.scale.cwiseInverse();
+  // While one source holds the axis, its jitter of the frame before is gone with that frame; only
+  // the growth stays.
   const Matrix6 before = prior.continues ? without_noise_ : covariance_;
   without_noise_ = result.covariance;
   Matrix6 noise = Matrix6::Zero();
@@ -23,6 +25,8 @@ void PoseUncertainty::Update(const TrackingResult& result, const PriorError& pri
     };
     const Vector6 weighted = to_motion.cwiseProduct(axis);
     const double known = std::sqrt(std::max(0.0, weighted.dot(before * weighted)));
+    // Added, not combined as squares: the error of a velocity has the same sense from frame to
+    // frame.
     const double sigma = known + along_axis(prior.translation_growth_m, prior.rotation_growth_rad);
     const double jitter = along_axis(prior.translation_noise_m, prior.rotation_noise_rad);
     const Vector6 twist = motion.scale.cwiseProduct(axis);
@@ -32,6 +36,8 @@ void PoseUncertainty::Update(const TrackingResult& result, const PriorError& pri
   }
   covariance_ = without_noise_ + noise;
   mean_depth_m_ = motion.mean_depth_m;
+  // The largest eigenvalue in scaled motions is the shift of the surface along the least certain
+  // one.
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(
       to_motion.asDiagonal() * covariance_ * to_motion.asDiagonal(), Eigen::EigenvaluesOnly);
   surface_sigma_m_ = std::sqrt(std::max(0.0, solver.eigenvalues()(5)));

@@ -93,6 +93,8 @@ class ThermalAlignment {
   double reference_variance_k2_ = 0.0;  ///< Variance of the reference's temperatures.
   bool reference_leaves_view_ = false;
 
+  /// since_gap_ counts up to here: 0 = not measured now, 1 = the first frame that is again, 2 =
+  /// longer ago.
   static constexpr int kNoGap = 2;
   /// Frames since unobservable directions were not measured.
   int since_gap_ = kNoGap;

@@ -57,7 +57,9 @@ EmissionError EmissionCurve::WithOperatorMirrored() const {
 }
 
 double EmissionCurve::LargestAngle(const ErrorTolerance& tolerance) const {
+  // Finer than any use of a limit: angles are held to a degree at best.
   constexpr double kStep_deg = 0.1;
+  // At 90 degrees nothing is emitted and the relative error has no value.
   constexpr double kLast_deg = 89.9;
   double within_deg = 0.0;
   for (int i = 1; i * kStep_deg <= kLast_deg; ++i) {

@@ -42,6 +42,7 @@ struct Surface {
   Surface MeshOnly() const;
 };
 
+/// Says which zero crossings of the distance are surface.
 struct SurfaceOptions {
   /// Least weight of a voxel that becomes part of the surface.
   float min_weight = 2.0F;

@@ -31,8 +31,14 @@ constexpr std::uint32_t kVersion = 4;
 constexpr std::uint32_t kOldestVersion = 1;
 constexpr std::uint32_t kFirstWithRecords = 2;
 constexpr std::uint32_t kFirstWithSigmas = 4;
+// Known poses are 100 bytes each, so that even 100 000 of them stay below this; a damaged length
+// does not.
 constexpr std::uint32_t kMaxHeaderBytes = 1 << 24;
+// 1 MB of voxels a part: damage costs the file, but memory for packing stays small, and progress
+// can be told.
 constexpr int kBlocksPerChunk = 256;
+// zstd's fastest level. Higher ones: smaller files, and a scan that waits longer for them. Not
+// tuned.
 constexpr int kCompression = 1;
 
 /// Coordinates, distances and temperatures of one block.
@@ -166,6 +172,7 @@ Status ModelFile::Content::ReadPart(std::uint64_t& offset, std::uint32_t max_blo
   }
   std::vector<std::uint8_t> packed(head.bytes);
   if (Status status = Read(offset, packed); !status.ok()) return status;
+  // Before it is unpacked: zstd detects damage less surely.
   if (Crc(packed) != head.crc) return Damaged("a part has a wrong checksum");
   const unsigned long long bytes = ZSTD_getFrameContentSize(packed.data(), packed.size());
   if (bytes > max_bytes) return Damaged("a part has an impossible size");
@@ -200,6 +207,7 @@ Status ModelFile::Content::ReadHead() {
 
 /// As the options of a volume are checked, which these numbers become.
 Status ModelFile::Content::CheckVolume() const {
+  // Three of these multiply to 2^60, so the product below cannot overflow.
   constexpr std::int64_t kMaxBlocksAlongAxis = 1 << 20;
   std::int64_t blocks = 1;
   for (const std::int32_t along : {header.blocks_x(), header.blocks_y(), header.blocks_z()}) {
@@ -328,6 +336,8 @@ Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
       const std::uint8_t* in = plain.data() + i * kBlockBytes;
       GridIndex coordinates;
       std::memcpy(coordinates.data(), in, kCoordinateBytes);
+      // A file is data from elsewhere: its coordinates must not write outside the volume, nor twice
+      // to one block.
       if (!tsdf.InGrid(coordinates) || tsdf.Find(coordinates) != TsdfVolume::kNoBlock)
         return content.Damaged("a block lies outside the volume, or twice in it");
       const std::int32_t block = tsdf.FindOrAllocate(coordinates);
@@ -338,6 +348,7 @@ Status ModelFile::ReadBlocks(TsdfVolume& tsdf, ThermalVolume& thermal) const {
       std::memcpy(tsdf.voxels(block).data(), in + kCoordinateBytes, kVoxelBytes);
       std::memcpy(thermal.voxels(block).data(), in + kCoordinateBytes + kVoxelBytes, kVoxelBytes);
       const auto voxels = tsdf.voxels(block);
+      // Not stored: it follows from the voxels.
       tsdf.set_may_end_rays(block, std::any_of(voxels.begin(), voxels.end(), [](TsdfVoxel v) {
                               return v.observed() && v.tsdf() <= 0.0F;
                             }));

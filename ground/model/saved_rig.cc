@@ -19,6 +19,7 @@ std::optional<RigidTransform> PoseAt(const google::protobuf::RepeatedField<doubl
   const auto at = [&](int i) { return numbers.Get(first + i); };
   const Eigen::Quaterniond q(at(6), at(3), at(4), at(5));
   const Eigen::Vector3d t(at(0), at(1), at(2));
+  // A quaternion of doubles is off by rounding alone; more is a damaged file.
   constexpr double kUnitTolerance = 1e-3;
   if (!t.allFinite() || !(t.cwiseAbs().maxCoeff() <= kMaxCoordinate_m) ||
       !(std::abs(q.norm() - 1.0) < kUnitTolerance))

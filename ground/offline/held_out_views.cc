@@ -19,6 +19,7 @@ std::optional<RigidTransform> HeldOutViews::PoseAt(CaptureTime time) const {
   const std::vector<StampedPose>& poses = scan_.trajectory.poses();
   const auto after = std::ranges::lower_bound(poses, time, {}, &StampedPose::time);
   if (after == poses.end()) return std::nullopt;
+  // Also where the gap before it is too long.
   if (after->time == time) return after->T_world_depth;
   if (after == poses.begin()) return std::nullopt;
   const StampedPose& before = *(after - 1);
@@ -60,6 +61,8 @@ double HeldOutViews::Predict(int x, int y, const PointMeasurement& measurement) 
   if (!options_.surface || measurement.conditions.empty()) return celsius;
   const Eigen::Vector3f n_world(maps_.nx.At(x, y), maps_.ny.At(x, y), maps_.nz.At(x, y));
   const float measured =
+      // Either side: the recorded direction is coded to a degree and may just miss the surface's
+      // front.
       std::abs(n_world.normalized().dot(DecodeDirection(measurement.conditions.direction)));
   const auto angle_rad = [](float cosine) {
     return std::acos(std::min(static_cast<double>(cosine), 1.0));

@@ -16,11 +16,12 @@
 
 namespace isotherm {
 
+/// Says how thermal frames that were held back are predicted.
 struct HeldOutOptions {
   double max_gap_s = 0.0;   ///< Poses further apart are not interpolated between.
   float min_weight = 0.0F;  ///< Voxels that are lighter do not count.
-  /// What was scanned. nullopt: a temperature is predicted to be seen from everywhere as from where
-  /// it was measured.
+  /// The scanned surface. nullopt: a temperature is predicted to be seen from everywhere as from
+  /// where it was measured.
   std::optional<SmoothSurface> surface;
   SceneInfluence scene_influence;  ///< Taken out of the frames, as it was for the model.
 };
@@ -39,7 +40,8 @@ class HeldOutViews {
  private:
   std::optional<RigidTransform> PoseAt(CaptureTime time) const;
   void ComparePixel(int x, int y, double shown_celsius);
-  /// What the camera should show of what the model has in a pixel, °C.
+  /// Returns the temperature that the camera should show in a pixel, by what the model has there,
+  /// °C.
   double Predict(int x, int y, const PointMeasurement& measurement) const;
 
   const ScanModel scan_;

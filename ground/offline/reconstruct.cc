@@ -68,9 +68,11 @@ class InlineDriver {
       }
       if (!*item) break;
       std::visit([this](auto& recorded) { Take(recorded); }, **item);
+      // As many as are complete: memory does not grow with the recording.
       while (const auto frame = assembler_.Pop()) Process(*frame);
       Report();
     }
+    // Frames that wait for a partner: none will come.
     while (const auto frame = assembler_.Flush()) Process(*frame);
     pipeline_.Finish([this](double fraction) {
       if (request_.progress)
@@ -114,6 +116,7 @@ class InlineDriver {
     const EncodedThermalFrame& encoded = recorded.frame;
     frame->header = encoded.header;
     const bool look = plausibility_.AddThermal(frame->header.capture_time);
+    // Behind the plausibility check, which looks at the stamps as they were recorded.
     frame->header.capture_time += thermal_delay_;
     frame->nuc_state = encoded.nuc_state;
     frame->nuc_source = encoded.nuc_source;
@@ -158,6 +161,7 @@ class InlineDriver {
         return;
       }
       pipeline_.ProcessThermal(thermal);
+      // After the frame was fused: the check needs its pose.
       delay_check_.Add(thermal, pipeline_.model());
     }
   }
@@ -244,6 +248,7 @@ Result<OpenedScan> OpenScan(const ReconstructRequest& request) {
   const Result<Rig> rig = FindRig(request, **reader);
   if (!rig) return Err(rig.error());
   OpenedScan scan;
+  // On the heap, since others refer to it while this struct is moved.
   scan.rig = std::make_unique<Rig>(*rig);
   scan.options = request.options;
   std::unique_ptr<ModelFile> model;

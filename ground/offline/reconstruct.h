@@ -17,6 +17,7 @@
 
 namespace isotherm {
 
+/// Says what is reconstructed, and where to.
 struct ReconstructRequest {
   std::filesystem::path recording;
   std::filesystem::path output_dir;
@@ -30,6 +31,7 @@ struct ReconstructRequest {
   std::function<void(double fraction, std::string_view text)> progress;
 };
 
+/// Counts the frames of a reconstruction and says what is doubtful about it.
 struct ReconstructSummary {
   std::uint64_t depth_frames = 0;
   std::uint64_t repeated_frames = 0;

@@ -22,6 +22,7 @@
 namespace isotherm {
 
 Status Validate(const LiveOptions& o) {
+  // The largest whose ports are below 65536.
   constexpr int kMaxDomain = 230;
   if (o.domain() < 0 || o.domain() > kMaxDomain) {
     return InvalidArgument(
@@ -61,6 +62,7 @@ std::vector<Status> ValidateAll(const GroundOptions& options) {
   const auto check = [&](Status status) {
     if (!status.ok()) problems.push_back(std::move(status));
   };
+  // All are checked, so that the user sees every mistake at once.
   check(Validate(options.volume()));
   check(CheckSpillDir(options.volume().spill_dir()));
   check(Validate(options.preprocessor()));

@@ -9,6 +9,8 @@
 namespace isotherm {
 namespace {
 
+// Quaternions and axes are typed with two or three digits; what is further from unit length is a
+// mistake rather than rounding.
 constexpr double kUnitTolerance = 0.01;
 
 Eigen::Vector3d ToVector(const PointOptions& point) {

@@ -7,6 +7,8 @@ namespace {
 
 /// Parts seen within this many frames are never given back: the rig swings.
 constexpr std::uint64_t kFramesKept = 15;
+/// Looking for parts to give back goes through all parts. Larger: more memory in between (a third
+/// of a second of new surface at 30 Hz); smaller: more of that work. Not tuned.
 constexpr std::uint64_t kFramesBetweenTrims = 10;
 
 /// 64 blocks of both volumes are 256 kB: at most 4 MB are read ahead at a time.

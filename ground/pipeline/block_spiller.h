@@ -40,6 +40,8 @@ class BlockSpiller {
   std::uint64_t fetched() const { return fetched_; }
 
  private:
+  /// 64 blocks are 128 kB of each volume, whole pages. Larger: more that is not needed stays or is
+  /// read; smaller: more system calls. Not tuned.
   static constexpr std::int32_t kBlocksPerPart = 64;
 
   /// Blocks that were allocated one after the other, so mostly beside each other.

@@ -81,7 +81,9 @@ Status GroundPipeline::Continue(const ModelFile& model) {
   SubMap& map = atlas_.active();
   if (Status status = LoadSubMap(model, rig_, map); !status.ok()) return status;
   if (map.tsdf->block_count() == 0) return OkStatus();
+  // The rig is somewhere near the views of the model; until it is found nothing is added.
   tracker_.BeginLost();
+  // The model is there: its first frames need not be integrated whatever their motion.
   gate_.EndBootstrap();
   is_continued_ = true;
   return OkStatus();
@@ -111,7 +113,9 @@ DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   TrackedFrame tracked = Track(depth, frame.header.capture_time);
   const bool integrated = Integrate(depth, tracked);
   Raycast(tracked);
+  // Temperatures have a time of their own (Stage::kThermalFrame).
   timer.Stop();
+  // Behind the cast: temperatures see the model with this frame in it.
   FuseThermal(depth, tracked);
   return Report(tracked, integrated);
 }
@@ -152,6 +156,7 @@ const PreparedDepth& GroundPipeline::Prepare(const DepthFrame& frame) {
 TrackedFrame GroundPipeline::Track(const PreparedDepth& depth, CaptureTime time) {
   const TrackedFrame frame = tracker_.Track(depth, time, pool_);
   counts_.relocalisations = tracker_.relocalisations();
+  // Blocks are numbered by sub-map: what was noted of the old one's is void.
   if (frame.switched) spiller_.Restart();
   switch (frame.outcome) {
     case TrackedFrame::Outcome::kLost:
@@ -161,6 +166,7 @@ TrackedFrame GroundPipeline::Track(const PreparedDepth& depth, CaptureTime time)
       ++counts_.depth_unconfirmed;
       break;
     case TrackedFrame::Outcome::kFirst:
+      // A new sub-map begins with one frame's noise, as the scan did.
       gate_.Restart();
       break;
     case TrackedFrame::Outcome::kTracked:
@@ -186,7 +192,9 @@ bool GroundPipeline::Integrate(const PreparedDepth& depth, TrackedFrame& frame) 
   const bool integrates = IsDue(frame);
   if (integrates && !is_first) AddSurface(depth, T_map_depth);
   if (integrates) ++counts_.depth_integrated;
+  // After the integration: what follows (loops, sub-maps) may leave this sub-map.
   tracker_.Accept(frame);
+  // A degraded pose is held, not measured: it must neither become a known view nor join sub-maps.
   if (integrates && quality == TrackingQuality::kTracked &&
       tracker_.CloseLoops(frame, depth, integrator_.updated_blocks(), pool_)) {
     spiller_.Restart();
@@ -209,6 +217,7 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
   const StageTimer timer(stages_[Stage::kIntegrate]);
   SubMap& map = atlas_.active();
   integrator_.Integrate(depth, T_map_depth, pool_, *map.tsdf);
+  // Temperatures lie beside the distances block by block, so they grow with them.
   has_room_ = map.thermal->Commit(map.tsdf->block_count());
   ++map.integrated;
   if (map.anchors.empty()) map.anchors.push_back(T_map_depth);
@@ -225,6 +234,8 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
 }
 
 void GroundPipeline::FetchNearView(const RigidTransform& T_map_depth) {
+  // Looking up the blocks costs as much as a cast's bounds. Five frames of motion are within what
+  // the wider view below covers.
   constexpr std::uint64_t kEvery = 5;
   if (counts_.depth_in % kEvery != 0) return;
   // As if the camera saw half as much again on each side: some ten frames ahead at the speed at
@@ -300,6 +311,7 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
 }
 
 void GroundPipeline::Finish(const std::function<void(double)>& progress) {
+  // Temperatures of the last frames are reviewed in the merged model.
   if (atlas_.size() > 1) MergeMaps(progress);
   if (thermal_stage_) {
     const SubMap& map = atlas_.active();
@@ -316,6 +328,7 @@ void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
   }
   const std::vector<StampedPose>& poses = tracker_.trajectory().poses();
   if (joined) {
+    // The merged model is in `world`; the view of it must be, too, for renderings.
     tracker_.Rebase(T_world_map);
     RaycastFrom(tracker_.view().T_map_depth);
   } else if (!poses.empty()) {

@@ -12,7 +12,7 @@ namespace isotherm {
 /// Says why a thermal frame was not fused, in the order of the names, as in stats.json.
 enum class LeftOutReason : std::uint8_t {
   kBehind,  ///< For want of time.
-  kCounts,  ///< Of a camera that measures no temperatures.
+  kCounts,  ///< The camera sends counts, no temperatures.
   kDepthGap,
   kDiskFull,
   kNoCalibration,

@@ -40,6 +40,7 @@ ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float 
                                fuser_.ideal_camera()) {}
 
 bool ThermalStage::Add(ThermalFramePtr frame) {
+  // Also frames that are left out: they tell of corrections.
   const NucAge nuc = nuc_epochs_.Follow(*frame);
   if (!frame->valid) {
     LeaveOut(LeftOutReason::kNuc);
@@ -56,6 +57,8 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
   }
   waiting_.push_back({std::move(frame), nuc});
   // A depth stream that stopped must not make the buffer grow.
+  // Frames wait for the depth frame behind them, a handful at 30 and 40 Hz. 64 are one and a half
+  // seconds: longer gaps are left out anyway (max_wait_s).
   constexpr std::size_t kMaxWaiting = 64;
   if (waiting_.size() > kMaxWaiting) {
     waiting_.pop_front();
@@ -83,6 +86,8 @@ CameraMotion ThermalStage::MotionAround(const TrackedDepth& depth) const {
                          ToSeconds(b.time - a.time));
   };
   const CameraMotion mean = between(*depth.before, depth.now);
+  // The motion within the interval may be faster than its mean; what is assessed by smear must not
+  // be taken for slower than it was.
   if (!depth.earlier) return mean;
   const CameraMotion start = between(*depth.earlier, *depth.before);
   const std::array motions = {
@@ -117,6 +122,7 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
       continue;
     }
     const StageTimer timer(timing_);
+    // Several thermal frames share a depth frame: what depends on that alone is done once.
     if (!std::exchange(is_prepared, true)) {
       near_range_occlusion_.Update(depth.depth_m, depth.view.maps, depth.view.camera);
       line_of_sight_occlusion_.Update(depth.view.maps, depth.view.camera, depth.view.T_map_depth);

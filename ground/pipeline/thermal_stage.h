@@ -55,6 +55,7 @@ class ThermalStage {
   void Finish(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool);
 
  private:
+  /// Holds a frame until the depth frames on both sides of it are tracked.
   struct Waiting {
     ThermalFramePtr frame;
     NucAge nuc;

@@ -35,6 +35,8 @@ CameraModel ThumbnailCamera(const CameraModel& depth) {
   const double scale_y = 1.0 / std::max(1, depth.height / camera.height);
   camera.fx = depth.fx * scale_x;
   camera.fy = depth.fy * scale_y;
+  // Pixel centres are at whole numbers, so half a pixel is added before scaling and taken off
+  // after.
   camera.cx = (depth.cx + 0.5) * scale_x - 0.5;
   camera.cy = (depth.cy + 0.5) * scale_y - 0.5;
   return camera;
@@ -102,7 +104,8 @@ std::vector<PoseGuess> ChooseDistinct(std::vector<PoseGuess> guesses, std::size_
 constexpr int kCellSide = kBlockSide / 2;  ///< Voxels that make a point of the cloud.
 constexpr std::int32_t kBlocksPerTask = 256;
 
-/// The mean of the voxels near the surface in each eighth of a block.
+/// Adds the mean of the voxels near the surface in each eighth of a block. Coarse on purpose: a
+/// thumbnail's cell covers centimetres.
 void AddSurfacePoints(const TsdfVolume& volume, std::int32_t block,
                       std::vector<Eigen::Vector3f>& points) {
   const VoxelGrid& grid = volume.grid();
@@ -174,6 +177,8 @@ Thumbnail MakeThumbnail(const Image<float>& depth_m) {
         }
       }
       if (3 * count >= cell_width * cell_height) {
+        // A cell with fewer returns lies at an edge or in a shadow, where its mean would be of both
+        // surfaces.
         thumbnail.depth_m[static_cast<std::size_t>(row * Thumbnail::kWidth + column)] =
             sum / static_cast<float>(count);
       }
@@ -195,6 +200,8 @@ float Disagreement(const Thumbnail& image, const Thumbnail& expected) {
       weight += 1.0F;
       ++both;
     } else if (a > 0.0F) {
+      // The model may not know this place yet. It counts half, or guesses on unknown ground would
+      // win by seeing nothing.
       sum += 0.5F;
       weight += 1.0F;
     }
@@ -261,6 +268,8 @@ Thumbnail KeyframeDatabase::Look(const RigidTransform& T_map_depth) const {
              T(row, 1) * cloud_.col(1).segment(first, count) +
              T(row, 2) * cloud_.col(2).segment(first, count) + T(row, 3);
     };
+    // Pixels of the thumbnail are found for a chunk at a time, in vectors; only the scatter below
+    // is one by one.
     const Column z = along(2);
     const Column u = fx * along(0) / z + cx;
     const Column v = fy * along(1) / z + cy;
@@ -272,6 +281,8 @@ Thumbnail KeyframeDatabase::Look(const RigidTransform& T_map_depth) const {
       }
       float& cell = image.depth_m[static_cast<std::size_t>(
           static_cast<int>(v(i)) * Thumbnail::kWidth + static_cast<int>(u(i)))];
+      // The cloud has points on surfaces that others hide; the nearest one in a cell is what a
+      // camera sees.
       if (cell == 0.0F || z(i) < cell) cell = z(i);
     }
   }
@@ -298,6 +309,8 @@ PoseGuess KeyframeDatabase::Improve(const Thumbnail& image, PoseGuess guess) con
         better = true;
       }
     }
+    // Steps are halved only when none of the twelve helps: coordinate descent, without derivatives,
+    // which thumbnails of 20 x 15 depths do not have.
     if (better) continue;
     step_m *= 0.5;
     step_rad *= 0.5;
@@ -320,8 +333,10 @@ std::vector<PoseGuess> KeyframeDatabase::Guess(const Thumbnail& image, int max_g
     const RigidTransform guess = pose * offsets[i % offsets.size()];
     all[i] = {guess, Disagreement(image, Look(guess))};
   });
+  // Consecutive calls interleave: after `apart` calls every known pose was looked from.
   next_pose_ = (next_pose_ + 1) % apart;
   constexpr std::size_t kImproved = 8;
+  // Improving first and choosing afterwards: a guess that begins second often ends first.
   std::vector<PoseGuess> best = ChooseDistinct(std::move(all), kImproved);
   pool.ParallelFor(static_cast<int>(best.size()), [&](int task) {
     PoseGuess& guess = best[static_cast<std::size_t>(task)];

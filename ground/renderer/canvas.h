@@ -6,6 +6,7 @@
 
 namespace isotherm {
 
+/// Says on which side of the text its position is.
 enum class TextAlign { kLeft, kCentre, kRight };
 
 /// Draws text and shapes into a rendering, anti-aliased. Coordinates are pixels, x right, y down;

@@ -98,6 +98,7 @@ float FitAt(const Image<float>& celsius, const SurfaceMaps& maps, const Window& 
       right_side += weight * (value - centre) * basis;
     }
   }
+  // With fewer than three pixels, or pixels in a line, the plane is not determined.
   constexpr double kMinDeterminant = 1e-6;
   if (!(normal_matrix.determinant() > kMinDeterminant)) return celsius.At(x, y);
   return static_cast<float>(centre + normal_matrix.ldlt().solve(right_side).x());

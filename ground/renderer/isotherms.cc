@@ -29,6 +29,7 @@ bool IsBlank(std::string_view text) {
 
 /// "#rrggbb".
 std::optional<Rgb8> ColourOf(std::string_view text) {
+  // "#" and three pairs of hexadecimal digits.
   constexpr std::size_t kLength = 7;
   if (text.size() != kLength || text.front() != '#') return std::nullopt;
   std::uint32_t value = 0;

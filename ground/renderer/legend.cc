@@ -120,6 +120,7 @@ void DrawNeverMeasuredKey(Panel& panel, Canvas& canvas, int y_middle) {
 }  // namespace
 
 Rgb8 NeverMeasuredColour(int x, int y, double cos_view) {
+  // Diagonal lines tell "never measured" from any grey of a colour map, also in print.
   constexpr int kLineDistance_px = 7;
   const bool line = (x + y) % kLineDistance_px == 0;
   const double brightness = std::clamp(0.35 + 0.65 * cos_view, 0.0, 1.0);

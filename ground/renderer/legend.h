@@ -43,6 +43,7 @@ struct ScaleLegend {
 /// The colour that a value has in the rendering.
 using ValueColour = std::function<Rgb8(double value)>;
 
+/// Explains colours that stand for classes.
 struct ClassLegend {
   std::string title;
   std::vector<LegendRow> rows;

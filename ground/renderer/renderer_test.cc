@@ -235,7 +235,7 @@ TEST(RendererTest, BandsPaintOrTakeColourFromTheRest) {
   EXPECT_NE(plain.At(0, 0).r, plain.At(0, 0).b);
 }
 
-/// Whether the panel to the right of column `left` looks different in two renderings, per row.
+/// Counts the pixels to the right of column `left` that differ in two renderings.
 std::size_t DifferingPixels(const RgbImage& a, const RgbImage& b, int left) {
   std::size_t count = 0;
   for (int y = 0; y < a.height(); ++y) {

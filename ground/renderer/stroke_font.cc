@@ -17,6 +17,7 @@ struct Glyph {
   std::string_view strokes;
 };
 
+// In the units in which the strokes below are written.
 constexpr double kCapitalHeight = 18.0;
 constexpr double kBaseline = 6.0;
 constexpr double kSpacing = 6.0;  // Between letters.

@@ -25,6 +25,7 @@ void SamplePixel(const SurfaceMaps& maps, const Eigen::Vector3d& viewer_world,
   view.disagreement_class.At(x, y) = kNeverMeasured;
   view.cos_view.At(x, y) = NAN;
   view.distance_m.At(x, y) = NAN;
+  // Pixels without a surface have NaN vertices.
   if (!std::isfinite(cosine)) return;
   view.cos_view.At(x, y) = static_cast<float>(std::min(cosine, 1.0));
   view.distance_m.At(x, y) = static_cast<float>(distance_m);

@@ -19,6 +19,7 @@ constexpr double kOneSided = 0.5;
 /// Any unit vector across `axis`, the nearest to `wish`.
 Eigen::Vector3d Across(const Eigen::Vector3d& axis, const Eigen::Vector3d& wish) {
   const Eigen::Vector3d across = wish - wish.dot(axis) * axis;
+  // Shorter: the wish points along the axis, and its direction across is rounding.
   constexpr double kMin = 1e-6;
   return across.norm() > kMin ? across.normalized() : axis.unitOrthogonal();
 }

@@ -25,7 +25,7 @@ struct ModelAspect {
   Eigen::Vector3d centre_world;     ///< Centre of the box around its points, metres.
   Eigen::Vector3d to_viewer_world;  ///< Unit: from the centre to where it was seen from.
   Eigen::Vector3d up_world;         ///< Unit: upwards in most of the scan's renderings.
-  bool one_sided = true;            ///< Whether it was looked at from one side only.
+  bool one_sided = true;            ///< It was looked at from one side only.
 };
 
 /// `points_world` on the surface, at least one; `T_world_camera` from where it was scanned. Without
@@ -39,6 +39,7 @@ RigidTransform FrameAll(std::span<const Eigen::Vector3f> points_world,
                         const Eigen::Vector3d& to_viewer_world, const Eigen::Vector3d& up_world,
                         const CameraModel& camera);
 
+/// Says how many views there are and which part of the circle they take.
 struct OrbitOptions {
   int count = 12;
   double arc_deg = 360.0;  ///< 360: all around, evenly; less: to both sides of the aspect.

@@ -16,6 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kModelName = "model.iso";
+// Our own files nest a few levels deep; a damaged one must not exhaust the stack.
 constexpr int kMaxNesting = 32;
 
 }  // namespace

@@ -12,14 +12,14 @@ namespace isotherm {
 struct ScanOutcome {
   const PipelineCounts& counts;
   const GroundOptions& options;
-  DepthSensorModel depth_sensor{};  ///< Of the rig.
+  DepthSensorModel depth_sensor{};  ///< The rig's depth camera.
   ThermalSensorModel thermal_sensor{};
   bool continued = false;           ///< It went on with a saved model.
   bool can_fuse = false;            ///< The calibration and the camera allow temperatures.
   std::size_t poses = 0;            ///< In `world`.
   std::size_t maps = 1;             ///< Sub-maps that were never joined, with the first.
   std::size_t points = 0;           ///< Points of the surface.
-  std::size_t measured_points = 0;  ///< ... with a temperature.
+  std::size_t measured_points = 0;  ///< Points of the surface with a temperature.
 };
 
 /// Nothing was tracked, or no temperature was assigned although there are thermal frames: with the

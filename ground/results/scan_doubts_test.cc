@@ -91,7 +91,8 @@ TEST_F(ScanDoubtsTest, NoTemperatureNamesTheCause) {
               ElementsAre(AllOf(HasSubstr("0.9 m"), HasSubstr("thermal.keep_bad"))));
 }
 
-/// What is written into stats.json must be there for every value, and in the order of the values.
+/// Names that are written into stats.json must be there for every value, and in the order of the
+/// values.
 template <typename Enum>
 void ExpectNamesInOrder(Enum first) {
   std::string last;

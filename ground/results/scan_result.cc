@@ -135,6 +135,7 @@ Status SaveModels(const ScanModel& scan, const GroundOptions& options,
     const Status saved = SaveSubMap(dir / ModelName(i), scan.atlas.map(i), scan.rig, [&](double) {
       if (progress) progress("model", 0.0);  // A small part of all.
     });
+    // One that fails must not cost the others.
     if (first.ok()) first = saved;
   }
   return first;
@@ -219,6 +220,7 @@ Json DescribeScan(const ScanModel& scan, const GroundOptions& options) {
   json["frames"]["depth"] = DescribeDepth(scan.counts);
   if (const auto sigma = Figures(scan.trajectory.sigmas()))
     json["pose_sigma"] = DescribeSigma(*sigma);
+  // A scan without odometry has no such section, rather than one of zeros.
   if (scan.external_odometry.stream().counts().in > 0)
     json["external_odometry"] = DescribeOdometry(scan.external_odometry);
   json["frames"]["thermal"] = DescribeThermal(scan.counts);
@@ -228,6 +230,8 @@ Json DescribeScan(const ScanModel& scan, const GroundOptions& options) {
   json["volume"] = DescribeVolume(scan);
   json["calibration"] = ToJson(ToProto(scan.rig));
   GroundOptions complete = options;
+  // What the material decided is written out, so that the result can be evaluated by the limits it
+  // was made with.
   *complete.mutable_thermal() = WithAnglesOfMaterial(options.thermal());
   json["configuration"] = ToJson(complete);
   if (!scan.thermal_status.ok()) json["thermal_not_fused_because"] = scan.thermal_status.message();
@@ -239,6 +243,7 @@ Json DescribeProcessor(const ProcessorTimes& used, const Trajectory& trajectory)
   json["total_s"] = used.total_s;
   const std::vector<StampedPose>& poses = trajectory.poses();
   const double data_s = poses.empty() ? 0.0 : ToSeconds(poses.back().time - poses.front().time);
+  // By the scan's own time: below 1 one core would keep up with the cameras.
   if (data_s > 0.0) json["per_second_of_data_s"] = used.total_s / data_s;
   for (const auto& [name, thread_s] : used.by_thread_s) json["by_thread_s"][name] = thread_s;
   return json;
@@ -265,15 +270,19 @@ Result<WrittenScan> WriteScan(
                             interpretation->changes_nothing() ? nullptr : &*interpretation,
                             stats,
                             [&](const ResultSummary& summary) {
+                              // Doubts about the result need the summary, which is there when the
+                              // surface is; stats.json is written after.
                               AddResultDoubts(scan, options, summary, doubts);
                               return doubts;
                             }};
-  // All others can be made again from the model.
+  // The model goes first: all other results can be made again from it.
   const Status saved = SaveModels(scan, options, dir, progress);
   if (progress) progress("results", 0.0);
   const Result<ResultSummary> summary = WriteResults(inputs, dir, pool, progress);
   if (!saved.ok()) return Err(saved);
   if (!summary) return Err(summary.error());
+  // Last, when all was written: an earlier scan's results must not pass for part of this one, and
+  // must not be lost for one that failed.
   RemoveOtherResults(dir, WrittenNames(options.export_(), has_view, scan.atlas.size()));
 
   std::string text = SummaryText(scan, options, delay, *summary, *interpretation);

@@ -21,10 +21,11 @@ Json DescribeStage(const StageStats& stats);
 /// Frames, stages, volume and calibration of a scan as they go into stats.json.
 Json DescribeScan(const ScanModel& scan, const GroundOptions& options);
 
-/// What a scan cost: processor time by thread, and per second of its data, as it goes into
-/// stats.json.
+/// Describes what a scan cost: processor time by thread, and per second of its data, as it goes
+/// into stats.json.
 Json DescribeProcessor(const ProcessorTimes& used, const Trajectory& trajectory);
 
+/// Holds what the user is told about a written scan.
 struct WrittenScan {
   std::string text;  ///< One screen for the user.
   Doubts doubts;     ///< About what came in and what came out; stats.json has them as `warnings`.

@@ -75,6 +75,7 @@ std::string SubMapsText(const Atlas& atlas) {
         fmt::format("drift    {} loops closed, missed by {:.1f} mm at most before it was spread\n",
                     drift.closures, 1e3 * drift.largest_gap_m);
   }
+  // Sub-map 0 is the result; others were never joined to it.
   for (int i = 1; i < atlas.size(); ++i) {
     text += fmt::format(
         "         {} frames were fused after a loss, nowhere near the rest: model-{}.iso\n",

@@ -37,6 +37,7 @@ void Distributor::OnRig(const RigDescription& rig) {
   recording_behind_ = false;
   board_.recording.Set(start_.recording);
   SendMark(start_);
+  // Frames may overtake the description of their rig on the link.
   std::deque<SessionItem> early = std::exchange(early_, {});
   for (SessionItem& item : early) {
     if (SessionOf(item) == session_) Send(std::move(item));
@@ -58,6 +59,9 @@ void Distributor::OnItem(SessionItem item) {
     Send(std::move(item));
     return;
   }
+  // Frames kept until their rig is described: nearly two seconds at 30 and 40 Hz. More: up to some
+  // 100 MB of frames that may belong to no rig; fewer: the beginning of a scan is lost when its
+  // description comes late. Not tuned.
   constexpr std::size_t kMaxEarly = 128;
   if (early_.size() == kMaxEarly) {
     early_.pop_front();
@@ -79,11 +83,14 @@ void Distributor::OnSessionEnd(const SessionCounters& counters) {
 void Distributor::Send(SessionItem item) {
   if (auto* depth = std::get_if<ReceivedDepth>(&item)) depth->queued = clock_.Now();
   if (auto* thermal = std::get_if<ReceivedThermal>(&item)) thermal->queued = clock_.Now();
+  // Recorded before it may wait for the reconstruction: a slow reconstruction must not cost the
+  // recording anything.
   Record(item);
   Reconstruct(std::move(item));
 }
 
 void Distributor::SendMark(const SessionItem& mark) {
+  // Marks are never left out: without the beginning or end of a session the rest has no place.
   recording_.Push(mark);
   Reconstruct(mark);
 }

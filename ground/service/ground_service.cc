@@ -44,6 +44,8 @@ constexpr RecordingQueue::Limits kRecordingLimits{.items = 450, .bytes = 128U <<
 /// A disk may be slow for longer than the service manager lets the service be silent, but not for
 /// ever.
 Nanoseconds DiskLimit() {
+  // Twelve times the watchdog's interval: a minute with the shipped unit's. A laptop's disk may
+  // spin up or a stick collect for seconds; longer is a fault. Not tuned.
   constexpr int kIntervals = 12;
   constexpr std::chrono::microseconds kUnwatched = 5s;
   return kIntervals * Nanoseconds(WatchdogInterval().value_or(kUnwatched));
@@ -156,6 +158,7 @@ int GroundService::Run() {
   ReconstructionLoop reconstruction(options_, clock_, *subscriber_, to_recording_, results, board_,
                                     health_.reconstruction);
   {
+    // Consumers are started before the producers, and stopped behind them below.
     Worker result_thread("results", [&](const std::stop_token& stop) { results.Run(stop); });
     Worker recording_thread(
         "record", [&](const std::stop_token& stop) { recording.Run(to_recording_, stop); });
@@ -176,11 +179,14 @@ int GroundService::Run() {
     // Reception first; then each consumer empties its queue and closes its files.
     receive_thread.RequestStop();
     WaitForEnd(receive_thread, GroundThread::kReception);
+    // Both consumers at once: each empties its queue, and the recording must not wait for the
+    // model.
     recording_thread.RequestStop();
     reconstruction_thread.RequestStop();
     WaitForEnd(reconstruction_thread, GroundThread::kReconstruction);
     result_thread.RequestStop();
     WaitForEnd(result_thread, GroundThread::kResults);
+    // Last: its file closes while the results are written, and they tell whether it is complete.
     WaitForEnd(recording_thread, GroundThread::kRecording);
   }
   int exit_code = 0;
@@ -192,6 +198,8 @@ int GroundService::Run() {
 }
 
 void GroundService::GuardUntilStopped() {
+  // The status line changes once a second, and a watchdog waits for seconds: five looks a second
+  // are enough, and cost nothing.
   constexpr Nanoseconds kTick = 200ms;
   StatusReporter status(clock_);
   std::mutex mutex;
@@ -214,6 +222,7 @@ void GroundService::FeedWatchdog() {
   }
   reported_problem_ = problem;
   if (problem || now < next_feed_) return;
+  // Without a watchdog nobody waits for the notification.
   constexpr std::chrono::microseconds kUnwatched = 1s;
   next_feed_ = now + WatchdogInterval().value_or(kUnwatched);
   NotifyWatchdog();
@@ -235,6 +244,8 @@ GroundSituation GroundService::Situation() const {
 
 void GroundService::WaitForEnd(Worker& worker, GroundThread thread) {
   constexpr Nanoseconds kTick = 50ms;
+  // The service manager kills after its time to stop; it is asked for more as long as what is
+  // waited for goes on.
   constexpr std::chrono::microseconds kExtension = 10s;
   while (!worker.WaitForEnd(kTick)) {
     if (const auto stuck = health_.StuckBeforeEnd(thread, clock_.SteadyNow())) LeaveBehind(*stuck);

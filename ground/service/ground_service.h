@@ -8,6 +8,7 @@ namespace isotherm {
 
 class StopSignal;
 
+/// Says whether the service is for one scan or for all that come.
 struct ServiceMode {
   bool single_scan =
       false;  ///< Results go straight into live.output_dir; leave when the scan has ended.

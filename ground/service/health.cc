@@ -26,6 +26,7 @@ std::optional<GroundThread> Health::StuckBeforeEnd(GroundThread awaited, SteadyT
   // The longest step of writing results is the surface of a large model. Somebody waits for the
   // end.
   constexpr Nanoseconds kLimit = std::chrono::seconds(30);
+  // One step of the recording writes a message or its last chunk; a disk that takes longer hangs.
   constexpr Nanoseconds kRecordingLimit = std::chrono::milliseconds(1500);
   const auto is_stuck = [&](const ThreadProgress& thread, Nanoseconds limit) {
     return thread.AtItFor(now) > limit;

@@ -54,6 +54,7 @@ std::string RecordingText(const RecordingProgress& recording) {
     text += fmt::format("         the recording has {} files, up to {}\n", recording.files.size(),
                         recording.files.back().string());
   }
+  // Results do not wait for a stuck disk; the recording may still be whole in the end.
   if (!recording.path.empty() && !recording.closed)
     text += "         the recording is not finished: the disk is slow or stuck\n";
   return text;
@@ -102,6 +103,7 @@ void DescribeCounters(const SessionCounters& counters, const RecordingProgress& 
   const auto add_waiting = [&](const char* sensor, const StreamCounters& stream,
                                std::uint64_t recorded, const NotRecordedCounts& left_out) {
     const std::uint64_t settled = recorded + Sum(left_out);
+    // So that received = recorded + not recorded holds in every result.
     if (waits && stream.received > settled)
       link[sensor]["not_recorded_by_reason"]["still_waiting"] = stream.received - settled;
   };

@@ -12,6 +12,7 @@ namespace isotherm {
 namespace {
 
 /// The results of a model (model.iso, cloud and mesh) take about this much per block of 512 voxels.
+/// Only the reserve on the disk depends on it (RecordingLoop keeps half as much again).
 constexpr std::uint64_t kResultBytesPerBlock = 6'000;
 /// Images, trajectory, statistics.
 constexpr std::uint64_t kResultBytesAtLeast = 4U << 20;
@@ -22,6 +23,8 @@ void ReconstructionLoop::Run(SessionQueue& queue, const std::stop_token& stop) {
   stop_ = stop;
   while (std::optional<SessionItem> item = queue.Pop(stop)) {
     progress_.Busy(clock_.SteadyNow());
+    // At a stop the frames that still wait are left out, counted; marks are handled, so that the
+    // scan's end is.
     if (stop.stop_requested() && IsFrame(*item)) {
       ++unprocessed_;
     } else {
@@ -76,10 +79,13 @@ void ReconstructionLoop::HandleFrame(const Frame& frame) {
   if (!feedback) return;
   SendFeedback(*feedback);
   EstimateResults();
+  // Behind the message: the operator gets what is known now, the next view may come a message
+  // later.
   scan_->ThinkAhead();
 }
 
 void ReconstructionLoop::EstimateResults() {
+  // The results of ended scans need their room until they are written.
   if (board_.scans_being_written == 0) ended_result_bytes_ = 0;
   const auto blocks = static_cast<std::uint64_t>(scan_->model().tsdf().block_count());
   result_bytes_ = kResultBytesAtLeast + kResultBytesPerBlock * blocks;

@@ -14,12 +14,16 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// Frames that have stopped coming must not wait in an open chunk.
+// Frames that have stopped coming must not wait in an open chunk: half a second is the most that a
+// crash may cost anyway (RecordingOptions::flush_interval).
 constexpr Nanoseconds kFlushAfter = 500ms;
+// At 5 MB/s a recording grows by 1 MB between two looks, far less than the reserve.
 constexpr Nanoseconds kLookInterval = 200ms;
 // An open chunk, the index and the footer take no more.
 constexpr std::uint64_t kClosingBytes = 5U << 20;
-// Kept free in any case: this much, but of a small disk no more than this part.
+// Kept free in any case: this much, but of a small disk no more than a tenth. The results of a
+// large scan take tens of megabytes. Smaller: a scan's results may not fit; larger: recordings end
+// early.
 constexpr std::uint64_t kMaxReserveBytes = 100U << 20;
 constexpr std::uint64_t kReservePart = 10;
 constexpr double kMegabyte = 1 << 20;
@@ -119,11 +123,15 @@ void RecordingLoop::LookAtDisk() {
   start_.recording->Update([&](auto& progress) {
     progress.free_bytes = space->available;
     progress.reserve_bytes = reserve;
+    // The first seconds hold metadata and half-filled chunks: their rate would tell a wrong time
+    // until the disk is full.
     constexpr double kTooShort_s = 3.0;
     if (elapsed_s > kTooShort_s)
       progress.bytes_per_s = static_cast<double>(progress.bytes) / elapsed_s;
   });
   const bool before =
+      // Twice the reserve must be free before it goes on, so that it does not begin and end at the
+      // limit.
       std::exchange(nearly_full_, space->available <= (nearly_full_ ? 2 * reserve : reserve));
   if (nearly_full_ && !before) StopForReserve(space->available, reserve);
   if (before && !nearly_full_) {

@@ -69,7 +69,7 @@ class RecordingLoop {
   const LookAtSpace look_at_space_;
   SessionStart start_;
   std::unique_ptr<ScanRecorder> recorder_;
-  bool nearly_full_ = false;  ///< What is free is for the results.
+  bool nearly_full_ = false;  ///< The space that is free is for the results.
   bool flushed_ = true;
   SteadyTime opened_{};
   SteadyTime next_look_{};

@@ -20,7 +20,7 @@ using testing::kScanStart;
 constexpr std::uint64_t kSession = 42;
 /// Longer than the loop waits between two looks at the disk.
 constexpr Nanoseconds kNextLook = 250ms;
-/// What the loop is told of the disk, whatever this computer's is like.
+/// The loop is told this of the disk, whatever this computer's is like.
 constexpr std::uint64_t kFreeBytes = 10ULL << 30;
 
 /// A loop on a thread of its own that writes to a real disk, and is told how much is free there.

@@ -16,6 +16,7 @@ namespace isotherm {
 /// and memory is bounded by items and by bytes. Thread-safe.
 class RecordingQueue {
  public:
+  /// Bounds the queue by whichever is reached first.
   struct Limits {
     std::size_t items = 1;
     std::size_t bytes = 1;
@@ -28,6 +29,7 @@ class RecordingQueue {
   /// Takes what is rare and must not be lost, beginnings and ends of sessions, in any case.
   void Push(SessionItem item);
 
+  /// Says what a wait ended with.
   enum class Outcome { kItem, kTimeout, kEnd };
   /// Waits for an item up to `timeout`. kEnd: stop was requested and nothing is left.
   Outcome Pop(std::chrono::nanoseconds timeout, const std::stop_token& stop,
@@ -43,7 +45,7 @@ class RecordingQueue {
   /// With their size in bytes.
   std::deque<std::pair<SessionItem, std::size_t>> items_ GUARDED_BY(mutex_);
   std::size_t bytes_ GUARDED_BY(mutex_) = 0;
-  /// Something was taken since somebody waited in vain.
+  /// Something was taken since a writer last gave up waiting.
   bool moved_ GUARDED_BY(mutex_) = true;
 };
 

@@ -18,7 +18,7 @@ namespace isotherm {
 /// Says why a received frame is not in the recording.
 enum class NotRecorded : std::uint8_t {
   kDiskTooSlow,     ///< The queue to the disk was full.
-  kDiskNearlyFull,  ///< What is left is for the results.
+  kDiskNearlyFull,  ///< The space that is left is for the results.
   kDiskFailed,      ///< Writing failed, or the disk was waited for after that.
   kUnwritable,      ///< The frame itself is wrong.
   kCount

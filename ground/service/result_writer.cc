@@ -95,6 +95,7 @@ void ResultWriter::Enqueue(EndedScan ended, const std::stop_token& stop) {
 bool ResultWriter::WaitForRoom(MutexLock& lock, Nanoseconds patience, const std::stop_token& stop) {
   const auto has_room = [this]() REQUIRES(mutex_) { return !waiting_; };
   if (changed_.wait_for(lock, stop, patience, has_room)) return true;
+  // At a stop there is time: the scan before is waited for, and this one's results are not lost.
   if (!stop.stop_requested()) return false;
   changed_.wait(lock, has_room);
   return true;
@@ -142,6 +143,7 @@ void ResultWriter::FinishScan(EndedScan ended) {
   scan.FinishFrames([&](double) { go_on(); });
   const DelayReport delay = scan.CheckDelay([&] { go_on(); });
   go_on();
+  // The summary says how much the recording has; its last chunk is being written meanwhile.
   const RecordingProgress recording = ended.start.recording->WaitUntilClosed(kClosingPatience);
   const SessionCounters counters = counters_(scan.session());
   const Json stats = DescribeEnd(scan, options_, counters, recording, ended.unprocessed);
@@ -171,6 +173,7 @@ Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayR
   const Result<std::string> first = write(folder);
   if (first) return first;
   status_ = first.error();
+  // An hour's scan is worth a second try on another disk.
   const fs::path second_folder = SecondFolder(folder);
   LOG(Ground, Error) << "the results of this scan cannot be written: " << first.error().message()
                      << "; trying " << second_folder.string();

@@ -54,6 +54,8 @@ class ResultWriter {
   const Status& status() const { return status_.ok() ? given_up_ : status_; }
 
  private:
+  /// An edge that waits for the ground can wait for the results of the scan before; a live one
+  /// sends frames meanwhile, so that it is not waited for at all.
   static constexpr Nanoseconds kReplayPatience = std::chrono::seconds(10);
 
   /// False if there is still no room after `patience`.
@@ -77,7 +79,7 @@ class ResultWriter {
   std::condition_variable_any changed_;
   std::optional<EndedScan> waiting_ GUARDED_BY(mutex_);
   Status status_;
-  Status given_up_;  ///< Of the reconstruction thread.
+  Status given_up_;  ///< The reconstruction thread's; the result thread never reads it.
 };
 
 }  // namespace isotherm

@@ -14,7 +14,9 @@
 namespace isotherm {
 namespace {
 
-// A disk that takes this much more is well again; one that fails sooner is still the same failure.
+// A disk that takes this much more is well again; one that fails sooner is still the same failure,
+// which is not reported again. The writer's chunks are synced every half second, so that several
+// have reached the disk by then.
 constexpr Nanoseconds kProven = std::chrono::seconds(3);
 
 ScanRecorder::CreateWriter OnDisk(const GroundOptions& options) {
@@ -60,6 +62,7 @@ void ScanRecorder::Tend() {
 }
 
 Status ScanRecorder::BeginFile() {
+  // A file that exists is never written over: it may be the only record of another scan.
   const int part = IsDevice(path_) ? 1 : NextFreePart(path_, part_);
   const std::filesystem::path file = PartPath(path_, part);
   Result<std::unique_ptr<RecordingWriter>> writer = create_(file);
@@ -72,6 +75,8 @@ Status ScanRecorder::BeginFile() {
   part_ = part;
   files_.push_back(file);
   begun_at_ = clock_.SteadyNow();
+  // Each file tells the clock's steps from its own beginning, so that it can be read without the
+  // others.
   step_sum_s_ = 0.0;
   return OkStatus();
 }
@@ -100,10 +105,13 @@ void ScanRecorder::Write(const RigDescription& rig) {
 template <typename Frame>
 void ScanRecorder::WriteFrame(Sensor sensor, const Frame& frame) {
   const auto stream = static_cast<std::size_t>(sensor);
+  // Counted before anything can fail: offered = recorded + lost + unwritable holds whatever happens
+  // below.
   ++offered_[stream];
   Tend();
   if (!is_recording()) return;
   const Status written = writer_->Write(*frame.encoded, frame.arrival);
+  // Such a frame fits into no file on any disk (too large, for instance); the file itself is good.
   if (!written.ok() && !EndsFile(written)) ++unwritable_[stream];
   Note(written);
 }
@@ -125,6 +133,8 @@ void ScanRecorder::Write(const SessionClock& clock) {
     return std::tuple(counters.rig.synchronised, counters.unsynchronised, counters.rig.steps,
                       counters.alarm, counters.offset.has_value());
   };
+  // Only changes of kind are written: offsets change with every status, and metadata is not a
+  // stream.
   if (is_recording() && kind(clock) != kind(before)) Note(WriteClockMetadata());
 }
 
@@ -163,6 +173,7 @@ void ScanRecorder::Note(const Status& status) {
 
 void ScanRecorder::Fail(const Status& status) {
   end_ = disk_error_ = status;
+  // The cause is known already; closing after it mostly fails for the same reason.
   if (is_recording()) static_cast<void>(CloseFile());
   retry_at_ = clock_.SteadyNow() + back_off_.Next();
   if (!std::exchange(failing_, true)) {
@@ -173,6 +184,8 @@ void ScanRecorder::Fail(const Status& status) {
 
 void ScanRecorder::NoteWorks() {
   if (!failing_) {
+    // Remembered while all is well, so that the message at the end of a failure says what that
+    // failure cost.
     lost_before_ = Lost();
     return;
   }
@@ -192,6 +205,7 @@ Status ScanRecorder::CloseFile() {
   closed_.depth_frames += stats.depth_frames;
   closed_.thermal_frames += stats.thermal_frames;
   closed_.bytes += stats.bytes;
+  // Each attempt on a full disk would leave an empty file behind, and use up a part number.
   if (EndsFile(closed) && RemoveIfWithoutFrames(files_.back(), stats)) {
     files_.pop_back();
     --part_;

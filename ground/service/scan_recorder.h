@@ -55,7 +55,7 @@ class ScanRecorder {
   void Tend();
   void Write(const ReceivedDepth& depth) { WriteFrame(Sensor::kDepth, depth); }
   void Write(const ReceivedThermal& thermal) { WriteFrame(Sensor::kThermal, thermal); }
-  /// What is known of the same rig from here on, in this file and in those that follow.
+  /// Writes what is known of the same rig from here on, in this file and in those that follow.
   void Write(const RigDescription& rig);
   void Write(const Feedback& feedback);
   void Write(const ExternalOdometrySample& sample);

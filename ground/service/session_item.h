@@ -19,7 +19,7 @@ struct SessionStart {
   std::shared_ptr<RecordingTracker> recording;
 };
 
-/// What the line from the link to reconstruction and recording carries. A RigDescription describes
+/// An item on the line from the link to reconstruction and recording. A RigDescription describes
 /// the session's rig anew: a camera came late.
 using SessionItem = std::variant<SessionStart, RigDescription, ReceivedDepth, ReceivedThermal,
                                  ExternalOdometrySample, SessionCounters, Feedback, SessionClock>;

@@ -47,6 +47,7 @@ std::optional<double> RigDisk_gb(const GroundSituation& situation) {
 
 /// Adds what the operator should do something about.
 void AddTroubles(const GroundSituation& situation, std::vector<std::string>& parts) {
+  // Shorter stalls are over before anybody has looked. Not tuned.
   constexpr Nanoseconds kSlow = std::chrono::seconds(2);
   if (situation.behind.thermal_frames > 0)
     parts.push_back(fmt::format("BEHIND {}", situation.behind.thermal_frames));

@@ -22,7 +22,7 @@ struct GroundSituation {
   Nanoseconds recording_at_it{0};  ///< How long the disk has been at one piece of work.
   int scans_being_written = 0;
   int scans_given_up = 0;              ///< Their results are lost.
-  std::optional<std::string> problem;  ///< What is stuck.
+  std::optional<std::string> problem;  ///< The part that is stuck.
 };
 
 /// A part per fact, the most important first: what to do, what is wrong, how the scan is, what has
@@ -48,6 +48,8 @@ class StatusReporter {
   void Report(const GroundSituation& situation);
 
  private:
+  /// The line is for people who watch, the log for those who look later: an hour of log is 360
+  /// lines.
   static constexpr Nanoseconds kStatusInterval = std::chrono::seconds(1);
   static constexpr Nanoseconds kLogInterval = std::chrono::seconds(10);
 

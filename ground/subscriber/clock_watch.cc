@@ -36,6 +36,8 @@ void ClockWatch::Update(const EdgeStatus& status, const std::optional<ClockOffse
 void ClockWatch::Assess(const std::optional<ClockOffset>& offset) {
   if (!offset) return;
   session_clock_.offset = offset;
+  // The alarm begins when the clocks differ for certain, and ends when they may agree by the best
+  // guess: a slow link, whose bounds are wide, raises none.
   const double certain_s = std::max(0.0, std::abs(offset->offset_s) - offset->uncertainty_s);
   session_clock_.largest_offset_s = std::fmax(session_clock_.largest_offset_s, certain_s);
   if (max_offset_ == Nanoseconds(0)) return;

@@ -26,6 +26,7 @@ class ClockWatch {
   /// The clock in the session of the newest status.
   const SessionClock& clock() const { return session_clock_; }
 
+  /// While the clock stays wrong, the alarm is repeated, but must not fill the log.
   static constexpr Nanoseconds kRepeat = std::chrono::minutes(1);
 
  private:

@@ -18,6 +18,7 @@ namespace isotherm {
 template <typename T>
 class FrameSequencer {
  public:
+  /// Says how an arriving frame lies to those before it.
   enum class ArrivalOrder {
     kInOrder,    ///< Goes (or went) into the line.
     kLate,       ///< New, but the line has passed its place.
@@ -72,6 +73,7 @@ class FrameSequencer {
   const ReceiptTracker& receipts() const { return receipts_; }
 
  private:
+  /// Holds a frame that came before an earlier one.
   struct Waiting {
     T item;
     SteadyTime arrival;

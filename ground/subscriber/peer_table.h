@@ -14,6 +14,8 @@ namespace isotherm {
 /// be asked about, and its last samples may still come. Bounded. Thread-compatible.
 class PeerTable {
  public:
+  /// A rig has a writer per topic that it publishes. Beyond, writers that have left are forgotten,
+  /// and if none has, new ones are not known.
   static constexpr std::size_t kMaxWriters = 512;
 
   /// Returns the process of `writer`, which is the Received::writer of a sample of `reader`; 0 if
@@ -39,6 +41,7 @@ class PeerTable {
   }
 
  private:
+  /// Holds the process that a writer belongs to.
   struct Entry {
     PeerHandle peer = 0;
     std::function<bool()> is_there;

@@ -13,6 +13,7 @@ struct ReceivedDepth {
   CaptureTime arrival;   ///< Ground wall clock.
   CaptureTime queued{};  ///< When it was handed to the reconstruction, by the same clock.
 };
+/// The same for a thermal frame.
 struct ReceivedThermal {
   ThermalFramePtr frame;
   std::shared_ptr<const EncodedThermalFrame> encoded;

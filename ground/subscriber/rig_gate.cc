@@ -6,8 +6,9 @@
 namespace isotherm {
 namespace {
 
-constexpr std::size_t kMaxRemembered = 32;  // Sessions that must not come back.
-constexpr std::size_t kSampleBytes = 512;   // Of a sample without its payload, about.
+constexpr std::size_t kMaxRemembered =
+    32;  // Sessions that must not come back; each is one start of a scan.
+constexpr std::size_t kSampleBytes = 512;  // About the size of a sample without its payload.
 
 template <typename Message>
 bool Is(const RigSample& sample) {
@@ -52,9 +53,12 @@ void RigGate::Add(PeerHandle peer, RigSample&& sample, SteadyTime now) {
   Process* const process = peer == 0 ? nullptr : FindOrCreate(peer, now);
   if (process == nullptr) return refuse_(sample, RefusalCause::kOtherWriter);
   process->heard = now;
+  // The first process heard holds the place until somebody announces a session: then the place is
+  // free (OpenSession).
   if (owner_ == 0) owner_ = peer;
   // A process that announces a session comes before one that only sent something.
   if (peer != owner_ && Is<RigDescription>(sample)) {
+    // Only the newest description can still become the session's; the older one is counted.
     if (process->rig) refuse_(*process->rig, RefusalCause::kOtherWriter);
     process->rig = std::move(sample);
     if ((!announced_ || closed_) && OpenSession(*process)) MakeOwner(*process, now);
@@ -72,6 +76,7 @@ void RigGate::AddOwn(Process& owner, RigSample&& sample, SteadyTime now) {
     owner.rig = sample;
     BeginSession(session);
     pass_(std::move(sample));
+    // The description goes first, so that whoever gets frames knows their cameras.
     return Release(owner);
   }
   if (announced_ && session == session_) return pass_(std::move(sample));
@@ -95,6 +100,7 @@ void RigGate::AddOther(Process& process, RigSample&& sample, SteadyTime now) {
 
 void RigGate::BeginSession(std::uint64_t session) {
   if (announced_ && session == session_) return;
+  // Frames of the session before may still be on their way; they must not reopen it.
   if (session_ != 0 && session_ != session) over_.push_back(session_);
   if (over_.size() > kMaxRemembered) over_.pop_front();
   announced_ = true;
@@ -138,6 +144,7 @@ bool RigGate::MayHold(const Process& process) const {
 void RigGate::Hold(Process& process, RigSample&& sample, SteadyTime now) {
   process.held_bytes += BytesOf(sample);
   process.held.push_back({std::move(sample), now});
+  // The oldest go first: they would be too late for the reconstruction anyway.
   while (process.held_bytes > kMaxHeldBytes || process.held.size() > kMaxHeldSamples) {
     ++overflowed_;
     process.held_bytes -= BytesOf(process.held.front().sample);
@@ -156,11 +163,13 @@ void RigGate::Drop(Process& process, RefusalCause cause) {
 void RigGate::MakeOwner(Process& process, SteadyTime now) {
   if (Process* before = Find(owner_)) {
     Drop(*before, RefusalCause::kUnannounced);
+    // The one before is a candidate like any other now, and may come back.
     before->since = now;
     before->refused = false;
   }
   owner_ = process.peer;
   process.refused = false;
+  // So that AddOwn begins the session anew, even if both processes name the same one.
   announced_ = false;
   AddOwn(process, RigSample(*process.rig), now);
 }
@@ -179,6 +188,7 @@ bool RigGate::IsFree(const Process& candidate, SteadyTime now, const IsPresent& 
 }
 
 void RigGate::Update(SteadyTime now, const IsPresent& is_present) {
+  // The owner stays in the list when it is gone: its place is not free before kTrial.
   std::erase_if(processes_, [&](Process& process) {
     if (process.peer == owner_ || is_present(process.peer)) return false;
     Drop(process, RefusalCause::kOtherWriter);
@@ -194,6 +204,8 @@ void RigGate::Update(SteadyTime now, const IsPresent& is_present) {
   for (Process& process : processes_) {
     if (process.peer == owner_) continue;
     if (OpenSession(process) && IsFree(process, now, is_present)) return MakeOwner(process, now);
+    // The owner was heard after the other had begun to ask: both exist, and the other is not the
+    // rig.
     if (owner->heard < process.since + kTrial) continue;
     process.refused = true;
     Drop(process, RefusalCause::kOtherWriter);

@@ -40,14 +40,26 @@ struct RigSample {
 /// with a cause. Pure: time enters through arguments. Thread-compatible.
 class RigGate {
  public:
+  /// Time in which the owner can show that it is still there. The middleware notices within a
+  /// second that a process was killed, and an outage of the network takes about as long to be told
+  /// from that. Shorter: a stranger becomes the rig during an outage; longer: an edge that was
+  /// started again waits longer, and more of its frames are kept.
   static constexpr Nanoseconds kTrial = std::chrono::seconds(1);
+  /// An owner that is there and silent for this long has lost its place: twice the interval of its
+  /// statuses (1 Hz), so that one lost status changes nothing.
   static constexpr Nanoseconds kSilence = std::chrono::seconds(2);
+  /// Samples wait this long for the description of their session, which the middleware repeats for
+  /// late joiners: it comes behind them only after an outage. Not tuned.
   static constexpr Nanoseconds kPatience = std::chrono::seconds(5);
   static constexpr std::size_t kMaxHeldBytes = 64U << 20U;  ///< For one process.
+  /// Samples held for one process: two seconds of frames at 30 and 40 Hz and of odometry at 200 Hz,
+  /// twice what gathers within kTrial.
   static constexpr std::size_t kMaxHeldSamples = 512;
+  /// Processes that are followed at all. More than a network of rigs has; a program that joins
+  /// again and again under new names cannot fill the memory.
   static constexpr std::size_t kMaxProcesses = 16;
   /// Processes beside the owner whose samples are kept: an edge may be killed twice before it is
-  /// decided that the first one is gone.
+  /// decided that the first one is gone. Each one costs up to kMaxHeldBytes.
   static constexpr std::ptrdiff_t kMaxOthersHeld = 2;
 
   using Pass = std::function<void(RigSample&&)>;
@@ -77,10 +89,12 @@ class RigGate {
   std::uint64_t overflowed() const { return overflowed_; }
 
  private:
+  /// Holds a sample of a process that has not been decided on.
   struct Held {
     RigSample sample;
     SteadyTime time;
   };
+  /// Holds a process that speaks under the followed rig's name.
   struct Process {
     PeerHandle peer = 0;
     SteadyTime since;                   ///< When it began to ask for the owner's place.

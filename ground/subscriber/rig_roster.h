@@ -14,6 +14,7 @@ namespace isotherm {
 /// Knows which rigs are there, by their hellos. Bounded. Thread-compatible.
 class RigRoster {
  public:
+  /// Further rigs are not named: whoever floods the domain must not fill memory.
   static constexpr std::size_t kMaxRigs = 32;
 
   void Add(PeerHandle peer, const std::string& edge_id, const std::string& host);
@@ -27,6 +28,7 @@ class RigRoster {
   std::string HostOf(PeerHandle peer) const;
 
  private:
+  /// Names a rig that is there.
   struct Rig {
     std::string edge_id;
     std::string host;
@@ -42,6 +44,8 @@ std::string OtherRigsText(const std::string& followed, const std::vector<std::st
 /// appearing. Thread-compatible.
 class OtherRigsNotice {
  public:
+  /// Twice the middleware's lease (qos.h), within which rigs that are there have been discovered.
+  /// Not tuned.
   static constexpr Nanoseconds kPatience = std::chrono::seconds(2);
 
   /// True once when the rig has been missing, and another one there, for kPatience.

@@ -39,10 +39,11 @@ struct SessionClock {
   std::uint64_t alarms = 0;
 };
 
+/// Counts what a session delivered, for results and the console.
 struct SessionCounters {
   std::uint64_t session = 0;
-  bool ended = false;   ///< The edge has said its final counts.
-  bool closed = false;  ///< ... and everything has arrived or was given up.
+  bool ended = false;   ///< The edge has sent its final counts.
+  bool closed = false;  ///< The edge has, and everything has arrived or was given up.
   StreamCounters depth;
   StreamCounters thermal;
   std::uint64_t refused_samples = 0;  ///< Samples of all topics, since this process runs.

@@ -12,6 +12,8 @@ namespace isotherm {
 /// Thread-compatible.
 class SessionHistory {
  public:
+  /// The counters of a scan are read when its results are written, while later scans may already
+  /// run. Not tuned.
   static constexpr std::size_t kMaxSessions = 8;
 
   /// Keeps `counters` in place of what was known of their session. Samples are refused before it is

@@ -6,6 +6,8 @@
 namespace isotherm {
 namespace {
 
+/// Sessions that are followed at once: the present one, the one before until it is closed, and
+/// edges that were started again in between.
 constexpr std::size_t kMaxEntries = 8;
 
 /// `published` is what the edge said, `final` whether it is its last word. Until then holes may be
@@ -96,6 +98,7 @@ std::optional<std::uint64_t> SessionTracker::oldest_open() const {
 std::optional<SteadyTime> SessionTracker::deadline() const {
   const auto entry = std::ranges::find(entries_, false, &Entry::closed);
   if (entry == entries_.end()) return std::nullopt;
+  // An edge that was killed never says that its session has ended; the next session says it.
   const bool superseded = &*entry != &entries_.back();
   if (!entry->ended && !superseded) return std::nullopt;
   return entry->last_activity + grace_;

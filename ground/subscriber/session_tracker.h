@@ -45,6 +45,7 @@ class SessionTracker {
   std::optional<SteadyTime> deadline() const;
 
  private:
+  /// Holds the newest that the edge said about a session.
   struct Entry {
     std::uint64_t session = 0;
     std::uint64_t depth_published = 0;

@@ -40,6 +40,7 @@ ReceivedThermal Unpacked(EncodedThermalFrame&& encoded, Image<std::uint16_t>&& p
   frame->nuc_source = encoded.nuc_source;
   frame->seconds_since_nuc = encoded.seconds_since_nuc;
   frame->housekeeping = encoded.housekeeping;
+  // Counts are no temperatures, whatever the edge says of them.
   frame->valid = encoded.valid && encoded.image.encoding != Encoding::kCounts16;
   return {.frame = std::move(frame),
           .encoded = std::make_shared<const EncodedThermalFrame>(std::move(encoded)),
@@ -63,6 +64,7 @@ template <typename ReceivedFrame>
 bool StreamReceiver<ReceivedFrame>::IsWanted(const FrameHeader& header) {
   if (!IsCurrent(header.session)) {
     const bool is_new = std::ranges::find(over_, header.session) == over_.end();
+    // A late frame of a session that was left must not end the one that has followed it.
     if (!is_new) Refuse(RefusalCause::kOtherSession, header);
     return is_new;
   }
@@ -75,6 +77,8 @@ template <typename ReceivedFrame>
 bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, SteadyTime now) {
   const FrameHeader header = encoded.header;
   if (!IsWanted(header)) return false;
+  // Unpacked before it is known whether the frame can follow: one that cannot be unpacked must
+  // neither begin a session nor count as one of those that confirm a jump.
   Result<Image<std::uint16_t>> pixels = PixelsOf(encoded);
   if (!pixels) {
     Refuse(RefusalCause::kUndecodable, header);
@@ -88,6 +92,8 @@ bool StreamReceiver<ReceivedFrame>::Add(Encoded&& encoded, CaptureTime arrival, 
       return AddPending(std::move(item), mark, *cause);
     }
   }
+  // A frame that follows those before proves the pending ones wrong: they said that the stream had
+  // jumped away.
   RefusePending();
   Accept(std::move(item), mark);
   return true;
@@ -97,6 +103,7 @@ template <typename ReceivedFrame>
 void StreamReceiver<ReceivedFrame>::BeginSession(const FrameHeader& header) {
   DeliverAll();
   if (newest_) {
+    // The old session's tally is still asked for, until its end is reported.
     previous_ = tally(tally_.session);
     refused_before_ = refusals_->counts();
     over_.push_back(tally_.session);
@@ -112,6 +119,7 @@ void StreamReceiver<ReceivedFrame>::BeginSession(const FrameHeader& header) {
 
 template <typename ReceivedFrame>
 void StreamReceiver<ReceivedFrame>::Accept(ReceivedFrame&& item, const FrameMark& mark) {
+  // A frame that fills a hole is not the newest: later ones are compared with the highest number.
   if (!newest_ || mark.number > newest_->number) newest_ = mark;
   if (sequencer_->Add(mark.number, std::move(item), mark.arrival) != ArrivalOrder::kLate) return;
   ++tally_.late;
@@ -121,6 +129,8 @@ void StreamReceiver<ReceivedFrame>::Accept(ReceivedFrame&& item, const FrameMark
 template <typename ReceivedFrame>
 bool StreamReceiver<ReceivedFrame>::AddPending(ReceivedFrame&& item, const FrameMark& mark,
                                                RefusalCause cause) {
+  // Of a replay one more frame is enough: recordings have gaps where frames were dropped, and
+  // nothing else explains two frames that agree with the recording's own times.
   if (PendingFollowsGap() && MayFollowGap(pending_.back().mark, mark, item.arrival)) {
     AcceptPending();
     if (!CheckFollows(*newest_, mark)) {
@@ -129,6 +139,7 @@ bool StreamReceiver<ReceivedFrame>::AddPending(ReceivedFrame&& item, const Frame
     }
   } else if (!pending_.empty()) {
     const FrameMark& last = pending_.back().mark;
+    // Pending frames must agree among themselves; a frame that does not begins the count anew.
     if (mark.number <= last.number || CheckFollows(last, mark)) RefusePending();
   }
   pending_.push_back({std::move(item), mark, cause});
@@ -159,6 +170,8 @@ void StreamReceiver<ReceivedFrame>::AcceptPending() {
                              << " s; it goes on there: look at the clocks of rig and camera";
   }
   Flush();
+  // Numbers before the jump will not come any more: without this the sequencer would wait for each
+  // of them, or call the new ones late.
   sequencer_->Resync(first.number);
   newest_.reset();
   for (Pending& next : accepted) Accept(std::move(next.item), next.mark);
@@ -166,6 +179,8 @@ void StreamReceiver<ReceivedFrame>::AcceptPending() {
 
 template <typename ReceivedFrame>
 void StreamReceiver<ReceivedFrame>::SettlePending() {
+  // Nothing will come that could contradict them, and a gap is the likelier explanation of what a
+  // recording holds.
   if (PendingFollowsGap()) return AcceptPending();
   RefusePending();
 }
@@ -187,6 +202,7 @@ StreamTally StreamReceiver<ReceivedFrame>::tally(std::uint64_t session) const {
   tally.next = sequencer_->receipts().next();
   tally.received = sequencer_->receipts().received();
   tally.refused = refusals_->counts();
+  // The counter runs over all sessions; the tally is of this one.
   for (std::size_t i = 0; i < tally.refused.size(); ++i) tally.refused[i] -= refused_before_[i];
   return tally;
 }
@@ -203,6 +219,7 @@ StreamReceipt StreamReceiver<ReceivedFrame>::receipt(std::uint64_t session) cons
 
 template <typename ReceivedFrame>
 void StreamReceiver<ReceivedFrame>::DeliverDue(SteadyTime now) {
+  // A stream that stops while frames are pending would keep them, and its counts open, for ever.
   if (!pending_.empty() && now >= pending_.front().mark.arrival + kMaxPending) SettlePending();
   while (std::optional<ReceivedFrame> item = sequencer_->Next(now)) {
     if (deliver_) deliver_(std::move(*item));

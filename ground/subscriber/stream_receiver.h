@@ -30,8 +30,12 @@ class StreamReceiver {
  public:
   using Encoded = std::remove_const_t<typename decltype(ReceivedFrame::encoded)::element_type>;
   using Consumer = std::function<void(ReceivedFrame)>;
+  /// Frames in a row that must agree before the stream goes on elsewhere. Fewer: two wild frames
+  /// that happen to fit each other move the stream; more: more of a stream that has really jumped
+  /// is late. Not tuned.
   static constexpr std::size_t kConfirm = 3;
-  /// Frames that are pending for longer are refused.
+  /// Frames that are pending for longer are refused: at 1 Hz and above the frames that decide have
+  /// come by then.
   static constexpr Nanoseconds kMaxPending = std::chrono::seconds(1);
 
   /// `refusals` are this stream's and must outlive the receiver. `deliver` gets frames in order;
@@ -59,7 +63,8 @@ class StreamReceiver {
  private:
   using Sequencer = FrameSequencer<ReceivedFrame>;
   using ArrivalOrder = typename Sequencer::ArrivalOrder;
-  static constexpr std::size_t kMaxRemembered = 32;  ///< Sessions that must not come back.
+  static constexpr std::size_t kMaxRemembered =
+      32;  ///< Sessions that must not come back; each is one start of a scan.
 
   bool IsCurrent(std::uint64_t session) const { return newest_ && session == tally_.session; }
   /// True if a frame with this header would be taken; counts it if not.
@@ -86,6 +91,7 @@ class StreamReceiver {
   const Nanoseconds reorder_window_;
   std::optional<Sequencer> sequencer_;  ///< Never empty; a new one for each session.
   std::optional<FrameMark> newest_;     ///< The newest of the session's frames that were taken.
+  /// Holds a frame that cannot follow the newest one, until others that follow it confirm it.
   struct Pending {
     ReceivedFrame item;
     FrameMark mark;

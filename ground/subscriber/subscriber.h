@@ -40,6 +40,7 @@ struct SubscriberHandlers {
   std::function<void(const SessionCounters&)> session_end;
 };
 
+/// Counts what the subscriber received and refused.
 struct SubscriberStats {
   SessionCounters counters;      ///< The newest session's.
   std::uint64_t refused = 0;     ///< All causes.

@@ -7,6 +7,8 @@
 namespace isotherm {
 namespace {
 
+/// A missing frame holds up the whole line for this long: what comes later is better given up. Not
+/// tuned.
 constexpr Nanoseconds kMaxReorderWindow = std::chrono::milliseconds(200);
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 namespace isotherm {
 
+/// Says whom a ground follows and how long it waits for what.
 struct SubscriberOptions {
   std::string edge_id = "edge";  ///< The rig to follow; empty follows the first one seen.
   std::string ground_id = "ground";

@@ -16,7 +16,9 @@
 namespace isotherm {
 namespace {
 
+/// 480 rows make 30 tasks for a handful of threads. Not tuned.
 constexpr int kRowsPerTask = 16;
+/// The rows of one window are kept in an array of this size; its cost grows with the square.
 constexpr int kMaxBilateralRadius = 8;
 
 /// Pixels to either side for normals, per pyramid level: about the same patch of surface at each.
@@ -28,6 +30,8 @@ Image<std::int32_t> MakeRectification(const CameraModel& camera) {
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const Eigen::Vector2d pixel = ProjectNormalized(camera, Unproject(ideal, {u, v}));
+      // The nearest pixel: depth must not be interpolated across an edge, where it would lie on
+      // neither surface.
       const int x = static_cast<int>(std::lround(pixel.x()));
       const int y = static_cast<int>(std::lround(pixel.y()));
       if (source.Contains(x, y)) source.At(u, v) = y * camera.width + x;
@@ -99,6 +103,8 @@ bool IsFullOfHoles(const Image<float>& depth_m) {
 
 void FillHoles(const Image<float>& depth_m, float max_step_ratio, float noise_at_1m,
                ThreadPool& pool, Image<float>& filled_m) {
+  // Holes of two pixels are filled from what is around them; larger ones are no sampling pattern
+  // but something that gives no return.
   constexpr int kRadius = 2;
   constexpr int kSide = 2 * kRadius + 1;
   const int height = depth_m.height();
@@ -211,6 +217,7 @@ void DepthPreprocessor::ToMetres(const DepthFrame& frame, ThreadPool& pool) {
 const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadPool& pool) {
   CHECK(frame.depth_raw.width() == camera_.width && frame.depth_raw.height() == camera_.height);
   ToMetres(frame, pool);
+  // Only then: filling costs time, and the holes of a sound image are where nothing was seen.
   if (IsFullOfHoles(prepared_.depth_m)) {
     FillHoles(prepared_.depth_m, StepPerPixel(camera_, options_.expert().max_surface_angle_deg()),
               prepared_.noise_at_1m, pool, filled_m_);
@@ -219,6 +226,7 @@ const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadP
   BilateralFilter(prepared_.depth_m, options_.expert(), noise_at_1m_m_, pool, filtered_m_[0]);
   float finer_step = 0.0F;
   for (int level = 0; level < kPyramidLevels; ++level) {
+    // With the step of the level that it is made of: pixels are averaged there.
     if (level > 0) HalveDepth(filtered_m_[level - 1], finer_step, pool, filtered_m_[level]);
     const CameraModel camera = camera_.Downscaled(level);
     const float step = StepPerPixel(camera, options_.expert().max_surface_angle_deg());

@@ -66,7 +66,7 @@ TEST_F(DepthPreprocessorTest, NormalsOfATiltedPlaneAreExactAtEachLevel) {
   }
 }
 
-/// Which pixels of an image have no return.
+/// Says which pixels of an image have no return.
 struct HolePattern {
   const char* name;
   std::function<bool(int x, int y, std::mt19937& random)> is_hole;

@@ -136,8 +136,8 @@ GapCount CountGaps(const float* row, const float* below, int width) {
 
 /// Sums over the depths z around pixels, with r = z / nearest and e = 1 - r, of one surface.
 struct PlaneSums {
-  VF S, Sx, Sy, Sxx, Sxy, Syy;  ///< Of r r, times offsets in pixels.
-  VF T, Tx, Ty;                 ///< Of r e, times offsets.
+  VF S, Sx, Sy, Sxx, Sxy, Syy;  ///< Sums of r r, times offsets in pixels.
+  VF T, Tx, Ty;                 ///< Sums of r e, times offsets.
   VF ee;
 
   HWY_INLINE PlaneSums()

@@ -5,6 +5,7 @@
 
 namespace isotherm {
 
+/// Holds a depth image and how vertices and normals are made of it.
 struct SurfaceMapArgs {
   const Image<float>* depth_m;
   float fx, fy, cx, cy;

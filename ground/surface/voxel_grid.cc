@@ -35,6 +35,7 @@ double TableBytes(const Eigen::Vector3d& blocks) {
 /// About the smallest voxels with which the table fits.
 double FittingVoxel(const VolumeOptions& o, double allowed_bytes) {
   constexpr double kRounding = 1.001;  // When printed with four digits.
+  // Keeps the next guess finite where a table is absurdly large.
   constexpr double kMaxGrowth = 1e6;
   double voxel_m = o.voxel_size_m();
   while (std::isfinite(voxel_m)) {
@@ -46,6 +47,7 @@ double FittingVoxel(const VolumeOptions& o, double allowed_bytes) {
 }
 
 std::string DescribeBytes(double bytes) {
+  // Binary units: the limits that are told are those of memory.
   constexpr double kStep = 1024.0;
   std::string_view unit = "KiB";
   bytes /= kStep;

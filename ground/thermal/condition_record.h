@@ -7,6 +7,9 @@ namespace isotherm {
 
 /// The conditions under which the temperature of a voxel was measured, in 8 bytes.
 struct ConditionRecord {
+  /// Distance, age and count share 32 bits: 14 bits of half millimetres reach 8.2 m, 12 bits of
+  /// quarter seconds 17 minutes, 6 bits 63 measurements. A distance or count beyond is entered as
+  /// the largest, an age as not known.
   static constexpr float kDistanceStep_m = 5e-4F;
   static constexpr float kAgeStep_s = 0.25F;
   static constexpr std::uint32_t kMaxDistance = (1U << 14) - 1;

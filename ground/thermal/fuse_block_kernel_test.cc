@@ -138,7 +138,8 @@ class FuseBlockTest : public ::testing::Test {
     assigned_ += counts.assigned;
     kept_ += counts.considered - counts.assigned;
   }
-  /// What is noted is what the block shows, and no temperature under good conditions is missed.
+  /// The noted measurements are those that the block shows, and no temperature under good
+  /// conditions is missed.
   void CompareMeasurements(const Words& before, const BlockMeasurements& measured,
                            std::int64_t assigned) {
     ASSERT_LE(measured.count, static_cast<int>(kVoxels));

@@ -31,7 +31,7 @@ class MeasurementRecorder {
   const ThermalOptions& options_;
   const Eigen::Matrix3f R_map_thermal_;
   const Eigen::Matrix3f axes_;
-  ConditionRecord frame_;  ///< What all measurements of the frame have in common.
+  ConditionRecord frame_;  ///< Conditions that all measurements of the frame have in common.
 };
 
 }  // namespace isotherm

@@ -6,17 +6,24 @@
 namespace isotherm {
 namespace {
 
-/// Side of the thermal tiles that are assessed as one, pixels.
+/// Side of the thermal tiles that are assessed as one, pixels: a 64th of the work, and the rule has
+/// no finer edge anyway (holes are found in squares). Larger: more is left out around a hand.
 constexpr int kNearTile = 8;
-/// Points that are looked at on a line of sight, even in inverse depth down to this fraction of the
-/// near range.
+/// Points that are looked at on a line of sight, even in inverse depth, so that they are evenly
+/// apart in the depth image.
 constexpr int kNearSteps = 10;
+/// The nearest of those points, as a fraction of the near range: nearer, nothing fits between the
+/// cameras and the lens. Smaller: points farther apart.
 constexpr double kNearestFraction = 0.2;
-/// Pixels of a square that must show known surface, and those of them (of all pixels, where
-/// nothing is known) that may have a return.
+/// A square is a hole if this fraction of its pixels shows known surface and gets no return now.
+/// Less: new holes beside unknown ground are missed less often, but silhouettes count as holes. Not
+/// tuned.
 constexpr double kKnownFraction = 0.9;
+/// A hole, or a square without known surface that counts as empty, may have returns in this
+/// fraction of its pixels: speckle at the rim. Not tuned.
 constexpr double kReturnFraction = 0.1;
-/// Pixels of a square that have a return where there certainly is a surface.
+/// From this fraction of returns on there certainly is a surface; between the two the square says
+/// nothing. Not tuned.
 constexpr double kSurfaceFraction = 0.5;
 /// Between projector and camera of PrimeSense's cameras, with some reserve: beside the edge of
 /// something near, what lies behind is in the projector's shadow.
@@ -70,6 +77,8 @@ bool NearRangeOcclusion::FindHoles(const Image<float>& depth_m, const SurfaceMap
     for (int column = 0; column < squares_.width(); ++column)
       squares_.At(column, row) = Look(column, row, depth_m, model);
   }
+  // Rows first: they know shadows, which lie along rows only, and columns must not take those for
+  // holes.
   for (int row = 0; row < squares_.height(); ++row) AssessRow(row, model_fx);
   for (int column = 0; column < squares_.width(); ++column) AssessColumn(column);
   return std::ranges::count(squares_.pixels(), Kind::kHole, &Square::kind) > 0;
@@ -93,6 +102,7 @@ void NearRangeOcclusion::AssessRow(int row, double model_fx) {
   const auto at = [&](int i) -> Square& { return squares_.At(i, row); };
   ForEmptyRuns(squares_.width(), at, [&](int first, int end, float left_m, float right_m) {
     const auto inverse = [](float z_m) { return z_m > 0.0F ? 1.0F / z_m : 0.0F; };
+    // Width of the projector's shadow beside an edge, by triangulation.
     const double shadow_px = kProjectorBaseline_m * model_fx *
                              static_cast<double>(std::abs(inverse(left_m) - inverse(right_m)));
     const int width_px = (end - first) * hole_side_;

@@ -40,6 +40,7 @@ class NearRangeOcclusion {
   std::int64_t LeaveOut(int y, std::span<ThermalPixel> row) const;
 
  private:
+  /// Says what a square of the depth image shows.
   enum class Kind : std::uint8_t {
     kNeither,
     kSurface,
@@ -72,7 +73,7 @@ class NearRangeOcclusion {
   Image<Square> squares_;         ///< The squares of the model's view.
   Image<std::uint8_t> left_out_;  ///< Per tile of the thermal image.
   bool has_holes_ = false;
-  bool any_ = false;  ///< Whether any thermal pixel is left out.
+  bool any_ = false;  ///< Some thermal pixel is left out.
 };
 
 }  // namespace isotherm

@@ -7,12 +7,13 @@
 
 namespace isotherm {
 
-/// Which NUC a thermal frame's temperatures rest on.
+/// Says which NUC a thermal frame's temperatures rest on.
 struct NucAge {
   std::uint8_t epoch = 0;               ///< NUCs seen before, modulo 256.
   std::optional<double> seconds_since;  ///< Since the shutter opened; nullopt = none seen.
   double seconds_followed = 0.0;        ///< Since the first frame of the stream.
-  /// Of the housing since the first valid frame after it; nullopt = the camera does not tell.
+  /// Change of the housing's temperature since the first valid frame after it; nullopt = the camera
+  /// does not tell.
   std::optional<double> housing_change_k = std::nullopt;
 };
 
@@ -30,7 +31,7 @@ class NucEpochs {
   bool shut_ = false;  ///< The last frame was not valid.
   std::optional<CaptureTime> first_, last_shut_;
   std::optional<double> last_seconds_;    ///< The camera's count.
-  std::optional<float> housing_celsius_;  ///< Of the first valid frame of the epoch that told it.
+  std::optional<float> housing_celsius_;  ///< From the first valid frame of the epoch that told it.
 };
 
 }  // namespace isotherm

@@ -42,11 +42,11 @@ class SceneInfluenceCorrector {
   void Subtract(const CorrectionTerms& terms, Image<float>& celsius);
 
   const SceneInfluence influence_;
-  const int columns_, rows_;               ///< Of cells.
-  std::vector<float> weights_;             ///< Of the Gaussian, from the middle outwards, in cells.
+  const int columns_, rows_;               ///< Number of cells.
+  std::vector<float> weights_;             ///< The Gaussian, from the middle outwards, in cells.
   Image<float> measured_;                  ///< Mean of each cell.
   Image<float> coverage_;                  ///< Number of pixels with a value in each cell.
-  Image<float> values_, near_;             ///< What is solved for.
+  Image<float> values_, near_;             ///< The unknowns: own temperatures and their near mean.
   Image<float> sums_, divisors_;           ///< After the pass along rows.
   std::vector<CellInterpolation> across_;  ///< By column of pixels.
   std::vector<float> near_row_;            ///< By column of cells, for one row of pixels.

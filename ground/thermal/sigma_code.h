@@ -20,11 +20,12 @@ struct SigmaCode {
   /// Temperatures agree that are no further apart than this many standard uncertainties of their
   /// difference.
   static constexpr float kAgree = 3.0F;
-  /// What the upper bits of kMin_k exceed its code by.
+  /// The upper bits of kMin_k exceed its code by this.
   static constexpr std::uint32_t kBias = (std::bit_cast<std::uint32_t>(kMin_k) >> kShift) - 1;
 
   /// `sigma_k` must not be NaN.
   static std::uint8_t Of(float sigma_k) {
+    // Rounds to the nearest code instead of down.
     constexpr std::uint32_t kHalfStep = 1U << (kShift - 1);
     const auto bits = std::bit_cast<std::uint32_t>(std::clamp(sigma_k, kMin_k, kMax_k));
     return static_cast<std::uint8_t>(((bits + kHalfStep) >> kShift) - kBias);

@@ -11,6 +11,7 @@
 namespace isotherm {
 namespace {
 
+// Rows of the thermal image: 36 tasks for the 288 rows of a PI 450. Not tuned.
 constexpr int kRowsPerTask = 8;
 
 /// Side of the tiles whose depths are kept to choose blocks; a row of tiles is one task.
@@ -25,9 +26,13 @@ CameraModel EverySecondPixel(CameraModel camera) {
 }
 
 /// A temperature is known where its pixel is to about half a pixel: interpolation between pixels
-/// and what a lens spreads.
+/// and what a lens spreads. Smaller: steep pixels beside edges get through; larger: more of the
+/// surface has no temperature.
 constexpr double kPixelUncertainty_px = 0.5;
-/// A block in view is reviewed once in so many frames.
+/// A block in view is reviewed once in this many frames, at 40 Hz more than twice a second. More
+/// often: time for surface that has hardly changed; less often: what a better surface proves wrong
+/// stays longer, and the final review finds it (docs/performance.md: without that one 0.51 instead
+/// of 0.31 % of the temperatures are beyond 5 K).
 constexpr std::uint32_t kFramesBetweenReviews = 16;
 /// Stands for no limit; its square is finite.
 constexpr float kNoLimit = 1e18F;
@@ -90,6 +95,8 @@ ThermalFuser::ThermalFuser(const ThermalOptions& options, const CameraModel& the
       rectifier_(thermal_camera, CorrectedInfluence(options, sensor)) {
   const int width = rectifier_.ideal_camera().width;
   const int height = rectifier_.ideal_camera().height;
+  // An apron of the largest distance around the image: pixels at its border have neighbours, and no
+  // edges there.
   distances_m_ =
       Image<float>(width + 2 * apron_, height + 2 * apron_, std::numeric_limits<float>::max());
   pixels_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) + 1);
@@ -266,6 +273,7 @@ void ThermalFuser::SelectBlocks(const RigidTransform& T_map_thermal, const TsdfV
     const Eigen::Vector3f p = to_camera.Centre(tsdf.block_coordinates(block));
     if (p.z() < 2.0F * radius) continue;
     // Keep blocks through which the visible surface passes.
+    // The corners of a block may be nearer than its centre, and project further out.
     const float extent = radius * 1.5F / (p.z() - radius);
     const float u = fx * p.x() / p.z() + cx;
     const float v = fy * p.y() / p.z() + cy;
@@ -329,6 +337,8 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
   const MeasurementRecorder recorder(options_, T_map_thermal, args.axes, capture.nuc);
   ++frames_;
   std::atomic<std::int64_t> considered{0}, assigned{0}, dropped{0};
+  // A frame updates hundreds of blocks: enough tasks for all threads, few enough to hand out. Not
+  // tuned.
   constexpr int kBlocksPerTask = 32;
   const int count = static_cast<int>(blocks_.size());
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
@@ -346,6 +356,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
                 &thermal.voxels(block).front().bits, counts,
                 thermal.records() != nullptr ? &measured : nullptr);
       if (measured.count > 0) recorder.Record(measured, first, block, thermal);
+      // Spread over the frames by the block's number, so that each frame reviews about as many.
       if ((static_cast<std::uint32_t>(block) + frames_) % kFramesBetweenReviews == 0)
         task_dropped += review_.Review(block, tsdf, thermal);
     }
@@ -361,6 +372,7 @@ FusionReport ThermalFuser::Fuse(const ThermalFrame& frame, const RigidTransform&
 
 std::int64_t ThermalFuser::FinalReview(const TsdfVolume& tsdf, ThermalVolume& thermal,
                                        ThreadPool& pool) const {
+  // All blocks of the model, a thousand and more. Not tuned.
   constexpr int kBlocksPerTask = 64;
   std::atomic<std::int64_t> dropped{0};
   const int count = tsdf.block_count();

@@ -46,7 +46,7 @@ struct CaptureConditions {
   CameraMotion motion;           ///< Motion of the thermal camera.
   double registration_px = 0.0;  ///< Standard deviation of the pose in its image.
   double extrinsic_px = 0.0;     ///< The same of the calibration between the cameras.
-  double time_sigma_s = 0.0;     ///< Of the capture time.
+  double time_sigma_s = 0.0;     ///< One sigma of the capture time.
   CameraUncertainty camera;
   const NearRangeOcclusion* near_range = nullptr;  ///< Where something unseen may be in the way.
   const LineOfSightOcclusion* line_of_sight =
@@ -103,7 +103,7 @@ class ThermalFuser {
   Image<float> distances_m_;          ///< Distances of its vertices from the camera, with an apron.
   Image<float> celsius_;              ///< With an apron.
   std::vector<ThermalPixel> pixels_;  ///< And one more that shows nothing.
-  std::vector<std::int32_t> planes_;  ///< Of the pixels (PixelPlane).
+  std::vector<std::int32_t> planes_;  ///< Planes of the pixels (PixelPlane).
   Image<float> nearest_m_, farthest_m_;  ///< Depth of the surface per tile; farthest 0 = none.
   VisibleBlocks visible_;
   std::vector<std::int32_t> blocks_;

@@ -71,11 +71,11 @@ void ResampleRow(const ResampleRowArgs& args, float* out);
 void DistanceRow(const float* vx, const float* vy, const float* vz, const float* position,
                  std::int32_t width, float* distance_m);
 
-/// What the standard uncertainty of a pixel's temperature is made of, for inner loops: squares of
-/// the quantities of FrameUncertainty (but for the scene), as BudgetOf combines them.
+/// Holds the parts of the standard uncertainty of a pixel's temperature, for inner loops: squares
+/// of the quantities of FrameUncertainty (but for the scene), as BudgetOf combines them.
 struct SigmaArgs {
   float noise_k2;
-  float even_k2;       ///< What all pixels have alike: drift and resolution.
+  float even_k2;       ///< Common to all pixels: drift and resolution.
   float place_px2;     ///< Registration and the pixel itself, along each axis.
   float voxel_px2_m2;  ///< The same of a voxel, times the square of the depth.
   float time_s2;
@@ -129,9 +129,10 @@ struct PixelRowCounts {
 /// `planes`: of each pixel (PixelPlane).
 PixelRowCounts MakePixelRow(const PixelRowArgs& args, ThermalPixel* pixels, std::int32_t* planes);
 
+/// Holds a thermal frame and the limits within which voxels take its temperatures.
 struct FusionKernelArgs {
   const ThermalPixel* pixels;  ///< Row-major, and one more with depth 0.
-  const std::int32_t* planes;  ///< Of each of them (PixelPlane).
+  const std::int32_t* planes;  ///< One plane per pixel (PixelPlane).
   std::int32_t width, height;
   float fx, fy, cx, cy;
   float axes[9];  ///< Columns: step of one voxel along x, y, z in thermal camera coordinates,
@@ -144,6 +145,7 @@ struct FusionKernelArgs {
   bool keep_bad;               ///< Bad conditions give a temperature, not only their classes.
   bool keep_lowest;            ///< Keep the lowest of temperatures under good conditions.
 };
+/// Counts the voxels that a block offered and those that took a temperature.
 struct FusionKernelCounts {
   std::int64_t considered = 0;
   std::int64_t assigned = 0;

@@ -138,6 +138,7 @@ Status Validate(const ThermalOptions& o) {
 
 Status CheckSharpness(const ThermalOptions& o, const ThermalSensorModel& sensor) {
   const std::optional<DepthOfField> sharp = SharpDistances(sensor);
+  // The two ranges of distances overlap.
   if (!sharp || (sharp->near_m < o.distance().max_m() && sharp->far_m > o.distance().min_m()))
     return OkStatus();
   return InvalidArgument(
@@ -148,6 +149,7 @@ Status CheckSharpness(const ThermalOptions& o, const ThermalSensorModel& sensor)
 
 ThermalOptions WithAnglesOfMaterial(const ThermalOptions& o) {
   ThermalOptions complete = o;
+  // Computing a material's limits takes a while, and is not needed then.
   if (o.angle().has_min_deg() && o.angle().has_good_deg() && o.angle().has_max_deg())
     return complete;
   const OpticalMaterial* material = FindOpticalMaterial(o.material());
@@ -167,6 +169,7 @@ ThermalOptions CompleteLimits(const ThermalOptions& o, const ThermalSensorModel&
   ThermalDistanceOptions& distance = *complete.mutable_distance();
   distance.set_min_m(std::max(distance.min_m(), sharp->near_m));
   distance.set_max_m(std::min(distance.max_m(), sharp->far_m));
+  // A lens that ends before good_m leaves nothing but good distances.
   distance.set_good_m(std::min(distance.good_m(), distance.max_m()));
   return complete;
 }

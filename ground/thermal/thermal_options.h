@@ -20,7 +20,8 @@ ThermalOptions WithAnglesOfMaterial(const ThermalOptions& options);
 /// it is known).
 ThermalOptions CompleteLimits(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
-/// What is taken out of thermal images: what the sensor is known to add, if the options ask for it.
+/// Returns the scene influence that is taken out of thermal images: what the sensor is known to
+/// add, if the options ask for it.
 SceneInfluence CorrectedInfluence(const ThermalOptions& options, const ThermalSensorModel& sensor);
 
 }  // namespace isotherm

@@ -64,6 +64,7 @@ class ThermalRecords {
   static constexpr std::uint32_t kPageEntries = 32;
   static_assert(kRowsPerPage <= kPageEntries);
 
+  /// Holds the pages of the rows of neighbouring blocks.
   struct Part {
     std::vector<std::uint32_t> pages;
     std::uint32_t used = 0;  ///< Rows of the last page.

@@ -15,12 +15,12 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr int kRectifiedRowsPerTask = 8;
 
-/// Of linear interpolation between two values.
+/// Returns the sum of the squares of the weights of linear interpolation between two values.
 float SquaresOfWeights(float fraction) {
   return fraction * fraction + (1.0F - fraction) * (1.0F - fraction);
 }
 
-/// What the model cannot hold becomes "no value".
+/// Turns temperatures that the model cannot hold into "no value".
 void KeepRadiometric(std::span<float> celsius) {
   for (float& value : celsius) {
     const bool is_kept = value >= static_cast<float>(kMinRadiometric_celsius) &&

@@ -10,6 +10,7 @@ namespace isotherm {
 
 ThermalVoxel ThermalVoxel::Make(float celsius, ConditionClass distance, ConditionClass angle,
                                 ConditionClass motion, ConditionClass disagreement) {
+  // Code 0 stands for "never measured", so that the coldest temperature has code 1.
   const float code = std::clamp(1.0F + std::round((celsius - kMin_celsius) / kStep_k), 1.0F,
                                 ThermalLayout::kMaxCode);
   ThermalVoxel voxel;
@@ -53,6 +54,9 @@ VoxelPlace PlaceFor(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                     const Eigen::Vector3d& p_map) {
   const Eigen::Vector3d p_voxel = tsdf.grid().ToVoxel(p_map);
   const GridIndex centre = p_voxel.array().round().cast<int>();
+  // The voxel that the point is in speaks for it if it is measured and checked; else the nearest
+  // measured one around it, since a surface point may lie on the border of voxels that were
+  // updated.
   const VoxelPlace own = PlaceOf(tsdf, centre);
   if (VoxelAt(thermal, own).assessed()) return own;
   VoxelPlace nearest = own;
@@ -84,6 +88,7 @@ void AdoptRecord(const ThermalVolume& source, std::int32_t source_block, int sou
   RecordRow& to = target.records()->Row(block, voxel / RecordRow::kVoxels);
   ConditionRecord& conditions = to.conditions[voxel % RecordRow::kVoxels];
   conditions = from->conditions[source_voxel % RecordRow::kVoxels];
+  // Directions are in the coordinates of their sub-map.
   conditions.direction = EncodeDirection(R_target_source * DecodeDirection(conditions.direction));
   to.disagreement[voxel % RecordRow::kVoxels] =
       from->disagreement[source_voxel % RecordRow::kVoxels];

@@ -7,7 +7,7 @@
 
 namespace isotherm {
 
-/// What the housing of a warm camera stays below, as the edge takes it for warm by default
+/// The housing of a warm camera changes by less than this, as the edge takes it for warm by default
 /// (nuc.expert.warm_up_housing_rate_k_per_min).
 inline constexpr double kWarmHousingRate_k_per_min = 0.1;
 
@@ -15,10 +15,10 @@ inline constexpr double kWarmHousingRate_k_per_min = 0.1;
 /// 450, as far as its data sheet and the thesis tell.
 struct CameraUncertainty {
   double netd_k = 0.040;  ///< Noise of a single pixel (thesis table C.3).
-  /// What the pattern of the pixels wanders by after a NUC; no data sheet says it. 0 = not known.
+  /// Random walk of the pixels' pattern after a NUC; no data sheet states it. 0 = not known.
   double pattern_drift_k_per_sqrt_min = 0.0;
-  /// Of a reading, per kelvin that the housing has warmed up since (thesis fig. 3.4b: 20 K for 5
-  /// K).
+  /// Error of a reading per kelvin that the housing has warmed up since the NUC (thesis fig. 3.4b:
+  /// 20 K for 5 K).
   double error_per_housing_k = 4.0;
   /// Fraction by which the rest of the image pulls a pixel's temperature towards its own mean
   /// (thesis 5.1); after it was taken out, what is left. 0 = not known.
@@ -29,10 +29,10 @@ struct CameraUncertainty {
 struct FrameUncertainty {
   double noise_k = 0.0;  ///< NETD, of a pixel of the camera.
   double drift_k = 0.0;  ///< Since the NUC.
-  /// Of the frame's place on the surface: the pose and the extrinsic calibration, pixels along each
-  /// axis of the image.
+  /// Uncertainty of the frame's place on the surface: of the pose and the extrinsic calibration,
+  /// pixels along each axis of the image.
   double registration_px = 0.0;
-  double time_s = 0.0;           ///< Of the capture time.
+  double time_s = 0.0;           ///< Uncertainty of the capture time.
   double voxel_m = 0.0;          ///< Edge length of the cells that temperatures are kept in.
   double scene_influence = 0.0;  ///< CameraUncertainty's.
   double scene_celsius = 0.0;    ///< Mean of the image.
@@ -43,12 +43,13 @@ struct PixelUncertainty {
   double celsius = 0.0;
   /// Variance of the noise after resampling, as a fraction of that before (ThermalRectifier).
   double noise_gain = 1.0;
-  Eigen::Vector2d slope_k_px = Eigen::Vector2d::Zero();  ///< Of the temperature in the image.
+  Eigen::Vector2d slope_k_px =
+      Eigen::Vector2d::Zero();  ///< Change of the temperature in the image.
   /// Second derivatives of the temperature along the image's axes.
   Eigen::Vector2d curvature_k_px2 = Eigen::Vector2d::Zero();
-  Eigen::Vector2d speed_px_s = Eigen::Vector2d::Zero();  ///< Of the surface in the image.
+  Eigen::Vector2d speed_px_s = Eigen::Vector2d::Zero();  ///< Speed of the surface in the image.
   double smear_s = 0.0;  ///< How long motion smears the pixel's row.
-  double spot_m = 1.0;   ///< What a pixel covers of a surface at right angles.
+  double spot_m = 1.0;   ///< Size of the surface that a pixel covers at right angles.
 };
 
 /// The terms of an apparent temperature's standard uncertainty, kelvin. They are independent, so
@@ -56,10 +57,10 @@ struct PixelUncertainty {
 struct UncertaintyBudget {
   double noise_k = 0.0;
   double drift_k = 0.0;
-  double resolution_k = 0.0;    ///< Of a voxel's code.
+  double resolution_k = 0.0;    ///< Step of a voxel's code.
   double registration_k = 0.0;  ///< Pose, extrinsic calibration and time, by the slope.
   double footprint_k = 0.0;     ///< Pixel and voxel, by the slope.
-  double curvature_k = 0.0;     ///< What a slope leaves out over an uncertain place.
+  double curvature_k = 0.0;     ///< The part that a slope leaves out over an uncertain place.
   double smear_k = 0.0;
   double scene_k = 0.0;
 

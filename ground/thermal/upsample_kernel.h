@@ -4,6 +4,7 @@
 
 namespace isotherm {
 
+/// Holds a cast at half size and how it is interpolated.
 struct UpsampleRowArgs {
   const SurfaceMaps* coarse;   ///< Pixel (i, j) is pixel (2 i, 2 j) of the fine maps: at least
                                ///< width / 2 + 1 wide and height / 2 + 1 high.

@@ -28,6 +28,8 @@ std::optional<RigidTransform> LoopCloser::VerifyIn(int other, const PreparedDept
                                                    const RigidTransform& T_map_depth,
                                                    ThreadPool& pool) {
   const SubMap& map = atlas_.map(other);
+  // Tracking from where the map should be is as cheap as one frame; the search below takes several
+  // times as long.
   if (const auto guess = atlas_.PoseIn(other, T_map_depth)) {
     const TrackingResult result = tracker_.Verify(depth, *guess, map, pool);
     if (result.tracked()) return result.T_map_depth;
@@ -46,7 +48,9 @@ bool LoopCloser::LookForKnownGround(const PreparedDepth& depth, const RigidTrans
                                     ThreadPool& pool) {
   const std::vector<int> candidates = atlas_.ToVerify(T_map_depth);
   if (candidates.empty()) return false;
-  // What was seen last time is looked at again, to be believed; else they take turns.
+  // One sighting may be a mistake, and a wrong link bends the whole scan: what was seen last time
+  // is looked at again, and linked only if it is at the same place. Otherwise the candidates take
+  // turns.
   const bool has_sighting = sighting_ && sighting_->active == atlas_.active_index() &&
                             !atlas_.IsLinked(sighting_->active, sighting_->other);
   const int other =
@@ -65,6 +69,8 @@ bool LoopCloser::LookForKnownGround(const PreparedDepth& depth, const RigidTrans
   if (!agrees) return false;
   sighting_.reset();
   const bool both_joined = atlas_.active().joined && atlas_.map(other).joined;
+  // Both poses are of this frame, so that the link holds at the camera, where both maps know the
+  // surface.
   atlas_.Link(other, T_map_depth, *pose);
   if (both_joined) {
     const DriftReport& drift = atlas_.drift();
@@ -85,9 +91,13 @@ bool LoopCloser::GoBack(const PreparedDepth& depth, const RigidTransform& T_map_
   for (int other = 0; other < atlas_.size(); ++other) {
     if (other == atlas_.active_index() || !atlas_.IsLinked(other, atlas_.active_index())) continue;
     const auto guess = atlas_.PoseIn(other, T_map_depth);
+    // Only where the rig can stay for a while: far from its anchors, the old map would be left
+    // again at once.
     if (!guess || atlas_.IsFar(other, *guess) || !atlas_.IsNearView(other, *guess)) continue;
     const TrackingResult result = tracker_.Verify(depth, *guess, atlas_.map(other), pool);
     if (!result.tracked() || result.overlap_ratio < kShowsView) continue;
+    // The tracker's poses are of the map that is left; they must be in the new coordinates before
+    // that is active.
     tracker_.Rebase(result.T_map_depth * T_map_depth.inverse());
     atlas_.Activate(other);
     return true;
@@ -102,9 +112,11 @@ LoopCloser::Change LoopCloser::Update(const PreparedDepth& depth, const RigidTra
   if (atlas_.size() > 1 && ++frames_ % kLookEvery == 0)
     change.linked = LookForKnownGround(depth, T_map_depth, pool);
   if (!atlas_.IsFar(atlas_.active_index(), T_map_depth)) return change;
+  // A known map before a new one: a new one has no surface but what is in view, and takes memory.
   change.switched = GoBack(depth, T_map_depth, pool);
   if (change.switched) return change;
   change.switched = atlas_.Split(T_map_depth, blocks_in_view);
+  // Said once: it stays so, and comes again with every frame.
   if (!change.switched && !reported_full_) {
     reported_full_ = true;
     LOG(Ground, Warning)

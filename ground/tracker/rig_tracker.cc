@@ -9,12 +9,13 @@
 namespace isotherm {
 namespace {
 
-/// A frame is on the wrong surface, whatever the limits say, ...
-constexpr double kUnusualResidual = 4.0;   ///< ... with this many times the usual residual
-constexpr double kMinUnusual_m = 0.002;    ///< (but at least this), ...
-constexpr double kUnusualAgreement = 0.5;  ///< ... or with this fraction of the usual agreement.
+/// A frame that the limits pass is on the wrong surface all the same if its residual is this many
+/// times the usual one (and at least kMinUnusual_m), or its agreement this fraction of the usual.
+constexpr double kUnusualResidual = 4.0;
+constexpr double kMinUnusual_m = 0.002;
+constexpr double kUnusualAgreement = 0.5;
 
-/// What is believed after having been lost must be nearly as good as usual.
+/// After the rig was lost, a pose is believed only if it fits nearly as well as usual.
 constexpr double kConvincingResidual = 2.5;
 constexpr double kConvincingAgreement = 0.8;
 
@@ -51,6 +52,7 @@ void RigTracker::AddThermal(ThermalFramePtr frame) {
 TrackingResult RigTracker::Begin(const PreparedDepth& depth, CaptureTime time,
                                  const RigidTransform& pose) {
   TrackingResult first;
+  // A covered camera must not found a sub-map.
   if (depth.valid_pixels < kMinTrackedPixels) first.lost = LostReason::kTooFewPixels;
   first.T_map_depth = pose;
   Forget();
@@ -78,17 +80,20 @@ PriorError RigTracker::InertialError(CaptureTime time, double mean_depth_m) cons
 TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
                                   const TsdfVolume& volume, ThreadPool& pool) {
   const auto track = [&](IcpTracker::Start start) {
+    // While a pose is only a candidate, temperatures would tie the image to a wrong place.
     if (alignment_ && state_ == State::kFollowing) {
       alignment_->Begin(motion_.last(), time, start.guess);
       start.alignment = alignment_.get();
     }
     TrackingResult result = tracker_.Track(depth, view_, volume.grid(), start, pool);
+    // A frame within all fixed limits may still lie on the wrong surface.
     if (result.tracked()) result.lost = FindAnomaly(result);
     return result;
   };
   const IcpTracker::Start inertial = Predict(time);
   const Matrix6& known = uncertainty_.covariance();
   std::optional<OdometryPrior::Prediction> odometry;
+  // Predict gets the inertial guess too, for what the source does not measure (attitude only).
   if (const auto last = motion_.last())
     odometry = odometry_.Predict(*last, time, inertial.guess,
                                  InertialError(time, uncertainty_.mean_depth_m()));
@@ -96,12 +101,15 @@ TrackingResult RigTracker::Follow(const PreparedDepth& depth, CaptureTime time,
     const TrackingResult result = track({odometry->T_map_depth, odometry->T_map_depth});
     // If the camera sees nothing, another start would not help.
     if (result.lost == LostReason::kTooFewPixels) return result;
+    // A source may be wrong without the frame being lost: then constant velocity gets its try
+    // below.
     if (result.tracked() && !odometry_.Contradicts(result, time, known)) {
       odometry_.Note(result, time, known, /*used=*/true);
       odometry_error_ = odometry->error;
       return result;
     }
   }
+  // Note compares the source with this result, too, and withdraws its trust if they disagree.
   const TrackingResult result = track(inertial);
   if (result.tracked()) odometry_.Note(result, time, known, /*used=*/false);
   return result;
@@ -114,6 +122,7 @@ double RigTracker::ResidualLimit(const TrackingResult& result, double times_usua
 }
 
 LostReason RigTracker::FindAnomaly(const TrackingResult& result) const {
+  // Of the first frames nobody knows yet what is usual here.
   if (usual_.frames < kFramesToKnow) return LostReason::kNone;
   if (result.residual_m > ResidualLimit(result, kUnusualResidual)) return LostReason::kResidual;
   if (result.agreement < kUnusualAgreement * usual_.agreement) return LostReason::kTooFewInliers;
@@ -144,6 +153,8 @@ TrackingResult RigTracker::Verify(const PreparedDepth& depth, const RigidTransfo
 TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const SubMap& here,
                                       const SubMap& searched, ThreadPool& pool) {
   TrackingResult result;
+  // The verdict if nothing can be tried: the camera is covered, or relocalisation is off and there
+  // is no view to look back at.
   result.lost = LostReason::kTooFewPixels;
   constexpr int kTurns = 4;
   const bool looks_back = lost_frames_++ % kTurns == 0 || !relocaliser_options_.enabled();
@@ -156,6 +167,7 @@ TrackingResult RigTracker::LookAround(const PreparedDepth& depth, const SubMap& 
   }
   if (!relocaliser_options_.enabled() || depth.valid_pixels < kMinTrackedPixels) return result;
   result.lost = LostReason::kNotFound;
+  // Find works on small images; only Verify, at full resolution, may say that the rig is there.
   const auto pose = searched.relocaliser->Find(depth, *searched.tsdf, min_weight_, pool);
   if (!pose) return result;
   const TrackingResult found = Verify(depth, *pose, searched, pool);
@@ -172,6 +184,8 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
   if (state_ == State::kLost) {
     result = LookAround(depth, here, searched, pool);
     if (!result.tracked()) return result;
+    // Motion, odometry and the trusted pose are in the coordinates of the map where the rig was
+    // lost.
     if (found_elsewhere_) Forget();
     odometry_.Note(result, time, uncertainty_.covariance(), /*used=*/false);
     state_ = State::kConfirming;
@@ -179,6 +193,7 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
   } else {
     result = Follow(depth, time, *here.tsdf, pool);
     if (result.tracked() && state_ == State::kConfirming) {
+      // A wrong place often fits one frame, seldom the next ones of a moving rig.
       --to_confirm_;
       if (!IsConvincing(result)) result.lost = LostReason::kNotFound;
     }
@@ -189,6 +204,8 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
       CastView(trusted_pose_, *here.tsdf, pool, view_);
     state_ = State::kLost;
     lost_frames_ = 0;
+    // The next pose is found anew: a velocity across the gap would be the error of the search over
+    // one frame.
     motion_.Clear();
     odometry_.Reset();
     speed_is_known_ = false;
@@ -200,6 +217,8 @@ TrackingResult RigTracker::Track(const PreparedDepth& depth, CaptureTime time, c
     state_ = State::kFollowing;
     ++relocalisations_;
   }
+  // Candidates leave nothing behind: a wrong one must change neither what is usual nor the
+  // uncertainty.
   if (state_ == State::kFollowing) Trust(result, time);
   return result;
 }
@@ -233,6 +252,7 @@ void RigTracker::Forget() {
 }
 
 void RigTracker::Rebase(const RigidTransform& T_new_old) {
+  // usual_ stays: the rig and its cameras are the same, and both maps show the same surface here.
   motion_.Transform(T_new_old);
   odometry_.Transform(T_new_old);
   if (alignment_) alignment_->Forget();

@@ -22,6 +22,7 @@ namespace isotherm {
 /// tracked against. Never changes a sub-map's surface. Thread-bound.
 class RigTracker {
  public:
+  /// Says whether frames are tracked against the model.
   enum class State : std::uint8_t {
     kFollowing,
     kLost,

@@ -17,6 +17,8 @@ Tracker::Tracker(const GroundOptions& options, const CameraModel& depth_camera,
       loop_closer_(options, atlas_, rig_) {}
 
 RigidTransform Tracker::FirstPose(const PreparedDepth& depth) const {
+  // Only the scan's first sub-map can begin at a given pose; a later one begins wherever the rig
+  // is.
   if (initial_pose_ && atlas_.size() == 1) return *initial_pose_;
   return PoseFacingCentre(atlas_.active().tsdf->grid(), depth.depth_m);
 }
@@ -26,12 +28,15 @@ TrackedFrame Tracker::Track(const PreparedDepth& depth, CaptureTime time, Thread
   TrackedFrame frame;
   frame.time = time;
   const int map_before = atlas_.active_index();
+  // A first frame that left no surface (beside the volume, no returns) is followed by another first
+  // one.
   bool is_first = atlas_.active().tsdf->block_count() == 0;
   if (!is_first) {
     frame.tracking = TrackInModel(depth, time, pool);
     if (frame.tracking.tracked()) {
       lost_since_.reset();
     } else if (!lost_since_) {
+      // By capture time, not by frames or clocks: a replay decides as the live scan did.
       lost_since_ = time;
     } else {
       is_first = BeginElsewhere(depth, time);
@@ -40,6 +45,7 @@ TrackedFrame Tracker::Track(const PreparedDepth& depth, CaptureTime time, Thread
   if (is_first) frame.tracking = rig_.Begin(depth, time, FirstPose(depth));
   frame.switched = atlas_.active_index() != map_before;
   if (!frame.tracking.tracked()) {
+    // The place was not confirmed, so the poses on the way there were wrong, too.
     unconfirmed_.clear();
   } else if (rig_.state() == RigTracker::State::kConfirming) {
     unconfirmed_.push_back({time, frame.tracking.T_map_depth});
@@ -54,6 +60,8 @@ TrackingResult Tracker::TrackInModel(const PreparedDepth& depth, CaptureTime tim
                                      ThreadPool& pool) {
   const bool lost = rig_.state() == RigTracker::State::kLost;
   const StageTimer timer(stages_[lost ? Stage::kRelocalise : Stage::kTrack]);
+  // A rig is most often found where it was lost: that map is searched first, then all in turn, one
+  // a frame, so that a lost frame costs the same however many maps there are.
   if (!lost) searched_ = atlas_.active_index();
   TrackingResult result = rig_.Track(depth, time, atlas_.active(), atlas_.map(searched_), pool);
   if (rig_.found_elsewhere()) {
@@ -80,6 +88,8 @@ bool Tracker::BeginElsewhere(const PreparedDepth& depth, CaptureTime time) {
 }
 
 void Tracker::Accept(const TrackedFrame& frame) {
+  // Frames that waited for confirmation get this frame's sigma: theirs was not followed while they
+  // were only candidates.
   const PoseSigma sigma = LargestSigma(uncertainty().covariance());
   const int map = atlas_.active_index();
   for (const StampedMapPose& pose : unconfirmed_) trajectory_.Add(pose, sigma, map, atlas_);
@@ -89,10 +99,13 @@ void Tracker::Accept(const TrackedFrame& frame) {
 
 bool Tracker::CloseLoops(const TrackedFrame& frame, const PreparedDepth& depth,
                          std::span<const std::int32_t> blocks_in_view, ThreadPool& pool) {
+  // Known views are recorded before loops are closed, in the map that was tracked against: Update
+  // may switch maps.
   atlas_.active().relocaliser->Add(frame.tracking.T_map_depth);
   const StageTimer timer(stages_[Stage::kSubMaps]);
   const LoopCloser::Change change =
       loop_closer_.Update(depth, frame.tracking.T_map_depth, blocks_in_view, pool);
+  // Joined or moved sub-maps take their past poses along.
   if (change.linked) trajectory_.Update(atlas_);
   return change.switched;
 }

@@ -22,6 +22,7 @@ namespace isotherm {
 
 /// Tells what the tracker made of a depth frame.
 struct TrackedFrame {
+  /// Says what the pose of a frame may be used for.
   enum class Outcome : std::uint8_t {
     kLost,
     kUnconfirmed,  ///< Found again, but not believed yet: nothing may be fused.

@@ -30,7 +30,7 @@ class TrackerTest : public testing::SubMapTest {
     atlas_ = std::make_unique<Atlas>(options_, camera_, Grid());
     tracker_ = std::make_unique<Tracker>(options_, camera_, initial_pose, *atlas_, stages_);
   }
-  /// What the pipeline does with a frame; the surface is there from the first one on.
+  /// Does what the pipeline does with a frame; the surface is there from the first one on.
   TrackedFrame Track(const PreparedDepth& depth, int i) {
     const TrackedFrame frame = tracker_->Track(depth, Time(i), pool_);
     if (frame.outcome == Outcome::kFirst) {

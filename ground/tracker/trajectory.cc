@@ -19,6 +19,8 @@ void Trajectory::Update(const Atlas& atlas) {
 void Trajectory::Append(const TrackedPose& tracked, const Atlas& atlas) {
   const std::optional<WorldPose> world =
       atlas.ToWorld({.map = tracked.map, .T_map_depth = tracked.pose.T_map_depth});
+  // Poses in a sub-map that is not joined have no place in `world` yet; Update brings them in
+  // later.
   if (!world) return;
   poses_.push_back({tracked.pose.time, world->T_world_depth});
   sigmas_.push_back(tracked.sigma);

@@ -24,6 +24,7 @@ class Trajectory {
   const std::vector<PoseSigma>& sigmas() const { return sigmas_; }
 
  private:
+  /// Holds a pose as it was tracked; where its sub-map lies may still change.
   struct TrackedPose {
     StampedMapPose pose;  ///< In the coordinates of sub-map `map`.
     PoseSigma sigma;

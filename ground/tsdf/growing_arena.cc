@@ -43,6 +43,8 @@ GrowingArena::~GrowingArena() {
 }
 
 bool GrowingArena::Commit(std::size_t bytes) {
+  // The disk's room is reserved in steps, so that a frame that adds a block does not wait for it;
+  // at most one step is reserved too much.
   constexpr std::size_t kStep = std::size_t{16} << 20;
   if (file_ < 0 || bytes <= committed_bytes_) return true;
   const std::size_t wanted = std::min(bytes_, (bytes + kStep - 1) / kStep * kStep);

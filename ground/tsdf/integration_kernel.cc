@@ -21,7 +21,8 @@ constexpr float kNoiseReach = 1.0F;
 constexpr float kMinCertainty = 0.02F;
 
 /// Weight of an observation: the variance of triangulated depth grows with the fourth power of
-/// depth, but far surfaces must still be learnt in a few frames.
+/// depth, but far surfaces must still be learnt in a few frames, so that it ends at a quarter (from
+/// 0.71 m on).
 constexpr float kReferenceDepth = 0.5F;
 constexpr float kMinWeight = 0.25F;
 /// Without a normal the point lies on an edge, where depth is least certain.

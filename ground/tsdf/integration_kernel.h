@@ -10,6 +10,7 @@ namespace isotherm {
 /// coordinates, metres, n towards the camera), the depth along z, and the weight of the observation
 /// (0 = nothing was seen).
 struct DepthSample {
+  /// Components of a normal and weights are -1..1 and 0..1 and have 16 bits each, two to a word.
   static constexpr float kNormalScale = 32767.0F;
   static constexpr float kWeightScale = 65535.0F;
   static constexpr int kUpperShift = 16;
@@ -25,6 +26,7 @@ struct DepthSample {
 };
 static_assert(sizeof(DepthSample) == 16);
 
+/// Holds a row of a depth image with its normals, and how samples are made of it.
 struct SampleRowArgs {
   const float* depth_m;  ///< One image row, 0 = no return.
   const float* nx;       ///< Normals in camera coordinates, NaN = none.

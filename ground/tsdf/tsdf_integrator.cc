@@ -18,7 +18,11 @@ constexpr int kTile = 16;
 /// are 3.5 mm apart.
 constexpr int kAllocationStride = 2;
 
+/// Four voxels are 8 mm at the default of 2 mm, beyond the noise and unevenness of a depth camera
+/// up to 1 m (6 mm there, DepthSensorModel). Fewer: noise tears the surface; more: thin parts have
+/// no inside, and more blocks are allocated.
 constexpr double kTruncationVoxels = 4.0;
+/// Larger bands are typing errors: millimetres instead of metres.
 constexpr double kMaxTruncation_m = 1.0;
 
 struct CameraF {
@@ -77,6 +81,7 @@ void TsdfIntegrator::MakeSamples(const PreparedDepth& depth, ThreadPool& pool) {
   const CameraF camera(depth.camera);
   const auto width = static_cast<std::size_t>(camera.width);
   samples_.resize(width * static_cast<std::size_t>(camera.height) + 1);
+  // One sample beyond the image without depth, which kernels read where a voxel projects outside.
   samples_.back() = DepthSample{};
   farthest_m_.Resize((camera.width + kTile - 1) / kTile, (camera.height + kTile - 1) / kTile);
   const SurfaceMaps& maps = depth.maps[0];
@@ -139,6 +144,8 @@ void TsdfIntegrator::AllocateBand(const PreparedDepth& depth, const RigidTransfo
     }
     missing.resize(count);
   });
+  // Allocated in order and by one thread: numbers of blocks must not depend on the number of
+  // threads.
   for (const std::vector<std::int32_t>& missing : missing_by_strip_) {
     for (const std::int32_t entry : missing) volume.FindOrAllocateEntry(entry);
   }
@@ -196,6 +203,8 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
   args.truncation_m = static_cast<float>(volume.truncation_distance_m());
   args.max_weight = static_cast<float>(options_.expert().max_weight());
   args.noise_at_1m = depth.noise_at_1m;
+  // A frame updates hundreds to thousands of blocks: enough tasks for all threads, few enough to
+  // hand out. Not tuned.
   constexpr int kBlocksPerTask = 32;
   const int count = static_cast<int>(updated_blocks_.size());
   pool.ParallelFor((count + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {
@@ -205,6 +214,7 @@ void TsdfIntegrator::Integrate(const PreparedDepth& depth, const RigidTransform&
       const Eigen::Vector3f first =
           (T_depth_map * grid.VoxelCentre(volume.block_coordinates(block) * kBlockSide))
               .cast<float>();
+      // Rays skip blocks without voxels behind the surface, which are most of them.
       volume.set_may_end_rays(
           block, IntegrateBlock(args, first.data(), &volume.voxels(block).front().bits));
     }

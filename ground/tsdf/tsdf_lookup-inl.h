@@ -104,6 +104,7 @@ HWY_INLINE Corners LoadCorners(const RaycastKernelArgs& a, const Vector3& p) {
   return corners;
 }
 
+/// Holds the distance at one point per lane.
 struct Interpolated {
   VF value;
   Vector3 gradient;  ///< Per voxel.

@@ -19,6 +19,7 @@ using testing::Tribool;
 /// Rounding of a sum of a few products in single precision.
 inline constexpr double kIcpPrecision = 2e-6;
 
+/// Holds a surface point and its normal in double precision.
 struct Vertex {
   Eigen::Vector3d p, n;
 };

@@ -34,7 +34,7 @@ struct PixelHit {
 };
 
 inline constexpr double kSinglePrecision = 1e-6;  ///< Metres, at up to a metre.
-inline constexpr double kPixelError = 1e-4;       ///< Of a projection.
+inline constexpr double kPixelError = 1e-4;       ///< Error of a projection, pixels.
 inline constexpr double kStepsPerKelvin = 1.0 / 0.025;
 
 /// kEither: too near the border of two pixels to say which.
@@ -53,7 +53,8 @@ inline Tribool FindPixel(const FusionKernelArgs& a, const Eigen::Vector3d& p, Pi
   return Tribool::kYes;
 }
 
-/// Whether the voxel lies near where its line of sight meets the plane of the pixel's surface.
+/// Returns whether the voxel lies near where its line of sight meets the plane of the pixel's
+/// surface.
 inline Tribool IsNearPlane(const FusionKernelArgs& a, const Eigen::Vector3d& p,
                            const PixelHit& hit) {
   const double per_u = static_cast<std::int16_t>(a.planes[hit.index] & PixelPlane::kUMask);
@@ -90,7 +91,7 @@ inline Tribool Replaces(const VoxelFusion& fusion, ThermalVoxel old, SigmaPair s
   return replaces(apart + fusion.slack) ? Tribool::kEither : Tribool::kNo;
 }
 
-/// Of temperatures under good conditions the lowest is kept.
+/// Keeps the lowest of the temperatures measured under good conditions.
 inline void KeepLowest(ThermalVoxel old, VoxelFusion& result) {
   const double margin = static_cast<double>(ThermalLayout::Code(old.bits)) - result.code;
   if (std::abs(margin) <= result.slack + 0.5) {

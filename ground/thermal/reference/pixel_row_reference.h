@@ -128,7 +128,7 @@ inline double SigmaOf(const PixelRowArgs& a, int x, const Pixel& pixel) {
       .Combined();
 }
 
-/// Whether a point lies before the depth camera and within its image.
+/// Returns whether a point lies before the depth camera and within its image.
 inline Tribool SeenByDepthCamera(const PixelRowArgs& a, const Eigen::Vector3d& p) {
   const Eigen::Matrix3d R =
       Eigen::Map<const Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>(a.R_depth).cast<double>();

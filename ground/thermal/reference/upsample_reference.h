@@ -16,6 +16,7 @@ using testing::AtLeastZero;
 using testing::Both;
 using testing::Tribool;
 
+/// Holds a surface point and its normal in double precision.
 struct Vertex {
   Eigen::Vector3d p, n;
 };

@@ -76,6 +76,7 @@ class BallAndWallTest : public ::testing::Test {
     }
   }
 
+  /// Counts the voxels that took a temperature, and those that took the other surface's.
   struct Outcome {
     int assigned = 0;
     int hot_on_wall = 0;

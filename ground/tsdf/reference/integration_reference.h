@@ -71,6 +71,7 @@ inline std::optional<std::set<std::int32_t>> MissingBlocks(const BandRowArgs& a,
   return missing;
 }
 
+/// Holds what a voxel must become, unless rounding decides.
 struct VoxelUpdate {
   TsdfVoxel voxel;
   bool certain = true;  ///< Not so near a pixel's or the band's border that rounding decides.

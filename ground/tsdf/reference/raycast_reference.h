@@ -16,6 +16,7 @@ namespace isotherm::reference {
 /// Rays through the trilinearly interpolated distance in small steps, then bisection.
 class Raycaster {
  public:
+  /// Holds where a ray meets the surface.
   struct Hit {
     Eigen::Vector3d p;  ///< World, metres.
     Eigen::Vector3d n;
