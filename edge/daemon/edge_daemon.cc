@@ -18,9 +18,9 @@
 #include "common/doubts/doubts.h"
 #include "common/rig/rig_calibration.h"
 #include "common/transport/join_domain.h"
+#include "edge/daemon/edge_monitor.h"
 #include "edge/daemon/edge_report.h"
 #include "edge/daemon/host_status.h"
-#include "edge/daemon/housekeeping.h"
 #include "edge/daemon/open_source.h"
 #include "edge/daemon/rig_announcer.h"
 #include "edge/daemon/session_start.h"
@@ -141,11 +141,11 @@ bool Drain(Publisher& publisher, const LinkOptions& options, const Clock& clock,
   return true;
 }
 
-void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, Housekeeping& housekeeping,
+void RunUntilStopped(const EdgeOptions& options, EdgePipeline& pipeline, EdgeMonitor& monitor,
                      RigAnnouncer& announcer, const std::stop_token& stop) {
   bool told = false;
   while (!stop.stop_requested()) {
-    housekeeping.Tick();
+    monitor.Tick();
     announcer.Tick();
     if (pipeline.finished()) {
       if (options.exit_at_end()) return;
@@ -203,7 +203,7 @@ void PrintSummary(const Ending& ending, const Publisher& publisher, const EdgePi
 
 /// Ends the recording, then the link, each in its time. The process's exit status.
 int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeline,
-          Housekeeping& housekeeping, Publisher& publisher, const Clock& clock,
+          EdgeMonitor& monitor, Publisher& publisher, const Clock& clock,
           const std::stop_token& stop) {
   const std::string processor = ProcessorText(ending);
   const auto say = [&] {
@@ -224,7 +224,7 @@ int Leave(const EdgeOptions& options, const Ending& ending, EdgePipeline& pipeli
       stop.stop_requested() ? Nanoseconds(0) : FromSeconds(options.link().expert().linger_s());
   ending.deadline.Arm(stop_limits::kLink + linger, status, "the network", say);
   static_cast<void>(pipeline.Stop());
-  housekeeping.PublishEnd();
+  monitor.PublishEnd();
   if (!Drain(publisher, options.link(), clock, stop)) {
     LOG(Edge, Warning) << "the ground did not confirm all frames before the end";
   }
@@ -250,13 +250,12 @@ int Capture(const EdgeOptions& options, const EdgeSession& start, FrameSource& s
   if (options.link().wait_for_ground()) WaitForGround(publisher, stop);
 
   pipeline.StartCapture();
-  Housekeeping housekeeping(clock, pipeline, publisher, counters, health,
-                            options.display().image_file());
+  EdgeMonitor monitor(clock, pipeline, publisher, counters, health, options.display().image_file());
   RigAnnouncer announcer(options, start, health, publisher,
                          [&pipeline](RigUpdate update) { pipeline.RecordRig(std::move(update)); });
-  RunUntilStopped(options, pipeline, housekeeping, announcer, stop);
+  RunUntilStopped(options, pipeline, monitor, announcer, stop);
   NotifyStopping();
-  return Leave(options, ending, pipeline, housekeeping, publisher, clock, stop);
+  return Leave(options, ending, pipeline, monitor, publisher, clock, stop);
 }
 
 /// A participant and what publishes through it; the first must outlive the second.

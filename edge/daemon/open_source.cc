@@ -20,7 +20,7 @@ using Opened = Result<std::unique_ptr<FrameSource>>;
 constexpr Nanoseconds kReportInterval = std::chrono::milliseconds(500);
 /// A camera's process that does not open it is killed after half of this, and then tried again: an
 /// attempt that takes longer hangs in this process.
-constexpr Nanoseconds kLongestAttempt = std::chrono::seconds(30);
+constexpr Nanoseconds kMaxAttempt = std::chrono::seconds(30);
 
 /// Trying again may help.
 bool IsMissing(const Opened& source) {
@@ -75,9 +75,9 @@ class Waiting {
   void Await(std::future<Opened>& attempt) const {
     const SteadyTime begun = context_.clock.SteadyNow();
     while (attempt.wait_for(kReportInterval) != std::future_status::ready) {
-      if (context_.clock.SteadyNow() - begun > kLongestAttempt) {
+      if (context_.clock.SteadyNow() - begun > kMaxAttempt) {
         LOG(Edge, Error) << "the library of a camera has not come back from opening it for "
-                         << ToSeconds(kLongestAttempt)
+                         << ToSeconds(kMaxAttempt)
                          << " s: the service manager is no longer told that all is well";
         NotifyStatus("the library of a camera does not come back from opening it");
         return attempt.wait();

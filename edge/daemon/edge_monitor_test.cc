@@ -1,4 +1,4 @@
-#include "edge/daemon/housekeeping.h"
+#include "edge/daemon/edge_monitor.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,29 +27,29 @@ constexpr milliseconds kTick(50);
 constexpr seconds kFeed(5);
 
 /// An edge whose threads are not started: counters and cameras say what the test tells them.
-class HousekeepingTest : public ::testing::Test {
+class EdgeMonitorTest : public ::testing::Test {
  protected:
-  HousekeepingTest() {
+  EdgeMonitorTest() {
     host_status_.disk_free_bytes = 5'000'000;
     host_status_.cpu_temperature_celsius = 61.5;
     host_status_.clock.synchronised = true;
     clock_.Advance(hours(1));
   }
 
-  Housekeeping& Make(std::optional<Nanoseconds> watchdog = kFeed) {
-    const HousekeepingHost host = {
+  EdgeMonitor& Make(std::optional<Nanoseconds> watchdog = kFeed) {
+    const MonitorHost host = {
         .read = [this] { return host_status_; },
         .notify_status = [this](std::string_view text) { told_.emplace_back(text); },
         .notify_alive = [this] { ++fed_; },
         .watchdog_interval = watchdog};
-    return housekeeping_.emplace(clock_, pipeline_, publisher_, counters_, health_, image_, host);
+    return monitor_.emplace(clock_, pipeline_, publisher_, counters_, health_, image_, host);
   }
   /// Time passes, with `frames_per_tick` depth frames.
   void Pass(Nanoseconds time, std::uint64_t frames_per_tick = 0) {
     for (Nanoseconds passed{0}; passed < time; passed += kTick) {
       clock_.Advance(kTick);
       counters_.Count(Sensor::kDepth, FrameFate::kCaptured, frames_per_tick);
-      housekeeping_->Tick();
+      monitor_->Tick();
     }
   }
   EdgeStatus Newest() const { return publisher_.statuses().back(); }
@@ -70,12 +70,12 @@ class HousekeepingTest : public ::testing::Test {
                                                   .rig_thermal_delay_s = 0.0}};
   const ::isotherm::testing::TemporaryDirectory folder_;
   const std::filesystem::path image_ = folder_.path() / "confidence.png";
-  std::optional<Housekeeping> housekeeping_;
+  std::optional<EdgeMonitor> monitor_;
   std::vector<std::string> told_;  ///< To the service manager.
   int fed_ = 0;                    ///< Its watchdog, this many times.
 };
 
-TEST_F(HousekeepingTest, TheStatusIsPublishedOnceASecondHoweverOftenItTicks) {
+TEST_F(EdgeMonitorTest, TheStatusIsPublishedOnceASecondHoweverOftenItTicks) {
   Make().Tick();
   EXPECT_EQ(publisher_.statuses().size(), 1U) << "at once";
   Pass(seconds(10));
@@ -83,7 +83,7 @@ TEST_F(HousekeepingTest, TheStatusIsPublishedOnceASecondHoweverOftenItTicks) {
   EXPECT_EQ(Newest().scan_state, ScanState::kScanning);
 }
 
-TEST_F(HousekeepingTest, TheRateIsThatOfTheLastSecond) {
+TEST_F(EdgeMonitorTest, TheRateIsThatOfTheLastSecond) {
   Make().Tick();
   Pass(seconds(2), 2);  // Each 50 ms.
   EXPECT_DOUBLE_EQ(Newest().depth.rate_hz, 40.0);
@@ -93,7 +93,7 @@ TEST_F(HousekeepingTest, TheRateIsThatOfTheLastSecond) {
   EXPECT_EQ(Newest().depth.captured, 100U);
 }
 
-TEST_F(HousekeepingTest, TheStatusSaysWhatTheComputerSays) {
+TEST_F(EdgeMonitorTest, TheStatusSaysWhatTheComputerSays) {
   Make().Tick();
   EXPECT_EQ(Newest().disk_free_bytes, 5'000'000U);
   EXPECT_DOUBLE_EQ(Newest().cpu_temperature_celsius, 61.5);
@@ -107,12 +107,12 @@ TEST_F(HousekeepingTest, TheStatusSaysWhatTheComputerSays) {
   EXPECT_EQ(Newest().disk_free_bytes, 1U) << "none, which is not the same as not known";
 }
 
-TEST_F(HousekeepingTest, TheLastStatusSaysThatTheScanHasEnded) {
+TEST_F(EdgeMonitorTest, TheLastStatusSaysThatTheScanHasEnded) {
   Make().PublishEnd();
   EXPECT_EQ(Newest().scan_state, ScanState::kEnded);
 }
 
-TEST_F(HousekeepingTest, ACameraThatIsLostIsToldOnceAndSoIsThatAllIsWellAgain) {
+TEST_F(EdgeMonitorTest, ACameraThatIsLostIsToldOnceAndSoIsThatAllIsWellAgain) {
   health_.SetWorks(Sensor::kDepth, true);
   Make().Tick();
   health_.SetWorks(Sensor::kDepth, false);
@@ -125,7 +125,7 @@ TEST_F(HousekeepingTest, ACameraThatIsLostIsToldOnceAndSoIsThatAllIsWellAgain) {
   EXPECT_EQ(told_.back(), "all is well again");
 }
 
-TEST_F(HousekeepingTest, AllThatIsWrongIsToldInOneStatus) {
+TEST_F(EdgeMonitorTest, AllThatIsWrongIsToldInOneStatus) {
   health_.SetWorks(Sensor::kThermal, false);
   publisher_.SetProblem("no network: wlan0 is missing");
   Make().Tick();
@@ -133,7 +133,7 @@ TEST_F(HousekeepingTest, AllThatIsWrongIsToldInOneStatus) {
                                                   HasSubstr("the thermal camera is lost"))));
 }
 
-TEST_F(HousekeepingTest, WhileAllIsWellTheServiceManagerIsToldTheRatesEachTenSeconds) {
+TEST_F(EdgeMonitorTest, WhileAllIsWellTheServiceManagerIsToldTheRatesEachTenSeconds) {
   Make().Tick();
   Pass(seconds(9), 1);
   EXPECT_THAT(told_, IsEmpty());
@@ -142,20 +142,20 @@ TEST_F(HousekeepingTest, WhileAllIsWellTheServiceManagerIsToldTheRatesEachTenSec
   EXPECT_THAT(told_.back(), HasSubstr("20"));
 }
 
-TEST_F(HousekeepingTest, WhatIsWrongIsNotReplacedByTheRates) {
+TEST_F(EdgeMonitorTest, WhatIsWrongIsNotReplacedByTheRates) {
   publisher_.SetProblem("no network");
   Make().Tick();
   Pass(seconds(30), 1);
   EXPECT_THAT(told_, ElementsAre("no network"));
 }
 
-TEST_F(HousekeepingTest, TheWatchdogIsFedAtItsInterval) {
+TEST_F(EdgeMonitorTest, TheWatchdogIsFedAtItsInterval) {
   Make().Tick();
   Pass(seconds(20));
   EXPECT_EQ(fed_, 5) << "at once, and each five seconds";
 }
 
-TEST_F(HousekeepingTest, F39ACameraThatCountsAsWorkingAndSendsNothingIsNoSignOfLife) {
+TEST_F(EdgeMonitorTest, F39ACameraThatCountsAsWorkingAndSendsNothingIsNoSignOfLife) {
   health_.SetWorks(Sensor::kDepth, true);
   Make().Tick();
   Pass(seconds(10));
@@ -166,7 +166,7 @@ TEST_F(HousekeepingTest, F39ACameraThatCountsAsWorkingAndSendsNothingIsNoSignOfL
   EXPECT_EQ(fed_, before + 1) << "it goes on";
 }
 
-TEST_F(HousekeepingTest, F39ACameraThatIsLookedForIsASignOfLife) {
+TEST_F(EdgeMonitorTest, F39ACameraThatIsLookedForIsASignOfLife) {
   health_.SetWorks(Sensor::kDepth, true);
   Make().Tick();
   health_.SetWorks(Sensor::kDepth, false);
@@ -174,13 +174,13 @@ TEST_F(HousekeepingTest, F39ACameraThatIsLookedForIsASignOfLife) {
   EXPECT_EQ(fed_, 13);
 }
 
-TEST_F(HousekeepingTest, WithoutAWatchdogNobodyIsTold) {
+TEST_F(EdgeMonitorTest, WithoutAWatchdogNobodyIsTold) {
   Make(std::nullopt).Tick();
   Pass(seconds(30));
   EXPECT_EQ(fed_, 0);
 }
 
-TEST_F(HousekeepingTest, TheGroundsImageReplacesTheFileAsSoonAsItComes) {
+TEST_F(EdgeMonitorTest, TheGroundsImageReplacesTheFileAsSoonAsItComes) {
   Feedback feedback;
   feedback.image = {1, 2, 3};
   publisher_.feedback = {{feedback, CaptureTime{}}};
@@ -192,7 +192,7 @@ TEST_F(HousekeepingTest, TheGroundsImageReplacesTheFileAsSoonAsItComes) {
     ASSERT_LT(std::chrono::steady_clock::now(), deadline) << "the feedback has not come";
     std::this_thread::yield();
   }
-  housekeeping_->Tick();
+  monitor_->Tick();
   std::ifstream file(image_, std::ios::binary);
   const std::string content{std::istreambuf_iterator<char>(file), {}};
   EXPECT_EQ(content, "\x01\x02\x03");

@@ -21,9 +21,9 @@
 
 namespace isotherm {
 
-/// Housekeeping asks this of the computer, and tells this to the service manager. Functions, so
+/// EdgeMonitor asks this of the computer, and tells this to the service manager. Functions, so
 /// that tests play both.
-struct HousekeepingHost {
+struct MonitorHost {
   std::function<HostStatus()> read;
   std::function<void(std::string_view)> notify_status;
   std::function<void()> notify_alive;
@@ -31,17 +31,17 @@ struct HousekeepingHost {
 };
 
 /// The computer that this program runs on.
-HousekeepingHost ThisComputer();
+MonitorHost ThisComputer();
 
 /// Does what is left to the daemon's main thread beside the line: answers commands, publishes the
 /// status once a second, tells the operator and the service manager. Thread-bound.
-class Housekeeping {
+class EdgeMonitor {
  public:
   /// All but `host` must outlive it. `image_file`: where the confidence image goes (empty:
   /// nowhere).
-  Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-               const FrameCounters& counters, const CameraHealth& health,
-               std::filesystem::path image_file, HousekeepingHost host = ThisComputer());
+  EdgeMonitor(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
+              const FrameCounters& counters, const CameraHealth& health,
+              std::filesystem::path image_file, MonitorHost host = ThisComputer());
 
   /// Does what is due; call it often.
   void Tick();
@@ -73,7 +73,7 @@ class Housekeeping {
   const FrameCounters& counters_;
   const CameraHealth& health_;
   const std::filesystem::path image_file_;
-  const HousekeepingHost host_;
+  const MonitorHost host_;
   std::optional<TerminalLine> line_{std::in_place};  ///< Until the end.
   const bool terminal_;
   bool synchronised_;

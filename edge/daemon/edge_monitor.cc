@@ -1,4 +1,4 @@
-#include "edge/daemon/housekeeping.h"
+#include "edge/daemon/edge_monitor.h"
 
 #include <optional>
 #include <utility>
@@ -22,16 +22,16 @@ constexpr Nanoseconds kNoFrames = std::chrono::seconds(10);
 
 }  // namespace
 
-HousekeepingHost ThisComputer() {
+MonitorHost ThisComputer() {
   return {.read = [] { return ReadHostStatus("."); },
           .notify_status = NotifyStatus,
           .notify_alive = NotifyWatchdog,
           .watchdog_interval = WatchdogInterval()};
 }
 
-Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-                           const FrameCounters& counters, const CameraHealth& health,
-                           std::filesystem::path image_file, HousekeepingHost host)
+EdgeMonitor::EdgeMonitor(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
+                         const FrameCounters& counters, const CameraHealth& health,
+                         std::filesystem::path image_file, MonitorHost host)
     : clock_(clock),
       pipeline_(pipeline),
       publisher_(publisher),
@@ -47,7 +47,7 @@ Housekeeping::Housekeeping(const Clock& clock, EdgePipeline& pipeline, Publisher
       newest_depth_{.at = next_status_},
       newest_thermal_{.at = next_status_} {}
 
-void Housekeeping::Tick() {
+void EdgeMonitor::Tick() {
   pipeline_.AnswerCommands();
   const SteadyTime now = clock_.SteadyNow();
   // First: what follows may take its time on a slow terminal.
@@ -70,7 +70,7 @@ void Housekeeping::Tick() {
   Log();
 }
 
-void Housekeeping::PublishEnd() {
+void EdgeMonitor::PublishEnd() {
   const Status published = publisher_.Publish(MakeStatus(ScanState::kEnded, clock_.SteadyNow()));
   if (!published.ok()) {
     LOG(Edge, Warning) << "final status not published: " << published.message();
@@ -78,7 +78,7 @@ void Housekeeping::PublishEnd() {
   line_.reset();  // What follows is below it.
 }
 
-EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
+EdgeStatus EdgeMonitor::MakeStatus(ScanState scan_state, SteadyTime now) {
   const SensorCounters depth = counters_.Get(Sensor::kDepth);
   const SensorCounters thermal = counters_.Get(Sensor::kThermal);
   EdgeStatus status;
@@ -100,7 +100,7 @@ EdgeStatus Housekeeping::MakeStatus(ScanState scan_state, SteadyTime now) {
   return status;
 }
 
-void Housekeeping::LogCameras(const EdgeStatus& before) const {
+void EdgeMonitor::LogCameras(const EdgeStatus& before) const {
   const auto tell = [](std::string_view name, const CameraReport& was, const CameraReport& is) {
     // A camera may have been lost and be back between two looks.
     if (is.state == CameraState::kNone || (was.state == is.state && was.failures == is.failures)) {
@@ -118,7 +118,7 @@ void Housekeeping::LogCameras(const EdgeStatus& before) const {
   tell("thermal", before.thermal_camera, status_.thermal_camera);
 }
 
-void Housekeeping::LogClock() {
+void EdgeMonitor::LogClock() {
   const bool synchronised = status_.clock.synchronised;
   if (std::exchange(synchronised_, synchronised) == synchronised) return;
   if (synchronised) {
@@ -128,7 +128,7 @@ void Housekeeping::LogClock() {
   }
 }
 
-void Housekeeping::ShowFeedback() {
+void EdgeMonitor::ShowFeedback() {
   const std::uint64_t count = pipeline_.feedback().latency().count;
   if (count == feedback_shown_) return;
   feedback_shown_ = count;
@@ -147,13 +147,13 @@ void Housekeeping::ShowFeedback() {
   }
 }
 
-std::string Housekeeping::Line() const {
+std::string EdgeMonitor::Line() const {
   const PublisherStats link = publisher_.stats();
   return StatusLine(status_, counters_, link.ground_present, pipeline_.feedback().newest(),
                     link.ground_problem);
 }
 
-void Housekeeping::ShowLine() {
+void EdgeMonitor::ShowLine() {
   if (!terminal_ || !line_) return;
   std::vector<std::string> problems;
   if (const auto recording = pipeline_.recording(); recording && !recording->brief.empty())
@@ -168,7 +168,7 @@ void Housekeeping::ShowLine() {
       "  ");
 }
 
-std::vector<std::string> Housekeeping::Problems() const {
+std::vector<std::string> EdgeMonitor::Problems() const {
   std::vector<std::string> problems;
   if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
     problems.push_back(*stuck);
@@ -188,7 +188,7 @@ std::vector<std::string> Housekeeping::Problems() const {
   return problems;
 }
 
-void Housekeeping::ReportStatus() {
+void EdgeMonitor::ReportStatus() {
   std::vector<std::string> problems = Problems();
   // Said when it changes: the service manager shows the last text until then.
   if (problems == reported_) return;
@@ -198,7 +198,7 @@ void Housekeeping::ReportStatus() {
   host_.notify_status(text.empty() ? "all is well again" : text);
 }
 
-void Housekeeping::Log() {
+void EdgeMonitor::Log() {
   if (clock_.SteadyNow() < next_log_) return;
   next_log_ += kLogInterval;
   const std::string line = Line();
@@ -208,7 +208,7 @@ void Housekeeping::Log() {
   if (reported_.empty()) host_.notify_status(line);
 }
 
-bool Housekeeping::GetsOn(SteadyTime now) {
+bool EdgeMonitor::GetsOn(SteadyTime now) {
   const auto sends = [&](Sensor sensor, Newest* newest) {
     const CameraState state = health_.Get(sensor).state;
     const bool is_due = state == CameraState::kWorking || state == CameraState::kBlind;
@@ -230,7 +230,7 @@ bool Housekeeping::GetsOn(SteadyTime now) {
   return !stuck;
 }
 
-void Housekeeping::FeedWatchdog(SteadyTime now) {
+void EdgeMonitor::FeedWatchdog(SteadyTime now) {
   if (now < next_feed_) return;
   next_feed_ = now + host_.watchdog_interval.value_or(kStatusInterval);
   if (GetsOn(now) && host_.watchdog_interval) host_.notify_alive();
