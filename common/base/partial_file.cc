@@ -25,6 +25,8 @@ Result<PartialFile> PartialFile::Create(const fs::path& target, bool overwrite) 
         InvalidArgument(fmt::format("{}: exists already; --force replaces it", target.string())));
   }
   fs::path partial = target;
+  // In the same folder, so that renaming it is atomic; hidden, and with the process's number, so
+  // that two runs do not share it.
   partial.replace_filename(fmt::format(".{}.{}.partial", target.filename().string(), ::getpid()));
   return PartialFile(target, std::move(partial));
 }

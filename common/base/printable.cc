@@ -10,6 +10,8 @@ std::size_t DecodeCharacter(std::string_view text, std::uint32_t& character) {
   const auto byte = [&text](std::size_t i) { return static_cast<std::uint8_t>(text[i]); };
   const std::uint8_t first = byte(0);
   const std::size_t size = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : 4;
+  // Longer forms of shorter characters are forbidden in UTF-8: they are used to smuggle in
+  // characters that filters look for.
   constexpr std::uint32_t kFirstOfSize[] = {0, 0, 0x80, 0x800, 0x10000};
   if (size == 4 && first >> 3 != 30) return 0;
   if (text.size() < size) return 0;
@@ -47,6 +49,7 @@ std::string Escaped(std::string_view text, bool keep_line_breaks) {
   while (!text.empty()) {
     std::uint32_t character = 0;
     const std::size_t size = DecodeCharacter(text, character);
+    // Damaged text is escaped byte by byte until a character begins again.
     const std::string_view bytes = text.substr(0, size == 0 ? 1 : size);
     text.remove_prefix(bytes.size());
     if (bytes == "\n") {

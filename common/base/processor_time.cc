@@ -18,9 +18,10 @@ namespace isotherm {
 namespace {
 
 constexpr double kNsToS = 1e-9;
-/// Below this a thread has done nothing worth a line.
-constexpr double kLeast_s = 1e-3;
-/// Of one core.
+/// A thread that used less than this since the first reading is left out: it has done nothing worth
+/// a line.
+constexpr double kMin_s = 1e-3;
+/// Threads below this fraction of one core are shown together as "others".
 constexpr double kWorthNaming = 0.01;
 
 thread_local std::chrono::nanoseconds of_helpers{0};
@@ -81,9 +82,9 @@ ProcessorTimes operator-(const ProcessorTimes& after, const ProcessorTimes& befo
     const double used_s =
         std::max(0.0, after_s - (found == before.by_thread_s.end() ? 0.0 : found->second));
     of_ended_s -= used_s;
-    if (used_s >= kLeast_s) used.by_thread_s[name] = used_s;
+    if (used_s >= kMin_s) used.by_thread_s[name] = used_s;
   }
-  if (of_ended_s >= kLeast_s) used.by_thread_s["ended"] = of_ended_s;
+  if (of_ended_s >= kMin_s) used.by_thread_s["ended"] = of_ended_s;
   return used;
 }
 
@@ -91,19 +92,19 @@ std::string ToText(const ProcessorTimes& used, double seconds) {
   std::string text = fmt::format("{:.1f} s", used.total_s);
   if (!(seconds > 0.0)) return text;
   text += fmt::format(", {:.2f} of a core", used.total_s / seconds);
-  std::vector<std::pair<double, std::string>> shares;
+  std::vector<std::pair<double, std::string>> fractions;
   double others = used.total_s / seconds;
   for (const auto& [name, thread_s] : used.by_thread_s) {
-    const double share = thread_s / seconds;
-    if (share < kWorthNaming) continue;
-    shares.emplace_back(share, name);
-    others -= share;
+    const double fraction = thread_s / seconds;
+    if (fraction < kWorthNaming) continue;
+    fractions.emplace_back(fraction, name);
+    others -= fraction;
   }
-  std::ranges::sort(shares, std::greater<>());
-  if (others >= kWorthNaming) shares.emplace_back(others, "others");
+  std::ranges::sort(fractions, std::greater<>());
+  if (others >= kWorthNaming) fractions.emplace_back(others, "others");
   const char* separator = ": ";
-  for (const auto& [share, name] : shares) {
-    text += fmt::format("{}{} {:.2f}", std::exchange(separator, ", "), name, share);
+  for (const auto& [fraction, name] : fractions) {
+    text += fmt::format("{}{} {:.2f}", std::exchange(separator, ", "), name, fraction);
   }
   return text;
 }

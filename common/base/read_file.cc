@@ -59,6 +59,7 @@ Result<std::string> ReadFile(const std::filesystem::path& path, std::uint64_t ma
   const Status usable =
       ::fstat(file, &info) != 0 ? CannotOpen(path, errno) : CheckKind(path, info, max_bytes);
   Result<std::string> bytes =
+      // The size of the opened file, not of the name, which may point elsewhere by now.
       usable.ok() ? ReadBytes(file, path, static_cast<std::size_t>(info.st_size)) : Err(usable);
   ::close(file);
   return bytes;

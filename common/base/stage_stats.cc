@@ -6,14 +6,17 @@
 namespace isotherm {
 namespace {
 
-constexpr double kSmallest_ms = 1e-4;
+/// Durations below 100 ns are not told apart.
+constexpr double kMin_ms = 1e-4;
+/// Each bin is a percent wider than the one before, so that quantiles are right within half a
+/// percent; kBins of them reach from 100 ns to three hours.
 constexpr double kBinRatio = 1.01;
 
 }  // namespace
 
 int StageStats::BinOf(double ms) {
-  if (ms <= kSmallest_ms) return 0;
-  const int bin = static_cast<int>(std::log(ms / kSmallest_ms) / std::log(kBinRatio)) + 1;
+  if (ms <= kMin_ms) return 0;
+  const int bin = static_cast<int>(std::log(ms / kMin_ms) / std::log(kBinRatio)) + 1;
   return std::min(bin, kBins - 1);
 }
 
@@ -40,7 +43,7 @@ double StageStats::Percentile(double percent) const {
   }
   // Bin b > 0 covers [kBinRatio^(b-1), kBinRatio^b) times the smallest; its geometric middle halves
   // the error.
-  const double middle_ms = kSmallest_ms * std::pow(kBinRatio, bin - 0.5);
+  const double middle_ms = kMin_ms * std::pow(kBinRatio, bin - 0.5);
   return std::clamp(middle_ms, min_ms_, max_ms_);
 }
 

@@ -7,6 +7,7 @@ namespace isotherm {
 
 ThreadPool::ThreadPool(int threads) {
   CHECK(threads >= 1);
+  // The calling thread is the first.
   for (int i = 1; i < threads; ++i) {
     workers_.emplace_back([this](std::stop_token stop) { Work(stop); });
   }
@@ -14,7 +15,9 @@ ThreadPool::ThreadPool(int threads) {
 
 ThreadPool::~ThreadPool() = default;
 
-void ThreadPool::RunFractions(const std::function<void(int)>& body, int count) {
+void ThreadPool::RunIndices(const std::function<void(int)>& body, int count) {
+  // Indices are taken one by one, since tasks differ in length. Relaxed: what a task reads was
+  // published by the mutex, and what it wrote is by the end of the loop.
   for (int i = next_.fetch_add(1, std::memory_order_relaxed); i < count;
        i = next_.fetch_add(1, std::memory_order_relaxed)) {
     body(i);
@@ -23,6 +26,7 @@ void ThreadPool::RunFractions(const std::function<void(int)>& body, int count) {
 
 void ThreadPool::ParallelFor(int count, const std::function<void(int)>& body) {
   if (count <= 0) return;
+  // Waking threads for one task costs more than it saves.
   if (workers_.empty() || count == 1) {
     for (int i = 0; i < count; ++i) body(i);
     return;
@@ -32,14 +36,17 @@ void ThreadPool::ParallelFor(int count, const std::function<void(int)>& body) {
     body_ = &body;
     count_ = count;
     next_ = 0;
+    // All workers must report back, also those that find no index left: `body` lives only until
+    // this function returns.
     running_ = static_cast<int>(workers_.size());
     worked_ = std::chrono::nanoseconds(0);
     ++generation_;
   }
   wake_.notify_all();
-  RunFractions(body, count);
+  RunIndices(body, count);
   MutexLock lock(mutex_);
   done_.wait(lock, [this]() REQUIRES(mutex_) { return running_ == 0; });
+  // Counted for the stage that asked, not for the pool.
   AddProcessorTimeOfHelpers(worked_);
 }
 
@@ -57,7 +64,7 @@ void ThreadPool::Work(std::stop_token stop) {
       count = count_;
     }
     const auto before = ThreadProcessorTime();
-    RunFractions(*body, count);
+    RunIndices(*body, count);
     MutexLock lock(mutex_);
     worked_ += ThreadProcessorTime() - before;
     if (--running_ == 0) done_.notify_one();

@@ -41,7 +41,7 @@ class ThreadPool {
 
  private:
   void Work(std::stop_token stop);
-  void RunFractions(const std::function<void(int)>& body, int count);
+  void RunIndices(const std::function<void(int)>& body, int count);
 
   Mutex mutex_;
   std::condition_variable_any wake_;

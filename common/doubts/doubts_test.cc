@@ -56,7 +56,7 @@ TEST(DoubtsTest, UnitsOfDelayAndDepthScaleAreDoubted) {
               ElementsAre(HasSubstr("thermal_delay_s is -42.7 s"), HasSubstr("depth_scale: 1000")));
 }
 
-TEST(DoubtsTest, StampsInOtherUnitsAreRecognised) {
+TEST(DoubtsTest, StampsInOtherUnitsAreFound) {
   const auto doubts = [](double per_second) {
     return DoubtsAboutTimes(Times(30, 5.0 * per_second, per_second / 30.0), {});
   };
@@ -69,7 +69,7 @@ TEST(DoubtsTest, StampsInOtherUnitsAreRecognised) {
               ElementsAre(AllOf(HasSubstr("every 1800 s"), HasSubstr("another unit?"))));
 }
 
-TEST(DoubtsTest, StreamsOfTwoClocksAreRecognised) {
+TEST(DoubtsTest, StreamsOfTwoClocksAreFound) {
   const StreamTimes depth = Times(300, 100.0, 1.0 / 30.0);
   EXPECT_THAT(DoubtsAboutTimes(depth, Times(400, 99.9, 1.0 / 40.0)), IsEmpty());
   // The thermal camera was plugged in late, or gave up early.

@@ -32,9 +32,9 @@ bool IsCovariance(const PoseCovariance& covariance) {
   if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0.0) return false;
   for (int i = 0; i < 6; ++i) {
     for (int j = 0; j < i; ++j) {
-      const double most = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j));
-      if (std::abs(covariance(i, j)) > (1.0 + kRounding) * most) return false;
-      if (std::abs(covariance(i, j) - covariance(j, i)) > kRounding * most) return false;
+      const double bound = std::sqrt(covariance(i, i)) * std::sqrt(covariance(j, j));
+      if (std::abs(covariance(i, j)) > (1.0 + kRounding) * bound) return false;
+      if (std::abs(covariance(i, j) - covariance(j, i)) > kRounding * bound) return false;
     }
   }
   return true;

@@ -12,6 +12,8 @@ BandEmissivity::BandEmissivity(std::span<const IndexSample> samples, const Spect
   const double total = PlanckBandRadiance(celsius, band);
   double from_um = band.min_um;
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    // Each sample stands for the wavelengths nearest to it, weighted by what a black body sends
+    // there.
     const double half_way_um = i + 1 < samples.size()
                                    ? (samples[i].wavelength_um + samples[i + 1].wavelength_um) / 2.0
                                    : band.max_um;

@@ -84,6 +84,8 @@ std::optional<RecordPosition> SoundRecordAt(const ByteSource& source, std::uint6
   const auto record = RecordIn(head, offset, source.size());
   if (!record) return std::nullopt;
   const auto content = ContentIn(head, *record);
+  // A length that is off by a bit would lead into the middle of other records; each kind has
+  // something to check it by.
   bool sound = false;
   switch (record->opcode) {
     case Opcode::kChunk:
@@ -118,17 +120,18 @@ std::optional<RecordPosition> SoundRecordAt(const ByteSource& source, std::uint6
 
 std::optional<RecordPosition> FindRecord(const ByteSource& source, std::uint64_t from) {
   // Small at first: what looks like a record every few bytes must not cost a large read each.
-  constexpr std::size_t kLargestBlockBytes = 1U << 20;
+  constexpr std::size_t kMaxBlockBytes = 1U << 20;
   std::size_t block_bytes = 4096;
   Bytes block;
   for (std::uint64_t at = from; at < source.size();
-       at += block_bytes, block_bytes = std::min(2 * block_bytes, kLargestBlockBytes)) {
+       at += block_bytes, block_bytes = std::min(2 * block_bytes, kMaxBlockBytes)) {
     // The heads that begin in this block may end in the next.
     block.resize(static_cast<std::size_t>(
         std::min<std::uint64_t>(block_bytes + kHeadBytes, source.size() - at)));
     if (!source.Read(at, block).ok()) return std::nullopt;
     for (std::size_t i = 0; i < std::min(block_bytes, block.size()); ++i) {
       const auto opcode = static_cast<Opcode>(block[i]);
+      // Only records whose length can be checked against their fields: any byte is some opcode.
       if (opcode != Opcode::kChunk && opcode != Opcode::kMessageIndex &&
           opcode != Opcode::kDataEnd) {
         continue;

@@ -93,6 +93,7 @@ class McapRecordingWriter final : public RecordingWriter {
   Status Flush() override { return closed_ ? AlreadyClosed() : writer_->Flush(); }
 
   Status Close() override {
+    // A recording without any message still says whose it was.
     if (!closed_ && rig_ && !last_time_) {
       last_time_ = CaptureTime{};
       static_cast<void>(WriteRig(*last_time_));
@@ -112,6 +113,8 @@ class McapRecordingWriter final : public RecordingWriter {
   }
 
  private:
+  // The rig is repeated this often, so that a file cut or damaged anywhere keeps a copy near; it
+  // takes about a kilobyte.
   static constexpr Nanoseconds kRigInterval = std::chrono::seconds(10);
 
   struct TopicChannel {
@@ -188,6 +191,7 @@ class McapRecordingWriter final : public RecordingWriter {
       return InvalidArgument(fmt::format("time {} ns lies before the Unix epoch", log_ns));
     }
     last_time_ = std::max(last_time_.value_or(time), time);
+    // Goes through this function again, with rig_written_at_ set first (WriteRig), so that it ends.
     if (rig_ && (!rig_written_at_ || time - *rig_written_at_ >= kRigInterval))
       ISOTHERM_RETURN_IF_ERROR(WriteRig(time));
     const std::int64_t publish_ns = std::max<std::int64_t>(ToNanoseconds(publish_time), 0);
@@ -201,6 +205,7 @@ class McapRecordingWriter final : public RecordingWriter {
                                      MakeSchema make_schema) {
     const auto found = channels_.find(topic);
     if (found != channels_.end()) {
+      // MCAP allows one schema per channel; readers would take the second kind for damage.
       if (found->second.schema_name == schema_name) return found->second.id;
       return Err(InvalidArgument(
           fmt::format("{} carries {}, not {}", topic, found->second.schema_name, schema_name)));
@@ -237,14 +242,16 @@ class McapRecordingWriter final : public RecordingWriter {
 };
 
 Status Validate(const RecordingOptions& options) {
+  // Smaller chunks would be mostly definitions, which each one repeats.
   constexpr std::size_t kMinChunkBytes = 4096;
-  constexpr Nanoseconds kLongestFlushInterval = std::chrono::seconds(1);
+  // A power cut costs what was not flushed: users are promised a second at most.
+  constexpr Nanoseconds kMaxFlushInterval = std::chrono::seconds(1);
   if (options.chunk_bytes < kMinChunkBytes ||
       options.chunk_bytes > mcap::Writer::kMaxMessageBytes) {
     return InvalidArgument(fmt::format("chunk_bytes must be {} to {}, not {}", kMinChunkBytes,
                                        mcap::Writer::kMaxMessageBytes, options.chunk_bytes));
   }
-  if (options.flush_interval <= Nanoseconds(0) || options.flush_interval > kLongestFlushInterval) {
+  if (options.flush_interval <= Nanoseconds(0) || options.flush_interval > kMaxFlushInterval) {
     return InvalidArgument(
         fmt::format("flush_interval must be more than 0 and at most 1 s, not {} s",
                     ToSeconds(options.flush_interval)));

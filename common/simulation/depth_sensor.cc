@@ -161,7 +161,7 @@ bool DepthSensor::IsDropped(const HitImage& hits, const CameraView& view, int x,
 
 void DepthSensor::MeasureRow(std::span<const float> z_m, float stretch, Scratch& scratch) const {
   // Without branches and member accesses inside, so that the divisions become SIMD code.
-  constexpr float kLargest = static_cast<float>(kNoDepthSaturated - 1);
+  constexpr float kMaxRaw = static_cast<float>(kNoDepthSaturated - 1);
   constexpr float kUnquantised = 1e-4F;  // A step far below any noise.
   constexpr float kMax_px = 1e5F;        // Nearer than any camera; keeps steps within 32 bits.
   const float disparity_metres_px = disparity_metres_px_, sigma_px = sigma_px_;
@@ -179,7 +179,7 @@ void DepthSensor::MeasureRow(std::span<const float> z_m, float stretch, Scratch&
     const float noisy_px = std::min(true_px, kMax_px) + sigma_px * noise[x];
     const float measured_m = known_metres_px / (RoundPositive(noisy_px / step_px) * step_px);
     const float raw = measured_m * scale;
-    const bool good = (measured_m >= min_m) & (measured_m <= max_m) & (raw <= kLargest);
+    const bool good = (measured_m >= min_m) & (measured_m <= max_m) & (raw <= kMaxRaw);
     out[x] = static_cast<std::int32_t>(RoundPositive(good ? raw : 0.0F));
   }
 }

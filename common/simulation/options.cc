@@ -165,6 +165,9 @@ Status Validate(const SimulationOptions& as_given) {
 SimulationOptions Resolved(const SimulationOptions& options) {
   SimulationOptions resolved = WithCamerasAsAsked(options);
   if (!options.has_depth_clock()) {
+    // Clocks of two real cameras differ in everything. These are of the size that the thesis
+    // measured (5.3): ticks from arbitrary zeros, tens of ppm, delays of some 20 and 30 ms, jitter
+    // of a millisecond, one or two frames in a hundred held up longer.
     SetClock(1000.0, 18.0, 0.021, 0.0012, 0.015, 0.030, *resolved.mutable_depth_clock());
   }
   if (!options.has_thermal_clock()) {
@@ -186,6 +189,7 @@ SimulatedThermalOptions IdealThermalCamera(const SimulatedThermalOptions& set) {
   expert.set_flicker_k(0.0);
   expert.mutable_scene_influence()->set_near_fraction(0.0);
   expert.mutable_scene_influence()->set_total_fraction(0.0);
+  // What was set by hand wins over what an ideal camera has.
   ideal.MergeFrom(set);
   return ideal;
 }
@@ -205,6 +209,9 @@ Rig DefaultSimulatedRig() {
   CameraModel depth;
   depth.width = 640;
   depth.height = 480;
+  // Cameras like the thesis's: a PrimeSense Carmine and an Optris PI 450, some centimetres apart,
+  // with its wide lens's distortion. Principal points and rotation are off centre on purpose, so
+  // that mixed-up axes show.
   depth.fx = depth.fy = 567.7;
   depth.cx = 321.3;
   depth.cy = 242.4;
@@ -233,7 +240,7 @@ Rig DefaultSimulatedRig() {
 namespace {
 
 /// The camera model's focal length, in pixels, is the distance of the image behind the lens (2.19).
-void TellLens(const SimulatedLensOptions& lens, Rig& rig) {
+void SetLens(const SimulatedLensOptions& lens, Rig& rig) {
   if (lens.focus_m() == 0.0) return;
   const double focal_length_m = kMetresPerMillimetre * lens.focal_length_mm();
   const double image_m = focal_length_m * lens.focus_m() / (lens.focus_m() - focal_length_m);
@@ -241,8 +248,9 @@ void TellLens(const SimulatedLensOptions& lens, Rig& rig) {
   rig.thermal_sensor.lens = LensModel{focal_length_m, lens.f_number(), lens.focus_m()};
 }
 
-/// What is ideal is not told: the rig's own word stands.
-void TellTimes(const SimulatedThermalExpertOptions& expert, Rig& rig) {
+/// Sets the detector's times in the rig description. An ideal detector's are not set: then those of
+/// the rig file stay.
+void SetTimes(const SimulatedThermalExpertOptions& expert, Rig& rig) {
   if (expert.time_constant_s() > 0.0) rig.thermal_sensor.time_constant_s = expert.time_constant_s();
   if (expert.readout_s() > 0.0)
     rig.thermal_sensor.row_readout_s = expert.readout_s() / rig.thermal->height;
@@ -265,8 +273,8 @@ Result<Rig> SimulatedRig(const SimulationOptions& as_given) {
   rig.depth_scale = options.depth().expert().depth_scale();
   rig.thermal_scale = ScaleOf(options.thermal());
   rig.thermal_sensor.scene_influence = InfluenceOf(options.thermal());
-  TellTimes(options.thermal().expert(), rig);
-  TellLens(options.thermal().expert().lens(), rig);
+  SetTimes(options.thermal().expert(), rig);
+  SetLens(options.thermal().expert().lens(), rig);
   return rig;
 }
 

@@ -42,6 +42,8 @@ std::vector<ExternalOdometry> SimulateOdometry(const OdometryOptions& options,
     pose.time = first + FromSeconds(static_cast<double>(i) / options.rate_hz());
     if (pose.time > last) return poses;
     RigidTransform motion = T_world_first.inverse() * scan.PoseAt(pose.time);
+    // Relative to the first pose: a wrong scale, as of monocular odometry, makes an error that
+    // grows with the way.
     motion.translation() *= 1.0 + options.scale_error();
     const RigidTransform seen = ReferenceFromWorld() * T_world_first * motion;
     const std::uint64_t stream = NoiseStream(seed, kPurpose, i);

@@ -8,7 +8,8 @@
 namespace isotherm {
 namespace {
 
-constexpr Nanoseconds kLongestGap = std::chrono::seconds(2);
+/// After a longer pause the period counted on may be off by a frame: it begins anew.
+constexpr Nanoseconds kMaxFrameGap = std::chrono::seconds(2);
 // The first estimate of the period is this close, even with milliseconds of jitter.
 constexpr double kMaxPeriodError_ppm = 50'000.0;
 constexpr int kSigmaFactor = 2;
@@ -19,7 +20,7 @@ PeriodTracker::PeriodTracker(const EnvelopeOptions& options) : options_(options)
 
 Stamp PeriodTracker::Process(std::uint64_t frame_number, CaptureTime arrival) {
   const Nanoseconds interval = arrival - last_arrival_;
-  if (!started_ || interval > kLongestGap || frame_number <= last_number_) {
+  if (!started_ || interval > kMaxFrameGap || frame_number <= last_number_) {
     Restart(frame_number, arrival);
     return {.time = arrival};
   }

@@ -19,7 +19,7 @@ namespace isotherm {
 namespace {
 
 // Longer than any message; a rig with all its texts has a few hundred bytes.
-constexpr std::size_t kLongestMessage = 16'384;
+constexpr std::size_t kMaxMessageBytes = 16'384;
 
 constexpr const char* kNotOfASoundProcess = "its process sent what no sound one sends: ";
 
@@ -48,7 +48,7 @@ CameraLink::Received CameraLink::ReceiveAny(Message* message, Nanoseconds timeou
   pollfd wait{descriptor_, POLLIN, 0};
   const auto ms = std::chrono::ceil<std::chrono::milliseconds>(timeout).count();
   if (::poll(&wait, 1, static_cast<int>(ms)) <= 0) return Received::kNothingYet;
-  std::array<char, kLongestMessage> bytes;
+  std::array<char, kMaxMessageBytes> bytes;
   ssize_t size = ::recv(descriptor_, bytes.data(), bytes.size(), MSG_DONTWAIT);
   // The other side left without reading all that it was sent. The kernel says so once, before the
   // messages that it left behind.
@@ -65,6 +65,7 @@ CameraLink::Received CameraLink::ReceiveAny(Message* message, Nanoseconds timeou
 template <typename Message>
 bool CameraLink::SendAny(const Message& message) {
   const std::string bytes = message.SerializeAsString();
+  // Never waits, and no signal: the other process may have hung or died.
   const auto sent = ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
   return sent == static_cast<ssize_t>(bytes.size());
 }
@@ -127,6 +128,8 @@ void ToLink(const RawFrame& frame, LinkFrame* to) {
 Result<RawFrame> FromLink(const LinkFrame& from, const PixelSlots& slots) {
   const std::int64_t width = from.width();
   const std::int64_t height = from.height();
+  // Everything that sizes or indexes is checked here: the process runs foreign code, and may be
+  // taken over.
   if (from.slot() < 0 || from.slot() >= PixelSlots::kSlots || width < 0 || height < 0 ||
       width * height > static_cast<std::int64_t>(PixelSlots::kPixelsPerSlot)) {
     return Err(DataLoss(fmt::format("{}a frame of {}x{} in slot {}", kNotOfASoundProcess, width,
@@ -159,6 +162,7 @@ Result<RawFrame> FromLink(const LinkFrame& from, const PixelSlots& slots) {
   }
   frame.housekeeping = {from.fpa_celsius(), from.housing_celsius(), from.shutter_celsius()};
   frame.pixels = Image<std::uint16_t>(from.width(), from.height());
+  // Copied out: the slot is given back, and the other process may write to it at any time.
   const std::span<const std::uint16_t> slot = slots.slot(from.slot());
   std::copy_n(slot.begin(), frame.pixels.size(), frame.pixels.data());
   return frame;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kPixelBytes =
     PixelSlots::kSlots * PixelSlots::kPixelsPerSlot * sizeof(std::uint16_t);
+// A page of its own.
 constexpr std::size_t kCounterBytes = 4096;
 constexpr std::size_t kBytes = kPixelBytes + kCounterBytes;
 

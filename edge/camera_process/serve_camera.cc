@@ -61,6 +61,7 @@ class CameraServer {
     FromCamera message;
     message.set_ended(true);
     link_.Send(message);
+    // Not before the other side has gone: it may still copy pixels out of the slots.
     while (Listen(kSignOfLifeInterval)) ShowLife();
   }
 
@@ -106,6 +107,7 @@ class CameraServer {
   }
 
   void Execute(const ToCamera& message) {
+    // The link's other end is checked as this one is.
     if (message.has_free_slot() && message.free_slot() >= 0 &&
         message.free_slot() < PixelSlots::kSlots) {
       free_.set(static_cast<std::size_t>(message.free_slot()));
@@ -140,6 +142,7 @@ int ServeCamera(FrameSource& source, const Clock& clock, const ServeSettings& se
   // A terminal's Ctrl-C and the service manager's request are for the edge; it ends us.
   ::signal(SIGINT, SIG_IGN);
   ::signal(SIGTERM, SIG_IGN);
+  // A camera's process must not outlive an edge that crashed: it holds the device.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   Result<PixelSlots> slots = PixelSlots::Attach(kCameraPixelsDescriptor);
   if (!slots) {
@@ -147,6 +150,7 @@ int ServeCamera(FrameSource& source, const Clock& clock, const ServeSettings& se
     return ExitCode(slots.error());
   }
   std::optional<Status> confined;
+  // After the memory is mapped, before the camera is opened.
   if (settings.sandbox) confined = EnterSandbox(*settings.sandbox);
   CameraServer(source, clock, std::move(*slots), settings.waits, std::move(confined)).Run();
   source.Close();

@@ -74,7 +74,7 @@ TEST_F(ShutterWatchTest, ACameraThatTellsNothingIsClosedForItsTimeAfterAnOrder) 
   EXPECT_FALSE(shutter_.is_closed());
 }
 
-TEST_F(ShutterWatchTest, WhoHasSpokenOnceIsNotJudgedByUniformImages) {
+TEST_F(ShutterWatchTest, ACameraThatReportedOnceIsNotAssessedByUniformImages) {
   Frames(S::kUniform, 0.1);
   EXPECT_TRUE(shutter_.is_closed());
   Frames(S::kSaysIdle, 0.1);

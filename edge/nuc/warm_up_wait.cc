@@ -12,6 +12,7 @@ WarmUpWait::WarmUpWait(const NucOptions& options, bool is_camera, NucNotices& no
     : mode_(ModeOf(options, is_camera)), notices_(notices), watch_(options) {}
 
 WarmUpWait::Mode WarmUpWait::ModeOf(const NucOptions& options, bool is_camera) {
+  // A recording is as warm as it was.
   if (!is_camera || options.warm_up() == NucOptions::IGNORE) return Mode::kIgnore;
   return options.warm_up() == NucOptions::WAIT ? Mode::kWait : Mode::kWarn;
 }

@@ -17,7 +17,8 @@
 namespace isotherm {
 namespace {
 
-constexpr Nanoseconds kLongestFrameWait = std::chrono::milliseconds(100);
+/// The library cannot be woken, so that a stop waits for at most this long: three frames at 30 Hz.
+constexpr Nanoseconds kMaxFrameWait = std::chrono::milliseconds(100);
 
 bool IsFile(const std::string& uri) { return std::filesystem::path(uri).extension() == ".oni"; }
 
@@ -86,12 +87,13 @@ class OpenedDevice final : public OpenniDevice {
   }
 
   Result<std::optional<Frame>> Wait(Nanoseconds timeout) override {
+    // The library goes on delivering nothing; only its listener tells.
     if (unplug_ && unplug_->unplugged()) return Err(Unavailable("it was unplugged"));
     if (ended()) return std::nullopt;
     openni::VideoStream* streams[] = {&stream_};
     int ready = -1;
     const auto wait =
-        std::chrono::ceil<std::chrono::milliseconds>(std::min(timeout, kLongestFrameWait));
+        std::chrono::ceil<std::chrono::milliseconds>(std::min(timeout, kMaxFrameWait));
     const openni::Status waited =
         openni::OpenNI::waitForAnyStream(streams, 1, &ready, static_cast<int>(wait.count()));
     if (waited == openni::STATUS_TIME_OUT) return std::nullopt;
@@ -187,10 +189,12 @@ class OpenedDevice final : public OpenniDevice {
     frame.depth_scale = active_.depth_scale;
     const std::int64_t width = from.getWidth();
     const std::int64_t height = from.getHeight();
+    // Rows may be padded, and the sizes come from a driver: they are checked before anything is
+    // read.
     const std::int64_t stride = from.getStrideInBytes();
     constexpr std::int64_t kPixelBytes = 2;
-    constexpr std::int64_t kLargest_px = 16384;
-    if (width <= 0 || height <= 0 || width > kLargest_px || height > kLargest_px ||
+    constexpr std::int64_t kMaxSide_px = 16384;
+    if (width <= 0 || height <= 0 || width > kMaxSide_px || height > kMaxSide_px ||
         stride < width * kPixelBytes ||
         from.getDataSize() < (height - 1) * stride + width * kPixelBytes) {
       return frame;
@@ -200,6 +204,7 @@ class OpenedDevice final : public OpenniDevice {
     for (std::int64_t row = 0; row < height; ++row) {
       std::uint16_t* line = frame.pixels.data() + row * width;
       std::memcpy(line, bytes + row * stride, static_cast<std::size_t>(width * kPixelBytes));
+      // Mirrored images have the geometry of no camera.
       if (active_.mirrored) std::reverse(line, line + width);
     }
     return frame;

@@ -5,7 +5,7 @@
 namespace isotherm {
 namespace {
 
-constexpr std::uint64_t kTurn_us = 4'294'967'296;  // 71.6 minutes.
+constexpr std::uint64_t kWrap_us = 4'294'967'296;  // 71.6 minutes.
 
 std::int64_t Us(DeviceTicks ticks) { return ticks.time_since_epoch().count(); }
 
@@ -23,7 +23,7 @@ TEST(TickUnwrapperTest, F09ACounterOf32BitsGoesOnAcrossItsWraps) {
   // Three turns and a bit, a frame a minute so that it stays quick.
   std::uint64_t true_us = 17;
   for (int frame = 0; frame < 240; ++frame, true_us += 1800 * kPeriod_us) {
-    ASSERT_EQ(Us(unwrapper.Unwrap(true_us % kTurn_us)), static_cast<std::int64_t>(true_us));
+    ASSERT_EQ(Us(unwrapper.Unwrap(true_us % kWrap_us)), static_cast<std::int64_t>(true_us));
   }
   EXPECT_EQ(unwrapper.wraps(), 3U);
   EXPECT_EQ(unwrapper.resets(), 0U);
@@ -40,9 +40,9 @@ TEST(TickUnwrapperTest, F09AResetGoesBackwards) {
 
 TEST(TickUnwrapperTest, F09AResetAfterAWrapStartsFromTheCounterAgain) {
   TickUnwrapper unwrapper;
-  unwrapper.Unwrap(kTurn_us - 10);
+  unwrapper.Unwrap(kWrap_us - 10);
   const DeviceTicks wrapped = unwrapper.Unwrap(60'000'000);
-  EXPECT_EQ(Us(wrapped), static_cast<std::int64_t>(kTurn_us) + 60'000'000);
+  EXPECT_EQ(Us(wrapped), static_cast<std::int64_t>(kWrap_us) + 60'000'000);
   EXPECT_EQ(Us(unwrapper.Unwrap(1000)), 1000);
   EXPECT_EQ(unwrapper.wraps(), 1U);
   EXPECT_EQ(unwrapper.resets(), 1U);
@@ -50,7 +50,7 @@ TEST(TickUnwrapperTest, F09AResetAfterAWrapStartsFromTheCounterAgain) {
 
 TEST(TickUnwrapperTest, F09ALongCounterDoesNotWrapAt32Bits) {
   TickUnwrapper unwrapper;
-  unwrapper.Unwrap(3 * kTurn_us);
+  unwrapper.Unwrap(3 * kWrap_us);
   EXPECT_EQ(Us(unwrapper.Unwrap(5)), 5) << "a counter beyond 32 bits was reset";
   EXPECT_EQ(unwrapper.resets(), 1U);
 }

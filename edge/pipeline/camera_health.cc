@@ -38,6 +38,7 @@ CameraReport CameraHealth::Get(Sensor sensor) const {
   CameraReport report;
   report.state = entry.state;
   report.failures = entry.failures;
+  // A lost camera shows nothing either; that it is lost says more.
   if (entry.blind && report.state != CameraState::kLost) report.state = CameraState::kBlind;
   MutexLock lock(entry.mutex);
   report.stamp_sigma_s = entry.stamp_sigma_s;

@@ -9,6 +9,8 @@ namespace isotherm {
 void FeedbackMonitor::NoteCapture(CaptureTime capture_time, CaptureTime now) {
   if (time_base_ != TimeBase::kShifted) return;
   const MutexLock lock(mutex_);
+  // A replay's stamps are shifted into the past by a constant, and each frame is late by a little
+  // more: the least difference is the shift.
   shift_ = std::min(shift_.value_or(Nanoseconds::max()), Nanoseconds(now - capture_time));
 }
 

@@ -33,6 +33,7 @@ Status FrameCheck::Process(RawFrame& frame) {
         fmt::format("{} frame {} has no pixels", NameOf(frame.sensor), frame.frame_number));
   }
   Size& expected = expected_[static_cast<std::size_t>(frame.sensor)];
+  // Without a calibration, the first frame decides.
   if (expected.width == 0) expected = {width, height};
   if (width != expected.width || height != expected.height) {
     return DataLoss(fmt::format("{} frame {} is {}x{} pixels instead of {}x{}",
@@ -52,6 +53,7 @@ void FrameCheck::MaskTemperatures(const RadiometricScale& scale,
   for (std::uint16_t& value : temperature_raw.pixels()) {
     const bool outside = value < lowest || value > highest;
     masked += outside ? 1U : 0U;
+    // Without a branch: this runs over every pixel.
     value = outside ? std::uint16_t{0} : value;
   }
   masked_pixels_ += masked;

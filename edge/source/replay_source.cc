@@ -15,7 +15,7 @@ namespace isotherm {
 namespace {
 
 // More than any camera needs; what a file says beyond it is not believed.
-constexpr double kLongestDelay_s = 10.0;
+constexpr double kMaxDelay_s = 10.0;
 // Between the last frame of a loop and the first of the next; about one frame period.
 constexpr Nanoseconds kLoopGap = std::chrono::milliseconds(33);
 
@@ -28,7 +28,7 @@ Nanoseconds KnownDelay(const RecordingInfo& info, const std::string& key) {
   double seconds = 0.0;
   const std::string& text = value->second;
   std::from_chars(text.data(), text.data() + text.size(), seconds);
-  return std::abs(seconds) < kLongestDelay_s ? FromSeconds(seconds) : Nanoseconds(0);
+  return std::abs(seconds) < kMaxDelay_s ? FromSeconds(seconds) : Nanoseconds(0);
 }
 
 }  // namespace
@@ -44,6 +44,7 @@ ReplaySource::ReplaySource(const SourceOptions& options, std::filesystem::path r
       longest_pause_(longest_pause) {}
 
 Status ReplaySource::Open() {
+  // Opened again after a failure downstream, it goes on where it was.
   if (reader_) return OkStatus();
   Result<std::unique_ptr<RecordingReader>> reader = RecordingReader::Open(path_);
   if (!reader) return reader.error();
@@ -79,6 +80,7 @@ Result<SourceItem> ReplaySource::Read(std::stop_token stop) {
 Result<std::optional<ReplaySource::PlayedItem>> ReplaySource::NextItem() {
   while (true) {
     Result<std::optional<RecordedItem>> item = reader_->Next();
+    // Damage costs the messages in it, not the rest of the scan.
     if (!item && item.error().code() == StatusCode::kDataLoss) {
       if (unreadable_++ == 0) {
         LOG(Source, Warning) << "skipped: " << item.error().message();
@@ -111,7 +113,9 @@ Result<std::optional<ReplaySource::PlayedItem>> ReplaySource::NextItem() {
 }
 
 bool ReplaySource::IsInTime(const RecordedItem& item) const {
-  constexpr Nanoseconds kLongestScan = std::chrono::hours(24 * 31);
+  // One wild time would move everything that follows it by years, or make the replay wait that
+  // long.
+  constexpr Nanoseconds kMaxScan = std::chrono::hours(24 * 31);
   std::optional<CaptureTime> time;
   if (const auto* depth = std::get_if<RecordedDepth>(&item)) {
     time = depth->arrival.value_or(depth->frame.header.capture_time);
@@ -121,7 +125,7 @@ bool ReplaySource::IsInTime(const RecordedItem& item) const {
     time = pose->time;
   }
   return !time || !first_arrival_ ||
-         (*time - *first_arrival_ <= kLongestScan && *first_arrival_ - *time <= kLongestScan);
+         (*time - *first_arrival_ <= kMaxScan && *first_arrival_ - *time <= kMaxScan);
 }
 
 RawFrame ReplaySource::ToRawFrame(RecordedDepth recorded) {
@@ -151,6 +155,8 @@ RawFrame ReplaySource::Prepare(Sensor sensor, const FrameHeader& header, const E
   frame.frame_number = frames_[index]++;
   if (arrival) {
     frame.device_ticks = header.device_ticks;
+    // A recording's stamps have the delay taken out already; the timestamper takes it out again, so
+    // it is put back here.
     frame.arrival_wall = *arrival + known_delay_[index];
   } else {
     const auto time =
@@ -172,6 +178,7 @@ bool ReplaySource::StartNextLoop() {
     return false;
   }
   last_nuc_event_.reset();
+  // Times go on from loop to loop: for the rest of the edge it is one long scan.
   loop_offset_ = last_arrival_ - *first_arrival_ + kLoopGap;
   return true;
 }

@@ -24,6 +24,7 @@ Result<RecordingFile> RecordingFiles::Next() {
   if (const Status written = WriteBeginning(**writer); !written.ok()) {
     writer->reset();
     std::error_code ignored;
+    // A file without a beginning cannot be read.
     if (!is_device) std::filesystem::remove(path, ignored);
     return Err(written);
   }

@@ -15,7 +15,8 @@ using std::chrono::milliseconds;
 // Transfers that fail one after the other before the stream is given up.
 constexpr int kMaxErrorsInARow = 16;
 // The kernel gives cancelled transfers back within a bus interval or two.
-constexpr milliseconds kLongestStop{500};
+constexpr milliseconds kMaxStopTime{500};
+// Events are handled this long at a time until all are back.
 constexpr milliseconds kStopTry{10};
 
 void LIBUSB_CALL OnTransferDone(libusb_transfer* transfer) {
@@ -45,8 +46,9 @@ LibusbStream::LibusbStream(libusb_context* context, libusb_device_handle* handle
 LibusbStream::~LibusbStream() { CHECK(in_flight_ == 0); }
 
 bool LibusbStream::Stop() {
+  // Cancelling only asks: the kernel writes to the buffers until each transfer has come back.
   CancelAll();
-  const SteadyTime end = clock_.SteadyNow() + kLongestStop;
+  const SteadyTime end = clock_.SteadyNow() + kMaxStopTime;
   while (in_flight_ > 0 && clock_.SteadyNow() < end) {
     timeval wait{0, kStopTry.count() * 1000};
     libusb_handle_events_timeout_completed(context_, &wait, nullptr);

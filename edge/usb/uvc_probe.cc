@@ -5,6 +5,7 @@
 namespace isotherm {
 
 std::size_t UvcProbeBytes(int version) {
+  // UVC 1.5, table 4-75, and its predecessors: each version appended fields.
   if (version >= 0x0150) return 48;
   return version >= 0x0110 ? 34 : 26;
 }

@@ -22,8 +22,13 @@ constexpr int kHalvings = 2;
 // of the camera; and the noise of the surface.
 constexpr double kNeighbourhood_px = 2.2;
 constexpr double kSurfaceNoise_m = 0.005;
+// Clear of the image's border for the interpolation and for a motion of some pixels while delays
+// are tried.
 constexpr double kBorder_px = 4.0;
+// Surface seen once may be noise beside an edge.
 constexpr float kMinWeight = 2.0F;
+// Poses that points are drawn from, spread over the scan: each sees thousands of points, so more
+// would only take time.
 constexpr std::size_t kPointViews = 60;
 // Poses closer in time than this show the same.
 constexpr double kPoseSpacing_s = 0.045;
@@ -97,7 +102,7 @@ class PoseViewer {
     return Clear(ProjectNormalized(ideal_, normalized), p_thermal.z());
   }
 
-  /// Whether the surface is at this depth in the pixels around.
+  /// Returns whether the surface is at this depth in the pixels around.
   bool Clear(const Eigen::Vector2d& pixel, double depth_m) const {
     const auto x = static_cast<int>(std::lround(pixel.x()));
     const auto y = static_cast<int>(std::lround(pixel.y()));
@@ -134,8 +139,9 @@ std::vector<std::uint32_t> ShownByAll(const std::deque<PoseView>& window, std::s
   return visible;
 }
 
-/// Whether there is a pose for every delay within the range.
+/// Returns whether there is a pose for every delay within the range.
 bool Covered(const ScanViews& views, CaptureTime time, double range_s) {
+  // Shorter than a gap that poses are not interpolated over (kMaxGap_s).
   constexpr double kStep_s = 0.025;
   const int steps = static_cast<int>(std::ceil(range_s / kStep_s));
   for (int k = -steps; k <= steps; ++k) {
@@ -153,7 +159,7 @@ void Shuffle(std::vector<TexturePoint>& points) {
 }  // namespace
 
 std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& views,
-                                     std::size_t most, ThreadPool& pool) {
+                                     std::size_t max_points, ThreadPool& pool) {
   std::vector<TexturePoint> points;
   if (views.frames.empty()) return points;
   const CameraModel camera = RectifiedCamera(views.thermal_camera).Downscaled(kHalvings);
@@ -167,7 +173,7 @@ std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& vi
     raycaster.Cast(tsdf, camera, *T_world_depth * views.T_thermal_depth.inverse(), kMinWeight, pool,
                    maps);
     const std::uint64_t stream = NoiseStream(1, 0x706f696e7473, view);
-    for (std::uint64_t i = 0; i < most / count; ++i) {
+    for (std::uint64_t i = 0; i < max_points / count; ++i) {
       const auto x = static_cast<int>(UniformNoise(stream, 2 * i) * maps.width());
       const auto y = static_cast<int>(UniformNoise(stream, 2 * i + 1) * maps.height());
       if (std::isnan(maps.vz.At(x, y))) continue;  // No surface.

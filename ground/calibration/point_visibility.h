@@ -10,11 +10,11 @@
 
 namespace isotherm {
 
-/// Draws up to `most` points of the surface of `tsdf` (in the trajectory's `world`) as the thermal
-/// camera sees it from poses of the frames, so that the time this takes does not grow with the
-/// surface. In random order that is always the same.
+/// Draws up to `max_points` points of the surface of `tsdf` (in the trajectory's `world`) as the
+/// thermal camera sees it from poses of the frames, so that the time this takes does not grow with
+/// the surface. In random order that is always the same.
 std::vector<TexturePoint> DrawPoints(const TsdfVolume& tsdf, const ScanViews& views,
-                                     std::size_t most, ThreadPool& pool);
+                                     std::size_t max_points, ThreadPool& pool);
 
 /// Fills StampedThermal::visible: the points that the thermal camera sees from all poses of the
 /// trajectory within `range_s` of the image's stamp, clear of silhouettes and not too obliquely.

@@ -19,11 +19,18 @@
 namespace isotherm {
 namespace {
 
+// Images are kept decoded: 1200 of a PI 450 are 264 MB. Of a longer scan every n-th image is taken.
 constexpr std::size_t kMaxFrames = 1200;
+// As many as the fine search compares (FindDelayOptions::fine_points). Not tuned.
 constexpr std::size_t kMaxPoints = 30'000;
+// Fewer points than this, or images, hardly overlap: the search would fit their noise. Not tuned; a
+// minute's scan has a thousand images.
 constexpr std::size_t kMinPoints = 500;
 constexpr std::size_t kMinFrames = 40;
+// The part of the progress that reading and tracking take; the rest is finding out what is visible.
 constexpr double kReadFraction = 0.8;
+// With more than half of the poses missing, what is left is mostly pauses between losses. Not
+// tuned.
 constexpr double kMinTracked = 0.5;
 // A pose less certain than this does not place a thermal image. Twice what the fusion takes
 // (thermal.expert.max_registration_px): translation and rotation, which largely make up for each

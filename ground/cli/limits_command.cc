@@ -57,6 +57,7 @@ Status ReadTolerances(const LimitsArguments& arguments, AngleRequest& request) {
   const auto acceptable = ParseTolerance(arguments.tolerance, "--tolerance");
   if (!acceptable) return acceptable.error();
   request.acceptable = request.good = *acceptable;
+  // Whoever gives one tolerance means the acceptable one.
   request.good.value *= kGoodFraction;
   if (arguments.good_tolerance.empty()) return OkStatus();
   const auto good = ParseTolerance(arguments.good_tolerance, "--good-tolerance");
@@ -92,12 +93,12 @@ Result<SpectralBand> ReadBand(const LimitsArguments& arguments) {
   const auto numbers = ParseNumbers(arguments.band, {2}, "--band");
   if (!numbers) return Err(numbers.error());
   const SpectralBand band{(*numbers)[0], (*numbers)[1]};
-  constexpr double kShortestUm = 0.5, kLongestUm = 1000.0;
-  if (!(band.min_um >= kShortestUm && band.max_um > band.min_um && band.max_um <= kLongestUm)) {
+  constexpr double kMin_um = 0.5, kMax_um = 1000.0;
+  if (!(band.min_um >= kMin_um && band.max_um > band.min_um && band.max_um <= kMax_um)) {
     return Err(
         InvalidArgument(fmt::format("--band: expected two rising wavelengths of {} to {} um, "
                                     "got '{}'",
-                                    kShortestUm, kLongestUm, arguments.band)));
+                                    kMin_um, kMax_um, arguments.band)));
   }
   return band;
 }
@@ -156,6 +157,7 @@ Result<Optics> ReadOptics(const LimitsArguments& arguments) {
     if (!rig) return Err(rig.error());
     if (!rig->thermal)
       return Err(FailedPrecondition(arguments.rig + ": the rig has no thermal camera"));
+    // The calibrated focal length in pixels, since the nominal one of the lens is off by percents.
     optics.ifov_rad = 1.0 / rig->thermal->fx;
     if (!optics.focal_length_m && optics.pitch_m)
       optics.focal_length_m = rig->thermal->fx * *optics.pitch_m;
@@ -184,6 +186,7 @@ Result<DepthOfField> FindDepthOfField(const LimitsArguments& arguments, const Op
         field.near_m, field.far_m,
         HyperfocalDistance(*optics.focal_length_m, *arguments.f_number, *optics.pitch_m));
   }
+  // Limits that were given replace those that follow from the lens.
   if (optics.near_m) field.near_m = *optics.near_m;
   if (optics.far_m) field.far_m = *optics.far_m;
   if (!(field.near_m < field.far_m)) {
@@ -199,6 +202,7 @@ Status RunDistances(const LimitsArguments& arguments, LimitOptions& options) {
   if (!optics) return optics.error();
   const Result<DepthOfField> field = FindDepthOfField(arguments, *optics);
   if (!field) return field.error();
+  // Only limits that were found become options; the others keep their defaults.
   if (field->near_m > 0.0) options.distance_min_m = field->near_m;
   if (std::isfinite(field->far_m)) options.distance_max_m = field->far_m;
   std::vector<double> distances_m = {0.3, 0.5, 0.7, 1.0};

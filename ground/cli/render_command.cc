@@ -108,6 +108,8 @@ void SetLook(const RenderArguments& arguments, RendererOptions& options, Problem
 /// line.
 GroundOptions CollectOptions(const RenderArguments& arguments, Problems& problems) {
   GroundOptions options;
+  // Classes were assigned under the limits of that run: with other ones their legend would be
+  // wrong.
   if (const auto made_with = ConfigurationOf(arguments.model)) {
     *options.mutable_renderer() = made_with->renderer();
     *options.mutable_thermal() = made_with->thermal();
@@ -134,27 +136,28 @@ Result<std::vector<RenderLayer>> Layers(const std::vector<std::string>& names) {
       return Err(InvalidArgument(
           fmt::format("--layer: there is no layer '{}'; there are {}", name, known)));
     }
+    // "--layer thermal,thermal" must not write one file twice.
     if (std::ranges::count(layers, *layer) == 0) layers.push_back(*layer);
   }
   return layers;
 }
 
 Result<CameraModel> Camera(const RenderArguments& arguments) {
-  constexpr int kSmallest = 16, kLargest = 8192;
+  constexpr int kMinSide_px = 16, kMaxSide_px = 8192;
   int width = 0, height = 0;
   const char* const end = arguments.size.data() + arguments.size.size();
   const auto [x, first_error] = std::from_chars(arguments.size.data(), end, width);
   const bool has_x = first_error == std::errc() && x != end && *x == 'x';
   if (!has_x || std::from_chars(x + 1, end, height).ptr != end ||
-      std::min(width, height) < kSmallest || std::max(width, height) > kLargest) {
+      std::min(width, height) < kMinSide_px || std::max(width, height) > kMaxSide_px) {
     return Err(InvalidArgument(
         fmt::format("--size: '{}' is not WIDTHxHEIGHT in pixels, {} to {} each, e.g. 960x720",
-                    arguments.size, kSmallest, kLargest)));
+                    arguments.size, kMinSide_px, kMaxSide_px)));
   }
-  constexpr double kNarrowest_deg = 1.0, kWidest_deg = 150.0;
-  if (!(arguments.fov_deg >= kNarrowest_deg && arguments.fov_deg <= kWidest_deg)) {
-    return Err(InvalidArgument(fmt::format("--fov must be {} to {} degrees, got {}", kNarrowest_deg,
-                                           kWidest_deg, arguments.fov_deg)));
+  constexpr double kMinFov_deg = 1.0, kMaxFov_deg = 150.0;
+  if (!(arguments.fov_deg >= kMinFov_deg && arguments.fov_deg <= kMaxFov_deg)) {
+    return Err(InvalidArgument(fmt::format("--fov must be {} to {} degrees, got {}", kMinFov_deg,
+                                           kMaxFov_deg, arguments.fov_deg)));
   }
   return RenderingCamera(width, height, arguments.fov_deg);
 }
@@ -190,6 +193,7 @@ Result<Views> OneView(const RenderArguments& arguments, const LoadedModel& model
     return Views{{*pose}, "as given"};
   }
   if (arguments.from.empty()) {
+    // Nobody knows where the front of a scanned thing is, but it was scanned from there.
     return Views{{FrameAll(points_m, aspect.to_viewer_world, aspect.up_world, camera)},
                  "the whole model, from where it was scanned"};
   }
@@ -278,11 +282,13 @@ int Run(const RenderArguments& arguments) {
     return Fail(DataLoss(file->string() + ": the model has no surface that was seen often enough "
                                           "(export.expert.min_weight)"));
   }
+  // Views are chosen by what will be shown, so the surface is extracted before.
   const auto views = ChooseViews(arguments, *model, surface.points_m, *camera);
   if (!views) return Fail(views.error());
   const RenderingRequest request{*layers, views->T_world_camera, *camera, arguments.output,
                                  interpretation};
   if (const Status status = PrepareRenderings(request); !status.ok()) return Fail(status);
+  // One scale for all views: a colour must mean the same temperature in all renderings of a call.
   const auto scale = ChooseScale(options.renderer(), surface.celsius);
   const std::vector<std::filesystem::path> files = RenderingFiles(request);
   std::optional<ProgressBar> progress;
@@ -290,6 +296,7 @@ int Run(const RenderArguments& arguments) {
   const auto empty = WriteRenderings(*model, options, scale, request, pool, [&](double fraction) {
     if (progress) progress->Update(fraction);
   });
+  // After a failure the bar must not say 100 %.
   if (empty && progress) progress->Finish();
   progress.reset();
   if (!empty) return Fail(empty.error());
@@ -297,6 +304,7 @@ int Run(const RenderArguments& arguments) {
              1e3 * options.volume().voxel_size_m());
   if (interpretation != nullptr) fmt::print("{}", AppliedText(all, surface.interpretation));
   PrintSummary(*views, options, scale, files);
+  // A view beside the model is no failure: orbits and scripts have some. But it is said.
   if (*empty > 0) {
     fmt::print(stderr, "isotherm: {} of {} views show nothing of the model\n", *empty,
                views->T_world_camera.size());

@@ -28,6 +28,8 @@ void PointIndex::Build(std::size_t begin, std::size_t end) {
   (high - low).maxCoeff(&axis);
   const std::size_t middle = begin + (end - begin) / 2;
   const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
+  // The tree lies in the array itself: the middle of a range is its node, so that no pointers are
+  // needed.
   std::nth_element(at(begin), at(middle), at(end), [axis](const Point& a, const Point& b) {
     return a.position[axis] < b.position[axis];
   });
@@ -53,6 +55,7 @@ void PointIndex::NearestInRange(std::size_t begin, std::size_t end, const Eigen:
   const int axis = axes_[middle];
   const float offset = p[axis] - points_[middle].position[axis];
   Offer(points_[middle], p, best);
+  // The side of the query first: the other one is mostly out of reach then.
   const bool left_first = offset <= 0.0F;
   if (left_first) {
     NearestInRange(begin, middle, p, best);
@@ -74,20 +77,24 @@ std::optional<PointIndex::Neighbour> PointIndex::Nearest(const Eigen::Vector3f& 
 }
 
 float TypicalSpacing(std::span<const Eigen::Vector3f> points, const PointIndex& index) {
+  // The median of 500 distances is steady enough for a spacing from which only a radius is chosen.
+  // The limits keep repeated and single points from deciding it.
   constexpr std::size_t kSamples = 500;
-  constexpr float kSmallest_m = 1e-5F;
-  constexpr float kLargest_m = 10.0F;
+  constexpr float kMinDistance_m = 1e-5F;
+  constexpr float kMaxDistance_m = 10.0F;
   std::vector<float> distances;
   const std::size_t step = std::max<std::size_t>(1, points.size() / kSamples);
   for (std::size_t i = 0; i < points.size(); i += step) {
     if (!points[i].allFinite()) continue;
     float nearest = std::numeric_limits<float>::max();
-    for (float radius = 1e-3F; radius <= kLargest_m && nearest > radius; radius *= 2.0F) {
+    // Nearest() would find the point itself, or another in the same place.
+    for (float radius = 1e-3F; radius <= kMaxDistance_m && nearest > radius; radius *= 2.0F) {
       index.ForEachWithin(points[i], radius, [&](const PointIndex::Neighbour& neighbour) {
-        if (neighbour.distance_m > kSmallest_m) nearest = std::min(nearest, neighbour.distance_m);
+        if (neighbour.distance_m > kMinDistance_m)
+          nearest = std::min(nearest, neighbour.distance_m);
       });
     }
-    if (nearest <= kLargest_m) distances.push_back(nearest);
+    if (nearest <= kMaxDistance_m) distances.push_back(nearest);
   }
   if (distances.empty()) return 0.0F;
   return TakeMedian(distances);

@@ -60,14 +60,14 @@ TEST_F(AlignRigidTest, OfNoisyPointsNoOtherMotionFitsBetter) {
   for (Eigen::Vector3d& p : to) p += RandomVector(0.05);
   const RigidTransform best = AlignRigid(from, to);
   EXPECT_TRUE(IsRigid(best));
-  const double least = SumOfSquares(best, from, to);
-  EXPECT_LT(least, SumOfSquares(SomeMotion(), from, to)) << "noise moves the minimum";
+  const double min_sum = SumOfSquares(best, from, to);
+  EXPECT_LT(min_sum, SumOfSquares(SomeMotion(), from, to)) << "noise moves the minimum";
   for (int i = 0; i < 200; ++i) {
     constexpr double kStep = 1e-3;
     const Eigen::Vector3d axis = RandomVector(1.0).normalized();
     const RigidTransform step =
         MakeTransform(RandomVector(kStep), Eigen::Quaterniond(Eigen::AngleAxisd(kStep, axis)));
-    EXPECT_GT(SumOfSquares(step * best, from, to), least);
+    EXPECT_GT(SumOfSquares(step * best, from, to), min_sum);
   }
 }
 

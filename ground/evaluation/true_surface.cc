@@ -15,6 +15,7 @@ float TrueSurface::DiscDistance(const Eigen::Vector3f& p, std::uint32_t sample) 
   const Eigen::Vector3f offset = p - points_.positions_m[sample];
   const float along = offset.dot(points_.normals[sample]);
   const float beside = (offset - along * points_.normals[sample]).norm();
+  // Discs as large as the spacing overlap: the surface between samples has no holes.
   return std::hypot(along, std::max(0.0F, beside - spacing_m_));
 }
 
@@ -43,6 +44,7 @@ float TrueSurface::CelsiusAt(const Eigen::Vector3f& p, std::uint32_t nearest) co
   double sum = 0.0;
   double weights = 0.0;
   index_.ForEachWithin(p, radius, [&](const PointIndex::Neighbour& neighbour) {
+    // Across the edge of a part the temperature may jump; it must not be smoothed away.
     if (points_.primitive[neighbour.index] != primitive) return;
     const double fraction = neighbour.distance_m / radius;
     const double weight = (1.0 - fraction * fraction) * (1.0 - fraction * fraction);

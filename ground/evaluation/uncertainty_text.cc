@@ -28,6 +28,7 @@ Json TableJson(const ErrorTable& table) {
 }
 
 std::string HistogramText(const Histogram& histogram, std::size_t points) {
+  // The fullest bin of a right histogram holds 19 %, which is 38 marks: it fits a terminal.
   constexpr double kPercentPerMark = 0.5;
   std::string text = "  histogram of error / sigma, % of the points\n";
   const auto add = [&](const std::string& range, std::size_t count) {
@@ -53,9 +54,10 @@ std::string RangeName(const std::array<double, N>& from, std::size_t i, std::str
 
 /// No quantiles of a few points.
 std::string CellText(const ErrorCell& cell) {
-  constexpr std::size_t kFew = 20;
+  // Below 20 values the 95 % quantile is the largest one.
+  constexpr std::size_t kMinCount = 20;
   if (cell.count == 0) return "-";
-  if (cell.count < kFew) return fmt::format("- ({})", cell.count);
+  if (cell.count < kMinCount) return fmt::format("- ({})", cell.count);
   return fmt::format("{:.2f} / {:.2f} ({})", cell.median_k, cell.p95_k, cell.count);
 }
 

@@ -16,9 +16,10 @@ namespace isotherm {
 namespace {
 
 std::string Number(double value) {
-  constexpr double kLargestCount = 1e9;
+  // Whole numbers below it are counts; others are measured, three digits of them.
+  constexpr double kMaxCount = 1e9;
   if (std::isnan(value)) return "-";
-  if (value == std::round(value) && std::abs(value) < kLargestCount)
+  if (value == std::round(value) && std::abs(value) < kMaxCount)
     return fmt::format("{:.0f}", value);
   return fmt::format("{:.3g}", value);
 }

@@ -19,12 +19,14 @@ using Eigen::Vector3d;
 
 // As wide as the thesis's furnace door is high.
 constexpr double kWidth_m = 1.70, kHeight_m = 0.96, kFront_m = 0.80, kDepth_m = 0.96;
-constexpr double kFirst_m = 0.25, kLast_m = 1.45;  ///< What the rig looks at, first and last.
+constexpr double kFirst_m = 0.25,
+                 kLast_m = 1.45;  ///< The rig looks at these places first and last.
 constexpr double kMmPerM = 1e3;
+// As many scans are merged, with three seeds of noise each.
 constexpr int kParts = 4;
 constexpr std::uint64_t kSeeds = 3;
-/// What neighbouring clouds of the thesis agreed to; across several it had up to 10 mm (7.1).
-constexpr double kLargest_mm = 2.0;
+/// Neighbouring clouds of the thesis agreed to this; across several it had up to 10 mm (7.1).
+constexpr double kMax_mm = 2.0;
 constexpr double kPartDuration_s = 2.5, kDistance_m = 0.60;
 /// Both clouds of a seam are aligned by what lies so far to its sides, each end by twice that.
 constexpr double kSeam_m = 0.15;
@@ -36,6 +38,7 @@ Scene FurnaceFront() {
   scene.Box("wall", {0.01, 0.01, kFront_m + 0.06}, {kWidth_m, 0.95, kFront_m + 0.14});
   scene.Box("upper beam", {0.02, 0.10, kFront_m}, {kWidth_m - 0.01, 0.18, kFront_m + 0.07});
   scene.Box("lower beam", {0.02, 0.76, kFront_m - 0.02}, {kWidth_m - 0.01, 0.84, kFront_m + 0.07});
+  // Posts, braces and bolts differ from bay to bay, so that one cannot be taken for the next.
   constexpr double kBay_m = 0.28;
   for (int i = 0; kBay_m * i < kWidth_m - 0.20; ++i) {
     const double x = 0.06 + kBay_m * i;
@@ -102,7 +105,7 @@ Twist FitMotion(const std::vector<CheckedPoint>& points, double from_m, double t
 Result<std::vector<CheckedPoint>> ScanFront(double from_m, double to_m, double duration_s,
                                             std::uint64_t seed, ThreadPool& pool) {
   SimulationOptions cameras = ExperimentCameras(duration_s, kSharpEverywhere);
-  cameras.set_ideal_cameras(true);  // Shape is what is judged.
+  cameras.set_ideal_cameras(true);  // Only the shape is assessed.
   cameras.set_seed(seed);
   cameras.mutable_thermal()->set_rate_hz(1.0);  // Shape is all that matters.
   GroundOptions options;
@@ -120,7 +123,7 @@ Result<std::vector<CheckedPoint>> ScanFront(double from_m, double to_m, double d
 /// How far the far end of the upper beam is off where the near end of the front is right.
 struct BeamErrors {
   double merged_mm = 0.0;
-  double part_mm = 0.0;  ///< Of the worst part by itself, at its own end.
+  double part_mm = 0.0;  ///< Error of the worst part by itself, at its own end.
   double whole_mm = 0.0;
 };
 
@@ -170,7 +173,7 @@ Result<ExperimentReport> RunMergingExperiment(ThreadPool& pool) {
   report.table.rows = {{"four scans laid onto one another", {std::sqrt(merged), std::sqrt(part)}},
                        {"one scan along it", {std::sqrt(whole), std::nan("")}}};
   const Requirement off = {"far end of the beam, one scan", std::sqrt(whole),
-                           Requirement::Sense::kAtMost, kLargest_mm, "mm"};
+                           Requirement::Sense::kAtMost, kMax_mm, "mm"};
   report.requirements = {
       off, NegativeControl(off, "far end of the beam, four scans laid onto one another",
                            std::sqrt(merged))};

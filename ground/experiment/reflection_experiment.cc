@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kDuration_s = 5.0, kDistance_m = 0.56;
 constexpr const char* kPatch = "polished patch";
+// Only the mirrored pipe looks as hot.
 constexpr double kShowsPipe_celsius = 80.0;
 
 /// A painted door with a patch that mirrors a hot pipe in front of it, or is painted as well. The
@@ -42,22 +43,23 @@ bool IsOnPatch(const Scene& scene, const CheckedPoint& point) {
 }
 
 /// Points of one surface, by what the disagreement layer says.
-struct Judged {
-  std::size_t bad = 0;       ///< Called reflecting.
-  std::size_t not_bad = 0;   ///< Called even.
-  std::size_t unjudged = 0;  ///< Measured under good conditions too rarely to say.
+struct AssessedPoints {
+  std::size_t bad = 0;           ///< Called reflecting.
+  std::size_t not_bad = 0;       ///< Called even.
+  std::size_t not_assessed = 0;  ///< Measured under good conditions too rarely to say.
 
-  std::size_t all() const { return bad + not_bad + unjudged; }
+  std::size_t all() const { return bad + not_bad + not_assessed; }
 };
 
 /// The disagreement layer as a test for "this surface reflects".
 struct Detection {
-  Judged patch, others;
+  AssessedPoints patch, others;
   std::size_t shows_pipe = 0;  ///< Points of the patch with the pipe's temperature.
 
   double PrecisionPercent() const { return Percent(patch.bad, patch.bad + others.bad); }
   double RecallPercent() const { return Percent(patch.bad, patch.bad + patch.not_bad); }
-  /// What was not judged was not found.
+  /// Returns the fraction of all the patch's points that were found; a point that was not assessed
+  /// counts as not found.
   double FoundOfAllPercent() const { return Percent(patch.bad, patch.all()); }
 };
 
@@ -67,29 +69,30 @@ Detection Detect(const Scene& scene, const std::vector<CheckedPoint>& points) {
     const bool reflects = IsOnPatch(scene, point);
     if (reflects && point.measured() && point.point.celsius > kShowsPipe_celsius)
       ++detection.shows_pipe;
-    Judged& judged = reflects ? detection.patch : detection.others;
+    AssessedPoints& assessed = reflects ? detection.patch : detection.others;
     switch (static_cast<ConditionClass>(point.point.disagreement_class)) {
       case ConditionClass::kBad:
-        ++judged.bad;
+        ++assessed.bad;
         break;
       case ConditionClass::kUnchecked:
-        ++judged.unjudged;
+        ++assessed.not_assessed;
         break;
       default:
-        ++judged.not_bad;
+        ++assessed.not_bad;
     }
   }
   return detection;
 }
 
 ExperimentTable::Row DescribeDetection(const char* label, const Detection& detection) {
-  return {
-      label,
-      {static_cast<double>(detection.patch.all()), static_cast<double>(detection.patch.unjudged),
-       static_cast<double>(detection.patch.bad), static_cast<double>(detection.others.all()),
-       static_cast<double>(detection.others.unjudged), static_cast<double>(detection.others.bad),
-       detection.PrecisionPercent(), detection.RecallPercent(), detection.FoundOfAllPercent(),
-       static_cast<double>(detection.shows_pipe)}};
+  return {label,
+          {static_cast<double>(detection.patch.all()),
+           static_cast<double>(detection.patch.not_assessed),
+           static_cast<double>(detection.patch.bad), static_cast<double>(detection.others.all()),
+           static_cast<double>(detection.others.not_assessed),
+           static_cast<double>(detection.others.bad), detection.PrecisionPercent(),
+           detection.RecallPercent(), detection.FoundOfAllPercent(),
+           static_cast<double>(detection.shows_pipe)}};
 }
 
 Detection DetectIn(const PlayedScan& played, std::size_t pipeline, ThreadPool& pool) {
@@ -113,13 +116,13 @@ Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
   ExperimentReport report;
   report.table.rows_are = "temperature kept";
   report.table.columns = {"patch points",
-                          "unjudged",
+                          "not assessed",
                           "found",
                           "other points",
-                          "unjudged",
+                          "not assessed",
                           "falsely called reflecting",
                           "precision [%]",
-                          "recall of the judged [%]",
+                          "recall of the assessed [%]",
                           "found of all [%]",
                           "patch points warmer than 80 °C"};
   const Renderer renderer(FixedScale(23.0, 130.0), ThermalOptions());
@@ -139,20 +142,21 @@ Result<ExperimentReport> RunReflectionExperiment(ThreadPool& pool) {
   const Detection control = DetectIn(*painted, 0, pool);
   report.table.rows.push_back(DescribeDetection("best conditions, patch painted", control));
   using Sense = Requirement::Sense;
-  const Requirement recall = {"recall of the disagreement layer, of what it judges",
+  const Requirement recall = {"recall of the disagreement layer, of what it assesses",
                               best_conditions.RecallPercent(), Sense::kAtLeast, 90.0, "%"};
-  const Judged& patch = best_conditions.patch;
+  const AssessedPoints& patch = best_conditions.patch;
   const Requirement precision = {"precision of the disagreement layer",
                                  best_conditions.PrecisionPercent(), Sense::kAtLeast, 90.0, "%"};
-  const std::size_t judged_others = best_conditions.others.all() - best_conditions.others.unjudged;
+  const std::size_t assessed_others =
+      best_conditions.others.all() - best_conditions.others.not_assessed;
   report.requirements = {
       precision,
       NegativeControl(
-          precision, "precision if all that is judged were called reflecting",
-          Percent(patch.bad + patch.not_bad, patch.bad + patch.not_bad + judged_others)),
+          precision, "precision if all that is assessed were called reflecting",
+          Percent(patch.bad + patch.not_bad, patch.bad + patch.not_bad + assessed_others)),
       recall,
       NegativeControl(recall, "the same if the patch is painted", control.RecallPercent()),
-      {"patch points judged", static_cast<double>(patch.bad + patch.not_bad), Sense::kAtLeast,
+      {"patch points assessed", static_cast<double>(patch.bad + patch.not_bad), Sense::kAtLeast,
        1000.0, ""}};
   return report;
 }

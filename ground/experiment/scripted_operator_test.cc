@@ -230,19 +230,19 @@ TEST_F(ScriptedOperatorTest, SwayIsSmallSmoothAndAPersonsOwn) {
 }
 
 TEST_F(ScriptedOperatorTest, PersonsReactInThreeToFiveTenthsOfASecond) {
-  double least_s = 1.0, most_s = 0.0;
+  double min_s = 1.0, max_s = 0.0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     const OperatorTraits traits = TraitsOfPerson(seed);
-    least_s = std::min(least_s, traits.reaction_s);
-    most_s = std::max(most_s, traits.reaction_s);
+    min_s = std::min(min_s, traits.reaction_s);
+    max_s = std::max(max_s, traits.reaction_s);
     EXPECT_EQ(traits.reaction_s, TraitsOfPerson(seed).reaction_s);
     EXPECT_LE(traits.speed_m_s, 0.3);
     EXPECT_LE(traits.rotation_rate_deg_s, 17.0);
   }
-  EXPECT_GE(least_s, 0.3);
-  EXPECT_LT(least_s, 0.32);
-  EXPECT_GT(most_s, 0.48);
-  EXPECT_LE(most_s, 0.5);
+  EXPECT_GE(min_s, 0.3);
+  EXPECT_LT(min_s, 0.32);
+  EXPECT_GT(max_s, 0.48);
+  EXPECT_LE(max_s, 0.5);
 }
 
 }  // namespace

@@ -7,9 +7,10 @@
 namespace isotherm {
 
 std::span<const ThermalRule> ThermalRules() {
+  // No rig moves so fast: the rule is off.
   constexpr double kAnySmear_px = 1e6;
   // Larger than any hole of the scenes.
-  constexpr int kLargestHole_px = 256;
+  constexpr int kMaxHole_px = 256;
   static const std::array rules = {
       ThermalRule{"margin of edges",
                   [](ThermalSettings& s) {
@@ -26,7 +27,7 @@ std::span<const ThermalRule> ThermalRules() {
                   }},
       ThermalRule{"near-range holes",
                   [](ThermalSettings& s) {
-                    s.options.mutable_expert()->mutable_occlusion()->set_hole_px(kLargestHole_px);
+                    s.options.mutable_expert()->mutable_occlusion()->set_hole_px(kMaxHole_px);
                   }},
       // Both begin at the near range, and end without one.
       ThermalRule{"near-range holes, line of sight",

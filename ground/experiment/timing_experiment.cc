@@ -21,10 +21,11 @@ namespace {
 constexpr double kMillimetres = 1e3;
 
 // Appendix F: a rig at thesis speed, and a point a metre away.
-constexpr double kSpeed_m_s = 0.3, kTurn_rad_s = 18.0 * kRadPerDeg;
+constexpr double kSpeed_m_s = 0.3, kRotation_rad_s = 18.0 * kRadPerDeg;
 constexpr double kFrame_s = 1.0 / 30.0, kPoint_m = 1.0;
 constexpr double kTimeError_s = 0.006;
-constexpr double kPoseErrorRatio = 0.10;  ///< Of the motion between two frames.
+constexpr double kPoseErrorRatio =
+    0.10;  ///< Error of the pose, as a fraction of the motion between two frames.
 
 // The scan: bars that the rig passes at nearly constant speed.
 constexpr double kDuration_s = 3.0, kPassing_s = 1.2;
@@ -39,7 +40,7 @@ RigidTransform Moving(double seconds) {
 RigidTransform Turning(double seconds) {
   return MakeTransform(
       Eigen::Vector3d::Zero(),
-      Eigen::Quaterniond(Eigen::AngleAxisd(kTurn_rad_s * seconds, Eigen::Vector3d::UnitY())));
+      Eigen::Quaterniond(Eigen::AngleAxisd(kRotation_rad_s * seconds, Eigen::Vector3d::UnitY())));
 }
 
 /// How far the point in the middle of the image is put off if the pose is interpolated at
@@ -83,6 +84,7 @@ Analysis Analyse(ExperimentReport& report) {
     if (speed_m_s == kSpeed_m_s)
       analysis.arc_mm = std::max(analysis.arc_mm, kMillimetres * offset_m);
   }
+  // In the middle between two frames interpolation is worst.
   constexpr double kRight_s = 0.5 * kFrame_s;
   const double moved_m = OffsetOfPoint(&Moving, kRight_s, kRight_s + kTimeError_s, 0.0);
   const double turned_m = OffsetOfPoint(&Turning, kRight_s, kRight_s + kTimeError_s, 0.0);
@@ -110,6 +112,7 @@ StagedScene PassAlongBars() {
 }
 
 GroundOptions Believing() {
+  // No rig moves so fast: smear leaves nothing out.
   constexpr double kAnySmear_px = 1e6;
   GroundOptions options;
   // The simulated cameras have no inertia: motion harms by its timing alone.
@@ -141,12 +144,14 @@ double EdgeOffset(const std::map<int, std::pair<double, int>>& celsius_by_bin, d
     sums_m[rising] += (bars - std::round(bars)) * BarWall::kBar_m;
     ++counts[rising];
   }
+  // Rising and falling edges are blurred to opposite sides; only their mean is free of it.
   if (counts[0] == 0 || counts[1] == 0) return std::nan("");
   return 0.5 * (sums_m[0] / counts[0] + sums_m[1] / counts[1]);
 }
 
 /// How far the temperatures of the bars that were passed at full speed are put to the right.
 double MeasureOffset(const SimulatedScan& scan, const ScanModel& model, ThreadPool& pool) {
+  // Half a voxel. The region lies where the rig passes at full speed, away from the bars' ends.
   constexpr double kBin_m = 0.001;
   constexpr double kFrom_x_m = 0.40, kTo_x_m = 0.62, kFrom_y_m = 0.40, kTo_y_m = 0.56;
   std::map<int, std::pair<double, int>> celsius_by_bin;

@@ -12,7 +12,7 @@ namespace {
 
 // Those of the thesis, and what the scan volume has by default.
 constexpr std::array kVoxels_m = {0.0045, 0.0020, 0.0015, 0.0005};
-constexpr std::size_t kLargest = 0, kDefault = 1, kMiddle = 2, kSmallest = 3;
+constexpr std::size_t kCoarse = 0, kDefault = 1, kMedium = 2, kFine = 3;
 constexpr double kDuration_s = 2.0, kDistance_m = 0.50;
 
 ScanPath AroundRelief() {
@@ -44,16 +44,15 @@ Result<ExperimentReport> RunVoxelSizeExperiment(ThreadPool& pool) {
                                   checks[i].scene_rms_mm, checks[i].points}});
   }
   const Requirement detail = {"height of ridges kept, voxels of 1.5 mm",
-                              checks[kMiddle].kept_percent, Requirement::Sense::kAtLeast, 90.0,
+                              checks[kMedium].kept_percent, Requirement::Sense::kAtLeast, 90.0,
                               "%"};
   const Requirement noise = {"scene, rms, voxels of 2 mm", checks[kDefault].scene_rms_mm,
                              Requirement::Sense::kAtMost, 0.25, "mm"};
   report.requirements = {
       detail,
       NegativeControl(detail, "height of ridges kept, voxels of 4.5 mm",
-                      checks[kLargest].kept_percent),
-      noise,
-      NegativeControl(noise, "scene, rms, voxels of 0.5 mm", checks[kSmallest].scene_rms_mm)};
+                      checks[kCoarse].kept_percent),
+      noise, NegativeControl(noise, "scene, rms, voxels of 0.5 mm", checks[kFine].scene_rms_mm)};
   return report;
 }
 

@@ -11,13 +11,17 @@ namespace {
 /// surface (SurfaceOptions::max_slope).
 constexpr float kMaxSlope = 3.0F;
 
-/// Cells of this many blocks (4 x 4 x 4) gather what is lacking.
+/// Cells of this many blocks (4 x 4 x 4, 6 cm at voxels of 2 mm) gather what is lacking: about the
+/// surface that one view aims at. Smaller: thousands of targets; larger: faces of several
+/// directions average out to none. Not tuned.
 constexpr int kCellShift = 2;
 
-/// Blocks that are looked at for each one that has a surface to measure, at most.
+/// Blocks that are looked at for each one that has a surface to measure, at most: most blocks have
+/// none, and a large model of free space must not take a message's time.
 constexpr int kMaxVisitedPerMeasured = 16;
 
-/// Below it a cell is empty: what rounding leaves of sums that cancel.
+/// Below it a cell is empty: sums of areas that are added and taken off again leave this much by
+/// rounding.
 constexpr double kNoArea_m2 = 1e-9;
 
 GridIndex Along(int axis) { return GridIndex::Unit(axis); }
@@ -167,6 +171,7 @@ BlockSurface MeasureBlock(const TsdfVolume& tsdf, const ThermalVolume& thermal, 
       if (!crosses[a]) continue;
       const bool nearer = std::abs(distance) <= std::abs(distance + gradient[axis]);
       ThermalVoxel voxel = pairs.Thermal(nearer ? here : next[a]);
+      // The surface lies between two voxels; its temperature may be kept by either.
       if (!voxel.assessed()) voxel = pairs.Thermal(nearer ? next[a] : here);
       const MeasurementQuality quality = voxel.quality();
       surface.areas.Add(quality, area_m2);
@@ -191,6 +196,8 @@ void ModelCoverage::AddToCell(const GridIndex& block, const BlockSurface& surfac
 
 void ModelCoverage::Replace(std::int32_t block, const GridIndex& at, const BlockSurface& surface) {
   BlockSurface& known = blocks_[static_cast<std::size_t>(block)];
+  // Sums are kept by differences: what a block had goes before what it has now comes, and no
+  // message walks over all blocks.
   areas_ -= known.areas;
   AddToCell(at, known, -1.0);
   known = surface;
@@ -204,8 +211,8 @@ void ModelCoverage::Update(const TsdfVolume& tsdf, const ThermalVolume& thermal,
   const std::int32_t count = tsdf.block_count();
   blocks_.resize(static_cast<std::size_t>(count));
   chosen_.clear();
-  const std::int64_t most = std::int64_t{kMaxVisitedPerMeasured} * max_blocks;
-  for (std::int64_t i = 0; i < std::min<std::int64_t>(count, most); ++i) {
+  const std::int64_t max_visited = std::int64_t{kMaxVisitedPerMeasured} * max_blocks;
+  for (std::int64_t i = 0; i < std::min<std::int64_t>(count, max_visited); ++i) {
     if (static_cast<int>(chosen_.size()) == max_blocks) break;
     const std::int32_t block = next_;
     if (++next_ >= count) {
@@ -220,6 +227,8 @@ void ModelCoverage::Update(const TsdfVolume& tsdf, const ThermalVolume& thermal,
     }
   }
   measured_.resize(chosen_.size());
+  // A frame changes hundreds of blocks: enough tasks for all threads, few enough to hand out. Not
+  // tuned.
   constexpr int kBlocksPerTask = 32;
   const int chosen = static_cast<int>(chosen_.size());
   pool.ParallelFor((chosen + kBlocksPerTask - 1) / kBlocksPerTask, [&](int task) {

@@ -10,54 +10,79 @@
 namespace isotherm {
 namespace {
 
-/// Pieces of lacking surface that candidates look at before the choice is renewed.
+/// Pieces of lacking surface that candidates look at before the choice is renewed. A round of 48
+/// with up to five views each, at three a message and ten messages a second, takes some eight
+/// seconds. More: the choice is older than the model; fewer: the largest pieces are tried again and
+/// again. Not tuned.
 constexpr std::size_t kMaxTargets = 48;
 
-/// Candidates look along the normal and from so far askew, to four sides.
+/// Candidates look along the normal and from this far askew, to four sides: half of the good angles
+/// of usual materials, so that a groove which hides from straight on is seen and the surface is
+/// still good. Not tuned.
 constexpr double kAskew_rad = 25.0 * kRadPerDeg;
 
-/// Another view takes the place of the best one when it is worth this much more: it should not
-/// jump.
+/// Another view takes the place of the best one when it is worth this much more. Smaller: the
+/// proposal jumps while the operator is on the way; larger: a poor first view is kept. Not tuned.
 constexpr double kClearlyBetter = 1.2;
 
-/// A view is worth its gain by the time that it takes: the way there, and then to notice, to come
-/// to rest and to measure.
+/// A view is worth its gain by the time that it takes: the way there at the pace of the thesis's
+/// operator (chapter 7), then 1.2 s to notice it, to come to rest and to measure. The last is the
+/// scripted operator's 0.4 s of reaction with half a second of stopping and some frames. Worth by
+/// time, with what follows, took a guided scan of the door from 40 to 56 % measured well in 60 s.
 constexpr double kWalk_m_s = 0.3;
 constexpr double kWalk_rad_s = 17.0 * kRadPerDeg;
 constexpr double kTakeView_s = 1.2;
 
-/// What may be where nobody looked yet counts for this multiple of what is known to be lacking.
+/// Surface that may be where nobody looked yet counts for this multiple of surface that is known to
+/// be lacking. Larger: the rig explores and leaves surface behind unmeasured; 0: it stays at what
+/// it knows. Not tuned.
 constexpr double kUnseenValue = 1.0;
-/// Less of it is not looked for.
+/// Less unseen area is not looked for: one cell of SeenSpace (5 cm) is 0.0025 m2 and may be a
+/// rounding at its border.
 constexpr double kMinUnseen_m2 = 0.01;
 
-/// Where tracking may slide a view is worth this fraction at least.
-constexpr double kLeastFirm = 0.1;
-/// Less firm, the rig is not sent to from where it is tracked firmly: it would slide along what it
-/// sees, and the model would be spoilt.
+/// A view from which tracking may slide is worth this fraction at least, so that the rig is sent
+/// there when there is nothing else. Not tuned.
+constexpr double kMinFirmness = 0.1;
+/// From where it is tracked firmly the rig is not sent to a place that is less firm than this:
+/// before the sill of the door, at less, the tracker went 0.6 m astray unnoticed and spoilt the
+/// model (docs/experiments.md, guidance). Larger: half of the door is out of reach.
 constexpr double kFirm = 0.05;
-/// Where the way to a view is looked at, as a fraction of it.
+/// The way to a view is looked at here, as a fraction of it: one cast for the place that is
+/// farthest from what both ends show.
 constexpr double kOnTheWay = 0.5;
-/// Of so many rounds of candidates one tries what was found out of reach, too: there may be more
-/// surface by now to be tracked by.
+/// Every third round of candidates also tries what was found out of reach: there may be more
+/// surface by now to be tracked by. Fewer rounds: time goes to what was tried before without gain;
+/// more: surface stays out of reach that is not. Not tuned.
 constexpr int kRoundsBetweenRetries = 3;
 
-/// Views that are remembered while another one is proposed.
+/// Views that are remembered while another one is proposed; the worst goes when one more comes.
+/// More: older values, as the model changes. Not tuned.
 constexpr std::size_t kMaxRemembered = 64;
 
-/// Targets are looked at from this much more than the nearest depth that the depth camera measures.
+/// Targets are looked at from this much more than the nearest depth that the depth camera measures,
+/// since a hand sways and a surface is not flat. Smaller: parts of it have no return; larger: the
+/// thermal image is coarser. Not tuned.
 constexpr double kDepthReserve = 1.15;
 
-/// A view counts as taken within this far of it, for this many steps.
+/// A view counts as taken within this far of it, for this many steps (one a feedback message, ten a
+/// second). A hand holds a rig within 2 to 4 mm and half a degree, but an operator stops when the
+/// display says that they are there, which is coarser. Larger: views beside it are crossed out,
+/// too; smaller: a view that gives nothing is proposed for ever.
 constexpr double kAtView_m = 0.10;
 constexpr double kAtView_rad = 15.0 * kRadPerDeg;
 constexpr int kStepsAtView = 10;
-/// Nor is it proposed for longer than this many steps (a quarter of a minute) if nobody goes there:
-/// there may be no way.
+/// A view is not proposed for longer than this many steps (a quarter of a minute) if nobody goes
+/// there: there may be no way. A careful walk of 4 m fits into it.
 constexpr int kStepsToView = 150;
+/// Views that are not proposed again. More than a scan of an hour gives up; the oldest may be tried
+/// again.
 constexpr std::size_t kMaxExhausted = 512;
 
-/// Between two steps the rig moved so little that nothing was smeared much.
+/// Between two steps the rig moved so little that what it sees counts as looked at: 0.055 m/s and 6
+/// degrees/s at ten steps a second, a little more than the speed at which the raster of the
+/// guidance experiment measures well (0.048 m/s). Larger: surface that motion smeared counts as not
+/// measurable; smaller: a hand that sways never measures.
 constexpr double kStill_m = 0.0055;
 constexpr double kStill_rad = 0.6 * kRadPerDeg;
 
@@ -68,7 +93,7 @@ bool IsNear(const RigidTransform& a, const RigidTransform& b) {
 
 /// Square metres per second.
 double Worth(const NextView& view, const RigidTransform& T_map_depth) {
-  return (view.gain_m2 + kUnseenValue * view.unseen_m2) * std::max(kLeastFirm, view.firmness) /
+  return (view.gain_m2 + kUnseenValue * view.unseen_m2) * std::max(kMinFirmness, view.firmness) /
          (kTakeView_s + WalkTime(T_map_depth, view.T_map_depth));
 }
 
@@ -110,6 +135,8 @@ void ViewPlanner::MakeCandidates(const ModelCoverage& coverage, const RigidTrans
   // Straight on, the operator may be reflected.
   const double straight_rad = angle_min_rad_ > 0.0 ? 0.5 * (angle_min_rad_ + angle_good_rad_) : 0.0;
   const double askew_rad = straight_rad > 0.0 ? straight_rad : kAskew_rad;
+  // The slanted views of a piece look at it from four sides, since what hides it or is reflected in
+  // it from one side need not from another.
   constexpr int kSides = 4;
   unseen_m2_ = std::exchange(unseen_in_round_m2_, 0.0);
   const bool retries = ++rounds_ % kRoundsBetweenRetries == 0;
@@ -219,6 +246,8 @@ void ViewPlanner::Offer(NextView view, const Model& model) {
   const auto is_better = [&] {
     return !best_ || Worth(view, here) >= kClearlyBetter * Worth(*best_, here);
   };
+  // The way costs another cast, so only views that would be proposed are asked for theirs. Without
+  // a way the view is worth less, and may not be better any more.
   if (is_better() && !HasWay(view.T_map_depth, model)) view.firmness = 0.0;
   if (!is_better() || (is_firm_here_ && view.firmness < kFirm)) {
     Remember(view, here);
@@ -231,6 +260,8 @@ void ViewPlanner::Offer(NextView view, const Model& model) {
 
 void ViewPlanner::TryBestAgain(const Model& model) {
   const RigidTransform T_map_view = best_->T_map_depth;
+  // The model has grown since: what the view would have measured may be measured now, from
+  // elsewhere.
   best_ = Try(T_map_view, model);
   if (!best_ || HasWay(T_map_view, model)) return;
   best_->firmness = 0.0;
@@ -255,6 +286,7 @@ void ViewPlanner::TryNewCandidates(int count, const Model& model) {
   for (; count > 0 && !candidates_.empty(); candidates_.pop_front()) {
     const Candidate& candidate = candidates_.front();
     if (IsExhausted(candidate.T_map_depth)) {
+      // A view that was given up says that its surface cannot be had from there.
       reach_.Note(candidate.cell, false);
       continue;
     }
@@ -270,6 +302,7 @@ void ViewPlanner::Step(const TsdfVolume& tsdf, const ThermalVolume& thermal,
                        bool is_measuring, ThreadPool& pool) {
   if (options_.expert().views_per_message() == 0) return;
   const Model model{tsdf, thermal, T_map_depth, pool};
+  // While tracking is lost or the shutter is closed, being at a view says nothing about it.
   if (is_measuring) {
     NotePose(T_map_depth);
     assessor_.NoteSeen(T_map_depth, tsdf.grid());

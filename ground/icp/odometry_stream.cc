@@ -45,11 +45,11 @@ Status Validate(const ExternalOdometryOptions& o) {
 }
 
 Status Validate(const ExternalOdometryExpertOptions& o) {
-  const auto check = [](const char* name, double value, double most) {
-    if (value > 0.0 && value <= most) return OkStatus();
+  const auto check = [](const char* name, double value, double limit) {
+    if (value > 0.0 && value <= limit) return OkStatus();
     return InvalidArgument(
         fmt::format("tracker.external_odometry.expert.{} must be above 0 and at most {}, got {}",
-                    name, most, value));
+                    name, limit, value));
   };
   ISOTHERM_RETURN_IF_ERROR(check("max_gap_s", o.max_gap_s(), 10.0));
   ISOTHERM_RETURN_IF_ERROR(check("max_speed_m_s", o.max_speed_m_s(), 100.0));
@@ -163,11 +163,14 @@ void OdometryStream::Add(const ExternalOdometry& pose) {
       return;
     }
     if (is_late || IsTooFast(newest, sample)) {
+      // One such sample is an outlier. Two that follow each other are a source that has started
+      // again, and refusing would never end.
       if (!suspect_ || !Follows(*suspect_, sample)) {
         Refuse(is_late ? OdometryFault::kTime : OdometryFault::kJump);
         suspect_ = sample;
         return;
       }
+      // Between the old reference frame and the new one nothing can be interpolated.
       samples_.clear();
       ++counts_.restarts;
       LOG(Tracker, Warning) << "poses from \"" << source_ << "\" go on in another place or time";
@@ -230,6 +233,7 @@ std::optional<OdometryStream::Estimate> OdometryStream::At(CaptureTime time) con
       after != samples_.begin() &&
       ToSeconds(after->time - std::prev(after)->time) <= options_.expert().max_gap_s();
   if (is_connected) return Between(*std::prev(after), *after, time);
+  // The first sample behind a gap is known, but nothing between it and the one before.
   return after->time == time ? std::optional(after->estimate) : std::nullopt;
 }
 

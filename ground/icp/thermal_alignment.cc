@@ -18,7 +18,7 @@ constexpr int kCellPixels = kCell * kCell;
 
 /// Points across the model's view: about 2000 in all.
 constexpr int kPointsAcross = 54;
-constexpr std::size_t kFewestSamples = 300;
+constexpr std::size_t kMinSamples = 300;
 /// A reference of which less than this fraction is in view is replaced.
 constexpr double kMinOverlap = 0.6;
 
@@ -45,9 +45,9 @@ constexpr double kMaxAgeAtStart_s = 0.05;
 /// About the mean over the samples, so that the level does not count.
 struct ThermalAlignment::Sums {
   int in_view = 0;
-  int count = 0;                ///< How many of those are summed.
-  double median_k = 0.0;        ///< Median of the residuals in view.
-  double spread_k = 0.0;        ///< ... and their standard deviation, if they are normal.
+  int count = 0;          ///< How many of those are summed.
+  double median_k = 0.0;  ///< Median of the residuals in view.
+  double spread_k = 0.0;  ///< Standard deviation of the residuals in view, if they are normal.
   double mean_square_k2 = 0.0;  ///< Mean square of those summed, about their mean.
   /// Mean of the reference's derivatives times the image's, K^2/m^2: noise, which is independent
   /// in both, averages out and does not look like structure.
@@ -71,6 +71,8 @@ ThermalAlignment::ThermalAlignment(const CameraModel& thermal_camera,
         const Eigen::Vector2d source = ProjectNormalized(thermal_camera, Unproject(ideal, pixel));
         const int x = std::clamp(static_cast<int>(source.x() + 0.5), 0, thermal_camera.width - 1);
         const int y = std::clamp(static_cast<int>(source.y() + 0.5), 0, thermal_camera.height - 1);
+        // The nearest pixel, not interpolated: the mean over sixteen of them averages the rounding
+        // out.
         source_.push_back(y * thermal_camera.width + x);
       }
     }
@@ -86,6 +88,7 @@ void ThermalAlignment::Reduce(const ThermalFrame& frame, Image<float>& celsius) 
     for (int i = 0; i < kCellPixels; ++i) {
       const std::uint16_t raw = frame.temperature_raw.data()[*source++];
       sum += raw;
+      // A mean without the missing pixels would be of another place than the cell's middle.
       whole = whole && raw != 0;
     }
     cell = whole ? frame.scale.Celsius(static_cast<double>(sum) / kCellPixels) : NAN;
@@ -116,6 +119,7 @@ std::optional<ThermalAlignment::Sample> ThermalAlignment::Look(const Image<float
   const double dv = bottom - top;
   const double value = top + t * (bottom - top);
   if (!std::isfinite(value)) return std::nullopt;
+  // Chain rule through the projection: the change of temperature when the point moves by a metre.
   const Eigen::Vector3d in_camera(camera_.fx * du / p.z(), camera_.fy * dv / p.z(),
                                   -(du * (u - camera_.cx) + dv * (v - camera_.cy)) / p.z());
   return Sample{p_map, value, R * in_camera};
@@ -140,7 +144,7 @@ void ThermalAlignment::MakeReference(const SurfaceMaps& model_points) {
       squares += sample->celsius * sample->celsius;
     }
   }
-  if (reference_.size() < kFewestSamples) return reference_.clear();
+  if (reference_.size() < kMinSamples) return reference_.clear();
   const auto count = static_cast<double>(reference_.size());
   reference_variance_k2_ = squares / count - sum * sum / (count * count);
   reference_sigma_m_ = placed_sigma_m_;
@@ -192,6 +196,8 @@ ThermalAlignment::Sums ThermalAlignment::Accumulate(const RigidTransform& T_map_
     J_before << before.gradient, arm.cross(before.gradient);
     Vector6 J_now;
     J_now << now->gradient, arm.cross(now->gradient);
+    // As in Observability: two gradients with independent noise, so that noise alone does not look
+    // like a pattern.
     const Vector6 j_before = to_axes * J_before;
     const Vector6 j_now = to_axes * J_now;
     products += j_before * j_now.transpose();
@@ -208,6 +214,7 @@ ThermalAlignment::Sums ThermalAlignment::Accumulate(const RigidTransform& T_map_
   for (double& residual : residuals_) residual = std::abs(residual - sums.median_k);
   sums.spread_k = std::max(kMinSpread_k, kSigmaOfMedian * TakeMedian(residuals_));
   const double fraction = 1.0 / sums.count;
+  // Covariance instead of mean square: the level, which shutter events move, drops out.
   const Matrix6 H = fraction * products - fraction * fraction * (sum_before * sum_now.transpose());
   sums.H = 0.5 * (H + H.transpose());
   const double level_k = fraction * sum_residual;

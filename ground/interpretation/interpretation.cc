@@ -15,6 +15,7 @@ namespace isotherm {
 namespace {
 
 constexpr const char* kWholeModel = "whole model";
+// Larger ones say nothing of the surroundings, and are typing errors.
 constexpr double kMaxReflectedSigma_k = 1000.0;
 /// Beyond, nothing is measured, and Fresnel's emissivity goes to zero.
 constexpr int kLastAngle_deg = 85;
@@ -45,6 +46,8 @@ std::string FindProblem(const InterpretedPart& part, bool has_emissivity,
         "{}material '{}' is not known; `isotherm limits --list` shows those that are", prefix,
         part.material);
   }
+  // Tables of ideal, clean materials are off by more than what the user wants to know along the
+  // normal; only their dependence on the angle is used.
   if (!part.material.empty() && !has_emissivity) {
     return fmt::format(
         "{}material '{}' says how the emissivity depends on the angle; give the emissivity along "
@@ -65,14 +68,16 @@ void UseMaterial(const SpectralBand& band, InterpretedPart& part) {
         static_cast<float>(emissivity.At(angle_deg * kRadPerDeg) / along_normal));
 }
 
-/// What a part's emissivity is at an angle; NaN is along the normal.
+/// Returns a part's emissivity at an angle; NaN is along the normal.
 double EmissivityAt(const InterpretedPart& part, float angle_deg) {
   if (part.by_angle.empty() || std::isnan(angle_deg)) return part.emissivity;
   const float at = std::clamp(angle_deg, 0.0F, static_cast<float>(kLastAngle_deg));
+  // The last angle is interpolated from the entry before it.
   const auto first = std::min(static_cast<std::size_t>(at), part.by_angle.size() - 2);
   const float fraction = at - static_cast<float>(first);
   const float ratio =
       part.by_angle[first] + fraction * (part.by_angle[first + 1] - part.by_angle[first]);
+  // A measured emissivity near 1 times a ratio above 1 would emit more than a black body.
   return std::min(1.0, part.emissivity * static_cast<double>(ratio));
 }
 
@@ -81,13 +86,14 @@ std::string RegionPrefix(const std::string& name) {
 }
 
 Status CheckBand(const InterpretationOptions& options) {
-  constexpr double kShortestUm = 0.5, kLongestUm = 1000.0;
+  // Outside of the visible and the far infrared the numbers are in another unit.
+  constexpr double kMin_um = 0.5, kMax_um = 1000.0;
   const double from = options.expert().band_min_um(), to = options.expert().band_max_um();
-  if (from >= kShortestUm && to > from && to <= kLongestUm) return OkStatus();
+  if (from >= kMin_um && to > from && to <= kMax_um) return OkStatus();
   return InvalidArgument(
       fmt::format("interpretation.expert.band_min_um and band_max_um must rise within {} to {} um, "
                   "got {} and {}",
-                  kShortestUm, kLongestUm, from, to));
+                  kMin_um, kMax_um, from, to));
 }
 
 }  // namespace
@@ -148,6 +154,7 @@ bool Interpretation::changes_nothing() const {
 
 std::size_t Interpretation::PartAt(const Eigen::Vector3f& p_world) const {
   for (std::size_t i = parts_.size(); i-- > 1;)
+    // Later regions lie over earlier ones, the whole model below all.
     if (parts_[i].box_world.contains(p_world)) return i;
   return 0;
 }
@@ -163,6 +170,7 @@ double Interpretation::EmittedRadiance(const InterpretedPart& part, float appare
 float Interpretation::ObjectCelsius(std::size_t part, float apparent_celsius,
                                     float angle_deg) const {
   if (std::isnan(apparent_celsius) || !parts_[part].problem.empty()) return NAN;
+  // Exactly as measured, not through two interpolations of the band's tables.
   if (EmissivityAt(parts_[part], angle_deg) == 1.0) return apparent_celsius;
   return static_cast<float>(
       band_.CelsiusFromRadiance(EmittedRadiance(parts_[part], apparent_celsius, angle_deg)));
@@ -174,6 +182,7 @@ float Interpretation::ObjectSigma(std::size_t index, float apparent_celsius, flo
   const float object_celsius = ObjectCelsius(index, apparent_celsius, angle_deg);
   if (std::isnan(object_celsius) || std::isnan(apparent_sigma_k)) return NAN;
   const auto slope = [this](double celsius) {
+    // The slope changes little within a kelvin, and radiances differ far above rounding.
     constexpr double kStep_k = 0.5;
     return (band_.RadianceFromCelsius(celsius + kStep_k) -
             band_.RadianceFromCelsius(celsius - kStep_k)) /
@@ -230,6 +239,7 @@ void Interpretation::Apply(const SurfaceMaps& maps, ViewMaps& view) const {
                             view.measured_angle_deg.At(x, y));
     }
   }
+  // Temperatures last: their sigmas depend on the apparent ones.
   Apply(maps, view, view.celsius);
 }
 
@@ -274,6 +284,7 @@ std::vector<std::string> Interpretation::Errors(const std::vector<PartReport>& r
           "its normal: scan with thermal.expert.records",
           part.name, part.material));
     } else if (report.unsolved() > 0) {
+      // One sentence a part: the more frequent cause.
       const bool cold = report.reflects_too_much >= report.too_hot;
       sentences.push_back(fmt::format(
           "{}: {} of {} measured points ({:.1f} to {:.1f} °C apparent) get no temperature: with "

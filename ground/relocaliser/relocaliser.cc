@@ -69,6 +69,8 @@ class Relocaliser::Refinement {
 
   /// No agreement if there is nothing to align.
   Fit Run(const RefinementStage& stage, RigidTransform pose) {
+    // The model is cast anew from the newest pose of each stage; within a stage it is good enough,
+    // as the steps get small.
     ModelView& view = relocaliser_.view_;
     view.camera = relocaliser_.camera_.Downscaled(stage.halvings);
     view.T_map_depth = pose;
@@ -79,8 +81,10 @@ class Relocaliser::Refinement {
     for (int i = 0; i < stage.iterations; ++i) {
       const IcpSums sums =
           AccumulateIcp(depth_.maps[kPyramidLevels - 1], pose, view, volume_.grid(), limits, pool_);
-      constexpr std::int64_t kFewest = 200;
-      if (sums.inliers < kFewest) return {};
+      constexpr std::int64_t kMinInliers = 200;
+      if (sums.inliers < kMinInliers) return {};
+      // All directions count as observed: what a wall leaves open is refused by the tracker, which
+      // measures it at full resolution.
       const auto twist = Observability().SolveObserved(sums.H, sums.g);
       if (!twist || !twist->allFinite()) return {};
       ApplyTwist(*twist, pose);
@@ -116,6 +120,7 @@ std::optional<RigidTransform> Relocaliser::Find(const PreparedDepth& depth,
   Refinement::Fit best;
   for (const PoseGuess& guess : keyframes_.Guess(MakeThumbnail(depth.depth_m),
                                                  options_.expert().guesses_per_frame(), pool)) {
+    // Only the first, cheap stage is run for every guess, the others for the best.
     const Refinement::Fit fit = refinement.Run(kFirstStage, guess.T_map_depth);
     if (fit.score() > best.score()) best = fit;
   }

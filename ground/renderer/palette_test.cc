@@ -87,12 +87,12 @@ TEST(PaletteTest, BrightnessRisesWhereItIsSaidTo) {
 }
 
 TEST(PaletteTest, HasNoJumpsBetweenNeighbouringColours) {
-  constexpr int kLargestStep = 13;  // Of three channels; iron's blue rises by 12.5 per permille.
+  constexpr int kMaxStep = 13;  // Of three channels; iron's blue rises by 12.5 per permille.
   for (const Palette palette : {COOLWARM, GREY, IRON, RAINBOW, INFERNO}) {
     for (int i = 0; i < 1000; ++i) {
       const Rgb8 a = PaletteColour(palette, i / 1000.0);
       const Rgb8 b = PaletteColour(palette, (i + 1) / 1000.0);
-      EXPECT_LE(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), kLargestStep)
+      EXPECT_LE(std::abs(a.r - b.r) + std::abs(a.g - b.g) + std::abs(a.b - b.b), kMaxStep)
           << PaletteName(palette) << " " << i;
     }
   }

@@ -12,6 +12,7 @@
 namespace isotherm {
 namespace {
 
+// The classes have the colours of a traffic light, as in the thesis.
 constexpr Rgb8 kGoodColour{0, 255, 0};
 constexpr Rgb8 kAcceptableColour{255, 255, 0};
 constexpr Rgb8 kBadColour{255, 0, 0};
@@ -87,6 +88,7 @@ void CountFractions(const ViewMaps& view, const Function& colour, ClassLegend& l
       ++all;
       const Rgb8 pixel = colour(x, y);
       for (std::size_t i = 0; i < counts.size(); ++i) {
+        // Colours stand for classes, before shading changes them.
         if (legend.rows[i].colour == pixel) ++counts[i];
       }
     }
@@ -141,17 +143,19 @@ Status Validate(const RendererExpertOptions& o) {
         "renderer.expert: percentile_low ({}) and percentile_high ({}) must be 0..100 %",
         o.percentile_low(), o.percentile_high()));
   }
-  constexpr double kWidest = 50.0;
-  if (!(o.isotherm_width_px() > 0.0 && o.isotherm_width_px() <= kWidest)) {
+  // Wider lines would cover the rendering that they are to explain.
+  constexpr double kMaxWidth_px = 50.0;
+  if (!(o.isotherm_width_px() > 0.0 && o.isotherm_width_px() <= kMaxWidth_px)) {
     return InvalidArgument(
         fmt::format("renderer.expert.isotherm_width_px is {}, must be above 0 and at most {} px",
-                    o.isotherm_width_px(), kWidest));
+                    o.isotherm_width_px(), kMaxWidth_px));
   }
-  constexpr double kSmoothest = 10.0;
-  if (!(o.isotherm_smoothing_px() >= 0.0 && o.isotherm_smoothing_px() <= kSmoothest)) {
+  // Wider smoothing moves lines visibly off the temperatures that they stand for. Not tuned.
+  constexpr double kMaxSmoothing_px = 10.0;
+  if (!(o.isotherm_smoothing_px() >= 0.0 && o.isotherm_smoothing_px() <= kMaxSmoothing_px)) {
     return InvalidArgument(
         fmt::format("renderer.expert.isotherm_smoothing_px is {}, must be 0..{} px",
-                    o.isotherm_smoothing_px(), kSmoothest));
+                    o.isotherm_smoothing_px(), kMaxSmoothing_px));
   }
   return OkStatus();
 }
@@ -171,6 +175,7 @@ Renderer::Renderer(const RendererOptions& options, const ThermalOptions& thermal
     : options_(options), thermal_(thermal), colours_(options) {
   auto lines = IsothermsOf(options);
   auto bands = BandsOf(options);
+  // Validate() has refused lists that cannot be read.
   CHECK(lines && bands);
   lines_ = std::move(*lines);
   bands_ = std::move(*bands);
@@ -217,6 +222,7 @@ Rgb8 Renderer::ColourOf(double celsius, const TemperatureScale& scale) const {
   bool highlights = false;
   for (const TemperatureBand& band : bands_) {
     if (band.Contains(celsius)) return band.colour.value_or(colour);
+    // A band without a colour of its own is shown by taking the colour from everything else.
     highlights = highlights || !band.colour;
   }
   return highlights ? Greyed(colour) : colour;
@@ -233,6 +239,7 @@ ScaleLegend Renderer::ThermalLegend(const std::optional<TemperatureScale>& scale
   }
   if (!scale) return legend;
   for (const TemperatureBand& band : bands_) {
+    // The legend shows a band's own colour; an open band has no middle.
     const double middle = std::isinf(band.from_celsius) ? band.to_celsius
                           : std::isinf(band.to_celsius)
                               ? band.from_celsius
@@ -261,6 +268,7 @@ RgbImage Renderer::Thermal(const ViewMaps& view, const std::optional<Temperature
   if (contours != nullptr) {
     for (const IsothermLine& line : lines_) {
       const double width = options_.expert().isotherm_width_px();
+      // The casing first, so that it does not cover the line.
       DrawLine(IsothermCover(*contours, line.celsius, width + 2.0 * kCasing_px), kCasingColour,
                kCasingOpacity, rendering);
       DrawLine(IsothermCover(*contours, line.celsius, width), line.colour, 1.0, rendering);
@@ -276,6 +284,7 @@ RgbImage Renderer::Classes(const ViewMaps& view, const Image<std::uint8_t>& clas
                            const ClassLegend& legend) const {
   const auto colour = [&](int x, int y) {
     const std::uint8_t condition = classes.At(x, y);
+    // A temperature without a class was never checked for it.
     const bool unchecked = condition == kNeverMeasured && !std::isnan(view.celsius.At(x, y));
     return unchecked ? kUncheckedColour : ClassColour(condition);
   };
@@ -337,9 +346,9 @@ RgbImage Renderer::Values(const ViewMaps& view, const Image<float>& values, doub
 }
 
 RgbImage Renderer::NucAge(const ViewMaps& view) const {
-  constexpr double kShortest_s = 1.0;  // A shorter scale would only show the frames' periods.
+  constexpr double kMinRange_s = 1.0;  // A shorter scale would only show the frames' periods.
   const TemperatureStatistics ages = Summarize(view.nuc_age_s.pixels());
-  const double longest_s = std::max(ages.max_celsius, kShortest_s);
+  const double longest_s = std::max(ages.max_celsius, kMinRange_s);
   ScaleLegend legend;
   legend.title = "age since NUC";
   if (ages.count > 0) legend.scale = TemperatureScale{0.0, longest_s};
@@ -348,13 +357,13 @@ RgbImage Renderer::NucAge(const ViewMaps& view) const {
 }
 
 RgbImage Renderer::Uncertainty(const ViewMaps& view) const {
-  constexpr double kSmallest_k = 0.05;  // A shorter scale would only show the steps of the codes.
+  constexpr double kMinRange_k = 0.05;  // A shorter scale would only show the steps of the codes.
   constexpr double kShown = 0.95;       // The few worst ones would make all others look alike.
   std::vector<double> sigmas_k;
   for (const float sigma_k : view.sigma_k.pixels())
     if (!std::isnan(sigma_k)) sigmas_k.push_back(static_cast<double>(sigma_k));
   const double largest_k =
-      sigmas_k.empty() ? kSmallest_k : std::max(TakeQuantile(sigmas_k, kShown), kSmallest_k);
+      sigmas_k.empty() ? kMinRange_k : std::max(TakeQuantile(sigmas_k, kShown), kMinRange_k);
   ScaleLegend legend;
   legend.title = "standard uncertainty";
   if (!sigmas_k.empty()) {

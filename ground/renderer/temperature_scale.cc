@@ -15,7 +15,7 @@ namespace isotherm {
 namespace {
 
 // Two camera temperature steps of a fine camera (0.05 K): a narrower scale would only show noise.
-constexpr double kNarrowest_k = 0.1;
+constexpr double kMinWidth_k = 0.1;
 
 }  // namespace
 
@@ -50,6 +50,7 @@ std::optional<double> Percentile(std::span<const float> values, double percent) 
   std::ranges::nth_element(sorted, lower);
   const double value = *lower;
   if (lower + 1 == sorted.end()) return value;
+  // nth_element leaves what is above in no order; the least of it is the next rank.
   const double next = *std::min_element(lower + 1, sorted.end());
   return value + (rank - std::floor(rank)) * (next - value);
 }
@@ -70,10 +71,11 @@ std::optional<TemperatureScale> ChooseScale(const RendererOptions& options,
       scale.max_celsius = *Percentile(celsius, options.expert().percentile_high());
     } else if (options.scale() != MIN_MAX) {
       const double reach = (options.scale() == ONE_SIGMA ? 1.0 : 3.0) * statistics.sigma_kelvin;
+      // A scale that reaches beyond the values would waste colours.
       scale.min_celsius = std::max(scale.min_celsius, statistics.mean_celsius - reach);
       scale.max_celsius = std::min(scale.max_celsius, statistics.mean_celsius + reach);
     }
-    const double missing = kNarrowest_k - (scale.max_celsius - scale.min_celsius);
+    const double missing = kMinWidth_k - (scale.max_celsius - scale.min_celsius);
     if (missing > 0.0) {
       scale.min_celsius -= missing / 2.0;
       scale.max_celsius += missing / 2.0;
@@ -118,6 +120,7 @@ Status ParseScale(std::string_view text, RendererOptions& options) {
                     "temperatures, 20..100",
                     text));
   }
+  // "5..95%" are quantiles, "5..95" temperatures.
   const bool percent = text.ends_with('%');
   if (percent) text.remove_suffix(1);
   const Result<double> low = ParseCelsius(text.substr(0, dots));

@@ -24,6 +24,7 @@ std::string NotFoundInModel(const ScanOutcome& outcome) {
 }
 
 std::string CauseOfNoPose(const ScanOutcome& outcome) {
+  // One sentence for the user: the most frequent cause is what to change first.
   const std::optional<LostReason> reason = MainReason(outcome.counts.depth_lost);
   if (reason == LostReason::kTooFewPixels) {
     const DepthRange range = RangeOf(outcome.options.preprocessor(), outcome.depth_sensor);

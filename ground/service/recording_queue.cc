@@ -19,6 +19,7 @@ std::size_t Bytes(const SessionItem& item) {
 }  // namespace
 
 bool RecordingQueue::HasRoom(std::size_t bytes) const {
+  // One item always has room, however large.
   return items_.empty() || (items_.size() < limits_.items && bytes_ + bytes <= limits_.bytes);
 }
 
@@ -36,6 +37,8 @@ bool RecordingQueue::Offer(SessionItem item, std::chrono::nanoseconds patience,
     if (!moved_ || patience.count() == 0) return false;
     if (!changed_.wait_for(lock, stop, patience,
                            [&]() REQUIRES(mutex_) { return HasRoom(bytes); })) {
+      // Only the first frame waits for a disk that hangs. Those after it would each wait as long,
+      // and the link would stall with them.
       moved_ = false;
       return false;
     }
@@ -44,6 +47,7 @@ bool RecordingQueue::Offer(SessionItem item, std::chrono::nanoseconds patience,
   return true;
 }
 
+// Beginnings and ends of scans: without them the recording could not be closed.
 void RecordingQueue::Push(SessionItem item) {
   const std::size_t bytes = Bytes(item);
   MutexLock lock(mutex_);

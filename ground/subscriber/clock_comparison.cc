@@ -21,6 +21,8 @@ void ClockComparison::Add(const ClockEcho& echo, SteadyTime now) {
   if (!pinged) return;
   const Sample sample{.pinged = *pinged,
                       .time = now,
+                      // The rig received the ping after it was sent and sent the echo before it
+                      // arrived: the two bounds hold however long the ways took.
                       .lower = echo.sent.time_since_epoch() - now.time_since_epoch(),
                       .upper = echo.received.time_since_epoch() - pinged->time_since_epoch()};
   // Impossible, unless the rig's clock was set between ping and echo: what was known is over, too.

@@ -136,11 +136,11 @@ TEST_F(ClockWatchTest, StampsAreShownWithTheirUncertainty) {
 /// Rig and ground with a link between them: row F18 as a whole.
 class F18Test : public testing::Test {
  protected:
-  /// Statuses until the alarm, at most `most`; nullopt if there was none.
+  /// Returns the statuses until the alarm, at most `max_statuses`; nullopt if there was none.
   std::optional<int> AlarmAfter(Nanoseconds rig_ahead, Nanoseconds there, Nanoseconds back,
-                                int most) {
+                                int max_statuses) {
     EdgeStatus status;
-    for (int i = 1; i <= most; ++i) {
+    for (int i = 1; i <= max_statuses; ++i) {
       const std::uint64_t ping = comparison_.Ping(SteadyTime(elapsed_));
       ClockEcho echo{.ping = ping, .received = Wall(there + rig_ahead), .sent = {}};
       elapsed_ += seconds(1);

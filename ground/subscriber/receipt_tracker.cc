@@ -18,6 +18,7 @@ bool ReceiptTracker::Add(std::uint64_t number) {
   }
   const auto hole = FindHole(number);
   if (hole == holes_.end()) return false;
+  // A late frame splits its hole in two, or makes it smaller.
   const auto [first, last] = *hole;
   holes_.erase(hole);
   if (first < number) AddHole(first, number - 1);
@@ -44,6 +45,8 @@ ReceiptTracker::Holes::const_iterator ReceiptTracker::FindHole(std::uint64_t num
 
 void ReceiptTracker::AddHole(std::uint64_t first, std::uint64_t last) {
   holes_.emplace(first, last);
+  // The oldest is forgotten; its frames then count as duplicates if they should still come, never
+  // twice as received.
   if (holes_.size() > max_holes_) holes_.erase(holes_.begin());
 }
 

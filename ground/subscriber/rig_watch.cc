@@ -14,7 +14,7 @@ RigSighting RigWatch::Look(SteadyTime now, const std::string& edge_id, bool has_
   roster_.Update(is_present);
   RigSighting sighting;
   sighting.sessions_to_refuse = LookAtRivals(now, edge_id);
-  TellOverflow(now, edge_id);
+  LogOverflow(now, edge_id);
   // A writer that is gone is known within its lease of a second, its participant within ten.
   sighting.present = has_status_writer && (is_present(gate_.owner()) || roster_.Has(edge_id));
   const std::string others_text =
@@ -32,6 +32,7 @@ RigSighting RigWatch::Look(SteadyTime now, const std::string& edge_id, bool has_
 std::vector<std::uint64_t> RigWatch::LookAtRivals(SteadyTime now, const std::string& edge_id) {
   const std::vector<RigGate::Rival> before = std::exchange(rivals_, gate_.rivals());
   LogRivals(before, edge_id);
+  // Refusals are repeated, since a receipt may be lost.
   if (rivals_ == before && now < rivals_due_) return {};
   rivals_due_ = now + kRivalInterval;
   std::vector<std::uint64_t> sessions;
@@ -63,7 +64,7 @@ void RigWatch::LogRivals(const std::vector<RigGate::Rival>& before,
   }
 }
 
-void RigWatch::TellOverflow(SteadyTime now, const std::string& edge_id) {
+void RigWatch::LogOverflow(SteadyTime now, const std::string& edge_id) {
   const std::uint64_t overflowed = gate_.overflowed();
   if (overflowed == told_overflow_ || !overflow_limiter_.Admit(now)) return;
   LOG(Subscriber, Warning) << fmt::format(

@@ -46,7 +46,7 @@ class RigWatch {
  private:
   std::vector<std::uint64_t> LookAtRivals(SteadyTime now, const std::string& edge_id);
   void LogRivals(const std::vector<RigGate::Rival>& before, const std::string& edge_id) const;
-  void TellOverflow(SteadyTime now, const std::string& edge_id);
+  void LogOverflow(SteadyTime now, const std::string& edge_id);
 
   const RigGate& gate_;
   RigRoster roster_;

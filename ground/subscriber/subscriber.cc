@@ -27,8 +27,8 @@ namespace {
 using namespace std::chrono_literals;
 
 /// Frames that are taken of one stream before the other has its turn.
-constexpr int kFramesPerTurn = 8;
-constexpr int kMessagesPerTurn = 64;
+constexpr int kFramesPerRound = 8;
+constexpr int kMessagesPerRound = 64;  ///< More is somebody sending without end.
 /// These are more frames than a reader keeps: somebody sends without end.
 constexpr int kMaxTurnsBehindFrames = 32;
 /// A fast sender must not wait for the next interval.
@@ -51,7 +51,7 @@ class DdsSubscriber final : public Subscriber {
 
  private:
   /// Takes some of what has arrived; false if there was nothing.
-  bool TakeTurn();
+  bool TakeRound();
   int TakeMessages();
   /// Keeps the descriptions of the rig that have arrived, until the frames before them were taken.
   int TakeDescriptions();
@@ -149,23 +149,23 @@ void DdsSubscriber::Run(std::stop_token stop) {
   const std::stop_callback wake(stop, [this] { ends_.wait_set.Wake(); });
   while (!stop.stop_requested()) {
     ends_.wait_set.Wait(TimeToNextDuty(clock_.SteadyNow()));
-    while (TakeTurn() && !stop.stop_requested()) Housekeep();
+    while (TakeRound() && !stop.stop_requested()) Housekeep();
     Housekeep();
   }
-  TakeTurn();
+  TakeRound();
   depth_.DeliverAll();
   thermal_.DeliverAll();
   Housekeep();
   SendReceipt(clock_.SteadyNow());
 }
 
-bool DdsSubscriber::TakeTurn() {
+bool DdsSubscriber::TakeRound() {
   const int taken = TakeDescriptions() + TakeMessages();
-  const int depth_taken = TakeSamples(&ends_.depth, kFramesPerTurn);
-  const int thermal_taken = TakeSamples(&ends_.thermal, kFramesPerTurn);
+  const int depth_taken = TakeSamples(&ends_.depth, kFramesPerRound);
+  const int thermal_taken = TakeSamples(&ends_.thermal, kFramesPerRound);
   // A description may end a session, whose last frames were sent before it on other topics: those
   // have arrived by now, and are taken first.
-  const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerTurn;
+  const bool frames_are_left = std::max(depth_taken, thermal_taken) == kFramesPerRound;
   if (!descriptions_.empty() &&
       (!frames_are_left || ++turns_behind_frames_ == kMaxTurnsBehindFrames)) {
     AdmitDescriptions();
@@ -182,7 +182,7 @@ int DdsSubscriber::TakeDescriptions() {
             {peers_.Identify(ends_.rig, received.writer),
              {.content = std::move(received.message), .arrival = clock_.Now()}});
       },
-      kMessagesPerTurn);
+      kMessagesPerRound);
 }
 
 void DdsSubscriber::AdmitDescriptions() {
@@ -193,9 +193,9 @@ void DdsSubscriber::AdmitDescriptions() {
 
 int DdsSubscriber::TakeMessages() {
   const int taken = ends_.peers.Take([this](Received<Hello>&& peer) { OnPeer(peer); });
-  return taken + TakeSamples(&ends_.external_odometry, kMessagesPerTurn) +
-         TakeSamples(&ends_.status, kMessagesPerTurn) +
-         TakeSamples(&ends_.results, kMessagesPerTurn);
+  return taken + TakeSamples(&ends_.external_odometry, kMessagesPerRound) +
+         TakeSamples(&ends_.status, kMessagesPerRound) +
+         TakeSamples(&ends_.results, kMessagesPerRound);
 }
 
 template <typename Message>

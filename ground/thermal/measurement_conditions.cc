@@ -28,6 +28,7 @@ ConditionLimits::ConditionLimits(const ThermalOptions& o)
       cosine_max_angle(CosineOfDegrees(o.angle().max_deg())) {}
 
 ConditionClass ConditionLimits::ClassifyDistance(float d) const {
+  // Written so that NaN is bad.
   if (!(d >= distance_min_m && d <= distance_max_m)) return ConditionClass::kBad;
   return d <= distance_good_m ? ConditionClass::kGood : ConditionClass::kAcceptable;
 }
@@ -42,12 +43,15 @@ bool ReplacesMeasurement(ConditionClass new_distance, ConditionClass new_angle,
   const auto valid = [](ConditionClass distance, ConditionClass angle) {
     return distance != ConditionClass::kBad && angle != ConditionClass::kBad;
   };
+  // A smeared temperature is of another place; it does not even replace a bad one.
   if (new_motion == ConditionClass::kBad) return false;
   if (!old.measured() || !valid(old.distance_class(), old.angle_class())) return true;
   if (!valid(new_distance, new_angle)) return false;
+  // In the order of Algorithm 6: distance before angle; motion, which it does not have, comes last.
   if (new_distance != old.distance_class()) return Rank(new_distance) < Rank(old.distance_class());
   if (new_angle != old.angle_class()) return Rank(new_angle) < Rank(old.angle_class());
   if (new_motion != old.motion_class()) return Rank(new_motion) < Rank(old.motion_class());
+  // Between equals the newer one wins, unless it is less certain and agrees: then it adds nothing.
   if (sigma.before == 0 || sigma.now <= sigma.before) return true;
   const double allowed_k =
       SigmaCode::kAgree * std::hypot(SigmaCode::Kelvin(sigma.now), SigmaCode::Kelvin(sigma.before));

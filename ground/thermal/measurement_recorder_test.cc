@@ -105,17 +105,17 @@ TEST_F(MeasurementRecorderTest, WithoutAnAssignmentTheConditionsStay) {
 
 TEST_F(MeasurementRecorderTest, AnAgeThatIsNotKnownOrTooLongIsNotANumber) {
   const int voxel = BlockLayout::Element(0, 0, 0);
-  constexpr double kLongest_s = 0.25 * (ConditionRecord::kNoAge - 1);
+  constexpr double kMaxAge_s = 0.25 * (ConditionRecord::kNoAge - 1);
   for (const std::optional<double> age_s :
        {std::optional<double>(), std::optional(-1.0), std::optional<double>(NAN),
-        std::optional(kLongest_s + 1.0), std::optional(1e9)}) {
+        std::optional(kMaxAge_s + 1.0), std::optional(1e9)}) {
     Measure(voxel, 50.0F, true);
     Record({.seconds_since = age_s});
     EXPECT_TRUE(std::isnan(Conditions(voxel).age_s())) << age_s.value_or(-99.0);
   }
   Measure(voxel, 50.0F, true);
-  Record({.seconds_since = kLongest_s});
-  EXPECT_FLOAT_EQ(Conditions(voxel).age_s(), static_cast<float>(kLongest_s));
+  Record({.seconds_since = kMaxAge_s});
+  EXPECT_FLOAT_EQ(Conditions(voxel).age_s(), static_cast<float>(kMaxAge_s));
 }
 
 TEST_F(MeasurementRecorderTest, MeasurementsThatAgreeWithinNoiseAreGoodOnceThereAreEnough) {

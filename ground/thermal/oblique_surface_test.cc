@@ -74,11 +74,11 @@ TEST_P(ObliqueSurfaceTest, EverySurfaceVoxelInViewGetsATemperature) {
                             measured += voxel.measured() ? 1 : 0;
                           });
   }
-  const double share = static_cast<double>(measured) / on_surface;
-  std::printf("tilted by %.0f degrees: %.1f %% of %d surface voxels\n", GetParam(), 100.0 * share,
-              on_surface);
+  const double fraction = static_cast<double>(measured) / on_surface;
+  std::printf("tilted by %.0f degrees: %.1f %% of %d surface voxels\n", GetParam(),
+              100.0 * fraction, on_surface);
   EXPECT_GT(on_surface, 5000);
-  EXPECT_GT(share, 0.99);
+  EXPECT_GT(fraction, 0.99);
   EXPECT_EQ(away, 0) << "beyond vertex_distance_vox";
 }
 

@@ -137,7 +137,7 @@ TEST_F(RigTrackerTest, WhileLostItIsFoundInAnotherSubMapInThatOnesCoordinates) {
   EXPECT_EQ(tracker_->state(), State::kConfirming);
 }
 
-TEST_F(RigTrackerTest, RecognisingChangesNothing) {
+TEST_F(RigTrackerTest, VerifyingChangesNothing) {
   Begin();
   Show(1);
   const RigidTransform last = tracker_->motion().last()->T_map_depth;

@@ -33,6 +33,7 @@ TsdfVolume::TsdfVolume(const VoxelGrid& grid, double truncation_distance_m, std:
       max_blocks_(max_blocks),
       arena_((static_cast<std::size_t>(max_blocks) + 1) * kBlockVoxels * sizeof(TsdfVoxel),
              spill_dir),
+      // A border of empty entries all around: looking up a neighbour needs no test of bounds.
       table_(static_cast<std::size_t>(grid.blocks.x() + 2) *
                  static_cast<std::size_t>(grid.blocks.y() + 2) *
                  static_cast<std::size_t>(grid.blocks.z() + 2),
@@ -48,6 +49,8 @@ std::int32_t TsdfVolume::FindOrAllocate(const GridIndex& b) {
 std::int32_t TsdfVolume::FindOrAllocateEntry(std::int32_t entry) {
   std::int32_t& block = table_[static_cast<std::size_t>(entry)];
   if (block != kNoBlock) return block;
+  // One block more than there are is committed: kernels read the empty block before the first one
+  // instead of testing for kNoBlock.
   if (block_count() >= max_blocks_ ||
       !arena_.Commit((static_cast<std::size_t>(block_count()) + 2) * kBlockBytes)) {
     ++refused_blocks_;
@@ -72,6 +75,7 @@ void TsdfVolume::Fetch(std::int32_t first_block, std::int32_t count) const {
 }
 
 TsdfVoxel TsdfVolume::VoxelAt(const GridIndex& voxel) const {
+  // Division rounds towards zero, so that -1 would be in block 0.
   if ((voxel.array() < 0).any()) return {};
   const std::int32_t block = Find(voxel / kBlockSide);
   if (block == kNoBlock) return {};

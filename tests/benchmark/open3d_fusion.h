@@ -31,6 +31,7 @@ struct FusionTimes {
 /// Thread-bound.
 class Open3dFusion {
  public:
+  /// Holds the settings that must be equal for a comparison.
   struct Options {
     VoxelGrid grid;  ///< Blocks outside are left out, as ours are.
     double truncation_distance_m = 0.0;

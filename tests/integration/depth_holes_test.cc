@@ -24,7 +24,7 @@ constexpr std::uint64_t kSeed = 21;
 
 struct Outcome {
   int tracked = 0;
-  double rms_m = 0.0;  ///< Of the positions that were tracked.
+  double rms_m = 0.0;  ///< Error of the tracked positions.
   SurfaceErrors surface;
 };
 

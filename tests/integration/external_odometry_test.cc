@@ -85,7 +85,7 @@ class ExternalOdometryTest : public ::testing::Test {
     double end_error_m = 0.0;
     double end_rotation_rad = 0.0;
     double across_m = 0.0;      ///< Error of the end, along z.
-    double end_sigma_m = 0.0;   ///< What the tracker thinks of it.
+    double end_sigma_m = 0.0;   ///< The tracker's own sigma at the end.
     double off_source_m = 0.0;  ///< Largest distance from where the source says.
     int lost = 0;
     OdometryPriorCounts used;

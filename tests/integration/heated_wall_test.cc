@@ -84,7 +84,7 @@ struct Outcome {
   double rms_x_m = 0.0, rms_y_m = 0.0;
   double end_deg = 0.0;  ///< and about the normal.
   double across_m = 0.0;
-  double sigma_m = 0.0;  ///< What the pipeline says.
+  double sigma_m = 0.0;  ///< The pipeline's own sigma.
   int degraded = 0;
   int min_unobservable = 6;
   int max_unobservable = 0;
@@ -226,7 +226,8 @@ class WallScan {
   std::uint64_t thermal_number_ = 0;
   Image<std::uint16_t> image_;  ///< The newest that was not of the shutter.
   Outcome outcome_;
-  Eigen::Vector2d squares_ = Eigen::Vector2d::Zero();  ///< Of the deviation along x and y, m2.
+  Eigen::Vector2d squares_ =
+      Eigen::Vector2d::Zero();  ///< Squares of the deviation along x and y, m2.
 };
 
 Outcome Show(const char* what, const Scene& scene, const Setting& setting) {

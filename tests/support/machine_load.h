@@ -25,7 +25,7 @@ class MachineLoad {
   double worst_others_fraction() const;
   /// Others left so little that lateness and losses by lateness tell nothing.
   bool is_busy() const;
-  /// Those figures, for people.
+  /// Returns those figures, for people.
   std::string ToText() const;
 
  private:

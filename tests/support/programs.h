@@ -45,6 +45,7 @@ struct StoredFrame {
   friend bool operator==(const StoredFrame&, const StoredFrame&) = default;
 };
 
+/// Holds the frames that a recording kept.
 struct RecordingContent {
   bool complete = false;
   std::vector<StoredFrame> depth;    ///< By frame number.

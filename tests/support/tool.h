@@ -17,6 +17,7 @@ inline std::string ReadAll(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
+/// Holds how a program ended and what it wrote.
 struct Outcome {
   int status = -1;
   std::string out;

@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
 struct DoubtfulDataset {
   const char* name;
   std::function<void(const DatasetFolder&)> damage;
-  const char* cause;  ///< What is said, with the likely cause.
+  const char* cause;  ///< The message, with the likely cause.
 };
 
 class DoubtfulDatasetTest : public BadInputTest,

@@ -42,6 +42,7 @@ inline void ExpectOneSentence(const Finished& finished, const ::testing::Matcher
   EXPECT_THAT(Sentences(finished.output), ::testing::ElementsAre(::testing::HasSubstr(word)));
 }
 
+/// Imports and reconstructs a small dataset after a test has spoiled it.
 class BadInputTest : public ::testing::Test {
  protected:
   std::filesystem::path Recording() const { return dataset_.root() / "scan.mcap"; }

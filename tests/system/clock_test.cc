@@ -72,7 +72,7 @@ class ClockTest : public ::testing::Test {
   }
 
   static std::unique_ptr<TemporaryDirectory> shared_;
-  std::string clock_state_ = "synchronised";  ///< What the kernel tells both programs.
+  std::string clock_state_ = "synchronised";  ///< The kernel tells both programs this.
   TemporaryDirectory folder_;
   std::unique_ptr<Process> ground_;
   std::unique_ptr<Process> edge_;

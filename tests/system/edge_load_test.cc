@@ -305,8 +305,8 @@ class EdgeLoadTest : public ::testing::Test {
     }
   }
 
-  /// What was lost may be no larger a part than others took of the processors: nothing where they
-  /// took little.
+  /// No larger a part may be lost than others took of the processors: nothing where they took
+  /// little.
   void ExpectNoMoreIsLostThanOthersTook(const MachineLoad& load) {
     const double fraction = load.is_busy() ? load.worst_others_fraction() : 0.0;
     for (const Sensor sensor : {Sensor::kDepth, Sensor::kThermal}) {
@@ -345,7 +345,7 @@ class EdgeLoadTest : public ::testing::Test {
   const TransportEnvironment environment_{clock_};
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Publisher> publisher_;
-  double wall_s_ = 0.0;  ///< That it ran.
+  double wall_s_ = 0.0;  ///< Time that it ran.
   FrameCounters counters_;
   CameraHealth health_;
   CameraProcess* depth_ = nullptr;

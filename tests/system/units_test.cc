@@ -176,7 +176,7 @@ class UnitsScanTest : public UnitsTest {
     }
   }
 
-  /// What the edge captured is recorded there, and what it published is on the ground.
+  /// All that the edge captured is recorded there, and what it published is on the ground.
   void ExpectTheCountersBalance() const {
     const std::string journal = Journal("--identifier isotherm-edge") + '\n';
     const auto stats = ReadStats(OnlyScan());
@@ -340,7 +340,7 @@ TEST_F(UnitsTest, TheSandboxAllowsWhatIsNeededAndNoMore) {
   }
 }
 
-/// Whether `unit` runs, has not been started again, and says `reason` in its status.
+/// Returns whether `unit` runs, has not been started again, and says `reason` in its status.
 bool RunsAndSays(const Container& container, const std::string& unit, const std::string& reason) {
   const std::string shown =
       container.Output("systemctl show --property SubState,NRestarts,StatusText " + unit);
