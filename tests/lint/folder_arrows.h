@@ -11,8 +11,9 @@ namespace isotherm::lint {
 
 using Folders = std::set<std::string, std::less<>>;
 
-/// Which folders each folder may include besides itself: its options and the folders that declare
-/// its input. The order is that of the line, from what others stand on to what stands on others.
+/// Says which folders each folder may include besides itself: its options and the folders that
+/// declare its input. The order is that of the line, from what others stand on to what stands on
+/// others.
 using FolderArrows = std::map<std::string, Folders, std::less<>>;
 
 /// Says who may include whom (docs/architecture.md, "Folders and the dependency rule").

@@ -149,7 +149,8 @@ bool IsOurs(const Include& include) {
          include.header.starts_with(".");
 }
 
-/// Which folders the programs' files of each folder include; the folder itself does not count.
+/// Returns which folders the programs' files of each folder include; the folder itself does not
+/// count.
 FolderArrows ArrowsOf(const std::vector<SourceFile>& files) {
   FolderArrows arrows;
   for (const SourceFile& file : files) {
