@@ -14,8 +14,6 @@
 namespace isotherm {
 namespace {
 
-constexpr double kSecondsPerMinute = 60.0;
-
 /// Says what a stream of random numbers is for.
 enum NoisePurpose : std::uint64_t {
   kDepthPixels,
@@ -214,7 +212,7 @@ void SimulatedScan::AddErrors(CaptureTime time, Image<std::uint16_t>& temperatur
   const double since_s = ToSeconds(time - start_) - corrected_s;
   // Each correction takes the pattern out; another one grows.
   const auto epoch = static_cast<std::uint64_t>(std::llround(corrected_s * kMsPerS));
-  AddPattern(expert.pattern_k_per_sqrt_minute() * std::sqrt(since_s / kSecondsPerMinute),
+  AddPattern(expert.pattern_k_per_sqrt_minute() * std::sqrt(since_s / kSPerMin),
              NoiseStream(options_->seed(), kThermalPattern, epoch), rig_.thermal_scale,
              temperature_raw);
   const double flicker_k =

@@ -29,19 +29,18 @@ MonitorHost ThisComputer() {
           .watchdog_interval = WatchdogInterval()};
 }
 
-EdgeMonitor::EdgeMonitor(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-                         const FrameCounters& counters, const CameraHealth& health,
-                         std::filesystem::path image_file, MonitorHost host)
-    : clock_(clock),
-      pipeline_(pipeline),
-      publisher_(publisher),
-      counters_(counters),
-      health_(health),
+EdgeMonitor::EdgeMonitor(const EdgeMonitorParts& parts, std::filesystem::path image_file,
+                         MonitorHost host)
+    : clock_(parts.clock),
+      pipeline_(parts.pipeline),
+      publisher_(parts.publisher),
+      counters_(parts.counters),
+      health_(parts.health),
       image_file_(std::move(image_file)),
       host_(std::move(host)),
       terminal_(line_->is_terminal()),
       synchronised_(host_.read().clock.synchronised),
-      next_status_(clock.SteadyNow()),
+      next_status_(clock_.SteadyNow()),
       next_log_(next_status_ + kLogInterval),
       next_feed_(next_status_),
       newest_depth_{.at = next_status_},

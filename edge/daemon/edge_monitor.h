@@ -33,15 +33,22 @@ struct MonitorHost {
 /// The computer that this program runs on.
 MonitorHost ThisComputer();
 
+/// What housekeeping looks at and speaks for.
+struct HousekeepingParts {
+  const Clock& clock;
+  EdgePipeline& pipeline;
+  Publisher& publisher;
+  const FrameCounters& counters;
+  const CameraHealth& health;
+};
+
 /// Does what is left to the daemon's main thread beside the line: answers commands, publishes the
 /// status once a second, tells the operator and the service manager. Thread-bound.
 class EdgeMonitor {
  public:
-  /// All but `host` must outlive it. `image_file`: where the confidence image goes (empty:
-  /// nowhere).
-  EdgeMonitor(const Clock& clock, EdgePipeline& pipeline, Publisher& publisher,
-              const FrameCounters& counters, const CameraHealth& health,
-              std::filesystem::path image_file, MonitorHost host = ThisComputer());
+  /// `parts` must outlive it. `image_file`: where the confidence image goes (empty: nowhere).
+  EdgeMonitor(const EdgeMonitorParts& parts, std::filesystem::path image_file,
+              MonitorHost host = ThisComputer());
 
   /// Does what is due; call it often.
   void Tick();

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/base/units.h"
 #include "common/frame/radiometric_scale.h"
 #include "edge/options/edge_options.pb.h"
 
@@ -148,14 +149,13 @@ void CheckTimestamper(const TimestamperOptions& options, Problems& problems) {
 }
 
 void CheckNuc(const NucOptions& options, Problems& problems) {
-  constexpr double kHour = 3600.0;
   problems.Stage("nuc");
   problems.CheckRange("settle_time_s", options.settle_time_s(), 0.0, 60.0);
   problems.CheckRange("max_housing_drift_k", options.max_housing_drift_k(), 0.0, 100.0);
   problems.CheckRange("expert.max_fpa_drift_k", options.expert().max_fpa_drift_k(), 0.0, 100.0);
-  problems.CheckRange("max_interval_s", options.max_interval_s(), 0.0, 24.0 * kHour);
-  problems.CheckRange("expert.min_interval_s", options.expert().min_interval_s(), 0.5, kHour);
-  problems.CheckRange("expert.max_hold_s", options.expert().max_hold_s(), 0.0, kHour);
+  problems.CheckRange("max_interval_s", options.max_interval_s(), 0.0, 24.0 * kSPerHour);
+  problems.CheckRange("expert.min_interval_s", options.expert().min_interval_s(), 0.5, kSPerHour);
+  problems.CheckRange("expert.max_hold_s", options.expert().max_hold_s(), 0.0, kSPerHour);
   problems.CheckRange("expert.answer_s", options.expert().answer_s(), 0.1, 60.0);
   problems.CheckRange("expert.max_attempts", options.expert().max_attempts(), 1, 100);
   problems.CheckRange("expert.max_duration_s", options.expert().max_duration_s(), 0.1, 600.0);
@@ -168,13 +168,14 @@ void CheckNuc(const NucOptions& options, Problems& problems) {
                       1, 600);
   problems.CheckRange("expert.warm_up_rate_k_per_min", options.expert().warm_up_rate_k_per_min(),
                       0.001, 100.0);
-  problems.CheckRange("expert.warm_up_stable_s", options.expert().warm_up_stable_s(), 1.0, kHour);
+  problems.CheckRange("expert.warm_up_stable_s", options.expert().warm_up_stable_s(), 1.0,
+                      kSPerHour);
   problems.CheckRange("expert.warm_up_housing_rate_k_per_min",
                       options.expert().warm_up_housing_rate_k_per_min(), 0.001, 100.0);
   problems.CheckRange("expert.warm_up_housing_stable_s",
-                      options.expert().warm_up_housing_stable_s(), 1.0, kHour);
+                      options.expert().warm_up_housing_stable_s(), 1.0, kSPerHour);
   problems.CheckRange("expert.warm_up_time_s", options.expert().warm_up_time_s(), 0.0,
-                      24.0 * kHour);
+                      24.0 * kSPerHour);
   problems.CheckRange("expert.frozen_restart_s", options.expert().frozen_restart_s(), 0.0, 600.0);
 }
 

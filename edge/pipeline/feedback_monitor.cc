@@ -29,7 +29,6 @@ std::optional<Feedback> FeedbackMonitor::newest() const {
 }
 
 FeedbackLatency FeedbackMonitor::latency() const {
-  constexpr double kSPerMs = 1e-3;
   const MutexLock lock(mutex_);
   FeedbackLatency latency;
   latency.count = count_;

@@ -240,7 +240,7 @@ TEST_F(ThermalCameraSourceTest, F05FrozenFramesAreNotGoodAndThenTheCameraIsReope
   for (int i = 0; i < 40; ++i) Send(MakeFrame(1, 100));
   const auto source = Open();
   EXPECT_FALSE(ReadFrame(*source).shutter_closed);
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::holds_alternative<NothingYet>(Read(*source)));
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(std::holds_alternative<NothingYet>(Read(*source)));
   // Known within half a second, ...
   const RawFrame frozen = ReadFrame(*source);
   EXPECT_TRUE(frozen.shutter_closed);
@@ -249,7 +249,7 @@ TEST_F(ThermalCameraSourceTest, F05FrozenFramesAreNotGoodAndThenTheCameraIsReope
   // ... given up after two.
   int frames = 1;
   while (std::holds_alternative<RawFrame>(Read(*source))) ++frames;
-  EXPECT_EQ(frames, 16);  // From 0.4 to 1.9 s.
+  EXPECT_EQ(frames, 17);  // From 0.3 to 1.9 s.
   EXPECT_EQ(failure_.code(), StatusCode::kUnavailable);
   EXPECT_THAT(failure_.message(), HasSubstr("the same image"));
 }
@@ -262,7 +262,7 @@ TEST_F(ThermalCameraSourceTest, FrozenImageOfASilentCameraIsACorrection) {
     Send(frame);
   }
   const auto source = Open();
-  for (int i = 0; i < 4; ++i) Read(*source);
+  for (int i = 0; i < 3; ++i) Read(*source);
   EXPECT_EQ(ReadFrame(*source).camera_nuc->state, NucState::kInProgress);
 }
 

@@ -14,10 +14,10 @@
 #include "ground/calibration/delay_check.h"
 #include "ground/calibration/find_delay.h"
 #include "ground/calibration/image_motion.h"
-#include "ground/calibration/scan_views.h"
 #include "ground/cli/command.h"
 #include "ground/cli/configuration_arguments.h"
 #include "ground/cli/simulation_files.h"
+#include "ground/offline/calibration_scan.h"
 #include "ground/options/ground_options.pb.h"
 
 namespace isotherm {

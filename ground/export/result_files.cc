@@ -95,7 +95,7 @@ void WriteRenders(const ResultInputs& inputs, const std::optional<TemperatureSca
   std::error_code ignored;  // A folder that is not there shows when files cannot be written.
   fs::create_directories(folder, ignored);
   ViewMaps view;
-  SampleView(*inputs.view, inputs.viewer_world, inputs.tsdf, inputs.thermal, threads, view);
+  SampleView(*inputs.view, inputs.p_map_viewer, inputs.tsdf, inputs.thermal, threads, view);
   SampleRecords(*inputs.view, inputs.tsdf, inputs.thermal, threads, view);
   if (inputs.interpretation != nullptr) {
     inputs.interpretation->Apply(*inputs.view, view);

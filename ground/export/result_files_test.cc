@@ -65,7 +65,7 @@ class ResultsTest : public ::testing::Test {
                         .thermal = thermal_,
                         .trajectory = poses_,
                         .view = &view_,
-                        .viewer_world = {0.06, 0.05, -0.5},
+                        .p_map_viewer = {0.06, 0.05, -0.5},
                         .renderer_options = renderer_,
                         .thermal_options = thermal_options_,
                         .export_options = export_,

@@ -19,8 +19,8 @@
 #include "ground/export/result_files.h"
 #include "ground/offline/held_out_views.h"
 #include "ground/pipeline/ground_pipeline.h"
-#include "ground/pipeline/pipeline_counts.h"
 #include "ground/results/scan_result.h"
+#include "ground/scan/scan_counts.h"
 #include "ground/thermal/thermal_options.h"
 
 namespace isotherm {
@@ -82,7 +82,7 @@ class InlineDriver {
   }
 
   DelayReport CheckDelay() {
-    return delay_check_.Finish(pipeline_.model(), pipeline_.pool(), [this](double fraction) {
+    return delay_check_.Finish(pipeline_.model(), [this](double fraction) {
       if (request_.progress)
         request_.progress(kFramesFraction + kMergeFraction + kDelayFraction * fraction,
                           "checking the delay");
@@ -333,11 +333,10 @@ Result<ReconstructSummary> Reconstruct(const ReconstructRequest& request) {
     constexpr double kBefore = kFramesFraction + kMergeFraction + kDelayFraction;
     if (request.progress) request.progress(kBefore + (1.0 - kBefore) * fraction, what);
   };
-  Result<WrittenScan> written =
-      WriteScan(pipeline.model(), options, delay, driver.FindDoubts(), std::move(stats),
-                request.output_dir, pipeline.pool(), progress);
+  Result<WrittenScan> written = WriteScan(
+      pipeline.model(), options, {delay, driver.FindDoubts(), stats}, request.output_dir, progress);
   if (!written) return Err(written.error());
-  const PipelineCounts& counts = pipeline.model().counts;
+  const ScanCounts& counts = pipeline.model().counts;
   return ReconstructSummary{
       counts.depth_in,      counts.depth_repeated,    counts.depth_tracked,      counts.thermal_in,
       counts.thermal_fused, std::move(written->text), std::move(written->doubts)};
@@ -369,7 +368,7 @@ Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int
       .min_weight = static_cast<float>(scan->options.export_().expert().min_weight()),
       .surface = surface,
       .scene_influence = CorrectedInfluence(scan->options.thermal(), scan->rig->thermal_sensor)};
-  HeldOutViews views(scan->pipeline->model(), options, scan->pipeline->pool());
+  HeldOutViews views(scan->pipeline->model(), options);
   if (Status status = CompareHeldOut(request, *scan->rig, driver.held_out(), views); !status.ok()) {
     return Err(status);
   }

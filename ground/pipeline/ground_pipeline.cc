@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/base/stage_timer.h"
+#include "ground/model/saved_model.h"
 #include "ground/options/option_geometry.h"
-#include "ground/pipeline/saved_model.h"
 #include "ground/thermal/thermal_options.h"
 #include "ground/tsdf/growing_arena.h"
 
@@ -18,6 +19,8 @@ int ThreadCount(const GroundOptions& options) {
   if (options.threads() > 0) return options.threads();
   return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 }
+
+const StageStats* IfCalled(const StageStats& stats) { return stats.count() > 0 ? &stats : nullptr; }
 
 }  // namespace
 
@@ -66,14 +69,13 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       pool_(ThreadCount(options)),
       atlas_(options, rig.depth->WithoutDistortion(), grid),
       preprocessor_(options.preprocessor(), *rig.depth, rig.depth_sensor),
-      tracker_(options, rig.depth->WithoutDistortion(), initial_pose, atlas_, stages_),
+      tracker_(options, rig.depth->WithoutDistortion(), initial_pose, atlas_),
       integrator_(options.tsdf()),
       gate_(options.tsdf()),
       spiller_(MaxResidentBlocks(options.volume(), grid)) {
   if (!thermal_status_.ok()) return;
   thermal_stage_.emplace(options.thermal(), rig,
-                         static_cast<float>(options.raycast().expert().min_weight()), counts_,
-                         stages_[Stage::kThermalFrame]);
+                         static_cast<float>(options.raycast().expert().min_weight()), counts_);
   if (options.tracker().use_thermal()) tracker_.UseThermal(*rig.thermal, *rig.T_thermal_depth);
 }
 
@@ -89,7 +91,8 @@ Status GroundPipeline::Continue(const ModelFile& model) {
   return OkStatus();
 }
 
-ScanModel GroundPipeline::model() const {
+ScanModel GroundPipeline::model() {
+  const TrackerTimes& tracker = tracker_.times();
   return {.rig = rig_,
           .atlas = atlas_,
           .trajectory = tracker_.trajectory(),
@@ -98,17 +101,25 @@ ScanModel GroundPipeline::model() const {
           .uncertainty = tracker_.uncertainty(),
           .external_odometry = tracker_.external_odometry(),
           .counts = counts_,
-          .stages = stages_,
+          .stages = {{Stage::kDepthFrame, IfCalled(times_.depth_frame)},
+                     {Stage::kIntegrate, IfCalled(times_.integrate)},
+                     {Stage::kMerge, IfCalled(times_.merge)},
+                     {Stage::kPreprocess, IfCalled(times_.preprocess)},
+                     {Stage::kRaycast, IfCalled(tracker.raycast)},
+                     {Stage::kRelocalise, IfCalled(tracker.relocalise)},
+                     {Stage::kSubMaps, IfCalled(tracker.sub_maps)},
+                     {Stage::kThermalFrame, thermal_stage_ ? &thermal_stage_->times() : nullptr},
+                     {Stage::kTrack, IfCalled(tracker.track)}},
           .spiller = spiller_,
           .thermal_status = thermal_status_,
           .is_continued = is_continued_,
-          .threads = pool_.threads()};
+          .pool = pool_};
 }
 
 DepthReport GroundPipeline::ProcessDepth(const DepthFrame& frame) {
   DepthReport report;
   if (!Admit(frame, report)) return report;
-  StageTimer timer(stages_[Stage::kDepthFrame]);
+  StageTimer timer(times_.depth_frame);
   const PreparedDepth& depth = Prepare(frame);
   TrackedFrame tracked = Track(depth, frame.header.capture_time);
   const bool integrated = Integrate(depth, tracked);
@@ -149,7 +160,7 @@ bool GroundPipeline::HasCalibratedSize(const DepthFrame& frame) {
 }
 
 const PreparedDepth& GroundPipeline::Prepare(const DepthFrame& frame) {
-  const StageTimer timer(stages_[Stage::kPreprocess]);
+  const StageTimer timer(times_.preprocess);
   return preprocessor_.Process(frame, pool_);
 }
 
@@ -214,7 +225,7 @@ bool GroundPipeline::IsDue(const TrackedFrame& frame) {
 }
 
 bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform& T_map_depth) {
-  const StageTimer timer(stages_[Stage::kIntegrate]);
+  const StageTimer timer(times_.integrate);
   SubMap& map = atlas_.active();
   integrator_.Integrate(depth, T_map_depth, pool_, *map.tsdf);
   // Temperatures lie beside the distances block by block, so they grow with them.
@@ -320,7 +331,7 @@ void GroundPipeline::Finish(const std::function<void(double)>& progress) {
 }
 
 void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
-  const StageTimer timer(stages_[Stage::kMerge]);
+  const StageTimer timer(times_.merge);
   const RigidTransform T_world_map = atlas_.active().T_world_map;
   const bool joined = atlas_.active().joined;
   if (!atlas_.Merge(options_.tsdf().expert().max_weight(), pool_, progress)) {
@@ -332,7 +343,7 @@ void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {
     tracker_.Rebase(T_world_map);
     RaycastFrom(tracker_.view().T_map_depth);
   } else if (!poses.empty()) {
-    RaycastFrom(poses.back().T_world_depth);
+    RaycastFrom(InFirstMap(poses.back().T_world_depth));
   }
 }
 

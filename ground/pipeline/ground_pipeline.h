@@ -5,19 +5,19 @@
 #include <memory>
 #include <optional>
 
+#include "common/base/stage_stats.h"
 #include "common/concurrency/thread_pool.h"
 #include "common/doubts/repeat_detector.h"
 #include "common/frame/frame.h"
 #include "common/rig/rig.h"
 #include "ground/atlas/atlas.h"
+#include "ground/model/block_spiller.h"
 #include "ground/model/model_file.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/block_spiller.h"
-#include "ground/pipeline/depth_report.h"
-#include "ground/pipeline/pipeline_counts.h"
-#include "ground/pipeline/scan_model.h"
 #include "ground/pipeline/thermal_stage.h"
-#include "ground/stage_times/stage_times.h"
+#include "ground/scan/depth_report.h"
+#include "ground/scan/scan_counts.h"
+#include "ground/scan/scan_model.h"
 #include "ground/surface/depth_preprocessor.h"
 #include "ground/tracker/tracker.h"
 #include "ground/tsdf/tsdf_integrator.h"
@@ -64,9 +64,7 @@ class GroundPipeline {
   void Finish(const std::function<void(double)>& progress = {});
 
   /// Returns what all frames so far have given.
-  ScanModel model() const;
-  /// For work between frames (views, results).
-  ThreadPool& pool() { return pool_; }
+  ScanModel model();
 
  private:
   GroundPipeline(const GroundOptions& options, const Rig& rig, const VoxelGrid& grid,
@@ -99,13 +97,18 @@ class GroundPipeline {
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);
 
+  /// Of what is no stage with times of its own.
+  struct OwnTimes {
+    StageStats depth_frame, preprocess, integrate, merge;
+  };
+
   const GroundOptions options_;
   const Rig rig_;
   Status thermal_status_;
   bool is_continued_ = false;
   ThreadPool pool_;
-  PipelineCounts counts_;
-  StageTimes stages_;
+  ScanCounts counts_;
+  OwnTimes times_;
   Atlas atlas_;
   DepthPreprocessor preprocessor_;
   Tracker tracker_;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "ground/stage_times/stage_times.h"
+#include "common/base/stage_timer.h"
 #include "ground/thermal/uncertainty_budget.h"
 
 namespace isotherm {
@@ -26,14 +26,13 @@ CameraUncertainty UncertaintyOf(const ThermalOptions& options, const ThermalSens
 }  // namespace
 
 ThermalStage::ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight,
-                           PipelineCounts& counts, StageStats& timing)
+                           ScanCounts& counts)
     : options_(options),
       camera_(*rig.thermal),
       T_depth_thermal_(rig.T_thermal_depth->inverse()),
       extrinsic_px_(ExtrinsicSigmaPx(rig.reprojection_error_px)),
       uncertainty_(UncertaintyOf(options, rig.thermal_sensor)),
       counts_(counts),
-      timing_(timing),
       fuser_(options, *rig.thermal, rig.thermal_sensor, min_weight),
       near_range_occlusion_(options.expert().occlusion(), rig.depth_sensor, fuser_.ideal_camera()),
       line_of_sight_occlusion_(options.expert().occlusion(), rig.depth_sensor,
@@ -121,7 +120,7 @@ void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, T
       LeaveOut(LeftOutReason::kBehind);
       continue;
     }
-    const StageTimer timer(timing_);
+    const StageTimer timer(times_);
     // Several thermal frames share a depth frame: what depends on that alone is done once.
     if (!std::exchange(is_prepared, true)) {
       near_range_occlusion_.Update(depth.depth_m, depth.view.maps, depth.view.camera);
@@ -152,8 +151,9 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
                                   .near_range = &near_range_occlusion_,
                                   .line_of_sight = &line_of_sight_occlusion_,
                                   .nuc = waiting.nuc};
-  counts_.fusion += fuser_.Fuse(*waiting.frame, T_map_thermal, depth.view.camera,
-                                T_map_depth_at_capture, depth.tsdf, pool, thermal, capture);
+  counts_.fusion +=
+      fuser_.Fuse({*waiting.frame, T_map_thermal, depth.view.camera, T_map_depth_at_capture},
+                  capture, depth.tsdf, pool, thermal);
   ++counts_.thermal_fused;
 }
 

@@ -11,7 +11,7 @@
 #include "common/geometry/rigid_transform.h"
 #include "common/rig/rig.h"
 #include "ground/icp/icp_tracker.h"
-#include "ground/pipeline/pipeline_counts.h"
+#include "ground/scan/scan_counts.h"
 #include "ground/thermal/line_of_sight_occlusion.h"
 #include "ground/thermal/near_range_occlusion.h"
 #include "ground/thermal/nuc_epochs.h"
@@ -43,9 +43,8 @@ struct TrackedDepth {
 class ThermalStage {
  public:
   /// CheckThermalFusion(rig) is ok. Voxels lighter than `min_weight` do not count as observed.
-  /// `counts` and `timing` must outlive the stage.
-  ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight,
-               PipelineCounts& counts, StageStats& timing);
+  /// `counts` must outlive the stage.
+  ThermalStage(const ThermalOptions& options, const Rig& rig, float min_weight, ScanCounts& counts);
 
   /// Keeps a frame, or counts why not. Frames come in order of capture time. True if it was kept.
   bool Add(ThermalFramePtr frame);
@@ -53,6 +52,9 @@ class ThermalStage {
   void FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool);
   /// Counts what still waits as left out, and reviews all temperatures.
   void Finish(const TsdfVolume& tsdf, ThermalVolume& thermal, ThreadPool& pool);
+
+  /// Returns the times of the frames that were fused.
+  const StageStats& times() const { return times_; }
 
  private:
   /// Holds a frame until the depth frames on both sides of it are tracked.
@@ -76,8 +78,8 @@ class ThermalStage {
   const RigidTransform T_depth_thermal_;
   const double extrinsic_px_;
   const CameraUncertainty uncertainty_;
-  PipelineCounts& counts_;
-  StageStats& timing_;
+  ScanCounts& counts_;
+  StageStats times_;
   ThermalFuser fuser_;
   NearRangeOcclusion near_range_occlusion_;
   LineOfSightOcclusion line_of_sight_occlusion_;

@@ -36,7 +36,7 @@ class ThermalStageTest : public ::testing::Test {
     view_.T_map_depth = testing::FirstPose();
     Raycaster().Cast(*tsdf_, view_.camera, view_.T_map_depth, 0.0F, pool_, view_.maps);
     depth_m_ = Image<float>(rig_.depth->width, rig_.depth->height, 0.5F);
-    stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_, timing_);
+    stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_);
   }
 
   static CaptureTime Time(double frame) { return CaptureTime(FromSeconds(100.0 + frame / 30.0)); }
@@ -85,8 +85,7 @@ class ThermalStageTest : public ::testing::Test {
   std::unique_ptr<ThermalVolume> thermal_;
   ModelView view_;
   Image<float> depth_m_;
-  PipelineCounts counts_;
-  StageStats timing_;
+  ScanCounts counts_;
   std::unique_ptr<ThermalStage> stage_;
 };
 
@@ -226,7 +225,7 @@ TEST_F(ThermalStageTest, UncertaintyGrowsWithTheGapAndTowardsItsMiddle) {
   // Half of hypot(2 / 0.5 m, 3) T^2 / 8 is a pixel of the thermal camera at T = 0.106 s.
   const double pixel_s = std::sqrt(8.0 / (0.5 * 5.0 * rig_.thermal->fx));
   options_.mutable_expert()->set_max_wait_s(1.0);
-  stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_, timing_);
+  stage_ = std::make_unique<ThermalStage>(options_, rig_, 0.0F, counts_);
   const double frames = 30.0 * pixel_s;
   EXPECT_FALSE(left_out(0.49 * frames, 0.98 * frames));
   EXPECT_TRUE(left_out(0.51 * frames, 1.02 * frames));

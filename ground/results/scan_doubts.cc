@@ -42,7 +42,7 @@ std::string CauseOfNoPose(const ScanOutcome& outcome) {
 }
 
 std::string NoTemperature(const ScanOutcome& outcome) {
-  const PipelineCounts& counts = outcome.counts;
+  const ScanCounts& counts = outcome.counts;
   if (counts.thermal_fused == 0) {
     const std::optional<LeftOutReason> reason = MainReason(counts.thermal_left_out);
     return fmt::format("none of {} thermal frames could be used: {}", counts.thermal_in,
@@ -66,7 +66,7 @@ std::string NoTemperature(const ScanOutcome& outcome) {
 }  // namespace
 
 Doubts DoubtsAboutResult(const ScanOutcome& outcome) {
-  const PipelineCounts& counts = outcome.counts;
+  const ScanCounts& counts = outcome.counts;
   if (counts.depth_in > 0 && outcome.poses == 0) {
     if (outcome.continued) return {NotFoundInModel(outcome)};
     return {fmt::format("none of {} depth frames was tracked, so there is no surface: {}",

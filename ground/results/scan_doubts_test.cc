@@ -7,7 +7,7 @@
 #include <string>
 
 #include "ground/results/outcome_text.h"
-#include "ground/stage_times/stage_times.h"
+#include "ground/scan/stage_times.h"
 
 namespace isotherm {
 namespace {
@@ -44,7 +44,7 @@ class ScanDoubtsTest : public ::testing::Test {
     return outcome;
   }
 
-  PipelineCounts counts_;
+  ScanCounts counts_;
   GroundOptions options_;
 };
 

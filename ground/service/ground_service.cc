@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <chrono>
-#include <condition_variable>
 #include <cstdio>
 #include <memory>
-#include <mutex>
 #include <utility>
 
 #include "common/base/exit_deadline.h"
 #include "common/base/log.h"
+#include "common/base/pause.h"
 #include "common/base/service.h"
 #include "common/transport/join_domain.h"
 #include "ground/export/result_files.h"
@@ -73,8 +72,8 @@ class GroundService {
         to_reconstruction_(static_cast<std::size_t>(options.live().expert().queue_frames()),
                            OverflowPolicy::kBlock),
         to_recording_(kRecordingLimits),
-        distributor_(options, mode.single_scan, clock, to_reconstruction_, to_recording_, board_,
-                     health_.receive) {}
+        distributor_(options, mode.single_scan, clock,
+                     {to_reconstruction_, to_recording_, board_, health_.receive}) {}
 
   /// Joins the link.
   Status Open(const TransportEnvironment& environment);
@@ -155,8 +154,8 @@ int GroundService::Run() {
   const auto counters = [this](std::uint64_t session) { return subscriber_->counters(session); };
   ResultWriter results(options_, clock_, counters, board_, health_.results, written);
   RecordingLoop recording(options_, clock_, board_, health_.recording);
-  ReconstructionLoop reconstruction(options_, clock_, *subscriber_, to_recording_, results, board_,
-                                    health_.reconstruction);
+  ReconstructionLoop reconstruction(
+      options_, clock_, {*subscriber_, to_recording_, results, board_, health_.reconstruction});
   {
     // Consumers are started before the producers, and stopped behind them below.
     Worker result_thread("results", [&](const std::stop_token& stop) { results.Run(stop); });
@@ -202,11 +201,8 @@ void GroundService::GuardUntilStopped() {
   // are enough, and cost nothing.
   constexpr Nanoseconds kTick = 200ms;
   StatusReporter status(clock_);
-  std::mutex mutex;
-  std::condition_variable_any wake;
-  std::unique_lock lock(mutex);
   const std::stop_token stop = signal_.token();
-  while (!wake.wait_for(lock, stop, kTick, [&] { return stop.stop_requested(); })) {
+  for (Pause(stop, kTick); !stop.stop_requested(); Pause(stop, kTick)) {
     FeedWatchdog();
     status.Report(Situation());
   }

@@ -66,7 +66,7 @@ class LiveScanTest : public ::testing::Test {
     }
   }
 
-  const PipelineCounts& counts() { return scan_->model().counts; }
+  const ScanCounts& counts() { return scan_->model().counts; }
   std::uint64_t ThermalBehind() { return counts().thermal_left_out[LeftOutReason::kBehind]; }
 
   FakeClock clock_{CaptureTime(FromSeconds(1000.0))};

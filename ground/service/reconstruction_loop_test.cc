@@ -144,7 +144,8 @@ class ReconstructionLoopTest : public ::testing::Test {
                         result_progress_,
                         [this] { ++written_; }};
   SessionQueue queue_{1000, OverflowPolicy::kBlock};
-  ReconstructionLoop loop_{options_, clock_, subscriber_, recording_, results_, board_, progress_};
+  ReconstructionLoop loop_{
+      options_, clock_, {subscriber_, recording_, results_, board_, progress_}};
   std::jthread loop_thread_, result_thread_;
 };
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "common/base/units.h"
+
 namespace isotherm {
 
 namespace {
@@ -33,12 +35,11 @@ std::uint64_t RecordingProgress::left_out(NotRecorded reason) const {
 }
 
 std::string DiskText(const RecordingProgress& progress) {
-  constexpr double kSecondsPerMinute = 60.0;
   constexpr double kMinutesPerHour = 60.0;
   if (progress.path.empty() || progress.closed || !(progress.bytes_per_s > 0.0)) return {};
   const std::uint64_t usable =
       progress.free_bytes - std::min(progress.free_bytes, progress.reserve_bytes);
-  const double minutes = static_cast<double>(usable) / progress.bytes_per_s / kSecondsPerMinute;
+  const double minutes = static_cast<double>(usable) / progress.bytes_per_s / kSPerMin;
   if (minutes < 2.0 * kMinutesPerHour) return fmt::format("disk: {:.0f} min left", minutes);
   const double hours = minutes / kMinutesPerHour;
   return hours < 100.0 ? fmt::format("disk: {:.0f} h left", hours) : "disk: days left";

@@ -164,8 +164,8 @@ Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayR
   const auto progress = [this](std::string_view, double) { progress_.Busy(clock_.SteadyNow()); };
   const auto write = [&](const fs::path& to) -> Result<std::string> {
     if (Status prepared = PrepareOutputDir(to); !prepared.ok()) return Err(prepared);
-    Result<WrittenScan> written = WriteScan(scan.model(), options_, delay, DoubtsAbout(scan.rig()),
-                                            stats, to, scan.pool(), progress);
+    Result<WrittenScan> written =
+        WriteScan(scan.model(), options_, {delay, DoubtsAbout(scan.rig()), stats}, to, progress);
     if (!written) return Err(written.error());
     for (const std::string& doubt : written->doubts) LOG(Ground, Warning) << doubt;
     return std::move(written->text);

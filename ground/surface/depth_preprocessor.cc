@@ -164,17 +164,17 @@ void HalveDepth(const Image<float>& depth_m, float max_step_ratio, ThreadPool& p
   });
 }
 
-void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, int reach,
-                     float max_step_ratio, float noise_at_1m, ThreadPool& pool, SurfaceMaps& maps) {
+void MakeSurfaceMaps(const Image<float>& depth_m, const CameraModel& camera, const NormalRule& rule,
+                     ThreadPool& pool, SurfaceMaps& maps) {
   maps.Resize(depth_m.width(), depth_m.height());
   const SurfaceMapArgs args{&depth_m,
                             static_cast<float>(camera.fx),
                             static_cast<float>(camera.fy),
                             static_cast<float>(camera.cx),
                             static_cast<float>(camera.cy),
-                            reach,
-                            max_step_ratio * static_cast<float>(reach),
-                            noise_at_1m};
+                            rule.reach_px,
+                            rule.max_step_ratio * static_cast<float>(rule.reach_px),
+                            rule.noise_at_1m};
   pool.ParallelForRows(depth_m.height(), kRowsPerTask,
                        [&](int y) { SurfaceMapRow(args, y, maps); });
 }
@@ -230,7 +230,7 @@ const PreparedDepth& DepthPreprocessor::Process(const DepthFrame& frame, ThreadP
     if (level > 0) HalveDepth(filtered_m_[level - 1], finer_step, pool, filtered_m_[level]);
     const CameraModel camera = camera_.Downscaled(level);
     const float step = StepPerPixel(camera, options_.expert().max_surface_angle_deg());
-    MakeSurfaceMaps(filtered_m_[level], camera, kNormalReach[level], step, prepared_.noise_at_1m,
+    MakeSurfaceMaps(filtered_m_[level], camera, {kNormalReach[level], step, prepared_.noise_at_1m},
                     pool, prepared_.maps[level]);
     finer_step = step;
   }

@@ -114,7 +114,7 @@ void BM_Growth(benchmark::State& state) {
     state.counters["blocks"] = static_cast<double>((*pipeline)->model().tsdf().block_count());
     state.counters["last_period_p50_ms"] = TakeMedian(last_period_ms);
     for (const Stage stage : AllValues<Stage>()) {
-      if (const StageStats* stats = (*pipeline)->model().stages.Find(stage))
+      if (const StageStats* stats = (*pipeline)->model().stages[stage])
         state.counters[std::string(ToString(stage)) + "_p50_ms"] = stats->Percentile(50);
     }
   }

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "common/base/pause.h"
 #include "common/testing/temporary_directory.h"
 #include "common/time/clock.h"
 #include "edge/openni/testing/fake_depth_camera.h"
-#include "edge/source/pause.h"
 #include "edge/usb/testing/emulated_bus.h"
 #include "tests/support/machine_load.h"
 #include "tests/support/programs.h"

@@ -18,6 +18,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/base/pause.h"
 #include "common/testing/temporary_directory.h"
 #include "common/transport/participant.h"
 #include "edge/camera_process/camera_process.h"
@@ -28,7 +29,6 @@
 #include "edge/options/edge_options.pb.h"
 #include "edge/pipeline/edge_pipeline.h"
 #include "edge/source/camera_pair.h"
-#include "edge/source/pause.h"
 #include "edge/spool/recording_files.h"
 #include "tests/support/machine_load.h"
 #include "tests/support/programs.h"

@@ -325,18 +325,18 @@ TEST_F(UnitsTest, F14TheCamerasProcessConfinesItselfUnderTheUnitAndItsFramesArri
 #endif
 
 TEST_F(UnitsTest, TheSandboxAllowsWhatIsNeededAndNoMore) {
-  std::filesystem::copy_file(SANDBOX_PROBE, root() / "usr/bin/sandbox_probe",
+  std::filesystem::copy_file(UNIT_PROBE, root() / "usr/bin/unit_probe",
                              std::filesystem::copy_options::overwrite_existing);
   container_->Output("touch /srv/camera; chown root:plugdev /srv/camera; chmod 0660 /srv/camera");
   const std::map<std::string, std::vector<std::string>> allowed = {
       {kEdge, {"reads-clock", "cameras", "landlock"}}, {kGround, {"reads-clock", "cameras"}}};
   for (const auto& [unit, words] : allowed) {
     since_ = Now();
-    AddToUnit(unit, "Type=oneshot\nRestart=no\nExecStart=\nExecStart=/usr/bin/sandbox_probe\n");
+    AddToUnit(unit, "Type=oneshot\nRestart=no\nExecStart=\nExecStart=/usr/bin/unit_probe\n");
     const Finished probed = Run({"systemctl", "start", unit});
     EXPECT_EQ(probed.status, 0) << probed.output;
     Run({"journalctl", "--sync"});
-    EXPECT_EQ(LinesOf(Journal("--identifier sandbox_probe")), words) << unit;
+    EXPECT_EQ(LinesOf(Journal("--identifier unit_probe")), words) << unit;
   }
 }
 

@@ -1,7 +1,6 @@
 // Recordings that can be read but cannot be right, as a user meets them: a warning with the likely
 // cause, exit status 65, and nothing that was good lost.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,17 +12,8 @@
 #include "common/recording/recording.h"
 #include "tests/support/tool.h"
 
-namespace isotherm {
+namespace isotherm::testing {
 namespace {
-
-namespace fs = std::filesystem;
-using isotherm::testing::Outcome;
-using isotherm::testing::ReadAll;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::Not;
-
-constexpr int kUsage = 64, kData = 65;
 
 /// Holds what a copy of a scan gets wrong.
 struct Mistake {
@@ -32,12 +22,11 @@ struct Mistake {
   std::function<void(EncodedThermalFrame&)> thermal = [](EncodedThermalFrame&) {};
 };
 
-class DoubtfulScanTest : public isotherm::testing::ToolRun {
+class DoubtfulScanTest : public ToolRun {
  protected:
   void Simulate(const std::string& name = "scan.mcap",
                 const std::string& scene = "corner-sphere") const {
-    const Outcome outcome = Run("simulate --scene " + scene + " --duration 0.3 -o " + name);
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    RunWell("simulate --scene " + scene + " --duration 0.3 -o " + name);
   }
 
   /// wrong.mcap, made of scan.mcap.
@@ -213,4 +202,4 @@ TEST_F(DoubtfulScanTest, LargerVoxelsNeedNoOtherOption) {
 }
 
 }  // namespace
-}  // namespace isotherm
+}  // namespace isotherm::testing

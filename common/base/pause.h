@@ -1,12 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <stop_token>
-
-#include "common/time/time_types.h"
 
 namespace isotherm {
 
 /// Sleeps for `duration`, or until stop is requested.
-void Pause(const std::stop_token& stop, Nanoseconds duration);
+void Pause(const std::stop_token& stop, std::chrono::nanoseconds duration);
 
 }  // namespace isotherm

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "common/frame/frame.h"
-#include "ground/guidance/feedback_maker.h"
-#include "ground/pipeline/depth_report.h"
+#include "ground/feedback/feedback_maker.h"
+#include "ground/scan/depth_report.h"
 
 namespace isotherm {
 

@@ -1,4 +1,4 @@
-#include "ground/guidance/feedback_maker.h"
+#include "ground/feedback/feedback_maker.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "common/base/units.h"
+#include "common/png/png.h"
 #include "ground/pipeline/ground_pipeline.h"
 #include "ground/surface/testing/analytic_views.h"
 #include "ground/surface/testing/small_volume.h"
@@ -48,12 +49,18 @@ class FeedbackMakerTest : public ::testing::Test {
     maker_ = std::make_unique<FeedbackMaker>(options_, rig_);
   }
 
+  /// A thermal camera beside the depth camera: next views are planned for it.
+  void AddThermalCamera() {
+    rig_.rig.thermal = rig_.rig.depth;
+    rig_.rig.T_thermal_depth = MakeTransform({0.02, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+  }
   /// The first pose, a little beside it in each frame, rolled about the optical axis.
   RigidTransform TruePose(double roll_deg) const {
     const double sway_m = 0.0002 * (frame_ % 5);
     return testing::FirstPose() *
-           MakeTransform({sway_m, 0.0, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(
-                                                 roll_deg * kRadPerDeg, Eigen::Vector3d::UnitZ())));
+           MakeTransform({sway_m + beside_m_, 0.0, 0.0},
+                         Eigen::Quaterniond(
+                             Eigen::AngleAxisd(roll_deg * kRadPerDeg, Eigen::Vector3d::UnitZ())));
   }
   Feedback Process(DepthFrame frame) {
     frame.header.capture_time = CaptureTime(FromSeconds(100.0 + frame_ / 30.0));
@@ -61,11 +68,14 @@ class FeedbackMakerTest : public ::testing::Test {
     FeedbackMoment moment;
     moment.header = frame.header;
     moment.report = pipeline_->ProcessDepth(frame);
-    return maker_->Make(moment, pipeline_->model(), pipeline_->pool());
+    return maker_->Make(moment, pipeline_->model());
   }
   Feedback Show(double roll_deg = 0.0) {
     last_true_ = TruePose(roll_deg);
     return Process(testing::RenderDepth(ColumnsAndBall, *rig_.rig.depth, last_true_));
+  }
+  void ThinkAhead(int times) {
+    for (int i = 0; i < times; ++i) maker_->ThinkAhead(pipeline_->model());
   }
   Feedback ShowNothing() {
     DepthFrame frame;
@@ -86,6 +96,7 @@ class FeedbackMakerTest : public ::testing::Test {
   std::unique_ptr<GroundPipeline> pipeline_;
   std::unique_ptr<FeedbackMaker> maker_;
   RigidTransform last_true_;
+  double beside_m_ = 0.0;
   int frame_ = 0;
 };
 
@@ -130,6 +141,93 @@ TEST_F(FeedbackMakerTest, InARotatedSubMapPoseAndUncertaintyAreBothInWorld) {
     EXPECT_LT(sigma(feedback, i), kAlike * sigma(expected, i)) << i;
     EXPECT_GT(sigma(feedback, i), sigma(expected, i) / kAlike) << i;
   }
+}
+
+TEST_F(FeedbackMakerTest, WhoIsNotFoundIsSentBackAlongTheWayTheyCame) {
+  constexpr double kStep_m = 0.002;
+  for (int i = 0; i < 30; ++i, beside_m_ += kStep_m) Show();  // One second.
+  const RigidTransform last = last_true_;
+  const auto next_of = [](const Feedback& feedback) { return feedback.T_world_depth_next.value(); };
+  Feedback feedback = ShowNothing();
+  EXPECT_EQ(feedback.tracking_state, TrackingState::kLost);
+  EXPECT_EQ(feedback.advice, std::vector<Advice>{Advice::kGoBackToRelocalise});
+  EXPECT_FALSE(feedback.T_world_depth || feedback.pose_covariance || feedback.T_depth_next);
+  constexpr double kVoxel_m = 0.004;
+  EXPECT_LT(TranslationDistance(next_of(feedback), last), kVoxel_m);
+  // For two seconds the last pose; half a second later, where the rig was half a second before it.
+  for (int i = 0; i < 75; ++i) feedback = ShowNothing();
+  EXPECT_NEAR(TranslationDistance(next_of(feedback), last), 15 * kStep_m, kVoxel_m);
+  for (int i = 0; i < 60; ++i) feedback = ShowNothing();
+  EXPECT_LT(TranslationDistance(next_of(feedback), testing::FirstPose()), kVoxel_m)
+      << "no further than where the scan began";
+}
+
+TEST_F(FeedbackMakerTest, TheSurfaceOfAllSubMapsCounts) {
+  for (int i = 0; i < 6; ++i) Show();
+  ThinkAhead(50);
+  const SurfaceAreas first = maker_->areas();
+  ASSERT_GT(first.total_m2(), 0.1);
+  for (int i = 0; i < 5; ++i) ShowNothing();
+  Show(90.0);
+  ASSERT_EQ(pipeline_->model().atlas.size(), 2);
+  ThinkAhead(50);
+  // One that has seen the second sub-map only.
+  FeedbackMaker second(options_, rig_);
+  for (int i = 0; i < 50; ++i) second.ThinkAhead(pipeline_->model());
+  ASSERT_GT(second.areas().total_m2(), 0.1);
+  constexpr double kRounding_m2 = 1e-9;
+  EXPECT_NEAR(maker_->areas().total_m2(), first.total_m2() + second.areas().total_m2(),
+              kRounding_m2);
+  const Feedback feedback = Show(90.0);
+  EXPECT_NEAR(feedback.covered_area_m2, maker_->areas().total_m2(), kRounding_m2);
+  EXPECT_EQ(feedback.model.never_measured, 1.0F) << "there is no thermal camera";
+}
+
+TEST_F(FeedbackMakerTest, TheImageShowsThatTheRigIsLost) {
+  options_.mutable_feedback()->mutable_expert()->set_image_width_px(80);
+  Start();
+  Feedback tracked;
+  for (int i = 0; i < 3; ++i) tracked = Show();
+  const Feedback lost = ShowNothing();
+  for (const Feedback& feedback : {tracked, lost}) {
+    const Result<PngHead> head = ReadPngHead(feedback.image);
+    ASSERT_TRUE(head.has_value()) << head.error().message();
+    EXPECT_EQ(head->channels, 3);
+    EXPECT_LE(feedback.image.size(), kMaxConfidenceImageBytes);
+  }
+  // The view is the same, so that only the frame around it differs.
+  EXPECT_NE(tracked.image, lost.image);
+  EXPECT_EQ(tracked.view.never_measured, lost.view.never_measured);
+}
+
+TEST_F(FeedbackMakerTest, WithoutAWidthThereIsNoImage) {
+  Show();
+  EXPECT_TRUE(Show().image.empty());
+}
+
+TEST_F(FeedbackMakerTest, TheNextViewOfASubMapThatIsNotJoinedIsKnownFromTheRigOnly) {
+  AddThermalCamera();
+  Start();
+  BeginRolledElsewhere();
+  Feedback feedback;
+  for (int i = 0; i < 12; ++i) {
+    feedback = Show(90.0);
+    ThinkAhead(5);
+  }
+  ASSERT_EQ(pipeline_->model().atlas.size(), 2);
+  ASSERT_FALSE(pipeline_->model().atlas.active().joined);
+  ASSERT_TRUE(feedback.T_depth_next.has_value());
+  EXPECT_GT(feedback.next_gain_m2, options_.feedback().expert().min_gain_m2());
+  EXPECT_FALSE(feedback.T_world_depth_next.has_value()) << "nobody knows where the sub-map is";
+}
+
+TEST_F(FeedbackMakerTest, WithoutAThermalCameraThereIsNoNextView) {
+  Feedback feedback;
+  for (int i = 0; i < 6; ++i) {
+    feedback = Show();
+    ThinkAhead(5);
+  }
+  EXPECT_FALSE(feedback.T_depth_next || feedback.T_world_depth_next);
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include "ground/icp/motion_history.h"
 #include "ground/icp/odometry_prior.h"
 #include "ground/icp/pose_uncertainty.h"
-#include "ground/pipeline/block_spiller.h"
-#include "ground/pipeline/pipeline_counts.h"
-#include "ground/stage_times/stage_times.h"
+#include "ground/model/block_spiller.h"
+#include "ground/scan/scan_counts.h"
+#include "ground/scan/stage_times.h"
 #include "ground/tracker/trajectory.h"
 
 namespace isotherm {
@@ -26,12 +26,12 @@ struct ScanModel {
   const MotionHistory& motion;         ///< The last poses, in the active sub-map.
   const PoseUncertainty& uncertainty;  ///< How uncertain the last tracked pose is.
   const OdometryPrior& external_odometry;
-  const PipelineCounts& counts;
-  const StageTimes& stages;
+  const ScanCounts& counts;
+  const StageTimes stages;
   const BlockSpiller& spiller;
   const Status& thermal_status;  ///< Why thermal frames are not fused at all, or ok.
-  const bool& is_continued;      ///< The scan goes on with a saved model.
-  const int threads;
+  const bool is_continued;       ///< The scan goes on with a saved model.
+  ThreadPool& pool;              ///< The pipeline's threads, lent for work between two frames.
 
   /// The volume of the active sub-map, in its coordinates; after Finish the whole model, in
   /// `world`.
@@ -41,6 +41,6 @@ struct ScanModel {
 
 /// The model from the last pose, at the depth camera's full resolution. Voxels lighter than
 /// `min_weight` do not count as observed.
-SurfaceMaps CastFullView(const ScanModel& model, double min_weight, ThreadPool& pool);
+SurfaceMaps CastFullView(const ScanModel& model, double min_weight);
 
 }  // namespace isotherm

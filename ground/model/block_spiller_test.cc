@@ -1,4 +1,4 @@
-#include "ground/pipeline/block_spiller.h"
+#include "ground/model/block_spiller.h"
 
 #include <gtest/gtest.h>
 

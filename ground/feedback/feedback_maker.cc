@@ -1,4 +1,4 @@
-#include "ground/guidance/feedback_maker.h"
+#include "ground/feedback/feedback_maker.h"
 
 #include <fmt/format.h>
 
@@ -167,7 +167,7 @@ double FeedbackMaker::Unseen() const {
   return max_m2;
 }
 
-CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan, ThreadPool& pool) {
+CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan) {
   const ModelView& model = scan.view;
   view_.Resize(0, 0);
   if (model.maps.width() == 0) return {};
@@ -175,7 +175,7 @@ CoverageSummary FeedbackMaker::LookAtView(const ScanModel& scan, ThreadPool& poo
   Thin(model.maps, std::max(1, model.maps.width() / columns), maps_);
   // Distances and angles are limits of the thermal camera.
   SampleView(maps_, (model.T_map_depth * T_depth_thermal_).translation(), scan.tsdf(),
-             scan.thermal(), pool, view_);
+             scan.thermal(), scan.pool, view_);
   return SummarizeCoverage(view_, Smear(scan), limits_);
 }
 
@@ -254,8 +254,7 @@ void FeedbackMaker::AddNextPose(const DepthReport& report, const ScanModel& scan
   feedback.T_depth_next = report.pose.T_map_depth.inverse() * best->T_map_depth;
 }
 
-Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan,
-                             ThreadPool& pool) {
+Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan) {
   ++messages_;
   Feedback feedback;
   feedback.session = session_;
@@ -268,7 +267,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
     feedback.pose_covariance = pose->covariance;
   }
   NoteWay(moment, scan);
-  const CoverageSummary view = LookAtView(scan, pool);
+  const CoverageSummary view = LookAtView(scan);
   feedback.view = ToFractions(view);
   feedback.model = ToFractions(areas());
   feedback.covered_area_m2 = std::max(0.0, areas().total_m2());
@@ -286,7 +285,7 @@ Feedback FeedbackMaker::Make(const FeedbackMoment& moment, const ScanModel& scan
   return feedback;
 }
 
-void FeedbackMaker::ThinkAhead(const ScanModel& scan, ThreadPool& pool) {
+void FeedbackMaker::ThinkAhead(const ScanModel& scan) {
   ModelCoverage& coverage = ActiveCoverage(scan);
   // Looking at blocks that were given back would bring them back from the disk: those near the rig
   // are in memory.
@@ -300,10 +299,11 @@ void FeedbackMaker::ThinkAhead(const ScanModel& scan, ThreadPool& pool) {
         const GridIndex first = scan.tsdf().block_coordinates(block) * kBlockSide;
         return has_spilled && (first.cast<double>() - rig_vox).norm() > reach_vox;
       },
-      options_.feedback().expert().blocks_per_message(), pool);
+      options_.feedback().expert().blocks_per_message(), scan.pool);
   ViewPlanner* planner = Planner(scan);
   if (planner == nullptr || scan.view.maps.width() == 0 || adviser_.done()) return;
-  planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, is_measuring_, pool);
+  planner->Step(scan.tsdf(), scan.thermal(), coverage, scan.view.T_map_depth, is_measuring_,
+                scan.pool);
 }
 
 }  // namespace isotherm

@@ -8,9 +8,9 @@
 #include "ground/feedback/model_coverage.h"
 #include "ground/feedback/view_planner.h"
 #include "ground/options/ground_options.pb.h"
-#include "ground/pipeline/depth_report.h"
-#include "ground/pipeline/scan_model.h"
 #include "ground/renderer/view_maps.h"
+#include "ground/scan/depth_report.h"
+#include "ground/scan/scan_model.h"
 
 namespace isotherm {
 
@@ -32,9 +32,9 @@ class FeedbackMaker {
  public:
   FeedbackMaker(const GroundOptions& options, const RigDescription& rig);
 
-  Feedback Make(const FeedbackMoment& moment, const ScanModel& scan, ThreadPool& pool);
+  Feedback Make(const FeedbackMoment& moment, const ScanModel& scan);
   /// Goes on with the coverage of the whole model and with the search for the next view.
-  void ThinkAhead(const ScanModel& scan, ThreadPool& pool);
+  void ThinkAhead(const ScanModel& scan);
 
   /// Surface that several sub-maps share counts in each of them.
   SurfaceAreas areas() const;
@@ -45,7 +45,7 @@ class FeedbackMaker {
  private:
   /// The model as the depth camera saw it last, with what the thermal camera makes of it while the
   /// rig moves as it does.
-  CoverageSummary LookAtView(const ScanModel& scan, ThreadPool& pool);
+  CoverageSummary LookAtView(const ScanModel& scan);
   /// The smear of each pixel of that view if it were measured now; empty while the motion is not
   /// known.
   Image<float> Smear(const ScanModel& scan) const;

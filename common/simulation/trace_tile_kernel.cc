@@ -1,14 +1,11 @@
-#include "common/simulation/trace_tile.h"
+#include "common/simulation/trace_tile_kernel.h"
 
 #include <bit>
 
-// Highway compiles the rest of this file once per instruction set and picks one at run time. The
-// loops are left to the compiler's vectoriser: CMakeLists.txt passes the options that it needs.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "common/simulation/trace_tile.cc"
-#include <hwy/foreach_target.h>  // NOLINT: must come before highway.h
-#include <hwy/highway.h>
-
+#define HWY_TARGET_INCLUDE "common/simulation/trace_tile_kernel.cc"
+#include "common/simd/kernel_prelude-inl.h"
+//
 #include "common/simulation/intersection.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,6 +23,13 @@ float Largest(const float* values) {
   return std::bit_cast<float>(largest);
 }
 
+// Intersects the rays of a tile with one primitive and keeps, per ray, the nearer hit. A ray (x, y,
+// 1) from the camera becomes o + t (R_primitive_camera (x, y, 1)) in the primitive's coordinates;
+// as its third component is 1, t is the depth. IntersectShape solves for the first t > 0 in closed
+// form. Rows: one array each for x, y, the depth and the index of what is hit; lanes are
+// neighbouring pixels of the tile. Fast: the shape is a template argument, conditions are combined
+// without branches, and the compiler's vectoriser makes SIMD code of the loop, for which
+// CMakeLists.txt passes the options.
 template <Shape shape>
 void TraceShape(const TileTarget& p, const RayGrid::Tile& tile, TileHits& hits) {
   const float r00 = p.R_primitive_camera[0], r10 = p.R_primitive_camera[1],

@@ -1,4 +1,4 @@
-#include "ground/pipeline/saved_model.h"
+#include "ground/model/saved_model.h"
 
 #include <algorithm>
 

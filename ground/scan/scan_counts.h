@@ -29,7 +29,7 @@ enum class LeftOutReason : std::uint8_t {
 std::string_view ToString(LeftOutReason reason);
 
 /// Holds what the pipeline did with the frames it was given: in = sum of the outcomes.
-struct PipelineCounts {
+struct ScanCounts {
   std::uint64_t depth_in = 0;
   std::uint64_t depth_repeated = 0;  ///< The image of the frame before again.
   std::uint64_t depth_tracked = 0;

@@ -1,9 +1,9 @@
-#include "ground/pipeline/pipeline_counts.h"
+#include "ground/scan/scan_counts.h"
 
 namespace isotherm {
 namespace {
 
-constexpr EnumArray<LeftOutReason, std::string_view> kNames = {
+constexpr EnumArray<LeftOutReason, std::string_view> kReasonNames = {
     {LeftOutReason::kBehind, "behind"},
     {LeftOutReason::kCounts, "counts"},
     {LeftOutReason::kDepthGap, "depth_gap"},
@@ -19,6 +19,6 @@ constexpr EnumArray<LeftOutReason, std::string_view> kNames = {
 
 }  // namespace
 
-std::string_view ToString(LeftOutReason reason) { return kNames[reason]; }
+std::string_view ToString(LeftOutReason reason) { return kReasonNames[reason]; }
 
 }  // namespace isotherm

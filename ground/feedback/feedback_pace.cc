@@ -1,4 +1,4 @@
-#include "ground/guidance/feedback_pace.h"
+#include "ground/feedback/feedback_pace.h"
 
 #include "common/base/units.h"
 
