@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/options/option_problems.h"
 #include "edge/camera_process/usb_nodes.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/source/device_description.h"
@@ -70,11 +71,28 @@ void AddDevices(Sensor sensor, CameraSandbox& sandbox) {
   }
 }
 
+/// A relative path would be looked for in the folder that the daemon happens to be started in.
+void CheckPaths(std::string_view field,
+                const google::protobuf::RepeatedPtrField<std::string>& paths,
+                OptionProblems& problems) {
+  for (const std::string& path : paths) {
+    if (!path.empty() && path.front() == '/') continue;
+    problems.Add(field, fmt::format("names \"{}\", must name a path from / on", path));
+  }
+}
+
 }  // namespace
+
+Status Validate(const CameraSandboxOptions& options) {
+  OptionProblems problems("source.camera_sandbox.expert");
+  CheckPaths("read", options.expert().read(), problems);
+  CheckPaths("write", options.expert().write(), problems);
+  return problems.ToStatus();
+}
 
 std::optional<CameraSandbox> AccessFor(Sensor sensor, const SourceOptions& options) {
   const CameraSandboxOptions& wanted = options.camera_sandbox();
-  if (!wanted.enabled()) return std::nullopt;
+  if (!wanted.expert().enabled()) return std::nullopt;
   CameraSandbox sandbox;
   sandbox.local_sockets = wanted.expert().local_sockets();
   sandbox.read.assign(std::begin(kSystem), std::end(kSystem));
@@ -89,8 +107,9 @@ std::optional<CameraSandbox> AccessFor(Sensor sensor, const SourceOptions& optio
   }
   if (sensor == Sensor::kThermal) {
     const ThermalCameraOptions& thermal = options.thermal_camera();
-    for (const std::string& path : {thermal.expert().optris_library(), thermal.optris_config(),
-                                    thermal.expert().optris_formats()}) {
+    for (const std::string& path :
+         {thermal.expert().optris_library(), thermal.expert().optris_config(),
+          thermal.expert().optris_formats()}) {
       if (path.find('/') != std::string::npos) sandbox.read.push_back(path);
     }
   }

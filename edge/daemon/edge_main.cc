@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/log.h"
 #include "common/base/service.h"
@@ -209,8 +210,10 @@ int Main(int argc, char** argv) {
   if (const Status applied = ApplyCommandLine(line, options); !applied.ok()) {
     return FailConfiguration(applied);
   }
-  if (const Status valid = Validate(options); !valid.ok()) {
-    return FailConfiguration(Status(valid.code(), "wrong configuration:\n" + valid.message()));
+  if (const std::vector<Status> problems = ValidateAll(options); !problems.empty()) {
+    std::string text = "wrong configuration:";
+    for (const Status& problem : problems) text += "\n" + problem.message();
+    return FailConfiguration(InvalidArgument(text));
   }
   LOG(Edge, Debug) << "effective configuration:\n" << ToTextProto(options);
 

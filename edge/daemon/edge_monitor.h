@@ -33,8 +33,8 @@ struct MonitorHost {
 /// The computer that this program runs on.
 MonitorHost ThisComputer();
 
-/// What housekeeping looks at and speaks for.
-struct HousekeepingParts {
+/// What the monitor looks at and speaks for.
+struct EdgeMonitorParts {
   const Clock& clock;
   EdgePipeline& pipeline;
   Publisher& publisher;

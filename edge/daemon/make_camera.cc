@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/base/log.h"
+#include "common/options/option_problems.h"
 #include "common/options/text_proto.h"
 #include "edge/camera_process/camera_process.h"
 #include "edge/daemon/camera_access.h"
@@ -76,6 +77,16 @@ std::string ToText(const Result<std::vector<DeviceDescription>>& devices,
 }
 
 }  // namespace
+
+Status Validate(const DepthCameraOptions& options) {
+  OptionProblems problems("source.depth_camera.expert");
+  const DepthCameraExpertOptions& expert = options.expert();
+  problems.CheckRange("width", expert.width(), 16, 4096);
+  problems.CheckRange("height", expert.height(), 16, 4096);
+  problems.CheckRange("rate_hz", expert.rate_hz(), 1, 240);
+  problems.CheckRange("stall_timeout_s", expert.stall_timeout_s(), 0.2, 60.0);
+  return problems.ToStatus();
+}
 
 Result<std::unique_ptr<FrameSource>> MakeCamera(Sensor sensor, const SourceOptions& options,
                                                 const Clock& clock) {

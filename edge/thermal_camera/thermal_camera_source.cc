@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/base/log.h"
-#include "edge/options/edge_options.pb.h"
 
 namespace isotherm {
 namespace {
@@ -42,9 +41,7 @@ std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions&
 
 ThermalCameraSource::ThermalCameraSource(const ThermalCameraOptions& options, const Clock& clock,
                                          Cameras cameras)
-    : options_(std::make_unique<const ThermalCameraOptions>(options)),
-      clock_(clock),
-      cameras_(std::move(cameras)) {}
+    : options_(options), clock_(clock), cameras_(std::move(cameras)) {}
 
 ThermalCameraSource::~ThermalCameraSource() = default;
 
@@ -52,7 +49,7 @@ Status ThermalCameraSource::Open() {
   Close();
   const Result<std::vector<DeviceDescription>> devices = cameras_.list();
   if (!devices) return devices.error();
-  const Result<DeviceDescription> device = ChooseThermalCamera(*devices, *options_, serial_);
+  const Result<DeviceDescription> device = ChooseThermalCamera(*devices, options_, serial_);
   if (!device) return device.error();
   if (!device->problem.empty()) {
     return FailedPrecondition(fmt::format("thermal camera {} at {}: {}", device->driver,
@@ -60,7 +57,7 @@ Status ThermalCameraSource::Open() {
   }
   camera_ = cameras_.make(*device);
   Status opened = camera_->Open();
-  if (opened.ok()) opened = camera_->SetGain(GainOf(options_->gain()));
+  if (opened.ok()) opened = camera_->SetGain(GainOf(options_.gain()));
   if (opened.ok() && !scale_) {
     const Result<RadiometricScale> scale = ChooseScale();
     if (scale) scale_ = *scale;
@@ -105,7 +102,7 @@ Result<SourceItem> ThermalCameraSource::Read(std::stop_token stop) {
     return Check(std::move(**raw));
   }
   const Nanoseconds silence = clock_.SteadyNow() - last_frame_at_;
-  if (ToSeconds(silence) < options_->expert().stall_timeout_s()) return NothingYet{};
+  if (ToSeconds(silence) < options_.expert().stall_timeout_s()) return NothingYet{};
   return Err(Hangs("sends nothing", silence));
 }
 
@@ -146,7 +143,7 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
   }
   const bool frozen = novelty.kind == Novelty::Kind::kFrozen && !IsCorrecting(raw);
   // Long enough to be no correction: the source is opened again, which cures cameras that hang so.
-  if (frozen && ToSeconds(novelty.frozen_for) >= options_->expert().stall_timeout_s()) {
+  if (frozen && ToSeconds(novelty.frozen_for) >= options_.expert().stall_timeout_s()) {
     return Err(Hangs("sends the same image", novelty.frozen_for));
   }
   if (frozen) {
@@ -191,8 +188,8 @@ RawFrame ThermalCameraSource::Convert(const RawThermalFrame& raw) {
 }
 
 PixelEncoding ThermalCameraSource::EncodingOf(const RawThermalFrame& raw) const {
-  if (raw.encoding.radiometric || options_->expert().kelvin_per_count() == 0.0) return raw.encoding;
-  return {true, options_->expert().kelvin_per_count(), options_->expert().offset_kelvin()};
+  if (raw.encoding.radiometric || options_.expert().kelvin_per_count() == 0.0) return raw.encoding;
+  return {true, options_.expert().kelvin_per_count(), options_.expert().offset_kelvin()};
 }
 
 void ThermalCameraSource::UpdateTable(const PixelEncoding& encoding) {
@@ -216,7 +213,7 @@ Result<RadiometricScale> ThermalCameraSource::ChooseScale() const {
     scale = *of_range;
   }
   // What the options make of counts is kept as it is where that would cut it off.
-  const ThermalCameraExpertOptions& expert = options_->expert();
+  const ThermalCameraExpertOptions& expert = options_.expert();
   const RadiometricScale own{expert.kelvin_per_count(), expert.offset_kelvin()};
   if (own.kelvin_per_count <= 0.0 || own.max_celsius() <= scale.max_celsius()) return scale;
   if (Status status = Validate(own); !status.ok()) {
@@ -244,7 +241,7 @@ std::vector<CameraDescription> ThermalCameraSource::cameras() const {
   description.rate_hz = info.rate_hz;
   description.settings = "port " + info.bus_port;
   if (!info.settings.empty()) description.settings += ", " + info.settings;
-  description.counts_only = info.counts_only && options_->expert().kelvin_per_count() == 0.0;
+  description.counts_only = info.counts_only && options_.expert().kelvin_per_count() == 0.0;
   description.thermal_scale = *scale_;
   return {description};
 }

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "common/time/clock.h"
+#include "edge/options/edge_options.pb.h"
 #include "edge/source/frame_source.h"
 #include "edge/thermal_camera/camera_registry.h"
 #include "edge/thermal_camera/frame_novelty.h"
 #include "edge/thermal_camera/thermal_camera.h"
 
 namespace isotherm {
-
-class ThermalCameraOptions;
 
 /// The thermal camera of this computer that the options ask for. `clock` must outlive it.
 std::unique_ptr<FrameSource> MakeThermalCameraSource(const ThermalCameraOptions& options,
@@ -76,7 +75,7 @@ class ThermalCameraSource final : public FrameSource {
   Result<RadiometricScale> ChooseScale() const;
   void UpdateTable(const PixelEncoding& encoding);
 
-  const std::unique_ptr<const ThermalCameraOptions> options_;
+  const ThermalCameraOptions options_;
   const Clock& clock_;
   const Cameras cameras_;
   std::string name_ = "thermal camera";

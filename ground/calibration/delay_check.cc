@@ -97,7 +97,7 @@ DelayVerdict Assess(const DelayEstimate& off_by, double max_shift_s) {
 
 std::string Describe(const DelayReport& report) {
   if (!report.off_by) {
-    return report.verdict == DelayVerdict::kOff ? "not checked (delay_check.enabled)"
+    return report.verdict == DelayVerdict::kOff ? "not checked (delay_check.expert.enabled)"
                                                 : "could not be checked: " + report.reason;
   }
   const bool moved = report.verdict == DelayVerdict::kMoved;
@@ -119,7 +119,7 @@ DelayCheck::DelayCheck(const DelayCheckOptions& options, const Rig& rig,
       selection_(static_cast<std::size_t>(std::max(2, options.expert().max_frames()))) {}
 
 void DelayCheck::Add(const ThermalFramePtr& frame, const ScanModel& scan) {
-  if (!options_.enabled() || !rig_.thermal || !frame->valid ||
+  if (!options_.expert().enabled() || !rig_.thermal || !frame->valid ||
       ToSeconds(frame->header.capture_sigma) > kMaxStampSigma_s)
     return;
   if (frame->temperature_raw.width() != rig_.thermal->width ||
@@ -132,7 +132,7 @@ DelayReport DelayCheck::Finish(const ScanModel& scan,
                                const std::function<void(double)>& progress) const {
   DelayReport report;
   report.calibrated_s = calibrated_s_;
-  if (!options_.enabled()) return report;
+  if (!options_.expert().enabled()) return report;
   const auto start = std::chrono::steady_clock::now();
   const Result<DelayEstimate> estimate = Estimate(scan, progress);
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

@@ -65,7 +65,7 @@ shutter { first_s: 5 })",
   static std::unique_ptr<GroundPipeline> MakePipeline(const RigidTransform& initial_pose) {
     GroundOptions options;
     options.mutable_volume()->set_voxel_size_m(0.004);
-    options.mutable_tsdf()->set_truncation_distance_m(0.016);
+    options.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.016);
     return GroundPipeline::Create(options, *rig_, initial_pose).value();
   }
 
@@ -232,7 +232,7 @@ TEST_F(DelayCheckTest, FramesWithoutACertainStampAreNotUsed) {
 
 TEST_F(DelayCheckTest, OffKeepsAndSaysNothing) {
   DelayCheckOptions options;
-  options.set_enabled(false);
+  options.mutable_expert()->set_enabled(false);
   DelayCheck check(options, *rig_, 0.0);
   check.Add(frames_.front(), pipeline_->model());
   EXPECT_EQ(frames_.front().use_count(), 1);

@@ -76,7 +76,7 @@ ThesisFuser::Vertex ThesisFuser::Measure(const Eigen::Vector3f& p_map, const Eig
   vertex.angle = limits_.ClassifyAngle(std::min(cosine, 1.0F));
   if (rules == nullptr) return vertex;
   const bool bad = vertex.distance == ConditionClass::kBad || vertex.angle == ConditionClass::kBad;
-  if ((bad && !options_.keep_bad()) || IsLeftOut(p_thermal, *nearest, *rules))
+  if ((bad && !options_.expert().keep_bad()) || IsLeftOut(p_thermal, *nearest, *rules))
     vertex.celsius = kNan;
   return vertex;
 }

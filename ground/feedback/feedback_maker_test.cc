@@ -31,7 +31,8 @@ class FeedbackMakerTest : public ::testing::Test {
     rig_.session = 7;
     rig_.rig.depth = testing::SmallDepthCamera();
     *options_.mutable_volume() = testing::SmallVolume();
-    options_.mutable_tsdf()->set_truncation_distance_m(testing::kSmallTruncation_m);
+    options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(
+        testing::kSmallTruncation_m);
     options_.mutable_tsdf()->mutable_expert()->set_max_step_deg(10.0);
     options_.mutable_tsdf()->mutable_expert()->set_min_step_m(
         0.0);  // Each frame counts for the loop closer.

@@ -364,7 +364,7 @@ Result<HeldOutReport> PredictHeldOutViews(const ReconstructRequest& request, int
                     request.recording.string(), every)));
   }
   const HeldOutOptions options{
-      .max_gap_s = scan->options.thermal().expert().max_wait_s(),
+      .max_gap_s = scan->options.thermal().expert().max_depth_gap_s(),
       .min_weight = static_cast<float>(scan->options.export_().expert().min_weight()),
       .surface = surface,
       .scene_influence = CorrectedInfluence(scan->options.thermal(), scan->rig->thermal_sensor)};

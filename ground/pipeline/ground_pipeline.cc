@@ -236,9 +236,9 @@ bool GroundPipeline::AddSurface(const PreparedDepth& depth, const RigidTransform
   const std::uint64_t before = spiller_.spilled();
   spiller_.Trim(*map.tsdf, *map.thermal);
   if (before == 0 && spiller_.spilled() > 0) {
-    LOG(Ground, Info)
-        << "the model has outgrown volume.max_memory_bytes: what is far from the view goes to "
-        << options_.volume().spill_dir();
+    LOG(Ground, Info) << "the model has outgrown volume.expert.max_memory_bytes: what is far from "
+                         "the view goes to "
+                      << options_.volume().spill_dir();
   }
   if (spiller_.spilled() > 0) FetchNearView(T_map_depth);
   return map.tsdf->block_count() > 0;

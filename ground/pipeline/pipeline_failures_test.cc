@@ -68,10 +68,10 @@ TEST_F(PipelineFailuresTest, F11AFrameOfAnotherSizeIsRefusedAndCounted) {
 }
 
 TEST_F(PipelineFailuresTest, OptionsOutOfRangeAreNamed) {
-  options_.mutable_tsdf()->set_truncation_distance_m(0.001);
+  options_.mutable_tsdf()->mutable_expert()->set_truncation_distance_m(0.001);
   const auto created = GroundPipeline::Create(options_, rig_, std::nullopt);
   ASSERT_FALSE(created.has_value());
-  EXPECT_NE(created.error().message().find("tsdf.truncation_distance_m"), std::string::npos);
+  EXPECT_NE(created.error().message().find("tsdf.expert.truncation_distance_m"), std::string::npos);
   rig_.depth.reset();
   options_.clear_tsdf();
   EXPECT_FALSE(GroundPipeline::Create(options_, rig_, std::nullopt).has_value());

@@ -101,7 +101,7 @@ std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,
   if (depth.refusal) return depth.refusal;
   if (!depth.before || time < depth.before->time) return LeftOutReason::kPoseUnknown;
   const double interval_s = ToSeconds(depth.now.time - depth.before->time);
-  if (interval_s > options_.expert().max_wait_s()) return LeftOutReason::kDepthGap;
+  if (interval_s > options_.expert().max_depth_gap_s()) return LeftOutReason::kDepthGap;
   if (RegistrationSigmaPx(time, depth) > options_.expert().max_registration_px())
     return LeftOutReason::kPoseUncertain;
   return std::nullopt;

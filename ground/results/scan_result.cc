@@ -84,10 +84,10 @@ std::string ModelName(int map) {
 
 std::set<std::string> WrittenNames(const ExportOptions& options, bool has_view, int maps) {
   std::set<std::string> names = {"trajectory.txt", "stats.json"};
-  if (options.cloud()) names.insert("cloud.ply");
-  if (options.mesh()) names.insert("mesh.ply");
-  for (int map = 0; options.model() && map < maps; ++map) names.insert(ModelName(map));
-  if (!options.renders() || !has_view) return names;
+  if (options.expert().cloud()) names.insert("cloud.ply");
+  if (options.expert().mesh()) names.insert("mesh.ply");
+  for (int map = 0; options.expert().model() && map < maps; ++map) names.insert(ModelName(map));
+  if (!options.expert().renders() || !has_view) return names;
   for (const RenderLayer layer : AllLayers())
     names.insert(fmt::format("renders/{}.png", LayerName(layer)));
   return names;
@@ -129,7 +129,7 @@ Json DescribeDelay(const DelayReport& delay) {
 Status SaveModels(const ScanModel& scan, const GroundOptions& options,
                   const std::filesystem::path& dir,
                   const std::function<void(std::string_view what, double fraction)>& progress) {
-  if (!options.export_().model()) return OkStatus();
+  if (!options.export_().expert().model()) return OkStatus();
   Status first;
   for (int i = 0; i < scan.atlas.size(); ++i) {
     const Status saved = SaveSubMap(dir / ModelName(i), scan.atlas.map(i), scan.rig, [&](double) {

@@ -141,12 +141,14 @@ std::string MemoryText(const ScanModel& scan, const GroundOptions& options) {
   std::string text;
   if (scan.spiller.spilled() > 0) {
     text += fmt::format(
-        "memory   the model has outgrown volume.max_memory_bytes: {} blocks went to {}, and came "
+        "memory   the model has outgrown volume.expert.max_memory_bytes: {} blocks went to {}, and "
+        "came "
         "back when seen again\n",
         scan.spiller.spilled(), options.volume().spill_dir());
   }
   if (scan.tsdf().refused_blocks() > 0) {
-    text += "         volume.max_memory_bytes was reached: parts of the surface are missing\n";
+    text +=
+        "         volume.expert.max_memory_bytes was reached: parts of the surface are missing\n";
   }
   return text;
 }

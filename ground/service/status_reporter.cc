@@ -34,7 +34,7 @@ std::uint64_t Dropped(const StreamStatus& stream) {
 }
 
 constexpr double kBytesPerGb = 1e9;
-/// The rig keeps this in reserve at most: there its recording ends (spool.reserve_mb).
+/// The rig keeps this in reserve at most: there its recording ends (spool.expert.reserve_mb).
 constexpr double kRigDiskEnds_gb = 1.0;
 /// A recording of ten minutes and the reserve take this much.
 constexpr double kRigDiskLow_gb = 4.0;

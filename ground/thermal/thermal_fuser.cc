@@ -298,7 +298,7 @@ FusionKernelArgs ThermalFuser::BlockArgs(const RigidTransform& T_thermal_map,
       TsdfVoxel::kTsdfScale *
       std::min(1.0, kNoiseMargin * max_distance_m / tsdf.truncation_distance_m()));
   args.validate = options_.expert().validation();
-  args.keep_bad = options_.keep_bad();
+  args.keep_bad = options_.expert().keep_bad();
   args.keep_lowest = options_.expert().policy() == LOWEST_GOOD;
   return args;
 }

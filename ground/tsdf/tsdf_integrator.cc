@@ -28,23 +28,23 @@ constexpr double kMaxTruncation_m = 1.0;
 }  // namespace
 
 double TruncationDistance(const TsdfOptions& o, const VolumeOptions& volume) {
-  if (o.truncation_distance_m() != 0.0) return o.truncation_distance_m();
+  if (o.expert().truncation_distance_m() != 0.0) return o.expert().truncation_distance_m();
   return kTruncationVoxels * volume.voxel_size_m();
 }
 
 Status Validate(const TsdfOptions& o, const VolumeOptions& volume) {
   const double truncation_m = TruncationDistance(o, volume);
   // Four voxels are enough; that a voxel has a size at all is the volume's affair.
-  if (o.truncation_distance_m() != 0.0 && !(truncation_m >= 2.0 * volume.voxel_size_m())) {
-    return InvalidArgument(
-        fmt::format("tsdf.truncation_distance_m must be 0 (four voxels) or at least two voxels of "
-                    "volume.voxel_size_m ({:g} m), got {:g} m",
-                    2.0 * volume.voxel_size_m(), truncation_m));
+  if (o.expert().truncation_distance_m() != 0.0 && !(truncation_m >= 2.0 * volume.voxel_size_m())) {
+    return InvalidArgument(fmt::format(
+        "tsdf.expert.truncation_distance_m must be 0 (four voxels) or at least two voxels of "
+        "volume.voxel_size_m ({:g} m), got {:g} m",
+        2.0 * volume.voxel_size_m(), truncation_m));
   }
   if (!(truncation_m <= kMaxTruncation_m)) {
     return InvalidArgument(
-        o.truncation_distance_m() > 0.0
-            ? fmt::format("tsdf.truncation_distance_m must be at most {:g} m, got {:g} m",
+        o.expert().truncation_distance_m() > 0.0
+            ? fmt::format("tsdf.expert.truncation_distance_m must be at most {:g} m, got {:g} m",
                           kMaxTruncation_m, truncation_m)
             : fmt::format("volume.voxel_size_m must be at most {:g} m, got {:g} m",
                           kMaxTruncation_m / kTruncationVoxels, volume.voxel_size_m()));

@@ -83,7 +83,7 @@ void BM_Growth(benchmark::State& state) {
   volume.mutable_expert()->set_min_y_m(-0.48);
   volume.mutable_expert()->set_min_z_m(0.24);
   if (state.range(2) > 0) {
-    volume.set_max_memory_bytes(static_cast<std::uint64_t>(state.range(2)) << 20);
+    volume.mutable_expert()->set_max_memory_bytes(static_cast<std::uint64_t>(state.range(2)) << 20);
     volume.set_spill_dir(std::filesystem::temp_directory_path().string());
   }
   options.set_threads(2);

@@ -195,7 +195,7 @@ TEST_F(BadInputTest, AFullDiskEndsAReconstructionAndNamesTheFile) {
                                          "exec '" + Tool().string() + "' reconstruct '" +
                                              Recording().string() + "' -o '" + disk.string() +
                                              "/results' --set volume.voxel_size_m=0.006 --set " +
-                                             "tsdf.truncation_distance_m=0.024");
+                                             "tsdf.expert.truncation_distance_m=0.024");
   if (!finished) GTEST_SKIP() << "mounting a small file system is not allowed here";
   EXPECT_EQ(finished->status, kCannotCreate) << finished->output;
   EXPECT_THAT(finished->output, HasSubstr("results"));

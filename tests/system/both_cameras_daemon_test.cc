@@ -97,9 +97,9 @@ class BothCamerasTest : public ::testing::Test {
             {"--source", "cameras", "--record", file_.string(), "--domain",
              std::to_string(TestDomain()), "--set", "source.thermal_camera.driver=OPTRIS_SDK",
              "--set", "source.thermal_camera.expert.optris_library=\"" FAKE_OPTRIS "\"", "--set",
-             "source.thermal_camera.optris_config=\"" + config_.string() + "\"", "--set",
+             "source.thermal_camera.expert.optris_config=\"" + config_.string() + "\"", "--set",
              // The emulated bus answers for /dev itself, also to those who only want to name it.
-             "source.camera_sandbox.enabled=false", "--set", "nuc.before_scan=false"},
+             "source.camera_sandbox.expert.enabled=false", "--set", "nuc.before_scan=false"},
             {"LD_LIBRARY_PATH=" FAKE_OPENNI},
             {}};
   }

@@ -115,8 +115,8 @@ TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
     other << std::string(4'180'000, 'x');
   }
   // Without a reserve the disk itself says no.
-  Process edge(
-      Replay({"--record", file_, "--set", "spool.reserve_mb=0", "--set", "spool.reserve_s=0"}));
+  Process edge(Replay({"--record", file_, "--set", "spool.expert.reserve_mb=0", "--set",
+                       "spool.expert.reserve_s=0"}));
   ASSERT_TRUE(edge.WaitForOutput("recording ended early", kPatience)) << edge.output();
   EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: cannot write", kPatience))
       << edge.output();
@@ -137,8 +137,8 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   Mount(64);
   if (IsSkipped()) return;
   // As soon as the rate is known, the reserve is more than this disk has.
-  Process edge(Replay(
-      {"--record", file_, "--set", "spool.reserve_s=86400", "--set", "spool.reserve_mb=66"}));
+  Process edge(Replay({"--record", file_, "--set", "spool.expert.reserve_s=86400", "--set",
+                       "spool.expert.reserve_mb=66"}));
   ASSERT_TRUE(edge.WaitForOutput("the disk is full but for its reserve", kPatience))
       << edge.output();
   const RecordingContent content = ReadRecording(file_);

@@ -44,7 +44,7 @@ class ThermalDaemonTest : public ::testing::Test {
         // Where a fake depth camera reads what it shall do.
         "--set", "source.camera_sandbox.expert.read=\"" + folder_.path().string() + "\"", "--set",
         // The emulated bus answers for /dev itself, also to those who only want to name it.
-        "source.camera_sandbox.enabled=false", "--record", file_.string(), "--domain",
+        "source.camera_sandbox.expert.enabled=false", "--record", file_.string(), "--domain",
         std::to_string(TestDomain())};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return {EdgeDaemon(), std::move(arguments), {}, {}};

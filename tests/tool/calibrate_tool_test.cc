@@ -75,7 +75,7 @@ class CalibrateToolTest : public ToolRun {
 
   Outcome Calibrate(const std::string& arguments) const {
     return Run("calibrate time " + arguments +
-               " --set volume.voxel_size_m=0.004 --set tsdf.truncation_distance_m=0.016");
+               " --set volume.voxel_size_m=0.004 --set tsdf.expert.truncation_distance_m=0.016");
   }
 
   Rig Load(const std::string& name) const {
@@ -188,7 +188,7 @@ TEST_F(CalibrateToolTest, TheDelayOfRecordedDataIsFoundAndThenAgrees) {
 
   const auto reconstruct = [this](const std::string& recording) {
     return Run("reconstruct " + recording + " -o " + recording + ".out --voxel 0.003 " +
-               "--set tsdf.truncation_distance_m=0.012");
+               "--set tsdf.expert.truncation_distance_m=0.012");
   };
   const Outcome moved = reconstruct("late.mcap");
   ASSERT_EQ(moved.status, 0) << moved.err;

@@ -126,7 +126,8 @@ class ToolTest : public ToolRun {
     EXPECT_THAT(mirror.err, AllOf(HasSubstr("mirror: "), HasSubstr("more would be reflected")));
     EXPECT_THAT(mirror.out, HasSubstr("overlap"));
     EXPECT_TRUE(fs::exists(folder_ / "mirror/mesh.ply"));
-    EXPECT_EQ(Run("export out -o again --set export.mesh=false").status, 0) << "a result folder";
+    EXPECT_EQ(Run("export out -o again --set export.expert.mesh=false").status, 0)
+        << "a result folder";
 
     const Outcome wrong =
         Run("export out/model.iso -o wrong --emissivity 1.2 --box '0 0 0 1 1: emissivity=1'");
@@ -196,7 +197,7 @@ TEST_F(ToolTest, EveryOptionIsListedWithDefaultAndMeaning) {
   EXPECT_EQ(ground.status, 0) << ground.err;
   EXPECT_THAT(
       ground.out,
-      AllOf(HasSubstr("\n  tsdf.truncation_distance_m = 0\n      Signed distances"),
+      AllOf(HasSubstr("\n  tsdf.expert.truncation_distance_m = 0\n      Signed distances"),
             HasSubstr("  tracker.external_odometry.expert.max_gap_s = 0.2\n"),
             HasSubstr("  thermal.expert.policy = BEST_CONDITIONS\n"), HasSubstr("LOWEST_GOOD")));
   const Outcome stage = Run("options ground volume");
