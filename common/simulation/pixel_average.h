@@ -49,7 +49,7 @@ class PixelAverage {
   /// may be infinite.
   double BlurDiameterPx(double z_m) const;
 
-  /// What the rays meet, and where they start.
+  /// Holds what the rays meet, and where they start.
   struct Exposure {
     const Scene& scene;
     const RayGrid& grid;

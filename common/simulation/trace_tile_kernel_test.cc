@@ -15,7 +15,7 @@ namespace {
 
 constexpr Shape kShapes[] = {Shape::kBox,      Shape::kRectangle, Shape::kSphere,
                              Shape::kCylinder, Shape::kTube,      Shape::kDisc};
-constexpr std::int32_t kBefore = 3;  ///< What an earlier primitive's hits have as index.
+constexpr std::int32_t kBefore = 3;  ///< The index of an earlier primitive's hits.
 constexpr std::int32_t kTarget = 7;
 /// Rays that graze hit or miss, or meet the near or the far wall, by rounding: about one in a
 /// thousand.

@@ -33,7 +33,7 @@ struct MonitorHost {
 /// The computer that this program runs on.
 MonitorHost ThisComputer();
 
-/// What the monitor looks at and speaks for.
+/// Holds what the monitor looks at and speaks for.
 struct EdgeMonitorParts {
   const Clock& clock;
   EdgePipeline& pipeline;

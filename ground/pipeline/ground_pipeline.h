@@ -97,7 +97,7 @@ class GroundPipeline {
   /// At the end: all sub-maps into the first.
   void MergeMaps(const std::function<void(double)>& progress);
 
-  /// Of what is no stage with times of its own.
+  /// Holds the times of work that no stage counts itself.
   struct OwnTimes {
     StageStats depth_frame, preprocess, integrate, merge;
   };

@@ -57,7 +57,7 @@ bool ThermalStage::Add(ThermalFramePtr frame) {
   waiting_.push_back({std::move(frame), nuc});
   // A depth stream that stopped must not make the buffer grow.
   // Frames wait for the depth frame behind them, a handful at 30 and 40 Hz. 64 are one and a half
-  // seconds: longer gaps are left out anyway (max_wait_s).
+  // seconds: longer gaps are left out anyway (max_depth_gap_s).
   constexpr std::size_t kMaxWaiting = 64;
   if (waiting_.size() > kMaxWaiting) {
     waiting_.pop_front();

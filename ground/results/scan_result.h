@@ -31,7 +31,7 @@ struct WrittenScan {
   Doubts doubts;     ///< About what came in and what came out; stats.json has them as `warnings`.
 };
 
-/// What a driver knows of a scan beside its model.
+/// Holds what a driver knows of a scan beside its model.
 struct DriverReport {
   const DelayReport& delay;
   const Doubts& doubts;  ///< About the frames.

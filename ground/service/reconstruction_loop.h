@@ -15,7 +15,7 @@
 
 namespace isotherm {
 
-/// What a reconstruction gives to others.
+/// Holds those that a reconstruction gives something to.
 struct ReconstructionSinks {
   Subscriber& subscriber;     ///< Feedback, to the rig.
   RecordingQueue& recording;  ///< Feedback, to the disk.

@@ -120,7 +120,7 @@ class Tracker {
   std::optional<CaptureTime> lost_since_;
   int searched_ = 0;                         ///< The sub-map a lost rig is looked for in.
   std::vector<StampedMapPose> unconfirmed_;  ///< Part of the trajectory once believed.
-  /// What must be called before the next Track.
+  /// Says what must be called before the next Track.
   enum class Pending : std::uint8_t { kNothing, kDecision, kView };
   Pending pending_ = Pending::kNothing;
 };
