@@ -23,6 +23,7 @@ struct GroundSituation {
   int scans_being_written = 0;
   int scans_given_up = 0;              ///< Their results are lost.
   std::optional<std::string> problem;  ///< What is stuck.
+  std::optional<std::string> folder_problem{};  ///< Why nothing can be written at all.
 };
 
 /// A part per fact, the most important first: what to do, what is wrong, how the scan is, what has

@@ -47,8 +47,8 @@ class SessionTracker {
  private:
   struct Entry {
     std::uint64_t session = 0;
-    std::uint64_t depth_published = 0;
-    std::uint64_t thermal_published = 0;
+    StreamStatus depth{};
+    StreamStatus thermal{};
     FeedbackLatency feedback{};
     std::optional<SessionClock> clock{};
     bool ended = false;
