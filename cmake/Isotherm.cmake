@@ -142,7 +142,7 @@ function(isotherm_test)
   target_include_directories(${ARG_NAME} PRIVATE ${PROJECT_SOURCE_DIR})
   # Only for sources that use it: the others compile from another clone's cache.
   foreach(source IN LISTS ARG_SRCS)
-    file(STRINGS ${source} uses_source_dir REGEX "ISOTHERM_SOURCE_DIR|dataset_folder.h|bad_input.h" LIMIT_COUNT 1)
+    file(STRINGS ${source} uses_source_dir REGEX "ISOTHERM_SOURCE_DIR|dataset_folder.h|bad_input.h|two_hosts.h" LIMIT_COUNT 1)
     if(uses_source_dir)
       target_compile_definitions(${ARG_NAME} PRIVATE ISOTHERM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
       break()

@@ -60,8 +60,8 @@ std::string AdviceText(const Feedback& feedback) {
 
 std::vector<std::string> FeedbackParts(const Feedback& feedback, std::vector<std::string> urgent) {
   if (feedback.frames_left_out > 0) {
-    urgent.push_back(fmt::format("ground BEHIND {}: reconstruct its scan.mcap again",
-                                 feedback.frames_left_out));
+    urgent.push_back(
+        fmt::format("ground BEHIND {}: reconstruct its scan.mcap again", feedback.frames_left_out));
   }
   std::vector<std::string> parts = {AdviceText(feedback)};
   if (const std::string words = AdviceWords(feedback); !urgent.empty() && !words.empty()) {

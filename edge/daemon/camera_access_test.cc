@@ -24,10 +24,14 @@ UsbNode Node(std::uint16_t vendor, std::uint16_t product, const std::string& pat
 }
 
 /// What a rig's computer may have on its USB.
-const std::vector<UsbNode> kConnected = {
-    Node(0x1d27, 0x0609, "xtion"),    Node(0x1d27, 0x0601, "carmine"), Node(0x0403, 0xde37, "optris"),
-    Node(0x1e4e, 0x0100, "lepton"),   Node(0x0403, 0x6001, "autopilot's serial port"),
-    Node(0x046d, 0x0825, "a webcam"), Node(0x045e, 0x02ae, "kinect"),  Node(0x045e, 0x0745, "a mouse")};
+const std::vector<UsbNode> kConnected = {Node(0x1d27, 0x0609, "xtion"),
+                                         Node(0x1d27, 0x0601, "carmine"),
+                                         Node(0x0403, 0xde37, "optris"),
+                                         Node(0x1e4e, 0x0100, "lepton"),
+                                         Node(0x0403, 0x6001, "autopilot's serial port"),
+                                         Node(0x046d, 0x0825, "a webcam"),
+                                         Node(0x045e, 0x02ae, "kinect"),
+                                         Node(0x045e, 0x0745, "a mouse")};
 
 TEST(CameraAccessTest, F14TheDepthProcessHasCamerasOfOpenniAndNoOtherDevice) {
   EXPECT_THAT(AccessFor(Sensor::kDepth, {}, kConnected).value().write,

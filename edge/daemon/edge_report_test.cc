@@ -126,12 +126,10 @@ TEST_F(EdgeReportTest, F08TheStatusLineShowsTheDutyCycleOfAStorm) {
   EdgeStatus status;
   status.nuc.state = NucState::kError;
   status.nuc.reason = "shutter closed for 7 s";
-  EXPECT_THAT(Line(status),
-              HasSubstr("NUC error (shutter closed for 7 s)  recorded"));
+  EXPECT_THAT(Line(status), HasSubstr("NUC error (shutter closed for 7 s)  recorded"));
   status.nuc = {
       .state = NucState::kIdle, .closings_per_minute = 9, .closed_fraction = 0.41, .storm = true};
-  EXPECT_THAT(Line(status),
-              HasSubstr("NUC idle, STORM: 9/min, 41 % closed"));
+  EXPECT_THAT(Line(status), HasSubstr("NUC idle, STORM: 9/min, 41 % closed"));
 }
 
 TEST_F(EdgeReportTest, CountersThatDoNotBalanceAreNotHidden) {
@@ -157,12 +155,10 @@ TEST_F(EdgeReportTest, StatusLineShowsTheGroundsAdvice) {
   feedback.model.good = 0.34F;
   feedback.covered_area_m2 = 0.5;
   feedback.advice = {Advice::kGoBackToRelocalise};
-  EXPECT_THAT(Line({}, feedback),
-              HasSubstr("ground: go back, LOST, all 34 % of 0.50 m2"));
+  EXPECT_THAT(Line({}, feedback), HasSubstr("ground: go back, LOST, all 34 % of 0.50 m2"));
   feedback.tracking_state = TrackingState::kDegraded;
   feedback.pose_covariance = 1e-6 * PoseCovariance::Identity();
-  EXPECT_THAT(Line({}, feedback),
-              HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
+  EXPECT_THAT(Line({}, feedback), HasSubstr("degraded within 1.0 mm 0.06 deg, all 34 %"));
   EXPECT_THAT(Line({}, feedback, false), HasSubstr("ground: absent"));
   EXPECT_THAT(Line({}, feedback, true, "refuses this scan"),
               HasSubstr("ground: refuses this scan |"));
@@ -225,8 +221,7 @@ TEST_F(EdgeReportTest, F41HowLongTheDiskLastsIsSaidWhileAllIsWell) {
 
 TEST_F(EdgeReportTest, F17TheStatusLineSaysWhetherTheClockIsSynchronised) {
   EdgeStatus status;
-  EXPECT_THAT(Line(status),
-              HasSubstr("clock not synchronised"));
+  EXPECT_THAT(Line(status), HasSubstr("clock not synchronised"));
   HostStatus host;
   host.clock = {
       .synchronised = true, .offset_s = 0.0, .estimated_error_s = 0.0001, .max_error_s = 0.0012};

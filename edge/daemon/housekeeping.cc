@@ -154,8 +154,7 @@ EdgeSituation Housekeeping::Situation() const {
     if (!recording->brief.empty()) situation.problems.push_back(recording->brief);
   }
   if (!link.problem.empty()) situation.problems.emplace_back("NO NETWORK");
-  if (!link.ground_problem.empty())
-    situation.problems.push_back("GROUND " + link.ground_problem);
+  if (!link.ground_problem.empty()) situation.problems.push_back("GROUND " + link.ground_problem);
   if (const std::optional<std::string> stuck = pipeline_.StuckIn(clock_.SteadyNow()))
     situation.problems.push_back(*stuck);
   return situation;

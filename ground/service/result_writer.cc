@@ -129,8 +129,8 @@ void ResultWriter::FinishScan(EndedScan ended) {
     return;
   }
   WriteStandardOutput(*text + CountersText(counters, recording) +
-                      ConclusionText(scan.behind(), scan.areas(), options_.feedback().done_fraction(),
-                                     recording.path));
+                      ConclusionText(scan.behind(), scan.areas(),
+                                     options_.feedback().done_fraction(), recording.path));
 }
 
 Result<std::string> ResultWriter::WriteWithFallback(LiveScan& scan, const DelayReport& delay,

@@ -21,8 +21,8 @@ struct GroundSituation {
   RecordingProgress recording;
   Nanoseconds recording_at_it{0};  ///< How long the disk has been at one piece of work.
   int scans_being_written = 0;
-  int scans_given_up = 0;              ///< Their results are lost.
-  std::optional<std::string> problem;  ///< What is stuck.
+  int scans_given_up = 0;                       ///< Their results are lost.
+  std::optional<std::string> problem;           ///< What is stuck.
   std::optional<std::string> folder_problem{};  ///< Why nothing can be written at all.
 };
 

@@ -38,7 +38,8 @@ class CheckScriptTest : public ::testing::Test {
     Commit("before.cc", "0");
     Commit("CMakeLists.txt", "project(isotherm VERSION 0.2.0 LANGUAGES C CXX)");
     Commit("first.cc", "1");
-    Commit("CMakeLists.txt", "project(isotherm VERSION 0.2.0 LANGUAGES C CXX)\nadd_subdirectory(a)");
+    Commit("CMakeLists.txt",
+           "project(isotherm VERSION 0.2.0 LANGUAGES C CXX)\nadd_subdirectory(a)");
     Commit("second.h", "2");
     std::ofstream(root() / "uncommitted.cc") << "3\n";
   }

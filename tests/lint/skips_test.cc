@@ -38,7 +38,9 @@ class SkipsTest : public ::testing::Test {
   const testing::TemporaryDirectory folder_;
 };
 
-TEST_F(SkipsTest, NothingSkippedIsFine) { EXPECT_EQ(Check(kPassed, "[       OK ] A.B\n").status, 0); }
+TEST_F(SkipsTest, NothingSkippedIsFine) {
+  EXPECT_EQ(Check(kPassed, "[       OK ] A.B\n").status, 0);
+}
 
 TEST_F(SkipsTest, AListedCaseIsNamedAndFine) {
   const Finished checked =

@@ -20,17 +20,16 @@ std::vector<std::string> MessagesFor(const std::vector<SourceFile>& files) {
   return messages;
 }
 
-const SourceFile kList = {
-    "cmake/Isotherm.cmake",
-    {"set(isotherm_threaded_tests queue_test", "  other_test)  # Watched."}};
+const SourceFile kList = {"cmake/Isotherm.cmake",
+                          {"set(isotherm_threaded_tests queue_test", "  other_test)  # Watched."}};
 const SourceFile kDeclaration = {
     "a/CMakeLists.txt",
-    {"isotherm_test(NAME queue_test SRCS queue_test.cc)", "isotherm_test(NAME other_test SRCS b.cc)",
-     "isotherm_test(NAME new_test SRCS", "  old_test.cc new_test.cc  # Two.", "  DEPS x)"}};
+    {"isotherm_test(NAME queue_test SRCS queue_test.cc)",
+     "isotherm_test(NAME other_test SRCS b.cc)", "isotherm_test(NAME new_test SRCS",
+     "  old_test.cc new_test.cc  # Two.", "  DEPS x)"}};
 
 TEST(ThreadedTestsTest, TheRepositoryKeepsTheRule) {
-  const std::vector<Violation> violations =
-      CheckThreadedTests(ReadSourceTree(ISOTHERM_SOURCE_DIR));
+  const std::vector<Violation> violations = CheckThreadedTests(ReadSourceTree(ISOTHERM_SOURCE_DIR));
   EXPECT_TRUE(violations.empty()) << ToString(violations);
 }
 
@@ -55,8 +54,9 @@ TEST(ThreadedTestsTest, AReasonIsEnough) {
 }
 
 TEST(ThreadedTestsTest, ANameThatIsNoTestIsFound) {
-  EXPECT_THAT(MessagesFor({kList, {"a/CMakeLists.txt", {"isotherm_test(NAME queue_test SRCS a.cc)"}}}),
-              ElementsAre(HasSubstr("names no test: other_test")));
+  EXPECT_THAT(
+      MessagesFor({kList, {"a/CMakeLists.txt", {"isotherm_test(NAME queue_test SRCS a.cc)"}}}),
+      ElementsAre(HasSubstr("names no test: other_test")));
 }
 
 TEST(ThreadedTestsTest, TestsOfProgramsAreNotAsked) {

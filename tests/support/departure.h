@@ -19,7 +19,8 @@ class ProcessorWait {
  public:
   explicit ProcessorWait(pid_t pid);
 
-  /// Adds what was waited since the last look. A thread's last waiting before its end may be missed.
+  /// Adds what was waited since the last look. A thread's last waiting before its end may be
+  /// missed.
   void Look();
   Seconds total() const { return total_; }
 

@@ -79,8 +79,8 @@ class MalformedPackets {
 
   void Send(const std::vector<std::uint16_t>& ports, int packets) const {
     // "RTPS", version 2.1, a vendor, a sender, then a DATA submessage of 8 bytes instead of 24.
-    std::array<std::uint8_t, 32> packet = {'R', 'T', 'P', 'S', 2, 1, 1, 16, 9, 9, 9, 9, 9, 9, 9, 9,
-                                           9,   9,   9,   9,   0x15, 5, 8, 0};
+    std::array<std::uint8_t, 32> packet = {'R', 'T', 'P', 'S', 2, 1, 1, 16, 9,    9, 9, 9,
+                                           9,   9,   9,   9,   9, 9, 9, 9,  0x15, 5, 8, 0};
     for (int i = 0; i < packets; ++i) {
       packet[8] = static_cast<std::uint8_t>(i);
       for (const std::uint16_t port : ports) {

@@ -13,6 +13,7 @@
 
 #include "common/testing/temporary_directory.h"
 #include "tests/support/departure.h"
+#include "tests/support/machine_load.h"
 #include "tests/support/programs.h"
 #include "tests/system/ground_disk.h"
 
@@ -143,8 +144,15 @@ TEST_F(GroundDiskTest, F39TheWatchdogIsNotFedAnyMoreWhenTheDiskIsStuckForLong) {
   EXPECT_THAT(manager.received(), ContainsRegex("STATUS=STUCK: the recording")) << "and it is said";
 }
 
+/// "0": as fast as the ground takes it; "1": as a camera would, which waits for nobody.
+class NextScanTest : public GroundDiskTest, public ::testing::WithParamInterface<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Rates, NextScanTest, ::testing::Values("0", "1"), [](const auto& test) {
+  return std::string(test.param) == "1" ? "OfACamera" : "OfTheGround";
+});
+
 /// The second scan arrives while the first one's results cannot be written.
-TEST_F(GroundDiskTest, ANewScanLosesNothingWhileResultsAreWritten) {
+TEST_P(NextScanTest, ANewScanLosesNothingWhileResultsAreWritten) {
+  const MachineLoad load;
   const std::filesystem::path stuck = Path("stuck");
   std::ofstream(stuck).put('\n');
   Command command = Ground();
@@ -155,9 +163,13 @@ TEST_F(GroundDiskTest, ANewScanLosesNothingWhileResultsAreWritten) {
   const Finished first = RunToEnd(Edge(1), kPatience);
   EXPECT_EQ(first.status, 0) << first.output;
   ASSERT_TRUE(WaitForFile(stuck.string() + ".reached", kPatience)) << ground.output();
-  const Finished second = RunToEnd(Edge(1), kPatience);
+  const Finished second = RunToEnd(Edge(1, GetParam()), kPatience);
   EXPECT_EQ(second.status, 0) << second.output;
   EXPECT_TRUE(ground.WaitForOutput("scan ended", kPatience, 2)) << ground.output();
+  const FrameCountersText sent = CountersOf(second.output, Sensor::kDepth, "published");
+  EXPECT_LE(static_cast<double>(sent.captured - sent.done),
+            load.excused_fraction() * static_cast<double>(sent.captured))
+      << "what the rig's queue dropped; " << load.ToText() << second.output;
   EXPECT_THAT(second.output, Not(HasSubstr("publishing without")));
   std::filesystem::remove(stuck);
   EXPECT_TRUE(ground.WaitForOutput("results  ", kPatience, 2)) << ground.output();

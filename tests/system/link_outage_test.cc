@@ -149,14 +149,15 @@ TEST_F(LinkOutageTest, F25F26F64ALongOutageCostsWhatIsNotHeldAndIsCountedAndSaid
 /// As `profile` with so many of a thousand packets lost on the way out.
 std::string Losing(std::string profile, int per_mille) {
   const std::string what = "<Internal>";
-  return profile.replace(profile.find(what), what.size(),
-                         what + "<Test><XmitLossiness>" + std::to_string(per_mille) +
-                             "</XmitLossiness></Test>");
+  return profile.replace(
+      profile.find(what), what.size(),
+      what + "<Test><XmitLossiness>" + std::to_string(per_mille) + "</XmitLossiness></Test>");
 }
 
 TEST_F(LinkOutageTest, F27ATenthOfAllPacketsLostOnALocalNetworkCostsNoFrame) {
   constexpr int kLost = 100;
-  ASSERT_NO_FATAL_FAILURE(Start(Losing(LanProfile(edge_), kLost), Losing(LanProfile(ground_), kLost)));
+  ASSERT_NO_FATAL_FAILURE(
+      Start(Losing(LanProfile(edge_), kLost), Losing(LanProfile(ground_), kLost)));
   Pass(Seconds(5));
   ExpectNothingIsLost(End());
 }

@@ -44,7 +44,8 @@ inline std::vector<std::string> LinesOf(const std::string& text) {
 class UnitsTest : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    container_ = std::make_unique<Container>(std::filesystem::path(ISOTHERM_BINARY_DIR) / "tests/container");
+    container_ =
+        std::make_unique<Container>(std::filesystem::path(ISOTHERM_BINARY_DIR) / "tests/container");
     obstacle_ = container_->Boot();
     if (!obstacle_) InstallAsTheReadmeSays();
   }

@@ -41,11 +41,12 @@ TEST_F(UnitsTest, F37F40StartedAgainAtOnceHoweverOftenItIsKilled) {
       const std::string pid = MainPid(*container_, unit);
       ASSERT_THAT(pid, Not(IsEmpty())) << unit;
       Run({"systemctl", "kill", "--kill-who", "main", "--signal", "KILL", unit});
-      ASSERT_TRUE(Until(kPatience, [&] {
-        const std::string now = MainPid(*container_, unit);
-        return !now.empty() && now != pid;
-      })) << unit
-          << ' ' << Property(unit, "Result");
+      ASSERT_TRUE(Until(kPatience,
+                        [&] {
+                          const std::string now = MainPid(*container_, unit);
+                          return !now.empty() && now != pid;
+                        }))
+          << unit << ' ' << Property(unit, "Result");
       // As the service manager's clock has it.
       const double ended = std::stod(Property(unit, "InactiveEnterTimestampMonotonic"));
       const double started = std::stod(Property(unit, "ExecMainStartTimestampMonotonic"));

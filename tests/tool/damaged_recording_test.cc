@@ -89,9 +89,10 @@ TEST_F(DamagedRecordingTest, F65WhatARecordingSaysOfItselfIsPrintedWithoutContro
     auto writer = RecordingWriter::Create(folder_ / "scan.mcap", {});
     ASSERT_TRUE(writer) << writer.error().message();
     const std::string evil = "\x1b]0;owned\x07\x1b[31mred\r\x08";
-    ASSERT_TRUE((*writer)
-                    ->WriteMetadata("cameras", {{"depth", evil}, {"depth_serial", evil}, {evil, evil}})
-                    .ok());
+    ASSERT_TRUE(
+        (*writer)
+            ->WriteMetadata("cameras", {{"depth", evil}, {"depth_serial", evil}, {evil, evil}})
+            .ok());
     ASSERT_TRUE((*writer)->WriteMetadata(evil, {{"x", evil}}).ok());
     ASSERT_TRUE((*writer)->Close().ok());
   }

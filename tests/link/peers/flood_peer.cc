@@ -1,6 +1,6 @@
-// A peer that goes by ever new names, for tests: flood_peer DOMAIN NAMES [take-back]. Writes a hello,
-// a status and a receipt under each, to an edge and a ground that are there, or takes only back what
-// was never there; prints "flooded" when all are delivered, and stays.
+// A peer that goes by ever new names, for tests: flood_peer DOMAIN NAMES [take-back]. Writes a
+// hello, a status and a receipt under each, to an edge and a ground that are there, or takes only
+// back what was never there; prints "flooded" when all are delivered, and stays.
 #include <dds/dds.h>
 #include <isotherm_control.h>
 
