@@ -25,8 +25,9 @@ std::size_t Lines(const std::string& text) {
 std::string LogOfAnOutage(FakeClock& clock, Nanoseconds outage) {
   ::testing::internal::CaptureStderr();
   for (Nanoseconds at{}; at < outage; at += 100ms) {
-    DDS_ERROR("ddsi_udp_conn_write to udp/10.77.0.%d:7411 failed with retcode -1\n",
-              static_cast<int>(at / 100ms) % 250);
+    dds_log(DDS_LC_ERROR, __FILE__, __LINE__, __func__,
+            "ddsi_udp_conn_write to udp/10.77.0.%d:7411 failed with retcode -1\n",
+            static_cast<int>(at / 100ms) % 250);
     clock.Advance(100ms);
   }
   return ::testing::internal::GetCapturedStderr();
@@ -57,7 +58,8 @@ TEST(TransportEnvironmentTest, F64RefusedPacketsAreAllCountedAndToldAgainWhileTh
   const TransportEnvironment environment(clock);
   ::testing::internal::CaptureStderr();
   for (int packet = 0; packet < 1000; ++packet) {
-    DDS_WARNING("malformed packet received from vendor 1.%d state parse\n", packet % 7);
+    dds_log(DDS_LC_WARNING, __FILE__, __LINE__, __func__,
+            "malformed packet received from vendor 1.%d state parse\n", packet % 7);
     clock.Advance(20ms);
   }
   const std::string log = ::testing::internal::GetCapturedStderr();

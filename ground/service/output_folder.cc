@@ -1,5 +1,7 @@
 #include "ground/service/output_folder.h"
 
+#include <utility>
+
 #include "common/base/log.h"
 
 namespace isotherm {
@@ -9,8 +11,9 @@ void OutputFolder::Tend(SteadyTime now) {
   const Status prepared = prepare_(folder_);
   usable_ = prepared.ok();
   if (usable_) {
-    if (problem_) LOG(Ground, Info) << "the output folder can be used, folder=" << folder_.string();
-    problem_.reset();
+    if (std::exchange(problem_, std::nullopt)) {
+      LOG(Ground, Info) << "the output folder can be used, folder=" << folder_.string();
+    }
     return;
   }
   if (!problem_) {
