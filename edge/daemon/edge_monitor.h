@@ -59,7 +59,7 @@ class EdgeMonitor {
   EdgeStatus MakeStatus(ScanState scan_state, SteadyTime now);
   /// The newest feedback, if it was not shown yet: image, status line or journal.
   void ShowFeedback();
-  std::string Line() const;
+  EdgeSituation Situation() const;
   void ShowLine();
   /// Returns what is wrong, each in a sentence that says what to do.
   std::vector<std::string> Problems() const;

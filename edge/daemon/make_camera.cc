@@ -9,6 +9,7 @@
 #include "common/options/option_problems.h"
 #include "common/options/text_proto.h"
 #include "edge/camera_process/camera_process.h"
+#include "edge/camera_process/usb_nodes.h"
 #include "edge/daemon/camera_access.h"
 #include "edge/options/edge_options.pb.h"
 #include "edge/source/device_description.h"
@@ -126,7 +127,7 @@ int RunCameraProcess(const std::string& sensor_name, const std::string& source_o
     if (camera) {
       const bool is_file = options.depth_camera().uri().ends_with(".oni");
       return ServeCamera(**camera, clock,
-                         {.sandbox = AccessFor(sensor, options),
+                         {.sandbox = AccessFor(sensor, options, ListUsbNodes()),
                           .waits = sensor == Sensor::kDepth && is_file && options.rate() == 0.0});
     }
     status = camera.error();

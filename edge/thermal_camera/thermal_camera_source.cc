@@ -77,6 +77,7 @@ Status ThermalCameraSource::Open() {
   frozen_ = false;
   incomplete_ = false;
   incomplete_since_ = 0;
+  told_temperatures_ = false;
   LOG(Thermal, Info) << name_ << " opened, product=\"" << info.product << "\" serial=\""
                      << info.serial << "\" port=" << info.bus_port << " width=" << info.width
                      << " height=" << info.height << " settings=\"" << info.settings << "\"";
@@ -113,23 +114,20 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
     counts_.lost += raw.dropped_before;
     next_frame_number_ += raw.dropped_before;
   }
-  if (raw.incomplete) {
-    ++counts_.incomplete;
-    ++incomplete_since_;
-    if (!std::exchange(incomplete_, true)) {
-      LOG(Thermal, Warning) << name_ << ": incomplete frame, number=" << next_frame_number_;
-    }
-    // Delivered without pixels, so that the frame check refuses and counts it under its number.
-    raw.counts = {};
-    return Convert(raw);
-  }
-  incomplete_ = false;
+  if (raw.incomplete) return WithoutPixels(std::move(raw), "incomplete frame");
   if (!EncodingOf(raw).radiometric && !camera_->info().counts_only) {
+    // A wrong bit of what the camera says beside an image; ten in a row open it again
+    // (SupervisedSource).
+    if (told_temperatures_) {
+      return WithoutPixels(std::move(raw), "frame that says that it has no temperatures");
+    }
     return Err(
         FailedPrecondition(name_ +
                            " sends counts that it does not relate to temperatures; say how in "
                            "source.thermal_camera.expert.kelvin_per_count and offset_kelvin"));
   }
+  incomplete_ = false;
+  told_temperatures_ = true;
   const Novelty novelty = novelty_->Process(raw);
   // Incomplete frames have their numbers already.
   const std::uint64_t lost = novelty.lost - std::min(novelty.lost, incomplete_since_);
@@ -160,6 +158,16 @@ Result<SourceItem> ThermalCameraSource::Check(RawThermalFrame raw) {
   }
   frozen_ = frozen;
   ++counts_.delivered;
+  return Convert(raw);
+}
+
+RawFrame ThermalCameraSource::WithoutPixels(RawThermalFrame raw, std::string_view what) {
+  ++counts_.incomplete;
+  ++incomplete_since_;
+  if (!std::exchange(incomplete_, true)) {
+    LOG(Thermal, Warning) << name_ << ": " << what << ", number=" << next_frame_number_;
+  }
+  raw.counts = {};
   return Convert(raw);
 }
 

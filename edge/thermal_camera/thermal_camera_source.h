@@ -66,6 +66,8 @@ class ThermalCameraSource final : public FrameSource {
 
  private:
   Result<SourceItem> Check(RawThermalFrame raw);
+  /// Returns a frame that is refused and counted further on, but has its number.
+  RawFrame WithoutPixels(RawThermalFrame raw, std::string_view what);
   RawFrame Convert(const RawThermalFrame& raw);
   /// `what` and how long it has lasted, as a failure.
   Status Hangs(const std::string& what, Nanoseconds duration) const;
@@ -88,6 +90,7 @@ class ThermalCameraSource final : public FrameSource {
   SteadyTime last_frame_at_{};
   std::uint64_t next_frame_number_ = 0;
   bool frozen_ = false;
+  bool told_temperatures_ = false;      ///< By a frame since it was opened.
   bool incomplete_ = false;             ///< The last frame was incomplete.
   std::uint64_t incomplete_since_ = 0;  ///< Since the last whole frame.
   ThermalCameraCounts counts_;

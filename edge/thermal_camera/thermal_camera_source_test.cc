@@ -213,6 +213,24 @@ TEST_F(ThermalCameraSourceTest, CountsWithoutTemperatureAreRefusedUnlessTheOptio
   EXPECT_NEAR(frame.thermal_scale.Kelvin(frame.pixels.At(0, 0)), 300.0, 1e-9);
 }
 
+TEST_F(ThermalCameraSourceTest, F11AWrongBitOfTheEncodingCostsItsFrameAndNothingElse) {
+  Send(MakeFrame(1, 100));
+  RawThermalFrame wrong = MakeFrame(2, 103);
+  wrong.encoding.radiometric = false;
+  Send(wrong);
+  Send(MakeFrame(3, 106));
+  const auto source = Open();
+  ReadFrame(*source);
+  const RawFrame refused = ReadFrame(*source);
+  EXPECT_TRUE(refused.pixels.empty()) << "its counts are not taken for temperatures";
+  EXPECT_EQ(refused.frame_number, 1U);
+  const RawFrame next = ReadFrame(*source);
+  EXPECT_FALSE(next.pixels.empty());
+  EXPECT_EQ(next.frame_number, 2U);
+  EXPECT_EQ(source->counts().lost, 0U);
+  EXPECT_EQ(script_.opened, 1);
+}
+
 TEST_F(ThermalCameraSourceTest, LostFramesLeaveHolesInTheNumbers) {
   Send(MakeFrame(1, 100));
   Send(MakeFrame(2, 109));

@@ -16,6 +16,7 @@
 #include "ground/export/result_files.h"
 #include "ground/service/distributor.h"
 #include "ground/service/health.h"
+#include "ground/service/output_folder.h"
 #include "ground/service/reconstruction_loop.h"
 #include "ground/service/recording_loop.h"
 #include "ground/service/result_writer.h"
@@ -73,7 +74,8 @@ class GroundService {
                            OverflowPolicy::kBlock),
         to_recording_(kRecordingLimits),
         distributor_(options, mode.single_scan, clock,
-                     {to_reconstruction_, to_recording_, board_, health_.receive}) {}
+                     {to_reconstruction_, to_recording_, board_, health_.receive}),
+        output_folder_(options.live().output_dir(), &PrepareOutputDir) {}
 
   /// Joins the link.
   Status Open(const TransportEnvironment& environment);
@@ -105,6 +107,7 @@ class GroundService {
   ExitDeadline leaving_;  // Outlives the participant.
   std::unique_ptr<Participant> participant_;
   std::unique_ptr<Subscriber> subscriber_;
+  OutputFolder output_folder_;
   SteadyTime next_feed_{};
   std::optional<std::string> reported_problem_;
 };
@@ -204,6 +207,7 @@ void GroundService::GuardUntilStopped() {
   const std::stop_token stop = signal_.token();
   for (Pause(stop, kTick); !stop.stop_requested(); Pause(stop, kTick)) {
     FeedWatchdog();
+    output_folder_.Tend(clock_.SteadyNow());
     status.Report(Situation());
   }
 }
@@ -233,7 +237,8 @@ GroundSituation GroundService::Situation() const {
                             .recording_at_it = health_.recording.AtItFor(clock_.SteadyNow()),
                             .scans_being_written = board_.scans_being_written,
                             .scans_given_up = board_.scans_given_up,
-                            .problem = reported_problem_};
+                            .problem = reported_problem_,
+                            .folder_problem = output_folder_.problem()};
   if (const auto tracker = board_.recording.Get()) situation.recording = (*tracker)->Get();
   return situation;
 }
@@ -271,8 +276,6 @@ void GroundService::LeaveBehind(GroundThread stuck) {
   const int exit_code = ExitCode(IoError(""));
   LOG(Ground, Error) << StuckText(stuck) << "; leaving without it";
   // The link is not torn down: the stuck thread may still use it. The rig notices within the lease.
-  leaving_.Arm(kTimeToLeaveNetwork, exit_code, "standard output");
-  std::fflush(nullptr);
   _exit(exit_code);
 }
 
@@ -280,8 +283,10 @@ void GroundService::LeaveBehind(GroundThread stuck) {
 
 int RunGround(const GroundOptions& options, const ServiceMode& mode,
               const TransportEnvironment& environment, const Clock& clock, StopSignal& signal) {
-  if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
-    return Fail(prepared);
+  if (mode.single_scan) {  // Somebody who waits for one scan wants to know at once.
+    if (const Status prepared = PrepareOutputDir(options.live().output_dir()); !prepared.ok())
+      return Fail(prepared);
+  }
   GroundService service(options, mode, clock, signal);
   if (const Status opened = service.Open(environment); !opened.ok())
     return signal.token().stop_requested() ? 0 : Fail(opened);

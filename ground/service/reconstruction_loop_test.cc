@@ -249,9 +249,7 @@ TEST_F(ReconstructionLoopTest, TheRigsOperatorIsToldWhatWasLeftOutToKeepUp) {
   AwaitResults(1);
   End();
   ASSERT_GE(subscriber_.published.size(), 2U);
-  EXPECT_THAT(subscriber_.published.back().advice_reason, HasSubstr("the ground is behind, "));
-  EXPECT_THAT(subscriber_.published.back().advice_reason,
-              HasSubstr(" thermal frames were left out"));
+  EXPECT_GT(subscriber_.published.back().frames_left_out, 0U);
 }
 
 }  // namespace

@@ -101,6 +101,11 @@ bool MachineLoad::is_busy() const {
   return others_fraction() > kBusyOnAverage || worst_others_fraction() > kBusyForASecond;
 }
 
+double MachineLoad::excused_fraction() const {
+  constexpr double kMaxExcused = 0.25;
+  return is_busy() ? std::min(others_fraction(), kMaxExcused) : 0.0;
+}
+
 std::string MachineLoad::ToText() const {
   return fmt::format(
       "others took {:.0f} % of this computer's processors, {:.0f} % in the worst "

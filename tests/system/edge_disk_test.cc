@@ -71,7 +71,7 @@ TEST_P(F43SyncErrorTest, TheFileIsLeftANewOneBegunAndEachFrameIsAccountedFor) {
   EXPECT_TRUE(edge.WaitForOutput("recording to", kPatience, 2)) << "it is tried again";
   std::filesystem::remove(failing);
   ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
-  EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
+  ExpectToLeave(edge, 73);
   EXPECT_EQ(Count(edge.output(), "recording ended early"), 1) << edge.output();
 
   const FrameCountersText counters = CountersOf(edge.output(), Sensor::kDepth, "recorded");
@@ -122,7 +122,7 @@ TEST_F(SmallDiskTest, F41AFullDiskIsWaitedForAndNoFrameIsLostUncounted) {
       << edge.output();
   std::filesystem::remove(ballast);
   ASSERT_TRUE(edge.WaitForOutput("the disk works again", kPatience)) << edge.output();
-  EXPECT_LT(Leave(edge, 73), kTimeToLeave + kSlack);
+  ExpectToLeave(edge, 73);
   const FrameCountersText counters = CountersOf(edge.output(), Sensor::kDepth, "recorded");
   EXPECT_TRUE(counters.Closes()) << edge.output();
   long found = 0;
@@ -145,7 +145,7 @@ TEST_F(SmallDiskTest, F41AtTheReserveTheRecordingIsCompleteAndPublishingGoesOn) 
   EXPECT_TRUE(content.complete);
   EXPECT_THAT(content.depth, Not(IsEmpty()));
   EXPECT_TRUE(manager_.WaitForText("STATUS=not recording: the disk is full", kPatience));
-  Leave(edge, 73);
+  ExpectToLeave(edge, 73);
   const FrameCountersText published = CountersOf(edge.output(), Sensor::kDepth, "published");
   EXPECT_EQ(published.done, published.captured);
   EXPECT_GT(published.done, static_cast<long>(content.depth.size()));
