@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/check.h"
 #include "common/base/log.h"
 #include "common/base/stage_timer.h"
 #include "ground/model/saved_model.h"
@@ -74,9 +75,13 @@ GroundPipeline::GroundPipeline(const GroundOptions& options, const Rig& rig, con
       gate_(options.tsdf()),
       spiller_(MaxResidentBlocks(options.volume(), grid)) {
   if (!thermal_status_.ok()) return;
-  thermal_stage_.emplace(options.thermal(), rig,
-                         static_cast<float>(options.raycast().expert().min_weight()), counts_);
+  MakeThermalStage();
   if (options.tracker().use_thermal()) tracker_.UseThermal(*rig.thermal, *rig.T_thermal_depth);
+}
+
+void GroundPipeline::MakeThermalStage() {
+  thermal_stage_.emplace(options_.thermal(), rig_,
+                         static_cast<float>(options_.raycast().expert().min_weight()), counts_);
 }
 
 Status GroundPipeline::Continue(const ModelFile& model) {
@@ -280,8 +285,7 @@ DepthReport GroundPipeline::Report(const TrackedFrame& frame, bool integrated) c
 
 void GroundPipeline::ProcessThermal(ThermalFramePtr frame) {
   ++counts_.thermal_in;
-  // Of a camera that measures no temperatures (Encoding::kCounts16).
-  const bool is_counts = frame->temperature_raw.empty() && !frame->valid;
+  const bool is_counts = IsCountsOnly(*frame);
   if (is_counts && counts_.thermal_left_out[LeftOutReason::kCounts]++ == 0) {
     thermal_status_ = FailedPrecondition(
         "the thermal camera sends counts, which nothing relates to temperatures: none are fused, "
@@ -318,6 +322,8 @@ void GroundPipeline::FuseThermal(const PreparedDepth& depth, const TrackedFrame&
       .tsdf = *map.tsdf,
       .refusal = WhyNoThermal(),
       .every_second = load_shedding_ == LoadShedding::kHalfThermal};
+  certainties_.push_back({frame.time, static_cast<float>(tracked.surface_sigma_rad),
+                          static_cast<float>(tracked.mean_depth_m)});
   thermal_stage_->FuseUpTo(tracked, *map.thermal, pool_);
 }
 
@@ -328,6 +334,27 @@ void GroundPipeline::Finish(const std::function<void(double)>& progress) {
     const SubMap& map = atlas_.active();
     thermal_stage_->Finish(*map.tsdf, *map.thermal, pool_);
   }
+}
+
+std::unique_ptr<ThermalPass> GroundPipeline::BeginThermalPass() {
+  // What an earlier scan measured cannot be measured again from this one's frames.
+  if (counts_.thermal_fused == 0 || is_continued_ || spiller_.spilled() > 0) return nullptr;
+  std::vector<PassPose> poses;
+  auto certainty = certainties_.begin();
+  for (const StampedPose& pose : tracker_.trajectory().poses()) {
+    while (certainty != certainties_.end() && certainty->time < pose.time) ++certainty;
+    // A frame that came to be believed only later has none.
+    if (certainty == certainties_.end() || certainty->time != pose.time) continue;
+    poses.push_back(
+        {pose.time, pose.T_world_depth, certainty->surface_sigma_rad, certainty->mean_depth_m});
+  }
+  CHECK(atlas_.ForgetTemperatures());  // It had the room before.
+  counts_.ForgetThermal();
+  MakeThermalStage();
+  SubMap& map = atlas_.active();
+  return std::make_unique<ThermalPass>(
+      options_, rig_, std::move(poses),
+      PassModel{*map.tsdf, *map.thermal, *thermal_stage_, counts_, pool_});
 }
 
 void GroundPipeline::MergeMaps(const std::function<void(double)>& progress) {

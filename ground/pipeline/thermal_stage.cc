@@ -109,7 +109,7 @@ std::optional<LeftOutReason> ThermalStage::WhyLeftOut(CaptureTime time,
 
 void ThermalStage::FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool) {
   bool is_prepared = false;
-  while (!waiting_.empty() && waiting_.front().frame->header.capture_time <= depth.now.time) {
+  while (HasFramesUpTo(depth.now.time)) {
     const Waiting waiting = std::move(waiting_.front());
     waiting_.pop_front();
     if (const auto reason = WhyLeftOut(waiting.frame->header.capture_time, depth)) {
@@ -150,7 +150,8 @@ void ThermalStage::Fuse(const Waiting& waiting, const TrackedDepth& depth, Therm
                                   .camera = uncertainty_,
                                   .near_range = &near_range_occlusion_,
                                   .line_of_sight = &line_of_sight_occlusion_,
-                                  .nuc = waiting.nuc};
+                                  .nuc = waiting.nuc,
+                                  .surface_is_finished = depth.is_finished};
   counts_.fusion +=
       fuser_.Fuse({*waiting.frame, T_map_thermal, depth.view.camera, T_map_depth_at_capture},
                   capture, depth.tsdf, pool, thermal);

@@ -34,7 +34,14 @@ struct TrackedDepth {
   /// Says why thermal frames cannot be fused now at all, if so.
   std::optional<LeftOutReason> refusal = std::nullopt;
   bool every_second = false;  ///< There is time for every second thermal frame only.
+  bool is_finished = false;   ///< CaptureConditions::surface_is_finished.
 };
+
+/// Returns whether a frame comes from a camera that measures no temperatures
+/// (Encoding::kCounts16).
+inline bool IsCountsOnly(const ThermalFrame& frame) {
+  return frame.temperature_raw.empty() && !frame.valid;
+}
 
 /// Takes thermal frames from their arrival to the model: each waits for the depth frame behind it,
 /// since its pose lies between those of two depth frames (6.2.3). What the rig did between them is
@@ -48,6 +55,10 @@ class ThermalStage {
 
   /// Keeps a frame, or counts why not. Frames come in order of capture time. True if it was kept.
   bool Add(ThermalFramePtr frame);
+  /// Returns whether FuseUpTo has anything to do at this time.
+  bool HasFramesUpTo(CaptureTime time) const {
+    return !waiting_.empty() && waiting_.front().frame->header.capture_time <= time;
+  }
   /// Fuses, or counts as left out, what was captured up to `depth.now`.
   void FuseUpTo(const TrackedDepth& depth, ThermalVolume& thermal, ThreadPool& pool);
   /// Counts what still waits as left out, and reviews all temperatures.

@@ -44,6 +44,13 @@ struct ScanCounts {
   std::uint64_t thermal_fused = 0;
   EnumArray<LeftOutReason, std::uint64_t> thermal_left_out;
   FusionReport fusion;  ///< Sum over all fused frames; dropped counts the last review, too.
+
+  /// For a scan whose thermal frames come again.
+  void ForgetThermal() {
+    thermal_in = thermal_fused = 0;
+    thermal_left_out = {};
+    fusion = {};
+  }
 };
 
 }  // namespace isotherm

@@ -1,6 +1,7 @@
 #include "ground/thermal/thermal_fuser.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <limits>
@@ -71,6 +72,29 @@ void CopyVector(const Vector& from, float* to) {
   std::copy_n(single.data(), 3, to);
 }
 
+void SeeWhatDepthCameraSees(const PosedThermalFrame& posed, PixelRowArgs& args) {
+  const RigidTransform T_depth_map = posed.T_map_depth.inverse();
+  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_map.linear().cast<float>();
+  std::copy_n(R.data(), 9, args.R_depth);
+  CopyVector(T_depth_map.translation(), args.t_depth);
+  const CameraModel& camera = posed.depth_camera;
+  args.depth_fx = static_cast<float>(camera.fx);
+  args.depth_fy = static_cast<float>(camera.fy);
+  args.depth_cx = static_cast<float>(camera.cx);
+  args.depth_cy = static_cast<float>(camera.cy);
+  args.depth_width = static_cast<float>(camera.width);
+  args.depth_height = static_cast<float>(camera.height);
+}
+
+/// A depth camera of one pixel in which every point lies.
+void SeeAll(PixelRowArgs& args) {
+  std::fill_n(args.R_depth, 9, 0.0F);
+  std::copy_n(std::array{0.0F, 0.0F, 1.0F}.data(), 3, args.t_depth);
+  args.depth_fx = args.depth_fy = 1.0F;
+  args.depth_cx = args.depth_cy = 0.0F;
+  args.depth_width = args.depth_height = 1.0F;
+}
+
 }  // namespace
 
 FusionReport& FusionReport::operator+=(const FusionReport& other) {
@@ -138,7 +162,6 @@ void ThermalFuser::CastSurface(const RigidTransform& T_map_thermal, const TsdfVo
 PixelRowArgs ThermalFuser::RowArgs(const PosedThermalFrame& posed,
                                    const CaptureConditions& capture) const {
   const CameraModel& camera = rectifier_.ideal_camera();
-  const CameraModel& depth_camera = posed.depth_camera;
   const RigidTransform& T_map_thermal = posed.T_map_thermal;
   PixelRowArgs args{};
   args.distance_stride = distances_m_.width();
@@ -150,16 +173,11 @@ PixelRowArgs ThermalFuser::RowArgs(const PosedThermalFrame& posed,
   std::copy_n(z_axis.data(), 4, args.z_axis);
   CopyVector(T_map_thermal.linear().col(0), args.x_axis);
   CopyVector(T_map_thermal.linear().col(1), args.y_axis);
-  const RigidTransform T_depth_map = posed.T_map_depth.inverse();
-  const Eigen::Matrix<float, 3, 3, Eigen::RowMajor> R = T_depth_map.linear().cast<float>();
-  std::copy_n(R.data(), 9, args.R_depth);
-  CopyVector(T_depth_map.translation(), args.t_depth);
-  args.depth_fx = static_cast<float>(depth_camera.fx);
-  args.depth_fy = static_cast<float>(depth_camera.fy);
-  args.depth_cx = static_cast<float>(depth_camera.cx);
-  args.depth_cy = static_cast<float>(depth_camera.cy);
-  args.depth_width = static_cast<float>(depth_camera.width);
-  args.depth_height = static_cast<float>(depth_camera.height);
+  if (capture.surface_is_finished) {
+    SeeAll(args);
+  } else {
+    SeeWhatDepthCameraSees(posed, args);
+  }
   args.occlusion_tolerance_m =
       static_cast<float>(options_.expert().occlusion().parallax_tolerance_m());
   args.distance_min_m = limits_.distance_min_m;

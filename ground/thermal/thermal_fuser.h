@@ -52,6 +52,9 @@ struct CaptureConditions {
   const LineOfSightOcclusion* line_of_sight =
       nullptr;  ///< Space that the depth camera sees through.
   NucAge nuc;
+  /// All that was ever scanned is in the model already: surface that the depth camera does not see
+  /// at the time takes temperatures, too.
+  bool surface_is_finished = false;
 };
 
 /// A valid thermal frame and where both cameras were.
