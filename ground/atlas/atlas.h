@@ -71,8 +71,8 @@ class Atlas {
   void Link(int other, const RigidTransform& T_active_depth, const RigidTransform& T_other_depth);
   const DriftReport& drift() const { return drift_; }
 
-  /// Forgets the temperatures of the active sub-map, and what is known about them. False if there is
-  /// no room for new ones.
+  /// Forgets the temperatures of the active sub-map, and what is known about them. False if there
+  /// is no room for new ones.
   bool ForgetTemperatures();
 
   /// Puts all joined sub-maps into the first one, which becomes the active one. The others, which
