@@ -142,7 +142,7 @@ bool Writer<Message>::WaitForAcknowledgments(Nanoseconds timeout) const {
 // which frees them: 2.5 MB for a topic.
 constexpr int kMaxTakenBack = 4'096;
 
-/// What a reader gets of the time before it was there.
+/// A reader gets this much of the time before it was there.
 enum class Past : std::uint8_t { kKept, kNone };
 
 template <typename Message>

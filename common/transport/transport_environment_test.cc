@@ -21,7 +21,7 @@ std::size_t Lines(const std::string& text) {
   return static_cast<std::size_t>(std::ranges::count(text, '\n'));
 }
 
-/// What the middleware says while it cannot send, ten times a second for as long as that.
+/// The middleware says this while it cannot send, ten times a second for as long as that.
 std::string LogOfAnOutage(FakeClock& clock, Nanoseconds outage) {
   ::testing::internal::CaptureStderr();
   for (Nanoseconds at{}; at < outage; at += 100ms) {

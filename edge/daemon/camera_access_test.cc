@@ -23,7 +23,7 @@ UsbNode Node(std::uint16_t vendor, std::uint16_t product, const std::string& pat
   return {.vendor_id = vendor, .product_id = product, .paths = {path}};
 }
 
-/// What a rig's computer may have on its USB.
+/// Holds devices that a rig's computer may have on its USB.
 const std::vector<UsbNode> kConnected = {Node(0x1d27, 0x0609, "xtion"),
                                          Node(0x1d27, 0x0601, "carmine"),
                                          Node(0x0403, 0xde37, "optris"),

@@ -59,7 +59,7 @@ class EdgeReportTest : public testing::Test {
     return Situation(status, feedback);
   }
   static std::string Narrow(const EdgeSituation& situation) {
-    constexpr std::size_t kColumns = 79;  // Of a terminal with 80: a full line would wrap.
+    constexpr std::size_t kColumns = 79;  // A terminal has 80; a full line would wrap.
     return FitLine(StatusParts(situation), "  ", kColumns);
   }
   FrameCounters counters_;

@@ -16,7 +16,7 @@ struct FirstPass {
   std::filesystem::path recording;
   std::optional<double> depth_scale;  ///< Instead of the frames' own.
   Nanoseconds thermal_delay;          ///< Added to the recorded capture times.
-  std::vector<CaptureTime> held_out;  ///< Of the thermal frames that were left out, ascending.
+  std::vector<CaptureTime> held_out;  ///< Stamps of the thermal frames left out, ascending.
 };
 
 /// Gives the same frames to a pass over the finished surface, in the same order. What cannot be

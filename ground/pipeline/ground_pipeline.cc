@@ -337,7 +337,7 @@ void GroundPipeline::Finish(const std::function<void(double)>& progress) {
 }
 
 std::unique_ptr<ThermalPass> GroundPipeline::BeginThermalPass() {
-  // What an earlier scan measured cannot be measured again from this one's frames.
+  // An earlier scan's temperatures cannot be measured again from the frames of this one.
   if (counts_.thermal_fused == 0 || is_continued_ || spiller_.spilled() > 0) return nullptr;
   std::vector<PassPose> poses;
   auto certainty = certainties_.begin();

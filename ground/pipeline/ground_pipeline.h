@@ -133,7 +133,7 @@ class GroundPipeline {
   VisibleBlocks near_view_;
   std::uint64_t wrong_size_ = 0;  ///< Depth frames of another size, without a right one between.
   RepeatDetector repeats_;        ///< Among depth frames.
-  std::vector<PoseCertainty> certainties_;  ///< Of the tracked frames, in order of time.
+  std::vector<PoseCertainty> certainties_;  ///< One for each tracked frame, in order of time.
   bool has_room_ = true;  ///< For temperatures; false once the disk to spill to is full.
   LoadShedding load_shedding_ = LoadShedding::kNone;
   bool integrate_next_ = true;                 ///< With kEverySecond.

@@ -12,7 +12,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-constexpr std::size_t kColumns = 79;  // Of a terminal with 80: a full line would wrap.
+constexpr std::size_t kColumns = 79;  // A terminal has 80; a full line would wrap.
 
 GroundSituation Scanning() {
   GroundSituation situation;

@@ -23,7 +23,7 @@ struct StreamCounters {
   /// Samples that were not used; the numbers that only they had stay missing.
   std::uint64_t refused = 0;
   RefusalCounts refused_by_cause{};
-  /// What the rig says of the frames that it did not publish, as of its newest status.
+  /// Frames that the rig says it did not publish, as of its newest status.
   std::uint64_t captured_by_rig = 0;
   std::vector<DropCount> dropped_by_rig{};
 };

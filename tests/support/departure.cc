@@ -10,7 +10,7 @@
 namespace isotherm::system_test {
 namespace {
 
-/// What a thread waited between the last look and its end is not seen.
+/// A wait between the last look and the end of a thread is not seen.
 constexpr Seconds kLook{0.01};
 
 }  // namespace

@@ -39,7 +39,7 @@ struct Departure {
   Seconds took{};                    ///< Time from the signal to the end of the process.
   Seconds waited{};                  ///< Part of it for which others had the processors.
 
-  /// What the program is answerable for: the time that a promise is about.
+  /// The time that the program is answerable for, which a promise is about.
   Seconds own() const { return took - waited; }
   std::string ToText() const;
 };

@@ -306,7 +306,7 @@ class EdgeLoadTest : public ::testing::Test {
   }
 
   /// Whatever the computer did meanwhile: each frame that was due is captured, or counted as lost.
-  /// What was due is known from outside: by the time that capturing took, by what the cameras made
+  /// The number due is known from outside: by the time that capturing took, by what the cameras made
   /// in it, and by their clocks between the first and the last recorded frame.
   void ExpectEachFrameIsAccountedFor() {
     for (const auto& [sensor, made, period] :
@@ -324,7 +324,7 @@ class EdgeLoadTest : public ::testing::Test {
     }
   }
 
-  /// What was lost may be no larger a part than others took of the processors: nothing where they
+  /// No larger a part may be lost than others took of the processors: nothing where they
   /// took little, a quarter at most.
   void ExpectNoMoreIsLostThanOthersTook(const MachineLoad& load) {
     const double fraction = load.excused_fraction();

@@ -139,7 +139,7 @@ TEST(FloodTest, F64MalformedPacketsLeaveALineInTenSecondsWithTheirNumberAndNothi
   ASSERT_TRUE(ground.WaitForOutput("scan ended", kPatience)) << "it still listens";
 }
 
-/// Whether the names come with samples, or are only taken back.
+/// Names come with samples, or are only taken back.
 class NameFloodTest : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Names, NameFloodTest, ::testing::Bool(), [](const auto& test) {
   return test.param ? "ThatAreTakenBack" : "WithSamples";

@@ -22,11 +22,11 @@ namespace {
 
 /// The small scan is played as a camera would.
 constexpr double kRate_hz = 30.0;
-/// What the edge holds by itself: a queue of 2 s for both streams, and the middleware's history.
+/// The edge holds this by itself: a queue of 2 s for both streams, and the middleware's history.
 constexpr double kHeld_s = 3.0;
 /// Frames that may be under way where the numbers are looked at.
 constexpr double kUnderWay = 10.0;
-/// Of an edge and of a ground that has nobody to listen to. Buffers that are full once come late.
+/// An edge, and a ground that has nobody to listen to. Buffers that are full once come late.
 constexpr long kMaxGrowth_kB = 24 * 1024;
 
 class LinkOutageTest : public TwoHostsTest {
@@ -70,7 +70,7 @@ class LinkOutageTest : public TwoHostsTest {
     EXPECT_EQ(static_cast<long>(content.depth.size()), counters.done);
     EXPECT_TRUE(CountersOf(edge().output(), Sensor::kDepth, "published").Closes());
   }
-  /// Of each stream, all that was captured has arrived.
+  /// All that was captured has arrived.
   void ExpectNothingIsLost(const google::protobuf::Struct& stats) {
     for (const auto& [sensor, name] :
          {std::pair(Sensor::kDepth, "depth"), std::pair(Sensor::kThermal, "thermal")}) {
@@ -136,7 +136,7 @@ TEST_F(LinkOutageTest, F25F26F64ALongOutageCostsWhatIsNotHeldAndIsCountedAndSaid
               received + NumberAt(stats, {"link", name, "missing"}));
     EXPECT_LE(captured - received, kRate_hz * kOutage.count() + kRate_hz * kHeld_s) << name;
     EXPECT_GE(captured - received, kRate_hz * (kOutage.count() - kHeld_s) - kUnderWay) << name;
-    // What the rig's queue dropped is known on the ground.
+    // The drops of the rig's queue are known on the ground.
     const double dropped = static_cast<double>(counters.queue_full);
     EXPECT_EQ(NumberAt(stats, {"link", name, "captured_by_rig"}), captured) << name;
     EXPECT_EQ(NumberAt(stats, {"link", name, "dropped_by_rig", "queue_full"}), dropped) << name;

@@ -171,7 +171,7 @@ class UnitsScanTest : public UnitsTest {
     }
   }
 
-  /// What the edge captured is recorded there, and what it published is on the ground.
+  /// All that the edge captured is recorded there, and what it published is on the ground.
   void ExpectTheCountersBalance() const {
     const std::string journal = Journal("--identifier isotherm-edge") + '\n';
     const auto stats = ReadStats(OnlyScan());

@@ -25,7 +25,7 @@ std::string MainPid(const Container& container, const std::string& unit) {
   return shown.substr(pid, shown.find('\n', pid) - pid);
 }
 
-/// Whether `unit` runs, has not been started again, and says `reason` in its status.
+/// Returns whether `unit` runs, has not been started again, and says `reason` in its status.
 bool RunsAndSays(const Container& container, const std::string& unit, const std::string& reason) {
   const std::string shown =
       container.Output("systemctl show --property SubState,NRestarts,StatusText " + unit);
