@@ -68,12 +68,12 @@ TEST(TraceTileTest, KeepsTheNearerOfTwoHitsForEachShapeAndInstructionSet) {
           const double traced_m =
               reference::TraceRay(shape, target, tile->ray_x[i], tile->ray_y[i]);
           const double expected_m = std::min(traced_m, double{before_m});
-          constexpr double kFloat_m = 1e-5;
-          if (std::abs(double{hits.z[i]} - expected_m) > kFloat_m) {
+          constexpr double kRounding_m = 1e-5;
+          if (std::abs(double{hits.z[i]} - expected_m) > kRounding_m) {
             ++grazing;
             continue;
           }
-          if (std::abs(traced_m - double{before_m}) > kFloat_m) {
+          if (std::abs(traced_m - double{before_m}) > kRounding_m) {
             EXPECT_EQ(hits.index[i], traced_m < double{before_m} ? kTarget : kBefore);
           }
           ++(hits.index[i] == kTarget ? hits_of_target : misses);

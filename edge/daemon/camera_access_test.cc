@@ -71,7 +71,7 @@ TEST(CameraAccessTest, WhatTheOptionsNameIsAddedAndNothingWithoutASandbox) {
   const CameraSandbox sandbox = AccessFor(Sensor::kDepth, options, {}).value();
   EXPECT_THAT(sandbox.read, AllOf(Contains("/opt/vendor"), IsSupersetOf({"/usr", "/lib"})));
   EXPECT_THAT(sandbox.write, UnorderedElementsAre(kNull, "/dev/bus/usb/001/007"));
-  options.mutable_camera_sandbox()->set_enabled(false);
+  expert.set_enabled(false);
   EXPECT_FALSE(AccessFor(Sensor::kDepth, options, kConnected).has_value());
 }
 

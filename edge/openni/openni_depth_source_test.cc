@@ -29,9 +29,9 @@ class OpenniDepthSourceTest : public ::testing::Test {
  protected:
   OpenniDepthSourceTest() {
     // Quick and small; tests that are about the size choose another.
-    options_.set_width(320);
-    options_.set_height(240);
-    options_.set_rate_hz(60);
+    options_.mutable_expert()->set_width(320);
+    options_.mutable_expert()->set_height(240);
+    options_.mutable_expert()->set_rate_hz(60);
   }
 
   Status Open() {
@@ -77,9 +77,9 @@ class OpenniDepthSourceTest : public ::testing::Test {
 };
 
 TEST_F(OpenniDepthSourceTest, DeliversWhatTheCameraSeesUnmirrored) {
-  options_.set_width(640);
-  options_.set_height(480);
-  options_.set_rate_hz(30);
+  options_.mutable_expert()->set_width(640);
+  options_.mutable_expert()->set_height(480);
+  options_.mutable_expert()->set_rate_hz(30);
   const CaptureTime before = clock_.Now();
   ASSERT_TRUE(Open().ok());
   const std::vector<RawFrame> frames = Read(2);
@@ -125,7 +125,7 @@ TEST_F(OpenniDepthSourceTest, ReportsWhatItReadBack) {
 }
 
 TEST_F(OpenniDepthSourceTest, TenthMillimetresAreScaledAsSuch) {
-  options_.set_rate_hz(30);
+  options_.mutable_expert()->set_rate_hz(30);
   options_.mutable_expert()->set_unit(TENTH_MILLIMETRE);
   ASSERT_TRUE(Open().ok());
   const std::vector<RawFrame> frames = Read(1);
@@ -136,9 +136,9 @@ TEST_F(OpenniDepthSourceTest, TenthMillimetresAreScaledAsSuch) {
 }
 
 TEST_F(OpenniDepthSourceTest, IntrinsicsComeFromTheFieldOfView) {
-  options_.set_width(640);
-  options_.set_height(480);
-  options_.set_rate_hz(30);
+  options_.mutable_expert()->set_width(640);
+  options_.mutable_expert()->set_height(480);
+  options_.mutable_expert()->set_rate_hz(30);
   camera_.script.horizontal_fov_rad = 1.0;
   camera_.script.vertical_fov_rad = 0.75;
   ASSERT_TRUE(Open().ok());
@@ -171,7 +171,7 @@ TEST_F(OpenniDepthSourceTest, ThereIsNoRigIfTheCameraSaysNothing) {
 }
 
 TEST_F(OpenniDepthSourceTest, AModeThatIsNotThereIsRefusedWithThoseThatAre) {
-  options_.set_rate_hz(50);
+  options_.mutable_expert()->set_rate_hz(50);
   const Status opened = Open();
   EXPECT_EQ(opened.code(), StatusCode::kInvalidArgument);
   EXPECT_THAT(opened.message(), HasSubstr("320x240@50 1 mm"));

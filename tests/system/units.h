@@ -140,7 +140,7 @@ class UnitsScanTest : public UnitsTest {
                           once ? 1 : 0, duration_s, once));
     container_->Output(
         "sed -i s/voxel_size_m:.*/voxel_size_m:0.006/ /etc/isotherm/ground.textproto; "
-        "echo 'tsdf { truncation_distance_m: 0.024 }' >>/etc/isotherm/ground.textproto");
+        "echo 'tsdf { expert { truncation_distance_m: 0.024 } }' >>/etc/isotherm/ground.textproto");
   }
 
   void ExpectHealthy() const {
