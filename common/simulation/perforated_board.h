@@ -51,8 +51,8 @@ struct BoardHit {
   Eigen::Vector3d p_board = Eigen::Vector3d::Zero();
 };
 
-/// What the ray from `origin` along `direction` (z > 0), both in `board`, meets first: the face,
-/// the wall of a hole, the plate behind it, or nothing of the board.
+/// Returns what the ray from `origin` along `direction` (z > 0), both in `board`, meets first: the
+/// face, the wall of a hole, the plate behind it, or nothing of the board.
 BoardHit CastAtBoard(const PerforatedBoard& board, const Eigen::Vector3d& origin,
                      const Eigen::Vector3d& direction);
 

@@ -49,7 +49,9 @@ Image<float> SharedNoise(int width, int height, std::uint64_t stream) {
 }  // namespace
 
 TargetCamera::TargetCamera(const CameraModel& camera, const TargetCameraOptions& options)
-    : camera_(camera), options_(options), corners_(camera.width + 1, camera.height + 1, Eigen::Vector2d::Zero()) {
+    : camera_(camera),
+      options_(options),
+      corners_(camera.width + 1, camera.height + 1, Eigen::Vector2d::Zero()) {
   for (int y = 0; y <= camera.height; ++y) {
     for (int x = 0; x <= camera.width; ++x)
       corners_.At(x, y) = Unproject(camera, {x - 0.5, y - 0.5});

@@ -11,7 +11,7 @@
 
 namespace isotherm {
 
-/// What a camera that looks at a calibration target adds to what is there.
+/// Says what a camera that looks at a calibration target adds to what is there.
 struct TargetCameraOptions {
   double blur_px = 0.6;         ///< Standard deviation of the optical blur.
   double netd_k = 0.05;         ///< Thermal noise.

@@ -270,7 +270,7 @@ class BlobSolver {
     return sample.value - (background + value.filled * (filling - background));
   }
 
-  /// What the image does not tell stays near what is known.
+  /// Keeps near what is known what the image does not tell.
   void AddPriors(Unknowns& gradient) {
     const double contrast = std::abs(unknowns_(kShape + 3) - unknowns_(kShape));
     const double unit = std::max(contrast * contrast, 1e-12);

@@ -8,7 +8,7 @@
 
 namespace isotherm {
 
-/// What is known of one hole's image before it is fitted.
+/// Holds what is known of one hole's image before it is fitted.
 struct BlobModel {
   Polygon outline;  ///< As predicted, pixels: what is behind the hole is seen through it.
   Polygon window;   ///< Only pixels in it count: the hole and a part of the board around it.
@@ -27,7 +27,7 @@ struct BlobModel {
 /// How a predicted outline must be moved, blurred and scaled to look like the image.
 struct BlobFit {
   Eigen::Vector2d shift_px = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< Of the shift, from the noise.
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();  ///< The shift's, from the noise.
   double blur_px = 0.0;
   double scale = 1.0;
   double wall_fill = 0.0;

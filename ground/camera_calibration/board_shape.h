@@ -6,9 +6,9 @@
 
 namespace isotherm {
 
-/// What a board is off its drawing: its warp, a polynomial of the degrees 2 to 4 of the place on
-/// the board, and where each feature was really put. `a` and `b` are -1 and 1 at the outermost
-/// features.
+/// Says how a board differs from its drawing: its warp, a polynomial of the degrees 2 to 4 of the
+/// place on the board, and where each feature was really put. `a` and `b` are -1 and 1 at the
+/// outermost features.
 struct BoardShape {
   static constexpr int kWarpTerms = 12;
   /// Metres, of a^2, ab, b^2, a^3, a^2 b, ab^2, b^3, a^4, a^3 b, a^2 b^2, ab^3, b^4.

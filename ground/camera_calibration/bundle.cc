@@ -267,7 +267,7 @@ Linearization Linearize(ceres::Problem& problem, const std::vector<ceres::Residu
   return result;
 }
 
-/// What one view says about the shared parameters, its pose eliminated.
+/// Returns what one view says about the shared parameters, its pose eliminated.
 ReducedSystem::Term Reduce(const Linearization& linear, int shared) {
   const Eigen::MatrixXd a = linear.jacobian.leftCols(shared);
   const Eigen::MatrixXd b = linear.jacobian.rightCols(kPose);

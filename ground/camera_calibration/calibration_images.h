@@ -24,7 +24,7 @@ struct NamedImage {
 /// Images of one camera, in the order in which they were taken.
 struct ImageSeries {
   std::string source;  ///< Folder or recording.
-  std::string serial;  ///< Of the camera; empty: not known.
+  std::string serial;  ///< The camera's; empty: not known.
   std::vector<NamedImage> images;
 };
 

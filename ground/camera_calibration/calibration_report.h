@@ -14,14 +14,14 @@
 
 namespace isotherm {
 
-/// What is said of one camera's calibration.
+/// Holds what is said of one camera's calibration.
 struct CameraReport {
   std::string name;
   BundleCamera camera;
   Eigen::Vector2i size_px = Eigen::Vector2i::Zero();
   int views = 0, features = 0;
   ReprojectionError error;
-  Eigen::MatrixXd covariance;  ///< Of the lens's parameters; what is reported and written.
+  Eigen::MatrixXd covariance;  ///< The lens's parameters; it is reported and written.
   LensSamples bootstrap;
   ProjectionMap sigmas;
   std::optional<CrossValidation> cross_validation;
@@ -43,7 +43,8 @@ struct CameraReport {
 /// The pose of the second camera relative to the first.
 struct PoseReport {
   RigidTransform T_second_first = RigidTransform::Identity();
-  /// Of a small rotation vector (radians, second camera's axes) and the translation (metres).
+  /// It is that of a small rotation vector (radians, second camera's axes) and the translation
+  /// (metres).
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   int views = 0;  ///< In which both cameras saw the target.
   /// How uncertain it is where a point that the first camera sees 0.6 m away lands in the second

@@ -9,8 +9,8 @@
 
 namespace isotherm {
 
-/// What the views of a target have shown a camera so far, and what a careful person would add:
-/// zones of the image, tilts, distances. Thread-compatible.
+/// Knows what the views of a target have shown a camera so far, and what a careful person would
+/// add: zones of the image, tilts, distances. Thread-compatible.
 class ViewCoverage {
  public:
   static constexpr int kZoneColumns = 3, kZoneRows = 3;
@@ -28,8 +28,8 @@ class ViewCoverage {
   /// The fraction of the half diagonal that the farthest feature reached.
   double Reach() const { return reach_; }
 
-  /// What is missing, a phrase each, the most important first: "no views with the target in the
-  /// upper left corner".
+  /// Returns what is missing, a phrase each, the most important first: "no views with the target in
+  /// the upper left corner".
   std::vector<std::string> Missing() const;
 
  private:

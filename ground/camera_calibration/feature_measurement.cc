@@ -12,7 +12,7 @@ namespace {
 
 using Pattern = CalibrationTarget::Pattern;
 
-/// What an image of a hole cannot tell better, pixels: lenses are not ideal, nor are holes.
+/// An image of a hole tells its place no better, pixels: lenses are not ideal, nor are holes.
 constexpr double kFloor_px = 0.01;
 constexpr double kCornerSigma_px = 0.05;
 

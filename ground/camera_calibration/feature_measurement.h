@@ -9,7 +9,7 @@
 
 namespace isotherm {
 
-/// What all images of holes by one camera have in common, as far as it is known.
+/// Holds what all images of holes by one camera have in common, as far as it is known.
 struct HoleAppearance {
   double diameter_m = 0.0;  ///< Or side.
   bool size_known = false;  ///< Else each image of a hole also tells its size.
@@ -19,7 +19,7 @@ struct HoleAppearance {
   double blur_px = 0.6;     ///< About.
 };
 
-/// What one image of a feature tells.
+/// Holds what one image of a feature tells.
 struct FeatureMeasurement {
   FeatureObservation observation;
   double blur_px = 0.0;

@@ -207,7 +207,7 @@ std::vector<Lattice> FullParts(const Lattice& lattice, int width, int height, in
   return parts;
 }
 
-/// What is the target in a lattice to which things beside it were taken by mistake: the only part
+/// Returns the target in a lattice to which things beside it were taken by mistake: the only part
 /// of its size in which nothing is missing. A larger target has several.
 Lattice WithoutOthers(const Lattice& lattice, const CalibrationTarget& target) {
   const bool asymmetric = target.pattern == CalibrationTarget::Pattern::kAsymmetricCircles;

@@ -11,7 +11,7 @@ namespace isotherm {
 /// A grid that was found among points, by steps from neighbour to neighbour.
 struct GrownGrid {
   int columns = 0, rows = 0;
-  int points = 0;  ///< Of columns x rows.
+  int points = 0;  ///< In the places of columns x rows.
   /// All features, numbered as on the target's front, if the grid is complete and has the target's
   /// size; else empty.
   std::vector<Eigen::Vector2d> features;

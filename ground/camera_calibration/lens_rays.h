@@ -23,8 +23,8 @@ Eigen::Matrix2Xd ProjectionByLens(LensKind kind, const LensParameters& lens,
 Eigen::Matrix<double, 2, 3> ProjectionByRotation(LensKind kind, const LensParameters& lens,
                                                  const Eigen::Vector3d& ray);
 
-/// Whether a pixel is in the inner 80 % of the image, in either direction, where requirements on
-/// calibrations hold.
+/// Returns whether a pixel is in the inner 80 % of the image, in either direction, where
+/// requirements on calibrations hold.
 bool IsInner(const Eigen::Vector2d& pixel, const Eigen::Vector2i& size_px);
 
 }  // namespace isotherm

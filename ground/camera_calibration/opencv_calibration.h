@@ -21,4 +21,8 @@ Result<OpenCvCalibration> CalibrateWithOpenCv(
     const CalibrationTarget& target, const std::vector<std::vector<Eigen::Vector2d>>& views,
     int width, int height, bool full);
 
+/// The pose of a flat target before a camera with a known lens, from centres of images of features.
+RigidTransform FindPose(const CalibrationTarget& target,
+                        const std::vector<Eigen::Vector2d>& features, const LensParameters& lens);
+
 }  // namespace isotherm

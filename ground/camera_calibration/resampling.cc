@@ -33,8 +33,8 @@ LensSamples Resample(const TargetCalibration& calibration, int camera, int sampl
   return result;
 }
 
-/// Those of every second view, by the order in which they were taken: neighbours are alike, so that
-/// both halves see much the same.
+/// Returns the observations of every second view, by the order in which they were taken: neighbours
+/// are alike, so that both halves see much the same.
 std::vector<FeatureObservation> HalfOf(const TargetCalibration& calibration, int half) {
   std::vector<FeatureObservation> observations;
   for (const FeatureObservation& o : calibration.observations) {

@@ -42,7 +42,8 @@ struct CrossValidation {
 /// By camera. Fails if a half is too small to calibrate from.
 Result<std::vector<CrossValidation>> CrossValidate(const TargetCalibration& calibration);
 
-/// What is known of one camera alone: its frame is then that of the rig. Not estimated again.
+/// Returns what is known of one camera alone, in whose frame everything then is. Nothing is
+/// estimated again.
 TargetCalibration SingleCamera(const TargetCalibration& calibration, int camera);
 
 /// The same calibration from some of its observations only, starting at the solution.

@@ -13,7 +13,7 @@ struct ReprojectionError {
   double mae_px = 0.0;
 };
 
-/// Of one camera's features.
+/// Returns the errors of one camera's features.
 ReprojectionError ReprojectionErrorOf(const TargetCalibration& calibration, int camera);
 
 /// By how much each parameter of a camera's lens would have to change for the reprojection error
@@ -23,7 +23,7 @@ ReprojectionError ReprojectionErrorOf(const TargetCalibration& calibration, int 
 Result<std::vector<double>> ParameterSensitivity(const TargetCalibration& calibration, int camera,
                                                  double increase_px);
 
-/// Which features of each image count, of those of one camera (thesis table 5.3).
+/// Says which features of each image of a camera count (thesis table 5.3).
 enum class FeatureSubset { kAll, kNearBorders, kNearMiddle };
 
 /// The calibration of one camera (then its camera 0) from the half of each image's features that

@@ -73,7 +73,7 @@ BundleCamera ToBundle(const CameraModel& c) {
           RigidTransform::Identity()};
 }
 
-CalibrationInput TakeViews(const TargetSession& session) {
+CalibrationInput TakeViews(const TargetSession& session, ThreadPool& pool) {
   const std::vector<TargetObserver> observers = {{ThesisDepth()},
                                                  {ThesisThermal(), ThesisThermalFromDepth()}};
   const auto poses =
@@ -85,19 +85,20 @@ CalibrationInput TakeViews(const TargetSession& session) {
   if (session.depth) input.camera_names.emplace_back("depth");
   if (session.thermal) input.camera_names.emplace_back("thermal");
   input.lenses.assign(input.camera_names.size(), LensKind::kBrownConrady);
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    CalibrationView view;
+  input.views.resize(poses.size());
+  pool.ParallelFor(static_cast<int>(poses.size()), [&](int i) {
+    const auto index = static_cast<std::size_t>(i);
+    CalibrationView& view = input.views[index];
     view.name = fmt::format("view {}", i);
     constexpr std::uint64_t kDepth = 1, kThermal = 2;
     if (session.depth)
       view.images.push_back(
-          TakeDepthImage(depth, session, poses[i], NoiseStream(session.seed, kDepth, i)));
+          TakeDepthImage(depth, session, poses[index], NoiseStream(session.seed, kDepth, index)));
     if (session.thermal)
       view.images.push_back(
-          AsFloat(thermal.Thermal(session.board, ThesisThermalFromDepth() * poses[i],
-                                  NoiseStream(session.seed, kThermal, i))));
-    input.views.push_back(std::move(view));
-  }
+          AsFloat(thermal.Thermal(session.board, ThesisThermalFromDepth() * poses[index],
+                                  NoiseStream(session.seed, kThermal, index))));
+  });
   return input;
 }
 

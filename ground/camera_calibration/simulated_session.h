@@ -18,7 +18,7 @@ RigidTransform ThesisThermalFromDepth();
 /// The same camera as the calibration has it.
 BundleCamera ToBundle(const CameraModel& camera);
 
-/// What a simulated calibration is taken from.
+/// Describes what a simulated calibration is taken from.
 struct TargetSession {
   PerforatedBoard board;
   TargetCameraOptions cameras;
@@ -30,7 +30,7 @@ struct TargetSession {
 };
 
 /// Views of the thesis's target by the thesis's cameras: "depth" first, if both are asked for.
-CalibrationInput TakeViews(const TargetSession& session);
+CalibrationInput TakeViews(const TargetSession& session, ThreadPool& pool);
 
 /// A board with a bowl, a twist and a bend that differ from seed to seed, up to `max_m` in all.
 PerforatedBoard WarpedBoard(double max_m, std::uint64_t seed);

@@ -73,7 +73,7 @@ double SpreadDegrees(const std::vector<RigidTransform>& poses) {
   return std::acos(std::clamp(min_cosine, -1.0, 1.0)) / kRadPerDeg;
 }
 
-/// What OpenCV makes of one camera's images.
+/// Holds what OpenCV makes of one camera's images.
 struct CameraStart {
   BundleCamera camera;
   std::map<int, RigidTransform> T_camera_board;  ///< By view.
@@ -111,7 +111,7 @@ Result<CameraStart> StartCamera(const CalibrationInput& input, const std::vector
   return result;
 }
 
-/// Of all that single views say about a camera's pose in the rig, the one nearest to the others.
+/// Returns, of the poses in the rig that single views give a camera, the one nearest to the others.
 std::optional<RigidTransform> MiddlePose(const std::map<int, RigidTransform>& T_camera_board,
                                          const std::map<int, RigidTransform>& T_rig_board) {
   std::vector<RigidTransform> poses;

@@ -49,7 +49,7 @@ class StillPoseFinder {
   Image<std::uint16_t> counts_;
 };
 
-/// Whether two images of one camera differ by noise only.
+/// Returns whether two images of one camera differ by noise only.
 bool LookAlike(const Image<float>& a, const Image<float>& b);
 
 }  // namespace isotherm

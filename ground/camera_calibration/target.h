@@ -28,13 +28,13 @@ struct CalibrationTarget {
   /// in a row are twice as far apart.
   double square_m = 0.0;
   std::optional<double> hole_m;  ///< Diameter or side; absent: measured in the images.
-  double thickness_m = 0.0;      ///< Of the layer that the holes are cut into.
+  double thickness_m = 0.0;      ///< The layer's that the holes are cut into.
   Contrast contrast = Contrast::kAny;
   /// How exactly features were placed, and how far the board may be off a plane; standard
   /// deviations.
   double placement_sigma_m = 1e-4;
   double warp_sigma_m = 2e-3;
-  std::string spec;  ///< What it was read from.
+  std::string spec;  ///< The text that it was read from.
 
   int features() const { return columns * rows; }
   bool HasHoles() const { return pattern != Pattern::kChessboard; }
@@ -54,7 +54,7 @@ struct CalibrationTarget {
 /// what is expected.
 Result<CalibrationTarget> ParseTarget(std::string_view spec);
 
-/// What specifications look like, with a drawing of each pattern, for the help of commands.
+/// Shows what specifications look like, with a drawing of each pattern, for the help of commands.
 std::string_view TargetHelp();
 
 }  // namespace isotherm

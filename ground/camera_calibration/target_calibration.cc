@@ -103,7 +103,8 @@ class Calibrator {
     return features;
   }
 
-  /// What all holes have in common is known better from all of them than from one.
+  /// Takes over from all holes what they have in common: it is known better from all of them than
+  /// from one.
   void LearnHoles(const std::vector<std::vector<FeatureMeasurement>>& measured, int round) {
     for (std::size_t camera = 0; camera < result_.holes.size(); ++camera) {
       std::vector<double> blurs, scales;

@@ -39,11 +39,11 @@ struct RefusedImage {
   std::string reason;
 };
 
-/// What a calibration with a target found, and what it was found from.
+/// Holds what a calibration with a target found, and what it was found from.
 struct TargetCalibration {
   CalibrationTarget target;
   BundleState state;
-  std::vector<std::string> view_names;  ///< Of the views that count.
+  std::vector<std::string> view_names;  ///< Only of the views that count.
   std::vector<FeatureObservation> observations;
   /// The centres of the features' images as OpenCV found them, by camera and view; empty: not seen.
   std::vector<std::vector<std::vector<Eigen::Vector2d>>> detections;

@@ -33,7 +33,8 @@ class ThermalCalibrationTest : public ::testing::Test {
     session.board = WarpedBoard(0.0015, 3);
     session.count = 14;
     session.seed = 3;
-    input_ = new CalibrationInput(TakeViews(session));
+    ThreadPool pool(2);
+    input_ = new CalibrationInput(TakeViews(session, pool));
     result_ = new Result<TargetCalibration>(Calibrate(*input_));
   }
   static void TearDownTestSuite() {
@@ -183,7 +184,8 @@ TEST(RigCalibrationTest, PoseBetweenTheCamerasIsWithinTheRequirement) {
   session.count = 12;
   session.seed = 8;
   session.depth = true;
-  const auto result = Calibrate(TakeViews(session));
+  ThreadPool pool(2);
+  const auto result = Calibrate(TakeViews(session, pool));
   ASSERT_TRUE(result.has_value()) << result.error().message();
   EXPECT_TRUE(result->refused.empty())
       << result->refused.front().name << ' ' << result->refused.front().reason;

@@ -75,7 +75,7 @@ std::vector<Eigen::Vector2d> ToEigen(const std::vector<cv::Point2f>& points, int
   return result;
 }
 
-/// What a search for holes found.
+/// Holds what a search for holes found.
 struct HoleSearch {
   std::optional<std::vector<Eigen::Vector2d>> features;
   std::optional<GrownGrid> grid;  ///< The largest that is there, of whatever size.

@@ -18,7 +18,8 @@ class TargetDetectorTest : public ::testing::Test {
   static void SetUpTestSuite() {
     TargetSession session;
     session.count = 2;
-    input_ = new CalibrationInput(TakeViews(session));
+    ThreadPool pool(2);
+    input_ = new CalibrationInput(TakeViews(session, pool));
   }
   static void TearDownTestSuite() { delete input_; }
 

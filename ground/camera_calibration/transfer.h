@@ -4,7 +4,7 @@
 
 namespace isotherm {
 
-/// What a joint calibration says of the pose between its two cameras.
+/// Returns what a joint calibration says of the pose between its two cameras.
 PoseReport ReportPose(const TargetCalibration& calibration);
 
 /// Moves one of a pose's six parameters: rotation vector, translation.

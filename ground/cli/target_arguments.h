@@ -13,7 +13,7 @@ class App;
 
 namespace isotherm {
 
-/// What all calibrations with a target are told.
+/// Holds what all calibrations with a target are told.
 struct TargetArguments {
   std::string recording, images;
   std::string target = "thesis-board";

@@ -127,7 +127,7 @@ const FolderArrows& Arrows() {
       {"ground/experiment",
        {"common/simulation", "ground/options", "ground/surface", "ground/tsdf", "ground/thermal",
         "ground/renderer", "ground/json", "ground/mesh", "ground/pipeline", "ground/guidance",
-        "ground/evaluation"}},
+        "ground/evaluation", "ground/camera_calibration"}},
       {"ground/option_validation",
        {"ground/options", "ground/surface", "ground/tsdf", "ground/icp", "ground/relocaliser",
         "ground/thermal", "ground/renderer", "ground/interpretation", "ground/export",

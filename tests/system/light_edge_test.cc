@@ -94,8 +94,8 @@ TEST(LightEdgeTest, GroundServiceLoadsNoneOfThemEither) {
   EXPECT_THAT(Unwanted(libraries), IsEmpty());
 }
 
-/// The tool calibrates cameras, with OpenCV and Ceres and the linear algebra that these stand on. It
-/// still draws and shows nothing, and reads no formats but its own.
+/// The tool calibrates cameras, with OpenCV and Ceres and the linear algebra that these stand on.
+/// It still draws and shows nothing, and reads no formats but its own.
 TEST(LightEdgeTest, TheToolLoadsWhatCalibrationNeedsAndNoMore) {
   std::vector<std::string> beyond;
   for (const std::string& library : Unwanted(LibrariesOf(Tool()))) {
